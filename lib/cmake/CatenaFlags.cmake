@@ -1,0 +1,23 @@
+# How every target of the project is compiled.
+#
+# -O3 in every build type: element derivatives come from templates on the scalar that are 8-15 times slower than
+# closed forms at -O2 and 1.3-1.6 times at -O3. No -ffast-math: NaN and the order of sums carry meaning here.
+# -fno-math-errno lets sqrt and friends vectorise and changes no value.
+function(catena_set_flags target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -fno-math-errno)
+  if(CATENA_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(CATENA_NATIVE)
+    target_compile_options(${target} PRIVATE -march=native)
+  endif()
+  if(CATENA_SANITIZE)
+    set(sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_compile_options(${target} PRIVATE -O1 -g1 ${sanitizers})
+    target_link_options(${target} PRIVATE ${sanitizers})
+  else()
+    target_compile_options(${target} PRIVATE -O3)
+  endif()
+endfunction()
