@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# From a fresh clone to a result: installs what is missing, builds the command line and runs a mechanism through it.
+#
+#   apps/quickstart.sh [SCENE]     SCENE: a scene file; without one, the crank-rocker of data/scenes
+#
+# The build goes to build/release, the results to out/<name of the scene>, both in this tree and ignored by git.
+set -euo pipefail
+
+here="$(pwd)"
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+scene="${1:-$root/data/scenes/crank_rocker.json}"
+[[ "$scene" == /* ]] || scene="$here/$scene"
+cd "$root"
+
+apps/setup.sh
+
+build=build/release
+if [[ ! -f $build/build.ninja ]]; then
+  echo "Configuring $build (Release)"
+  cmake --preset release -DCATENA_BUILD_TESTS=OFF -DCATENA_BUILD_BENCH=OFF
+fi
+echo "Building $build/bin/catena"
+cmake --build $build --target catena_cli
+
+out="out/$(basename "$scene" .json)"
+mkdir -p "$out"
+shown="${scene#"$root"/}"
+echo
+echo "\$ $build/bin/catena run $shown -o $out"
+started="$(mktemp)"
+trap 'rm -f "$started"' EXIT
+status=0
+$build/bin/catena run "$shown" -o "$out" || status=$?
+
+echo
+written="$(find "$out" -type f -newer "$started" | sort)"
+if [[ -n "$written" ]]; then
+  echo "Files written:"
+  while read -r file; do
+    printf '  %-48s %10d bytes\n' "$file" "$(stat -c %s "$file")"
+  done <<<"$written"
+else
+  echo "No files were written to $out."
+fi
+exit $status

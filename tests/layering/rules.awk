@@ -1,0 +1,108 @@
+# The rules on includes and headers; run over all sources by check.sh. Prints violations and exits 1 if there are any.
+#
+#   base <- elements <- model;  base <- linalg;  {model, linalg} <- assembly <- columns <- analysis <- results <- scene
+#
+# `may[layer]` lists what a layer may include, itself among it. apps and tests may include every layer, and so may the
+# umbrella header lib/catena/catena.hpp.
+
+BEGIN {
+  may["base"] = " base "
+  may["elements"] = " base elements "
+  may["model"] = " base elements model "
+  may["linalg"] = " base linalg "
+  may["assembly"] = " base elements model linalg assembly "
+  may["columns"] = may["assembly"] "columns "
+  may["analysis"] = may["columns"] "analysis "
+  may["results"] = may["analysis"] "results "
+  may["scene"] = may["results"] "scene "
+  every = may["scene"]
+  bad = 0
+}
+
+function report(message) {
+  printf "%s:%d: %s\n", FILENAME, FNR, message
+  bad = 1
+}
+
+# Ipopt and NLopt: the first file that includes one may, a second may not.
+function only_one_source(library) {
+  if (FILENAME !~ /^lib\/catena\/.*\.cpp$/)
+    report(library " may be included by one .cpp of the library only")
+  else if ((library in owner) && owner[library] != FILENAME)
+    report(library " is included by " owner[library] " already, and may be by one .cpp only")
+  else
+    owner[library] = FILENAME
+}
+
+function check_own_include(path,    part, n) {
+  n = split(path, part, "/")
+  if (path == "catena/catena.hpp") {
+    if (in_library) report("the library itself includes what it needs, not catena.hpp")
+  } else if (n < 3 || !(part[2] in may)) {
+    report("include \"" path "\" is in no known layer")
+  } else if (index(allowed, " " part[2] " ") == 0) {
+    report(layer " may not include " part[2] " (\"" path "\")")
+  }
+}
+
+function check_outside_include(path) {
+  if (path ~ /^(suitesparse\/)?(cholmod|klu|umfpack|spqr|SuiteSparse|amd|camd|btf|colamd|ccolamd|ldl|cs|RBio)[A-Za-z_0-9]*\.(h|hpp)$/ ||
+      path ~ /^Eigen\/(Cholmod|UmfPack|SPQR|KLU)Support$/ || path ~ /^(cblas|lapacke|openblas_config)[a-z_]*\.h$/) {
+    if (FILENAME !~ /^lib\/catena\/linalg\/.*\.cpp$/) report("SuiteSparse and BLAS belong in lib/catena/linalg/*.cpp")
+  }
+  if (path ~ /^nlohmann\// && FILENAME !~ /^lib\/catena\/scene\/.*\.cpp$/) report("JSON belongs in lib/catena/scene/*.cpp")
+  if (path ~ /^(coin\/)?Ip[A-Z][A-Za-z]*\.(h|hpp)$/) only_one_source("Ipopt")
+  if (path ~ /^nlopt\.(h|hpp)$/) only_one_source("NLopt")
+  if (is_header && FILENAME !~ /^tests\//) {
+    if (path ~ /^(Eigen|unsupported\/Eigen|Spectra)(\/|$)/) report("no Eigen in headers: a user's -march would change its alignment")
+    if (path ~ /^fmt\//) report("no fmt in headers: compile time")
+    if (path == "iostream" || path == "regex") report("no <" path "> in headers: compile time")
+  }
+}
+
+function end_of_header() {
+  if (was_header && !has_pragma) {
+    printf "%s:1: header without #pragma once\n", last_file
+    bad = 1
+  }
+}
+
+FNR == 1 {
+  end_of_header()
+  last_file = FILENAME
+  is_header = was_header = (FILENAME ~ /\.hpp$/)
+  has_pragma = 0
+  in_library = (FILENAME ~ /^lib\/catena\/[^\/]+\//)
+  allowed = every
+  layer = FILENAME
+  if (in_library) {
+    split(FILENAME, folder, "/")
+    layer = folder[3]
+    if (layer in may) {
+      allowed = may[layer]
+    } else {
+      report("lib/catena/" layer " is no known layer")
+      allowed = " "
+    }
+  }
+  if (is_header && $0 !~ /^\/\/ ?[^ ]/) report("a header opens with a // comment that says what it is")
+}
+
+/^#pragma once/ { has_pragma = 1 }
+
+/^[ \t]*#[ \t]*include[ \t]*["<]/ {
+  path = $0
+  sub(/^[ \t]*#[ \t]*include[ \t]*["<]/, "", path)
+  sub(/[">].*$/, "", path)
+  if (path ~ /^catena\//)
+    check_own_include(path)
+  else if (in_library && $0 ~ /include[ \t]*"/)
+    report("include \"" path "\" should start with catena/, so that its layer shows")
+  else
+    check_outside_include(path)
+}
+
+END {
+  end_of_header()
+  exit bad
+}

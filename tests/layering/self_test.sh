@@ -1,0 +1,108 @@
+#!/usr/bin/env bash
+# Holds check.sh to its word: a small clean tree passes, and each violation, put into it alone, is reported.
+set -euo pipefail
+check="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/check.sh"
+tree="$(mktemp -d)"
+trap 'rm -rf "$tree"' EXIT
+cd "$tree"
+failures=0
+cases=0
+
+# put FILE LINES...: writes a file of the given lines, with the opening a header needs.
+put() {
+  local file="$1"
+  shift
+  mkdir -p "$(dirname "$file")"
+  {
+    [[ "$file" == *.hpp ]] && printf '// A header.\n#pragma once\n'
+    printf '%s\n' "$@"
+  } >"$file"
+}
+
+# clean NAME: the tree as it is must pass.
+clean() {
+  cases=$((cases + 1))
+  local output
+  if ! output="$(bash "$check" "$tree" 2>&1)"; then
+    printf 'should pass: %s\n%s\n' "$1" "$output"
+    failures=$((failures + 1))
+  fi
+}
+
+# violates "TEXT" FILE LINES...: with this file added the check must fail, with TEXT and the file's name in its output.
+violates() {
+  local text="$1" file="$2" output
+  shift 2
+  cases=$((cases + 1))
+  [[ $# -gt 0 ]] && put "$file" "$@"
+  if output="$(bash "$check" "$tree" 2>&1)"; then
+    echo "not reported: $file ($text)"
+    failures=$((failures + 1))
+  elif [[ "$output" != *"$file:"*"$text"* ]]; then
+    printf 'reported otherwise than "%s: ... %s":\n%s\n' "$file" "$text" "$output"
+    failures=$((failures + 1))
+  fi
+  rm -f "$file"
+}
+
+put lib/catena/base/vec2.hpp '#include <array>'
+put lib/catena/elements/revolute.hpp '#include "catena/base/vec2.hpp"'
+put lib/catena/model/model.hpp '#include "catena/elements/revolute.hpp"'
+put lib/catena/linalg/solver.cpp '#include <klu.h>' '#include <suitesparse/cholmod.h>' '#include "catena/base/vec2.hpp"'
+put lib/catena/assembly/plan.cpp '#include "catena/model/model.hpp"' '#include "catena/linalg/solver.hpp"' '#include <Eigen/Core>'
+put lib/catena/analysis/ipopt.cpp '#include <IpTNLP.hpp>' '#include <IpIpoptApplication.hpp>'
+put lib/catena/analysis/nlopt.cpp '#include <nlopt.hpp>'
+put lib/catena/scene/reader.cpp '#include <nlohmann/json.hpp>' '#include <fmt/core.h>' '#include "catena/results/csv.hpp"'
+put lib/catena/catena.hpp '#include "catena/scene/reader.hpp"'
+put apps/catena/main.cpp '#include "catena/catena.hpp"' '#include "verbs.hpp"' '#include <iostream>'
+put tests/base/vec2_test.cpp '#include "catena/base/vec2.hpp"'
+mkdir -p data .ci build out
+touch CMakeLists.txt CMakePresets.json README.md LICENSE .gitignore
+clean "a tree in order"
+
+violates "base may not include elements" lib/catena/base/a.hpp '#include "catena/elements/revolute.hpp"'
+violates "elements may not include model" lib/catena/elements/constraints/a.hpp '#include "catena/model/model.hpp"'
+violates "linalg may not include model" lib/catena/linalg/a.cpp '#include "catena/model/model.hpp"'
+violates "model may not include linalg" lib/catena/model/a.cpp '#  include "catena/linalg/solver.hpp"'
+violates "assembly may not include analysis" lib/catena/assembly/a.cpp '#include <catena/analysis/kinematics.hpp>'
+violates "results may not include scene" lib/catena/results/a.cpp '#include "catena/scene/reader.hpp"'
+violates "in no known layer" lib/catena/results/a.cpp '#include "catena/util/a.hpp"'
+violates "is no known layer" lib/catena/util/a.cpp 'int a;'
+violates "not catena.hpp" lib/catena/scene/a.cpp '#include "catena/catena.hpp"'
+violates "should start with catena/" lib/catena/scene/a.cpp '#include "reader.hpp"'
+violates "SuiteSparse" lib/catena/linalg/a.hpp '#include <klu.h>'
+violates "SuiteSparse" lib/catena/analysis/a.cpp '#include <SuiteSparseQR.hpp>'
+violates "SuiteSparse" apps/bench/a.cpp '#include <suitesparse/umfpack.h>'
+violates "SuiteSparse" lib/catena/assembly/a.cpp '#include <Eigen/CholmodSupport>'
+violates "JSON" lib/catena/scene/a.hpp '#include <nlohmann/json_fwd.hpp>'
+violates "JSON" apps/catena/a.cpp '#include <nlohmann/json.hpp>'
+violates "Ipopt" lib/catena/analysis/z.cpp '#include <coin/IpTNLP.hpp>'
+violates "Ipopt" apps/catena/a.cpp '#include <IpTNLP.hpp>'
+violates "NLopt" lib/catena/analysis/z.cpp '#include <nlopt.h>'
+violates "no Eigen" lib/catena/linalg/a.hpp '#include <Eigen/Core>'
+violates "no fmt" lib/catena/results/a.hpp '#include <fmt/core.h>'
+violates "no <iostream>" lib/catena/results/a.hpp '#include <iostream>'
+violates "no known layer" lib/catena/a.hpp '#include "catena/elsewhere.hpp"'
+
+mkdir -p lib/catena/base
+printf '#pragma once\n' >lib/catena/base/a.hpp
+violates "opens with a // comment" lib/catena/base/a.hpp
+printf '//\n#pragma once\n' >lib/catena/base/a.hpp
+violates "opens with a // comment" lib/catena/base/a.hpp
+printf '// A header.\nint a;\n' >lib/catena/base/a.hpp
+violates "without #pragma once" lib/catena/base/a.hpp
+violates "top level" notes.txt 'text'
+violates "top level" Makefile 'all:'
+clean "the tree after all that"
+
+# Under version control only what is committed or staged counts.
+if command -v git >/dev/null; then
+  git init -q . && git add CMakeLists.txt lib apps
+  touch notes.txt
+  clean "a stray file outside version control"
+  git add notes.txt
+  violates "top level" notes.txt
+fi
+
+echo "$cases cases, $failures failures"
+[[ $failures -eq 0 ]]

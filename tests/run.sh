@@ -1,0 +1,90 @@
+#!/usr/bin/env bash
+# Builds catena and runs its tests.
+#
+#   tests/run.sh           Release build, every test but the long ones (stress, fuzz, bench, browser)
+#   tests/run.sh --all     also: the clang build, the tests labelled quick under AddressSanitizer and
+#                          UndefinedBehaviorSanitizer, and the format of the sources
+#   tests/run.sh --long    only the long tests
+#
+# Installs what is missing (apps/setup.sh). A stage that fails does not keep the later ones from running; the exit code
+# is 0 only when all of them passed. Builds go to build/<preset>.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+mode="${1:-}"
+case "$mode" in
+  "" | --long) packages=--tests ;;
+  --all) packages=--all ;;
+  *)
+    echo "usage: tests/run.sh [--all | --long]" >&2
+    exit 2
+    ;;
+esac
+
+jobs="$(nproc)"
+# BLAS threads gain nothing on the small fronts of these matrices and would compete with the tests that run at once.
+export OPENBLAS_NUM_THREADS=1
+export CTEST_OUTPUT_ON_FAILURE=1
+summary=()
+failures=0
+
+# stage <name> <command...>: runs the command, keeps its outcome and time for the closing summary.
+stage() {
+  local name="$1" start=$SECONDS outcome=passed
+  shift
+  echo
+  echo "=== $name"
+  if ! "$@"; then
+    outcome=FAILED
+    failures=$((failures + 1))
+  fi
+  summary+=("$(printf '%-44s %-8s %5d s' "$name" "$outcome" $((SECONDS - start)))")
+}
+
+build() {
+  local preset="$1"
+  shift
+  cmake --preset "$preset" "$@" && cmake --build "build/$preset" --parallel "$jobs"
+}
+
+run_ctest() {
+  local preset="$1"
+  shift
+  ctest --test-dir "build/$preset" --parallel "$jobs" --timeout 600 --no-tests=error "$@"
+}
+
+release_build() { build release -DCATENA_BUILD_TESTS=ON -DCATENA_BUILD_BENCH=ON; }
+release_tests() { run_ctest release --label-exclude '^(stress|fuzz|bench|browser)$'; }
+long_tests() { run_ctest release --label-regex '^(stress|fuzz|bench|browser)$'; }
+clang_build() { build clang; }
+sanitized_build() { build sanitize; }
+sanitized_tests() {
+  ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1 run_ctest sanitize --label-regex '^quick$'
+}
+format() {
+  find lib apps tests \( -name '*.hpp' -o -name '*.cpp' \) -print0 | xargs -0 clang-format --dry-run --Werror &&
+    echo "every source is formatted as .clang-format says"
+}
+
+stage "Debian packages" apps/setup.sh $packages
+if [[ "$mode" == --long ]]; then
+  stage "Release build" release_build
+  stage "long tests" long_tests
+else
+  if [[ "$mode" == --all ]]; then
+    stage "format" format
+    stage "clang build" clang_build
+    stage "sanitized build" sanitized_build
+    stage "sanitized tests (label quick)" sanitized_tests
+  fi
+  stage "Release build" release_build
+  stage "tests" release_tests
+fi
+
+echo
+printf '%s\n' "${summary[@]}"
+if [[ $failures -gt 0 ]]; then
+  echo "$failures of ${#summary[@]} stages failed"
+  exit 1
+fi
+echo "all ${#summary[@]} stages passed in $SECONDS s"
