@@ -1,0 +1,153 @@
+#include "catena/linalg/klu_kernel.hpp"
+
+#include <suitesparse/klu.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace catena {
+namespace {
+
+// A full factorization bounds the entries of L by 1 / pivot tolerance = 1e3. Kept pivots may exceed that tenfold before
+// new ones are worth their price (about that of ten refactorizations): the backward error stays near 1e4 * 2e-16.
+constexpr double largest_multiplier = 1e4;
+
+// Entries of the row-scaled matrix are at most one, so multipliers above the limit need a pivot below this one, unless
+// elimination has let entries grow tenfold before; that would show as an earlier small pivot.
+constexpr double harmless_pivot = 1e-3;
+
+/// KLU takes pointers to data that it does not change as non-const.
+int* mutable_data(std::span<const int> data) { return const_cast<int*>(data.data()); }
+double* mutable_data(std::span<const double> data) { return const_cast<double*>(data.data()); }
+
+FactorResult result_of(const klu_common& common) {
+  if (common.status == KLU_OUT_OF_MEMORY || common.status == KLU_TOO_LARGE) return {FactorStatus::out_of_memory, -1};
+  if (common.status == KLU_SINGULAR) return {FactorStatus::singular, common.singular_col};
+  return {FactorStatus::ok, -1};
+}
+
+/// Largest magnitude in a column of L below its unit diagonal. KLU keeps the columns of a block in one array of
+/// doubles: `length` row indices, padded to whole doubles, then as many values.
+bool multipliers_within_limit(const double* block_factors, int start, int length) {
+  const std::size_t index_space =
+      (static_cast<std::size_t>(length) * sizeof(int) + sizeof(double) - 1) / sizeof(double);
+  const double* multiplier = block_factors + start + index_space;
+  bool within = true;
+  for (int k = 0; k < length; ++k) within &= std::abs(multiplier[k]) <= largest_multiplier;
+  return within;
+}
+
+}  // namespace
+
+struct KluKernel::Handles {
+  klu_common common{};
+  klu_symbolic* symbolic = nullptr;
+  klu_numeric* numeric = nullptr;
+  std::vector<int> block_of_place;
+
+  Handles() { klu_defaults(&common); }
+  ~Handles() {
+    klu_free_numeric(&numeric, &common);
+    klu_free_symbolic(&symbolic, &common);
+  }
+  Handles(const Handles&) = delete;
+  Handles& operator=(const Handles&) = delete;
+
+  std::size_t size() const { return static_cast<std::size_t>(symbolic->n); }
+  const double* pivots() const { return static_cast<const double*>(numeric->Udiag); }
+  bool pivots_suit() const;
+};
+
+bool KluKernel::Handles::pivots_suit() const {
+  const double* pivot = pivots();
+  const int n = symbolic->n;
+  bool all_harmless = true;  // branch-free; a pivot that is not a number fails the comparison
+  for (int k = 0; k < n; ++k) all_harmless &= std::abs(pivot[k]) >= harmless_pivot;
+  if (all_harmless) return true;
+
+  for (int k = 0; k < n; ++k) {
+    const double magnitude = std::abs(pivot[k]);
+    if (magnitude >= harmless_pivot) continue;
+    if (!(magnitude > 0)) return false;
+    const int block = block_of_place[k];
+    if (symbolic->R[block + 1] - symbolic->R[block] == 1) continue;  // no L below a single pivot
+    const auto* factors = static_cast<const double*>(numeric->LUbx[block]);
+    if (!multipliers_within_limit(factors, numeric->Lip[k], numeric->Llen[k])) return false;
+  }
+  return true;
+}
+
+KluKernel::KluKernel() : handles_(std::make_unique<Handles>()) {}
+KluKernel::~KluKernel() = default;
+KluKernel::KluKernel(KluKernel&&) noexcept = default;
+KluKernel& KluKernel::operator=(KluKernel&&) noexcept = default;
+
+FactorResult KluKernel::analyze(const SparsePattern& pattern) {
+  handles_ = std::make_unique<Handles>();
+  Handles& h = *handles_;
+  h.symbolic =
+      klu_analyze(pattern.columns, mutable_data(pattern.column_start), mutable_data(pattern.row_index), &h.common);
+  if (h.symbolic == nullptr) return {FactorStatus::out_of_memory, -1};
+  h.block_of_place.resize(h.size());
+  for (int block = 0; block < h.symbolic->nblocks; ++block)
+    std::fill(h.block_of_place.begin() + h.symbolic->R[block], h.block_of_place.begin() + h.symbolic->R[block + 1],
+              block);
+  if (h.symbolic->structural_rank < pattern.columns) return {FactorStatus::singular, -1};
+  return {};
+}
+
+FactorResult KluKernel::factor(const SparsePattern& pattern, std::span<const double> values, double pivot_tolerance) {
+  Handles& h = *handles_;
+  klu_free_numeric(&h.numeric, &h.common);
+  h.common.tol = pivot_tolerance;
+  h.numeric = klu_factor(mutable_data(pattern.column_start), mutable_data(pattern.row_index), mutable_data(values),
+                         h.symbolic, &h.common);
+  if (h.numeric == nullptr) return result_of(h.common);
+  for (std::size_t k = 0; k < h.size(); ++k) {
+    if (!std::isfinite(h.pivots()[k])) {
+      klu_free_numeric(&h.numeric, &h.common);
+      return {FactorStatus::not_finite, h.symbolic->Q[k]};
+    }
+  }
+  return {};
+}
+
+bool KluKernel::refactor(const SparsePattern& pattern, std::span<const double> values) {
+  Handles& h = *handles_;
+  return klu_refactor(mutable_data(pattern.column_start), mutable_data(pattern.row_index), mutable_data(values),
+                      h.symbolic, h.numeric, &h.common) &&
+         h.pivots_suit();
+}
+
+bool KluKernel::has_factors() const { return handles_->numeric != nullptr; }
+
+void KluKernel::solve(std::span<double> x) {
+  Handles& h = *handles_;
+  klu_solve(h.symbolic, h.numeric, h.symbolic->n, static_cast<int>(x.size() / h.size()), x.data(), &h.common);
+}
+
+void KluKernel::solve_transposed(std::span<double> x) {
+  Handles& h = *handles_;
+  klu_tsolve(h.symbolic, h.numeric, h.symbolic->n, static_cast<int>(x.size() / h.size()), x.data(), &h.common);
+}
+
+double KluKernel::rcond() const {
+  Handles& h = *handles_;
+  klu_rcond(h.symbolic, h.numeric, &h.common);
+  return h.common.rcond;
+}
+
+int KluKernel::structural_rank() const { return handles_->symbolic->structural_rank; }
+
+std::span<const int> KluKernel::block_starts() const {
+  return {handles_->symbolic->R, static_cast<std::size_t>(handles_->symbolic->nblocks) + 1};
+}
+
+std::span<const int> KluKernel::column_order() const { return {handles_->symbolic->Q, handles_->size()}; }
+
+std::span<const int> KluKernel::row_order() const { return {handles_->symbolic->P, handles_->size()}; }
+
+std::span<const double> KluKernel::pivots() const { return {handles_->pivots(), handles_->size()}; }
+
+}  // namespace catena

@@ -1,0 +1,54 @@
+// KLU behind plain types: LU factors of P A Q in block triangular form, R^-1 A = L U per diagonal block (R: the largest
+// magnitude of each row). Only the diagonal blocks are factored; fill-in never leaves them. For factorization.cpp.
+//
+// A refactorization keeps the pivot order of the last full factorization and allocates nothing. It is accepted when all
+// entries of L stay below a limit; since rows are scaled to one, L can only grow below a small pivot, so that in the
+// usual case the check reads the n pivots and nothing else.
+// Source: T. Davis, E. Palamadai Natarajan, "Algorithm 907: KLU", ACM TOMS 37 (2010).
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "catena/linalg/factor_result.hpp"
+#include "catena/linalg/sparse_pattern.hpp"
+
+namespace catena {
+
+class KluKernel {
+ public:
+  KluKernel();
+  ~KluKernel();
+  KluKernel(KluKernel&&) noexcept;
+  KluKernel& operator=(KluKernel&&) noexcept;
+
+  /// Orders the n x n pattern, n >= 1. `singular` when no full matching of rows and columns exists.
+  FactorResult analyze(const SparsePattern& pattern);
+
+  /// Full factorization with new pivots: the diagonal is preferred unless smaller than pivot_tolerance times the
+  /// column's largest entry (1: strict partial pivoting). Allocates. After a failure no factors are held.
+  FactorResult factor(const SparsePattern& pattern, std::span<const double> values, double pivot_tolerance);
+
+  /// Factorization with the kept pivots, no allocation. False: the pivots no longer suit these values (growth, or a
+  /// pivot that vanished or is not finite), `factor` must decide.
+  bool refactor(const SparsePattern& pattern, std::span<const double> values);
+
+  bool has_factors() const;
+
+  void solve(std::span<double> x);             ///< A X = B in place, x.size() / n right-hand sides
+  void solve_transposed(std::span<double> x);  ///< A^T X = B in place
+
+  double rcond() const;                       ///< smallest over largest pivot magnitude of the row-scaled matrix
+  int structural_rank() const;                ///< n unless the pattern alone makes the matrix singular
+  std::span<const int> block_starts() const;  ///< size blocks + 1: places in the permuted matrix
+  std::span<const int> column_order() const;  ///< column at every place of the permuted matrix
+  std::span<const int> row_order() const;     ///< row at every place; within a block before pivoting
+  std::span<const double> pivots() const;     ///< pivot of every place, of the row-scaled matrix
+
+ private:
+  struct Handles;
+  std::unique_ptr<Handles> handles_;
+};
+
+}  // namespace catena
