@@ -1,0 +1,83 @@
+// All constraints of one type, as evaluation wants them: sorted by body, values beside each other, slots ready.
+//
+// The plan owns the block's structure (who, which row, which slot), an evaluator owns the values (element parameters,
+// constants, functions of time), so that a change of parameters keeps the plan. The operations are instantiated once
+// per element type, in a source file of its own; see instantiate.hpp.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "catena/base/frame.hpp"
+#include "catena/base/taylor.hpp"
+#include "catena/elements/element.hpp"
+
+namespace catena {
+
+/// Structure: element e of the block occupies the rows first_row + e rows ... ; bodies are plan bodies.
+template <class E>
+struct ConstraintBlock {
+  int first_row = 0;
+  std::vector<int> entry;   ///< place in the model's vector of this type
+  std::vector<int> body_i;  ///< frame of body i; the ground's frame is the last one
+  std::vector<int> body_j;
+  std::vector<int> slot;           ///< varying_entries<E>() slots an element into the values of Phi_q
+  std::vector<int> constant_slot;  ///< slots of the entries +1 and -1, written once
+  std::vector<double> constant;
+
+  int size() const { return static_cast<int>(entry.size()); }
+  int row(int e) const { return first_row + e * E::rows; }
+};
+
+/// Values: what the model's numbers say of the block's elements.
+template <class E>
+struct ConstraintData {
+  /// Frames are relative to each body's own origin; these shifts bring those of i and j to a common one.
+  struct Shift {
+    Vec2<double> i, j;
+  };
+  struct Timed {
+    int element;
+    int function;
+  };
+  std::vector<E> element;
+  std::vector<Shift> shift;           ///< for absolute types `i` is the origin's place in the ground frame
+  std::vector<Taylor<double>> value;  ///< c(t), one an element where E::functions == 1
+  std::vector<double> scale;          ///< 1/(2c) for squared forms, else empty
+  std::vector<Timed> timed;           ///< elements whose value is a function of time
+};
+
+/// What the rows of one element are made of, dense, for reactions: Phi_qi and Phi_qj in THEORY's forms.
+template <class E>
+struct LocalJacobian {
+  std::array<double, jacobian_size<E>> entries{};  ///< row-major, 3 columns a body
+  double scale = 1;                                ///< solver's rows = scale x these
+};
+
+/// A measured quantity with its first two time derivatives.
+struct Measured {
+  double value = 0, rate = 0, second = 0;
+};
+
+template <class E>
+struct ConstraintOperations {
+  using Block = ConstraintBlock<E>;
+  using Data = ConstraintData<E>;
+
+  /// out[row] = scale x Phi.
+  static void phi(const Block&, const Data&, const Frame<double>* frames, double* out);
+  /// The varying entries of Phi_q into their slots.
+  static void jacobian(const Block&, const Data&, const Frame<double>* frames, double* values);
+  /// out[row] = -Phi_t for the timed elements; other rows are left alone.
+  static void nu(const Block&, const Data&, const Frame<double>* frames, double* out);
+  /// out[row] = gamma at the body velocities qd (three a body, plan order).
+  static void gamma(const Block&, const Data&, const Frame<double>* frames, const double* qd, double* out);
+  /// Phi_q of one element.
+  static LocalJacobian<E> local_jacobian(const Block&, const Data&, const Frame<double>* frames, int e);
+  /// Measured quantity of one element: exact derivatives along q(t) with the given qd and qdd (nullptr: zero).
+  static Measured measure(const Block&, const Data&, const Frame<double>* frames, const double* qd, const double* qdd,
+                          int e);
+};
+
+}  // namespace catena

@@ -1,0 +1,259 @@
+#include "catena/assembly/evaluate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "catena/base/sincos.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// Calls f(block, data, list) for every constraint type.
+template <class Blocks, class Values, class Lists, class F>
+void for_each_block(Blocks& blocks, Values& values, Lists& lists, F&& f) {
+  for_each_list(lists, [&](auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    f(std::get<ConstraintBlock<E>>(blocks), std::get<ConstraintData<E>>(values), list);
+  });
+}
+
+// Calls f(local point, body) for every attachment point of an element.
+template <class E, class F>
+void visit_points(const ElementEntry<E, double>& entry, F&& f) {
+  std::apply(
+      [&](const auto&... field) {
+        (
+            [&] {
+              if constexpr (requires { field.body; }) {
+                if constexpr (
+                    requires { entry.element.*field.member + Vec2<double>{}; } && !requires { field.required; }) {
+                  f(entry.element.*field.member, field.body == 0 ? entry.i : entry.j);
+                }
+              }
+            }(),
+            ...);
+      },
+      E::fields());
+}
+
+double extent(const Model& model) {
+  if (model.bodies.empty()) return 0;
+  Vec2<double> low = model.bodies.front().position, high = low;
+  for (const auto& body : model.bodies) {
+    low = {std::min(low.x, body.position.x), std::min(low.y, body.position.y)};
+    high = {std::max(high.x, body.position.x), std::max(high.y, body.position.y)};
+  }
+  return std::max(high.x - low.x, high.y - low.y);
+}
+
+}  // namespace
+
+Evaluator::Evaluator(std::shared_ptr<const Plan> plan, const Model& model) : plan_(std::move(plan)), model_(&model) {
+  place_.assign(model.elements.size(), -1);
+  for_each_block(plan_->blocks, values_, model.constraints, [&](const auto& block, auto&, const auto& list) {
+    for (int e = 0; e < block.size(); ++e) place_[at(list[at(block.entry[at(e)])].id)] = e;
+  });
+  load_values();
+}
+
+void Evaluator::set_model(const Model& model) {
+  model_ = &model;
+  load_values();
+}
+
+void Evaluator::load_values() {
+  const Plan& plan = *plan_;
+  // Where everything is given: origins of the relative coordinates, poses of the immobile bodies.
+  std::vector<char> keep_weld;
+  for (const auto& weld : std::get<std::vector<ElementEntry<Weld<double>, double>>>(model_->constraints)) {
+    keep_weld.push_back(plan.element_row[at(weld.id)] >= 0);
+  }
+  const Elimination elimination = eliminate_bodies(*model_, keep_weld);
+  origin_.assign(at(plan.bodies) + 1, {});
+  frames_.assign(at(plan.bodies) + 1, {});
+  for (int p = 0; p < plan.bodies; ++p) {
+    Frame<double> pose = elimination.pose[at(plan.model_body[at(p)])];
+    origin_[at(p)] = pose.origin();
+    pose.x = pose.y = 0;
+    frames_[at(p)] = pose;
+  }
+  for_each_block(plan.blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
+    using E = ElementOf<decltype(list)>;
+    const std::size_t n = at(block.size());
+    data.element.resize(n);
+    data.shift.resize(n);
+    data.timed.clear();
+    if constexpr (E::functions > 0) data.value.resize(n);
+    if constexpr (HasSquaredValue<E>) data.scale.resize(n);
+    for (std::size_t e = 0; e < n; ++e) {
+      const auto& entry = list[at(block.entry[e])];
+      data.element[e] = entry.element;
+      const Vec2<double> oi = origin_[at(block.body_i[e])], oj = origin_[at(block.body_j[e])];
+      if constexpr (E::bodies == 1) {
+        data.shift[e].i = oi;
+      } else if (block.body_i[e] >= plan.moving) {
+        data.shift[e] = {oi - oj, {}};  // relative to the body that moves: the other one's sum is a constant
+      } else {
+        data.shift[e] = {{}, oj - oi};
+      }
+      if constexpr (E::functions > 0) {
+        data.value[e] = {entry.values[0].constant, 0, 0};
+        if (entry.values[0].function >= 0) data.timed.push_back({static_cast<int>(e), entry.values[0].function});
+      }
+      if constexpr (HasSquaredValue<E>) data.scale[e] = 1;
+    }
+  });
+  attachment_radii(&length_scale_);
+  if (length_scale_ == 0) length_scale_ = extent(*model_);
+  if (length_scale_ == 0) length_scale_ = 1;
+  function_.resize(model_->functions.size());
+  set_time(time_);
+  // Squared forms are scaled once, by the value at the start, to rows that measure a length.
+  for_each_block(plan.blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
+    using E = ElementOf<decltype(list)>;
+    static_cast<void>(block);
+    if constexpr (HasSquaredValue<E>) {
+      for (std::size_t e = 0; e < data.scale.size(); ++e) {
+        const double c = std::abs(data.value[e].f);
+        data.scale[e] = 0.5 / (c > 0 ? c : length_scale_);
+      }
+    }
+  });
+}
+
+std::vector<double> Evaluator::given_configuration() const {
+  std::vector<double> q(at(plan_->coordinates()), 0.0);
+  for (int p = 0; p < plan_->bodies; ++p) {
+    const bool solved = p < plan_->moving;
+    q[at(3 * p + 2)] = solved ? model_->bodies[at(plan_->model_body[at(p)])].angle : frames_[at(p)].phi;
+  }
+  return q;
+}
+
+void Evaluator::set_time(double t) {
+  time_ = t;
+  if (model_->functions.empty()) return;
+  for (std::size_t k = 0; k < function_.size(); ++k) function_[k] = model_->functions[k].evaluate(t);
+  for_each_list(values_, [&](auto& data, int) {
+    for (const auto& timed : data.timed) data.value[at(timed.element)] = function_[at(timed.function)];
+  });
+}
+
+void Evaluator::set_configuration(std::span<const double> q) {
+  ++counters.configurations;
+  update_frames(q.first(at(3 * plan_->moving)), std::span(frames_).first(at(plan_->moving)));
+}
+
+Frame<double> Evaluator::ground_frame(int plan_body) const {
+  Frame<double> f = frames_[at(plan_body)];
+  f.x += origin_[at(plan_body)].x;
+  f.y += origin_[at(plan_body)].y;
+  return f;
+}
+
+void Evaluator::phi(std::span<double> out) {
+  ++counters.phis;
+  for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
+    ConstraintOperations<ElementOf<decltype(list)>>::phi(block, data, frames_.data(), out.data());
+  });
+}
+
+void Evaluator::start_jacobian(std::span<double> values) const {
+  std::fill(values.begin(), values.end(), 0.0);
+  for_each_list(plan_->blocks, [&](const auto& block, int) {
+    for (std::size_t k = 0; k < block.constant.size(); ++k) values[at(block.constant_slot[k])] += block.constant[k];
+  });
+}
+
+void Evaluator::jacobian(std::span<double> values) {
+  ++counters.jacobians;
+  for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
+    ConstraintOperations<ElementOf<decltype(list)>>::jacobian(block, data, frames_.data(), values.data());
+  });
+}
+
+void Evaluator::nu(std::span<double> out) {
+  ++counters.nus;
+  std::fill(out.begin(), out.end(), 0.0);
+  for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
+    ConstraintOperations<ElementOf<decltype(list)>>::nu(block, data, frames_.data(), out.data());
+  });
+}
+
+void Evaluator::gamma(std::span<const double> qd, std::span<double> out) {
+  ++counters.gammas;
+  for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
+    ConstraintOperations<ElementOf<decltype(list)>>::gamma(block, data, frames_.data(), qd.data(), out.data());
+  });
+}
+
+Measured Evaluator::measure(int element, std::span<const double> qd, std::span<const double> qdd) const {
+  Measured result;
+  for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
+    if (block.size() == 0 || place(element) < 0) return;
+    using E = ElementOf<decltype(list)>;
+    const int e = place(element);
+    if (e >= block.size() || list[at(block.entry[at(e)])].id != element) return;
+    result = ConstraintOperations<E>::measure(block, data, frames_.data(), qd.empty() ? nullptr : qd.data(),
+                                              qdd.empty() ? nullptr : qdd.data(), e);
+  });
+  return result;
+}
+
+Evaluator::ElementJacobian Evaluator::element_jacobian(int element) const {
+  ElementJacobian result;
+  for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
+    using E = ElementOf<decltype(list)>;
+    const int e = place(element);
+    if (e < 0 || e >= block.size() || list[at(block.entry[at(e)])].id != element) return;
+    const LocalJacobian<E> local = ConstraintOperations<E>::local_jacobian(block, data, frames_.data(), e);
+    result.rows = E::rows;
+    result.bodies = E::bodies;
+    result.body_i = block.body_i[at(e)];
+    result.body_j = block.body_j[at(e)];
+    result.scale = local.scale;
+    for (int r = 0; r < E::rows; ++r) {
+      for (int k = 0; k < 3 * E::bodies; ++k) result.entries[6 * r + k] = local.entries[at(r * 3 * E::bodies + k)];
+    }
+  });
+  return result;
+}
+
+Taylor<double> Evaluator::element_value(int element) const {
+  Taylor<double> value;
+  for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
+    const int e = place(element);
+    if (e < 0 || e >= block.size() || list[at(block.entry[at(e)])].id != element) return;
+    if (!data.value.empty()) value = data.value[at(e)];
+  });
+  return value;
+}
+
+std::vector<double> Evaluator::attachment_radii(double* mean) const {
+  std::vector<double> squares(at(plan_->bodies), 0.0);
+  std::vector<int> count(at(plan_->bodies), 0);
+  double sum = 0;
+  std::int64_t points = 0;
+  for_each_list(model_->constraints, [&](const auto& list, int) {
+    for (const auto& entry : list) {
+      visit_points(entry, [&](const Vec2<double>& local, int body) {
+        if (body < 0) return;
+        const double square = squared_norm(local);
+        squares[at(plan_->plan_body[at(body)])] += square;
+        ++count[at(plan_->plan_body[at(body)])];
+        sum += std::sqrt(square);
+        ++points;
+      });
+    }
+  });
+  for (std::size_t b = 0; b < squares.size(); ++b) {
+    const double radius = count[b] > 0 ? std::sqrt(squares[b] / count[b]) : 0;
+    squares[b] = radius > 0 ? radius : 1;
+  }
+  if (mean) *mean = points > 0 ? sum / static_cast<double>(points) : 0;
+  return squares;
+}
+
+}  // namespace catena

@@ -1,0 +1,88 @@
+// Evaluation: fills values into the plan's slots. Owns the numbers of one model and the frames of one configuration.
+//
+//   set_time(t)            functions of time, once a t             -> c, c', c''
+//   set_configuration(q)   trigonometry, once a body               -> frames
+//   phi, jacobian, nu, gamma                                       -> spans, in place
+//
+// q, qd, qdd hold three coordinates a body in plan order and three zeros for the ground (plan.coordinates() in all);
+// positions are relative to the body's origin (see plan.hpp).
+// Nothing here allocates after construction. One object a thread; the plan is shared.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "catena/assembly/plan.hpp"
+#include "catena/base/counters.hpp"
+
+namespace catena {
+
+class Evaluator {
+ public:
+  Evaluator(std::shared_ptr<const Plan> plan, const Model& model);
+
+  const Plan& plan() const { return *plan_; }
+  const std::shared_ptr<const Plan>& shared_plan() const { return plan_; }
+  const Model& model() const { return *model_; }
+
+  /// Takes over changed parameter values of a model with the same structure; the plan stays.
+  void set_model(const Model& model);
+
+  /// The given configuration: poses relative to the origins; immobile bodies where they belong. Size coordinates().
+  std::vector<double> given_configuration() const;
+  /// Place of the body's relative origin in the ground frame.
+  Vec2<double> origin(int plan_body) const { return origin_[static_cast<std::size_t>(plan_body)]; }
+
+  /// Throws OutsideTable (time_function.hpp) when a table does not reach t.
+  void set_time(double t);
+  double time() const { return time_; }
+  void set_configuration(std::span<const double> q);
+  std::span<const Frame<double>> frames() const { return frames_; }
+  /// The frame of a plan body in the ground frame.
+  Frame<double> ground_frame(int plan_body) const;
+
+  void phi(std::span<double> out);  ///< size rows
+  /// Zeroes the values and writes the entries +1 and -1, once before jacobian(); size entries + 1, the last is scratch.
+  void start_jacobian(std::span<double> values) const;
+  void jacobian(std::span<double> values);                        ///< the varying entries
+  void nu(std::span<double> out);                                 ///< size rows
+  void gamma(std::span<const double> qd, std::span<double> out);  ///< size rows
+
+  /// Measured quantity of a scalar constraint with time derivatives; qd, qdd may be empty (zero).
+  Measured measure(int element, std::span<const double> qd, std::span<const double> qdd) const;
+  /// Dense Phi_q of one element in THEORY's form: rows x 6 (columns 3 ... 5 zero for absolute types), and its scale.
+  struct ElementJacobian {
+    int rows = 0, bodies = 0;
+    int body_i = -1, body_j = -1;  ///< plan bodies; `bodies` of the plan stands for the ground
+    double scale = 1;
+    double entries[18] = {};
+  };
+  ElementJacobian element_jacobian(int element) const;
+  /// Value of the element's function of time now: c, c', c''.
+  Taylor<double> element_value(int element) const;
+
+  /// Per plan body: RMS distance of its attachment points from the centroid, 1 m if none (THEORY section 3). The mean
+  /// over all attachment points goes to `mean` (THEORY's Lc).
+  std::vector<double> attachment_radii(double* mean = nullptr) const;
+  /// What a residual in metres is compared with: the mean attachment distance, else the extent of the given positions,
+  /// else 1 m.
+  double length_scale() const { return length_scale_; }
+  Counters counters;
+
+ private:
+  void load_values();
+  /// Place of an element in its block, -1 if it has no rows.
+  int place(int element) const { return place_[static_cast<std::size_t>(element)]; }
+
+  std::shared_ptr<const Plan> plan_;
+  const Model* model_;
+  ConstraintValues values_;
+  std::vector<Vec2<double>> origin_;   // per plan body, and the ground's (0, 0)
+  std::vector<Frame<double>> frames_;  // relative; the last one is the ground's
+  std::vector<Taylor<double>> function_;
+  std::vector<int> place_;
+  double time_ = 0, length_scale_ = 1;
+};
+
+}  // namespace catena

@@ -1,0 +1,7 @@
+// Instantiates everything the library derives from one element type. The build writes a source file per element header
+// that includes this one and names the type: an edited element recompiles its own code, not everybody's.
+#pragma once
+
+#include "catena/assembly/constraint_operations.hpp"
+
+#define CATENA_INSTANTIATE_CONSTRAINT(Type) template struct catena::ConstraintOperations<catena::Type<double>>;

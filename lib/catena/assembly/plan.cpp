@@ -1,0 +1,156 @@
+#include "catena/assembly/plan.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "catena/assembly/numbering.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+std::vector<char> welds_to_keep(const Model& model, const PlanOptions& options) {
+  const auto& welds = std::get<std::vector<ElementEntry<Weld<double>, double>>>(model.constraints);
+  std::vector<char> keep;
+  if (options.keep_elements.empty() || welds.empty()) return keep;
+  keep.assign(welds.size(), 0);
+  std::vector<char> wanted(model.elements.size(), 0);
+  for (int e : options.keep_elements) wanted[at(e)] = 1;
+  for (std::size_t k = 0; k < welds.size(); ++k) keep[k] = wanted[at(welds[k].id)];
+  return keep;
+}
+
+std::vector<BodyPair> ties_of(const Model& model) {
+  std::vector<BodyPair> ties;
+  ties.reserve(model.elements.size());
+  for_each_list(model.constraints, [&](const auto& list, int) {
+    for (const auto& entry : list) {
+      if (entry.i >= 0 && entry.j >= 0) ties.push_back({entry.i, entry.j});
+    }
+  });
+  return ties;
+}
+
+void number_coordinates(const Model& model, const Elimination& elimination, Plan& plan) {
+  const std::vector<BodyPair> ties = ties_of(model);
+  plan.bodies = static_cast<int>(model.bodies.size());
+  plan.model_body = number_bodies(plan.bodies, ties, elimination.immobile);
+  plan.plan_body.resize(model.bodies.size());
+  plan.column.assign(3 * model.bodies.size(), -1);
+  const std::vector<int> island = find_islands(plan.bodies, ties, elimination.immobile, &plan.islands);
+  for (int p = 0; p < plan.bodies; ++p) {
+    const int b = plan.model_body[at(p)];
+    plan.plan_body[at(b)] = p;
+    plan.island.push_back(island[at(b)]);
+    if (elimination.immobile[at(b)]) continue;
+    ++plan.moving;
+    const int unknowns = model.bodies[at(b)].particle ? 2 : 3;
+    for (int k = 0; k < unknowns; ++k) {
+      plan.column[at(3 * p + k)] = plan.columns++;
+      plan.coordinate.push_back(3 * p + k);
+    }
+    plan.contiguous = plan.contiguous && unknowns == 3;
+  }
+  plan.body_has_row.assign(model.bodies.size(), 0);
+}
+
+// The elements of one type that have rows, sorted by their first body so that evaluation walks through memory.
+template <class Entry>
+void choose_elements(const std::vector<Entry>& list, const std::vector<char>& skip, const Plan& plan,
+                     ConstraintBlock<typename Entry::Element>& block) {
+  const auto place = [&](int body) { return body < 0 ? plan.bodies : plan.plan_body[at(body)]; };
+  block.entry.reserve(list.size());
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    if (skip.empty() || !skip[k]) block.entry.push_back(static_cast<int>(k));
+  }
+  const auto first = [&](int k) { return std::min(place(list[at(k)].i), place(list[at(k)].j)); };
+  if (!std::is_sorted(block.entry.begin(), block.entry.end(), [&](int a, int b) { return first(a) < first(b); })) {
+    std::stable_sort(block.entry.begin(), block.entry.end(), [&](int a, int b) { return first(a) < first(b); });
+  }
+  block.body_i.reserve(block.entry.size());
+  block.body_j.reserve(block.entry.size());
+  for (int k : block.entry) {
+    block.body_i.push_back(place(list[at(k)].i));
+    block.body_j.push_back(place(list[at(k)].j));
+  }
+}
+
+template <class E>
+void number_rows(const Model& model, const std::vector<ElementEntry<E, double>>& list, ConstraintBlock<E>& block,
+                 Plan& plan) {
+  block.first_row = plan.rows;
+  for (int e = 0; e < block.size(); ++e) {
+    const int id = list[at(block.entry[at(e)])].id;
+    plan.element_row[at(id)] = plan.rows;
+    for (int r = 0; r < E::rows; ++r) {
+      plan.row_element.push_back(id);
+      plan.row_is_angle.push_back(row_unit<E>(r) == UnitKind::angle);
+    }
+    plan.rows += E::rows;
+    if (model.elements[at(id)].kind == ElementKind::driver) plan.driver_rows += E::rows;
+    if (block.body_i[at(e)] < plan.bodies) plan.body_has_row[at(block.body_i[at(e)])] = 1;
+    if (block.body_j[at(e)] < plan.bodies) plan.body_has_row[at(block.body_j[at(e)])] = 1;
+  }
+}
+
+// Lists the entries of Phi_q in the order in which the slots are dealt out again below.
+template <class E, class F>
+void visit_entries(const ConstraintBlock<E>& block, const Plan& plan, F&& f) {
+  constexpr auto pattern = jacobian_pattern<E>();
+  for (int e = 0; e < block.size(); ++e) {
+    for (std::size_t n = 0; n < pattern.size(); ++n) {
+      if (pattern[n] == Entry::zero) continue;
+      const int row = block.row(e) + static_cast<int>(n) / (3 * E::bodies);
+      const int k = static_cast<int>(n) % (3 * E::bodies);
+      const int body = k < 3 ? block.body_i[at(e)] : block.body_j[at(e)];
+      f(pattern[n], row, body < plan.bodies ? plan.column[at(3 * body + k % 3)] : -1);
+    }
+  }
+}
+
+void make_slots(Plan& plan) {
+  std::vector<MatrixEntry> entries;
+  const auto collect = [&](Entry, int row, int column) {
+    if (column >= 0) entries.push_back({row, column});
+  };
+  for_each_list(plan.blocks, [&](auto& block, int) { visit_entries(block, plan, collect); });
+  SlottedPattern slotted = build_pattern(plan.rows, plan.columns, entries);
+  plan.jacobian = std::move(slotted.pattern);
+  std::size_t next = 0;
+  for_each_list(plan.blocks, [&](auto& block, int) {
+    visit_entries(block, plan, [&](Entry entry, int, int column) {
+      const int slot = column < 0 ? plan.trash_slot() : slotted.slot[next++];
+      if (entry == Entry::varying) {
+        block.slot.push_back(slot);
+        plan.constant_jacobian = plan.constant_jacobian && column < 0;
+      } else if (column >= 0) {
+        block.constant_slot.push_back(slot);
+        block.constant.push_back(entry == Entry::plus_one ? 1.0 : -1.0);
+      }
+    });
+  });
+}
+
+}  // namespace
+
+std::shared_ptr<const Plan> Plan::make(const Model& model, const PlanOptions& options) {
+  auto plan = std::make_shared<Plan>();
+  const Elimination elimination = eliminate_bodies(model, welds_to_keep(model, options));
+  number_coordinates(model, elimination, *plan);
+  plan->element_row.assign(model.elements.size(), -1);
+  plan->row_element.reserve(2 * model.elements.size());
+  plan->row_is_angle.reserve(2 * model.elements.size());
+  for_each_list(model.constraints, [&](const auto& list, int type) {
+    using E = ElementOf<decltype(list)>;
+    auto& block = std::get<ConstraintBlock<E>>(plan->blocks);
+    static_cast<void>(type);
+    const bool weld = std::is_same_v<E, Weld<double>>;
+    choose_elements(list, weld ? elimination.weld_eliminated : std::vector<char>{}, *plan, block);
+    number_rows(model, list, block, *plan);
+  });
+  make_slots(*plan);
+  return plan;
+}
+
+}  // namespace catena

@@ -1,0 +1,74 @@
+// The assembly plan: everything about a mechanism that does not depend on its numbers, computed once.
+//
+//   bodies in plan order: those solved for, then immobile ones, then (frames only) the ground
+//   coordinates [x, y, phi] of every body, positions relative to the body's own origin (its given place): differences
+//   of large coordinates are then formed once, here, and rounding does not grow with the distance from the ground's
+//   columns of Phi_q: the coordinates that are unknown (not those of immobile bodies, not a particle's angle)
+//   rows of Phi_q: type after type, element after element
+//   slots: where each varying entry of Phi_q goes in the compressed values
+//
+// Immutable and shareable between threads; a change of parameters keeps it. Linear time: a few microseconds a body.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "catena/assembly/constraint_block.hpp"
+#include "catena/assembly/elimination.hpp"
+#include "catena/linalg/sparse_pattern.hpp"
+#include "catena/model/model.hpp"
+
+namespace catena {
+
+namespace detail {
+template <class Lists>
+struct BlocksOf;
+template <class... Lists>
+struct BlocksOf<std::tuple<Lists...>> {
+  using Blocks = std::tuple<ConstraintBlock<typename Lists::value_type::Element>...>;
+  using Data = std::tuple<ConstraintData<typename Lists::value_type::Element>...>;
+};
+}  // namespace detail
+
+using ConstraintBlocks = detail::BlocksOf<ConstraintLists<double>>::Blocks;
+using ConstraintValues = detail::BlocksOf<ConstraintLists<double>>::Data;
+
+struct PlanOptions {
+  /// Elements whose reactions are wanted: a weld among them is solved for instead of eliminated.
+  std::vector<int> keep_elements;
+};
+
+struct Plan {
+  int bodies = 0;       ///< all bodies of the model
+  int moving = 0;       ///< plan bodies 0 ... moving - 1 are solved for
+  int columns = 0;      ///< unknown coordinates
+  int rows = 0;         ///< constraint rows that are solved for
+  int driver_rows = 0;  ///< those of drivers
+  int islands = 0;
+
+  std::vector<int> plan_body;   ///< of a model body
+  std::vector<int> model_body;  ///< of a plan body
+  std::vector<int> island;      ///< of a plan body; -1 for immobile ones
+  std::vector<int> column;      ///< of a coordinate 3 b + k, or -1
+  std::vector<int> coordinate;  ///< of a column
+  bool contiguous = true;       ///< column == coordinate for all columns: no particles
+
+  std::vector<int> element_row;    ///< first row of an element of the model's list, -1: none
+  std::vector<int> row_element;    ///< element of a row
+  std::vector<char> row_is_angle;  ///< residual in radians; else in metres
+
+  SparsePattern jacobian;  ///< rows x columns
+  ConstraintBlocks blocks;
+  bool constant_jacobian = true;   ///< no entry of Phi_q varies
+  std::vector<char> body_has_row;  ///< per plan body: some constraint touches it
+
+  int trash_slot() const { return jacobian.entries(); }  ///< where entries of immobile bodies go
+  int coordinates() const { return 3 * (bodies + 1); }   ///< of all bodies and, last and always zero, the ground
+  int mobility() const { return columns - (rows - driver_rows); }  ///< Grübler's count
+
+  static std::shared_ptr<const Plan> make(const Model& model, const PlanOptions& options = {});
+};
+
+}  // namespace catena

@@ -1,0 +1,27 @@
+// Where an analysis sends its rows: storage, a file, a table. One virtual call a row.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "catena/base/unit_kind.hpp"
+
+namespace catena {
+
+/// What a column is called and measured in.
+struct ColumnInfo {
+  std::string name;
+  UnitKind unit = UnitKind::none;
+};
+
+class RowSink {
+ public:
+  virtual ~RowSink() = default;
+  /// Called once, before the first row.
+  virtual void begin(std::span<const ColumnInfo> columns) = 0;
+  /// One value a column. Returning false asks the analysis to stop; it then ends with Status::cancelled.
+  virtual bool row(std::span<const double> values) = 0;
+};
+
+}  // namespace catena

@@ -1,0 +1,31 @@
+// The state of a mechanism at one instant, as columns read it.
+//
+// Vectors are in plan order (three coordinates a body, the ground's zeros last; see assembly/evaluate.hpp). Empty spans
+// mean: not computed; the columns that need them must not be asked for. `lambda` has one multiplier a row of the plan
+// and belongs to the solver's scaled rows: THEORY's multiplier is scale x lambda.
+#pragma once
+
+#include <span>
+
+#include "catena/assembly/evaluate.hpp"
+
+namespace catena {
+
+struct Snapshot {
+  const Evaluator& evaluator;  ///< set to this time and configuration
+  double t = 0;
+  std::span<const double> q, qd, qdd, lambda;
+  double residual = 0;    ///< largest constraint residual, m or rad
+  double work = 0;        ///< of drivers and applied loads since the start, J
+  double dissipated = 0;  ///< J
+};
+
+/// What an analysis must compute for the columns asked for: nothing else is computed.
+struct Needs {
+  bool velocity = false;
+  bool acceleration = false;
+  bool multipliers = false;
+  bool energy = false;  ///< work integrals
+};
+
+}  // namespace catena

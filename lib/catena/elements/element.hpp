@@ -1,0 +1,101 @@
+// The contract of a constraint element, on one page.
+//
+// An element is a struct template over the scalar S of its own parameters, with
+//
+//   type         its name in scene files
+//   rows         number of equations                bodies     1 (body-ground, absolute) or 2 (i, j; either may be
+//   ground) functions    0, or 1 if the equation contains a value c that may be a function of time (then it can be a
+//   driver) equation     the equation in words of THEORY, for `explain` fields()     what a scene file sets: see
+//   field.hpp phi<T>(a, out)         the rows, in the published form: THEORY.md section 2; templated on the scalar T
+//
+// and from phi alone the library derives Phi_q (dual numbers), nu and gamma (Taylor series in time), second derivatives
+// and parameter derivatives. Optional members, found by their presence:
+//
+//   pattern                structure of Phi_q: which entries are zero, +1, -1 or vary     (default: all vary)
+//   jacobian(a, entries)   the varying entries, row by row                              (closed form of a hot type)
+//   gamma(a, u, v, out)    the acceleration right-hand side, body rates u, v              (closed form of a hot type)
+//   measure<T>(i, j)       the quantity that c prescribes (functions == 1)
+//   value_unit             kind of c; `squared` = true if the row is measure^2 - c^2: it is then scaled by 1/(2c)
+//   row_unit(row)          UnitKind::length (default) or UnitKind::angle: what the residual of the row is measured in
+//   complete(i, j)         takes from the given configuration what the scene left out
+//   check()                nullptr, or what is wrong with the parameters, as a phrase
+//
+// Frames carry cosine and sine: no element calls trigonometry. One file an element, plus its lines in list.hpp.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+#include <tuple>
+
+#include "catena/base/frame.hpp"
+#include "catena/base/unit_kind.hpp"
+#include "catena/elements/field.hpp"
+
+namespace catena {
+
+/// What an element sees: the frames of its bodies (the ground frame where there is no body) and the value c.
+/// Frames may be given relative to any common origin; `ground` is where that origin lies, so that absolute elements
+/// subtract it together with their constant: rounding then does not grow with the distance from the ground's origin.
+template <class T>
+struct Arguments {
+  const Frame<T>& i;
+  const Frame<T>& j;
+  T c;                  ///< value of the element's function of time
+  Vec2<double> ground;  ///< place of the frames' origin in the ground frame
+};
+
+/// Velocities of a body: vx, vy in m/s, omega in rad/s.
+struct Rates {
+  double vx = 0, vy = 0, omega = 0;
+};
+
+/// What is known of an entry of Phi_q before any number is.
+enum class Entry : signed char { zero, plus_one, minus_one, varying };
+
+template <class E>
+inline constexpr std::size_t jacobian_size = static_cast<std::size_t>(E::rows* E::bodies * 3);
+
+template <class E>
+consteval std::array<Entry, jacobian_size<E>> jacobian_pattern() {
+  if constexpr (requires { E::pattern; }) {
+    return E::pattern;
+  } else {
+    std::array<Entry, jacobian_size<E>> all{};
+    all.fill(Entry::varying);
+    return all;
+  }
+}
+
+template <class E>
+consteval int varying_entries() {
+  int n = 0;
+  for (Entry e : jacobian_pattern<E>()) n += e == Entry::varying;
+  return n;
+}
+
+template <class E>
+concept HasClosedJacobian = requires(const E& e, const Arguments<double>& a, double* out) {
+  e.jacobian(a, out);
+};
+
+template <class E>
+concept HasClosedGamma = requires(const E& e, const Arguments<double>& a, const Rates& u, double* out) {
+  e.gamma(a, u, u, out);
+};
+
+template <class E>
+concept HasSquaredValue = requires {
+  requires E::squared;
+};
+
+template <class E>
+constexpr UnitKind row_unit([[maybe_unused]] int row) {
+  if constexpr (requires { E::row_unit(0); }) {
+    return E::row_unit(row);
+  } else {
+    return UnitKind::length;
+  }
+}
+
+}  // namespace catena

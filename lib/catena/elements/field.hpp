@@ -1,0 +1,123 @@
+// Descriptions of what a scene file may set on an element: key, member, unit, doc line, default. From these the scene
+// reader, the schema and `catena explain` are derived; elements never see JSON.
+#pragma once
+
+#include <string_view>
+
+#include "catena/base/unit_kind.hpp"
+
+namespace catena {
+
+/// Which numbers a field accepts.
+enum class Domain { any, positive, not_negative, not_zero };
+
+/// The attachment point on body i (`body` 0) or j (1), local coordinates, from the keys `i`, `j` or `at`.
+template <class Member>
+struct PointField {
+  std::string_view key;
+  Member member;
+  int body;
+  std::string_view doc;
+};
+
+/// A direction fixed in body i or j, normalised when read. If `required` is false, complete() supplies it.
+template <class Member>
+struct AxisField {
+  std::string_view key;
+  Member member;
+  int body;
+  bool required;
+  std::string_view doc;
+};
+
+/// A place in the ground frame.
+template <class Member>
+struct PlaceField {
+  std::string_view key;
+  Member member;
+  std::string_view doc;
+};
+
+/// A number. If `required` is false the member's initial value is the default.
+template <class Member>
+struct NumberField {
+  std::string_view key;
+  Member member;
+  UnitKind unit;
+  Domain domain;
+  bool required;
+  std::string_view doc;
+};
+
+/// true or false; the member's initial value is the default.
+template <class Member>
+struct FlagField {
+  std::string_view key;
+  Member member;
+  std::string_view doc;
+};
+
+/// +1 or -1.
+template <class Member>
+struct SideField {
+  std::string_view key;
+  Member member;
+  std::string_view doc;
+};
+
+/// A plane curve fixed in a body.
+template <class Member>
+struct CurveField {
+  std::string_view key;
+  Member member;
+  int body;
+  std::string_view doc;
+};
+
+/// Pairs of numbers, rising in the first.
+template <class Member>
+struct TableField {
+  std::string_view key;
+  Member member;
+  UnitKind first, second;
+  std::string_view doc;
+};
+
+/// A function of time: the element's function number `index`. Not required: zero for a force, taken from the given
+/// configuration (measure) for the value of a constraint.
+struct FunctionField {
+  std::string_view key;
+  int index;
+  UnitKind unit;
+  bool required;
+  std::string_view doc;
+};
+
+/// Two functions of time written as a pair [f_x, f_y]: functions number `index` and `index` + 1.
+struct FunctionPairField {
+  std::string_view key;
+  int index;
+  UnitKind unit;
+  std::string_view doc;
+};
+
+// Deduction guides, so that an element writes PointField{"i", &Type::s_i, 0, "..."} on compilers without C++20's
+// deduction for aggregates.
+template <class M>
+PointField(std::string_view, M, int, std::string_view) -> PointField<M>;
+template <class M>
+AxisField(std::string_view, M, int, bool, std::string_view) -> AxisField<M>;
+template <class M>
+PlaceField(std::string_view, M, std::string_view) -> PlaceField<M>;
+template <class M>
+NumberField(std::string_view, M, UnitKind, Domain, bool, std::string_view) -> NumberField<M>;
+template <class M>
+FlagField(std::string_view, M, std::string_view) -> FlagField<M>;
+template <class M>
+SideField(std::string_view, M, std::string_view) -> SideField<M>;
+template <class M>
+CurveField(std::string_view, M, int, std::string_view) -> CurveField<M>;
+template <class M>
+TableField(std::string_view, M, UnitKind, UnitKind, std::string_view) -> TableField<M>;
+
+}  // namespace catena

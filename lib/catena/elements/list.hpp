@@ -1,0 +1,25 @@
+// The list of element types: a new joint is one file in constraints/ and its two lines here.
+//
+// Everything that treats all types alike (model storage, plan, evaluation, columns, scene reader, schema, explain,
+// derivative tests) goes through these lists at compile time: no registration, no virtual call, no switch over types.
+#pragma once
+
+#include <tuple>
+
+#include "catena/elements/constraints/absolute_angle.hpp"
+#include "catena/elements/constraints/absolute_distance.hpp"
+#include "catena/elements/constraints/absolute_x.hpp"
+#include "catena/elements/constraints/absolute_y.hpp"
+#include "catena/elements/constraints/relative_angle.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/elements/constraints/weld.hpp"
+
+/// CATENA_CONSTRAINTS(X) expands X(Type) for every constraint type.
+#define CATENA_CONSTRAINTS(X) \
+  X(AbsoluteAngle)            \
+  X(AbsoluteDistance)         \
+  X(AbsoluteX)                \
+  X(AbsoluteY)                \
+  X(RelativeAngle)            \
+  X(Revolute)                 \
+  X(Weld)

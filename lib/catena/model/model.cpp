@@ -1,0 +1,111 @@
+#include "catena/model/model.hpp"
+
+namespace catena {
+
+template <class S>
+int BasicModel<S>::claim_name(std::string_view name, int target) {
+  if (name.empty()) return -1;
+  if (name == "ground") throw ModelError("the name \"ground\" is taken");
+  const int known = names.size();
+  const int number = names.intern(name);
+  if (number < known) throw ModelError("the name \"" + std::string(name) + "\" is used twice");
+  name_target.push_back(target);
+  return number;
+}
+
+template <class S>
+int BasicModel<S>::add_body(std::string_view name, const BodyValues& values) {
+  BasicBody<S> body;
+  const Frame<S> f = make_frame(S(values.position.x), S(values.position.y), S(values.angle));
+  body.position = f.point(values.centroid);
+  body.angle = f.phi;
+  body.origin = {S(-values.centroid.x), S(-values.centroid.y)};
+  body.has_mass = values.mass >= 0;
+  body.has_inertia = values.inertia >= 0;
+  if (body.has_mass) body.mass = S(values.mass);
+  if (body.has_inertia) body.inertia = S(values.inertia);
+  body.fixed = values.fixed;
+  body.particle = values.particle;
+  return add_body(name, body);
+}
+
+template <class S>
+int BasicModel<S>::add_body(std::string_view name, const BasicBody<S>& body) {
+  if (name.empty()) throw ModelError("a body needs a name");
+  const int number = static_cast<int>(bodies.size());
+  const int name_number = claim_name(name, number);
+  bodies.push_back(body);
+  bodies.back().name = name_number;
+  bodies.back().first_point = -1;
+  return number;
+}
+
+template <class S>
+void BasicModel<S>::add_point(int body, std::string_view name, const Vec2<S>& local) {
+  const int number = point_names.intern(name);
+  int& head = body < 0 ? first_ground_point : bodies[static_cast<std::size_t>(body)].first_point;
+  const Vec2<S> origin = body < 0 ? Vec2<S>{} : bodies[static_cast<std::size_t>(body)].origin;
+  points.push_back({number, head, local + origin});
+  head = static_cast<int>(points.size()) - 1;
+}
+
+template <class S>
+const Vec2<S>* BasicModel<S>::find_point(int body, std::string_view name) const {
+  const int number = point_names.find(name);
+  if (number < 0) return nullptr;
+  int k = body < 0 ? first_ground_point : bodies[static_cast<std::size_t>(body)].first_point;
+  for (; k >= 0; k = points[static_cast<std::size_t>(k)].next) {
+    if (points[static_cast<std::size_t>(k)].name == number) return &points[static_cast<std::size_t>(k)].local;
+  }
+  return nullptr;
+}
+
+template <class S>
+Frame<S> BasicModel<S>::frame(int body) const {
+  if (body < 0) return {};
+  const BasicBody<S>& b = bodies[static_cast<std::size_t>(body)];
+  return make_frame(b.position.x, b.position.y, b.angle);
+}
+
+template <class S>
+std::string_view BasicModel<S>::element_type(int element) const {
+  std::string_view type;
+  with_list(constraints, elements[static_cast<std::size_t>(element)].type,
+            [&](const auto& list) { type = ElementOf<decltype(list)>::type; });
+  return type;
+}
+
+template <class S>
+std::string BasicModel<S>::element_name(int element) const {
+  const ElementRecord& record = elements[static_cast<std::size_t>(element)];
+  if (record.name >= 0) return std::string(names[record.name]);
+  return std::string(element_type(element)) + "#" + std::to_string(record.ordinal);
+}
+
+template <class S>
+int BasicModel<S>::find_body(std::string_view name) const {
+  if (name == "ground") return ground;
+  const int number = names.find(name);
+  const int target = number < 0 ? -2 : name_target[static_cast<std::size_t>(number)];
+  return target >= 0 ? target : -2;
+}
+
+template <class S>
+int BasicModel<S>::find_element(std::string_view name) const {
+  const int number = names.find(name);
+  if (number >= 0) {
+    const int target = name_target[static_cast<std::size_t>(number)];
+    return target <= -2 ? -2 - target : -1;
+  }
+  // `type#n`: n-th element of its type, rare enough for a scan.
+  const std::size_t hash = name.rfind('#');
+  if (hash == std::string_view::npos) return -1;
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    if (elements[e].name < 0 && element_name(static_cast<int>(e)) == name) return static_cast<int>(e);
+  }
+  return -1;
+}
+
+template class BasicModel<double>;
+
+}  // namespace catena

@@ -1,0 +1,101 @@
+// A mechanism as plain values: gravity, bodies, points, elements, functions of time. Built by the scene reader or by
+// hand; analyses take a copy and never change it.
+//
+// Templated on the scalar S of its parameters: BasicModel<double> is analysed, BasicModel<Dual> carries derivatives
+// with respect to design parameters through everything that was derived from them. Units SI, radians.
+// Errors: every add_... throws ModelError naming the culprit.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "catena/base/frame.hpp"
+#include "catena/base/time_function.hpp"
+#include "catena/model/element_lists.hpp"
+#include "catena/model/name_table.hpp"
+
+namespace catena {
+
+/// A model that cannot be; what() names the culprit.
+class ModelError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+enum class ElementKind : unsigned char { constraint, driver, force };
+
+/// Where an element is stored, in file order.
+struct ElementRecord {
+  ElementKind kind;
+  short type;   ///< position in the list of types of its kind (drivers are constraints)
+  int index;    ///< position in the vector of its type
+  int name;     ///< number in the name table, -1: unnamed
+  int ordinal;  ///< n of `type#n`, counted from 1 per type in file order
+};
+
+template <class S>
+class BasicModel {
+ public:
+  Vec2<S> gravity{};
+  std::vector<BasicBody<S>> bodies;
+  std::vector<BasicPoint<S>> points;
+  int first_ground_point = -1;
+  ConstraintLists<S> constraints;
+  std::vector<TimeFunction<S>> functions;
+  std::vector<ElementRecord> elements;  ///< file order
+  NameTable names;                      ///< of bodies, constraints, drivers, forces
+  NameTable point_names;
+  std::vector<int> name_target;  ///< per name: body b >= 0, or -2 - (number in `elements`)
+
+  /// New body; its number is returned. The frame's origin is put at `position`.
+  int add_body(std::string_view name, const BodyValues& values);
+  /// Takes over a body that is already centroidal; `name` and `first_point` are set here.
+  int add_body(std::string_view name, const BasicBody<S>& body);
+  /// A named point at `local`, in the author's frame of the body (or the ground frame).
+  void add_point(int body, std::string_view name, const Vec2<S>& local);
+  /// Local coordinates (centroidal frame) of a named point, or nullptr.
+  const Vec2<S>* find_point(int body, std::string_view name) const;
+
+  /// New constraint; local points and axes are given in the authors' frames of the bodies. An empty name leaves it
+  /// unnamed. What the element can take from the given configuration (its value c, an angle) is taken from it.
+  template <class E>
+  int add(std::string_view name, const E& element, int i, int j = ground);
+  /// The same with a value c for the equation.
+  template <class E>
+  int add(std::string_view name, const E& element, int i, int j, const S& value);
+  /// A scalar constraint whose value is a function of time.
+  template <class E>
+  int add_driver(std::string_view name, const E& element, int i, int j, const TimeFunction<S>& value);
+
+  /// Appends an element that is already complete (centroidal coordinates, values set); its record is made here.
+  template <class E>
+  int append(std::string_view name, const ElementEntry<E, S>& entry, ElementKind kind);
+
+  /// The given pose of a body's centroid; of the ground for `ground`.
+  Frame<S> frame(int body) const;
+  std::string_view body_name(int body) const {
+    return body < 0 ? "ground" : names[bodies[static_cast<std::size_t>(body)].name];
+  }
+  /// The element's name, `type#n` if it has none.
+  std::string element_name(int element) const;
+  std::string_view element_type(int element) const;
+  /// Number of the body or -2; of the element or -1.
+  int find_body(std::string_view name) const;
+  int find_element(std::string_view name) const;
+
+ private:
+  int claim_name(std::string_view name, int target);
+  template <class E>
+  ElementEntry<E, S> place(const E& element, int i, int j) const;
+  std::vector<int> type_count_;  // per kind and type: elements so far, for `type#n`
+};
+
+using Model = BasicModel<double>;
+
+extern template class BasicModel<double>;
+
+}  // namespace catena
+
+#include "catena/model/model_add.hpp"

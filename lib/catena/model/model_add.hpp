@@ -1,0 +1,111 @@
+// The templates of BasicModel that are instantiated per element type: adding elements by hand.
+#pragma once
+
+#include <limits>
+
+#include "catena/model/model.hpp"
+
+namespace catena {
+
+namespace detail {
+
+/// Position of the element type E in the constraint lists.
+template <class S, class E>
+consteval int constraint_type() {
+  int found = -1, k = 0;
+#define CATENA_MATCH(Type)                   \
+  if (std::is_same_v<E, Type<S>>) found = k; \
+  ++k;
+  CATENA_CONSTRAINTS(CATENA_MATCH)
+#undef CATENA_MATCH
+  return found;
+}
+
+/// Moves the local points of an element from the authors' frames to the centroidal ones.
+template <class E, class S>
+void shift_points(E& element, const Vec2<S>& origin_i, const Vec2<S>& origin_j) {
+  std::apply(
+      [&](const auto&... field) {
+        (
+            [&] {
+              if constexpr (requires {
+                              element.*field.member += origin_i;
+                              field.body;
+                            }) {
+                if constexpr (requires { field.required; })
+                  return;  // an axis: directions do not shift
+                else
+                  element.*field.member += field.body == 0 ? origin_i : origin_j;
+              }
+            }(),
+            ...);
+      },
+      E::fields());
+}
+
+}  // namespace detail
+
+template <class S>
+template <class E>
+ElementEntry<E, S> BasicModel<S>::place(const E& element, int i, int j) const {
+  if (i == j) throw ModelError(std::string(E::type) + " ties body \"" + std::string(body_name(i)) + "\" to itself");
+  if (E::bodies == 1 && i == ground) throw ModelError(std::string(E::type) + " needs a body, not the ground");
+  ElementEntry<E, S> entry{element, i, j};
+  const auto origin = [&](int body) { return body < 0 ? Vec2<S>{} : bodies[static_cast<std::size_t>(body)].origin; };
+  detail::shift_points(entry.element, origin(i), origin(j));
+  if constexpr (requires { entry.element.complete(frame(i), frame(j)); }) entry.element.complete(frame(i), frame(j));
+  if constexpr (requires { entry.element.check(); }) {
+    if (const char* wrong = entry.element.check()) throw ModelError(std::string(E::type) + ": " + wrong);
+  }
+  return entry;
+}
+
+template <class S>
+template <class E>
+int BasicModel<S>::append(std::string_view name, const ElementEntry<E, S>& entry, ElementKind kind) {
+  constexpr int type = detail::constraint_type<S, E>();
+  static_assert(type >= 0, "the element type is not in elements/list.hpp");
+  auto& list = std::get<static_cast<std::size_t>(type)>(constraints);
+  const int id = static_cast<int>(elements.size());
+  const int number = claim_name(name, -2 - id);
+  type_count_.resize(std::max(type_count_.size(), static_cast<std::size_t>(type) + 1));
+  elements.push_back({kind, static_cast<short>(type), static_cast<int>(list.size()), number,
+                      ++type_count_[static_cast<std::size_t>(type)]});
+  list.push_back(entry);
+  list.back().id = id;
+  return id;
+}
+
+template <class S>
+template <class E>
+int BasicModel<S>::add(std::string_view name, const E& element, int i, int j) {
+  ElementEntry<E, S> entry = place(element, i, j);
+  if constexpr (E::functions == 1) entry.values[0].constant = entry.element.measure(frame(i), frame(j));
+  return append(name, entry, ElementKind::constraint);
+}
+
+template <class S>
+template <class E>
+int BasicModel<S>::add(std::string_view name, const E& element, int i, int j, const S& value) {
+  static_assert(E::functions == 1, "this constraint has no value");
+  ElementEntry<E, S> entry = place(element, i, j);
+  if constexpr (HasSquaredValue<E>) {
+    if (!(value > S(0)))
+      throw ModelError(std::string(E::type) +
+                       " needs a distance above zero; for zero use a revolute joint or absolute_x and absolute_y");
+  }
+  entry.values[0].constant = value;
+  return append(name, entry, ElementKind::constraint);
+}
+
+template <class S>
+template <class E>
+int BasicModel<S>::add_driver(std::string_view name, const E& element, int i, int j, const TimeFunction<S>& value) {
+  static_assert(E::functions == 1 && E::rows == 1, "only a scalar constraint with a value can be driven");
+  ElementEntry<E, S> entry = place(element, i, j);
+  entry.values[0].function = static_cast<int>(functions.size());
+  functions.push_back(value);
+  return append(name, entry, ElementKind::driver);
+}
+
+}  // namespace catena
