@@ -29,6 +29,7 @@ echo
 echo "\$ $build/bin/catena run $shown -o $out"
 started="$(mktemp)"
 trap 'rm -f "$started"' EXIT
+sleep 0.02  # file times are coarser than a quick run
 status=0
 $build/bin/catena run "$shown" -o "$out" || status=$?
 
