@@ -55,7 +55,7 @@ put lib/catena/analysis/nlopt.cpp '#include <nlopt.hpp>'
 put lib/catena/scene/reader.cpp '#include <nlohmann/json.hpp>' '#include <fmt/core.h>' '#include "catena/results/csv.hpp"'
 put lib/catena/catena.hpp '#include "catena/scene/reader.hpp"'
 put apps/catena/main.cpp '#include "catena/catena.hpp"' '#include "verbs.hpp"' '#include <iostream>'
-put tests/base/vec2_test.cpp '#include "catena/base/vec2.hpp"'
+put tests/base/vec2_test.cpp '#include "catena/base/vec2.hpp"' '#include <nlohmann/json.hpp>' '#include "matrices.hpp"'
 mkdir -p data .ci build out
 touch CMakeLists.txt CMakePresets.json README.md LICENSE .gitignore
 clean "a tree in order"
