@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace catena {
 namespace {
@@ -27,7 +28,7 @@ FactorResult result_of(const klu_common& common) {
   return {FactorStatus::ok, -1};
 }
 
-/// Largest magnitude in a column of L below its unit diagonal. KLU keeps the columns of a block in one array of
+/// Looks at a column of L below its unit diagonal. KLU keeps the columns of a block in one array of
 /// doubles: `length` row indices, padded to whole doubles, then as many values.
 bool multipliers_within_limit(const double* block_factors, int start, int length) {
   const std::size_t index_space =
@@ -57,25 +58,33 @@ struct KluKernel::Handles {
   std::size_t size() const { return static_cast<std::size_t>(symbolic->n); }
   const double* pivots() const { return static_cast<const double*>(numeric->Udiag); }
   bool pivots_suit() const;
+  bool column_suits(int place) const;
 };
 
 bool KluKernel::Handles::pivots_suit() const {
+  constexpr int chunk = 256;
   const double* pivot = pivots();
   const int n = symbolic->n;
-  bool all_harmless = true;  // branch-free; a pivot that is not a number fails the comparison
-  for (int k = 0; k < n; ++k) all_harmless &= std::abs(pivot[k]) >= harmless_pivot;
-  if (all_harmless) return true;
-
-  for (int k = 0; k < n; ++k) {
-    const double magnitude = std::abs(pivot[k]);
-    if (magnitude >= harmless_pivot) continue;
-    if (!(magnitude > 0)) return false;
-    const int block = block_of_place[k];
-    if (symbolic->R[block + 1] - symbolic->R[block] == 1) continue;  // no L below a single pivot
-    const auto* factors = static_cast<const double*>(numeric->LUbx[block]);
-    if (!multipliers_within_limit(factors, numeric->Lip[k], numeric->Llen[k])) return false;
+  for (int begin = 0; begin < n; begin += chunk) {
+    const int end = std::min(begin + chunk, n);
+    std::int64_t suspects = 0;  // counted, since compilers vectorise this; what is not a number counts as well
+    for (int k = begin; k < end; ++k) suspects += std::abs(pivot[k]) >= harmless_pivot ? 0 : 1;
+    for (int k = begin; suspects > 0 && k < end; ++k) {
+      if (std::abs(pivot[k]) >= harmless_pivot) continue;
+      --suspects;
+      if (!column_suits(k)) return false;
+    }
   }
   return true;
+}
+
+/// Whether a column with a small pivot kept its multipliers within the limit.
+bool KluKernel::Handles::column_suits(int place) const {
+  if (!(std::abs(pivots()[place]) > 0)) return false;
+  const int block = block_of_place[place];
+  if (symbolic->R[block + 1] - symbolic->R[block] == 1) return true;  // no L below a single pivot
+  const auto* factors = static_cast<const double*>(numeric->LUbx[block]);
+  return multipliers_within_limit(factors, numeric->Lip[place], numeric->Llen[place]);
 }
 
 KluKernel::KluKernel() : handles_(std::make_unique<Handles>()) {}
