@@ -1,0 +1,242 @@
+#include "catena/scene/json_document.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "catena/scene/json_syntax.hpp"
+
+namespace catena {
+namespace {
+
+constexpr std::size_t deepest = 64;
+constexpr std::size_t few_keys = 24;  // below this, comparing every pair is faster than sorting
+
+/// Hands the text to the parser and leaves behind how far it has read: after the event of a string, a literal or a
+/// bracket, the cursor stands exactly after that token.
+struct CountingIterator {
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  const char* at;
+  const char** cursor;
+
+  reference operator*() const { return *at; }
+  CountingIterator& operator++() {
+    *cursor = ++at;
+    return *this;
+  }
+  CountingIterator operator++(int) {
+    const CountingIterator before = *this;
+    ++*this;
+    return before;
+  }
+  bool operator==(const CountingIterator& other) const { return at == other.at; }
+  bool operator!=(const CountingIterator& other) const { return at != other.at; }
+};
+
+}  // namespace
+
+/// Receives the parser's events and appends nodes. Where a token begins follows from where the last one ended: between
+/// two events stand only separators, blanks and comments.
+class JsonBuilder {
+ public:
+  JsonBuilder(const SourceText& source, Diagnostics& diagnostics)
+      : document_(source), diagnostics_(diagnostics), text_(source.text()), cursor_(text_.data()) {
+    position_.end = text_.starts_with("\xef\xbb\xbf") ? 3 : 0;
+    // Scenes have a value every 10 to 12 bytes; memory reserved and not touched costs nothing.
+    document_.nodes_.reserve(text_.size() / 8 + 16);
+  }
+
+  std::optional<JsonDocument> parse() {
+    // The parser would take a zero byte for the end of the text.
+    if (const std::size_t zero = text_.find('\0'); zero != std::string_view::npos) {
+      diagnostics_.error(*document_.source_, zero, "unexpected byte 0x00; a scene is UTF-8 text");
+      return std::nullopt;
+    }
+    const CountingIterator begin{text_.data(), &cursor_}, end{text_.data() + text_.size(), &cursor_};
+    const bool good = nlohmann::json::sax_parse(begin, end, this, nlohmann::json::input_format_t::json, true, true);
+    if (!good) return std::nullopt;
+    return std::move(document_);
+  }
+
+  bool null() {
+    append(JsonKind::null);
+    return finish_value(offset_of_cursor());
+  }
+  bool boolean(bool value) {
+    append(JsonKind::boolean).boolean = value;
+    return finish_value(offset_of_cursor());
+  }
+  bool number_integer(std::int64_t value) { return number(static_cast<double>(value)); }
+  bool number_unsigned(std::uint64_t value) { return number(static_cast<double>(value)); }
+  bool number_float(double value, const std::string&) { return number(value); }
+  bool string(std::string& value) {
+    append_string(value);
+    return finish_value(offset_of_cursor());
+  }
+  bool key(std::string& value) {
+    keys_.push_back({static_cast<std::uint32_t>(document_.nodes_.size()), 0});
+    append_string(value);
+    finish(JsonEvent::key, offset_of_cursor());
+    return true;
+  }
+  bool start_object(std::size_t) { return open(JsonKind::object); }
+  bool start_array(std::size_t) { return open(JsonKind::array); }
+  bool end_object() {
+    check_duplicates();
+    return close();
+  }
+  bool end_array() { return close(); }
+  bool binary(std::vector<std::uint8_t>&) { return false; }  // part of the interface, never in JSON
+
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& error) {
+    return syntax_error(error.id);
+  }
+
+ private:
+  struct Open {
+    std::uint32_t node;
+    std::uint32_t count;
+    std::size_t first_key;
+  };
+  struct Key {
+    std::uint32_t node;
+    std::uint32_t hash;
+  };
+
+  std::size_t offset_of_cursor() const { return static_cast<std::size_t>(cursor_ - text_.data()); }
+
+  JsonNode& append(JsonKind kind) {
+    JsonNode node{};
+    node.offset = static_cast<std::uint32_t>(skip_separators(text_, position_.end));
+    node.kind = kind;
+    document_.nodes_.push_back(node);
+    return document_.nodes_.back();
+  }
+
+  void append_string(const std::string& value) {
+    JsonNode& node = append(JsonKind::string);
+    const std::size_t raw_length = offset_of_cursor() - node.offset - 2;
+    node.string.length = static_cast<std::uint32_t>(value.size());
+    node.decoded = raw_length != value.size();  // an escape is always longer than what it stands for
+    node.string.begin = node.offset + 1;
+    if (node.decoded) {
+      node.string.begin = static_cast<std::uint32_t>(document_.decoded_.size());
+      document_.decoded_ += value;
+    }
+  }
+
+  bool number(double value) {
+    JsonNode& node = append(JsonKind::number);
+    node.number = value;
+    return finish_value(skip_number(text_, node.offset));  // the parser has read one character more than the number
+  }
+
+  void finish(JsonEvent event, std::size_t end) {
+    position_.last = event;
+    position_.end = end;
+  }
+  bool finish_value(std::size_t end) {
+    finish(JsonEvent::value, end);
+    if (!open_.empty()) ++open_.back().count;
+    return true;
+  }
+
+  bool open(JsonKind kind) {
+    append(kind);
+    const auto index = static_cast<std::uint32_t>(document_.nodes_.size() - 1);
+    if (open_.size() >= deepest) {
+      diagnostics_.error(*document_.source_, document_.nodes_[index].offset, "nested more than 64 levels deep");
+      return false;
+    }
+    open_.push_back({index, 0, keys_.size()});
+    position_.last = kind == JsonKind::object ? JsonEvent::open_object : JsonEvent::open_array;
+    position_.end = offset_of_cursor();
+    return true;
+  }
+
+  bool close() {
+    const Open closed = open_.back();
+    open_.pop_back();
+    document_.nodes_[closed.node].children = {static_cast<std::uint32_t>(document_.nodes_.size()), closed.count};
+    return finish_value(offset_of_cursor());
+  }
+
+  std::string_view key_text(const Key& key) const { return document_.string_of(document_.nodes_[key.node]); }
+
+  void check_duplicates() {
+    const auto first = keys_.begin() + static_cast<std::ptrdiff_t>(open_.back().first_key);
+    if (keys_.end() - first <= static_cast<std::ptrdiff_t>(few_keys)) {
+      for (auto later = first; later != keys_.end(); ++later) {
+        const std::string_view text = key_text(*later);
+        const auto earlier = std::find_if(first, later, [&](const Key& key) { return key_text(key) == text; });
+        if (earlier != later) report_duplicate(*earlier, *later);
+      }
+    } else {
+      for (auto key = first; key != keys_.end(); ++key) {
+        key->hash = static_cast<std::uint32_t>(std::hash<std::string_view>{}(key_text(*key)));
+      }
+      std::sort(first, keys_.end(),
+                [](const Key& a, const Key& b) { return a.hash != b.hash ? a.hash < b.hash : a.node < b.node; });
+      for (auto later = first; later != keys_.end(); ++later) {
+        // Different keys of one hash are rare: a walk back through the run is enough.
+        for (auto earlier = later; earlier != first && (earlier - 1)->hash == later->hash;) {
+          --earlier;
+          if (key_text(*earlier) != key_text(*later)) continue;
+          report_duplicate(*earlier, *later);
+          break;
+        }
+      }
+    }
+    keys_.erase(first, keys_.end());
+  }
+
+  void report_duplicate(const Key& earlier, const Key& later) {
+    const TextPlace place = document_.source_->place(document_.nodes_[earlier.node].offset);
+    diagnostics_.error(*document_.source_, document_.nodes_[later.node].offset,
+                       "duplicate key " + in_quotes(key_text(later)) + "; it was given before at line " +
+                           std::to_string(place.line) + ", column " + std::to_string(place.column));
+  }
+
+  /// Says what is wrong after the last event. Always false: the parser is to stop.
+  bool syntax_error(int library_code) {
+    position_.inside = open_.empty() ? JsonKind::null : document_.nodes_[open_.back().node].kind;
+    position_.opened_at = open_.empty() ? 0 : document_.nodes_[open_.back().node].offset;
+    constexpr int out_of_range = 406;
+    const SyntaxError error = explain_syntax_error(*document_.source_, position_, library_code == out_of_range);
+    diagnostics_.error(*document_.source_, error.offset, error.message);
+    return false;
+  }
+
+  JsonDocument document_;
+  Diagnostics& diagnostics_;
+  std::string_view text_;
+  const char* cursor_;
+  JsonPosition position_;
+  std::vector<Open> open_;
+  std::vector<Key> keys_;  // of all objects that are open
+};
+
+std::string_view describe(JsonKind kind) {
+  constexpr std::string_view names[] = {"null", "true or false", "a number", "text", "a list", "an object"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+std::optional<JsonDocument> JsonDocument::parse(const SourceText& source, Diagnostics& diagnostics) {
+  return JsonBuilder(source, diagnostics).parse();
+}
+
+JsonValue JsonValue::find(std::string_view key) const {
+  for (const JsonMember member : members()) {
+    if (member.name() == key) return member.value;
+  }
+  return {};
+}
+
+}  // namespace catena
