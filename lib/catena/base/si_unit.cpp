@@ -1,0 +1,51 @@
+#include "catena/base/si_unit.hpp"
+
+namespace catena {
+
+std::string_view si_unit(UnitKind kind) {
+  switch (kind) {
+    case UnitKind::none:
+      return "1";
+    case UnitKind::length:
+      return "m";
+    case UnitKind::angle:
+      return "rad";
+    case UnitKind::mass:
+      return "kg";
+    case UnitKind::inertia:
+      return "kg m^2";
+    case UnitKind::time:
+      return "s";
+    case UnitKind::velocity:
+      return "m/s";
+    case UnitKind::angular_velocity:
+      return "rad/s";
+    case UnitKind::acceleration:
+      return "m/s^2";
+    case UnitKind::angular_acceleration:
+      return "rad/s^2";
+    case UnitKind::force:
+      return "N";
+    case UnitKind::torque:
+      return "N m";
+    case UnitKind::energy:
+      return "J";
+    case UnitKind::power:
+      return "W";
+    case UnitKind::momentum:
+      return "kg m/s";
+    case UnitKind::angular_momentum:
+      return "kg m^2/s";
+    case UnitKind::stiffness:
+      return "N/m";
+    case UnitKind::damping:
+      return "N s/m";
+    case UnitKind::torsion_stiffness:
+      return "N m/rad";
+    case UnitKind::torsion_damping:
+      return "N m s/rad";
+  }
+  return "1";
+}
+
+}  // namespace catena
