@@ -3,7 +3,7 @@
 //   n = round(2 angle / pi)    r = angle - n pi/2, pi/2 in three parts (Cody and Waite)    |r| <= pi/4
 //   sin r = r + r^3 S(r^2)     cos r = 1 - r^2/2 + r^4 C(r^2)                              (fdlibm's minimax S, C)
 //
-// Accuracy, |angle| <= 1e5: absolute error below 1e-16, and within 1.1 units in the last place of the result; c^2 + s^2
+// Accuracy, |angle| <= 1e5: absolute error below 1e-16, and within 1 unit in the last place of the result; c^2 + s^2
 // differs from 1 by at most 3e-16. Larger angles go to libm one by one; NaN and infinity give NaN.
 // One angle, one result: the code has no branch and says itself where it fuses multiplications with additions, so that
 // a value does not depend on its place in the array, nor on the vector length chosen when the program starts:

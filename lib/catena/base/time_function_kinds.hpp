@@ -1,0 +1,152 @@
+// The kinds of TimeFunction. Private to time_function.cpp; each kind evaluates itself, knows where it is defined and
+// where its next breakpoint lies.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "catena/base/time_function.hpp"
+
+namespace catena::time_function_kinds {
+
+inline constexpr double never = std::numeric_limits<double>::infinity();
+
+inline bool same_instant(double a, double b) { return std::abs(a - b) <= 1e-13 * std::max(std::abs(a), std::abs(b)); }
+
+/// Whether t lies on the later side of `instant`.
+inline bool is_after(double t, double instant, Side side) {
+  return same_instant(t, instant) ? side == Side::after : t > instant;
+}
+
+template <class S>
+struct Polynomial {
+  std::vector<S> coefficients;
+
+  Taylor<S> evaluate(double t, Side) const {
+    const Taylor<S> time(S(t), S(1.0), S(0.0));
+    Taylor<S> sum(coefficients.back());
+    for (std::size_t k = coefficients.size() - 1; k-- > 0;) sum = sum * time + Taylor<S>(coefficients[k]);
+    return sum;
+  }
+  TimeRange domain() const { return {}; }
+  double next_breakpoint(double) const { return never; }
+};
+
+template <class S>
+struct Harmonic {
+  S amplitude, omega, phase, offset;
+
+  Taylor<S> evaluate(double t, Side) const {
+    const Taylor<S> angle(omega * S(t) + phase, omega, S(0.0));
+    return Taylor<S>(offset) + Taylor<S>(amplitude) * sin(angle);
+  }
+  TimeRange domain() const { return {}; }
+  double next_breakpoint(double) const { return never; }
+};
+
+template <class S>
+struct Step {
+  S t0, t1, from, to;
+  int order;
+
+  Taylor<S> evaluate(double t, Side side) const {
+    if (!is_after(t, value_of(t0), side)) return Taylor<S>(from);
+    if (is_after(t, value_of(t1), side)) return Taylor<S>(to);
+    const S width = t1 - t0;
+    const Taylor<S> u((S(t) - t0) / width, S(1.0) / width, S(0.0));
+    const Taylor<S> rise =
+        order == 3 ? u * u * (S(3.0) - S(2.0) * u) : u * u * u * (S(10.0) + u * (S(6.0) * u - S(15.0)));
+    return Taylor<S>(from) + Taylor<S>(to - from) * rise;
+  }
+  TimeRange domain() const { return {}; }
+  double next_breakpoint(double t) const {
+    return t < value_of(t0) ? value_of(t0) : t < value_of(t1) ? value_of(t1) : never;
+  }
+};
+
+template <class S>
+struct Table {
+  Spline<S> curve;
+
+  Taylor<S> evaluate(double t, Side) const {
+    if (!curve.periodic()) {
+      // Times are multiples of a step and carry its rounding: just outside the table counts as its end.
+      const double inside = std::clamp(t, curve.first(), curve.last());
+      if (t != inside && std::abs(t - inside) > 1e-12 * std::max(std::abs(curve.first()), std::abs(curve.last()))) {
+        throw OutsideTable(t, curve.first(), curve.last());
+      }
+      t = inside;
+    }
+    const SplineValue<S> value = curve.evaluate(S(t));
+    return {value.f, value.d1, value.d2};
+  }
+  TimeRange domain() const { return curve.periodic() ? TimeRange{} : TimeRange{curve.first(), curve.last()}; }
+  double next_breakpoint(double t) const {
+    const std::span<const double> knots = curve.knots();
+    if (!curve.periodic()) {
+      const auto next = std::upper_bound(knots.begin(), knots.end(), t);
+      return next == knots.end() ? never : *next;
+    }
+    const double period = curve.last() - curve.first();
+    double cycles = std::floor((t - curve.first()) / period);
+    auto next = std::upper_bound(knots.begin(), knots.end(), t - cycles * period);
+    // Rounding may name a knot that is not later than t: take the next one, in the next period if need be.
+    for (;; ++next) {
+      if (next == knots.end()) {
+        next = knots.begin();
+        cycles += 1;
+      }
+      const double instant = *next + cycles * period;
+      if (instant > t && !same_instant(instant, t)) return instant;
+    }
+  }
+};
+
+template <class S>
+struct Combination {
+  std::vector<TimeFunction<S>> parts;
+  bool is_product;
+
+  Taylor<S> evaluate(double t, Side side) const {
+    Taylor<S> result = parts.front().evaluate(t, side);
+    for (std::size_t k = 1; k < parts.size(); ++k) {
+      const Taylor<S> part = parts[k].evaluate(t, side);
+      result = is_product ? result * part : result + part;
+    }
+    return result;
+  }
+  TimeRange domain() const {
+    TimeRange common;
+    for (const TimeFunction<S>& part : parts) {
+      const TimeRange range = part.domain();
+      common = {std::max(common.first, range.first), std::min(common.last, range.last)};
+    }
+    return common;
+  }
+  double next_breakpoint(double t) const {
+    double first = never;
+    for (const TimeFunction<S>& part : parts) first = std::min(first, part.next_breakpoint(t));
+    return first;
+  }
+};
+
+template <class S>
+struct Custom {
+  typename TimeFunction<S>::Callback function;
+  std::vector<double> breaks;
+
+  Taylor<S> evaluate(double t, Side) const {
+    const Taylor<double> value = function(t);
+    return {S(value.f), S(value.d), S(value.dd)};
+  }
+  TimeRange domain() const { return {}; }
+  double next_breakpoint(double t) const {
+    const auto next = std::upper_bound(breaks.begin(), breaks.end(), t);
+    return next == breaks.end() ? never : *next;
+  }
+};
+
+}  // namespace catena::time_function_kinds
