@@ -1,0 +1,52 @@
+// Where an element of any type is attached, read from its fields: the local points on its bodies, and its axis on i.
+//
+// Reactions and slides need these, whatever the type; the fields' descriptions tell which member is which. Points and
+// axes are in the centroidal frames of the bodies, m; for the ground in the ground frame.
+#pragma once
+
+#include <tuple>
+
+#include "catena/model/model.hpp"
+
+namespace catena {
+
+struct Attachment {
+  int bodies = 0;              ///< 1: absolute, only i counts
+  int i = ground, j = ground;  ///< bodies of the model
+  Vec2<double> point_i, point_j;
+  Vec2<double> axis_i{1, 0};  ///< the frame's own axis where the element has none
+  bool has_axis = false;
+};
+
+template <class Entry>
+Attachment attachment_of(const Entry& entry) {
+  using E = typename Entry::Element;
+  Attachment a;
+  a.bodies = E::bodies;
+  a.i = entry.i;
+  a.j = entry.j;
+  const auto take = [&]<class Field>(const Field& field) {
+    constexpr bool attaches = requires {
+      entry.element.*field.member = Vec2<double>{};
+      field.body;
+    };
+    if constexpr (attaches) {
+      const Vec2<double>& value = entry.element.*field.member;
+      if constexpr (requires { field.required; }) {
+        if (field.body == 0) {
+          a.axis_i = value;
+          a.has_axis = true;
+        }
+      } else {
+        (field.body == 0 ? a.point_i : a.point_j) = value;
+      }
+    }
+  };
+  std::apply([&](const auto&... field) { (take(field), ...); }, E::fields());
+  return a;
+}
+
+/// The same for an element of the model's list.
+Attachment attachment_of(const Model& model, int element);
+
+}  // namespace catena

@@ -1,0 +1,67 @@
+// One column of results, resolved: what it shows, of which body or element. Eight bytes and a half dozen more, because
+// a scene of a million links has three million of them.
+//
+// The names belong to SCENES.md; the meaning of every kind is given beside it. "Body" columns refer to a point fixed in
+// the body: a named one, or the origin of its author's frame. Units SI, radians.
+#pragma once
+
+namespace catena {
+
+enum class ColumnKind : unsigned char {
+  time,      ///< t, s
+  residual,  ///< largest constraint residual, m or rad
+
+  // index = plan body (the ground: plan.bodies), detail = point of the model or -1
+  x,
+  y,
+  angle,  ///< continuous: whole turns count
+  vx,
+  vy,
+  omega,
+  ax,
+  ay,
+  alpha,
+
+  // index = element; detail = ReactionSide. What the constraint exerts on a body, at its attachment point there
+  reaction_x,
+  reaction_y,
+  reaction_torque,
+  multiplier,  ///< of THEORY's form of row `detail`
+
+  // index = element
+  value,        ///< measured quantity of a scalar constraint
+  rate,         ///< its time derivative
+  joint_angle,  ///< phi_j - phi_i
+  joint_omega,
+  slide,  ///< of P_j seen from P_i, along axis_i
+  slide_rate,
+  load,   ///< lambda dPhi/dc: positive pushes the value up
+  power,  ///< load x dc/dt
+  work,   ///< integral of power
+
+  kinetic,
+  potential,
+  total,
+  dissipated,
+  balance,  ///< total - initial total - work + dissipated
+  momentum_x,
+  momentum_y,
+  angular_momentum,  ///< about the ground's origin
+};
+
+/// Which body a reaction acts on, and in which axes it is given.
+enum ReactionSide : int {
+  on_j = 0,           ///< ground axes; on the only body of an absolute constraint
+  on_i = 1,           ///< ground axes
+  on_j_in_joint = 2,  ///< axes of the joint: along axis_i and across it, or those of body i where there is no axis
+};
+
+struct Column {
+  ColumnKind kind;
+  int index = -1;
+  int detail = -1;
+
+  friend bool operator==(const Column&, const Column&) = default;
+};
+
+}  // namespace catena

@@ -1,0 +1,171 @@
+#include "catena/columns/column_set.hpp"
+
+#include <array>
+#include <optional>
+#include <unordered_set>
+
+#include "catena/columns/energy.hpp"
+
+namespace catena {
+namespace {
+
+/// Why a column can be missing.
+enum Lack { no_velocity, no_acceleration, no_multipliers, no_work, no_mass, eliminated, lacks };
+
+Needs needs_of(ColumnKind kind) {
+  Needs needs;
+  switch (kind) {
+    case ColumnKind::ax:
+    case ColumnKind::ay:
+    case ColumnKind::alpha:
+      needs.acceleration = true;
+      [[fallthrough]];  // gamma and the centripetal part
+    case ColumnKind::vx:
+    case ColumnKind::vy:
+    case ColumnKind::omega:
+    case ColumnKind::rate:
+    case ColumnKind::joint_omega:
+    case ColumnKind::slide_rate:
+    case ColumnKind::kinetic:
+    case ColumnKind::total:
+    case ColumnKind::momentum_x:
+    case ColumnKind::momentum_y:
+    case ColumnKind::angular_momentum:
+      needs.velocity = true;
+      break;
+    case ColumnKind::balance:
+      needs.velocity = needs.work = true;
+      break;
+    case ColumnKind::dissipated:
+    case ColumnKind::work:
+      needs.work = true;
+      break;
+    default:
+      needs.multipliers = is_reaction(kind);
+  }
+  return needs;
+}
+
+bool needs_mass(ColumnKind kind, const Model& model) {
+  if (kind == ColumnKind::potential) return model.gravity != Vec2<double>{};
+  return kind == ColumnKind::kinetic || kind == ColumnKind::total || kind == ColumnKind::balance ||
+         (kind >= ColumnKind::momentum_x && kind <= ColumnKind::angular_momentum);
+}
+
+/// Columns that were left out for one reason: the first one's name, and how many.
+struct LeftOut {
+  std::string first;
+  int count = 0;
+};
+
+std::string describe(Lack lack, const LeftOut& columns, const ColumnSources& sources, std::string_view body) {
+  std::string text = "left out " + columns.first;
+  if (columns.count > 1) text += " and " + std::to_string(columns.count - 1) + " more";
+  const std::string analysis = sources.analysis.empty() ? "the analysis" : std::string(sources.analysis);
+  switch (lack) {
+    case no_velocity:
+      return text + ": " + analysis + " gives no velocities";
+    case no_acceleration:
+      return text + ": " + analysis + " gives no accelerations";
+    case no_multipliers:
+      return text + ": " + analysis + " gives no reactions and loads";
+    case no_work:
+      return text + ": " + analysis + " does not sum up work";
+    case no_mass:
+      return text + ": mass or inertia of body \"" + std::string(body) + "\" is not given";
+    default:
+      return text + ": the joint is not solved for, what it ties cannot move";
+  }
+}
+
+class Resolver {
+ public:
+  Resolver(const Model& model, const Plan& plan, const ColumnSources& sources)
+      : model_(model), plan_(plan), sources_(sources), without_mass_(body_without_mass(model, plan)) {}
+
+  std::optional<Lack> lack_of(const Column& column) const {
+    const Needs needs = needs_of(column.kind);
+    if (needs.acceleration && !sources_.acceleration) return no_acceleration;
+    if (needs.velocity && !sources_.velocity) return no_velocity;
+    if (needs.multipliers && !sources_.multipliers) return no_multipliers;
+    if (needs.work && !sources_.work) return no_work;
+    if (needs_mass(column.kind, model_) && without_mass_ >= 0) return no_mass;
+    if (is_reaction(column.kind) && plan_.element_row[static_cast<std::size_t>(column.index)] < 0) return eliminated;
+    return {};
+  }
+
+  /// Whether the analysis gives the column; if not, it is counted for the notes.
+  bool gives(const NamedColumn& named) {
+    const std::optional<Lack> lack = lack_of(named.column);
+    if (lack && left_out_[*lack].count++ == 0) left_out_[*lack].first = named.info.name;
+    return !lack;
+  }
+
+  Column in_plan(Column column) const {
+    if (column.kind >= ColumnKind::x && column.kind <= ColumnKind::alpha)
+      column.index = column.index < 0 ? plan_.bodies : plan_.plan_body[static_cast<std::size_t>(column.index)];
+    return column;
+  }
+
+  std::vector<std::string> notes() const {
+    std::vector<std::string> notes;
+    for (int lack = 0; lack < lacks; ++lack) {
+      const LeftOut& columns = left_out_[static_cast<std::size_t>(lack)];
+      const std::string_view body = without_mass_ < 0 ? std::string_view() : model_.body_name(without_mass_);
+      if (columns.count > 0) notes.push_back(describe(static_cast<Lack>(lack), columns, sources_, body));
+    }
+    return notes;
+  }
+
+ private:
+  const Model& model_;
+  const Plan& plan_;
+  const ColumnSources& sources_;
+  int without_mass_;
+  std::array<LeftOut, lacks> left_out_;
+};
+
+std::uint64_t key(const Column& column) {
+  return static_cast<std::uint64_t>(column.kind) << 56 | static_cast<std::uint64_t>(column.index + 1) << 28 |
+         static_cast<std::uint64_t>(column.detail + 1);
+}
+
+std::vector<NamedColumn> named_columns(const Model& model, std::span<const std::string> names, bool timed) {
+  std::vector<NamedColumn> named;
+  if (timed) find_columns(model, "t", named);
+  if (names.empty()) {
+    for (NamedColumn& column : default_columns(model)) named.push_back(std::move(column));
+    return named;
+  }
+  for (const std::string& name : names) {
+    if (auto unknown = find_columns(model, name, named)) throw ColumnError(std::move(*unknown));
+  }
+  std::unordered_set<std::uint64_t> seen;
+  std::erase_if(named, [&](const NamedColumn& column) { return !seen.insert(key(column.column)).second; });
+  return named;
+}
+
+}  // namespace
+
+ColumnSet ColumnSet::resolve(const Model& model, const Plan& plan, std::span<const std::string> names,
+                             const ColumnSources& sources) {
+  ColumnSet set;
+  Resolver resolver(model, plan, sources);
+  std::vector<NamedColumn> named = named_columns(model, names, sources.timed);
+  set.info_.reserve(named.size());
+  set.columns_.reserve(named.size());
+  for (NamedColumn& column : named) {
+    if (!resolver.gives(column)) continue;
+    const Needs needs = needs_of(column.column.kind);
+    set.needs_.velocity |= needs.velocity;
+    set.needs_.acceleration |= needs.acceleration;
+    set.needs_.multipliers |= needs.multipliers;
+    set.needs_.work |= needs.work;
+    set.columns_.push_back(resolver.in_plan(column.column));
+    set.info_.push_back(std::move(column.info));
+  }
+  set.notes_ = resolver.notes();
+  return set;
+}
+
+}  // namespace catena

@@ -1,0 +1,62 @@
+// The columns of an analysis, resolved once and evaluated at every row.
+//
+//   names -> resolve() -> info() for the sink, needs() for the analysis -> evaluate(snapshot) -> one value a column
+//
+// A column that the analysis cannot give is left out, and a note says so; an unknown name is an error. Changed
+// parameter values keep the set: points, masses and axes are read from the evaluator's model. evaluate() does not
+// allocate; sums over all bodies (energies, momenta) are formed once a row, reactions once an element in a run of
+// columns.
+#pragma once
+
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "catena/columns/column_names.hpp"
+#include "catena/columns/snapshot.hpp"
+
+namespace catena {
+
+/// Thrown for a name that is no column; what() is a sentence with the name in it.
+struct ColumnError : std::invalid_argument {
+  explicit ColumnError(UnknownColumn reason)
+      : std::invalid_argument("unknown column \"" + reason.name + "\": " + reason.message),
+        unknown(std::move(reason)) {}
+  UnknownColumn unknown;
+};
+
+/// What an analysis can put into a snapshot.
+struct ColumnSources {
+  std::string_view analysis;  ///< its type, for the notes
+  bool timed = false;         ///< `t` is the first column
+  bool velocity = false;
+  bool acceleration = false;
+  bool multipliers = false;
+  bool work = false;  ///< work of drivers and loads, dissipation
+};
+
+class ColumnSet {
+ public:
+  /// Resolves `names`; none mean x, y and angle of every body. Doubled columns are kept once. Throws ColumnError.
+  static ColumnSet resolve(const Model& model, const Plan& plan, std::span<const std::string> names,
+                           const ColumnSources& sources);
+
+  std::size_t size() const { return columns_.size(); }
+  std::span<const ColumnInfo> info() const { return info_; }
+  const Needs& needs() const { return needs_; }
+  /// One sentence for each reason why columns were left out.
+  std::span<const std::string> notes() const { return notes_; }
+
+  /// out[k] = value of column k; `out` has size() values. The snapshot must hold what needs() says.
+  void evaluate(const Snapshot& snapshot, std::span<double> out) const;
+
+ private:
+  std::vector<ColumnInfo> info_;
+  std::vector<Column> columns_;
+  Needs needs_;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace catena

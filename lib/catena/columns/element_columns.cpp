@@ -1,0 +1,80 @@
+#include "catena/columns/element_columns.hpp"
+
+#include "catena/columns/attachment.hpp"
+
+namespace catena {
+namespace {
+
+template <class E>
+UnitKind multiplier_unit(int row) {
+  if (row_unit<E>(row) == UnitKind::angle) return UnitKind::torque;
+  return HasSquaredValue<E> ? UnitKind::stiffness : UnitKind::force;
+}
+
+template <class Entry>
+void add_reactions(const Entry& entry, std::vector<ElementColumn>& out) {
+  using E = typename Entry::Element;
+  static_cast<void>(entry);
+  const auto add = [&](const char* suffix, UnitKind unit, ColumnKind kind, ReactionSide side) {
+    out.push_back({suffix, unit, kind, side, true});
+  };
+  add("fx", UnitKind::force, ColumnKind::reaction_x, on_j);
+  add("fy", UnitKind::force, ColumnKind::reaction_y, on_j);
+  add("torque", UnitKind::torque, ColumnKind::reaction_torque, on_j);
+  if (E::bodies == 2) {
+    add("i.fx", UnitKind::force, ColumnKind::reaction_x, on_i);
+    add("i.fy", UnitKind::force, ColumnKind::reaction_y, on_i);
+    add("i.torque", UnitKind::torque, ColumnKind::reaction_torque, on_i);
+  }
+  add("joint.fx", UnitKind::force, ColumnKind::reaction_x, on_j_in_joint);
+  add("joint.fy", UnitKind::force, ColumnKind::reaction_y, on_j_in_joint);
+  for (int row = 0; row < E::rows; ++row)
+    out.push_back({"lambda" + std::to_string(row + 1), multiplier_unit<E>(row), ColumnKind::multiplier, row});
+}
+
+template <class Entry>
+void add_measures(const Entry& entry, bool driver, std::vector<ElementColumn>& out) {
+  using E = typename Entry::Element;
+  if constexpr (E::functions == 1) {
+    const bool angle = E::value_unit == UnitKind::angle;
+    out.push_back({"value", E::value_unit, ColumnKind::value});
+    out.push_back({"rate", angle ? UnitKind::angular_velocity : UnitKind::velocity, ColumnKind::rate});
+    if (driver) {
+      out.push_back({"load", angle ? UnitKind::torque : UnitKind::force, ColumnKind::load});
+      out.push_back({"power", UnitKind::power, ColumnKind::power});
+      out.push_back({"work", UnitKind::energy, ColumnKind::work});
+    }
+  }
+  if (E::type == "revolute") {
+    out.push_back({"angle", UnitKind::angle, ColumnKind::joint_angle});
+    out.push_back({"omega", UnitKind::angular_velocity, ColumnKind::joint_omega});
+  }
+  if (E::bodies == 2 && attachment_of(entry).has_axis) {
+    out.push_back({"slide", UnitKind::length, ColumnKind::slide});
+    out.push_back({"slide_rate", UnitKind::velocity, ColumnKind::slide_rate});
+  }
+}
+
+}  // namespace
+
+std::vector<ElementColumn> columns_of_element(const Model& model, int element) {
+  std::vector<ElementColumn> out;
+  const ElementRecord& record = model.elements[static_cast<std::size_t>(element)];
+  if (record.kind == ElementKind::force) return out;
+  with_list(model.constraints, record.type, [&](const auto& list) {
+    const auto& entry = list[static_cast<std::size_t>(record.index)];
+    add_measures(entry, record.kind == ElementKind::driver, out);
+    add_reactions(entry, out);
+  });
+  return out;
+}
+
+Attachment attachment_of(const Model& model, int element) {
+  Attachment attachment;
+  const ElementRecord& record = model.elements[static_cast<std::size_t>(element)];
+  with_list(model.constraints, record.type,
+            [&](const auto& list) { attachment = attachment_of(list[static_cast<std::size_t>(record.index)]); });
+  return attachment;
+}
+
+}  // namespace catena

@@ -1,0 +1,27 @@
+// What a constraint exerts on its bodies, from its multipliers: THEORY section 4.
+//
+//   force F = -Phi_r^T lambda        torque T = -(Phi_phi^T - (R A s'P)^T Phi_r^T) lambda
+//
+// per body, about that body's own attachment point P; Phi_r and Phi_phi are the columns of the body's position and
+// angle. The ground's are taken as if it could move, so that its reactions come from the same formula. Units: N, N m.
+#pragma once
+
+#include "catena/columns/snapshot.hpp"
+
+namespace catena {
+
+struct Reaction {
+  Vec2<double> force;
+  double torque = 0;
+};
+
+struct ElementReactions {
+  Reaction on_i, on_j;     ///< equal for absolute constraints, which act on one body
+  Vec2<double> joint_x;    ///< unit vector of the joint's first axis, in the ground frame
+  double multiplier[3]{};  ///< of THEORY's forms, one a row
+};
+
+/// Needs snapshot.lambda; the element must have rows in the plan.
+ElementReactions element_reactions(const Snapshot& snapshot, int element);
+
+}  // namespace catena
