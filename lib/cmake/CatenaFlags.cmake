@@ -9,12 +9,10 @@ function(catena_set_flags target)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -fno-math-errno
                                               -fno-semantic-interposition)
-  # g++ 12 finds overlaps that are not there in "literal" + std::string at -O3 (GCC bug 105329).
+  # g++ 12 finds overlaps that are not there in "literal" + std::string at -O3 (GCC bug 105651).
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     target_compile_options(${target} PRIVATE -Wno-restrict)
   endif()
-  # GCC 12 sees an overlap in std::string concatenation that is not there (GCC bug 105651).
-  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
   if(CATENA_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
