@@ -130,7 +130,8 @@ struct Dual {
   friend Dual pow(const Dual& a, const Dual& b) {
     using std::log, std::pow;
     const T p = pow(a.v, b.v);
-    const T slope_base = b.v == T(0) ? T(0) : b.v * pow(a.v, b.v - T(1));
+    // 0^0 counts as constant; elsewhere a zero exponent may vary and keeps its mixed derivative.
+    const T slope_base = a.v == T(0) && b.v == T(0) ? T(0) : b.v * pow(a.v, b.v - T(1));
     // log of a non-positive base is needed only where the exponent itself varies.
     const T slope_exponent = a.v > T(0) ? p * log(a.v) : T(0);
     Dual r(p);
