@@ -1,0 +1,135 @@
+// After the first round, factorizing and solving must leave the heap alone: in C++ code (operator new) and in
+// SuiteSparse, whose memory functions can be replaced.
+#include <gtest/gtest.h>
+#include <suitesparse/SuiteSparse_config.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "catena/linalg/factorization.hpp"
+#include "catena/linalg/symmetric_factorization.hpp"
+#include "linalg/matrices.hpp"
+
+namespace {
+
+std::atomic<long> allocations{0};
+
+void* counted_malloc(std::size_t size) {
+  ++allocations;
+  return std::malloc(size);
+}
+void* counted_calloc(std::size_t count, std::size_t size) {
+  ++allocations;
+  return std::calloc(count, size);
+}
+void* counted_realloc(void* place, std::size_t size) {
+  ++allocations;
+  return std::realloc(place, size);
+}
+
+/// Counts from construction to destruction of the object.
+class Watch {
+ public:
+  Watch() {
+    SuiteSparse_config.malloc_func = counted_malloc;
+    SuiteSparse_config.calloc_func = counted_calloc;
+    SuiteSparse_config.realloc_func = counted_realloc;
+    allocations = 0;
+  }
+  ~Watch() {
+    SuiteSparse_config.malloc_func = std::malloc;
+    SuiteSparse_config.calloc_func = std::calloc;
+    SuiteSparse_config.realloc_func = std::realloc;
+  }
+  Watch(const Watch&) = delete;
+  Watch& operator=(const Watch&) = delete;
+  long count() const { return allocations; }
+};
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* place = std::malloc(size == 0 ? 1 : size)) return place;
+  throw std::bad_alloc();
+}
+void operator delete(void* place) noexcept { std::free(place); }
+void operator delete(void* place, std::size_t) noexcept { std::free(place); }
+
+namespace catena::testing {
+namespace {
+
+TEST(Allocations, AreSeenByTheWatch) {
+  Random random(41);
+  const Matrix matrix = dyad_chain(5, random);
+  Counters counters;
+  Factorization factorization;
+  Watch watch;
+  ASSERT_TRUE(factorization.analyze(matrix.pattern, Kernel::klu, counters).ok());
+  const long by_analysis = watch.count();
+  EXPECT_GT(by_analysis, 10);
+  ASSERT_TRUE(factorization.factorize(matrix.values, counters).ok());
+  EXPECT_GT(watch.count(), by_analysis) << "KLU's first factorization allocates";
+}
+
+TEST(Allocations, NoneInAFactorizationWithKeptPivotsNorInASolve) {
+  Random random(42);
+  Matrix matrix = dyad_chain(40, random);
+  const int n = matrix.pattern.columns;
+  Counters counters;
+  Factorization factorization;
+  std::vector<double> x(static_cast<std::size_t>(3 * n));
+  std::span<double> one(x.data(), static_cast<std::size_t>(n));
+  ASSERT_TRUE(factorization.analyze(matrix.pattern, Kernel::automatic, counters).ok());
+  const auto round = [&] {
+    for (double& value : matrix.values) value *= random.uniform(0.999, 1.001);
+    for (double& value : x) value = random.uniform(-1, 1);
+    EXPECT_TRUE(factorization.factorize(matrix.values, counters).ok());
+    factorization.solve(x, counters);
+    factorization.solve_transposed(x, counters);
+    EXPECT_TRUE(factorization.solve_checked(matrix.values, one, counters).ok());
+    EXPECT_GT(factorization.rcond(), 0);
+    EXPECT_GT(factorization.smallest_pivot(0).magnitude, 0);
+  };
+  round();
+  Watch watch;
+  for (int k = 0; k < 20; ++k) round();
+  EXPECT_EQ(watch.count(), 0);
+  EXPECT_EQ(counters.refactorizations, 20);
+}
+
+TEST(Allocations, NoneInASymmetricRoundAfterTheFirst) {
+  Random random(43);
+  const int n = 60;
+  std::vector<Triplet> triplets;
+  for (int k = 0; k < n; ++k) {
+    triplets.push_back({k, k, k % 2 == 0 ? 4.0 : -4.0});
+    if (k > 0) triplets.push_back({k, k - 1, 1});
+    if (k > 6) triplets.push_back({k, k - 7, 0.5});
+  }
+  Matrix lower = assemble(n, n, triplets);
+  Counters counters;
+  SymmetricFactorization factorization;
+  std::vector<double> x(static_cast<std::size_t>(n), 1.0);
+  ASSERT_TRUE(factorization.analyze(lower.pattern, {}, counters).ok());
+  const auto half_residual = [](std::span<const double> at, std::span<double> r) {
+    for (std::size_t i = 0; i < r.size(); ++i) r[i] = 1 - at[i];
+    return 1.0;
+  };
+  const auto round = [&] {
+    for (double& value : lower.values) value *= random.uniform(0.99, 1.01);
+    EXPECT_TRUE(factorization.factorize(lower.values, 1e-9, counters).ok());
+    factorization.solve(x, counters);
+    (void)factorization.solve_refined(x, half_residual, {.max_steps = 2}, counters);
+    EXPECT_GT(factorization.smallest_pivot_ratio().ratio, 0);
+    EXPECT_EQ(factorization.inertia(1e-12).zero, 0);
+  };
+  round();
+  Watch watch;
+  for (int k = 0; k < 20; ++k) round();
+  EXPECT_EQ(watch.count(), 0);
+}
+
+}  // namespace
+}  // namespace catena::testing
