@@ -1,0 +1,39 @@
+// What is left of an analysis when its rows have gone to a sink: its outcome, and the named results it has besides
+// rows.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "catena/analysis/analysis_report.hpp"
+#include "catena/base/row_sink.hpp"
+
+namespace catena {
+
+using FieldScalar = std::variant<bool, std::int64_t, double, std::string>;
+
+/// One object in a list of results: {"kind": "limit", "value": 12.5, "row": 40}.
+using FieldRecord = std::vector<std::pair<std::string, FieldScalar>>;
+
+using FieldValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<std::string>,
+                                std::vector<FieldRecord>>;
+
+/// A result that is no row: "stable", "iterations", "events". Names and meanings: SCENES.md, section Results.
+struct NamedField {
+  std::string name;
+  FieldValue value;
+};
+
+struct AnalysisResult {
+  std::string type;  ///< "kinematics"
+  AnalysisReport report;
+  bool has_rows = false;  ///< a table belongs to it, be it empty
+  std::vector<ColumnInfo> columns;
+  std::int64_t rows = 0;           ///< how many went to the sink
+  std::vector<NamedField> fields;  ///< in the order in which they are written
+};
+
+}  // namespace catena

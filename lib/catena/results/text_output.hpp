@@ -1,0 +1,45 @@
+// Text on its way out: to the standard output or to a file, buffered, with failure remembered instead of thrown.
+//
+// A file is written beside its final place and renamed by commit(), so that a run that is stopped or runs out of disk
+// never leaves half a file under the name, nor destroys the one that was there.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace catena {
+
+class TextOutput {
+ public:
+  static TextOutput standard_output();
+  /// A file that will be called `path`. Failure shows in ok() and error().
+  static TextOutput file(const std::string& path);
+
+  TextOutput(TextOutput&& other) noexcept;
+  TextOutput& operator=(TextOutput&&) = delete;
+  ~TextOutput();  ///< removes a file that was not committed
+
+  /// False once anything could not be written; further text is then dropped.
+  bool write(std::string_view text);
+  bool flush();
+  /// Ends a file: flushed, closed and put in its place. False if any of it failed.
+  bool commit();
+
+  bool ok() const { return error_.empty(); }
+  /// Why writing failed, with the file's name; empty if it did not.
+  const std::string& error() const { return error_; }
+  /// The reader of the standard output has gone (a closed pipe): no error to speak of.
+  bool reader_gone() const { return reader_gone_; }
+
+ private:
+  TextOutput() = default;
+  bool fail();
+
+  std::FILE* file_ = nullptr;
+  bool owned_ = false;
+  bool reader_gone_ = false;
+  std::string path_, temporary_, error_;
+};
+
+}  // namespace catena
