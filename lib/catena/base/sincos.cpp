@@ -1,8 +1,10 @@
 #include "catena/base/sincos.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 
 // Where multiplications and additions are fused is written below, not left to the compiler: it could decide differently
 // for the vectors and for the remainder of a loop, and a value would depend on its place in the array.
@@ -110,11 +112,6 @@ template <bool fused>
 
 using Kernel = bool (*)(Block&, std::size_t);
 
-struct Choice {
-  Kernel kernel;
-  const char* name;
-};
-
 bool kernel_baseline(Block& block, std::size_t groups) { return sincos_block<baseline_fuses>(block, groups); }
 
 #if CATENA_DISPATCH
@@ -126,17 +123,29 @@ bool kernel_baseline(Block& block, std::size_t groups) { return sincos_block<bas
 }
 #endif
 
-Choice choose() {
+struct Choice {
+  std::string_view name;
+  Kernel kernel;
+  bool (*supported)();
+};
+
+/// Best first.
+constexpr Choice choices[] = {
+#if CATENA_DISPATCH
+    {"avx512", kernel_avx512, [] { return __builtin_cpu_supports("avx512f") != 0; }},
+    {"avx2", kernel_avx2, [] { return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0; }},
+#endif
+    {"baseline", kernel_baseline, [] { return true; }}};
+
+const Choice* best_choice() {
 #if CATENA_DISPATCH
   __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx512f")) return {kernel_avx512, "avx512"};
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return {kernel_avx2, "avx2"};
 #endif
-  return {kernel_baseline, "baseline"};
+  return std::ranges::find_if(choices, [](const Choice& choice) { return choice.supported(); });
 }
 
-const Choice& chosen() {
-  static const Choice choice = choose();
+std::atomic<const Choice*>& chosen() {
+  static std::atomic<const Choice*> choice = best_choice();
   return choice;
 }
 
@@ -157,7 +166,7 @@ void evaluate(Kernel kernel, const double* angle, std::size_t stride, std::size_
 }  // namespace
 
 void sincos(const double* angle, std::size_t stride, std::size_t count, double* cosine, double* sine) {
-  const Kernel kernel = chosen().kernel;
+  const Kernel kernel = chosen().load(std::memory_order_relaxed)->kernel;
   Block block;
   for (std::size_t first = 0; first < count; first += block_size) {
     const std::size_t part = std::min(block_size, count - first);
@@ -172,7 +181,7 @@ void sincos(std::span<const double> angle, std::span<double> cosine, std::span<d
 }
 
 void update_frames(std::span<const double> q, std::span<Frame<double>> frames) {
-  const Kernel kernel = chosen().kernel;
+  const Kernel kernel = chosen().load(std::memory_order_relaxed)->kernel;
   Block block;
   for (std::size_t first = 0; first < frames.size(); first += block_size) {
     const std::size_t count = std::min(block_size, frames.size() - first);
@@ -185,6 +194,13 @@ void update_frames(std::span<const double> q, std::span<Frame<double>> frames) {
   }
 }
 
-const char* sincos_instruction_set() { return chosen().name; }
+std::string_view sincos_instruction_set() { return chosen().load()->name; }
+
+bool select_sincos_instruction_set(std::string_view name) {
+  const Choice* choice = std::ranges::find(choices, name, &Choice::name);
+  if (choice == std::end(choices) || !choice->supported()) return false;
+  chosen() = choice;
+  return true;
+}
 
 }  // namespace catena

@@ -13,6 +13,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string_view>
 
 #include "catena/base/frame.hpp"
 
@@ -29,6 +30,9 @@ void sincos(std::span<const double> angle, std::span<double> cosine, std::span<d
 void update_frames(std::span<const double> q, std::span<Frame<double>> frames);
 
 /// The instruction set in use: "avx512", "avx2" or "baseline" (what the compiler was told to assume).
-const char* sincos_instruction_set();
+std::string_view sincos_instruction_set();
+
+/// Uses `name` from now on, in all threads; false if this machine or build does not have it. For tests and benchmarks.
+bool select_sincos_instruction_set(std::string_view name);
 
 }  // namespace catena
