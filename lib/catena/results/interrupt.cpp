@@ -1,0 +1,27 @@
+#include "catena/results/interrupt.hpp"
+
+#include <csignal>
+
+namespace catena {
+namespace {
+
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "only lock-free atomics may be written by a signal handler");
+
+extern "C" void set_interrupted(int) { interrupted.store(true, std::memory_order_relaxed); }
+
+}  // namespace
+
+const std::atomic<bool>& catch_interrupts() {
+  struct sigaction action = {};
+  action.sa_handler = set_interrupted;
+  sigemptyset(&action.sa_mask);
+  // The default comes back after the first signal: a program that hangs can still be stopped. Files that are being
+  // written go on being written.
+  action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  return interrupted;
+}
+
+}  // namespace catena

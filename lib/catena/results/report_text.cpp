@@ -1,0 +1,141 @@
+#include "catena/results/report_text.hpp"
+
+#include "catena/results/number_format.hpp"
+
+namespace catena {
+namespace {
+
+constexpr std::size_t longest_list = 10;
+
+std::string count(std::int64_t n, const std::string& one, const std::string& many) {
+  return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
+/// The first entries, separated by commas, and how many more there are.
+template <class Range, class F>
+std::string enumerate(const Range& range, F&& text_of) {
+  std::string text;
+  std::size_t shown = 0;
+  for (const auto& entry : range) {
+    if (shown == longest_list) return text + ", ... " + std::to_string(range.size() - shown) + " more";
+    if (shown++ > 0) text += ", ";
+    text += text_of(entry);
+  }
+  return text;
+}
+
+std::string names(const std::vector<std::string>& list) {
+  return enumerate(list, [](const std::string& name) { return name; });
+}
+
+struct ScalarText {
+  std::string operator()(bool value) const { return value ? "yes" : "no"; }
+  std::string operator()(std::int64_t value) const { return std::to_string(value); }
+  std::string operator()(double value) const { return format_number(value); }
+  std::string operator()(const std::string& value) const { return value; }
+};
+
+struct ValueText : ScalarText {
+  using ScalarText::operator();
+  std::string operator()(const std::vector<double>& list) const { return enumerate(list, ScalarText{}); }
+  std::string operator()(const std::vector<std::string>& list) const { return names(list); }
+  std::string operator()(const std::vector<FieldRecord>& records) const {
+    std::string text;
+    for (const FieldRecord& record : records) {
+      text += "\n    ";
+      bool first = true;
+      for (const auto& [name, value] : record) {
+        text += (first ? "" : ", ") + name + " " + std::visit(ScalarText{}, value);
+        first = false;
+      }
+    }
+    return text.empty() ? "none" : text;
+  }
+};
+
+/// Rows, rank and freedoms as sentences.
+std::string structure_text(const AnalysisReport& report) {
+  std::string text = "  " + count(report.bodies, "body", "bodies") + ", " +
+                     count(report.rows, "constraint equation", "constraint equations");
+  if (report.rank) {
+    text += ", " + std::to_string(*report.rank) + " of them independent";
+    if (report.dof) text += ", on " + count(*report.dof + *report.rank, "coordinate", "coordinates");
+  }
+  text += "\n";
+  if (report.dof) {
+    text += "  " + count(*report.dof, "degree of freedom", "degrees of freedom");
+    text += *report.dof == 0 ? ": constraints and drivers fix every position" : " left with all drivers at work";
+    text += "\n";
+  }
+  if (report.mobility) {
+    text += "  mobility " + std::to_string(*report.mobility) + ": ";
+    text += count(*report.mobility, "degree of freedom", "degrees of freedom") + " if the drivers are taken away\n";
+  }
+  if (report.islands > 1)
+    text += "  " + std::to_string(report.islands) + " groups of bodies move apart from each other\n";
+  return text;
+}
+
+std::string redundancy_text(const AnalysisReport& report) {
+  if (report.redundant.empty()) return {};
+  return "  redundant: " + names(report.redundant) +
+         " (these equations follow from the others; reactions are not unique)\n";
+}
+
+}  // namespace
+
+std::string header_text(const RunHeader& header) {
+  std::string text = header.scene + ": " + count(header.bodies, "body", "bodies") + ", " +
+                     count(header.elements, "element", "elements") + ", gravity [" + format_number(header.gravity[0]) +
+                     ", " + format_number(header.gravity[1]) + "] m/s^2\n";
+  if (!header.description.empty()) text += "  " + header.description + "\n";
+  return text;
+}
+
+std::string outcome_text(const AnalysisResult& result) {
+  std::string text = result.type + ": " + std::string(to_string(result.report.status));
+  if (result.has_rows) text += ", " + count(result.rows, "row", "rows");
+  return text + "\n";
+}
+
+std::string report_text(const AnalysisResult& result) {
+  const AnalysisReport& report = result.report;
+  std::string text;
+  if (!report.message.empty()) text += "  " + report.message + "\n";
+  for (const std::string& warning : report.warnings) text += "  note: " + warning + "\n";
+  // Analyses with rows speak of the structure where it is not what one expects of them.
+  if (!result.has_rows || report.status == Status::under_driven) text += structure_text(report);
+  if (!result.has_rows && report.rank && report.redundant.empty()) text += "  no redundant constraints\n";
+  text += redundancy_text(report);
+  for (const NamedField& field : result.fields)
+    text += "  " + field.name + ": " + std::visit(ValueText{}, field.value) + "\n";
+  return text;
+}
+
+std::string counters_text(const AnalysisResult& result) {
+  const Counters& c = result.report.counters;
+  std::string text = result.type + ": " + format_number(result.report.seconds) + " s\n";
+  const auto add = [&](const char* name, std::int64_t n) {
+    if (n == 0) return;
+    const std::string number = std::to_string(n);
+    text += "  " + std::string(12 - std::min<std::size_t>(12, number.size()), ' ') + number + "  " + name + "\n";
+  };
+  add("symbolic analyses", c.symbolic);
+  add("factorizations", c.factorizations);
+  add("of these with the pivots of the one before", c.refactorizations);
+  add("solves", c.solves);
+  add("Newton iterations", c.iterations);
+  add("configurations (trigonometry)", c.configurations);
+  add("constraint evaluations", c.phis);
+  add("Jacobians", c.jacobians);
+  add("velocity right-hand sides", c.nus);
+  add("acceleration right-hand sides", c.gammas);
+  add("force evaluations", c.forces);
+  add("second derivatives", c.hessians);
+  add("fallbacks to a safer kernel", c.fallbacks);
+  add("time steps", c.steps);
+  add("rejected time steps", c.rejected);
+  return text;
+}
+
+}  // namespace catena

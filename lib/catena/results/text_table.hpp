@@ -1,0 +1,51 @@
+// Rows as an aligned table for people: names, units, rounded numbers. A single row is set as a list, one line a column.
+//
+// What does not fit is counted and said, never cut silently: the first and the last rows are shown, and as many columns
+// as the width allows. Only what is shown is kept, so that memory stays bounded.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "catena/base/row_sink.hpp"
+
+namespace catena {
+
+struct TableLimits {
+  std::size_t first_rows = 15;  ///< shown from the beginning
+  std::size_t last_rows = 5;    ///< and from the end
+  std::size_t width = 120;      ///< characters a line
+  std::size_t list_lines = 45;  ///< columns shown of a single row
+  /// Shows everything, whatever the other limits say.
+  static TableLimits none();
+};
+
+class TextTable final : public RowSink {
+ public:
+  explicit TextTable(const TableLimits& limits = {}) : limits_(limits) {}
+
+  void begin(std::span<const ColumnInfo> columns) override;
+  bool row(std::span<const double> values) override;
+
+  struct Text {
+    std::string lines;       ///< each one ended; empty if there are no columns
+    bool shortened = false;  ///< something was left out
+  };
+  /// The table so far.
+  Text text() const;
+
+ private:
+  Text list() const;
+  Text grid() const;
+  std::size_t kept_rows() const { return kept_columns_ == 0 ? 0 : values_.size() / kept_columns_; }
+  /// Values of a kept column from the first row shown to the last.
+  std::vector<double> shown(std::size_t column) const;
+
+  TableLimits limits_;
+  std::vector<ColumnInfo> columns_;  // the kept ones
+  std::size_t all_columns_ = 0, kept_columns_ = 0;
+  std::uint64_t rows_ = 0;
+  std::vector<double> values_;  // rows kept; the last ones in a ring behind the first ones
+};
+
+}  // namespace catena
