@@ -53,6 +53,7 @@ struct CholmodKernel::Handles {
   cholmod_factor* symbolic_and_numeric = nullptr;
   cholmod_dense* solve_work = nullptr;
   cholmod_dense* unused_work = nullptr;
+  std::vector<double> pivots;
 
   Handles() {
     cholmod_start(&common);
@@ -133,8 +134,13 @@ FactorResult CholmodKernel::factor(const SparsePattern& upper, std::span<const d
   cholmod_rowfac(&view, nullptr, beta, 0, h.factor().n, h.symbolic_and_numeric, &h.common);
   if (h.common.status < CHOLMOD_OK) return {FactorStatus::out_of_memory, -1};
   const int complete = static_cast<int>(h.factor().minor);
-  for (int k = 0; k < complete; ++k)
-    if (!std::isfinite(pivot(k))) return {FactorStatus::not_finite, k};
+  const FactorColumns factored = columns();
+  h.pivots.resize(h.factor().n);
+  for (int k = 0; k < complete; ++k) {
+    const double diagonal = factored.value[factored.start[k]];
+    if (!std::isfinite(diagonal)) return {FactorStatus::not_finite, k};
+    h.pivots[k] = h.factor().is_ll ? diagonal * diagonal : diagonal;
+  }
   if (complete < upper.columns) return {FactorStatus::singular, complete};
   return {};
 }
@@ -163,11 +169,7 @@ void CholmodKernel::solve(std::span<double> x) {
   }
 }
 
-double CholmodKernel::pivot(int place) const {
-  const cholmod_factor& factor = handles_->factor();
-  const double diagonal = static_cast<const double*>(factor.x)[static_cast<const int*>(factor.p)[place]];
-  return factor.is_ll ? diagonal * diagonal : diagonal;
-}
+std::span<const double> CholmodKernel::pivots() const { return handles_->pivots; }
 
 FactorColumns CholmodKernel::columns() const {
   const cholmod_factor& factor = handles_->factor();

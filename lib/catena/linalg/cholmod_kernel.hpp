@@ -39,7 +39,7 @@ class CholmodKernel {
   FactorResult factor(const SparsePattern& upper, std::span<const double> values, double shift);
 
   void solve(std::span<double> x);  ///< A X = B in place, in the caller's numbering; allocates at the first call only
-  double pivot(int place) const;    ///< entry of D; for L L^T the square of L's diagonal
+  std::span<const double> pivots() const;  ///< D by places; for L L^T the squares of L's diagonal
   FactorColumns columns() const;
   double rcond() const;  ///< smallest over largest |pivot|
 

@@ -90,12 +90,13 @@ std::int64_t SymmetricFactorization::factor_entries() const {
 
 double SymmetricFactorization::pivot(int row) const {
   require_factors();
-  return kernel_.pivot(place_[row]);
+  return kernel_.pivots()[place_[row]];
 }
 
 const std::vector<double>& SymmetricFactorization::pivot_references() const {
   require_factors();
   if (references_are_current_ || size() == 0) return pivot_references_;
+  const std::span<const double> pivots = kernel_.pivots();
   pivot_references_.assign(static_cast<std::size_t>(size()), std::abs(shift_));
   bool signs_differ = false;
   for (int k = 0; k < size(); ++k) {
@@ -103,12 +104,12 @@ const std::vector<double>& SymmetricFactorization::pivot_references() const {
     const int last = upper_.column_start[k + 1] - 1;
     if (last >= upper_.column_start[k] && upper_.row_index[last] == k)
       pivot_references_[k] = std::abs(upper_values_[last] + shift_);
-    signs_differ |= std::signbit(kernel_.pivot(k)) != std::signbit(kernel_.pivot(0));
+    signs_differ |= std::signbit(pivots[k]) != std::signbit(pivots[0]);
   }
   // With all pivots of one sign, sum_j l_kj^2 |d_j| + |d_k| is |a_kk + shift| itself.
   const FactorColumns columns = kernel_.columns();
   for (int j = 0; signs_differ && j < size(); ++j) {
-    const double magnitude = std::abs(kernel_.pivot(j));
+    const double magnitude = std::abs(pivots[j]);
     for (int p = columns.start[j] + 1; p < columns.start[j] + columns.length[j]; ++p)
       pivot_references_[columns.row[p]] += columns.value[p] * columns.value[p] * magnitude;
   }
@@ -119,9 +120,11 @@ const std::vector<double>& SymmetricFactorization::pivot_references() const {
 Inertia SymmetricFactorization::inertia(double zero_ratio) const {
   require_factors();
   Inertia result;
+  if (size() == 0) return result;
+  const std::span<const double> pivots = kernel_.pivots();
   const std::vector<double>* references = zero_ratio > 0 ? &pivot_references() : nullptr;
   for (int k = 0; k < size(); ++k) {
-    const double d = kernel_.pivot(k);
+    const double d = pivots[k];
     if (references != nullptr && std::abs(d) <= zero_ratio * (*references)[k])
       ++result.zero;
     else
@@ -132,14 +135,16 @@ Inertia SymmetricFactorization::inertia(double zero_ratio) const {
 
 double SymmetricFactorization::pivot_ratio(int row) const {
   const double reference = pivot_references()[place_[row]];
-  return std::abs(kernel_.pivot(place_[row])) / reference;
+  return std::abs(kernel_.pivots()[place_[row]]) / reference;
 }
 
 PivotRatio SymmetricFactorization::smallest_pivot_ratio() const {
   PivotRatio smallest;
   const std::vector<double>& references = pivot_references();
+  if (size() == 0) return smallest;
+  const std::span<const double> pivots = kernel_.pivots();
   for (int k = 0; k < size(); ++k) {
-    const double ratio = std::abs(kernel_.pivot(k)) / references[k];
+    const double ratio = std::abs(pivots[k]) / references[k];
     if (smallest.row < 0 || ratio < smallest.ratio) smallest = {ratio, order_[k]};
   }
   return smallest;
