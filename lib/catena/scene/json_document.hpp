@@ -59,6 +59,7 @@ class JsonValue {
 
   JsonKind kind() const { return node().kind; }
   bool is(JsonKind kind) const { return node().kind == kind; }
+  const SourceText& source() const;
   /// Offset of its first character in the source.
   std::size_t offset() const { return node().offset; }
 
@@ -168,6 +169,7 @@ class JsonDocument {
 };
 
 inline const JsonNode& JsonValue::node() const { return document_->nodes()[index_]; }
+inline const SourceText& JsonValue::source() const { return document_->source(); }
 inline std::string_view JsonValue::text() const { return document_->string_of(node()); }
 inline std::uint32_t JsonValue::after() const {
   const JsonNode& n = node();
