@@ -49,7 +49,9 @@ struct TimeFunction<S>::Node {
 template <class S>
 TimeFunction<S> TimeFunction<S>::polynomial(std::span<const S> coefficients) {
   std::vector<S> kept(coefficients.begin(), coefficients.end());
-  for (const S& c : kept) require_finite<S>({{"a coefficient", c}}, "polynomial");
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    require_finite<S>({{("coefficient[" + std::to_string(k) + "]").c_str(), kept[k]}}, "polynomial");
+  }
   while (!kept.empty() && vanishes(kept.back())) kept.pop_back();
   if (kept.empty()) return TimeFunction();
   if (kept.size() == 1) return TimeFunction(kept.front());

@@ -75,7 +75,8 @@ struct Table {
     if (!curve.periodic()) {
       // Times are multiples of a step and carry its rounding: just outside the table counts as its end.
       const double inside = std::clamp(t, curve.first(), curve.last());
-      if (t != inside && std::abs(t - inside) > 1e-12 * std::max(std::abs(curve.first()), std::abs(curve.last()))) {
+      const double slack = 1e-12 * std::max(std::abs(curve.first()), std::abs(curve.last()));
+      if (!(std::abs(t - inside) <= slack)) {
         throw OutsideTable(t, curve.first(), curve.last());
       }
       t = inside;
@@ -91,6 +92,8 @@ struct Table {
       return next == knots.end() ? never : *next;
     }
     const double period = curve.last() - curve.first();
+    // At times so large that a period is lost in rounding, or at none at all, there is nothing to stop at.
+    if (!std::isfinite(t) || same_instant(t, t + period)) return never;
     double cycles = std::floor((t - curve.first()) / period);
     auto next = std::upper_bound(knots.begin(), knots.end(), t - cycles * period);
     // Rounding may name a knot that is not later than t: take the next one, in the next period if need be.
