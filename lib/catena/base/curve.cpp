@@ -82,7 +82,11 @@ Curve<S> Curve<S>::polar(std::span<const S> angles, std::span<const S> radii) {
   const double span = value_of(knots.back()) - value_of(knots.front());
   if (span > turn + 1e-9) fail("the angles span " + number_text(span) + " rad, more than one turn");
   if (span > turn - 1e-9) {
-    // A full turn given: its end is the start once more, to the last bit.
+    // The end of a full turn is its start once more.
+    const double start = value_of(values.front()), finish = value_of(values.back());
+    if (std::abs(finish - start) > 1e-12 * start) {
+      fail("the full turn starts at radius " + number_text(start) + " and ends at " + number_text(finish));
+    }
     knots.pop_back();
   } else {
     values.push_back(values.front());
