@@ -15,11 +15,11 @@ struct Snapshot {
   const Evaluator& evaluator;  ///< set to this time and configuration
   double t = 0;
   std::span<const double> q, qd, qdd, lambda;
-  double residual = 0;                  ///< largest constraint residual, m or rad
-  double work = 0;                      ///< of drivers and applied loads since the start, J
-  double dissipated = 0;                ///< J
-  double initial_energy = 0;            ///< total_energy() at the start, J
-  std::span<const double> driver_work;  ///< by number of the element, J
+  double residual = 0;                    ///< largest constraint residual, m or rad
+  double work = 0;                        ///< of drivers and applied loads since the start, J
+  double dissipated = 0;                  ///< J
+  double initial_energy = 0;              ///< total_energy() at the start, J
+  std::span<const double> driver_work{};  ///< by number of the element, J
 };
 
 /// What an analysis must compute for the columns asked for: nothing else is computed.
