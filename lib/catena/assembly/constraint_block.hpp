@@ -18,6 +18,7 @@ namespace catena {
 /// Structure: element e of the block occupies the rows first_row + e rows ... ; bodies are plan bodies.
 template <class E>
 struct ConstraintBlock {
+  using Element = E;
   int first_row = 0;
   std::vector<int> entry;   ///< place in the model's vector of this type
   std::vector<int> body_i;  ///< frame of body i; the ground's frame is the last one
@@ -60,6 +61,9 @@ struct Measured {
   double value = 0, rate = 0, second = 0;
 };
 
+/// Second derivatives of one element: 6 x 6, row-major, rows and columns [x_i y_i phi_i x_j y_j phi_j].
+using ElementMatrix = std::array<double, 36>;
+
 template <class E>
 struct ConstraintOperations {
   using Block = ConstraintBlock<E>;
@@ -73,6 +77,8 @@ struct ConstraintOperations {
   static void nu(const Block&, const Data&, const Frame<double>* frames, double* out);
   /// out[row] = gamma at the body velocities qd (three a body, plan order).
   static void gamma(const Block&, const Data&, const Frame<double>* frames, const double* qd, double* out);
+  /// sum_r lambda_r scale d2Phi_r/dq2 of one element; lambda: multipliers of the solver's rows, size rows of the plan.
+  static ElementMatrix hessian(const Block&, const Data&, const Frame<double>* frames, const double* lambda, int e);
   /// Phi_q of one element.
   static LocalJacobian<E> local_jacobian(const Block&, const Data&, const Frame<double>* frames, int e);
   /// Measured quantity of one element: exact derivatives along q(t) with the given qd and qdd (nullptr: zero).

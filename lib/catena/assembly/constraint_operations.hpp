@@ -173,6 +173,27 @@ void ConstraintOperations<E>::gamma(const Block& block, const Data& data, const 
 }
 
 template <class E>
+ElementMatrix ConstraintOperations<E>::hessian(const Block& block, const Data& data, const Frame<double>* frames,
+                                               const double* lambda, int e) {
+  using Inner = Dual<double, 6>;
+  using Outer = Dual<Inner, 6>;
+  const detail::ElementFrames<E> f(block, data, frames, e);
+  const auto i = seed<Inner, 6>(seed<double, 6>(f.i, 0), 0);
+  const auto j = seed<Inner, 6>(seed<double, 6>(f.j, 3), 3);
+  Outer rows[E::rows];
+  data.element[static_cast<std::size_t>(e)].phi(
+      Arguments<Outer>{i, j, Outer(Inner(detail::value_at(data, e).f)), f.ground}, rows);
+  ElementMatrix matrix{};
+  for (int r = 0; r < E::rows; ++r) {
+    const double weight = lambda[block.row(e) + r] * detail::scale_at(data, e);
+    for (std::size_t a = 0; a < 6; ++a) {
+      for (std::size_t b = 0; b < 6; ++b) matrix[6 * a + b] += weight * rows[r].d[a].d[b];
+    }
+  }
+  return matrix;
+}
+
+template <class E>
 LocalJacobian<E> ConstraintOperations<E>::local_jacobian(const Block& block, const Data& data,
                                                          const Frame<double>* frames, int e) {
   LocalJacobian<E> local;

@@ -71,6 +71,8 @@ void Evaluator::load_values() {
     keep_weld.push_back(plan.element_row[at(weld.id)] >= 0);
   }
   const Elimination elimination = eliminate_bodies(*model_, keep_weld);
+  mass_.resize(at(plan.bodies));
+  for (int p = 0; p < plan.bodies; ++p) mass_[at(p)] = model_->bodies[at(plan.model_body[at(p)])].mass;
   origin_.assign(at(plan.bodies) + 1, {});
   frames_.assign(at(plan.bodies) + 1, {});
   for (int p = 0; p < plan.bodies; ++p) {
@@ -103,6 +105,34 @@ void Evaluator::load_values() {
         if (entry.values[0].function >= 0) data.timed.push_back({static_cast<int>(e), entry.values[0].function});
       }
       if constexpr (HasSquaredValue<E>) data.scale[e] = 1;
+    }
+  });
+  for_each_list(model_->forces, [&](const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    const auto& block = std::get<ForceBlock<E>>(plan.forces);
+    auto& data = std::get<ForceData<E>>(force_values_);
+    const std::size_t n = at(block.size()), functions = at(E::functions);
+    data.element.resize(n);
+    data.shift.resize(n);
+    data.value.resize(n * functions);
+    data.timed.clear();
+    for (std::size_t e = 0; e < n; ++e) {
+      const auto& entry = list[at(block.entry[e])];
+      data.element[e] = entry.element;
+      const Vec2<double> oi = origin_[at(block.body_i[e])], oj = origin_[at(block.body_j[e])];
+      if constexpr (E::bodies == 1) {
+        data.shift[e].i = oi;
+      } else if (block.body_i[e] >= plan.moving) {
+        data.shift[e] = {oi - oj, {}};
+      } else {
+        data.shift[e] = {{}, oj - oi};
+      }
+      for (std::size_t k = 0; k < functions; ++k) {
+        data.value[e * functions + k] = entry.values[k].constant;
+        if (entry.values[k].function >= 0) {
+          data.timed.push_back({static_cast<int>(e * functions + k), entry.values[k].function});
+        }
+      }
     }
   });
   attachment_radii(&length_scale_);
@@ -138,6 +168,9 @@ void Evaluator::set_time(double t) {
   for (std::size_t k = 0; k < function_.size(); ++k) function_[k] = model_->functions[k].evaluate(t);
   for_each_list(values_, [&](auto& data, int) {
     for (const auto& timed : data.timed) data.value[at(timed.element)] = function_[at(timed.function)];
+  });
+  for_each_list(force_values_, [&](auto& data, int) {
+    for (const auto& timed : data.timed) data.value[at(timed.place)] = function_[at(timed.function)].f;
   });
 }
 
@@ -187,6 +220,55 @@ void Evaluator::gamma(std::span<const double> qd, std::span<double> out) {
   for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
     ConstraintOperations<ElementOf<decltype(list)>>::gamma(block, data, frames_.data(), qd.data(), out.data());
   });
+}
+
+void Evaluator::applied_forces(std::span<const double> qd, std::span<double> Q) {
+  ++counters.forces;
+  const Plan& plan = *plan_;
+  std::fill(Q.begin(), Q.end(), 0.0);
+  const Vec2<double> g = model_->gravity;
+  if (g.x != 0 || g.y != 0) {
+    for (int p = 0; p < plan.moving; ++p) {
+      const double mass = mass_[at(p)];
+      Q[at(3 * p)] = mass * g.x;
+      Q[at(3 * p + 1)] = mass * g.y;
+    }
+  }
+  for_each_list(plan.forces, [&](const auto& block, int) {
+    using E = typename std::remove_cvref_t<decltype(block)>::Element;
+    if (block.size() > 0) {
+      ForceOperations<E>::add_forces(block, std::get<ForceData<E>>(force_values_), frames_.data(), qd.data(), Q.data());
+    }
+  });
+}
+
+double Evaluator::potential_energy() const {
+  const Vec2<double> g = model_->gravity;
+  double sum = 0;
+  for (int p = 0; p < plan_->bodies; ++p) sum -= mass_[at(p)] * dot(g, ground_frame(p).origin());
+  for_each_list(plan_->forces, [&](const auto& block, int) {
+    using E = typename std::remove_cvref_t<decltype(block)>::Element;
+    sum += ForceOperations<E>::potential(block, std::get<ForceData<E>>(force_values_), frames_.data());
+  });
+  return sum;
+}
+
+double Evaluator::dissipation(std::span<const double> qd) const {
+  double sum = 0;
+  for_each_list(plan_->forces, [&](const auto& block, int) {
+    using E = typename std::remove_cvref_t<decltype(block)>::Element;
+    sum += ForceOperations<E>::dissipation(block, std::get<ForceData<E>>(force_values_), frames_.data(), qd.data());
+  });
+  return sum;
+}
+
+bool Evaluator::conservative() const {
+  bool all = true;
+  for_each_list(force_values_, [&](const auto& data, int) {
+    using E = typename std::remove_cvref_t<decltype(data.element)>::value_type;
+    all = all && ForceOperations<E>::conservative(data);
+  });
+  return all;
 }
 
 Measured Evaluator::measure(int element, std::span<const double> qd, std::span<const double> qdd) const {

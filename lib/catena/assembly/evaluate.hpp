@@ -49,6 +49,22 @@ class Evaluator {
   void nu(std::span<double> out);                                 ///< size rows
   void gamma(std::span<const double> qd, std::span<double> out);  ///< size rows
 
+  /// Generalized forces of gravity and all force elements; size coordinates(), the ground's last.
+  void applied_forces(std::span<const double> qd, std::span<double> Q);
+  /// Potential energy of gravity and the conservative force elements, J; zero at the ground's origin.
+  double potential_energy() const;
+  /// Power lost to damping, W.
+  double dissipation(std::span<const double> qd) const;
+  /// Whether every force element has a potential.
+  bool conservative() const;
+
+  /// Calls f(body_i, body_j, matrix) with the 6 x 6 stiffness -dQ/dq of every force element.
+  template <class F>
+  void visit_stiffness(std::span<const double> qd, F&& f) const;
+  /// Calls f(body_i, body_j, matrix) with sum lambda d2Phi/dq2 of every constraint; lambda: solver's rows.
+  template <class F>
+  void visit_constraint_hessians(std::span<const double> lambda, F&& f) const;
+
   /// Measured quantity of a scalar constraint with time derivatives; qd, qdd may be empty (zero).
   Measured measure(int element, std::span<const double> qd, std::span<const double> qdd) const;
   /// Dense Phi_q of one element in THEORY's form: rows x 6 (columns 3 ... 5 zero for absolute types), and its scale.
@@ -78,11 +94,37 @@ class Evaluator {
   std::shared_ptr<const Plan> plan_;
   const Model* model_;
   ConstraintValues values_;
+  ForceValues force_values_;
+  std::vector<double> mass_;           // per plan body
   std::vector<Vec2<double>> origin_;   // per plan body, and the ground's (0, 0)
   std::vector<Frame<double>> frames_;  // relative; the last one is the ground's
   std::vector<Taylor<double>> function_;
   std::vector<int> place_;
   double time_ = 0, length_scale_ = 1;
 };
+
+template <class F>
+void Evaluator::visit_stiffness(std::span<const double> qd, F&& f) const {
+  for_each_list(plan_->forces, [&](const auto& block, int) {
+    using E = typename std::remove_cvref_t<decltype(block)>::Element;
+    const auto& data = std::get<ForceData<E>>(force_values_);
+    for (int e = 0; e < block.size(); ++e) {
+      f(block.body_i[static_cast<std::size_t>(e)], block.body_j[static_cast<std::size_t>(e)],
+        ForceOperations<E>::stiffness(block, data, frames_.data(), qd.empty() ? nullptr : qd.data(), e));
+    }
+  });
+}
+
+template <class F>
+void Evaluator::visit_constraint_hessians(std::span<const double> lambda, F&& f) const {
+  for_each_list(plan_->blocks, [&](const auto& block, int) {
+    using E = typename std::remove_cvref_t<decltype(block)>::Element;
+    const auto& data = std::get<ConstraintData<E>>(values_);
+    for (int e = 0; e < block.size(); ++e) {
+      f(block.body_i[static_cast<std::size_t>(e)], block.body_j[static_cast<std::size_t>(e)],
+        ConstraintOperations<E>::hessian(block, data, frames_.data(), lambda.data(), e));
+    }
+  });
+}
 
 }  // namespace catena

@@ -3,5 +3,7 @@
 #pragma once
 
 #include "catena/assembly/constraint_operations.hpp"
+#include "catena/assembly/force_operations.hpp"
 
 #define CATENA_INSTANTIATE_CONSTRAINT(Type) template struct catena::ConstraintOperations<catena::Type<double>>;
+#define CATENA_INSTANTIATE_FORCE(Type) template struct catena::ForceOperations<catena::Type<double>>;

@@ -56,9 +56,8 @@ void number_coordinates(const Model& model, const Elimination& elimination, Plan
 }
 
 // The elements of one type that have rows, sorted by their first body so that evaluation walks through memory.
-template <class Entry>
-void choose_elements(const std::vector<Entry>& list, const std::vector<char>& skip, const Plan& plan,
-                     ConstraintBlock<typename Entry::Element>& block) {
+template <class Entry, class Block>
+void choose_elements(const std::vector<Entry>& list, const std::vector<char>& skip, const Plan& plan, Block& block) {
   const auto place = [&](int body) { return body < 0 ? plan.bodies : plan.plan_body[at(body)]; };
   block.entry.reserve(list.size());
   for (std::size_t k = 0; k < list.size(); ++k) {
@@ -148,6 +147,9 @@ std::shared_ptr<const Plan> Plan::make(const Model& model, const PlanOptions& op
     const bool weld = std::is_same_v<E, Weld<double>>;
     choose_elements(list, weld ? elimination.weld_eliminated : std::vector<char>{}, *plan, block);
     number_rows(model, list, block, *plan);
+  });
+  for_each_list(model.forces, [&](const auto& list, int) {
+    choose_elements(list, {}, *plan, std::get<ForceBlock<ElementOf<decltype(list)>>>(plan->forces));
   });
   make_slots(*plan);
   return plan;

@@ -17,6 +17,7 @@
 
 #include "catena/assembly/constraint_block.hpp"
 #include "catena/assembly/elimination.hpp"
+#include "catena/assembly/force_block.hpp"
 #include "catena/linalg/sparse_pattern.hpp"
 #include "catena/model/model.hpp"
 
@@ -29,10 +30,14 @@ template <class... Lists>
 struct BlocksOf<std::tuple<Lists...>> {
   using Blocks = std::tuple<ConstraintBlock<typename Lists::value_type::Element>...>;
   using Data = std::tuple<ConstraintData<typename Lists::value_type::Element>...>;
+  using Forces = std::tuple<ForceBlock<typename Lists::value_type::Element>...>;
+  using ForceValues = std::tuple<ForceData<typename Lists::value_type::Element>...>;
 };
 }  // namespace detail
 
 using ConstraintBlocks = detail::BlocksOf<ConstraintLists<double>>::Blocks;
+using ForceBlocks = detail::BlocksOf<ForceLists<double>>::Forces;
+using ForceValues = detail::BlocksOf<ForceLists<double>>::ForceValues;
 using ConstraintValues = detail::BlocksOf<ConstraintLists<double>>::Data;
 
 struct PlanOptions {
@@ -61,6 +66,7 @@ struct Plan {
 
   SparsePattern jacobian;  ///< rows x columns
   ConstraintBlocks blocks;
+  ForceBlocks forces;
   bool constant_jacobian = true;   ///< no entry of Phi_q varies
   std::vector<char> body_has_row;  ///< per plan body: some constraint touches it
 

@@ -65,6 +65,15 @@ struct SideField {
   std::string_view doc;
 };
 
+/// One of two words; the member is true for the second, the first is the default.
+template <class Member>
+struct ChoiceField {
+  std::string_view key;
+  Member member;
+  std::string_view first, second;
+  std::string_view doc;
+};
+
 /// A plane curve fixed in a body.
 template <class Member>
 struct CurveField {
@@ -115,6 +124,8 @@ template <class M>
 FlagField(std::string_view, M, std::string_view) -> FlagField<M>;
 template <class M>
 SideField(std::string_view, M, std::string_view) -> SideField<M>;
+template <class M>
+ChoiceField(std::string_view, M, std::string_view, std::string_view, std::string_view) -> ChoiceField<M>;
 template <class M>
 CurveField(std::string_view, M, int, std::string_view) -> CurveField<M>;
 template <class M>

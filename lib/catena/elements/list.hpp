@@ -1,4 +1,4 @@
-// The list of element types: a new joint is one file in constraints/ and its two lines here.
+// The list of element types: a new joint is one file in constraints/ (a new force, in forces/) and its lines here.
 //
 // Everything that treats all types alike (model storage, plan, evaluation, columns, scene reader, schema, explain,
 // derivative tests) goes through these lists at compile time: no registration, no virtual call, no switch over types.
@@ -13,6 +13,10 @@
 #include "catena/elements/constraints/relative_angle.hpp"
 #include "catena/elements/constraints/revolute.hpp"
 #include "catena/elements/constraints/weld.hpp"
+#include "catena/elements/forces/point_force.hpp"
+#include "catena/elements/forces/spring_damper.hpp"
+#include "catena/elements/forces/torque.hpp"
+#include "catena/elements/forces/torsion_spring.hpp"
 
 /// CATENA_CONSTRAINTS(X) expands X(Type) for every constraint type.
 #define CATENA_CONSTRAINTS(X) \
@@ -23,3 +27,10 @@
   X(RelativeAngle)            \
   X(Revolute)                 \
   X(Weld)
+
+/// CATENA_FORCES(X) expands X(Type) for every force type.
+#define CATENA_FORCES(X) \
+  X(PointForce)          \
+  X(SpringDamper)        \
+  X(Torque)              \
+  X(TorsionSpring)

@@ -44,6 +44,10 @@ template <class S>
 struct ConstraintLists {
   using type = typename DropFirst<void CATENA_CONSTRAINTS(CATENA_LIST_OF)>::type;
 };
+template <class S>
+struct ForceLists {
+  using type = typename DropFirst<void CATENA_FORCES(CATENA_LIST_OF)>::type;
+};
 #undef CATENA_LIST_OF
 
 }  // namespace detail
@@ -51,6 +55,9 @@ struct ConstraintLists {
 /// std::tuple of the vectors of all constraint types over the parameter scalar S.
 template <class S>
 using ConstraintLists = typename detail::ConstraintLists<S>::type;
+/// std::tuple of the vectors of all force types.
+template <class S>
+using ForceLists = typename detail::ForceLists<S>::type;
 
 /// Calls f(list, type_index) for the vector of every type.
 template <class Lists, class F>

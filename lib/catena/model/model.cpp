@@ -70,8 +70,13 @@ Frame<S> BasicModel<S>::frame(int body) const {
 template <class S>
 std::string_view BasicModel<S>::element_type(int element) const {
   std::string_view type;
-  with_list(constraints, elements[static_cast<std::size_t>(element)].type,
-            [&](const auto& list) { type = ElementOf<decltype(list)>::type; });
+  const ElementRecord& record = elements[static_cast<std::size_t>(element)];
+  const auto read = [&](const auto& list) { type = ElementOf<decltype(list)>::type; };
+  if (record.kind == ElementKind::force) {
+    with_list(forces, record.type, read);
+  } else {
+    with_list(constraints, record.type, read);
+  }
   return type;
 }
 

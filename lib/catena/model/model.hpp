@@ -6,6 +6,7 @@
 // Errors: every add_... throws ModelError naming the culprit.
 #pragma once
 
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -29,7 +30,7 @@ enum class ElementKind : unsigned char { constraint, driver, force };
 /// Where an element is stored, in file order.
 struct ElementRecord {
   ElementKind kind;
-  short type;   ///< position in the list of types of its kind (drivers are constraints)
+  short type;   ///< position in the list of force types or of constraint types (drivers are constraints)
   int index;    ///< position in the vector of its type
   int name;     ///< number in the name table, -1: unnamed
   int ordinal;  ///< n of `type#n`, counted from 1 per type in file order
@@ -43,6 +44,7 @@ class BasicModel {
   std::vector<BasicPoint<S>> points;
   int first_ground_point = -1;
   ConstraintLists<S> constraints;
+  ForceLists<S> forces;
   std::vector<TimeFunction<S>> functions;
   std::vector<ElementRecord> elements;  ///< file order
   NameTable names;                      ///< of bodies, constraints, drivers, forces
@@ -69,6 +71,11 @@ class BasicModel {
   template <class E>
   int add_driver(std::string_view name, const E& element, int i, int j, const TimeFunction<S>& value);
 
+  /// A force element and its functions of time, in the order of its fields; those left out are zero.
+  template <class E>
+  int add_force(std::string_view name, const E& element, int i, int j = ground,
+                std::initializer_list<TimeFunction<S>> values = {});
+
   /// Appends an element that is already complete (centroidal coordinates, values set); its record is made here.
   template <class E>
   int append(std::string_view name, const ElementEntry<E, S>& entry, ElementKind kind);
@@ -89,7 +96,7 @@ class BasicModel {
   int claim_name(std::string_view name, int target);
   template <class E>
   ElementEntry<E, S> place(const E& element, int i, int j) const;
-  std::vector<int> type_count_;  // per kind and type: elements so far, for `type#n`
+  std::vector<int> constraint_count_, force_count_;  // per type: elements so far, for `type#n`
 };
 
 using Model = BasicModel<double>;

@@ -1,7 +1,7 @@
 // The templates of BasicModel that are instantiated per element type: adding elements by hand.
 #pragma once
 
-#include <limits>
+#include <algorithm>
 
 #include "catena/model/model.hpp"
 
@@ -9,7 +9,7 @@ namespace catena {
 
 namespace detail {
 
-/// Position of the element type E in the constraint lists.
+/// Position of the element type E in the list of constraint types, or -1.
 template <class S, class E>
 consteval int constraint_type() {
   int found = -1, k = 0;
@@ -17,6 +17,14 @@ consteval int constraint_type() {
   if (std::is_same_v<E, Type<S>>) found = k; \
   ++k;
   CATENA_CONSTRAINTS(CATENA_MATCH)
+  return found;
+}
+
+/// Position of the element type E in the list of force types, or -1.
+template <class S, class E>
+consteval int force_type() {
+  int found = -1, k = 0;
+  CATENA_FORCES(CATENA_MATCH)
 #undef CATENA_MATCH
   return found;
 }
@@ -63,14 +71,24 @@ ElementEntry<E, S> BasicModel<S>::place(const E& element, int i, int j) const {
 template <class S>
 template <class E>
 int BasicModel<S>::append(std::string_view name, const ElementEntry<E, S>& entry, ElementKind kind) {
-  constexpr int type = detail::constraint_type<S, E>();
-  static_assert(type >= 0, "the element type is not in elements/list.hpp");
-  auto& list = std::get<static_cast<std::size_t>(type)>(constraints);
+  constexpr int constraint = detail::constraint_type<S, E>(), force = detail::force_type<S, E>();
+  static_assert(constraint >= 0 || force >= 0, "the element type is not in elements/list.hpp");
+  constexpr bool is_force = force >= 0;
+  constexpr int type = is_force ? force : constraint;
+  auto& list = [this]() -> auto& {
+    if constexpr (is_force) {
+      return std::get<static_cast<std::size_t>(type)>(forces);
+    } else {
+      return std::get<static_cast<std::size_t>(type)>(constraints);
+    }
+  }
+  ();
   const int id = static_cast<int>(elements.size());
   const int number = claim_name(name, -2 - id);
-  type_count_.resize(std::max(type_count_.size(), static_cast<std::size_t>(type) + 1));
-  elements.push_back({kind, static_cast<short>(type), static_cast<int>(list.size()), number,
-                      ++type_count_[static_cast<std::size_t>(type)]});
+  std::vector<int>& counts = is_force ? force_count_ : constraint_count_;
+  counts.resize(std::max(counts.size(), static_cast<std::size_t>(type) + 1));
+  elements.push_back({is_force ? ElementKind::force : kind, static_cast<short>(type), static_cast<int>(list.size()),
+                      number, ++counts[static_cast<std::size_t>(type)]});
   list.push_back(entry);
   list.back().id = id;
   return id;
@@ -106,6 +124,28 @@ int BasicModel<S>::add_driver(std::string_view name, const E& element, int i, in
   entry.values[0].function = static_cast<int>(functions.size());
   functions.push_back(value);
   return append(name, entry, ElementKind::driver);
+}
+
+template <class S>
+template <class E>
+int BasicModel<S>::add_force(std::string_view name, const E& element, int i, int j,
+                             std::initializer_list<TimeFunction<S>> values) {
+  static_assert(detail::force_type<S, E>() >= 0, "not a force element");
+  if (values.size() > static_cast<std::size_t>(E::functions)) {
+    throw ModelError(std::string(E::type) + " reads fewer functions of time than were given");
+  }
+  ElementEntry<E, S> entry = place(element, i, j);
+  std::size_t k = 0;
+  for (const TimeFunction<S>& value : values) {
+    if (value.is_constant()) {
+      entry.values[k].constant = value.evaluate(0.0).f;
+    } else {
+      entry.values[k].function = static_cast<int>(functions.size());
+      functions.push_back(value);
+    }
+    ++k;
+  }
+  return append(name, entry, ElementKind::force);
 }
 
 }  // namespace catena

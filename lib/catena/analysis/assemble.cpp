@@ -1,0 +1,262 @@
+#include "catena/analysis/assemble.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "catena/analysis/scaling.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+constexpr int max_iterations = 200;
+constexpr int max_approach_iterations = 60;
+// A body may turn at most this far in one step: beyond it the linearisation says nothing, and linkages flip.
+constexpr double largest_turn = 0.5;
+constexpr double smallest_factor = 1e-4;
+
+}  // namespace
+
+Assembler::Assembler(Evaluator& evaluator)
+    : evaluator_(evaluator), plan_(evaluator.plan()), projector_(evaluator.shared_plan()) {
+  const std::vector<double> radius = evaluator.attachment_radii();
+  std::vector<double> inverse(at(plan_.columns));
+  weights_.resize(at(plan_.columns));
+  for (int c = 0; c < plan_.columns; ++c) {
+    const int body = plan_.coordinate[at(c)] / 3, k = plan_.coordinate[at(c)] % 3;
+    weights_[at(c)] = k == 2 ? radius[at(body)] * radius[at(body)] : 1;
+    const auto& values = evaluator.model().bodies[at(plan_.model_body[at(body)])];
+    const bool held = k == 0 ? values.hold_x : k == 1 ? values.hold_y : values.hold_angle;
+    inverse[at(c)] = held ? 0 : 1 / weights_[at(c)];
+  }
+  projector_.set_inverse_weights(inverse);
+  values_.resize(at(plan_.trash_slot()) + 1);
+  evaluator_.start_jacobian(values_);
+  phi_.resize(at(plan_.rows));
+  lambda_.resize(at(plan_.rows));
+  step_.resize(at(plan_.columns));
+  trial_.resize(at(plan_.coordinates()));
+}
+
+// An angle estimate may be off by whole turns from what a driver or constraint prescribes: the body is turned back by
+// them, and with it every body whose angle is tied to its own.
+void Assembler::move_whole_turns(std::span<double> q) {
+  const Model& model = evaluator_.model();
+  struct Tie {
+    int body, other;
+  };
+  struct Turn {
+    int body;
+    double by;
+  };
+  std::vector<Turn> turns;
+  std::vector<Tie> ties;
+  const auto turns_off = [](double misfit) { return std::round(misfit / (2 * std::numbers::pi)); };
+  const auto body_of = [&](int model_body) { return model_body < 0 ? -1 : plan_.plan_body[at(model_body)]; };
+  const auto angle = [&](int body) { return body < 0 ? 0.0 : q[at(3 * body + 2)]; };
+  for (const auto& entry : std::get<std::vector<ElementEntry<AbsoluteAngle<double>, double>>>(model.constraints)) {
+    const int body = body_of(entry.i);
+    const double k = turns_off(evaluator_.element_value(entry.id).f - angle(body));
+    if (k != 0) turns.push_back({body, k});
+  }
+  for (const auto& entry : std::get<std::vector<ElementEntry<RelativeAngle<double>, double>>>(model.constraints)) {
+    const int i = body_of(entry.i), j = body_of(entry.j);
+    const double k = turns_off(evaluator_.element_value(entry.id).f - (angle(j) - angle(i)));
+    if (k != 0) {
+      if (j >= 0 && j < plan_.moving)
+        turns.push_back({j, k});
+      else
+        turns.push_back({i, -k});
+    } else if (i >= 0 && j >= 0) {
+      ties.push_back({i, j});
+    }
+  }
+  if (turns.empty()) return;
+  for (const auto& entry : std::get<std::vector<ElementEntry<Weld<double>, double>>>(model.constraints)) {
+    if (entry.i >= 0 && entry.j >= 0) ties.push_back({body_of(entry.i), body_of(entry.j)});
+  }
+  std::vector<std::vector<int>> tied(at(plan_.bodies));
+  for (const Tie& tie : ties) tied[at(tie.body)].push_back(tie.other), tied[at(tie.other)].push_back(tie.body);
+  std::vector<char> moved(at(plan_.bodies), 0);
+  for (const Turn& turn : turns) {
+    if (turn.body < 0 || turn.body >= plan_.moving || moved[at(turn.body)]) continue;
+    std::vector<int> queue = {turn.body};
+    moved[at(turn.body)] = 1;
+    for (std::size_t head = 0; head < queue.size(); ++head) {
+      q[at(3 * queue[head] + 2)] += turn.by * 2 * std::numbers::pi;
+      for (int other : tied[at(queue[head])]) {
+        if (!moved[at(other)] && other < plan_.moving) moved[at(other)] = 1, queue.push_back(other);
+      }
+    }
+  }
+}
+
+// Half the sum of squared residuals, lengths in length scales.
+double Assembler::merit(std::span<const double> q) {
+  evaluator_.set_configuration(q);
+  evaluator_.phi(phi_);
+  const double length = evaluator_.length_scale();
+  double sum = 0;
+  for (std::size_t r = 0; r < phi_.size(); ++r) {
+    const double size = phi_[r] / (plan_.row_is_angle[r] ? 1.0 : length);
+    sum += size * size;
+  }
+  return sum / 2;
+}
+
+void Assembler::advance(std::span<const double> from, double factor, std::span<double> to) const {
+  std::copy(from.begin(), from.end(), to.begin());
+  for (int c = 0; c < plan_.columns; ++c) to[at(plan_.coordinate[at(c)])] += factor * step_[at(c)];
+}
+
+double Assembler::weighted_distance(std::span<const double> a, std::span<const double> b) const {
+  double sum = 0;
+  for (int c = 0; c < plan_.columns; ++c) {
+    const double d = a[at(plan_.coordinate[at(c)])] - b[at(plan_.coordinate[at(c)])];
+    sum += weights_[at(c)] * d * d;
+  }
+  return std::sqrt(sum);
+}
+
+bool Assembler::restore(std::span<double> q, double tolerance, AssemblyOutcome& outcome) {
+  double now = merit(q);
+  double damping = 0;
+  for (int k = 0; k < max_iterations; ++k) {
+    const double residual = row_norm(plan_, phi_, evaluator_.length_scale());
+    outcome.residual = residual;
+    if (!(residual > tolerance)) return std::isfinite(residual);
+    evaluator_.jacobian(values_);
+    if (!projector_.factorize(values_, evaluator_.counters, damping).ok()) {
+      damping = std::max(10 * damping, 1e-8);
+      if (damping > 1) return false;
+      continue;
+    }
+    projector_.solve(phi_, step_, lambda_, evaluator_.counters);
+    ++outcome.iterations;
+    ++evaluator_.counters.iterations;
+    double turn = 0;
+    for (int c = 0; c < plan_.columns; ++c) {
+      step_[at(c)] = -step_[at(c)];
+      if (plan_.coordinate[at(c)] % 3 == 2) turn = std::max(turn, std::abs(step_[at(c)]));
+    }
+    double factor = turn > largest_turn ? largest_turn / turn : 1;
+    double then = 0;
+    for (; factor >= smallest_factor; factor /= 2) {
+      advance(q, factor, trial_);
+      then = merit(trial_);
+      if (then < (1 - 1e-4 * factor) * now) break;
+    }
+    if (factor < smallest_factor) {
+      // The direction is no use: dependent rows made it long. Shorten it where it is long, or give up.
+      merit(q);
+      damping = std::max(100 * damping, 1e-6);
+      if (damping > 1e6) return false;
+      continue;
+    }
+    damping = damping > 1e-8 ? damping / 10 : 0;
+    std::copy(trial_.begin(), trial_.end(), q.begin());
+    now = then;
+  }
+  return false;
+}
+
+void Assembler::approach_estimate(std::span<double> q, std::span<const double> estimate, double tolerance,
+                                  AssemblyOutcome& outcome) {
+  std::vector<double> candidate(q.begin(), q.end()), pull(step_.size()), out(phi_.size());
+  double distance = weighted_distance(q, estimate);
+  for (int k = 0; k < max_approach_iterations && distance > 0; ++k) {
+    evaluator_.set_configuration(q);
+    evaluator_.jacobian(values_);
+    if (!projector_.factorize(values_, evaluator_.counters).ok()) return;
+    for (int c = 0; c < plan_.columns; ++c) {
+      const int i = plan_.coordinate[at(c)];
+      pull[at(c)] = estimate[at(i)] - q[at(i)];
+    }
+    // The part of the pull that the constraints allow.
+    std::fill(out.begin(), out.end(), 0.0);
+    multiply_add(plan_.jacobian, std::span<const double>(values_).first(at(plan_.trash_slot())), pull, out);
+    projector_.solve(out, step_, lambda_, evaluator_.counters);
+    double size = 0;
+    for (int c = 0; c < plan_.columns; ++c) {
+      step_[at(c)] = pull[at(c)] - step_[at(c)];
+      size += weights_[at(c)] * step_[at(c)] * step_[at(c)];
+    }
+    if (std::sqrt(size) <= 1e-10 * distance) return;
+    const std::vector<double> direction = step_;
+    bool closer = false;
+    for (double factor = 1; factor > 1e-3 && !closer; factor /= 2) {
+      step_ = direction;
+      advance(q, factor, candidate);
+      AssemblyOutcome trial;
+      closer = restore(candidate, tolerance, trial) && weighted_distance(candidate, estimate) < distance * (1 - 1e-12);
+      outcome.iterations += trial.iterations;
+    }
+    if (!closer) return;
+    std::copy(candidate.begin(), candidate.end(), q.begin());
+    distance = weighted_distance(q, estimate);
+  }
+}
+
+std::vector<Misfit> Assembler::rank_misfits(std::span<const double> q, std::size_t count) {
+  merit(q);
+  std::vector<Misfit> misfits;
+  for (std::size_t r = 0; r < phi_.size(); ++r) {
+    const int element = plan_.row_element[r];
+    if (misfits.empty() || misfits.back().element != element) misfits.push_back({element, 0, false});
+    if (std::abs(phi_[r]) >= misfits.back().size) {
+      misfits.back().size = std::abs(phi_[r]);
+      misfits.back().angle = plan_.row_is_angle[r];
+    }
+  }
+  const auto size = [&](const Misfit& m) { return m.angle ? m.size : m.size / evaluator_.length_scale(); };
+  const std::size_t kept = std::min(count, misfits.size());
+  std::partial_sort(misfits.begin(), misfits.begin() + static_cast<std::ptrdiff_t>(kept), misfits.end(),
+                    [&](const Misfit& a, const Misfit& b) { return size(a) > size(b); });
+  misfits.resize(kept);
+  return misfits;
+}
+
+AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
+  AssemblyOutcome outcome;
+  if (plan_.rows == 0) return outcome;
+  const std::vector<double> given(q.begin(), q.end());
+  move_whole_turns(q);
+  const std::vector<double> estimate(q.begin(), q.end());
+  if (!restore(q, tolerance, outcome)) {
+    // The best configuration found may differ a lot from what was given without being any use: keep what was given.
+    outcome.misfits = rank_misfits(q, 10);
+    outcome.status = Status::not_assembled;
+    outcome.message = fmt::format(
+        "the constraints cannot all be met from the given configuration; nearest: {}; likely cause: lengths that do "
+        "not "
+        "close the loop, or an estimate too far off",
+        describe_misfits(evaluator_.model(), outcome.misfits));
+    std::copy(given.begin(), given.end(), q.begin());
+    evaluator_.set_configuration(q);
+    return outcome;
+  }
+  if (weighted_distance(q, estimate) > 0) {
+    approach_estimate(q, estimate, tolerance, outcome);
+  }
+  merit(q);
+  outcome.residual = row_norm(plan_, phi_, evaluator_.length_scale());
+  outcome.moved = weighted_distance(q, estimate) / std::sqrt(std::max(1, plan_.moving));
+  return outcome;
+}
+
+std::string describe_misfits(const Model& model, std::span<const Misfit> misfits) {
+  std::string text;
+  for (const Misfit& m : misfits) {
+    if (!text.empty()) text += ", ";
+    text += fmt::format("{} \"{}\" misses by {:.3g} {}", model.element_type(m.element), model.element_name(m.element),
+                        m.size, m.angle ? "rad" : "m");
+    if (text.size() > 300) break;
+  }
+  return text;
+}
+
+}  // namespace catena

@@ -1,0 +1,63 @@
+// Assembly: the configuration nearest to a given estimate that meets all constraints (THEORY section 3).
+//
+//   min sum_b |dr_b|^2 + rho_b^2 dphi_b^2   subject to   Phi(q, t) = 0        rho: RMS attachment distance of the body
+//
+// Whole turns are moved first; then damped Gauss-Newton steps of least weighted size, none of which may enlarge the
+// residual; then, where freedom is left, sliding along the constraints towards the estimate. Never returns a worse
+// configuration than it was given and never reports success above the tolerance. Where constraints cannot be met they
+// are ranked by misfit, in metres or radians.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "catena/assembly/constraint_projector.hpp"
+#include "catena/assembly/evaluate.hpp"
+#include "catena/base/status.hpp"
+
+namespace catena {
+
+struct Misfit {
+  int element = -1;
+  double size = 0;  ///< largest residual of its rows
+  bool angle = false;
+};
+
+struct AssemblyOutcome : Report {
+  int iterations = 0;
+  double residual = 0;          ///< largest, m or rad
+  double moved = 0;             ///< how far the estimate was off: weighted RMS over bodies, m
+  std::vector<Misfit> misfits;  ///< the worst first, at most ten; filled when not assembled
+};
+
+class Assembler {
+ public:
+  explicit Assembler(Evaluator& evaluator);
+
+  /// Assembles q (plan order) in place at the evaluator's time. `tolerance` is relative to the length scale.
+  AssemblyOutcome assemble(std::span<double> q, double tolerance = 1e-12);
+
+  /// Elements ranked by the size of their residual at q, in the published units.
+  std::vector<Misfit> rank_misfits(std::span<const double> q, std::size_t count);
+
+ private:
+  void move_whole_turns(std::span<double> q);
+  bool restore(std::span<double> q, double tolerance, AssemblyOutcome& outcome);
+  void approach_estimate(std::span<double> q, std::span<const double> estimate, double tolerance,
+                         AssemblyOutcome& outcome);
+  double merit(std::span<const double> q);
+  void advance(std::span<const double> from, double factor, std::span<double> to) const;
+  double weighted_distance(std::span<const double> a, std::span<const double> b) const;
+
+  Evaluator& evaluator_;
+  const Plan& plan_;
+  ConstraintProjector projector_;
+  std::vector<double> weights_;  // per column
+  std::vector<double> values_, phi_, lambda_, step_, trial_;
+};
+
+/// "pin "B" by 0.12 m" ... in one line, worst first.
+std::string describe_misfits(const Model& model, std::span<const Misfit> misfits);
+
+}  // namespace catena

@@ -1,0 +1,231 @@
+#include "catena/analysis/driven_solver.hpp"
+
+#include <numeric>
+
+#include "catena/analysis/scaling.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+constexpr int max_iterations = 25;
+constexpr int max_refinements = 10;
+// All in length scales or rad. A residual of `rounding` is zero; corrections below `rounding_floor` need not shrink any
+// more; what is predicted to change by less than `negligible` is not computed.
+constexpr double rounding = 1e-16;
+constexpr double rounding_floor = 1e-12;
+constexpr double negligible = 1e-14;
+// Factors from further away than this are replaced: a new factorization costs two or three solves.
+constexpr double keep_distance = 5e-3;
+// A ratio of successive corrections above this asks for new factors.
+constexpr double poor_contraction = 0.1;
+
+}  // namespace
+
+DrivenSolver::DrivenSolver(Evaluator& evaluator) : evaluator_(evaluator), plan_(evaluator.plan()) {
+  values_.resize(at(plan_.trash_slot()) + 1);
+  evaluator_.start_jacobian(values_);
+  phi_.resize(at(plan_.rows));
+  q_factored_.resize(at(plan_.columns));
+  q_.resize(at(plan_.columns));
+  step_.resize(at(plan_.columns));
+  x_.resize(at(plan_.columns));
+  rhs_.resize(at(plan_.rows));
+  residual_all_.resize(at(plan_.rows));
+  if (plan_.rows == plan_.columns) {
+    rows_.resize(at(plan_.rows));
+    std::iota(rows_.begin(), rows_.end(), 0);
+    all_rows_ = true;
+  }
+}
+
+void DrivenSolver::use_rows(std::vector<int> rows) {
+  rows_ = std::move(rows);
+  all_rows_ = static_cast<int>(rows_.size()) == plan_.rows;
+  analyzed_ = factors_valid_ = false;
+  gather_.clear();
+  if (all_rows_) return;
+  std::vector<int> place(at(plan_.rows), -1);
+  for (std::size_t k = 0; k < rows_.size(); ++k) place[at(rows_[k])] = static_cast<int>(k);
+  matrix_ = {static_cast<int>(rows_.size()), plan_.columns, {0}, {}};
+  for (int c = 0; c < plan_.columns; ++c) {
+    for (int k = plan_.jacobian.column_start[at(c)]; k < plan_.jacobian.column_start[at(c) + 1]; ++k) {
+      const int row = place[at(plan_.jacobian.row_index[at(k)])];
+      if (row < 0) continue;
+      matrix_.row_index.push_back(row);
+      gather_.push_back(k);
+    }
+    matrix_.column_start.push_back(static_cast<int>(gather_.size()));
+  }
+  matrix_values_.resize(gather_.size());
+}
+
+void DrivenSolver::gather_rows(std::span<const double> all, std::span<double> chosen) const {
+  for (std::size_t k = 0; k < rows_.size(); ++k) chosen[k] = all[at(rows_[k])];
+}
+
+void DrivenSolver::to_columns(std::span<const double> coordinates, std::span<double> columns) const {
+  for (std::size_t c = 0; c < columns.size(); ++c) columns[c] = coordinates[at(plan_.coordinate[c])];
+}
+
+void DrivenSolver::to_coordinates(std::span<const double> columns, std::span<double> coordinates) const {
+  for (std::size_t c = 0; c < columns.size(); ++c) coordinates[at(plan_.coordinate[c])] = columns[c];
+}
+
+std::span<const double> DrivenSolver::jacobian() {
+  if (!jacobian_valid_) {
+    evaluator_.jacobian(values_);
+    jacobian_valid_ = true;
+  }
+  return std::span(values_).first(at(plan_.trash_slot()));
+}
+
+bool DrivenSolver::factorize() {
+  std::span<const double> values = jacobian();
+  if (!all_rows_) {
+    for (std::size_t k = 0; k < gather_.size(); ++k) matrix_values_[k] = values[at(gather_[k])];
+    values = matrix_values_;
+  }
+  if (!analyzed_) {
+    factor_result_ =
+        factorization_.analyze(all_rows_ ? plan_.jacobian : matrix_, Kernel::automatic, evaluator_.counters);
+    if (!factor_result_.ok()) return false;
+    analyzed_ = true;
+  }
+  factor_result_ = factorization_.factorize(values, evaluator_.counters);
+  factors_valid_ = factor_result_.ok();
+  q_factored_ = q_;
+  return factors_valid_;
+}
+
+double DrivenSolver::distance_from_factors() const {
+  const double length = evaluator_.length_scale();
+  double distance = 0;
+  for (std::size_t c = 0; c < q_.size(); ++c) {
+    const double d = std::abs(q_[c] - q_factored_[c]);
+    distance = std::max(distance, plan_.coordinate[c] % 3 == 2 ? d : d / length);
+  }
+  return distance;
+}
+
+void DrivenSolver::evaluate_at(std::span<const double> q) {
+  evaluator_.set_configuration(q);
+  evaluator_.phi(phi_);
+  jacobian_valid_ = jacobian_valid_ && plan_.constant_jacobian;
+  to_columns(q, q_);
+}
+
+bool DrivenSolver::factors_serve() const {
+  return factors_valid_ && (plan_.constant_jacobian || distance_from_factors() <= keep_distance);
+}
+
+NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
+  NewtonOutcome outcome;
+  const double length = evaluator_.length_scale();
+  double size = 0;  // of the last correction
+  double rate = 0;  // by which the next correction will be smaller
+  for (;; ++outcome.iterations) {
+    evaluate_at(q);
+    outcome.residual = row_norm(plan_, phi_, length);
+    if (!std::isfinite(outcome.residual)) return outcome;
+    if (outcome.residual <= rounding ||
+        (outcome.iterations > 0 && outcome.residual <= tolerance && rate * size <= negligible)) {
+      outcome.converged = true;
+      return outcome;
+    }
+    if (outcome.iterations == max_iterations || !is_square()) return outcome;
+    if (!factors_serve() && !factorize()) {
+      outcome.factor = factor_result_;
+      return outcome;
+    }
+    gather_rows(phi_, step_);
+    factorization_.solve(step_, evaluator_.counters);
+    ++evaluator_.counters.iterations;
+    const double last_size = size;
+    size = column_norm(plan_, step_, length);
+    if (!std::isfinite(size)) return outcome;
+    // A correction with factors from a distance g leaves about (g + size) size.
+    rate = plan_.constant_jacobian ? 0 : distance_from_factors() + size;
+    if (outcome.iterations == 0) {
+      outcome.first_correction = size;
+    } else if (size > rounding_floor) {
+      const double ratio = size / last_size;
+      outcome.contraction = std::max(outcome.contraction, ratio);
+      rate = std::max(rate, ratio);
+      if (ratio > poor_contraction) factors_valid_ = false;
+    } else if (outcome.residual <= tolerance) {
+      rate = 0;  // what is left is rounding
+    }
+    for (std::size_t c = 0; c < step_.size(); ++c) q[at(plan_.coordinate[c])] -= step_[c];
+  }
+}
+
+bool DrivenSolver::solve_refined(bool has_start) {
+  const double length = evaluator_.length_scale();
+  std::span<const double> values = jacobian();
+  bool factored_here = false;
+  if (!factors_serve()) {
+    if (!factorize()) return false;
+    factored_here = true;
+  }
+  if (!has_start) std::fill(x_.begin(), x_.end(), 0.0);
+  double size = 0, rate = distance_from_factors();
+  for (int k = 0; k < max_refinements; ++k) {
+    residual_all_.assign(rhs_.begin(), rhs_.end());
+    if (has_start || k > 0) {
+      for (double& x : x_) x = -x;
+      multiply_add(plan_.jacobian, values, x_, residual_all_);
+      for (double& x : x_) x = -x;
+    }
+    gather_rows(residual_all_, step_);
+    factorization_.solve(step_, evaluator_.counters);
+    const double last_size = size;
+    size = column_norm(plan_, step_, length);
+    if (!std::isfinite(size)) return false;
+    for (std::size_t c = 0; c < x_.size(); ++c) x_[c] += step_[c];
+    const double all = column_norm(plan_, x_, length);
+    if (k > 0) rate = std::max(rate, size / last_size);
+    if (rate * size <= negligible * all || size <= rounding * all) return true;
+    if (k > 0 && size > poor_contraction * last_size && size > rounding_floor * all && !factored_here) {
+      if (!factorize()) return false;
+      factored_here = true;
+      rate = 0;
+    }
+  }
+  return size <= tolerance * column_norm(plan_, x_, length);
+}
+
+bool DrivenSolver::solve_velocity(std::span<double> qd, bool has_start) {
+  if (!is_square()) return false;
+  if (has_start) to_columns(qd, x_);
+  evaluator_.nu(rhs_);
+  if (!solve_refined(has_start)) return false;
+  to_coordinates(x_, qd);
+  return true;
+}
+
+bool DrivenSolver::solve_acceleration(std::span<const double> qd, std::span<double> qdd, bool has_start) {
+  if (!is_square()) return false;
+  if (has_start) to_columns(qdd, x_);
+  evaluator_.gamma(qd, rhs_);
+  if (!solve_refined(has_start)) return false;
+  to_coordinates(x_, qdd);
+  return true;
+}
+
+bool DrivenSolver::solve_multipliers(std::span<const double> rhs, std::span<double> lambda) {
+  if (!is_square()) return false;
+  // Factors of this very configuration: the transposed system is not refined.
+  if (!factors_valid_ || distance_from_factors() > 0) {
+    jacobian();
+    if (!factorize()) return false;
+  }
+  std::copy(rhs.begin(), rhs.end(), step_.begin());
+  factorization_.solve_transposed(step_, evaluator_.counters);
+  std::fill(lambda.begin(), lambda.end(), 0.0);
+  for (std::size_t k = 0; k < rows_.size(); ++k) lambda[at(rows_[k])] = step_[k];
+  return true;
+}
+
+}  // namespace catena

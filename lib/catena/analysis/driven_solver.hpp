@@ -1,0 +1,84 @@
+// Position, velocity and acceleration of a kinematically driven mechanism: Newton-Raphson on Phi(q, t) = 0, then one
+// refined solve each with the factorization at hand (THEORY section 3).
+//
+//   Phi_q dq = -Phi        Phi_q qd = nu        Phi_q qdd = gamma
+//
+// The square matrix consists of a maximal independent set of rows, all of them where rows == columns. Singular where
+// that matrix is: the outcome then says so, the caller decides. A factorization is kept while it converges: how far the
+// configuration has moved since it was made bounds how well it still serves, and velocities and accelerations are
+// refined against the true Jacobian, so that they are exact whichever factors were used.
+// Nothing allocates after the first solve.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "catena/assembly/evaluate.hpp"
+#include "catena/linalg/factorization.hpp"
+
+namespace catena {
+
+struct NewtonOutcome {
+  bool converged = false;
+  int iterations = 0;
+  double residual = 0;          ///< largest row residual at the end, in units of the length scale or rad
+  double first_correction = 0;  ///< size of the first correction: how far the start was off
+  double contraction = 0;       ///< largest ratio of successive corrections above rounding
+  FactorResult factor;          ///< why there was no factorization, if so
+};
+
+class DrivenSolver {
+ public:
+  explicit DrivenSolver(Evaluator& evaluator);
+
+  /// Uses these rows, as many as there are columns, ascending. The default is all rows, if they are as many.
+  void use_rows(std::vector<int> rows);
+  const std::vector<int>& rows_in_use() const { return rows_; }
+  bool is_square() const { return static_cast<int>(rows_.size()) == plan_.columns; }
+
+  /// Newton from q, at the evaluator's time; q is left at the last iterate.
+  NewtonOutcome solve_position(std::span<double> q);
+  /// Velocities at the configuration of the last solve_position. `qd` holds a start if `has_start`.
+  bool solve_velocity(std::span<double> qd, bool has_start);
+  /// Accelerations; qd must be the velocities.
+  bool solve_acceleration(std::span<const double> qd, std::span<double> qdd, bool has_start);
+  /// Solves Phi_q^T lambda = rhs (columns) for the rows in use; lambda has one entry a row of the plan, others zero.
+  bool solve_multipliers(std::span<const double> rhs, std::span<double> lambda);
+
+  /// Residuals, nu and gamma of all rows at the last evaluation: to check those that are not solved with.
+  std::span<const double> phi() const { return phi_; }
+  /// Phi_q at the last configuration, current after solve_velocity.
+  std::span<const double> jacobian();
+  Factorization& factorization() { return factorization_; }
+  /// Forgets the factors, as after a change of parameters.
+  void invalidate() { factors_valid_ = false; }
+
+  double tolerance = 1e-12;  ///< on residuals, relative to the length scale
+
+ private:
+  void evaluate_at(std::span<const double> q);
+  bool factors_serve() const;
+  bool factorize();
+  /// x_ = Phi_q^-1 rhs_ by refinement of the start in x_, against the true Jacobian at q_.
+  bool solve_refined(bool has_start);
+  void gather_rows(std::span<const double> all, std::span<double> chosen) const;
+  void to_columns(std::span<const double> coordinates, std::span<double> columns) const;
+  void to_coordinates(std::span<const double> columns, std::span<double> coordinates) const;
+  double distance_from_factors() const;
+
+  Evaluator& evaluator_;
+  const Plan& plan_;
+  std::vector<int> rows_;
+  bool all_rows_ = false;
+  SparsePattern matrix_;     // the rows in use
+  std::vector<int> gather_;  // entry of the matrix -> slot in the full Jacobian (empty: the same)
+  Factorization factorization_;
+  bool analyzed_ = false, factors_valid_ = false, jacobian_valid_ = false;
+  std::vector<double> values_;                     // full Jacobian
+  std::vector<double> matrix_values_;              // rows in use, if not all
+  std::vector<double> phi_, rhs_, residual_all_;   // all rows
+  std::vector<double> step_, x_, q_, q_factored_;  // columns
+  FactorResult factor_result_;
+};
+
+}  // namespace catena

@@ -1,0 +1,267 @@
+#include "catena/analysis/kinematics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "catena/analysis/mobility.hpp"
+#include "catena/analysis/process_time.hpp"
+#include "catena/analysis/scaling.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// A step is accepted if its prediction was at most this far off (length scales, rad) and every correction at most this
+// part of the one before: Newton's iteration then stays where it contracts, on the branch it started from.
+constexpr double largest_correction = 0.1;
+constexpr double largest_contraction = 0.25;
+// Steps below this part of the span, or of the time itself, cannot be told from none.
+constexpr double smallest_step = 1e-13;
+
+}  // namespace
+
+Kinematics::Kinematics(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
+                       const KinematicsOptions& options)
+    : model_(std::move(model)),
+      plan_(Plan::make(*model_, plan_options)),
+      evaluator_(plan_, *model_),
+      options_(options),
+      solver_(evaluator_),
+      predictor_(at(plan_->coordinates())) {
+  solver_.tolerance = options.tolerance;
+  q_ = evaluator_.given_configuration();
+  qd_.assign(q_.size(), 0.0);
+  qdd_.assign(q_.size(), 0.0);
+  trial_ = q_;
+}
+
+void Kinematics::start_from(const SystemState& state) {
+  t_ = state.t;
+  assembled_.reset();
+  predictor_.clear();
+  has_velocity_ = has_acceleration_ = false;
+  if (state.q.empty()) return;
+  for (int p = 0; p < plan_->moving; ++p) {
+    const std::size_t source = 3 * at(plan_->model_body[at(p)]), target = 3 * at(p);
+    q_[target] = state.q[source] - evaluator_.origin(p).x;
+    q_[target + 1] = state.q[source + 1] - evaluator_.origin(p).y;
+    q_[target + 2] = state.q[source + 2];
+  }
+}
+
+SystemState Kinematics::state() const {
+  SystemState state{t_, std::vector<double>(3 * model_->bodies.size()), {}};
+  if (has_velocity_) state.qd.resize(state.q.size());
+  for (int p = 0; p < plan_->bodies; ++p) {
+    const std::size_t target = 3 * at(plan_->model_body[at(p)]), source = 3 * at(p);
+    const Vec2<double> origin = evaluator_.origin(p);
+    state.q[target] = q_[source] + origin.x;
+    state.q[target + 1] = q_[source + 1] + origin.y;
+    state.q[target + 2] = q_[source + 2];
+    if (has_velocity_) std::copy_n(&qd_[source], 3, &state.qd[target]);
+  }
+  return state;
+}
+
+AssemblyOutcome Kinematics::assemble() {
+  evaluator_.set_time(t_);
+  Assembler assembler(evaluator_);
+  AssemblyOutcome outcome = assembler.assemble(q_, options_.tolerance);
+  predictor_.clear();
+  has_velocity_ = has_acceleration_ = false;
+  assembled_ = outcome;
+  return outcome;
+}
+
+// Makes sure that the constraints drive every coordinate, with a working set of rows if there are more than needed.
+Report Kinematics::prepare() {
+  Report report;
+  if (prepared_) return report;
+  if (!plan_->jacobian.entries() && plan_->columns > 0) {
+    report.status = Status::under_driven;
+    report.message = "nothing is constrained or driven: add drivers, or fix bodies";
+    return report;
+  }
+  if (plan_->rows == plan_->columns) {
+    // The usual case decides itself: a factorization without a small pivot needs no rank analysis.
+    evaluator_.set_configuration(q_);
+    newton_ = solver_.solve_position(trial_ = q_);
+    const bool regular = newton_.converged && newton_.factor.ok() &&
+                         (solver_.factorization().is_factorized() ? solver_.factorization().rcond() > 1e-10 : false);
+    if (regular) {
+      prepared_ = true;
+      return report;
+    }
+  }
+  const MobilityReport mobility = analyse_mobility(evaluator_, q_);
+  if (mobility.rank < plan_->columns) {
+    report.status = Status::under_driven;
+    report.message = mobility.describe_freedom();
+    return report;
+  }
+  solver_.use_rows(mobility.independent_rows);
+  report.warnings = mobility.warnings;
+  prepared_ = true;
+  return report;
+}
+
+bool Kinematics::try_step(double t) {
+  evaluator_.set_time(t);
+  trial_ = q_;
+  predictor_.predict(t, trial_, {}, {});
+  newton_ = solver_.solve_position(trial_);
+  if (!newton_.converged) return false;
+  return newton_.first_correction <= largest_correction && newton_.contraction <= largest_contraction;
+}
+
+Report Kinematics::move_to(double t) {
+  const double span = std::abs(t - t_);
+  double step = span;
+  while (t_ != t) {
+    const double remaining = t - t_;
+    const double next = std::abs(remaining) <= step * (1 + 1e-9) ? t : t_ + std::copysign(step, remaining);
+    if (try_step(next)) {
+      q_.swap(trial_);
+      t_ = next;
+      has_velocity_ = has_acceleration_ = false;
+      ++evaluator_.counters.steps;
+      if (t_ != t) {
+        // Between rows the velocity is worth its solve: it makes the next prediction cubic.
+        if (solver_.solve_velocity(qd_, false)) predictor_.push(t_, q_, qd_, {});
+        if (newton_.first_correction < largest_correction / 8) step *= 2;
+      }
+      continue;
+    }
+    ++evaluator_.counters.rejected;
+    step /= 2;
+    if (step < smallest_step * std::max({span, std::abs(t), 1e-300}) || t_ + std::copysign(step, remaining) == t_) {
+      return stuck(next);
+    }
+    if (!has_velocity_) {
+      // Far from the last known motion: a velocity here makes the first prediction.
+      evaluator_.set_time(t_);
+      trial_ = q_;
+      if (solver_.solve_position(trial_).converged && solver_.solve_velocity(qd_, false)) {
+        has_velocity_ = true;
+        predictor_.clear();
+        predictor_.push(t_, q_, qd_, {});
+      }
+    }
+  }
+  return {};
+}
+
+Report Kinematics::stuck(double t) const {
+  Report report;
+  report.status = Status::singular;
+  std::string where;
+  if (newton_.factor.index >= 0) {
+    const int body = plan_->coordinate[at(newton_.factor.index)] / 3;
+    where = fmt::format(", at body \"{}\"", model_->body_name(plan_->model_body[at(body)]));
+  }
+  report.message = fmt::format(
+      "the motion cannot be continued beyond t = {:.12g} s{}; likely cause: a dead point or lock-up of the drivers",
+      std::min(t_, t), where);
+  return report;
+}
+
+void Kinematics::scatter_applied_forces() {
+  // Q - M qdd by columns: weight and inertia.
+  loads_.resize(at(plan_->columns));
+  for (int c = 0; c < plan_->columns; ++c) {
+    const int coordinate = plan_->coordinate[at(c)], k = coordinate % 3;
+    const auto& body = model_->bodies[at(plan_->model_body[at(coordinate / 3)])];
+    const double gravity = k == 0 ? model_->gravity.x : k == 1 ? model_->gravity.y : 0;
+    loads_[at(c)] = k == 2 ? -body.inertia * qdd_[at(coordinate)] : body.mass * (gravity - qdd_[at(coordinate)]);
+  }
+}
+
+Report Kinematics::solve_rates(const Needs& needs) {
+  Report report;
+  const bool acceleration = needs.acceleration || needs.multipliers;
+  if (!needs.velocity && !acceleration) return report;
+  const bool start = predictor_.predict(t_, {}, qd_, {});
+  if (!solver_.solve_velocity(qd_, start)) {
+    report.status = Status::singular;
+    report.message =
+        fmt::format("velocities are not determined at t = {:.12g} s: the mechanism is at a singular configuration", t_);
+    return report;
+  }
+  has_velocity_ = true;
+  if (!acceleration) return report;
+  const bool start_acceleration = start && predictor_.predict(t_, {}, {}, qdd_);
+  if (!solver_.solve_acceleration(qd_, qdd_, start_acceleration)) {
+    report.status = Status::singular;
+    report.message = fmt::format(
+        "accelerations are not determined at t = {:.12g} s: the mechanism is at a singular configuration", t_);
+    return report;
+  }
+  has_acceleration_ = true;
+  if (needs.multipliers) {
+    lambda_.resize(at(plan_->rows));
+    scatter_applied_forces();
+    if (!solver_.solve_multipliers(loads_, lambda_)) {
+      report.status = Status::singular;
+      report.message = fmt::format("reactions are not determined at t = {:.12g} s", t_);
+    }
+  }
+  return report;
+}
+
+AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
+  const ProcessTimer timer;
+  AnalysisReport report;
+  report.bodies = static_cast<int>(model_->bodies.size());
+  report.rows = plan_->rows;
+  report.islands = plan_->islands;
+  const auto end = [&](const Report& outcome) {
+    report.status = outcome.status;
+    report.message = outcome.message;
+    report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
+    report.counters = evaluator_.counters;
+    report.seconds = timer.seconds();
+    return report;
+  };
+  if (!assembled_) {
+    const AssemblyOutcome outcome = assemble();
+    if (!outcome.ok()) return end(outcome);
+  }
+  const Report prepared = prepare();
+  if (!prepared.ok()) return end(prepared);
+  report.warnings = prepared.warnings;
+  report.rank = plan_->columns;
+  report.dof = 0;
+  report.mobility = plan_->driver_rows;
+  for (std::int64_t k = 0; k < grid.size(); ++k) {
+    if (grid[k] != t_) {
+      if (const Report moved = move_to(grid[k]); !moved.ok()) return end(moved);
+    } else {
+      trial_ = q_;
+      evaluator_.set_time(t_);
+      newton_ = solver_.solve_position(trial_);
+      if (newton_.converged) q_.swap(trial_);
+    }
+    if (const Report solved = solve_rates(needs); !solved.ok()) return end(solved);
+    predictor_.push(t_, q_, has_velocity_ ? std::span<const double>(qd_) : std::span<const double>{},
+                    has_acceleration_ ? std::span<const double>(qdd_) : std::span<const double>{});
+    const Snapshot snapshot{.evaluator = evaluator_,
+                            .t = t_,
+                            .q = q_,
+                            .qd = has_velocity_ ? std::span<const double>(qd_) : std::span<const double>{},
+                            .qdd = has_acceleration_ ? std::span<const double>(qdd_) : std::span<const double>{},
+                            .lambda = needs.multipliers ? std::span<const double>(lambda_) : std::span<const double>{},
+                            .residual = newton_.residual * evaluator_.length_scale()};
+    if (!observer.observe(snapshot)) {
+      Report cancelled;
+      cancelled.status = Status::cancelled;
+      cancelled.message = fmt::format("stopped at t = {:.12g} s; the rows so far are kept", t_);
+      return end(cancelled);
+    }
+  }
+  return end({});
+}
+
+}  // namespace catena

@@ -1,0 +1,38 @@
+// How much a mechanism can move: degrees of freedom by count and by rank, redundant constraints, islands.
+//
+//   DOF = n - rank(Phi_q)        mobility: the same without the drivers        Grübler: n - rows
+//
+// The rank is that of Phi_q at one configuration, by sparse QR with rows and columns in comparable units; redundant
+// rows are named, and told apart: consistent (their residual vanishes with the others') or contradictory.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "catena/assembly/evaluate.hpp"
+#include "catena/base/status.hpp"
+
+namespace catena {
+
+struct MobilityReport {
+  int columns = 0, rows = 0;
+  int rank = 0;  ///< of Phi_q
+  int rank_without_drivers = 0;
+  std::vector<int> independent_rows;           ///< a maximal independent set, ascending
+  std::vector<int> redundant_rows;             ///< the others
+  std::vector<int> redundant_elements;         ///< elements with redundant rows, model numbering
+  std::vector<std::vector<int>> dependent_on;  ///< per redundant element: the elements it depends on
+  std::vector<std::string> free_bodies;        ///< bodies that take part in the free motions, the most mobile first
+  std::vector<std::string> warnings;
+
+  int dof() const { return columns - rank; }
+  int mobility() const { return columns - rank_without_drivers; }
+  /// The free motions in a sentence for a report.
+  std::string describe_freedom() const;
+};
+
+/// Rank analysis at the configuration q (plan order) and the evaluator's time.
+MobilityReport analyse_mobility(Evaluator& evaluator, std::span<const double> q);
+
+}  // namespace catena

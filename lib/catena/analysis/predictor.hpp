@@ -1,0 +1,41 @@
+// Where the coordinates will be next, from where they were: the start of a Newton iteration.
+//
+//   q, qd, qdd known at the last two instants   quintic Hermite extrapolation, error of order h^6
+//   q, qd known                                 cubic Hermite, h^4
+//   q known                                     polynomial through up to four instants, h^4
+//
+// The derivatives of the same polynomial predict qd and qdd, so that one refinement each suffices there too. The
+// weights are scalars computed once a step; the vectors are combined in one pass. Never singular: instants coincide
+// only if a caller pushes the same time twice, which replaces the last entry.
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace catena {
+
+class Predictor {
+ public:
+  explicit Predictor(std::size_t size);
+
+  /// Forgets everything: after a jump, or where a function of time has a break.
+  void clear() { count_ = 0; }
+  /// Records the solution at t; qd and qdd may be empty.
+  void push(double t, std::span<const double> q, std::span<const double> qd, std::span<const double> qdd);
+  /// Fills what can be predicted at t; returns false if nothing is known (then nothing is written). Spans may be empty.
+  bool predict(double t, std::span<double> q, std::span<double> qd, std::span<double> qdd) const;
+
+ private:
+  struct Instant {
+    double t = 0;
+    int derivatives = 0;  // 0: q alone, 1: qd too, 2: qdd too
+    std::vector<double> q, qd, qdd;
+  };
+  const Instant& back(int k) const { return ring_[static_cast<std::size_t>((head_ - k + capacity) % capacity)]; }
+
+  static constexpr int capacity = 4;
+  std::vector<Instant> ring_;
+  int head_ = -1, count_ = 0;
+};
+
+}  // namespace catena

@@ -1,0 +1,26 @@
+// Who looks at a mechanism at the instants an analysis was asked for.
+#pragma once
+
+#include "catena/columns/snapshot.hpp"
+
+namespace catena {
+
+class RowObserver {
+ public:
+  virtual ~RowObserver() = default;
+  /// Called at every row; what was not needed is an empty span. Returning false cancels the analysis.
+  virtual bool observe(const Snapshot& snapshot) = 0;
+};
+
+/// Adapts a callable.
+template <class F>
+class RowFunction final : public RowObserver {
+ public:
+  explicit RowFunction(F f) : f_(std::move(f)) {}
+  bool observe(const Snapshot& snapshot) override { return f_(snapshot); }
+
+ private:
+  F f_;
+};
+
+}  // namespace catena

@@ -1,0 +1,60 @@
+// All force elements of one type, as evaluation wants them; the counterpart of constraint_block.hpp.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "catena/assembly/constraint_block.hpp"
+#include "catena/elements/force_element.hpp"
+
+namespace catena {
+
+/// Structure, owned by the plan: bodies are plan bodies, the ground's frame is the last one.
+template <class E>
+struct ForceBlock {
+  using Element = E;
+  std::vector<int> entry;  ///< place in the model's vector of this type
+  std::vector<int> body_i;
+  std::vector<int> body_j;
+
+  int size() const { return static_cast<int>(entry.size()); }
+};
+
+/// Values, owned by an evaluator.
+template <class E>
+struct ForceData {
+  struct Shift {
+    Vec2<double> i, j;
+  };
+  struct Timed {
+    int place;  ///< element x functions + k
+    int function;
+  };
+  std::vector<E> element;
+  std::vector<Shift> shift;   ///< to the common origin; for one-body types `i` is that origin's place
+  std::vector<double> value;  ///< E::functions an element
+  std::vector<Timed> timed;
+};
+
+template <class E>
+struct ForceOperations {
+  using Block = ForceBlock<E>;
+  using Data = ForceData<E>;
+
+  /// Adds the generalized forces to Q (three a body, plan order, the ground's last).
+  static void add_forces(const Block&, const Data&, const Frame<double>* frames, const double* qd, double* Q);
+  /// Generalized forces of one element: [Q_i, Q_j].
+  static std::array<double, 6> force(const Block&, const Data&, const Frame<double>* frames, const double* qd, int e);
+  /// Sum of the potentials of the conservative elements, J.
+  static double potential(const Block&, const Data&, const Frame<double>* frames);
+  /// Power lost to damping, W.
+  static double dissipation(const Block&, const Data&, const Frame<double>* frames, const double* qd);
+  /// Stiffness -dQ/dq of one element (qd may be nullptr: at rest).
+  static ElementMatrix stiffness(const Block&, const Data&, const Frame<double>* frames, const double* qd, int e);
+  /// Damping -dQ/dqd of one element.
+  static ElementMatrix damping(const Block&, const Data&, const Frame<double>* frames, const double* qd, int e);
+  /// Whether every element of the block has a potential.
+  static bool conservative(const Data&);
+};
+
+}  // namespace catena

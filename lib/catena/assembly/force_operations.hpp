@@ -1,0 +1,143 @@
+// The operations on a block of force elements, derived from the element's force: stiffness and damping are its
+// derivatives by dual numbers. Included by the per-type source files only.
+#pragma once
+
+#include "catena/assembly/constraint_operations.hpp"
+#include "catena/assembly/force_block.hpp"
+
+namespace catena {
+namespace detail {
+
+/// The frames, velocities and function values of force element e.
+template <class E>
+struct ForceState {
+  Frame<double> i, j;
+  Twist<double> u, v;
+  const double* f = nullptr;
+  Vec2<double> ground{};
+
+  ForceState(const ForceBlock<E>& block, const ForceData<E>& data, const Frame<double>* frames, const double* qd,
+             int e) {
+    const auto k = static_cast<std::size_t>(e);
+    i = frames[block.body_i[k]];
+    if constexpr (E::bodies == 1) {
+      ground = data.shift[k].i;
+    } else {
+      i = shifted(i, data.shift[k].i);
+      j = shifted(frames[block.body_j[k]], data.shift[k].j);
+    }
+    if (qd) {
+      const auto twist = [&](int body) { return Twist<double>{qd[3 * body], qd[3 * body + 1], qd[3 * body + 2]}; };
+      u = twist(block.body_i[k]);
+      if constexpr (E::bodies == 2) v = twist(block.body_j[k]);
+    }
+    if constexpr (E::functions > 0) f = &data.value[k * static_cast<std::size_t>(E::functions)];
+  }
+  ForceArguments<double> arguments() const { return {i, j, u, v, f, ground}; }
+};
+
+using D6 = Dual<double, 6>;
+
+/// Minus the derivatives of [Q_i, Q_j] with respect to the seeded variables.
+template <class E>
+ElementMatrix differentiate(const E& element, const ForceState<E>& s, const Frame<D6>& i, const Frame<D6>& j,
+                            const Twist<D6>& u, const Twist<D6>& v) {
+  std::array<D6, static_cast<std::size_t>(E::functions) + 1> f;
+  for (int k = 0; k < E::functions; ++k) f[static_cast<std::size_t>(k)] = D6(s.f[k]);
+  Wrench<D6> on_i, on_j;
+  element.force(ForceArguments<D6>{i, j, u, v, f.data(), s.ground}, on_i, on_j);
+  const D6* rows[6] = {&on_i.fx, &on_i.fy, &on_i.moment, &on_j.fx, &on_j.fy, &on_j.moment};
+  ElementMatrix matrix{};
+  for (std::size_t r = 0; r < 6; ++r) {
+    for (std::size_t c = 0; c < 6; ++c) matrix[6 * r + c] = -rows[r]->d[c];
+  }
+  return matrix;
+}
+
+inline Twist<D6> seed_twist(const Twist<double>& t, int first) {
+  return {D6::variable(t.vx, first), D6::variable(t.vy, first + 1), D6::variable(t.omega, first + 2)};
+}
+inline Twist<D6> constant_twist(const Twist<double>& t) { return {D6(t.vx), D6(t.vy), D6(t.omega)}; }
+
+}  // namespace detail
+
+template <class E>
+void ForceOperations<E>::add_forces(const Block& block, const Data& data, const Frame<double>* frames, const double* qd,
+                                    double* Q) {
+  for (int e = 0; e < block.size(); ++e) {
+    const detail::ForceState<E> s(block, data, frames, qd, e);
+    Wrench<double> on_i, on_j;
+    data.element[static_cast<std::size_t>(e)].force(s.arguments(), on_i, on_j);
+    double* target = Q + 3 * block.body_i[static_cast<std::size_t>(e)];
+    target[0] += on_i.fx;
+    target[1] += on_i.fy;
+    target[2] += on_i.moment;
+    if constexpr (E::bodies == 2) {
+      target = Q + 3 * block.body_j[static_cast<std::size_t>(e)];
+      target[0] += on_j.fx;
+      target[1] += on_j.fy;
+      target[2] += on_j.moment;
+    }
+  }
+}
+
+template <class E>
+std::array<double, 6> ForceOperations<E>::force(const Block& block, const Data& data, const Frame<double>* frames,
+                                                const double* qd, int e) {
+  const detail::ForceState<E> s(block, data, frames, qd, e);
+  Wrench<double> on_i, on_j;
+  data.element[static_cast<std::size_t>(e)].force(s.arguments(), on_i, on_j);
+  return {on_i.fx, on_i.fy, on_i.moment, on_j.fx, on_j.fy, on_j.moment};
+}
+
+template <class E>
+double ForceOperations<E>::potential(const Block& block, const Data& data, const Frame<double>* frames) {
+  double sum = 0;
+  if constexpr (HasPotential<E>) {
+    for (int e = 0; e < block.size(); ++e) {
+      const detail::ForceState<E> s(block, data, frames, nullptr, e);
+      const E& element = data.element[static_cast<std::size_t>(e)];
+      if (is_conservative(element)) sum += element.potential(s.arguments());
+    }
+  }
+  return sum;
+}
+
+template <class E>
+double ForceOperations<E>::dissipation(const Block& block, const Data& data, const Frame<double>* frames,
+                                       const double* qd) {
+  double sum = 0;
+  if constexpr (requires(const E& x, const ForceArguments<double>& a) { x.dissipation(a); }) {
+    for (int e = 0; e < block.size(); ++e) {
+      const detail::ForceState<E> s(block, data, frames, qd, e);
+      sum += data.element[static_cast<std::size_t>(e)].dissipation(s.arguments());
+    }
+  }
+  return sum;
+}
+
+template <class E>
+ElementMatrix ForceOperations<E>::stiffness(const Block& block, const Data& data, const Frame<double>* frames,
+                                            const double* qd, int e) {
+  const detail::ForceState<E> s(block, data, frames, qd, e);
+  return detail::differentiate(data.element[static_cast<std::size_t>(e)], s, seed<double, 6>(s.i, 0),
+                               seed<double, 6>(s.j, 3), detail::constant_twist(s.u), detail::constant_twist(s.v));
+}
+
+template <class E>
+ElementMatrix ForceOperations<E>::damping(const Block& block, const Data& data, const Frame<double>* frames,
+                                          const double* qd, int e) {
+  const detail::ForceState<E> s(block, data, frames, qd, e);
+  return detail::differentiate(data.element[static_cast<std::size_t>(e)], s, constant_frame<detail::D6>(s.i),
+                               constant_frame<detail::D6>(s.j), detail::seed_twist(s.u, 0), detail::seed_twist(s.v, 3));
+}
+
+template <class E>
+bool ForceOperations<E>::conservative(const Data& data) {
+  for (const E& element : data.element) {
+    if (!is_conservative(element)) return false;
+  }
+  return true;
+}
+
+}  // namespace catena

@@ -1,0 +1,69 @@
+// The contract of a force element, on one page.
+//
+// An element is a struct template over the scalar S of its own parameters, with
+//
+//   type, summary, equation    as for constraints (element.hpp)
+//   bodies                     1 or 2 (i, j; either may be the ground)
+//   functions                  how many functions of time it reads (a magnitude, a pair of components, ...)
+//   fields()                   what a scene file sets
+//   force<T>(a, on_i, on_j)    adds the generalized forces Q on the bodies (about their centroids), T any scalar
+//
+// and from force alone the library derives stiffness -dQ/dq and damping -dQ/dqd by dual numbers. Optional members:
+//
+//   potential<T>(a)            V with Q = -V_q at rest and functions frozen; present if the element can have one
+//   conservative()             false where these parameters have no potential (a follower force); default: has
+//   potential dissipation(a)             power lost to damping, W (default 0) measure(i, j, u, v)        length and
+//   rate of a spring, angle of a torsion spring, ... complete(i, j), check()    as for constraints
+//
+// Frames may be given relative to any common origin; `ground` is where that origin lies. Units: N, N m, J, W.
+#pragma once
+
+#include "catena/elements/element.hpp"
+
+namespace catena {
+
+/// Velocity of a body in the scalar T.
+template <class T>
+struct Twist {
+  T vx{}, vy{}, omega{};
+};
+
+/// Generalized force on a body: force and moment about its centroid.
+template <class T>
+struct Wrench {
+  T fx{}, fy{}, moment{};
+};
+
+template <class T>
+struct ForceArguments {
+  const Frame<T>& i;
+  const Frame<T>& j;
+  const Twist<T>& u;  ///< velocity of body i
+  const Twist<T>& v;  ///< velocity of body j
+  const T* f;         ///< values of the element's functions of time
+  Vec2<double> ground;
+};
+
+/// Adds the force F at the arm A s' from a body's centroid: Q += [F; (R A s')^T F].
+template <class T>
+void add_force_at(const Vec2<T>& arm, const Vec2<T>& force, Wrench<T>& q) {
+  q.fx += force.x;
+  q.fy += force.y;
+  q.moment += cross(arm, force);
+}
+
+template <class E>
+concept HasPotential = requires(const E& e, const ForceArguments<double>& a) {
+  e.potential(a);
+};
+
+template <class E>
+bool is_conservative(const E& element) {
+  if constexpr (requires { element.conservative(); }) {
+    return element.conservative();
+  } else {
+    return HasPotential<E>;
+  }
+}
+
+}  // namespace catena
