@@ -91,10 +91,11 @@ NumberValue NumberReader::read_parameter(const JsonValue& value, const ExpectedD
   }
   const int parameter = parameters_.find(name);
   if (parameter < 0) {
-    std::string hint = NearMiss(name).consider_all(parameters_.all()).hint();
-    if (hint.empty())
-      hint = is_identifier(name) ? "; a quantity begins with a digit, an expression with ="
-                                 : "; an expression begins with =";
+    std::string hint = "; an expression begins with =";
+    if (is_identifier(name)) {
+      hint = NearMiss(name).consider_all(parameters_.all()).hint();
+      if (hint.empty()) hint = "; a quantity begins with a digit, an expression with =";
+    }
     return wrong(value, 0, fmt::format("{}: unknown parameter {}{}", field.text(), in_quotes(name), hint));
   }
   dimension_ = parameters_.dimension(parameter);
