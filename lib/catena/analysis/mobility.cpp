@@ -1,0 +1,122 @@
+#include "catena/analysis/mobility.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "catena/linalg/rank_revealing.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// Phi_q without the rows of drivers.
+int rank_without_drivers(const Evaluator& evaluator, std::span<const double> values, int full_rank) {
+  const Plan& plan = evaluator.plan();
+  if (plan.driver_rows == 0) return full_rank;
+  SparsePattern kept{0, plan.columns, {0}, {}};
+  std::vector<int> place(at(plan.rows), -1);
+  for (int r = 0; r < plan.rows; ++r) {
+    const bool driver = evaluator.model().elements[at(plan.row_element[at(r)])].kind == ElementKind::driver;
+    if (!driver) place[at(r)] = kept.rows++;
+  }
+  std::vector<double> kept_values;
+  for (int c = 0; c < plan.columns; ++c) {
+    for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k) {
+      const int row = place[at(plan.jacobian.row_index[at(k)])];
+      if (row < 0) continue;
+      kept.row_index.push_back(row);
+      kept_values.push_back(values[at(k)]);
+    }
+    kept.column_start.push_back(static_cast<int>(kept_values.size()));
+  }
+  RankOptions options;
+  options.most_dependencies = options.most_null_vectors = 0;
+  return reveal_rank(kept, kept_values, options).rank;
+}
+
+// Bodies by their share in the free motions, the most mobile first; bodies that hardly take part are left out.
+std::vector<std::string> name_free_bodies(const Evaluator& evaluator, const RankReport& rank) {
+  const Plan& plan = evaluator.plan();
+  std::map<int, double> share;
+  const auto add = [&](int column, double value) {
+    const int coordinate = plan.coordinate[at(column)];
+    const double size = coordinate % 3 == 2 ? std::abs(value) : std::abs(value) / evaluator.length_scale();
+    double& largest = share[coordinate / 3];
+    largest = std::max(largest, size);
+  };
+  const SparseVectors& vectors = rank.right_null_vectors;
+  if (vectors.count() > 0) {
+    for (int k = 0; k < vectors.count(); ++k) {
+      for (int n = vectors.start[at(k)]; n < vectors.start[at(k) + 1]; ++n) {
+        add(vectors.index[at(n)], vectors.value[at(n)]);
+      }
+    }
+  } else {
+    for (int column : rank.free_columns) add(column, 1);
+  }
+  std::vector<std::pair<double, int>> order;
+  double largest = 0;
+  for (const auto& [body, size] : share) {
+    order.push_back({size, body});
+    largest = std::max(largest, size);
+  }
+  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<std::string> names;
+  for (const auto& [size, body] : order) {
+    if (size < 1e-9 * largest || names.size() == 10) break;
+    names.emplace_back(evaluator.model().body_name(plan.model_body[at(body)]));
+  }
+  return names;
+}
+
+}  // namespace
+
+std::string MobilityReport::describe_freedom() const {
+  std::string bodies;
+  for (std::size_t k = 0; k < free_bodies.size() && k < 5; ++k) bodies += (k ? ", \"" : "\"") + free_bodies[k] + "\"";
+  if (free_bodies.size() > 5) bodies += ", ...";
+  return fmt::format(
+      "{} of {} coordinates are left free by the constraints and drivers; free to move: {}; likely cause: a driver or "
+      "joint is missing",
+      dof(), columns, bodies);
+}
+
+MobilityReport analyse_mobility(Evaluator& evaluator, std::span<const double> q) {
+  const Plan& plan = evaluator.plan();
+  std::vector<double> values(at(plan.trash_slot()) + 1);
+  evaluator.start_jacobian(values);
+  evaluator.set_configuration(q);
+  evaluator.jacobian(values);
+  const std::span<const double> entries = std::span<const double>(values).first(at(plan.trash_slot()));
+  const RankReport rank = reveal_rank(plan.jacobian, entries);
+
+  MobilityReport report;
+  report.columns = plan.columns;
+  report.rows = plan.rows;
+  report.rank = rank.rank;
+  report.independent_rows = rank.independent_rows;
+  report.redundant_rows = rank.dependent_rows;
+  report.rank_without_drivers = rank_without_drivers(evaluator, entries, rank.rank);
+  if (!rank.warning.empty()) report.warnings.push_back(rank.warning);
+  for (std::size_t k = 0; k < rank.dependent_rows.size(); ++k) {
+    const int element = plan.row_element[at(rank.dependent_rows[k])];
+    if (report.redundant_elements.empty() || report.redundant_elements.back() != element) {
+      report.redundant_elements.push_back(element);
+      report.dependent_on.emplace_back();
+    }
+    if (static_cast<int>(k) >= rank.left_null_vectors.count()) continue;
+    std::vector<int>& others = report.dependent_on.back();
+    for (int n = rank.left_null_vectors.start[k]; n < rank.left_null_vectors.start[k + 1]; ++n) {
+      const int other = plan.row_element[at(rank.left_null_vectors.index[at(n)])];
+      if (other != element && std::find(others.begin(), others.end(), other) == others.end()) others.push_back(other);
+    }
+  }
+  if (report.dof() > 0) report.free_bodies = name_free_bodies(evaluator, rank);
+  return report;
+}
+
+}  // namespace catena
