@@ -26,11 +26,11 @@ int BasicModel<S>::add_body(std::string_view name, const BodyValues& values) {
   if (body.has_inertia) body.inertia = S(values.inertia);
   body.fixed = values.fixed;
   body.particle = values.particle;
-  return add_body(name, body);
+  return append_body(name, body);
 }
 
 template <class S>
-int BasicModel<S>::add_body(std::string_view name, const BasicBody<S>& body) {
+int BasicModel<S>::append_body(std::string_view name, const BasicBody<S>& body) {
   if (name.empty()) throw ModelError("a body needs a name");
   const int number = static_cast<int>(bodies.size());
   const int name_number = claim_name(name, number);

@@ -54,7 +54,7 @@ class BasicModel {
   /// New body; its number is returned. The frame's origin is put at `position`.
   int add_body(std::string_view name, const BodyValues& values);
   /// Takes over a body that is already centroidal; `name` and `first_point` are set here.
-  int add_body(std::string_view name, const BasicBody<S>& body);
+  int append_body(std::string_view name, const BasicBody<S>& body);
   /// A named point at `local`, in the author's frame of the body (or the ground frame).
   void add_point(int body, std::string_view name, const Vec2<S>& local);
   /// Local coordinates (centroidal frame) of a named point, or nullptr.
