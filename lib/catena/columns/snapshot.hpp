@@ -14,7 +14,7 @@ namespace catena {
 struct Snapshot {
   const Evaluator& evaluator;  ///< set to this time and configuration
   double t = 0;
-  std::span<const double> q, qd, qdd, lambda;
+  std::span<const double> q{}, qd{}, qdd{}, lambda{};
   double residual = 0;                    ///< largest constraint residual, m or rad
   double work = 0;                        ///< of drivers and applied loads since the start, J
   double dissipated = 0;                  ///< J
