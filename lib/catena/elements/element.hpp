@@ -2,11 +2,12 @@
 //
 // An element is a struct template over the scalar S of its own parameters, with
 //
-//   type         its name in scene files
-//   rows         number of equations                bodies     1 (body-ground, absolute) or 2 (i, j; either may be
-//   ground) functions    0, or 1 if the equation contains a value c that may be a function of time (then it can be a
-//   driver) equation     the equation in words of THEORY, for `explain` fields()     what a scene file sets: see
-//   field.hpp phi<T>(a, out)         the rows, in the published form: THEORY.md section 2; templated on the scalar T
+//   type           its name in scene files
+//   rows, bodies   number of equations; 1 body (body-ground, absolute) or 2 (i, j; either may be the ground)
+//   functions      0, or 1 if the equation contains a value c that may be a function of time: then it can be a driver
+//   equation       the equation in words of THEORY, for `explain`
+//   fields()       what a scene file sets: see field.hpp
+//   phi<T>(a, out) the rows, in the published form: THEORY.md section 2; templated on the scalar T
 //
 // and from phi alone the library derives Phi_q (dual numbers), nu and gamma (Taylor series in time), second derivatives
 // and parameter derivatives. Optional members, found by their presence:
@@ -88,6 +89,21 @@ template <class E>
 concept HasSquaredValue = requires {
   requires E::squared;
 };
+
+/// What stands for the value c of a scalar constraint that the scene leaves out.
+template <class E>
+consteval Omitted when_omitted() {
+  return std::apply(
+      [](const auto&... field) {
+        Omitted result = Omitted::refused;
+        const auto look = [&](const auto& f) {
+          if constexpr (requires { f.omitted; }) result = f.omitted;
+        };
+        (look(field), ...);
+        return result;
+      },
+      E::fields());
+}
 
 template <class E>
 constexpr UnitKind row_unit([[maybe_unused]] int row) {

@@ -92,13 +92,16 @@ struct TableField {
   std::string_view doc;
 };
 
-/// A function of time: the element's function number `index`. Not required: zero for a force, taken from the given
-/// configuration (measure) for the value of a constraint.
+/// What stands for a function of time that a scene leaves out. `given`: what the element measures in the given
+/// configuration, before assembly.
+enum class Omitted { refused, zero, given };
+
+/// A function of time: the element's function number `index`.
 struct FunctionField {
   std::string_view key;
   int index;
   UnitKind unit;
-  bool required;
+  Omitted omitted;
   std::string_view doc;
 };
 

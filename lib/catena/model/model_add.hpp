@@ -51,6 +51,17 @@ void shift_points(E& element, const Vec2<S>& origin_i, const Vec2<S>& origin_j) 
       E::fields());
 }
 
+/// Throws for a value of a constraint that makes its row vanish.
+template <class E, class S>
+void check_value([[maybe_unused]] const S& value) {
+  if constexpr (HasSquaredValue<E>) {
+    if (!(value > S(0))) {
+      throw ModelError(std::string(E::type) +
+                       " needs a distance above zero; for zero use a revolute joint or absolute_x and absolute_y");
+    }
+  }
+}
+
 }  // namespace detail
 
 template <class S>
@@ -98,7 +109,10 @@ template <class S>
 template <class E>
 int BasicModel<S>::add(std::string_view name, const E& element, int i, int j) {
   ElementEntry<E, S> entry = place(element, i, j);
-  if constexpr (E::functions == 1) entry.values[0].constant = entry.element.measure(frame(i), frame(j));
+  if constexpr (E::functions == 1 && when_omitted<E>() == Omitted::given) {
+    entry.values[0].constant = entry.element.measure(frame(i), frame(j));
+    detail::check_value<E>(entry.values[0].constant);
+  }
   return append(name, entry, ElementKind::constraint);
 }
 
@@ -107,11 +121,7 @@ template <class E>
 int BasicModel<S>::add(std::string_view name, const E& element, int i, int j, const S& value) {
   static_assert(E::functions == 1, "this constraint has no value");
   ElementEntry<E, S> entry = place(element, i, j);
-  if constexpr (HasSquaredValue<E>) {
-    if (!(value > S(0)))
-      throw ModelError(std::string(E::type) +
-                       " needs a distance above zero; for zero use a revolute joint or absolute_x and absolute_y");
-  }
+  detail::check_value<E>(value);
   entry.values[0].constant = value;
   return append(name, entry, ElementKind::constraint);
 }

@@ -25,7 +25,7 @@ struct AbsoluteAngle {
   static constexpr UnitKind row_unit(int) { return UnitKind::angle; }
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &AbsoluteAngle::s_i, 0, "the body"},
-                           FunctionField{"value", 0, UnitKind::angle, false, "c, the angle of the body"});
+                           FunctionField{"value", 0, UnitKind::angle, Omitted::given, "c, the angle of the body"});
   }
 
   template <class T>

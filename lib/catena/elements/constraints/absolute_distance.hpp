@@ -29,7 +29,7 @@ struct AbsoluteDistance {
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &AbsoluteDistance::s_i, 0, "the point P of the body"},
                            PlaceField{"ground", &AbsoluteDistance::ground, "the place C in the ground frame"},
-                           FunctionField{"value", 0, UnitKind::length, false, "c, the distance, not zero"});
+                           FunctionField{"value", 0, UnitKind::length, Omitted::given, "c, the distance, not zero"});
   }
 
   template <class T>

@@ -26,7 +26,7 @@ struct AbsoluteX {
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &AbsoluteX::s_i, 0, "the point P of the body"},
-                           FunctionField{"value", 0, UnitKind::length, false, "c, the abscissa of P"});
+                           FunctionField{"value", 0, UnitKind::length, Omitted::given, "c, the abscissa of P"});
   }
 
   template <class T>

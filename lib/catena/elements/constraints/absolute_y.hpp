@@ -26,7 +26,7 @@ struct AbsoluteY {
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &AbsoluteY::s_i, 0, "the point P of the body"},
-                           FunctionField{"value", 0, UnitKind::length, false, "c, the ordinate of P"});
+                           FunctionField{"value", 0, UnitKind::length, Omitted::given, "c, the ordinate of P"});
   }
 
   template <class T>

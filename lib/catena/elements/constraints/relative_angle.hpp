@@ -25,9 +25,9 @@ struct RelativeAngle {
 
   static constexpr UnitKind row_unit(int) { return UnitKind::angle; }
   static constexpr auto fields() {
-    return std::make_tuple(PointField{"i", &RelativeAngle::s_i, 0, "body i"},
-                           PointField{"j", &RelativeAngle::s_j, 1, "body j"},
-                           FunctionField{"value", 0, UnitKind::angle, false, "c, the angle of j measured from i"});
+    return std::make_tuple(
+        PointField{"i", &RelativeAngle::s_i, 0, "body i"}, PointField{"j", &RelativeAngle::s_j, 1, "body j"},
+        FunctionField{"value", 0, UnitKind::angle, Omitted::given, "c, the angle of j measured from i"});
   }
 
   template <class T>

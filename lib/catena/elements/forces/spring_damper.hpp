@@ -31,7 +31,7 @@ struct SpringDamper {
         NumberField{"c", &SpringDamper::c, UnitKind::damping, Domain::any, false, "damping (default 0)"},
         NumberField{"length", &SpringDamper::length, UnitKind::length, Domain::not_negative, false,
                     "free length l0 (default: the given distance)"},
-        FunctionField{"force", 0, UnitKind::force, false, "added to the tension (default 0)"});
+        FunctionField{"force", 0, UnitKind::force, Omitted::zero, "added to the tension (default 0)"});
   }
 
   void complete(const Frame<S>& i, const Frame<S>& j) {

@@ -23,7 +23,7 @@ struct Torque {
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &Torque::s_i, 0, "the body that gets n"},
                            PointField{"j", &Torque::s_j, 1, "the body that gets -n (default: the ground)"},
-                           FunctionField{"torque", 0, UnitKind::torque, true, "n, a function of time"});
+                           FunctionField{"torque", 0, UnitKind::torque, Omitted::refused, "n, a function of time"});
   }
 
   template <class T>

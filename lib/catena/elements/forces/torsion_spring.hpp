@@ -32,7 +32,7 @@ struct TorsionSpring {
         NumberField{"c", &TorsionSpring::c, UnitKind::torsion_damping, Domain::any, false, "damping (default 0)"},
         NumberField{"angle", &TorsionSpring::angle, UnitKind::angle, Domain::any, false,
                     "free angle theta0 of j measured from i (default: the given one)"},
-        FunctionField{"torque", 0, UnitKind::torque, false, "N, added to n (default 0)"});
+        FunctionField{"torque", 0, UnitKind::torque, Omitted::zero, "N, added to n (default 0)"});
   }
 
   void complete(const Frame<S>& i, const Frame<S>& j) {
