@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "catena/analysis/scaling.hpp"
+#include "catena/analysis/whole_turns.hpp"
 
 namespace catena {
 namespace {
@@ -40,59 +40,6 @@ Assembler::Assembler(Evaluator& evaluator)
   lambda_.resize(at(plan_.rows));
   step_.resize(at(plan_.columns));
   trial_.resize(at(plan_.coordinates()));
-}
-
-// An angle estimate may be off by whole turns from what a driver or constraint prescribes: the body is turned back by
-// them, and with it every body whose angle is tied to its own.
-void Assembler::move_whole_turns(std::span<double> q) {
-  const Model& model = evaluator_.model();
-  struct Tie {
-    int body, other;
-  };
-  struct Turn {
-    int body;
-    double by;
-  };
-  std::vector<Turn> turns;
-  std::vector<Tie> ties;
-  const auto turns_off = [](double misfit) { return std::round(misfit / (2 * std::numbers::pi)); };
-  const auto body_of = [&](int model_body) { return model_body < 0 ? -1 : plan_.plan_body[at(model_body)]; };
-  const auto angle = [&](int body) { return body < 0 ? 0.0 : q[at(3 * body + 2)]; };
-  for (const auto& entry : std::get<std::vector<ElementEntry<AbsoluteAngle<double>, double>>>(model.constraints)) {
-    const int body = body_of(entry.i);
-    const double k = turns_off(evaluator_.element_value(entry.id).f - angle(body));
-    if (k != 0) turns.push_back({body, k});
-  }
-  for (const auto& entry : std::get<std::vector<ElementEntry<RelativeAngle<double>, double>>>(model.constraints)) {
-    const int i = body_of(entry.i), j = body_of(entry.j);
-    const double k = turns_off(evaluator_.element_value(entry.id).f - (angle(j) - angle(i)));
-    if (k != 0) {
-      if (j >= 0 && j < plan_.moving)
-        turns.push_back({j, k});
-      else
-        turns.push_back({i, -k});
-    } else if (i >= 0 && j >= 0) {
-      ties.push_back({i, j});
-    }
-  }
-  if (turns.empty()) return;
-  for (const auto& entry : std::get<std::vector<ElementEntry<Weld<double>, double>>>(model.constraints)) {
-    if (entry.i >= 0 && entry.j >= 0) ties.push_back({body_of(entry.i), body_of(entry.j)});
-  }
-  std::vector<std::vector<int>> tied(at(plan_.bodies));
-  for (const Tie& tie : ties) tied[at(tie.body)].push_back(tie.other), tied[at(tie.other)].push_back(tie.body);
-  std::vector<char> moved(at(plan_.bodies), 0);
-  for (const Turn& turn : turns) {
-    if (turn.body < 0 || turn.body >= plan_.moving || moved[at(turn.body)]) continue;
-    std::vector<int> queue = {turn.body};
-    moved[at(turn.body)] = 1;
-    for (std::size_t head = 0; head < queue.size(); ++head) {
-      q[at(3 * queue[head] + 2)] += turn.by * 2 * std::numbers::pi;
-      for (int other : tied[at(queue[head])]) {
-        if (!moved[at(other)] && other < plan_.moving) moved[at(other)] = 1, queue.push_back(other);
-      }
-    }
-  }
 }
 
 // Half the sum of squared residuals, lengths in length scales.
@@ -224,7 +171,7 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
   AssemblyOutcome outcome;
   if (plan_.rows == 0) return outcome;
   const std::vector<double> given(q.begin(), q.end());
-  move_whole_turns(q);
+  move_whole_turns(evaluator_, q);
   const std::vector<double> estimate(q.begin(), q.end());
   if (!restore(q, tolerance, outcome)) {
     // The best configuration found may differ a lot from what was given without being any use: keep what was given.

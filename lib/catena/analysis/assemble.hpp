@@ -42,7 +42,6 @@ class Assembler {
   std::vector<Misfit> rank_misfits(std::span<const double> q, std::size_t count);
 
  private:
-  void move_whole_turns(std::span<double> q);
   bool restore(std::span<double> q, double tolerance, AssemblyOutcome& outcome);
   void approach_estimate(std::span<double> q, std::span<const double> estimate, double tolerance,
                          AssemblyOutcome& outcome);

@@ -216,16 +216,39 @@ bool DrivenSolver::solve_acceleration(std::span<const double> qd, std::span<doub
 
 bool DrivenSolver::solve_multipliers(std::span<const double> rhs, std::span<double> lambda) {
   if (!is_square()) return false;
-  // Factors of this very configuration: the transposed system is not refined.
-  if (!factors_valid_ || distance_from_factors() > 0) {
-    jacobian();
-    if (!factorize()) return false;
-  }
-  std::copy(rhs.begin(), rhs.end(), step_.begin());
-  factorization_.solve_transposed(step_, evaluator_.counters);
+  const std::span<const double> values = jacobian();
+  if (!factors_serve() && !factorize()) return false;
   std::fill(lambda.begin(), lambda.end(), 0.0);
-  for (std::size_t k = 0; k < rows_.size(); ++k) lambda[at(rows_[k])] = step_[k];
+  double size = 0;
+  for (int k = 0; k < max_refinements; ++k) {
+    std::copy(rhs.begin(), rhs.end(), step_.begin());
+    if (k > 0) {
+      for (double& x : lambda) x = -x;
+      multiply_transposed_add(plan_.jacobian, values, lambda, step_);
+      for (double& x : lambda) x = -x;
+    }
+    factorization_.solve_transposed(step_, evaluator_.counters);
+    const double last_size = size;
+    double all = 0;
+    size = 0;
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      double& x = lambda[at(rows_[r])];
+      x += step_[r];
+      size = std::max(size, std::abs(step_[r]));
+      all = std::max(all, std::abs(x));
+    }
+    if (!std::isfinite(all)) return false;
+    const double rate = k > 0 ? size / last_size : distance_from_factors();
+    if (rate * size <= negligible * all || size <= rounding * all) return true;
+    if (k > 0 && rate > poor_contraction) return size <= tolerance * all;
+  }
   return true;
+}
+
+double DrivenSolver::factor_at(std::span<const double> q) {
+  if (!is_square()) return 0;
+  evaluate_at(q);
+  return factorize() ? factorization_.rcond() : 0;
 }
 
 }  // namespace catena

@@ -36,6 +36,8 @@ class DrivenSolver {
   const std::vector<int>& rows_in_use() const { return rows_; }
   bool is_square() const { return static_cast<int>(rows_.size()) == plan_.columns; }
 
+  /// Factors the matrix at q, at the evaluator's time; returns its crude reciprocal condition number, 0 if singular.
+  double factor_at(std::span<const double> q);
   /// Newton from q, at the evaluator's time; q is left at the last iterate.
   NewtonOutcome solve_position(std::span<double> q);
   /// Velocities at the configuration of the last solve_position. `qd` holds a start if `has_start`.

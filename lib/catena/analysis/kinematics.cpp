@@ -7,7 +7,7 @@
 
 #include "catena/analysis/mobility.hpp"
 #include "catena/analysis/process_time.hpp"
-#include "catena/analysis/scaling.hpp"
+#include "catena/analysis/whole_turns.hpp"
 
 namespace catena {
 namespace {
@@ -20,6 +20,8 @@ constexpr double largest_correction = 0.1;
 constexpr double largest_contraction = 0.25;
 // Steps below this part of the span, or of the time itself, cannot be told from none.
 constexpr double smallest_step = 1e-13;
+// A reciprocal condition number above this leaves no doubt that all rows are independent.
+constexpr double clearly_regular = 1e-9;
 
 }  // namespace
 
@@ -68,12 +70,29 @@ SystemState Kinematics::state() const {
 
 AssemblyOutcome Kinematics::assemble() {
   evaluator_.set_time(t_);
-  Assembler assembler(evaluator_);
-  AssemblyOutcome outcome = assembler.assemble(q_, options_.tolerance);
   predictor_.clear();
   has_velocity_ = has_acceleration_ = false;
+  AssemblyOutcome outcome;
+  if (!assemble_nearby()) outcome = Assembler(evaluator_).assemble(q_, options_.tolerance);
   assembled_ = outcome;
   return outcome;
+}
+
+// A driven mechanism given near to where it belongs needs Newton alone: the configuration there is isolated, nothing
+// else could be nearer.
+bool Kinematics::assemble_nearby() {
+  for (const auto& body : model_->bodies) {
+    if (body.hold_x || body.hold_y || body.hold_angle) return false;
+  }
+  trial_ = q_;
+  move_whole_turns(evaluator_, trial_);
+  newton_ = solver_.solve_position(trial_);
+  if (!newton_.converged || newton_.first_correction > largest_correction ||
+      newton_.contraction > largest_contraction) {
+    return false;
+  }
+  q_.swap(trial_);
+  return true;
 }
 
 // Makes sure that the constraints drive every coordinate, with a working set of rows if there are more than needed.
@@ -85,16 +104,10 @@ Report Kinematics::prepare() {
     report.message = "nothing is constrained or driven: add drivers, or fix bodies";
     return report;
   }
-  if (plan_->rows == plan_->columns) {
-    // The usual case decides itself: a factorization without a small pivot needs no rank analysis.
-    evaluator_.set_configuration(q_);
-    newton_ = solver_.solve_position(trial_ = q_);
-    const bool regular = newton_.converged && newton_.factor.ok() &&
-                         (solver_.factorization().is_factorized() ? solver_.factorization().rcond() > 1e-10 : false);
-    if (regular) {
-      prepared_ = true;
-      return report;
-    }
+  // The usual case decides itself: a factorization without a small pivot needs no rank analysis.
+  if (plan_->rows == plan_->columns && solver_.factor_at(q_) > clearly_regular) {
+    prepared_ = true;
+    return report;
   }
   const MobilityReport mobility = analyse_mobility(evaluator_, q_);
   if (mobility.rank < plan_->columns) {

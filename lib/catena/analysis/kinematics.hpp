@@ -52,6 +52,7 @@ class Kinematics {
   const DrivenSolver& solver() const { return solver_; }
 
  private:
+  bool assemble_nearby();
   Report prepare();
   bool try_step(double t);
   Report stuck(double t) const;
