@@ -26,8 +26,8 @@ Attachment attachment_of(const Entry& entry) {
   a.i = entry.i;
   a.j = entry.j;
   const auto take = [&]<class Field>(const Field& field) {
-    constexpr bool attaches = requires {
-      entry.element.*field.member = Vec2<double>{};
+    constexpr bool attaches = requires(Entry & e) {
+      e.element.*field.member = Vec2<double>{};
       field.body;
     };
     if constexpr (attaches) {
