@@ -24,7 +24,7 @@ void move_whole_turns(const Evaluator& evaluator, std::span<double> q) {
   std::vector<Turn> turns;
   std::vector<Tie> ties;
   const auto turns_off = [](double misfit) { return std::round(misfit / (2 * std::numbers::pi)); };
-  const auto body_of = [&](int model_body) { return model_body < 0 ? -1 : plan.plan.plan_body[at(model_body)]; };
+  const auto body_of = [&](int model_body) { return model_body < 0 ? -1 : plan.plan_body[at(model_body)]; };
   const auto angle = [&](int body) { return body < 0 ? 0.0 : q[at(3 * body + 2)]; };
   for (const auto& entry : std::get<std::vector<ElementEntry<AbsoluteAngle<double>, double>>>(model.constraints)) {
     const int body = body_of(entry.i);
