@@ -52,7 +52,9 @@ TEST(Diagnostic, ClipsLongLinesAroundTheCaret) {
 TEST(Diagnostic, SortsByPlaceAndCountsWhatIsTooMuch) {
   const SourceText source("s.json", "abcdef");
   Diagnostics diagnostics(3);
-  for (const std::size_t at : {4u, 0u, 2u}) diagnostics.error(source, at, "m" + std::to_string(at));
+  diagnostics.error(source, 4, "m4");
+  diagnostics.error(source, 0, "m0");
+  diagnostics.error(source, 2, "m2");
   EXPECT_TRUE(diagnostics.full());
   diagnostics.error(source, 1, "left out");
   diagnostics.error(source, 1, "left out");

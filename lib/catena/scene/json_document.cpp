@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "catena/scene/counting_iterator.hpp"
 #include "catena/scene/json_syntax.hpp"
 
 namespace catena {
@@ -14,31 +14,10 @@ namespace {
 constexpr std::size_t deepest = 64;
 constexpr std::size_t few_keys = 24;  // below this, comparing every pair is faster than sorting
 
-/// Hands the text to the parser and leaves behind how far it has read: after the event of a string, a literal or a
-/// bracket, the cursor stands exactly after that token.
-struct CountingIterator {
-  using iterator_category = std::input_iterator_tag;
-  using value_type = char;
-  using difference_type = std::ptrdiff_t;
-  using pointer = const char*;
-  using reference = const char&;
-
-  const char* at;
-  const char** cursor;
-
-  reference operator*() const { return *at; }
-  CountingIterator& operator++() {
-    *cursor = ++at;
-    return *this;
-  }
-  CountingIterator operator++(int) {
-    const CountingIterator before = *this;
-    ++*this;
-    return before;
-  }
-  bool operator==(const CountingIterator& other) const { return at == other.at; }
-  bool operator!=(const CountingIterator& other) const { return at != other.at; }
-};
+bool is_separator(char c) { return c == ' ' || c == '\n' || c == ',' || c == ':' || c == '\t' || c == '\r'; }
+bool is_number_character(char c) {
+  return (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '+' || c == 'e' || c == 'E';
+}
 
 }  // namespace
 
@@ -113,8 +92,11 @@ class JsonBuilder {
   std::size_t offset_of_cursor() const { return static_cast<std::size_t>(cursor_ - text_.data()); }
 
   JsonNode& append(JsonKind kind) {
+    std::size_t begin = position_.end;
+    while (begin < text_.size() && is_separator(text_[begin])) ++begin;
+    if (begin < text_.size() && text_[begin] == '/') begin = skip_separators(text_, begin);
     JsonNode node{};
-    node.offset = static_cast<std::uint32_t>(skip_separators(text_, position_.end));
+    node.offset = static_cast<std::uint32_t>(begin);
     node.kind = kind;
     document_.nodes_.push_back(node);
     return document_.nodes_.back();
@@ -135,7 +117,10 @@ class JsonBuilder {
   bool number(double value) {
     JsonNode& node = append(JsonKind::number);
     node.number = value;
-    return finish_value(skip_number(text_, node.offset));  // the parser has read one character more than the number
+    // The parser has read one character more than the number, or stands at the end of the text.
+    std::size_t end = node.offset;
+    while (end < text_.size() && is_number_character(text_[end])) ++end;
+    return finish_value(end);
   }
 
   void finish(JsonEvent event, std::size_t end) {

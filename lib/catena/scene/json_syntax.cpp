@@ -140,14 +140,6 @@ std::size_t skip_separators(std::string_view text, std::size_t at) {
   }
 }
 
-std::size_t skip_number(std::string_view text, std::size_t at) {
-  while (at < text.size() && (is_digit(text[at]) || text[at] == '.' || text[at] == '-' || text[at] == '+' ||
-                              text[at] == 'e' || text[at] == 'E')) {
-    ++at;
-  }
-  return at;
-}
-
 SyntaxError explain_syntax_error(const SourceText& source, const JsonPosition& position, bool out_of_range) {
   const std::string_view text = source.text();
   std::size_t at = skip_blanks(text, position.end);

@@ -34,7 +34,5 @@ SyntaxError explain_syntax_error(const SourceText& source, const JsonPosition& p
 std::size_t skip_blanks(std::string_view text, std::size_t at);
 /// The same, over commas and colons too.
 std::size_t skip_separators(std::string_view text, std::size_t at);
-/// The offset after the characters a number may consist of.
-std::size_t skip_number(std::string_view text, std::size_t at);
 
 }  // namespace catena

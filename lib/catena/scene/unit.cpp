@@ -57,7 +57,7 @@ std::string si_unit(const Dimension& dimension) {
     text += unit;
     if (exponent > 1) text += '^' + std::to_string(exponent);
   }
-  if (text.empty()) text = "1";
+  if (text.empty()) text += '1';
   for (const auto& [unit, exponent] : factors) {
     if (exponent >= 0) continue;
     text += '/';
