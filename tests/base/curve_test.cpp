@@ -5,26 +5,16 @@
 
 #include <cmath>
 #include <cstddef>
-#include <limits>
-#include <numbers>
-#include <random>
 #include <string>
 #include <vector>
+
+#include "base/example_curves.hpp"
 
 namespace catena {
 namespace {
 
-constexpr double pi = std::numbers::pi, infinity = std::numeric_limits<double>::infinity();
-using C = Curve<double>;
-using D = Dual<double, 4>;
-using Points = std::vector<Vec2<double>>;
+using namespace test_curves;
 
-C through(const Points& points, SplineEnd end) { return C::spline(points, end); }
-C egg(const std::vector<double>& angles, const std::vector<double>& radii) { return C::polar(angles, radii); }
-
-C open_curve() { return through({{0, 0}, {1, 0.5}, {1.5, 2}, {3, 2.5}, {4, 1}}, SplineEnd::natural); }
-C closed_curve() { return through({{1, 0}, {0.25, 1}, {-1, 0.3}, {-0.4, -0.8}}, SplineEnd::periodic); }
-C cam() { return egg({-0.5, 0.5, 1.7, 3.0, 4.4}, {1.0, 1.3, 1.1, 0.9, 0.95}); }
 std::vector<C> every_curve() {
   return {C::circle({0.5, -0.25}, 1.5), C::line({1, 2}, {3, -4}), open_curve(), closed_curve(), cam()};
 }
@@ -146,73 +136,6 @@ TEST(Curve, NaturalSplinesGoOnStraight) {
   const CurvePoint<double> end = curve.evaluate(curve.last()), beyond = curve.evaluate(curve.last() + 2);
   expect_near(beyond.p, end.p + 2.0 * end.d1, 1e-14);
   EXPECT_EQ(beyond.curvature(), 0);
-}
-
-TEST(Curve, NearestPointsInClosedForm) {
-  EXPECT_NEAR(C::circle({0.5, -0.25}, 1.5).nearest({0.5, 7}), pi / 2, 1e-15);
-  EXPECT_TRUE(std::isfinite(C::circle({0.5, -0.25}, 1.5).nearest({0.5, -0.25})));
-  EXPECT_NEAR(C::line({1, 2}, {3, -4}).nearest({1 + 0.6 * 7 + 0.8, 2 - 0.8 * 7 + 0.6}), 7, 1e-14);
-}
-
-TEST(Curve, NearestPointsBeatAFineScan) {
-  std::mt19937_64 generator(3);
-  std::uniform_real_distribution<double> place(-2.5, 4.5);
-  for (const C& curve : {open_curve(), closed_curve(), cam()}) {
-    const int scanned = 20000;
-    for (int trial = 0; trial < 60; ++trial) {
-      const Vec2<double> point{place(generator), place(generator)};
-      const double s = curve.nearest(point), found = norm(curve.evaluate(s).p - point);
-      double least = infinity;
-      for (int k = 0; k <= scanned; ++k) {
-        const double at = curve.first() + (curve.last() - curve.first()) * k / scanned;
-        least = std::min(least, norm(curve.evaluate(at).p - point));
-      }
-      EXPECT_LE(found, least + 1e-13);
-      EXPECT_GE(s, curve.first() - 1e-9);
-      EXPECT_LE(s, curve.last() + 1e-9);
-      const CurvePoint<double> foot = curve.evaluate(s);
-      const bool at_end = !curve.periodic() && (s == curve.first() || s == curve.last());
-      EXPECT_TRUE(at_end || std::abs(dot(foot.tangent(), foot.p - point)) < 1e-13);
-    }
-  }
-}
-
-TEST(Curve, NearestPointOfAPointOnTheCurveIsItself) {
-  for (const C& curve : {open_curve(), closed_curve(), cam()}) {
-    for (double part = 0.01; part < 1; part += 0.07) {
-      const double s = curve.first() + part * (curve.last() - curve.first());
-      EXPECT_NEAR(curve.nearest(curve.evaluate(s).p), s, 1e-13);
-    }
-  }
-}
-
-TEST(Curve, NearestPointAtTheEndsOfAnOpenCurve) {
-  EXPECT_EQ(open_curve().nearest({-1, -0.7}), 0.0);
-  EXPECT_EQ(open_curve().nearest({4.6, 0.1}), open_curve().last());
-}
-
-TEST(Curve, NearestParameterCarriesDerivatives) {
-  // With respect to the point (2), to a point of the table and to a radius, against central differences.
-  const double h = 1e-5;
-  const auto open = [](double x, double y, double a) {
-    return through({{0, 0}, {1, 0.5 + a}, {1.5, 2}, {3, 2.5}, {4, 1}}, SplineEnd::natural).nearest({x, y});
-  };
-  const std::vector<Vec2<D>> table = {{0.0, 0.0}, {1.0, 0.5 + D::variable(0, 2)}, {1.5, 2.0}, {3.0, 2.5}, {4.0, 1.0}};
-  const Vec2<D> point{D::variable(0.6, 0), D::variable(1.3, 1)};
-  const D s = Curve<D>::spline(table, SplineEnd::natural).nearest(point);
-  EXPECT_NEAR(s.v, open(0.6, 1.3, 0), 1e-14);
-  EXPECT_NEAR(s.d[0], (open(0.6 + h, 1.3, 0) - open(0.6 - h, 1.3, 0)) / (2 * h), 1e-8);
-  EXPECT_NEAR(s.d[1], (open(0.6, 1.3 + h, 0) - open(0.6, 1.3 - h, 0)) / (2 * h), 1e-8);
-  EXPECT_NEAR(s.d[2], (open(0.6, 1.3, h) - open(0.6, 1.3, -h)) / (2 * h), 1e-8);
-  EXPECT_EQ(s.d[3], 0);
-
-  const auto length = [&](double a) { return open(4.6, 0.1, a); };
-  const D end = Curve<D>::spline(table, SplineEnd::natural).nearest({D(4.6), D(0.1)});
-  EXPECT_NEAR(end.d[2], (length(h) - length(-h)) / (2 * h), 1e-8);
-
-  const D angle = Curve<D>::circle({0.0, 0.0}, 1.0).nearest({D::variable(3, 0), D::variable(4, 1)});
-  EXPECT_NEAR(angle.d[0], -4. / 25, 1e-15);
-  EXPECT_NEAR(angle.d[1], 3. / 25, 1e-15);
 }
 
 TEST(Curve, ShapeDerivatives) {
