@@ -108,6 +108,7 @@ TEST(ColumnValues, ChangedParametersKeepTheColumns) {
     body.mass *= 2;
     body.inertia *= 2;
   }
+  m.evaluator->set_model(m.model);
   columns.evaluate(m.snapshot(), after);
   EXPECT_NEAR(after[0] - before[0], 0.5 * std::cos(m.value("crank.angle")), 1e-15);
   EXPECT_NEAR(after[1], 2 * before[1], 1e-13);

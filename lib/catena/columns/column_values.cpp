@@ -153,7 +153,7 @@ class RowValues {
   }
 
   double potential() {
-    if (!potential_) potential_ = potential_energy(s_);
+    if (!potential_) potential_ = evaluator_.potential_energy();
     return *potential_;
   }
   double kinetic() {

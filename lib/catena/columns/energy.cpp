@@ -25,20 +25,9 @@ double kinetic_energy(const Snapshot& snapshot) {
   return twice / 2;
 }
 
-double potential_energy(const Snapshot& snapshot) {
-  const Evaluator& evaluator = snapshot.evaluator;
-  const Model& model = evaluator.model();
-  double energy = 0;
-  if (model.gravity != Vec2<double>{}) {
-    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-      const Frame<double> frame = evaluator.ground_frame(evaluator.plan().plan_body[b]);
-      energy -= model.bodies[b].mass * dot(model.gravity, frame.origin());
-    }
-  }
-  return energy;
+double total_energy(const Snapshot& snapshot) {
+  return kinetic_energy(snapshot) + snapshot.evaluator.potential_energy();
 }
-
-double total_energy(const Snapshot& snapshot) { return kinetic_energy(snapshot) + potential_energy(snapshot); }
 
 Momentum momentum(const Snapshot& snapshot) {
   Momentum sum;
