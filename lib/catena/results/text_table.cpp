@@ -130,9 +130,9 @@ TextTable::Text TextTable::grid() const {
   line([](const TableColumn& column) { return column.name; });
   line([](const TableColumn& column) { return column.unit; });
   const std::size_t kept = kept_rows();
-  for (std::size_t r = 0; r < kept; ++r) {
-    if (r == limits_.first_rows && rows_ > kept) out += more(rows_ - kept, "row");
-    line([&](const TableColumn& column) { return std::string_view(column.cells[r]); });
+  for (std::size_t r = 0; r <= kept; ++r) {
+    if (rows_ > kept && r == limits_.first_rows) out += more(rows_ - kept, "row");
+    if (r < kept) line([&](const TableColumn& column) { return std::string_view(column.cells[r]); });
   }
   const bool clipped = all_columns_ > table.size();
   if (clipped) out += more(all_columns_ - table.size(), "column");
