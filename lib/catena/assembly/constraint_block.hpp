@@ -79,6 +79,9 @@ struct ConstraintOperations {
   static void gamma(const Block&, const Data&, const Frame<double>* frames, const double* qd, double* out);
   /// sum_r lambda_r scale d2Phi_r/dq2 of one element; lambda: multipliers of the solver's rows, size rows of the plan.
   static ElementMatrix hessian(const Block&, const Data&, const Frame<double>* frames, const double* lambda, int e);
+  /// The second derivatives of all elements, weighted with lambda, added to their slots; see hessian_slots.hpp.
+  static void add_hessians(const Block&, const Data&, const Frame<double>* frames, const double* lambda, bool convex,
+                           const int* slot, double* values);
   /// Phi_q of one element.
   static LocalJacobian<E> local_jacobian(const Block&, const Data&, const Frame<double>* frames, int e);
   /// Measured quantity of one element: exact derivatives along q(t) with the given qd and qdd (nullptr: zero).

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "catena/assembly/constraint_block.hpp"
+#include "catena/assembly/hessian_slots.hpp"
 
 namespace catena {
 namespace detail {
@@ -191,6 +192,31 @@ ElementMatrix ConstraintOperations<E>::hessian(const Block& block, const Data& d
     }
   }
   return matrix;
+}
+
+template <class E>
+void ConstraintOperations<E>::add_hessians(const Block& block, const Data& data, const Frame<double>* frames,
+                                           const double* lambda, bool convex, const int* slot, double* values) {
+  constexpr auto pattern = hessian_pattern<E>();
+  constexpr auto written = written_hessian<E>();
+  if constexpr (pattern.size() > 0) {
+    for (int e = 0; e < block.size(); ++e, slot += written.size()) {
+      double entries[pattern.size()];
+      if constexpr (HasClosedHessian<E>) {
+        const detail::ElementFrames<E> f(block, data, frames, e);
+        double weights[E::rows];
+        for (int r = 0; r < E::rows; ++r) weights[r] = lambda[block.row(e) + r] * detail::scale_at(data, e);
+        data.element[static_cast<std::size_t>(e)].hessian(
+            Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground}, weights, entries);
+      } else {
+        const ElementMatrix matrix = hessian(block, data, frames, lambda, e);
+        for (std::size_t k = 0; k < pattern.size(); ++k) {
+          entries[k] = matrix[static_cast<std::size_t>(6 * pattern[k].row + pattern[k].column)];
+        }
+      }
+      detail::scatter_hessian(written, pattern, entries, convex && !only_turning(pattern), slot, values);
+    }
+  }
 }
 
 template <class E>

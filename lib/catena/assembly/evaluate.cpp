@@ -271,6 +271,22 @@ bool Evaluator::conservative() const {
   return all;
 }
 
+void Evaluator::add_hessians(std::span<const double> lambda, Curvature curvature, const HessianSlots& slots,
+                             std::span<double> values) {
+  ++counters.hessians;
+  const bool convex = curvature == Curvature::convex;
+  for_each_list(plan_->blocks, [&](const auto& block, int type) {
+    using E = typename std::remove_cvref_t<decltype(block)>::Element;
+    ConstraintOperations<E>::add_hessians(block, std::get<ConstraintData<E>>(values_), frames_.data(), lambda.data(),
+                                          convex, slots.constraints[at(type)].data(), values.data());
+  });
+  for_each_list(plan_->forces, [&](const auto& block, int type) {
+    using E = typename std::remove_cvref_t<decltype(block)>::Element;
+    ForceOperations<E>::add_stiffness(block, std::get<ForceData<E>>(force_values_), frames_.data(), convex,
+                                      slots.forces[at(type)].data(), values.data());
+  });
+}
+
 Measured Evaluator::measure(int element, std::span<const double> qd, std::span<const double> qdd) const {
   Measured result;
   for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {

@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "catena/assembly/hessian_slots.hpp"
 #include "catena/assembly/plan.hpp"
 #include "catena/base/counters.hpp"
 
@@ -64,6 +65,10 @@ class Evaluator {
   /// Calls f(body_i, body_j, matrix) with sum lambda d2Phi/dq2 of every constraint; lambda: solver's rows.
   template <class F>
   void visit_constraint_hessians(std::span<const double> lambda, F&& f) const;
+
+  /// Adds sum lambda d2Phi/dq2 and the second derivatives of the potential to their slots; lambda: solver's rows.
+  void add_hessians(std::span<const double> lambda, Curvature curvature, const HessianSlots& slots,
+                    std::span<double> values);
 
   /// Measured quantity of a scalar constraint with time derivatives; qd, qdd may be empty (zero).
   Measured measure(int element, std::span<const double> qd, std::span<const double> qdd) const;

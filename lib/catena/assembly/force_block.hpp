@@ -51,6 +51,9 @@ struct ForceOperations {
   static double dissipation(const Block&, const Data&, const Frame<double>* frames, const double* qd);
   /// Stiffness -dQ/dq of one element (qd may be nullptr: at rest).
   static ElementMatrix stiffness(const Block&, const Data&, const Frame<double>* frames, const double* qd, int e);
+  /// The second derivatives of the potentials of all elements, added to their slots; see hessian_slots.hpp.
+  static void add_stiffness(const Block&, const Data&, const Frame<double>* frames, bool convex, const int* slot,
+                            double* values);
   /// Damping -dQ/dqd of one element.
   static ElementMatrix damping(const Block&, const Data&, const Frame<double>* frames, const double* qd, int e);
   /// Whether every element of the block has a potential.

@@ -125,6 +125,29 @@ ElementMatrix ForceOperations<E>::stiffness(const Block& block, const Data& data
 }
 
 template <class E>
+void ForceOperations<E>::add_stiffness(const Block& block, const Data& data, const Frame<double>* frames, bool convex,
+                                       const int* slot, double* values) {
+  constexpr auto pattern = stiffness_pattern<E>();
+  constexpr auto written = written_stiffness<E>();
+  if constexpr (pattern.size() > 0) {
+    for (int e = 0; e < block.size(); ++e, slot += written.size()) {
+      double entries[pattern.size()];
+      if constexpr (HasClosedStiffness<E>) {
+        const detail::ForceState<E> s(block, data, frames, nullptr, e);
+        data.element[static_cast<std::size_t>(e)].stiffness(s.arguments(), entries);
+      } else {
+        const ElementMatrix matrix = stiffness(block, data, frames, nullptr, e);
+        for (std::size_t k = 0; k < pattern.size(); ++k) {
+          const auto r = static_cast<std::size_t>(pattern[k].row), c = static_cast<std::size_t>(pattern[k].column);
+          entries[k] = (matrix[6 * r + c] + matrix[6 * c + r]) / 2;
+        }
+      }
+      detail::scatter_hessian(written, pattern, entries, convex && !only_turning(pattern), slot, values);
+    }
+  }
+}
+
+template <class E>
 ElementMatrix ForceOperations<E>::damping(const Block& block, const Data& data, const Frame<double>* frames,
                                           const double* qd, int e) {
   const detail::ForceState<E> s(block, data, frames, qd, e);

@@ -15,6 +15,8 @@
 //   pattern                structure of Phi_q: which entries are zero, +1, -1 or vary     (default: all vary)
 //   jacobian(a, entries)   the varying entries, row by row                              (closed form of a hot type)
 //   gamma(a, u, v, out)    the acceleration right-hand side, body rates u, v              (closed form of a hot type)
+//   hessian_pattern        which second derivatives may differ from zero                  (default: all)
+//   hessian(a, lambda, entries)   sum_r lambda_r d2Phi_r/dq2 at those places              (closed form of a hot type)
 //   measure<T>(i, j)       the quantity that c prescribes (functions == 1)
 //   value_unit             kind of c; `squared` = true if the row is measure^2 - c^2: it is then scaled by 1/(2c)
 //   row_unit(row)          UnitKind::length (default) or UnitKind::angle: what the residual of the row is measured in
@@ -74,6 +76,46 @@ consteval int varying_entries() {
   for (Entry e : jacobian_pattern<E>()) n += e == Entry::varying;
   return n;
 }
+
+/// Place of a second derivative among an element's coordinates [x_i y_i phi_i x_j y_j phi_j], column <= row.
+struct HessianEntry {
+  signed char row, column;
+};
+
+/// Every place of the lower triangle of a size x size matrix.
+template <std::size_t size>
+consteval auto full_lower_triangle() {
+  std::array<HessianEntry, size*(size + 1) / 2> all{};
+  std::size_t k = 0;
+  for (std::size_t r = 0; r < size; ++r) {
+    for (std::size_t c = 0; c <= r; ++c) all[k++] = {static_cast<signed char>(r), static_cast<signed char>(c)};
+  }
+  return all;
+}
+
+template <class E>
+consteval auto hessian_pattern() {
+  if constexpr (requires { E::hessian_pattern; }) {
+    return E::hessian_pattern;
+  } else {
+    return full_lower_triangle<static_cast<std::size_t>(3 * E::bodies)>();
+  }
+}
+
+/// Whether a pattern holds nothing but second derivatives with respect to one body's own angle. Where coordinates enter
+/// through A s' alone, as in pins, these form the stiffness lambda^T A s' against turning, and nothing else is left.
+template <std::size_t n>
+consteval bool only_turning(const std::array<HessianEntry, n>& pattern) {
+  for (const HessianEntry& e : pattern) {
+    if (e.row != e.column || e.row % 3 != 2) return false;
+  }
+  return true;
+}
+
+template <class E>
+concept HasClosedHessian = requires(const E& e, const Arguments<double>& a, const double* lambda, double* out) {
+  e.hessian(a, lambda, out);
+};
 
 template <class E>
 concept HasClosedJacobian = requires(const E& e, const Arguments<double>& a, double* out) {

@@ -10,6 +10,8 @@
 //
 // and from force alone the library derives stiffness -dQ/dq and damping -dQ/dqd by dual numbers. Optional members:
 //
+//   stiffness_pattern          which second derivatives of V may differ from zero (default: all)
+//   stiffness(a, entries)      V_qq at those places, at rest; only asked where the element is conservative
 //   potential<T>(a)            V with Q = -V_q at rest and functions frozen; present if the element can have one
 //   conservative()             false where these parameters have no potential (a follower force); default: has
 //   potential dissipation(a)             power lost to damping, W (default 0) measure(i, j, u, v)        length and
@@ -51,6 +53,20 @@ void add_force_at(const Vec2<T>& arm, const Vec2<T>& force, Wrench<T>& q) {
   q.fy += force.y;
   q.moment += cross(arm, force);
 }
+
+template <class E>
+consteval auto stiffness_pattern() {
+  if constexpr (requires { E::stiffness_pattern; }) {
+    return E::stiffness_pattern;
+  } else {
+    return full_lower_triangle<static_cast<std::size_t>(3 * E::bodies)>();
+  }
+}
+
+template <class E>
+concept HasClosedStiffness = requires(const E& e, const ForceArguments<double>& a, double* out) {
+  e.stiffness(a, out);
+};
 
 template <class E>
 concept HasPotential = requires(const E& e, const ForceArguments<double>& a) {

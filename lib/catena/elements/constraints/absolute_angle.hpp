@@ -19,6 +19,7 @@ struct AbsoluteAngle {
   static constexpr int functions = 1;
   static constexpr UnitKind value_unit = UnitKind::angle;
   static constexpr std::array pattern = {Entry::zero, Entry::zero, Entry::plus_one};
+  static constexpr std::array<HessianEntry, 0> hessian_pattern = {};
 
   Vec2<S> s_i;  // where the torque is reported; the equation does not contain it
 

@@ -23,6 +23,8 @@ struct AbsoluteDistance {
   static constexpr int functions = 1;
   static constexpr bool squared = true;
   static constexpr UnitKind value_unit = UnitKind::length;
+  static constexpr std::array hessian_pattern = {HessianEntry{0, 0}, HessianEntry{1, 1}, HessianEntry{2, 0},
+                                                 HessianEntry{2, 1}, HessianEntry{2, 2}};
 
   Vec2<S> s_i, ground;
 
@@ -51,6 +53,14 @@ struct AbsoluteDistance {
     const Vec2<double> arm = a.i.axis(s_i), h = separation(a);
     const Vec2<double> hd = Vec2<double>{u.vx, u.vy} + u.omega * perpendicular(arm);
     out[0] = 2 * (dot(h, arm) * u.omega * u.omega - dot(hd, hd));
+  }
+  void hessian(const Arguments<double>& a, const double* lambda, double* entries) const {
+    const Vec2<double> arm = a.i.axis(s_i), h = separation(a);
+    const double twice = 2 * lambda[0];
+    entries[0] = entries[1] = twice;
+    entries[2] = -twice * arm.y;
+    entries[3] = twice * arm.x;
+    entries[4] = twice * (dot(arm, arm) - dot(h, arm));
   }
 
  private:

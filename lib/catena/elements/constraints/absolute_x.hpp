@@ -21,6 +21,7 @@ struct AbsoluteX {
   static constexpr int functions = 1;
   static constexpr UnitKind value_unit = UnitKind::length;
   static constexpr std::array pattern = {Entry::plus_one, Entry::zero, Entry::varying};
+  static constexpr std::array hessian_pattern = {HessianEntry{2, 2}};
 
   Vec2<S> s_i;
 
@@ -40,6 +41,9 @@ struct AbsoluteX {
   void jacobian(const Arguments<double>& a, double* entries) const { entries[0] = -a.i.axis(s_i).y; }
   void gamma(const Arguments<double>& a, const Rates& u, const Rates&, double* out) const {
     out[0] = a.i.axis(s_i).x * u.omega * u.omega;
+  }
+  void hessian(const Arguments<double>& a, const double* lambda, double* entries) const {
+    entries[0] = -lambda[0] * a.i.axis(s_i).x;
   }
 };
 

@@ -20,6 +20,7 @@ struct RelativeAngle {
   static constexpr UnitKind value_unit = UnitKind::angle;
   static constexpr std::array pattern = {Entry::zero, Entry::zero, Entry::minus_one,  //
                                          Entry::zero, Entry::zero, Entry::plus_one};
+  static constexpr std::array<HessianEntry, 0> hessian_pattern = {};
 
   Vec2<S> s_i, s_j;  // where torques are reported; the equation does not contain them
 

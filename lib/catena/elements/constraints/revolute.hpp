@@ -23,6 +23,7 @@ struct Revolute {
                                          Entry::plus_one,  Entry::zero,      Entry::varying,  //
                                          Entry::zero,      Entry::minus_one, Entry::varying,  //
                                          Entry::zero,      Entry::plus_one,  Entry::varying};
+  static constexpr std::array hessian_pattern = {HessianEntry{2, 2}, HessianEntry{5, 5}};
 
   Vec2<S> s_i, s_j;
 
@@ -48,6 +49,11 @@ struct Revolute {
     const Vec2<double> g = (v.omega * v.omega) * a.j.axis(s_j) - (u.omega * u.omega) * a.i.axis(s_i);
     out[0] = g.x;
     out[1] = g.y;
+  }
+  void hessian(const Arguments<double>& a, const double* lambda, double* entries) const {
+    const Vec2<double> arm_i = a.i.axis(s_i), arm_j = a.j.axis(s_j);
+    entries[0] = lambda[0] * arm_i.x + lambda[1] * arm_i.y;
+    entries[1] = -(lambda[0] * arm_j.x + lambda[1] * arm_j.y);
   }
 };
 

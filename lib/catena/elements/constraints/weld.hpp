@@ -27,6 +27,7 @@ struct Weld {
                                          Entry::zero,      Entry::plus_one,  Entry::varying,    //
                                          Entry::zero,      Entry::zero,      Entry::minus_one,  //
                                          Entry::zero,      Entry::zero,      Entry::plus_one};
+  static constexpr std::array hessian_pattern = {HessianEntry{2, 2}, HessianEntry{5, 5}};
 
   Vec2<S> s_i, s_j;
   S angle{};  // c
@@ -58,6 +59,11 @@ struct Weld {
     out[0] = g.x;
     out[1] = g.y;
     out[2] = 0;
+  }
+  void hessian(const Arguments<double>& a, const double* lambda, double* entries) const {
+    const Vec2<double> arm_i = a.i.axis(s_i), arm_j = a.j.axis(s_j);
+    entries[0] = lambda[0] * arm_i.x + lambda[1] * arm_i.y;
+    entries[1] = -(lambda[0] * arm_j.x + lambda[1] * arm_j.y);
   }
 };
 

@@ -17,6 +17,7 @@ struct PointForce {
   static constexpr std::string_view equation = "Q_i = [F; (R A s'P)^T F]";
   static constexpr int bodies = 1;
   static constexpr int functions = 2;
+  static constexpr std::array stiffness_pattern = {HessianEntry{2, 2}};  // where it has a potential
 
   Vec2<S> s_i;
   bool in_body_axes = false;
@@ -43,6 +44,9 @@ struct PointForce {
   T potential(const ForceArguments<T>& a) const {
     const Vec2<T> p = a.i.point(s_i);
     return -(a.f[0] * (p.x + T(a.ground.x)) + a.f[1] * (p.y + T(a.ground.y)));
+  }
+  void stiffness(const ForceArguments<double>& a, double* entries) const {
+    entries[0] = dot(Vec2<double>{a.f[0], a.f[1]}, a.i.axis(s_i));
   }
 };
 

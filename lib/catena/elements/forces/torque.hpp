@@ -17,6 +17,7 @@ struct Torque {
   static constexpr int bodies = 2;
   static constexpr bool second_body_optional = true;
   static constexpr int functions = 1;
+  static constexpr std::array<HessianEntry, 0> stiffness_pattern = {};
 
   Vec2<S> s_i, s_j;  // bodies only; a torque has no place
 

@@ -20,6 +20,7 @@ struct TorsionSpring {
       "n = k (phi_j - phi_i - theta0) + c (phid_j - phid_i) + N,  +n on i, -n on j";
   static constexpr int bodies = 2;
   static constexpr int functions = 1;
+  static constexpr std::array stiffness_pattern = {HessianEntry{2, 2}, HessianEntry{5, 2}, HessianEntry{5, 5}};
 
   Vec2<S> s_i, s_j;  // bodies only; a torque has no place
   S k{}, c{};
@@ -53,6 +54,10 @@ struct TorsionSpring {
   double dissipation(const ForceArguments<double>& a) const {
     const double rate = a.v.omega - a.u.omega;
     return value_of(c) * rate * rate;
+  }
+  void stiffness(const ForceArguments<double>&, double* entries) const {
+    entries[0] = entries[2] = value_of(k);
+    entries[1] = -value_of(k);
   }
 };
 
