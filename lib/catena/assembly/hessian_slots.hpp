@@ -35,7 +35,7 @@ void keep_positive_part(double* lower, int size);
 namespace detail {
 
 template <std::size_t n>
-consteval std::array<bool, 6> concerned(const std::array<HessianEntry, n>& pattern) {
+constexpr std::array<bool, 6> concerned(const std::array<HessianEntry, n>& pattern) {
   std::array<bool, 6> mask{};
   for (const HessianEntry& e : pattern) {
     mask[static_cast<std::size_t>(e.row)] = true;
@@ -45,14 +45,14 @@ consteval std::array<bool, 6> concerned(const std::array<HessianEntry, n>& patte
 }
 
 template <std::size_t n>
-consteval std::size_t concerned_count(const std::array<HessianEntry, n>& pattern) {
+constexpr std::size_t concerned_count(const std::array<HessianEntry, n>& pattern) {
   std::size_t count = 0;
   for (bool b : concerned(pattern)) count += b;
   return count;
 }
 
 template <std::size_t size>
-consteval auto triangle_over(const std::array<bool, 6>& mask) {
+constexpr auto triangle_over(const std::array<bool, 6>& mask) {
   std::array<HessianEntry, size*(size + 1) / 2> entries{};
   std::size_t k = 0;
   for (signed char r = 0; r < 6; ++r) {

@@ -105,7 +105,7 @@ consteval auto hessian_pattern() {
 /// Whether a pattern holds nothing but second derivatives with respect to one body's own angle. Where coordinates enter
 /// through A s' alone, as in pins, these form the stiffness lambda^T A s' against turning, and nothing else is left.
 template <std::size_t n>
-consteval bool only_turning(const std::array<HessianEntry, n>& pattern) {
+constexpr bool only_turning(const std::array<HessianEntry, n>& pattern) {
   for (const HessianEntry& e : pattern) {
     if (e.row != e.column || e.row % 3 != 2) return false;
   }
