@@ -1,0 +1,103 @@
+// Elements of any type with random parameters, made from the descriptions of their fields.
+//
+// Parameters depend on four independent variables, along random directions: over Dual<double, 4> they carry these
+// derivatives, over double they can be moved a step along one of them. Equal seeds make equal elements.
+#pragma once
+
+#include <numbers>
+#include <random>
+
+#include "catena/elements/list.hpp"
+
+namespace catena {
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  /// Uniform in [low, high), the same numbers with every standard library.
+  double between(double low, double high) { return low + (high - low) * (engine_() / 4294967296.0); }
+  bool coin() { return between(0, 1) < 0.5; }
+  Vec2<double> place(double size) {
+    const double x = between(-size, size);
+    return {x, between(-size, size)};
+  }
+
+ private:
+  std::mt19937 engine_;
+};
+
+template <class S>
+class ParameterSource {
+ public:
+  /// `step` along direction number `direction` (over double only); lengths are of the order of `size`.
+  explicit ParameterSource(unsigned seed, double size = 1, int direction = 0, double step = 0)
+      : random_(seed), size_(size), direction_(direction), step_(step) {}
+
+  S number(double low, double high, double unit = 1) {
+    const double value = random_.between(low, high);
+    std::array<double, 4> slope;
+    for (double& s : slope) s = unit * random_.between(-1, 1);
+    if constexpr (std::is_same_v<S, double>) {
+      return unit * value + step_ * slope[static_cast<std::size_t>(direction_)];
+    } else {
+      return S(unit * value, slope);
+    }
+  }
+  S length(double low, double high) { return number(low, high, size_); }
+  Vec2<S> place() {
+    const S x = length(-1, 1);
+    return {x, length(-1, 1)};
+  }
+  bool coin() { return random_.coin(); }
+
+ private:
+  Random random_;
+  double size_;
+  int direction_;
+  double step_;
+};
+
+template <class E, class S, class M>
+void fill(E& element, const PointField<M>& field, ParameterSource<S>& source) {
+  element.*field.member = source.place();
+}
+template <class E, class S, class M>
+void fill(E& element, const PlaceField<M>& field, ParameterSource<S>& source) {
+  element.*field.member = source.place();
+}
+template <class E, class S, class M>
+void fill(E& element, const AxisField<M>& field, ParameterSource<S>& source) {
+  // Now and then an axis is left to complete().
+  const Vec2<S> axis = source.place();
+  if (field.required || source.coin()) element.*field.member = axis;
+}
+template <class E, class S, class M>
+void fill(E& element, const NumberField<M>& field, ParameterSource<S>& source) {
+  element.*field.member = field.unit == UnitKind::length ? source.length(0.3, 1) : source.number(0.3, 1);
+}
+template <class E, class S, class M>
+void fill(E& element, const FlagField<M>& field, ParameterSource<S>& source) {
+  element.*field.member = source.coin();
+}
+template <class E, class S, class M>
+void fill(E& element, const SideField<M>& field, ParameterSource<S>& source) {
+  element.*field.member = source.coin() ? 1 : -1;
+}
+template <class E, class S>
+void fill(E&, const FunctionField&, ParameterSource<S>&) {}
+
+/// An element that its own check() accepts, completed at the given frames.
+template <class E, class S>
+E random_element(ParameterSource<S>& source, const Frame<S>& i, const Frame<S>& j) {
+  for (;;) {
+    E element;
+    std::apply([&](const auto&... field) { (fill(element, field, source), ...); }, E::fields());
+    if constexpr (requires { element.complete(i, j); }) element.complete(i, j);
+    if constexpr (requires { element.check(); }) {
+      if (element.check()) continue;
+    }
+    return element;
+  }
+}
+
+}  // namespace catena
