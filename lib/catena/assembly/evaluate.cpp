@@ -162,10 +162,10 @@ std::vector<double> Evaluator::given_configuration() const {
   return q;
 }
 
-void Evaluator::set_time(double t) {
+void Evaluator::set_time(double t, Side side) {
   time_ = t;
   if (model_->functions.empty()) return;
-  for (std::size_t k = 0; k < function_.size(); ++k) function_[k] = model_->functions[k].evaluate(t);
+  for (std::size_t k = 0; k < function_.size(); ++k) function_[k] = model_->functions[k].evaluate(t, side);
   for_each_list(values_, [&](auto& data, int) {
     for (const auto& timed : data.timed) data.value[at(timed.element)] = function_[at(timed.function)];
   });

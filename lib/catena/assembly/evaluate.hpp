@@ -35,8 +35,9 @@ class Evaluator {
   /// Place of the body's relative origin in the ground frame.
   Vec2<double> origin(int plan_body) const { return origin_[static_cast<std::size_t>(plan_body)]; }
 
-  /// Throws OutsideTable (time_function.hpp) when a table does not reach t.
-  void set_time(double t);
+  /// `side`: which derivatives are meant where a function jumps at t. Throws OutsideTable (time_function.hpp) when a
+  /// table does not reach t.
+  void set_time(double t, Side side = Side::after);
   double time() const { return time_; }
   void set_configuration(std::span<const double> q);
   std::span<const Frame<double>> frames() const { return frames_; }
