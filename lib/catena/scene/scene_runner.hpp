@@ -56,7 +56,8 @@ SceneOutcome run_scene(const std::string& path, const RunOptions& options, Resul
 /// The document that replaces the results of a wrong scene: {"catena":1,"status":"invalid","errors":[...]} and newline.
 std::string invalid_json(const SceneOutcome& outcome);
 
-/// Writes the result document, row by row, to `output`, which must outlive it.
+/// Writes the result document, row by row, to `output`, which must outlive it. A failure to write shows there and stops
+/// no analysis: other sinks may still want its rows.
 std::unique_ptr<ResultSink> json_result_sink(TextOutput& output);
 
 /// The JSON Schema of scenes.

@@ -1,0 +1,159 @@
+// catena run, and the verbs that run a single analysis with its keys as options.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string_view>
+
+#include "commands.hpp"
+#include "run_command.hpp"
+
+namespace catena::cli {
+namespace {
+
+struct Key {
+  std::string_view name;  ///< in the scene
+  std::string_view description;
+  bool list = false;
+};
+
+constexpr Key outputs{"outputs", "columns, separated by commas", true};
+constexpr Key until{"until", "last time"};
+constexpr Key every{"every", "time between rows"};
+constexpr Key at{"at", "time, or times separated by commas", true};
+constexpr Key free_motions{"free", "refuse, or minimum_norm: what to do with motions that nothing drives"};
+constexpr Key branch{"branch", "which of the branches that were listed"};
+constexpr Key tolerance{"tolerance", "accuracy asked for"};
+
+struct Verb {
+  const char* command;
+  const char* analysis;  ///< its type in scenes
+  const char* description;
+  std::vector<Key> keys;
+};
+
+const std::vector<Verb>& verbs() {
+  static const std::vector<Verb> all = {
+      {"check", "check", "Count bodies, equations, degrees of freedom; find redundant constraints", {}},
+      {"assemble", "assemble", "Find the configuration nearest to the given one that meets all constraints", {outputs}},
+      {"kinematics",
+       "kinematics",
+       "Positions, velocities, accelerations of a driven mechanism",
+       {until, every, at, free_motions, branch, outputs}},
+      {"inverse",
+       "inverse_dynamics",
+       "Loads of the drivers and reactions in a driven mechanism",
+       {until, every, at, free_motions, branch, outputs}},
+      {"dynamics",
+       "dynamics",
+       "Motion under forces",
+       {until, every, tolerance, {"method", "integrator"}, {"step", "fixed step"}, outputs}},
+      {"equilibrium",
+       "equilibrium",
+       "Static equilibrium",
+       {at,
+        tolerance,
+        {"solver", "auto, newton, ipopt or nlopt"},
+        {"accept", "stable or stationary"},
+        {"find", "how many equilibria"},
+        outputs}},
+      {"path",
+       "path",
+       "Equilibria as a parameter changes",
+       {{"parameter", "the parameter that changes"},
+        {"to", "its last value"},
+        {"max_steps", "largest number of steps"},
+        {"arc", "length of a step"},
+        branch,
+        outputs}},
+      {"modes",
+       "modes",
+       "Small oscillations about the configuration",
+       {{"count", "how many modes"}, {"shapes", "whether to give the shapes"}, outputs}},
+  };
+  return all;
+}
+
+/// What is wrong with the text of a count; empty if nothing is.
+std::string whole_number(const std::string& text) {
+  const bool digits = !text.empty() && text.size() < 19 && text.find_first_not_of("0123456789") == std::string::npos;
+  return digits && text.find_first_not_of('0') != std::string::npos ? "" : "wants a whole number above 0, not " + text;
+}
+
+/// An option of the verb: on the command line max_steps may be written --max-steps.
+std::string option_name(std::string_view key) {
+  std::string name = "--" + std::string(key);
+  std::string dashed = name;
+  std::replace(dashed.begin(), dashed.end(), '_', '-');
+  return dashed == name ? name : dashed + "," + name;
+}
+
+struct Parsed {
+  RunCommand run;
+  std::vector<std::string> set;
+  std::vector<std::pair<std::string, std::vector<std::string>>> keys;
+};
+
+void add_common_options(CLI::App& command, Parsed& parsed) {
+  RunCommand& run = parsed.run;
+  command.add_option("SCENE", run.scene, "the scene file")->required()->type_name("FILE");
+  command.add_flag("--json", run.json, "print results as JSON, every digit");
+  command
+      .add_option("-o,--output", run.directory, "also write one CSV file an analysis and report.json to this folder")
+      ->type_name("DIR");
+  command.add_flag("--stats", run.stats, "print what was computed how often");
+  command.add_flag("-q,--quiet", run.quiet, "print no table, report or progress");
+  command.add_flag("-v,--verbose", run.verbose, "print all rows and columns");
+  command.add_option("--set", parsed.set, "change a parameter: NAME=VALUE, in the syntax of scenes")
+      ->allow_extra_args(false)
+      ->type_name("NAME=VALUE");
+  command.add_option("--max-elements", run.options.max_elements, "refuse larger scenes")
+      ->capture_default_str()
+      ->type_name("N")
+      ->check(whole_number);
+}
+
+/// What was read, as the scene runner wants it. Throws CLI::ValidationError.
+RunCommand complete(const Parsed& parsed, const std::string& analysis) {
+  RunCommand run = parsed.run;
+  run.options.verb = analysis;
+  for (const std::string& assignment : parsed.set) {
+    const std::size_t equals = assignment.find('=');
+    if (equals == 0 || equals == std::string::npos)
+      throw CLI::ValidationError("--set", "wants NAME=VALUE, not \"" + assignment + "\"");
+    run.options.set.emplace_back(assignment.substr(0, equals), assignment.substr(equals + 1));
+  }
+  for (const auto& [key, values] : parsed.keys) {
+    for (const std::string& value : values) run.options.verb_options.emplace_back(key, value);
+  }
+  return run;
+}
+
+void add_command(CLI::App& app, Action& chosen, const Verb& verb) {
+  CLI::App* command = app.add_subcommand(verb.command, verb.description);
+  const auto parsed = std::make_shared<Parsed>();
+  add_common_options(*command, *parsed);
+  parsed->keys.reserve(verb.keys.size());  // options hold references
+  for (const Key& key : verb.keys) {
+    auto& values = parsed->keys.emplace_back(std::string(key.name), std::vector<std::string>()).second;
+    CLI::Option* option = command->add_option(option_name(key.name), values, std::string(key.description));
+    option->allow_extra_args(false)->type_name("VALUE");
+    if (key.list) {
+      option->delimiter(',');
+    } else {
+      option->expected(1);
+    }
+  }
+  command->callback([parsed, &chosen, analysis = std::string(verb.analysis)] {
+    chosen = [run = complete(*parsed, analysis)] { return execute(run); };
+  });
+}
+
+}  // namespace
+
+void add_run_commands(CLI::App& app, Action& chosen) {
+  add_command(app, chosen, {"run", "", "Run the analyses of a scene, in order", {}});
+  for (const Verb& verb : verbs()) add_command(app, chosen, verb);
+}
+
+}  // namespace catena::cli

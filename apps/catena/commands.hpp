@@ -1,0 +1,28 @@
+// The commands of the program; each adds itself to the command line and leaves its exit code when it was chosen.
+//
+// Exit codes: 0 all solved, 1 an analysis was not, 2 usage, 3 anything wrong in the scene's text, 4 missing file or
+// unwritable output.
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace catena::cli {
+
+enum ExitCode : int { solved = 0, not_solved = 1, usage = 2, wrong_scene = 3, no_file = 4 };
+
+/// What to do once the command line has been read; returns the exit code.
+using Action = std::function<int()>;
+
+void add_run_commands(CLI::App& app, Action& chosen);  ///< run, and the verbs that run one analysis
+void add_explain_command(CLI::App& app, Action& chosen);
+void add_schema_command(CLI::App& app, Action& chosen);
+
+/// Prints text to the standard output; the exit code says whether that worked.
+int print(const std::string& text);
+
+}  // namespace catena::cli

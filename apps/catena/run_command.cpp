@@ -1,0 +1,108 @@
+#include "run_command.hpp"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <optional>
+
+#include "catena/results/interrupt.hpp"
+#include "catena/results/progress_bar.hpp"
+#include "catena/results/text_sink.hpp"
+#include "commands.hpp"
+#include "result_folder.hpp"
+
+namespace catena::cli {
+namespace {
+
+/// Wipes the progress bar away before results appear on the same terminal.
+class BarWiper final : public ResultSink, private RowSink {
+ public:
+  explicit BarWiper(ProgressBar& bar) : bar_(bar) {}
+  void begin_run(const RunHeader&) override { bar_.clear(); }
+  RowSink& begin_analysis(std::string_view) override { return *this; }
+  void end_analysis(const AnalysisResult&) override { bar_.clear(); }
+  void end_run() override { bar_.clear(); }
+
+ private:
+  void begin(std::span<const ColumnInfo>) override {}
+  bool row(std::span<const double>) override { return true; }
+  ProgressBar& bar_;
+};
+
+TableLimits table_limits(bool verbose) {
+  if (verbose) return TableLimits::none();
+  TableLimits limits;
+  winsize window{};
+  if (::isatty(STDOUT_FILENO) == 1 && ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0)
+    limits.width = window.ws_col;
+  return limits;
+}
+
+void print_messages(const RunCommand& command, const SceneOutcome& outcome) {
+  std::fputs(outcome.error_text.c_str(), stderr);
+  // A table on a terminal has said already which analysis failed and why.
+  const bool told = !command.json && !command.quiet && ::isatty(STDOUT_FILENO) == 1;
+  for (const AnalysisResult& result : outcome.analyses) {
+    if (!told && !result.report.ok())
+      fmt::print(stderr, "{}: {}: {}: {}\n", command.scene, result.type, to_string(result.report.status),
+                 result.report.message);
+    if (command.stats) std::fputs(counters_text(result).c_str(), stderr);
+  }
+}
+
+/// Whether everything could be written; says so if not.
+bool finish_output(const TextOutput& output, const ResultFolder* folder, bool quiet) {
+  if (!output.ok() && !output.reader_gone()) fmt::print(stderr, "catena: {}\n", output.error());
+  if (folder) {
+    if (!folder->error().empty()) fmt::print(stderr, "catena: {}\n", folder->error());
+    for (const std::string& file : folder->files()) {
+      if (!quiet) fmt::print(stderr, "wrote {}\n", file);
+    }
+  }
+  return output.ok() && (!folder || folder->error().empty());
+}
+
+}  // namespace
+
+int execute(const RunCommand& command) {
+  // A reader that goes away ends the program, as it ends any other in a pipe, unless files have to be completed.
+  std::signal(SIGPIPE, command.directory.empty() ? SIG_DFL : SIG_IGN);
+
+  ProgressBar bar(!command.quiet);
+  BarWiper wiper(bar);
+  TextOutput output = TextOutput::standard_output();
+  TextSink text(output, table_limits(command.verbose),
+                "-v shows everything, -o DIR writes CSV files, --json prints every digit");
+  std::unique_ptr<ResultSink> json = command.json ? json_result_sink(output) : nullptr;
+  std::optional<ResultFolder> folder;
+  TeeSink sinks;
+  if (bar.visible()) sinks.add(wiper);
+  if (command.json) {
+    sinks.add(*json);
+  } else if (!command.quiet) {
+    sinks.add(text);
+  }
+  if (!command.directory.empty()) sinks.add(folder.emplace(command.directory));
+
+  RunOptions options = command.options;
+  options.cancel = &catch_interrupts();
+  if (bar.visible()) {
+    options.progress = [&](const Progress& progress) {
+      bar.update(fmt::format("{} {}/{}", progress.analysis, progress.number + 1, progress.analyses), progress.fraction);
+    };
+  }
+
+  const SceneOutcome outcome = run_scene(command.scene, options, sinks);
+  bar.clear();
+  if (outcome.exit_code == wrong_scene && command.json) output.write(invalid_json(outcome));
+  output.flush();
+  print_messages(command, outcome);
+  const bool written = finish_output(output, folder ? &*folder : nullptr, command.quiet);
+  // Lost results weigh more than an analysis that went wrong, but a scene that was never run has none to lose.
+  return written || outcome.exit_code >= usage ? outcome.exit_code : static_cast<int>(no_file);
+}
+
+}  // namespace catena::cli

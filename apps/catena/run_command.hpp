@@ -1,0 +1,21 @@
+// Runs a scene for a person or a program: chooses where results go, and turns the outcome into messages and an exit
+// code.
+#pragma once
+
+#include <string>
+
+#include "catena/scene/scene_runner.hpp"
+
+namespace catena::cli {
+
+struct RunCommand {
+  std::string scene;      ///< path
+  std::string directory;  ///< of -o, or empty
+  bool json = false, stats = false, quiet = false, verbose = false;
+  RunOptions options;
+};
+
+/// The exit code. Results on the standard output, messages on the standard error.
+int execute(const RunCommand& command);
+
+}  // namespace catena::cli
