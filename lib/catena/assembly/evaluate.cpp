@@ -115,6 +115,7 @@ void Evaluator::load_values() {
     data.element.resize(n);
     data.shift.resize(n);
     data.value.resize(n * functions);
+    data.rate.assign(n * functions, 0.0);
     data.timed.clear();
     for (std::size_t e = 0; e < n; ++e) {
       const auto& entry = list[at(block.entry[e])];
@@ -170,7 +171,10 @@ void Evaluator::set_time(double t, Side side) {
     for (const auto& timed : data.timed) data.value[at(timed.element)] = function_[at(timed.function)];
   });
   for_each_list(force_values_, [&](auto& data, int) {
-    for (const auto& timed : data.timed) data.value[at(timed.place)] = function_[at(timed.function)].f;
+    for (const auto& timed : data.timed) {
+      data.value[at(timed.place)] = function_[at(timed.function)].f;
+      data.rate[at(timed.place)] = function_[at(timed.function)].d;
+    }
   });
 }
 
@@ -258,6 +262,15 @@ double Evaluator::dissipation(std::span<const double> qd) const {
   for_each_list(plan_->forces, [&](const auto& block, int) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
     sum += ForceOperations<E>::dissipation(block, std::get<ForceData<E>>(force_values_), frames_.data(), qd.data());
+  });
+  return sum;
+}
+
+double Evaluator::load_power(std::span<const double> qd) const {
+  double sum = 0;
+  for_each_list(plan_->forces, [&](const auto& block, int) {
+    using E = typename std::remove_cvref_t<decltype(block)>::Element;
+    sum += ForceOperations<E>::load_power(block, std::get<ForceData<E>>(force_values_), frames_.data(), qd.data());
   });
   return sum;
 }

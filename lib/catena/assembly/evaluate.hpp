@@ -57,6 +57,8 @@ class Evaluator {
   double potential_energy() const;
   /// Power lost to damping, W.
   double dissipation(std::span<const double> qd) const;
+  /// Power, W, of what is neither potential nor damping: functions of time in force elements, follower forces.
+  double load_power(std::span<const double> qd) const;
   /// Whether every force element has a potential.
   bool conservative() const;
 

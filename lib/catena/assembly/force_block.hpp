@@ -33,6 +33,7 @@ struct ForceData {
   std::vector<E> element;
   std::vector<Shift> shift;   ///< to the common origin; for one-body types `i` is that origin's place
   std::vector<double> value;  ///< E::functions an element
+  std::vector<double> rate;   ///< their time derivatives
   std::vector<Timed> timed;
 };
 
@@ -49,6 +50,9 @@ struct ForceOperations {
   static double potential(const Block&, const Data&, const Frame<double>* frames);
   /// Power lost to damping, W.
   static double dissipation(const Block&, const Data&, const Frame<double>* frames, const double* qd);
+  /// Power, W, that the elements take from outside: of non-conservative ones all but damping, of conservative ones what
+  /// their functions of time add to the potential, Q^T qd + dV/dt.
+  static double load_power(const Block&, const Data&, const Frame<double>* frames, const double* qd);
   /// Stiffness -dQ/dq of one element (qd may be nullptr: at rest).
   static ElementMatrix stiffness(const Block&, const Data&, const Frame<double>* frames, const double* qd, int e);
   /// The second derivatives of the potentials of all elements, added to their slots; see hessian_slots.hpp.

@@ -2,6 +2,8 @@
 // derivatives by dual numbers. Included by the per-type source files only.
 #pragma once
 
+#include <algorithm>
+
 #include "catena/assembly/constraint_operations.hpp"
 #include "catena/assembly/force_block.hpp"
 
@@ -52,6 +54,28 @@ ElementMatrix differentiate(const E& element, const ForceState<E>& s, const Fram
     for (std::size_t c = 0; c < 6; ++c) matrix[6 * r + c] = -rows[r]->d[c];
   }
   return matrix;
+}
+
+/// dV/dt along the motion, functions of time included.
+template <class E>
+double potential_rate(const E& element, const ForceState<E>& s, const ForceData<E>& data, int e) {
+  using D1 = Dual<double, 1>;
+  const auto along = [](double value, double rate) {
+    D1 x(value);
+    x.d[0] = rate;
+    return x;
+  };
+  const auto frame = [&](const Frame<double>& f, const Twist<double>& v) {
+    return Frame<D1>{along(f.x, v.vx), along(f.y, v.vy), along(f.phi, v.omega), along(f.c, -f.s * v.omega),
+                     along(f.s, f.c * v.omega)};
+  };
+  const Twist<D1> rest;
+  std::array<D1, static_cast<std::size_t>(E::functions) + 1> f;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(E::functions); ++k) {
+    f[k] = along(s.f[k], data.rate[static_cast<std::size_t>(e * E::functions) + k]);
+  }
+  const Frame<D1> i = frame(s.i, s.u), j = frame(s.j, s.v);
+  return element.potential(ForceArguments<D1>{i, j, rest, rest, f.data(), s.ground}).d[0];
 }
 
 inline Twist<D6> seed_twist(const Twist<double>& t, int first) {
@@ -112,6 +136,35 @@ double ForceOperations<E>::dissipation(const Block& block, const Data& data, con
       const detail::ForceState<E> s(block, data, frames, qd, e);
       sum += data.element[static_cast<std::size_t>(e)].dissipation(s.arguments());
     }
+  }
+  return sum;
+}
+
+template <class E>
+double ForceOperations<E>::load_power(const Block& block, const Data& data, const Frame<double>* frames,
+                                      const double* qd) {
+  const auto supplied = [&](int e) {
+    const detail::ForceState<E> s(block, data, frames, qd, e);
+    const E& element = data.element[static_cast<std::size_t>(e)];
+    Wrench<double> on_i, on_j;
+    element.force(s.arguments(), on_i, on_j);
+    double power = on_i.fx * s.u.vx + on_i.fy * s.u.vy + on_i.moment * s.u.omega;
+    if constexpr (E::bodies == 2) power += on_j.fx * s.v.vx + on_j.fy * s.v.vy + on_j.moment * s.v.omega;
+    if constexpr (requires { element.dissipation(s.arguments()); }) power += element.dissipation(s.arguments());
+    if constexpr (HasPotential<E>) {
+      if (is_conservative(element)) power += detail::potential_rate(element, s, data, e);
+    }
+    return power;
+  };
+  double sum = 0;
+  for (int e = 0; e < block.size(); ++e) {
+    if (!is_conservative(data.element[static_cast<std::size_t>(e)])) sum += supplied(e);
+  }
+  int last = -1;  // an element with two functions of time counts once
+  for (const auto& timed : data.timed) {
+    const int e = timed.place / std::max(1, E::functions);
+    if (e != last && is_conservative(data.element[static_cast<std::size_t>(e)])) sum += supplied(e);
+    last = e;
   }
   return sum;
 }
