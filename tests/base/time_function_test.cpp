@@ -57,9 +57,9 @@ void expect_derivatives_match(const F& f) {
 }
 
 void expect_equal(const Taylor<double>& a, const Taylor<double>& b) {
-  EXPECT_DOUBLE_EQ(a.f, b.f);
-  EXPECT_DOUBLE_EQ(a.d, b.d);
-  EXPECT_DOUBLE_EQ(a.dd, b.dd);
+  EXPECT_NEAR(a.f, b.f, 1e-14 * (1 + std::abs(b.f)));
+  EXPECT_NEAR(a.d, b.d, 1e-14 * (1 + std::abs(b.d)));
+  EXPECT_NEAR(a.dd, b.dd, 1e-14 * (1 + std::abs(b.dd)));
 }
 
 TEST(TimeFunction, DerivativesAreThoseOfTheValue) {
