@@ -64,7 +64,7 @@ Found evaluate(const E& element, const Given& g) {
 /// A few roundings of the largest terms: `length` is that of the positions in the row, `row` what multiplies it.
 void expect_table(const Found& found, const Table& table, double row, double length, double rate) {
   const auto near = [](double value, const Exact& exact, double size, const char* what) {
-    EXPECT_LE(abs(Exact(value) - exact), Exact(4 * eps * size)) << what << ": " << value << " for " << exact;
+    EXPECT_LE(std::abs(value_of(Exact(value) - exact)), 4 * eps * size) << what << ": " << value << " for " << exact;
   };
   near(found.phi, table.phi, row * length, "Phi");
   near(found.phi_q[0], table.phi_q[0], row, "dPhi/dx");

@@ -93,8 +93,7 @@ template <class E, class Jacobian>
 std::array<double, static_cast<std::size_t>(E::rows)> row_sizes(const Jacobian& jacobian, double size) {
   std::array<double, static_cast<std::size_t>(E::rows)> sizes{};
   for (std::size_t r = 0; r < sizes.size(); ++r) {
-    for (std::size_t k = 0; k < 6; ++k)
-      sizes[r] += std::abs(static_cast<double>(jacobian[r][k])) * (k % 3 == 2 ? 1 : size);
+    for (std::size_t k = 0; k < 6; ++k) sizes[r] += std::abs(value_of(jacobian[r][k])) * (k % 3 == 2 ? 1 : size);
   }
   return sizes;
 }
@@ -118,7 +117,7 @@ class ConstraintContract : public testing::Test {
 
   /// `found` within rounding of `exact`, in units of `size`.
   void expect_exact(double found, const Exact& exact, double size, double roundings, const char* what) {
-    const double error = static_cast<double>(Exact(found) - exact);
+    const double error = value_of(Exact(found) - exact);
     EXPECT_LE(std::abs(error), roundings * eps * size) << what << ": " << found << " for " << exact;
     worst_[what] = std::max(worst_[what], std::abs(error) / size);
   }
@@ -206,6 +205,24 @@ TYPED_TEST(ConstraintContract, SecondDerivatives) {
         SCOPED_TRACE(testing::Message() << "entry " << a << ", " << b);
         const double unit = (a % 3 == 2 ? 1 : size) * (b % 3 == 2 ? 1 : size);
         this->expect_exact(found[6 * a + b], exact_second_derivative(x, lambda, a, b), 1 / unit, 64, "Hessian");
+      }
+    }
+    constexpr auto pattern = hessian_pattern<E>();
+    double closed[pattern.size() + 1];
+    if constexpr (HasClosedHessian<E>)
+      x.element.hessian(Arguments<double>{stored.frames[0], stored.frames[1], x.c.f, x.ground}, lambda, closed);
+    for (std::size_t a = 0, next = 0; a < 3 * E::bodies; ++a) {
+      for (std::size_t b = 0; b <= a; ++b) {
+        SCOPED_TRACE(testing::Message() << "entry " << a << ", " << b);
+        const double unit = (a % 3 == 2 ? 1 : size) * (b % 3 == 2 ? 1 : size);
+        const bool listed = next < pattern.size() && static_cast<std::size_t>(pattern[next].row) == a &&
+                            static_cast<std::size_t>(pattern[next].column) == b;
+        if (!listed) {
+          EXPECT_EQ(found[6 * a + b], 0);
+        } else if (HasClosedHessian<E>) {
+          this->expect_exact(closed[next], exact_second_derivative(x, lambda, a, b), 1 / unit, 64, "closed Hessian");
+        }
+        next += listed;
       }
     }
   });

@@ -5,22 +5,38 @@
 
 #include <array>
 #include <boost/multiprecision/cpp_dec_float.hpp>
+#include <iosfwd>
 
 #include "catena/assembly/constraint_block.hpp"
 
 namespace catena {
 
-// Without expression templates: `auto` in the functions under test is then a number.
-using Exact = boost::multiprecision::number<boost::multiprecision::cpp_dec_float<50>, boost::multiprecision::et_off>;
+/// A scalar of 50 decimal digits. Its operations are compiled once: inlined into every element they would take minutes.
+class Exact {
+ public:
+  using Number = boost::multiprecision::number<boost::multiprecision::cpp_dec_float<50>, boost::multiprecision::et_off>;
 
-}  // namespace catena
+  Exact() = default;
+  Exact(double value);
 
-namespace boost::multiprecision {
-/// What the library looks for to find the double under any of its scalars.
-inline double value_of(const catena::Exact& x) { return static_cast<double>(x); }
-}  // namespace boost::multiprecision
+  Exact operator-() const;
+  friend Exact operator+(const Exact& a, const Exact& b);
+  friend Exact operator-(const Exact& a, const Exact& b);
+  friend Exact operator*(const Exact& a, const Exact& b);
+  friend Exact operator/(const Exact& a, const Exact& b);
+  Exact& operator+=(const Exact& b) { return *this = *this + b; }
+  friend Exact sqrt(const Exact& a);
+  friend Exact cos(const Exact& a);
+  friend Exact sin(const Exact& a);
+  friend Exact atan2(const Exact& y, const Exact& x);
+  /// What the library looks for to find the double under any of its scalars.
+  friend double value_of(const Exact& a);
+  friend std::ostream& operator<<(std::ostream& out, const Exact& a);
 
-namespace catena {
+ private:
+  static Exact of(const Number& number);
+  Number number_;
+};
 
 using Coordinates = std::array<double, 6>;  // x, y, phi of i and of j; or their rates
 
@@ -36,7 +52,7 @@ struct ConstraintCase {
 template <class E>
 using ExactRows = std::array<Exact, static_cast<std::size_t>(E::rows)>;
 
-inline Exact difference_step() { return Exact("1e-12"); }
+inline Exact difference_step() { return 1e-12; }
 
 /// The rows at q + offset, c + value_offset.
 template <class E>

@@ -67,8 +67,10 @@ void fill(E& element, const PlaceField<M>& field, ParameterSource<S>& source) {
 }
 template <class E, class S, class M>
 void fill(E& element, const AxisField<M>& field, ParameterSource<S>& source) {
-  // Now and then an axis is left to complete().
-  const Vec2<S> axis = source.place();
+  // Not too short, so that differences in its direction stay smooth; now and then one is left to complete().
+  using std::cos, std::sin;
+  const S angle = source.number(-3, 3), length = source.length(0.5, 1);
+  const Vec2<S> axis{length * cos(angle), length * sin(angle)};
   if (field.required || source.coin()) element.*field.member = axis;
 }
 template <class E, class S, class M>

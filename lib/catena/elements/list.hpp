@@ -10,8 +10,18 @@
 #include "catena/elements/constraints/absolute_distance.hpp"
 #include "catena/elements/constraints/absolute_x.hpp"
 #include "catena/elements/constraints/absolute_y.hpp"
+#include "catena/elements/constraints/belt.hpp"
+#include "catena/elements/constraints/coupler.hpp"
+#include "catena/elements/constraints/displacement.hpp"
+#include "catena/elements/constraints/gear.hpp"
+#include "catena/elements/constraints/rack_pinion.hpp"
 #include "catena/elements/constraints/relative_angle.hpp"
+#include "catena/elements/constraints/relative_distance.hpp"
+#include "catena/elements/constraints/relative_x.hpp"
+#include "catena/elements/constraints/relative_y.hpp"
 #include "catena/elements/constraints/revolute.hpp"
+#include "catena/elements/constraints/slot.hpp"
+#include "catena/elements/constraints/translational.hpp"
 #include "catena/elements/constraints/weld.hpp"
 #include "catena/elements/forces/point_force.hpp"
 #include "catena/elements/forces/spring_damper.hpp"
@@ -24,8 +34,18 @@
   X(AbsoluteDistance)         \
   X(AbsoluteX)                \
   X(AbsoluteY)                \
+  X(Belt)                     \
+  X(Coupler)                  \
+  X(Displacement)             \
+  X(Gear)                     \
+  X(RackPinion)               \
   X(RelativeAngle)            \
+  X(RelativeDistance)         \
+  X(RelativeX)                \
+  X(RelativeY)                \
   X(Revolute)                 \
+  X(Slot)                     \
+  X(Translational)            \
   X(Weld)
 
 /// CATENA_FORCES(X) expands X(Type) for every force type.
