@@ -73,6 +73,18 @@ TEST(ColumnNames, UnitsFollowTheQuantity) {
   EXPECT_EQ(unit(model, "momentum.angular"), UnitKind::angular_momentum);
 }
 
+TEST(ColumnNames, SpringsHaveColumnsOfTheirOwn) {
+  Model model = TwoBodies().model;
+  model.add_force("S", SpringDamper<double>{}, 0, 1);
+  model.add_force("T", TorsionSpring<double>{}, 0, 1);
+  model.add_force("F", PointForce<double>{}, 0);
+  for (const std::string name : {"S.length", "S.rate", "S.force", "T.angle", "T.torque"})
+    EXPECT_EQ(expand(model, name), Names{name});
+  EXPECT_EQ(unit(model, "S.force"), UnitKind::force);
+  EXPECT_EQ(unit(model, "T.torque"), UnitKind::torque);
+  for (const std::string name : {"S.reaction", "S.lambda1", "T.length", "F.fx", "F"}) unknown(model, name);
+}
+
 TEST(ColumnNames, WrongNamesSayWhatIsWrongAndOfferOthers) {
   const Model model = TwoBodies().model;
   UnknownColumn reason = unknown(model, "crnak.x");

@@ -39,6 +39,13 @@ enum class ColumnKind : unsigned char {
   power,  ///< load x dc/dt
   work,   ///< integral of power
 
+  // index = force element
+  length,         ///< |r_Pj - r_Pi|
+  length_rate,    ///< its time derivative
+  tension,        ///< pulls P_i and P_j together
+  turn,           ///< phi_j - phi_i
+  spring_torque,  ///< n, on body i
+
   kinetic,
   potential,
   total,

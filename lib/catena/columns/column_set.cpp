@@ -26,6 +26,7 @@ Needs needs_of(ColumnKind kind) {
     case ColumnKind::rate:
     case ColumnKind::joint_omega:
     case ColumnKind::slide_rate:
+    case ColumnKind::length_rate:
     case ColumnKind::kinetic:
     case ColumnKind::total:
     case ColumnKind::momentum_x:
@@ -45,6 +46,9 @@ Needs needs_of(ColumnKind kind) {
   }
   return needs;
 }
+
+/// Columns that are right at rest too, but need the velocities where there are any: of damping.
+bool uses_velocity(ColumnKind kind) { return kind == ColumnKind::tension || kind == ColumnKind::spring_torque; }
 
 bool needs_mass(ColumnKind kind, const Model& model) {
   if (kind == ColumnKind::potential) return model.gravity != Vec2<double>{};
@@ -157,7 +161,7 @@ ColumnSet ColumnSet::resolve(const Model& model, const Plan& plan, std::span<con
   for (NamedColumn& column : named) {
     if (!resolver.gives(column)) continue;
     const Needs needs = needs_of(column.column.kind);
-    set.needs_.velocity |= needs.velocity;
+    set.needs_.velocity |= needs.velocity || (sources.velocity && uses_velocity(column.column.kind));
     set.needs_.acceleration |= needs.acceleration;
     set.needs_.multipliers |= needs.multipliers;
     set.needs_.work |= needs.work;

@@ -5,6 +5,7 @@
 #include "catena/columns/column_set.hpp"
 #include "catena/columns/energy.hpp"
 #include "catena/columns/reaction.hpp"
+#include "catena/columns/spring.hpp"
 
 namespace catena {
 namespace {
@@ -64,6 +65,16 @@ class RowValues {
         return load(column) * evaluator_.element_value(column.index).d;
       case ColumnKind::work:
         return s_.driver_work[static_cast<std::size_t>(column.index)];
+      case ColumnKind::length:
+        return joint(column).length.f;
+      case ColumnKind::length_rate:
+        return joint(column).length.d;
+      case ColumnKind::turn:
+        return joint(column).angle.f;
+      case ColumnKind::tension:
+        return spring_loads(s_, column.index).tension;
+      case ColumnKind::spring_torque:
+        return spring_loads(s_, column.index).torque;
       case ColumnKind::kinetic:
         return kinetic();
       case ColumnKind::potential:
@@ -86,7 +97,7 @@ class RowValues {
 
  private:
   struct Joint {
-    Taylor<double> angle, slide;
+    Taylor<double> angle, slide, length;
   };
 
   static std::size_t coordinate(const Column& column) { return 3 * static_cast<std::size_t>(column.index); }
@@ -148,7 +159,11 @@ class RowValues {
     const Attachment a = attachment_of(evaluator_.model(), column.index);
     const Frame<Taylor<double>> i = motion(a.i), j = motion(a.j);
     joint_.angle = j.phi - i.phi;
-    joint_.slide = dot(i.axis(a.axis_i), j.point(a.point_j) - i.point(a.point_i));
+    const Vec2<Taylor<double>> h = j.point(a.point_j) - i.point(a.point_i);
+    joint_.slide = dot(i.axis(a.axis_i), h);
+    // Where the points meet the length has no derivative.
+    const bool apart = value_of(squared_norm(h)) > 0;
+    joint_.length = apart ? norm(h) : Taylor<double>(0.0);
     return joint_;
   }
 

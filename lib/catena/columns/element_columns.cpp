@@ -55,25 +55,52 @@ void add_measures(const Entry& entry, bool driver, std::vector<ElementColumn>& o
   }
 }
 
+template <class Entry>
+void add_loads(const Entry& entry, std::vector<ElementColumn>& out) {
+  using E = typename Entry::Element;
+  static_cast<void>(entry);
+  if (E::type == "spring_damper") {
+    out.push_back({"length", UnitKind::length, ColumnKind::length});
+    out.push_back({"rate", UnitKind::velocity, ColumnKind::length_rate});
+    out.push_back({"force", UnitKind::force, ColumnKind::tension});
+  }
+  if (E::type == "torsion_spring") {
+    out.push_back({"angle", UnitKind::angle, ColumnKind::turn});
+    out.push_back({"torque", UnitKind::torque, ColumnKind::spring_torque});
+  }
+}
+
+/// Calls f(entry) for an element of the model, be it a constraint or a force.
+template <class F>
+void with_entry(const Model& model, int element, F&& f) {
+  const ElementRecord& record = model.elements[static_cast<std::size_t>(element)];
+  const auto take = [&](const auto& list) { f(list[static_cast<std::size_t>(record.index)]); };
+  if (record.kind == ElementKind::force) {
+    with_list(model.forces, record.type, take);
+  } else {
+    with_list(model.constraints, record.type, take);
+  }
+}
+
 }  // namespace
 
 std::vector<ElementColumn> columns_of_element(const Model& model, int element) {
   std::vector<ElementColumn> out;
-  const ElementRecord& record = model.elements[static_cast<std::size_t>(element)];
-  if (record.kind == ElementKind::force) return out;
-  with_list(model.constraints, record.type, [&](const auto& list) {
-    const auto& entry = list[static_cast<std::size_t>(record.index)];
-    add_measures(entry, record.kind == ElementKind::driver, out);
-    add_reactions(entry, out);
+  const ElementKind kind = model.elements[static_cast<std::size_t>(element)].kind;
+  with_entry(model, element, [&]<class Entry>(const Entry& entry) {
+    if constexpr (requires { Entry::Element::rows; }) {
+      add_measures(entry, kind == ElementKind::driver, out);
+      add_reactions(entry, out);
+    } else {
+      add_loads(entry, out);
+    }
   });
   return out;
 }
 
 Attachment attachment_of(const Model& model, int element) {
   Attachment attachment;
-  const ElementRecord& record = model.elements[static_cast<std::size_t>(element)];
-  with_list(model.constraints, record.type,
-            [&](const auto& list) { attachment = attachment_of(list[static_cast<std::size_t>(record.index)]); });
+  with_entry(model, element, [&](const auto& entry) { attachment = attachment_of(entry); });
   return attachment;
 }
 
