@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/scaling.hpp"
 #include "catena/analysis/whole_turns.hpp"
 
 namespace catena {
@@ -22,7 +21,10 @@ constexpr double smallest_factor = 1e-4;
 }  // namespace
 
 Assembler::Assembler(Evaluator& evaluator)
-    : evaluator_(evaluator), plan_(evaluator.plan()), projector_(evaluator.shared_plan()) {
+    : evaluator_(evaluator),
+      plan_(evaluator.plan()),
+      scaling_(evaluator.plan(), evaluator.length_scale()),
+      projector_(evaluator.shared_plan()) {
   const std::vector<double> radius = evaluator.attachment_radii();
   std::vector<double> inverse(at(plan_.columns));
   weights_.resize(at(plan_.columns));
@@ -46,10 +48,9 @@ Assembler::Assembler(Evaluator& evaluator)
 double Assembler::merit(std::span<const double> q) {
   evaluator_.set_configuration(q);
   evaluator_.phi(phi_);
-  const double length = evaluator_.length_scale();
   double sum = 0;
   for (std::size_t r = 0; r < phi_.size(); ++r) {
-    const double size = phi_[r] / (plan_.row_is_angle[r] ? 1.0 : length);
+    const double size = phi_[r] * scaling_.row_unit(static_cast<int>(r));
     sum += size * size;
   }
   return sum / 2;
@@ -73,7 +74,7 @@ bool Assembler::restore(std::span<double> q, double tolerance, AssemblyOutcome& 
   double now = merit(q);
   double damping = 0;
   for (int k = 0; k < max_iterations; ++k) {
-    const double residual = row_norm(plan_, phi_, evaluator_.length_scale());
+    const double residual = scaling_.row_norm(phi_);
     outcome.residual = residual;
     if (!(residual > tolerance)) return std::isfinite(residual);
     evaluator_.jacobian(values_);
@@ -190,7 +191,7 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
     approach_estimate(q, estimate, tolerance, outcome);
   }
   merit(q);
-  outcome.residual = row_norm(plan_, phi_, evaluator_.length_scale());
+  outcome.residual = scaling_.row_norm(phi_);
   outcome.moved = weighted_distance(q, estimate) / std::sqrt(std::max(1, plan_.moving));
   return outcome;
 }

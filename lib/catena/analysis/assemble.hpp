@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "catena/analysis/scaling.hpp"
 #include "catena/assembly/constraint_projector.hpp"
 #include "catena/assembly/evaluate.hpp"
 #include "catena/base/status.hpp"
@@ -51,6 +52,7 @@ class Assembler {
 
   Evaluator& evaluator_;
   const Plan& plan_;
+  Scaling scaling_;
   ConstraintProjector projector_;
   std::vector<double> weights_;  // per column
   std::vector<double> values_, phi_, lambda_, step_, trial_;

@@ -1,8 +1,9 @@
 #include "catena/analysis/driven_solver.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
-
-#include "catena/analysis/scaling.hpp"
 
 namespace catena {
 namespace {
@@ -13,17 +14,19 @@ constexpr int max_iterations = 25;
 constexpr int max_refinements = 10;
 // All in length scales or rad. A residual of `rounding` is zero; corrections below `rounding_floor` need not shrink any
 // more; what is predicted to change by less than `negligible` is not computed.
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double rounding = 1e-16;
 constexpr double rounding_floor = 1e-12;
 constexpr double negligible = 1e-14;
 // Factors from further away than this are replaced: a new factorization costs two or three solves.
-constexpr double keep_distance = 5e-3;
+constexpr double keep_distance = 1e-4;
 // A ratio of successive corrections above this asks for new factors.
 constexpr double poor_contraction = 0.1;
 
 }  // namespace
 
-DrivenSolver::DrivenSolver(Evaluator& evaluator) : evaluator_(evaluator), plan_(evaluator.plan()) {
+DrivenSolver::DrivenSolver(Evaluator& evaluator)
+    : evaluator_(evaluator), plan_(evaluator.plan()), scaling_(plan_, evaluator.length_scale()) {
   values_.resize(at(plan_.trash_slot()) + 1);
   evaluator_.start_jacobian(values_);
   phi_.resize(at(plan_.rows));
@@ -62,14 +65,26 @@ void DrivenSolver::use_rows(std::vector<int> rows) {
 }
 
 void DrivenSolver::gather_rows(std::span<const double> all, std::span<double> chosen) const {
+  if (all_rows_) {
+    std::copy(all.begin(), all.end(), chosen.begin());
+    return;
+  }
   for (std::size_t k = 0; k < rows_.size(); ++k) chosen[k] = all[at(rows_[k])];
 }
 
 void DrivenSolver::to_columns(std::span<const double> coordinates, std::span<double> columns) const {
+  if (plan_.contiguous) {
+    std::copy_n(coordinates.begin(), columns.size(), columns.begin());
+    return;
+  }
   for (std::size_t c = 0; c < columns.size(); ++c) columns[c] = coordinates[at(plan_.coordinate[c])];
 }
 
 void DrivenSolver::to_coordinates(std::span<const double> columns, std::span<double> coordinates) const {
+  if (plan_.contiguous) {
+    std::copy(columns.begin(), columns.end(), coordinates.begin());
+    return;
+  }
   for (std::size_t c = 0; c < columns.size(); ++c) coordinates[at(plan_.coordinate[c])] = columns[c];
 }
 
@@ -96,17 +111,8 @@ bool DrivenSolver::factorize() {
   factor_result_ = factorization_.factorize(values, evaluator_.counters);
   factors_valid_ = factor_result_.ok();
   q_factored_ = q_;
+  gap_ = 0;
   return factors_valid_;
-}
-
-double DrivenSolver::distance_from_factors() const {
-  const double length = evaluator_.length_scale();
-  double distance = 0;
-  for (std::size_t c = 0; c < q_.size(); ++c) {
-    const double d = std::abs(q_[c] - q_factored_[c]);
-    distance = std::max(distance, plan_.coordinate[c] % 3 == 2 ? d : d / length);
-  }
-  return distance;
 }
 
 void DrivenSolver::evaluate_at(std::span<const double> q) {
@@ -114,23 +120,26 @@ void DrivenSolver::evaluate_at(std::span<const double> q) {
   evaluator_.phi(phi_);
   jacobian_valid_ = jacobian_valid_ && plan_.constant_jacobian;
   to_columns(q, q_);
+  if (factors_valid_ && !plan_.constant_jacobian) gap_ = scaling_.column_distance(q_, q_factored_);
 }
 
 bool DrivenSolver::factors_serve() const {
-  return factors_valid_ && (plan_.constant_jacobian || distance_from_factors() <= keep_distance);
+  return factors_valid_ && (plan_.constant_jacobian || gap_ <= keep_distance);
 }
 
 NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
   NewtonOutcome outcome;
-  const double length = evaluator_.length_scale();
   double size = 0;  // of the last correction
   double rate = 0;  // by which the next correction will be smaller
   for (;; ++outcome.iterations) {
     evaluate_at(q);
-    outcome.residual = row_norm(plan_, phi_, length);
+    outcome.residual = scaling_.row_norm(phi_);
     if (!std::isfinite(outcome.residual)) return outcome;
-    if (outcome.residual <= rounding ||
-        (outcome.iterations > 0 && outcome.residual <= tolerance && rate * size <= negligible)) {
+    // A long structure moves its far end by many length scales: its residuals cannot be rounder than its coordinates.
+    const double extent = scaling_.column_norm(q_);
+    const double attainable = std::max(tolerance, 8 * epsilon * extent);
+    if (outcome.residual <= rounding || (outcome.iterations > 0 && outcome.residual <= attainable &&
+                                         rate * size <= std::max(negligible, epsilon * extent))) {
       outcome.converged = true;
       return outcome;
     }
@@ -143,26 +152,35 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
     factorization_.solve(step_, evaluator_.counters);
     ++evaluator_.counters.iterations;
     const double last_size = size;
-    size = column_norm(plan_, step_, length);
+    size = scaling_.column_norm(step_);
     if (!std::isfinite(size)) return outcome;
     // A correction with factors from a distance g leaves about (g + size) size.
-    rate = plan_.constant_jacobian ? 0 : distance_from_factors() + size;
+    rate = plan_.constant_jacobian ? 0 : gap_ + size;
     if (outcome.iterations == 0) {
       outcome.first_correction = size;
-    } else if (size > rounding_floor) {
+      outcome.first_turn = scaling_.largest_angle(step_, plan_);
+    } else if (size > std::max(rounding_floor, 64 * epsilon * extent)) {
       const double ratio = size / last_size;
       outcome.contraction = std::max(outcome.contraction, ratio);
       rate = std::max(rate, ratio);
       if (ratio > poor_contraction) factors_valid_ = false;
-    } else if (outcome.residual <= tolerance) {
+    } else if (outcome.residual <= attainable) {
       rate = 0;  // what is left is rounding
     }
     for (std::size_t c = 0; c < step_.size(); ++c) q[at(plan_.coordinate[c])] -= step_[c];
   }
 }
 
+void DrivenSolver::subtract_product(std::span<const double> values) {
+  const int* start = plan_.jacobian.column_start.data();
+  const int* row = plan_.jacobian.row_index.data();
+  for (int c = 0; c < plan_.columns; ++c) {
+    const double x = x_[at(c)];
+    for (int k = start[c]; k < start[c + 1]; ++k) residual_all_[at(row[k])] -= values[at(k)] * x;
+  }
+}
+
 bool DrivenSolver::solve_refined(bool has_start) {
-  const double length = evaluator_.length_scale();
   std::span<const double> values = jacobian();
   bool factored_here = false;
   if (!factors_serve()) {
@@ -170,21 +188,17 @@ bool DrivenSolver::solve_refined(bool has_start) {
     factored_here = true;
   }
   if (!has_start) std::fill(x_.begin(), x_.end(), 0.0);
-  double size = 0, rate = distance_from_factors();
+  double size = 0, rate = gap_;
   for (int k = 0; k < max_refinements; ++k) {
-    residual_all_.assign(rhs_.begin(), rhs_.end());
-    if (has_start || k > 0) {
-      for (double& x : x_) x = -x;
-      multiply_add(plan_.jacobian, values, x_, residual_all_);
-      for (double& x : x_) x = -x;
-    }
+    std::copy(rhs_.begin(), rhs_.end(), residual_all_.begin());
+    if (has_start || k > 0) subtract_product(values);
     gather_rows(residual_all_, step_);
     factorization_.solve(step_, evaluator_.counters);
     const double last_size = size;
-    size = column_norm(plan_, step_, length);
+    size = scaling_.column_norm(step_);
     if (!std::isfinite(size)) return false;
     for (std::size_t c = 0; c < x_.size(); ++c) x_[c] += step_[c];
-    const double all = column_norm(plan_, x_, length);
+    const double all = scaling_.column_norm(x_);
     if (k > 0) rate = std::max(rate, size / last_size);
     if (rate * size <= negligible * all || size <= rounding * all) return true;
     if (k > 0 && size > poor_contraction * last_size && size > rounding_floor * all && !factored_here) {
@@ -193,7 +207,7 @@ bool DrivenSolver::solve_refined(bool has_start) {
       rate = 0;
     }
   }
-  return size <= tolerance * column_norm(plan_, x_, length);
+  return size <= tolerance * scaling_.column_norm(x_);
 }
 
 bool DrivenSolver::solve_velocity(std::span<double> qd, bool has_start) {
@@ -238,7 +252,7 @@ bool DrivenSolver::solve_multipliers(std::span<const double> rhs, std::span<doub
       all = std::max(all, std::abs(x));
     }
     if (!std::isfinite(all)) return false;
-    const double rate = k > 0 ? size / last_size : distance_from_factors();
+    const double rate = k > 0 ? size / last_size : gap_;
     if (rate * size <= negligible * all || size <= rounding * all) return true;
     if (k > 0 && rate > poor_contraction) return size <= tolerance * all;
   }

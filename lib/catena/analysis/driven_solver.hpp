@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "catena/analysis/scaling.hpp"
 #include "catena/assembly/evaluate.hpp"
 #include "catena/linalg/factorization.hpp"
 
@@ -23,6 +24,7 @@ struct NewtonOutcome {
   int iterations = 0;
   double residual = 0;          ///< largest row residual at the end, in units of the length scale or rad
   double first_correction = 0;  ///< size of the first correction: how far the start was off
+  double first_turn = 0;        ///< its largest angle, rad
   double contraction = 0;       ///< largest ratio of successive corrections above rounding
   FactorResult factor;          ///< why there was no factorization, if so
 };
@@ -61,16 +63,18 @@ class DrivenSolver {
   void evaluate_at(std::span<const double> q);
   bool factors_serve() const;
   bool factorize();
+  /// residual_all_ = rhs_ - Phi_q x_.
+  void subtract_product(std::span<const double> values);
   /// x_ = Phi_q^-1 rhs_ by refinement of the start in x_, against the true Jacobian at q_.
   bool solve_refined(bool has_start);
   void gather_rows(std::span<const double> all, std::span<double> chosen) const;
   void to_columns(std::span<const double> coordinates, std::span<double> columns) const;
   void to_coordinates(std::span<const double> columns, std::span<double> coordinates) const;
-  double distance_from_factors() const;
 
   Evaluator& evaluator_;
   const Plan& plan_;
   std::vector<int> rows_;
+  Scaling scaling_;
   bool all_rows_ = false;
   SparsePattern matrix_;     // the rows in use
   std::vector<int> gather_;  // entry of the matrix -> slot in the full Jacobian (empty: the same)
@@ -80,6 +84,7 @@ class DrivenSolver {
   std::vector<double> matrix_values_;              // rows in use, if not all
   std::vector<double> phi_, rhs_, residual_all_;   // all rows
   std::vector<double> step_, x_, q_, q_factored_;  // columns
+  double gap_ = 0;                                 // from q_ to q_factored_: how much worse than exact the factors are
   FactorResult factor_result_;
 };
 

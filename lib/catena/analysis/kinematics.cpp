@@ -14,8 +14,9 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// A step is accepted if its prediction was at most this far off (length scales, rad) and every correction at most this
-// part of the one before: Newton's iteration then stays where it contracts, on the branch it started from.
+// A step is accepted if its prediction was at most this far off (rad; the constraints are linear in positions) and
+// every correction at most this part of the one before: Newton's iteration then stays where it contracts, on the branch
+// it started from.
 constexpr double largest_correction = 0.1;
 constexpr double largest_contraction = 0.25;
 // Steps below this part of the span, or of the time itself, cannot be told from none.
@@ -127,7 +128,7 @@ bool Kinematics::try_step(double t) {
   predictor_.predict(t, trial_, {}, {});
   newton_ = solver_.solve_position(trial_);
   if (!newton_.converged) return false;
-  return newton_.first_correction <= largest_correction && newton_.contraction <= largest_contraction;
+  return newton_.first_turn <= largest_correction && newton_.contraction <= largest_contraction;
 }
 
 Report Kinematics::move_to(double t) {
@@ -144,7 +145,7 @@ Report Kinematics::move_to(double t) {
       if (t_ != t) {
         // Between rows the velocity is worth its solve: it makes the next prediction cubic.
         if (solver_.solve_velocity(qd_, false)) predictor_.push(t_, q_, qd_, {});
-        if (newton_.first_correction < largest_correction / 8) step *= 2;
+        if (newton_.first_turn < largest_correction / 8) step *= 2;
       }
       continue;
     }

@@ -91,12 +91,14 @@ bool Predictor::predict(double t, std::span<double> q, std::span<double> qd, std
     }
   }
   const auto weights = weights_at(nodes, t);
+  // Always six terms, those without data with weight zero: a fixed count lets the compiler vectorise over entries.
+  for (int k = nodes.count; k < max_nodes; ++k) data[static_cast<std::size_t>(k)] = data[0];
   const auto combine = [&](std::span<double> out, const Weights& w) {
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      double sum = 0;
-      for (int k = 0; k < nodes.count; ++k)
-        sum += w[static_cast<std::size_t>(k)] * data[static_cast<std::size_t>(k)][i];
-      out[i] = sum;
+    const double *a = data[0], *b = data[1], *c = data[2], *d = data[3], *e = data[4], *f = data[5];
+    double* target = out.data();
+    const std::size_t n = out.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      target[i] = w[0] * a[i] + w[1] * b[i] + w[2] * c[i] + w[3] * d[i] + w[4] * e[i] + w[5] * f[i];
     }
   };
   combine(q, weights[0]);
