@@ -1,0 +1,253 @@
+#include "catena/analysis/dynamics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "catena/analysis/initial_velocities.hpp"
+#include "catena/analysis/process_time.hpp"
+#include "catena/columns/energy.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// What a step may contribute to the error that was asked for; see the calibration in tests/oracles.
+constexpr double step_part = 0.003;
+constexpr double least_tolerance = 1e-14;
+
+}  // namespace
+
+Dynamics::Dynamics(std::shared_ptr<const Model> model, const PlanOptions& plan_options, const DynamicsOptions& options)
+    : model_(std::move(model)),
+      plan_(Plan::make(*model_, plan_options)),
+      options_(options),
+      evaluator_(plan_, *model_),
+      equations_(evaluator_) {
+  q_ = evaluator_.given_configuration();
+  qd_.assign(q_.size(), 0.0);
+}
+
+void Dynamics::start_from(const SystemState& state) {
+  t_ = state.t;
+  prepared_ = false;
+  given_qd_.clear();
+  if (state.q.empty()) return;
+  if (!state.qd.empty()) given_qd_.assign(q_.size(), 0.0);
+  for (int p = 0; p < plan_->moving; ++p) {
+    const std::size_t source = 3 * at(plan_->model_body[at(p)]), target = 3 * at(p);
+    q_[target] = state.q[source] - evaluator_.origin(p).x;
+    q_[target + 1] = state.q[source + 1] - evaluator_.origin(p).y;
+    q_[target + 2] = state.q[source + 2];
+    if (!state.qd.empty()) std::copy_n(&state.qd[source], 3, &given_qd_[target]);
+  }
+}
+
+SystemState Dynamics::state() const {
+  SystemState state{t_, std::vector<double>(3 * model_->bodies.size()), std::vector<double>(3 * model_->bodies.size())};
+  for (int p = 0; p < plan_->bodies; ++p) {
+    const std::size_t target = 3 * at(plan_->model_body[at(p)]), source = 3 * at(p);
+    const Vec2<double> origin = evaluator_.origin(p);
+    state.q[target] = q_[source] + origin.x;
+    state.q[target + 1] = q_[source + 1] + origin.y;
+    state.q[target + 2] = q_[source + 2];
+    std::copy_n(&qd_[source], 3, &state.qd[target]);
+  }
+  return state;
+}
+
+Report Dynamics::prepare(std::vector<std::string>& warnings) {
+  Report masses = equations_.use_masses();
+  if (!masses.ok()) return masses;
+  if (!(options_.tolerance >= least_tolerance) || !(options_.tolerance < 1)) {
+    masses.status = Status::refused;
+    masses.message =
+        fmt::format("tolerance {:.3g} cannot be met: double precision holds about {:.0e}; give {:.0e} ... 1",
+                    options_.tolerance, least_tolerance, least_tolerance);
+    return masses;
+  }
+  evaluator_.set_time(t_);
+  Assembler assembler(evaluator_);
+  AssemblyOutcome assembled = assembler.assemble(q_);
+  if (!assembled.ok()) return assembled;
+  if (assembled.moved > 1e-9 * evaluator_.length_scale()) {
+    warnings.push_back(
+        fmt::format("the given configuration did not meet the constraints: assembled first, bodies moved "
+                    "by {:.3g} m (RMS)",
+                    assembled.moved));
+  }
+  const VelocityOutcome velocities = find_initial_velocities(equations_, q_, given_qd_, qd_);
+  if (!velocities.ok()) return velocities;
+  if (velocities.changed > 1e-9) {
+    warnings.push_back(
+        fmt::format("the given velocities did not meet the constraints: changed by up to {:.3g} (body \"{}\")",
+                    velocities.changed, model_->body_name(velocities.changed_body)));
+  }
+  prepared_ = true;
+  return {};
+}
+
+double Dynamics::next_breakpoint(double t) const {
+  double next = std::numeric_limits<double>::infinity();
+  for (const auto& function : model_->functions) next = std::min(next, function.next_breakpoint(t));
+  return next;
+}
+
+Report Dynamics::check_functions(double last) const {
+  Report report;
+  for (const auto& function : model_->functions) {
+    const TimeRange domain = function.domain();
+    if (domain.first > t_ || domain.last < last) {
+      report.status = Status::refused;
+      report.message = fmt::format(
+          "a table of a function of time covers {:.12g} s ... {:.12g} s, the analysis {:.12g} s ... {:.12g} s",
+          domain.first, domain.last, t_, last);
+    }
+  }
+  return report;
+}
+
+Snapshot Dynamics::snapshot(double t, std::span<const double> y, const Needs& needs) const {
+  const std::size_t n = q_.size();
+  Snapshot s{.evaluator = evaluator_, .t = t, .q = y.first(n), .qd = y.subspan(n, n)};
+  if (needs.acceleration || needs.multipliers) s.qdd = std::span<const double>(slope_row_).subspan(n, n);
+  if (needs.multipliers) s.lambda = equations_.multipliers();
+  s.residual = row_residual_ * evaluator_.length_scale();
+  if (account_) {
+    const std::span<const double> work = y.subspan(2 * n);
+    s.work = EnergyAccount::supplied(work);
+    s.dissipated = EnergyAccount::dissipated(work);
+    s.driver_work = driver_work_;
+    s.initial_energy = initial_energy_;
+  }
+  return s;
+}
+
+Report Dynamics::give_row(double t, const Needs& needs, RowObserver& observer) {
+  Report report;
+  const std::size_t n = q_.size();
+  const std::span<double> y(y_row_);
+  if (t == integrator_->time()) {
+    std::copy(integrator_->state().begin(), integrator_->state().end(), y.begin());
+    row_residual_ = integrator_->position_residual();
+  } else {
+    integrator_->interpolate(t, y);
+    if (!equations_.factorize(t, Side::after, y.first(n))) return stuck();
+    row_residual_ = equations_.project_position(y.first(n), 4);
+    equations_.project_velocity(y.subspan(n, n), 0);
+  }
+  if (needs.acceleration || needs.multipliers) {
+    const std::span<double> slope(slope_row_);
+    if (!equations_.accelerations(t, Side::after, y.first(n), y.subspan(n, n), slope.subspan(n, n))) return stuck();
+  } else {
+    evaluator_.set_time(t);
+    evaluator_.set_configuration(y.first(n));
+  }
+  if (account_) account_->driver_work(y.subspan(2 * n), driver_work_);
+  if (!observer.observe(snapshot(t, y, needs))) {
+    report.status = Status::cancelled;
+    report.message = fmt::format("stopped at t = {:.12g} s; the rows so far are kept", t);
+  }
+  return report;
+}
+
+Report Dynamics::stuck() const {
+  Report report;
+  report.status = Status::step_too_small;
+  const int row = equations_.weakest_row();
+  std::string where;
+  if (integrator_->culprit() >= 0) {
+    where = fmt::format("the error of body \"{}\" cannot be kept small enough",
+                        model_->body_name(plan_->model_body[at(integrator_->culprit() / 3)]));
+  } else {
+    where = "accelerations are not finite or constraints cannot be kept";
+  }
+  std::string cause = "forces that grow without bound, or a motion that jumps";
+  if (plan_->rows > 0 && equations_.smallest_pivot_ratio() < 1e-6 && row >= 0) {
+    const int element = plan_->row_element[at(row)];
+    cause = fmt::format("a singular configuration: {} \"{}\" depends on other constraints there",
+                        model_->element_type(element), model_->element_name(element));
+  }
+  report.message =
+      fmt::format("no step can be made at t = {:.12g} s: {}; likely cause: {}", integrator_->time(), where, cause);
+  return report;
+}
+
+AnalysisReport Dynamics::run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
+  const ProcessTimer timer;
+  AnalysisReport report;
+  report.bodies = static_cast<int>(model_->bodies.size());
+  report.rows = plan_->rows;
+  report.islands = plan_->islands;
+  const auto end = [&](const Report& outcome) {
+    report.status = outcome.status;
+    report.message = outcome.message;
+    if (integrator_ && integrator_->low_order_steps() > 0) {
+      report.warnings.push_back(fmt::format("order 5 took over for {} steps where order 8 did not get ahead",
+                                            integrator_->low_order_steps()));
+    }
+    report.counters = evaluator_.counters;
+    report.seconds = timer.seconds();
+    return report;
+  };
+  if (grid.size() == 0) return end({});
+  if (const Report functions = check_functions(grid.last()); !functions.ok()) return end(functions);
+  if (!prepared_) {
+    if (const Report prepared = prepare(report.warnings); !prepared.ok()) return end(prepared);
+  }
+  account_.reset();
+  if (needs.work) account_.emplace(evaluator_);
+  driver_work_.assign(account_ ? model_->elements.size() : 0, 0.0);
+  const Motion motion(equations_, account_ ? &*account_ : nullptr);
+  integrator_.emplace(motion, RungeKuttaOptions{.order = options_.method == IntegrationMethod::rk5 ? 5 : 8,
+                                                .tolerance = step_part * options_.tolerance,
+                                                .fixed_step = options_.step,
+                                                .may_lower_order = options_.method != IntegrationMethod::rk8});
+  y_row_.assign(motion.size(), 0.0);
+  slope_row_.assign(motion.size(), 0.0);
+  std::copy(q_.begin(), q_.end(), y_row_.begin());
+  std::copy(qd_.begin(), qd_.end(), y_row_.begin() + static_cast<std::ptrdiff_t>(q_.size()));
+  if (!integrator_->start(t_, y_row_)) return end(stuck());
+  if (account_) initial_energy_ = total_energy(snapshot(t_, y_row_, {}));
+  std::int64_t row = 0;
+  Report outcome;
+  while (outcome.ok() && row < grid.size() && grid[row] <= t_) outcome = give_row(grid[row++], needs, observer);
+  while (outcome.ok() && row < grid.size()) {
+    const double limit = std::min(next_breakpoint(t_), grid.last());
+    outcome = move(limit, grid, row, needs, observer);
+  }
+  const std::span<const double> y = integrator_->state();
+  std::copy_n(y.begin(), q_.size(), q_.begin());
+  std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(q_.size()), q_.size(), qd_.begin());
+  evaluator_.set_time(t_);
+  evaluator_.set_configuration(q_);
+  return end(outcome);
+}
+
+// Steps to `limit`, giving the rows on the way.
+Report Dynamics::move(double limit, const TimeGrid& grid, std::int64_t& row, const Needs& needs,
+                      RowObserver& observer) {
+  while (t_ < limit) {
+    if (!integrator_->advance(limit)) return stuck();
+    t_ = integrator_->time();
+    if (t_ == limit && limit < grid.last()) {
+      // A function of time jumps here: the next step starts with what holds afterwards.
+      while (row < grid.size() && grid[row] < t_) {
+        if (const Report given = give_row(grid[row++], needs, observer); !given.ok()) return given;
+      }
+      std::copy(integrator_->state().begin(), integrator_->state().end(), y_row_.begin());
+      if (!equations_.factorize(t_, Side::after, std::span(y_row_).first(q_.size()))) return stuck();
+      equations_.project_velocity(std::span(y_row_).subspan(q_.size(), q_.size()), 0);
+      if (!integrator_->start(t_, y_row_)) return stuck();
+    }
+    while (row < grid.size() && grid[row] <= t_) {
+      if (const Report given = give_row(grid[row++], needs, observer); !given.ok()) return given;
+    }
+  }
+  return {};
+}
+
+}  // namespace catena

@@ -1,0 +1,66 @@
+// Forward dynamics: the motion that follows from forces, constraints and drivers (THEORY section 4).
+//
+// The start is assembled, its velocities made consistent; then an integrator steps through time, stopping where a
+// function of time has a breakpoint, and rows are interpolated between its steps and projected onto the constraints, so
+// that however many there are they do not shorten steps. Accelerations and multipliers of rows come from one solve at
+// the row, only if needed. Where no step can be made any more, the report says when and why; rows so far are kept.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "catena/analysis/analysis_report.hpp"
+#include "catena/analysis/assemble.hpp"
+#include "catena/analysis/dynamics_options.hpp"
+#include "catena/analysis/energy_account.hpp"
+#include "catena/analysis/equations_of_motion.hpp"
+#include "catena/analysis/integrators/runge_kutta.hpp"
+#include "catena/analysis/row_observer.hpp"
+#include "catena/analysis/system_state.hpp"
+#include "catena/analysis/time_grid.hpp"
+
+namespace catena {
+
+class Dynamics {
+ public:
+  explicit Dynamics(std::shared_ptr<const Model> model, const PlanOptions& plan_options = {},
+                    const DynamicsOptions& options = {});
+
+  const Plan& plan() const { return *plan_; }
+  Evaluator& evaluator() { return evaluator_; }
+
+  /// Starts from a state of an earlier analysis instead of the given configuration at t = 0.
+  void start_from(const SystemState& state);
+  /// Assembles and makes velocities consistent, if nothing did before, and goes through the grid.
+  AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
+
+  double time() const { return t_; }
+  std::span<const double> q() const { return q_; }
+  std::span<const double> qd() const { return qd_; }
+  /// The present state, absolute and in model order.
+  SystemState state() const;
+
+ private:
+  Report prepare(std::vector<std::string>& warnings);
+  Report check_functions(double last) const;
+  Report move(double limit, const TimeGrid& grid, std::int64_t& row, const Needs& needs, RowObserver& observer);
+  Report give_row(double t, const Needs& needs, RowObserver& observer);
+  Report stuck() const;
+  double next_breakpoint(double t) const;
+  Snapshot snapshot(double t, std::span<const double> y, const Needs& needs) const;
+
+  std::shared_ptr<const Model> model_;
+  std::shared_ptr<const Plan> plan_;
+  DynamicsOptions options_;
+  Evaluator evaluator_;
+  EquationsOfMotion equations_;
+  std::optional<EnergyAccount> account_;
+  std::optional<RungeKutta> integrator_;
+  bool prepared_ = false, has_given_velocities_ = false;
+  double t_ = 0, initial_energy_ = 0;
+  std::vector<double> q_, qd_, given_qd_, driver_work_;
+  std::vector<double> y_row_, slope_row_;
+  double row_residual_ = 0;
+};
+
+}  // namespace catena

@@ -1,0 +1,40 @@
+// Where the energy goes: integrals of power that are integrated along with the motion, when somebody asks for them.
+//
+//   dissipated   of dampers
+//   loads        work of the applied loads that have no potential: functions of time, follower forces
+//   driver k     -lambda nu of its row, THEORY's load x dc/dt
+//
+// The balance T + V - (T0 + V0) - (loads + drivers) + dissipated is zero but for the error of integration. Units: J, W.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "catena/assembly/evaluate.hpp"
+
+namespace catena {
+
+class EnergyAccount {
+ public:
+  explicit EnergyAccount(Evaluator& evaluator);
+
+  std::size_t size() const { return 2 + drivers_.size(); }
+  /// The powers at the evaluator's configuration; lambda: multipliers of the solver's rows there.
+  void powers(std::span<const double> qd, std::span<const double> lambda, std::span<double> out);
+
+  static double dissipated(std::span<const double> work) { return work[0]; }
+  /// Of loads and drivers together.
+  static double supplied(std::span<const double> work);
+  /// Scatters the drivers' work to `by_element`, which has one entry an element of the model.
+  void driver_work(std::span<const double> work, std::span<double> by_element) const;
+
+ private:
+  Evaluator& evaluator_;
+  struct Driver {
+    int element, row;
+  };
+  std::vector<Driver> drivers_;
+  std::vector<double> nu_;
+};
+
+}  // namespace catena

@@ -1,0 +1,101 @@
+#include "catena/analysis/equations_of_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "catena/analysis/scaling.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+}  // namespace
+
+EquationsOfMotion::EquationsOfMotion(Evaluator& evaluator)
+    : evaluator_(evaluator), plan_(evaluator.plan()), system_(evaluator.shared_plan()) {
+  const std::size_t rows = at(plan_.rows), coordinates = at(plan_.coordinates());
+  jacobian_.resize(at(plan_.trash_slot()) + 1);
+  evaluator_.start_jacobian(jacobian_);
+  gamma_.resize(rows);
+  lambda_.resize(rows);
+  residual_.resize(rows);
+  multipliers_.resize(rows);
+  loads_.resize(coordinates);
+  change_.resize(at(3 * plan_.moving));
+}
+
+Report EquationsOfMotion::use_masses() {
+  const Report report = masses_.load(evaluator_.model(), plan_);
+  if (report.ok()) system_.set_inverse_masses(masses_.inverse);
+  factored_ = false;
+  return report;
+}
+
+bool EquationsOfMotion::evaluate_jacobian(double t, Side side, std::span<const double> q) {
+  evaluator_.set_time(t, side);
+  evaluator_.set_configuration(q);
+  if (plan_.rows == 0 || (factored_ && plan_.constant_jacobian)) return true;
+  evaluator_.jacobian(jacobian_);
+  factored_ = system_.factorize(jacobian_, evaluator_.counters);
+  return factored_;
+}
+
+bool EquationsOfMotion::factorize(double t, Side side, std::span<const double> q) {
+  return evaluate_jacobian(t, side, q);
+}
+
+bool EquationsOfMotion::accelerations(double t, Side side, std::span<const double> q, std::span<const double> qd,
+                                      std::span<double> qdd) {
+  if (!evaluate_jacobian(t, side, q)) return false;
+  evaluator_.applied_forces(qd, loads_);
+  if (plan_.rows > 0) evaluator_.gamma(qd, gamma_);
+  system_.solve_motion(loads_, gamma_, qdd, lambda_, evaluator_.counters);
+  double sum = 0;
+  for (std::size_t c = 0; c < change_.size(); ++c) sum += qdd[c];
+  return std::isfinite(sum);
+}
+
+double EquationsOfMotion::project_position(std::span<double> q, int max_iterations) {
+  if (plan_.rows == 0) return 0;
+  double before = std::numeric_limits<double>::infinity();
+  for (int k = 0;; ++k) {
+    evaluator_.set_configuration(q);
+    evaluator_.phi(residual_);
+    const double size = row_norm(plan_, residual_, evaluator_.length_scale());
+    // Stop at rounding, when nothing is gained any more, or when the residual is NaN.
+    if (!(size > position_rounding) || k == max_iterations || size > 0.5 * before) return size;
+    before = size;
+    system_.least_change(residual_, change_, multipliers_, evaluator_.counters);
+    for (std::size_t c = 0; c < change_.size(); ++c) q[c] -= change_[c];
+  }
+}
+
+double EquationsOfMotion::project_velocity(std::span<double> qd, double rate) {
+  if (plan_.rows == 0) return 0;
+  // The factors are those of a point nearby; the Jacobian must be the true one.
+  if (!plan_.constant_jacobian) evaluator_.jacobian(jacobian_);
+  double first = 0;
+  for (int k = 0; k < 3; ++k) {
+    evaluator_.nu(residual_);
+    for (double& value : residual_) value = -value;
+    system_.multiply_add(qd, residual_);
+    const double size = row_norm(plan_, residual_, evaluator_.length_scale());
+    if (k == 0) first = size;
+    if (!(size > position_rounding * rate) || k == 2) break;
+    system_.least_change(residual_, change_, multipliers_, evaluator_.counters);
+    for (std::size_t c = 0; c < change_.size(); ++c) qd[c] -= change_[c];
+  }
+  return first;
+}
+
+void EquationsOfMotion::remove_forbidden(std::span<double> x) {
+  if (plan_.rows == 0) return;
+  std::fill(residual_.begin(), residual_.end(), 0.0);
+  system_.multiply_add(x, residual_);
+  system_.least_change_rough(residual_, change_, multipliers_, evaluator_.counters);
+  for (std::size_t c = 0; c < change_.size(); ++c) x[c] -= change_[c];
+}
+
+}  // namespace catena

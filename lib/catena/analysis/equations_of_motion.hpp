@@ -1,0 +1,66 @@
+// The equations of motion of a mechanism as a right-hand side: accelerations from positions and velocities, and the
+// projections that keep both on the constraints (THEORY section 4).
+//
+//   accelerations   [M, Phi_q^T; Phi_q, 0] [qdd; lambda] = [Q; gamma]
+//   positions       q -= M^-1 Phi_q^T S^-1 Phi(q), repeated with the factors at hand until Phi is rounding
+//   velocities      qd -= M^-1 Phi_q^T S^-1 (Phi_q qd - nu): the least change in the mass metric
+//
+// Vectors have plan.coordinates() entries, three a body in plan order, of which those of moving bodies are written.
+// Nothing here allocates after the first call of accelerations().
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "catena/analysis/mass_matrix.hpp"
+#include "catena/assembly/evaluate.hpp"
+#include "catena/assembly/schur_system.hpp"
+#include "catena/base/status.hpp"
+
+namespace catena {
+
+class EquationsOfMotion {
+ public:
+  explicit EquationsOfMotion(Evaluator& evaluator);
+
+  /// Takes over the masses, or says which body lacks what.
+  Report use_masses();
+
+  /// qdd at (t, q, qd); `side` where a function of time jumps at t. False: something is not finite.
+  bool accelerations(double t, Side side, std::span<const double> q, std::span<const double> qd, std::span<double> qdd);
+  /// Multipliers of the solver's rows at the last accelerations().
+  std::span<const double> multipliers() const { return lambda_; }
+
+  // The rest uses the factors, the configuration and the time of the last accelerations() or factorize().
+
+  /// Factors at (t, q) without computing accelerations.
+  bool factorize(double t, Side side, std::span<const double> q);
+  /// Moves q onto the constraints. Returns the largest residual left, in length scales or rad.
+  double project_position(std::span<double> q, int max_iterations);
+  /// Changes qd to what the constraints allow at the configuration that project_position() left, until the residual is
+  /// rounding compared with the velocities `rate` (1/s), at most twice. Returns the residual of qd as it was.
+  double project_velocity(std::span<double> qd, double rate);
+  /// Removes from x the part that the constraints do not allow, roughly: for estimates of errors.
+  void remove_forbidden(std::span<double> x);
+  /// See SchurSystem: near zero where constraints depend on each other.
+  double smallest_pivot_ratio() const { return plan_.rows > 0 ? system_.smallest_pivot_ratio() : 1; }
+  int weakest_row() const { return system_.weakest_row(); }
+
+  Evaluator& evaluator() { return evaluator_; }
+  const Plan& plan() const { return plan_; }
+  const MassMatrix& masses() const { return masses_; }
+  /// Positions beyond this cannot be told from rounding; in length scales or rad.
+  static constexpr double position_rounding = 1e-15;
+
+ private:
+  bool evaluate_jacobian(double t, Side side, std::span<const double> q);
+
+  Evaluator& evaluator_;
+  const Plan& plan_;
+  MassMatrix masses_;
+  SchurSystem system_;
+  bool factored_ = false;
+  std::vector<double> jacobian_, gamma_, lambda_, loads_, residual_, multipliers_, change_;
+};
+
+}  // namespace catena

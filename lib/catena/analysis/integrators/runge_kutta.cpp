@@ -1,0 +1,220 @@
+#include "catena/analysis/integrators/runge_kutta.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace catena {
+namespace {
+
+constexpr double safety = 0.9;
+constexpr double largest_growth = 5, largest_cut = 0.2;
+// Ends of steps are kept away from positions where a pivot ratio falls below this; what is tried instead of h.
+constexpr double singular_end = 1e-7;
+constexpr double other_steps[] = {0.8, 0.6, 1.15, 0.4};
+// A filtered error is believed as long as its second-order part, 10 raw^2 tolerance, is below it.
+constexpr double filter_guard = 10;
+constexpr int rejections_before_low_order = 8, low_order_run = 30;
+constexpr int most_rejections = 100;
+constexpr double smallest_step = 1e-13;    // part of |t| and of the time scale
+constexpr double largest_residual = 1e-6;  // of positions after their projection, in length scales or rad
+
+}  // namespace
+
+RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options) : motion_(motion), options_(options) {
+  const std::size_t size = motion_.size();
+  for (std::vector<double>* y : {&y_, &y_before_, &y_new_, &y_stage_, &slope_, &slope_new_}) y->assign(size, 0.0);
+  stage_.assign(16, std::vector<double>(size, 0.0));
+  error_.resize(2 * motion_.coordinates());
+  error_low_.resize(2 * motion_.coordinates());
+  scale_.tolerance = options.tolerance;
+  scale_.length = motion_.equations().evaluator().length_scale();
+}
+
+bool RungeKutta::start(double t, std::span<const double> y) {
+  t_ = t_before_ = t;
+  std::copy(y.begin(), y.end(), y_.begin());
+  if (!motion_.derivative(t_, Side::after, y_, slope_)) return false;
+  observe_rates();
+  if (h_ == 0) {
+    const double part = 0.2 * std::pow(options_.tolerance, 1.0 / options_.order);
+    h_ = scale_.rate > 0 ? part / scale_.rate : std::numeric_limits<double>::max();
+  }
+  return true;
+}
+
+void RungeKutta::observe_rates() {
+  const std::span<const double> y(y_), k(slope_);
+  scale_.observe(motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()));
+}
+
+void RungeKutta::combine(const StageSum& sum, double h, const double* from, std::span<double> out) const {
+  constexpr std::size_t block = 256;  // stays in the first cache while all stages are added
+  for (std::size_t begin = 0; begin < out.size(); begin += block) {
+    const std::size_t end = std::min(begin + block, out.size());
+    for (std::size_t i = begin; i < end; ++i) out[i] = from ? from[i] : 0;
+    for (const StageTerm& term : sum) {
+      const double weight = h * term.weight;
+      const double* k = stage_[static_cast<std::size_t>(term.stage)].data();
+      for (std::size_t i = begin; i < end; ++i) out[i] += weight * k[i];
+    }
+  }
+}
+
+bool RungeKutta::evaluate_stages(double h) {
+  const Tableau& table = tableau();
+  for (std::size_t s = 1; s < static_cast<std::size_t>(table.stages); ++s) {
+    combine(table.a[s], h, y_.data(), y_stage_);
+    const bool at_end = table.c[s] == 1;
+    if (!motion_.derivative(t_ + table.c[s] * h, at_end ? Side::before : Side::after, y_stage_, stage_[s]))
+      return false;
+  }
+  combine(table.b, h, y_.data(), y_new_);
+  combine(table.error, 1, nullptr, error_);
+  if (table.order == 8) combine(table.error_low, 1, nullptr, error_low_);
+  return true;
+}
+
+// Factors at the new point, before it is projected: order 5 had its last stage there.
+bool RungeKutta::factorize_new_point(double h) {
+  return tableau().order == 5 ||
+         motion_.equations().factorize(t_ + h, Side::before, motion_.q(std::span<const double>(y_new_)));
+}
+
+double RungeKutta::error_size(double h) {
+  const std::size_t moving = motion_.moving(), offset = motion_.coordinates();
+  const double* v = motion_.qd(std::span<const double>(y_)).data();
+  const bool two = tableau().order == 8;
+  double high = 0, low = 0, largest = -1;
+  for (std::size_t c = 0; c < moving; ++c) {
+    const double unit = scale_.tolerance * (c % 3 == 2 ? 1 : scale_.length);
+    const double q_scale = 1 / unit, v_scale = 1 / (scale_.rate * unit + scale_.tolerance * std::abs(v[c]));
+    const double q_error = error_[c] * q_scale, v_error = error_[offset + c] * v_scale;
+    const double size = q_error * q_error + v_error * v_error;
+    high += size;
+    if (size > largest) {
+      largest = size;
+      culprit_ = static_cast<int>(c);
+    }
+    if (!two) continue;
+    const double q_low = error_low_[c] * q_scale, v_low = error_low_[offset + c] * v_scale;
+    low += q_low * q_low + v_low * v_low;
+  }
+  const double count = 2.0 * static_cast<double>(std::max<std::size_t>(moving, 1));
+  if (!two) return std::abs(h) * std::sqrt(high / count);
+  const double denominator = high + 0.01 * low;
+  return denominator > 0 ? std::abs(h) * high / std::sqrt(denominator * count) : 0 * high;
+}
+
+// The error without what the projection at the step's end will remove.
+double RungeKutta::filtered_error(double h, double raw) {
+  const std::size_t moving = motion_.moving(), offset = motion_.coordinates();
+  EquationsOfMotion& equations = motion_.equations();
+  for (std::vector<double>* error : {&error_, &error_low_}) {
+    if (error == &error_low_ && tableau().order == 5) break;
+    equations.remove_forbidden(std::span(*error).first(moving));
+    equations.remove_forbidden(std::span(*error).subspan(offset, moving));
+  }
+  return std::min(raw, std::max(error_size(h), filter_guard * raw * raw * scale_.tolerance));
+}
+
+// Projects the new point and evaluates it; the stages stay as they are for the interpolant.
+bool RungeKutta::finish_step(double h) {
+  EquationsOfMotion& equations = motion_.equations();
+  position_residual_ = equations.project_position(motion_.q(std::span(y_new_)), 4);
+  if (!(position_residual_ < largest_residual)) return false;
+  equations.project_velocity(motion_.qd(std::span(y_new_)), scale_.rate);
+  return motion_.derivative(t_ + h, Side::before, y_new_, slope_new_);
+}
+
+// Chooses the next step after a rejection; order 5 gets its turn when order 8 does not get ahead.
+void RungeKutta::reject(double h) {
+  ++motion_.equations().evaluator().counters.rejected;
+  h_ = h;
+  if (++rejections_ % rejections_before_low_order == 0 && options_.order == 8 && options_.may_lower_order) {
+    low_order_left_ = low_order_run;
+  }
+}
+
+bool RungeKutta::advance(double limit) {
+  const bool fixed = options_.fixed_step > 0;
+  const double smallest = smallest_step * std::max(std::abs(t_), scale_.rate > 0 ? 1 / scale_.rate : 0.0);
+  double proposed = fixed ? options_.fixed_step : h_;
+  double undisturbed = 0;
+  int detours = 0;
+  rejections_ = 0;
+  stage_[0] = slope_;
+  interpolant_ready_ = false;
+  h_ = proposed;
+  while (true) {
+    const double remaining = limit - t_;
+    const bool lands = h_ * (fixed ? 1 + 1e-9 : 1.01) >= remaining;
+    // Two equal steps instead of a long one and a tiny one.
+    double h = lands ? remaining : h_;
+    if (!lands && !fixed && detours == 0 && 2 * h > remaining) h = remaining / 2;
+    if ((h < smallest && !lands) || rejections_ > most_rejections) return false;
+    if (!evaluate_stages(h)) {
+      culprit_ = -1;
+      if (fixed) return false;
+      reject(h / 4);
+      continue;
+    }
+    double error = fixed ? 0 : error_size(h);
+    bool factored = false;
+    if (!(error <= 1) && std::isfinite(error)) {
+      factored = factorize_new_point(h);
+      if (factored) error = filtered_error(h, error);
+    }
+    if (!std::isfinite(error)) error = 1e10;
+    const double growth =
+        std::clamp(safety * std::pow(std::max(error, 1e-10), -1.0 / tableau().order), largest_cut, largest_growth);
+    if (error > 1) {
+      reject(h * std::min(growth, 1.0));
+      continue;
+    }
+    if (!factored && !factorize_new_point(h)) {
+      if (fixed) return false;
+      reject(h / 4);
+      continue;
+    }
+    const double ratio = motion_.equations().smallest_pivot_ratio();
+    if (ratio > 10 * singular_end) passing_singular_ = false;
+    if (ratio < singular_end && !passing_singular_ && !lands && !fixed) {
+      if (detours < static_cast<int>(std::size(other_steps))) {
+        if (detours == 0) undisturbed = h;
+        ++motion_.equations().evaluator().counters.rejected;
+        h_ = undisturbed * other_steps[detours++];
+        continue;
+      }
+      passing_singular_ = true;
+    }
+    if (!finish_step(h)) {
+      culprit_ = -1;
+      if (fixed) return false;
+      reject(h / 4);
+      continue;
+    }
+    accept(lands ? limit : t_ + h, growth, std::max(proposed, h));
+    return true;
+  }
+}
+
+void RungeKutta::accept(double t, double growth, double proposed) {
+  const double h = t - t_;
+  ++motion_.equations().evaluator().counters.steps;
+  step_was_low_order_ = tableau().order == 5;
+  if (low_order_left_ > 0) {
+    --low_order_left_;
+    ++low_order_steps_;
+  }
+  t_before_ = t_;
+  t_ = t;
+  y_before_.swap(y_);
+  y_.swap(y_new_);
+  slope_.swap(slope_new_);
+  observe_rates();
+  // A step that was cut short by a limit says nothing against the longer one.
+  h_ = rejections_ > 0 ? h * std::min(growth, 1.0) : std::max(h * growth, h < proposed ? proposed : 0.0);
+}
+
+}  // namespace catena

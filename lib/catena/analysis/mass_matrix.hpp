@@ -1,0 +1,24 @@
+// The mass matrix M = diag(m, m, J) of the bodies that are solved for, and what may be missing in it.
+//
+// A particle needs no inertia: its angle does not move. mass: 0 or inertia: 0 is a massless coordinate, which the
+// equations of motion must determine otherwise; a mass or inertia that is not given is refused. Units: kg, kg m^2.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "catena/assembly/plan.hpp"
+#include "catena/base/status.hpp"
+
+namespace catena {
+
+struct MassMatrix {
+  std::vector<double> mass;     ///< by coordinate, 3 plan.moving; of a particle's angle: zero
+  std::vector<double> inverse;  ///< zero where the mass is
+  std::vector<int> massless;    ///< coordinates that can move and have no mass
+
+  /// Takes the masses from the model, or says of which body something is missing.
+  Report load(const Model& model, const Plan& plan);
+};
+
+}  // namespace catena

@@ -1,0 +1,224 @@
+#include "catena/assembly/schur_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+constexpr double regularisation = 1e-12;   // part of the diagonal that is added
+constexpr double singular_ratio = 1e-10;   // below this pivot ratio it is
+constexpr double refinement_ratio = 1e-5;  // below this one solutions are refined
+
+}  // namespace
+
+SchurSystem::SchurSystem(std::shared_ptr<const Plan> plan) : plan_(std::move(plan)) {
+  const SparsePattern& a = plan_->jacobian;
+  const std::size_t coordinates = at(3 * plan_->moving);
+  inverse_masses_.assign(coordinates, 1.0);
+  change_.resize(coordinates);
+  right_hand_side_.resize(at(plan_->rows));
+  correction_.resize(at(plan_->rows));
+  column_start_.assign(coordinates + 1, 0);
+  for (std::size_t k = 0, c = 0; k < coordinates; ++k) {
+    if (plan_->column[k] >= 0) c = at(plan_->column[k]) + 1;
+    column_start_[k + 1] = a.column_start[c];
+  }
+}
+
+void SchurSystem::set_inverse_masses(std::span<const double> inverse_masses) {
+  std::copy(inverse_masses.begin(), inverse_masses.end(), inverse_masses_.begin());
+  constants_known_ = false;
+}
+
+bool SchurSystem::analyze(Counters& counters) {
+  const Plan& plan = *plan_;
+  const SparsePattern& a = plan.jacobian;
+  std::vector<char> varies(at(a.entries()) + 1, 0);
+  for_each_list(plan.blocks, [&](const auto& block, int) {
+    for (int slot : block.slot) varies[at(slot)] = 1;
+  });
+  for (int k = 0; k < 3 * plan.moving; ++k) {
+    const Column column{k, column_start_[at(k)], column_start_[at(k) + 1]};
+    if (column.first == column.last) continue;
+    const bool any = std::any_of(varies.begin() + column.first, varies.begin() + column.last, [](char v) { return v; });
+    (any ? varying_ : constant_).push_back(column);
+  }
+  // The pattern of S in the plan's rows, for the order; then again, permuted, with the slot of every product.
+  std::vector<MatrixEntry> entries;
+  for (int r = 0; r < plan.rows; ++r) entries.push_back({r, r});
+  const auto products = [&](const std::vector<Column>& columns) {
+    for (const Column& column : columns) {
+      for (int x = column.first; x < column.last; ++x) {
+        for (int y = column.first; y <= x; ++y) entries.push_back({a.row_index[at(x)], a.row_index[at(y)]});
+      }
+    }
+  };
+  products(varying_);
+  const std::size_t first_constant = entries.size();
+  products(constant_);
+  ++counters.symbolic;
+  if (!kernel_.analyze(build_pattern(plan.rows, plan.rows, entries).pattern, {.form = SymmetricForm::ldl}).ok()) {
+    return false;
+  }
+  std::vector<int> place(at(plan.rows));
+  for (int k = 0; k < plan.rows; ++k) place[at(kernel_.order()[at(k)])] = k;
+  for (MatrixEntry& entry : entries) {
+    const auto [first, last] = std::minmax(place[at(entry.row)], place[at(entry.column)]);
+    entry = {first, last};
+  }
+  SlottedPattern built = build_pattern(plan.rows, plan.rows, entries);
+  upper_ = std::move(built.pattern);
+  diagonal_.resize(at(plan.rows));
+  for (int r = 0; r < plan.rows; ++r) diagonal_[at(place[at(r)])] = built.slot[at(r)];
+  varying_slot_.assign(built.slot.begin() + plan.rows,
+                       built.slot.begin() + static_cast<std::ptrdiff_t>(first_constant));
+  constant_slot_.assign(built.slot.begin() + static_cast<std::ptrdiff_t>(first_constant), built.slot.end());
+  values_.resize(upper_.row_index.size());
+  constant_values_.resize(values_.size());
+  diagonal_values_.resize(at(plan.rows));
+  analyzed_ = true;
+  return true;
+}
+
+void SchurSystem::assemble(std::span<const Column> columns, const int* slot, std::span<double> values) const {
+  const double* jacobian = jacobian_.data();
+  for (const Column& column : columns) {
+    const double inverse_mass = inverse_masses_[at(column.coordinate)];
+    for (int x = column.first; x < column.last; ++x) {
+      const double factor = inverse_mass * jacobian[x];
+      for (int y = column.first; y <= x; ++y) values[at(*slot++)] += factor * jacobian[y];
+    }
+  }
+}
+
+bool SchurSystem::factor_values(Counters& counters) {
+  ++counters.factorizations;
+  const FactorResult result = kernel_.factor(upper_, values_, 0);
+  smallest_ratio_ = 1;
+  weakest_row_ = -1;
+  if (!result.ok()) {
+    smallest_ratio_ = 0;
+    weakest_row_ = result.index >= 0 ? kernel_.order()[at(result.index)] : -1;
+    return result.status == FactorStatus::singular;
+  }
+  const double* pivot = kernel_.pivots().data();
+  int weakest = 0;
+  double smallest = 2;
+  for (std::size_t k = 0; k < diagonal_values_.size(); ++k) {
+    const double ratio = pivot[k] / diagonal_values_[k];
+    if (ratio < smallest) {
+      smallest = ratio;
+      weakest = static_cast<int>(k);
+    }
+  }
+  smallest_ratio_ = std::max(smallest, 0.0);
+  weakest_row_ = kernel_.order()[at(weakest)];
+  return true;
+}
+
+bool SchurSystem::factorize(std::span<const double> jacobian, Counters& counters) {
+  jacobian_ = jacobian;
+  if (plan_->rows == 0) return true;
+  if (!analyzed_ && !analyze(counters)) return false;
+  if (!constants_known_) {
+    std::fill(constant_values_.begin(), constant_values_.end(), 0.0);
+    assemble(constant_, constant_slot_.data(), constant_values_);
+    constants_known_ = true;
+  }
+  std::copy(constant_values_.begin(), constant_values_.end(), values_.begin());
+  assemble(varying_, varying_slot_.data(), values_);
+  for (std::size_t k = 0; k < diagonal_.size(); ++k) {
+    double& value = values_[at(diagonal_[k])];
+    // A row that touches nothing that can move must not stop the others.
+    if (value == 0) value = 1;
+    diagonal_values_[k] = value;
+  }
+  const auto regularise = [&] {
+    for (std::size_t k = 0; k < diagonal_.size(); ++k) {
+      values_[at(diagonal_[k])] = (1 + regularisation) * diagonal_values_[k];
+    }
+  };
+  // Where rows depended on each other the last time they probably still do.
+  if (regularised_) regularise();
+  if (!factor_values(counters)) return false;
+  if (smallest_ratio_ < singular_ratio && !regularised_) {
+    regularise();
+    regularised_ = true;
+    return factor_values(counters) && smallest_ratio_ > 0;
+  }
+  regularised_ = smallest_ratio_ < singular_ratio || (regularised_ && smallest_ratio_ < 10 * singular_ratio);
+  return true;
+}
+
+void SchurSystem::multiply_add(std::span<const double> x, std::span<double> out) const {
+  const double* jacobian = jacobian_.data();
+  const int* row = plan_->jacobian.row_index.data();
+  for (std::size_t c = 0; c + 1 < column_start_.size(); ++c) {
+    const double factor = x[c];
+    for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) out[at(row[k])] += jacobian[k] * factor;
+  }
+}
+
+void SchurSystem::spread(std::span<const double> lambda, std::span<double> x) const {
+  const double* jacobian = jacobian_.data();
+  const int* row = plan_->jacobian.row_index.data();
+  for (std::size_t c = 0; c + 1 < column_start_.size(); ++c) {
+    double sum = 0;
+    for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) sum += jacobian[k] * lambda[at(row[k])];
+    x[c] = inverse_masses_[c] * sum;
+  }
+}
+
+void SchurSystem::solve(std::span<double> x, Counters& counters) {
+  ++counters.solves;
+  kernel_.solve(x);
+}
+
+void SchurSystem::solve_refined(std::span<double> lambda, std::span<const double> b, Counters& counters) {
+  solve(lambda, counters);
+  if (smallest_ratio_ >= refinement_ratio) return;
+  spread(lambda, change_);
+  std::fill(correction_.begin(), correction_.end(), 0.0);
+  multiply_add(change_, correction_);
+  for (std::size_t k = 0; k < correction_.size(); ++k) correction_[k] = b[k] - correction_[k];
+  solve(correction_, counters);
+  for (std::size_t k = 0; k < correction_.size(); ++k) lambda[k] += correction_[k];
+}
+
+void SchurSystem::solve_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
+                               std::span<double> lambda, Counters& counters) {
+  const std::size_t coordinates = inverse_masses_.size();
+  for (std::size_t c = 0; c < coordinates; ++c) qdd[c] = inverse_masses_[c] * Q[c];
+  if (plan_->rows == 0) return;
+  for (std::size_t k = 0; k < right_hand_side_.size(); ++k) right_hand_side_[k] = -gamma[k];
+  multiply_add(qdd, right_hand_side_);
+  std::copy(right_hand_side_.begin(), right_hand_side_.end(), lambda.begin());
+  solve_refined(lambda, right_hand_side_, counters);
+  const double* jacobian = jacobian_.data();
+  const int* row = plan_->jacobian.row_index.data();
+  for (std::size_t c = 0; c < coordinates; ++c) {
+    double sum = 0;
+    for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) sum += jacobian[k] * lambda[at(row[k])];
+    qdd[c] -= inverse_masses_[c] * sum;
+  }
+}
+
+void SchurSystem::least_change(std::span<const double> b, std::span<double> x, std::span<double> lambda,
+                               Counters& counters) {
+  std::copy(b.begin(), b.end(), lambda.begin());
+  std::copy(b.begin(), b.end(), right_hand_side_.begin());
+  solve_refined(lambda, right_hand_side_, counters);
+  spread(lambda, x);
+}
+
+void SchurSystem::least_change_rough(std::span<const double> b, std::span<double> x, std::span<double> lambda,
+                                     Counters& counters) {
+  std::copy(b.begin(), b.end(), lambda.begin());
+  solve(lambda, counters);
+  spread(lambda, x);
+}
+
+}  // namespace catena

@@ -1,0 +1,83 @@
+// The equations of motion by the Schur complement of the constraints, for bodies that all have mass:
+//
+//   [M, Phi_q^T; Phi_q, 0] [qdd; lambda] = [Q; gamma]
+//   S lambda = Phi_q M^-1 Q - gamma        qdd = M^-1 (Q - Phi_q^T lambda)        S = Phi_q M^-1 Phi_q^T
+//
+// and the least change, in the mass metric, that constraints ask for: x = M^-1 Phi_q^T S^-1 b. M is diagonal, so that S
+// is assembled column by column of Phi_q straight into the permuted triangle that CHOLMOD reads; products of constant
+// columns are formed once. Vectors are in coordinates: three a moving body.
+//
+// Singular case: rows that depend on each other make S singular. As soon as a pivot keeps less than 1e-10 of its
+// diagonal, 1e-12 of the diagonal is added and solutions are refined with the true S: accelerations are then exact,
+// multipliers one of many. Source: NUMERICS (singular passages); Nothing allocates after the first factorization.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "catena/assembly/plan.hpp"
+#include "catena/base/counters.hpp"
+#include "catena/linalg/cholmod_kernel.hpp"
+
+namespace catena {
+
+class SchurSystem {
+ public:
+  explicit SchurSystem(std::shared_ptr<const Plan> plan);
+
+  /// Inverse masses by coordinate, size 3 plan.moving; zero holds a coordinate where it is.
+  void set_inverse_masses(std::span<const double> inverse_masses);
+
+  /// Factors S at the given values of Phi_q (size entries + 1); they must stay where they are for the solves.
+  /// False if that is impossible: a value that is not finite.
+  bool factorize(std::span<const double> jacobian, Counters& counters);
+
+  /// qdd and lambda from Q and gamma. Sizes: coordinates (Q, qdd), rows (gamma, lambda). `lambda` may be `gamma`.
+  void solve_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
+                    std::span<double> lambda, Counters& counters);
+
+  /// The least x, in the mass metric, with Phi_q x = b. Sizes: rows (b, lambda), coordinates (x).
+  void least_change(std::span<const double> b, std::span<double> x, std::span<double> lambda, Counters& counters);
+
+  /// The same without refinement: good to the last digits where rows are independent, to 1e-12 / sin^2 elsewhere.
+  void least_change_rough(std::span<const double> b, std::span<double> x, std::span<double> lambda, Counters& counters);
+
+  /// out += Phi_q x.
+  void multiply_add(std::span<const double> x, std::span<double> out) const;
+
+  /// Smallest part of a diagonal entry of S that elimination left: sin^2 of the angle between a row and those before.
+  double smallest_pivot_ratio() const { return smallest_ratio_; }
+  int weakest_row() const { return weakest_row_; }
+  bool is_regularised() const { return regularised_; }
+
+ private:
+  struct Column {
+    int coordinate;
+    int first, last;  // entries of Phi_q
+  };
+  bool analyze(Counters& counters);
+  void assemble(std::span<const Column> columns, const int* slot, std::span<double> values) const;
+  bool factor_values(Counters& counters);
+  void solve(std::span<double> x, Counters& counters);
+  /// x = M^-1 Phi_q^T lambda.
+  void spread(std::span<const double> lambda, std::span<double> x) const;
+  void solve_refined(std::span<double> lambda, std::span<const double> b, Counters& counters);
+
+  std::shared_ptr<const Plan> plan_;
+  std::vector<double> inverse_masses_;
+  std::span<const double> jacobian_;
+  std::vector<int> column_start_;  // of Phi_q, by coordinate
+  std::vector<Column> varying_, constant_;
+  std::vector<int> varying_slot_, constant_slot_;  // of the products of each column, into values_
+  std::vector<int> diagonal_;                      // by place
+  SparsePattern upper_;                            // of S permuted
+  std::vector<double> constant_values_, values_, diagonal_values_;
+  std::vector<double> right_hand_side_, correction_, change_;
+  CholmodKernel kernel_;
+  bool analyzed_ = false, constants_known_ = false, regularised_ = false;
+  double smallest_ratio_ = 1;
+  int weakest_row_ = -1;
+};
+
+}  // namespace catena
