@@ -56,6 +56,23 @@ TEST(ColumnValues, ScalarConstraintsMeasureWhatTheirValuePrescribes) {
   EXPECT_NEAR(m.value("absolute_angle#1.value"), m.value("tool.angle"), 1e-15);
 }
 
+TEST(ColumnValues, SlidesAreMeasuredAlongTheAxisOfI) {
+  TwoBodies m;
+  m.model.add("L", Translational<double>{{0.1, 0.0}, {0.0, 0.2}, {3.0, 4.0}, {}}, 0, 1);
+  m.model.add("E", Displacement<double>{{0.1, 0.0}, {0.0, 0.2}, {3.0, 4.0}}, 0, 1);
+  m.model.add_point(0, "P", {0.1, 0.0});
+  m.model.add_point(1, "P", {0.0, 0.2});
+  m.lambda.clear();
+  m.make_plan();
+  const double angle = m.value("crank.angle"), x = 0.6 * std::cos(angle) - 0.8 * std::sin(angle),
+               y = 0.6 * std::sin(angle) + 0.8 * std::cos(angle);
+  const double along =
+      x * (m.value("rod.P.x") - m.value("crank.P.x")) + y * (m.value("rod.P.y") - m.value("crank.P.y"));
+  EXPECT_NEAR(m.value("L.slide"), along, 1e-14);
+  EXPECT_NEAR(m.value("E.slide"), m.value("E.value"), 1e-14);
+  EXPECT_NEAR(m.value("L.slide_rate"), m.slope("L.slide"), 1e-9);
+}
+
 TEST(ColumnValues, EnergiesAndMomentaAreSumsOverTheBodies) {
   TwoBodies m;
   // Points at the centroids say what the sums must be.

@@ -102,6 +102,47 @@ TEST(Reaction, DriverLoadPushesTheValueUp) {
   EXPECT_EQ(m.value("reach.work"), 12);
 }
 
+TEST(Reaction, OfGearsIsAForceAtThePitchPoint) {
+  // Centres at the right distance on a slanted line, gears turned anyhow: the teeth push across that line, there alone.
+  for (const bool internal : {false, true}) {
+    for (const double radius_j : {0.2, 0.5}) {
+      const double distance = internal ? std::abs(0.3 - radius_j) : 0.3 + radius_j;
+      const Vec2<double> along{std::cos(0.7), std::sin(0.7)};
+      Model model;
+      model.add_body("a", BodyValues{.position = {1.0, 2.0}, .angle = 0.3});
+      model.add_body("b", BodyValues{.position = Vec2<double>{1.0, 2.0} + distance * along, .angle = -0.8});
+      model.add("G", Gear<double>{{}, {}, 0.3, radius_j, internal}, 0, 1);
+      Evaluator evaluator(Plan::make(model), model);
+      const std::vector<double> q = evaluator.given_configuration(), lambda{2.5};
+      evaluator.set_configuration(q);
+      Snapshot s{evaluator};
+      s.q = q;
+      s.lambda = lambda;
+      const std::vector<std::string> names{"G.fx", "G.fy", "G.torque", "G.i.fx", "G.i.fy", "G.i.torque"};
+      std::vector<double> r(6);
+      ColumnSet::resolve(model, evaluator.plan(), names, everything).evaluate(s, r);
+      EXPECT_NEAR(std::hypot(r[0], r[1]), 2.5, 1e-13);
+      EXPECT_NEAR(r[0] * along.x + r[1] * along.y, 0, 1e-13);
+      EXPECT_NEAR(r[3], -r[0], 1e-13);
+      EXPECT_NEAR(r[4], -r[1], 1e-13);
+      EXPECT_NEAR(r[2], 0, 1e-13) << internal << radius_j;
+      EXPECT_NEAR(r[5], 0, 1e-13) << internal << radius_j;
+    }
+  }
+}
+
+TEST(Reaction, InTheJointsAxesIsAlongAndAcrossTheSlide) {
+  TwoBodies m;
+  m.model.add("L", Translational<double>{{0.1, 0.0}, {0.0, 0.2}, {3.0, 4.0}, {}}, 0, 1);
+  m.lambda.clear();
+  m.make_plan();
+  lambda(m, "L", 0) = 2;
+  const std::vector<double> r = m.values({"L.joint.fx", "L.joint.fy", "L.fx", "L.fy"});
+  EXPECT_NEAR(r[0], 0, 1e-13);  // nothing holds it along the slide
+  EXPECT_NEAR(r[1], -2, 1e-13);
+  EXPECT_NEAR(std::hypot(r[2], r[3]), 2, 1e-13);
+}
+
 TEST(Reaction, OfAWeldToTheGroundIsThereIfThePlanWasAskedToKeepIt) {
   TwoBodies m;
   m.model.add("V", Weld<double>{}, ground, 2);

@@ -20,8 +20,10 @@
 //   measure<T>(i, j)       the quantity that c prescribes (functions == 1)
 //   value_unit             kind of c; `squared` = true if the row is measure^2 - c^2: it is then scaled by 1/(2c)
 //   row_unit(row)          UnitKind::length (default) or UnitKind::angle: what the residual of the row is measured in
+//   reaction_point(i, j)   the place in the ground where reactions on both bodies act  (default: each body's own P)
 //   complete(i, j)         takes from the given configuration what the scene left out
 //   check()                nullptr, or what is wrong with the parameters, as a phrase
+//   trouble(a)             nullptr, or why the row means nothing at this configuration, as a phrase
 //
 // Frames carry cosine and sine: no element calls trigonometry. One file an element, plus its lines in list.hpp.
 #pragma once
@@ -125,6 +127,11 @@ concept HasClosedJacobian = requires(const E& e, const Arguments<double>& a, dou
 template <class E>
 concept HasClosedGamma = requires(const E& e, const Arguments<double>& a, const Rates& u, double* out) {
   e.gamma(a, u, u, out);
+};
+
+template <class E>
+concept HasTrouble = requires(const E& e, const Arguments<double>& a) {
+  e.trouble(a);
 };
 
 template <class E>

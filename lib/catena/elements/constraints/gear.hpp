@@ -45,6 +45,14 @@ struct Gear {
     return std::isnan(value_of(constant)) ? "its centres coincide in the given configuration" : nullptr;
   }
 
+  /// The pitch point, where the reaction is reported: on the line of centres, R_i from P_i.
+  Vec2<S> reaction_point(const Frame<S>& i, const Frame<S>& j) const {
+    const Vec2<S> h = separation(i, j, s_i, s_j);
+    const bool inside = internal && radius_i < radius_j;  // i in the ring j: they touch beyond P_i
+    return i.point(s_i) + ((inside ? -radius_i : radius_i) / norm(h)) * h;
+  }
+  const char* trouble(const Arguments<double>& a) const { return RollingPair<S>::trouble(PairGeometry(a, s_i, s_j)); }
+
   template <class T>
   void phi(const Arguments<T>& a, T* out) const {
     out[0] = pair().row(a.i, a.j, separation(a.i, a.j, s_i, s_j), T(constant));
