@@ -1,61 +1,10 @@
-// After the first round, factorizing and solving must leave the heap alone: in C++ code (operator new) and in
-// SuiteSparse, whose memory functions can be replaced.
+// After the first round, factorizing and solving must leave the heap alone.
 #include <gtest/gtest.h>
-#include <suitesparse/SuiteSparse_config.h>
-
-#include <atomic>
-#include <cstdlib>
-#include <new>
 
 #include "catena/linalg/factorization.hpp"
 #include "catena/linalg/symmetric_factorization.hpp"
+#include "linalg/counted_heap.hpp"
 #include "linalg/matrices.hpp"
-
-namespace {
-
-std::atomic<long> allocations{0};
-
-void* counted_malloc(std::size_t size) {
-  ++allocations;
-  return std::malloc(size);
-}
-void* counted_calloc(std::size_t count, std::size_t size) {
-  ++allocations;
-  return std::calloc(count, size);
-}
-void* counted_realloc(void* place, std::size_t size) {
-  ++allocations;
-  return std::realloc(place, size);
-}
-
-/// Counts from construction to destruction of the object.
-class Watch {
- public:
-  Watch() {
-    SuiteSparse_config.malloc_func = counted_malloc;
-    SuiteSparse_config.calloc_func = counted_calloc;
-    SuiteSparse_config.realloc_func = counted_realloc;
-    allocations = 0;
-  }
-  ~Watch() {
-    SuiteSparse_config.malloc_func = std::malloc;
-    SuiteSparse_config.calloc_func = std::calloc;
-    SuiteSparse_config.realloc_func = std::realloc;
-  }
-  Watch(const Watch&) = delete;
-  Watch& operator=(const Watch&) = delete;
-  long count() const { return allocations; }
-};
-
-}  // namespace
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* place = std::malloc(size == 0 ? 1 : size)) return place;
-  throw std::bad_alloc();
-}
-void operator delete(void* place) noexcept { std::free(place); }
-void operator delete(void* place, std::size_t) noexcept { std::free(place); }
 
 namespace catena::testing {
 namespace {
@@ -65,7 +14,7 @@ TEST(Allocations, AreSeenByTheWatch) {
   const Matrix matrix = dyad_chain(5, random);
   Counters counters;
   Factorization factorization;
-  Watch watch;
+  HeapWatch watch;
   ASSERT_TRUE(factorization.analyze(matrix.pattern, Kernel::klu, counters).ok());
   const long by_analysis = watch.count();
   EXPECT_GT(by_analysis, 10);
@@ -93,7 +42,7 @@ TEST(Allocations, NoneInAFactorizationWithKeptPivotsNorInASolve) {
     EXPECT_GT(factorization.smallest_pivot(0).magnitude, 0);
   };
   round();
-  Watch watch;
+  HeapWatch watch;
   for (int k = 0; k < 20; ++k) round();
   EXPECT_EQ(watch.count(), 0);
   EXPECT_EQ(counters.refactorizations, 20);
@@ -126,7 +75,7 @@ TEST(Allocations, NoneInASymmetricRoundAfterTheFirst) {
     EXPECT_EQ(factorization.inertia(1e-12).zero, 0);
   };
   round();
-  Watch watch;
+  HeapWatch watch;
   for (int k = 0; k < 20; ++k) round();
   EXPECT_EQ(watch.count(), 0);
 }

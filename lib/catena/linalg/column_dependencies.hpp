@@ -7,19 +7,9 @@
 
 #include "catena/linalg/factor_result.hpp"
 #include "catena/linalg/sparse_pattern.hpp"
+#include "catena/linalg/sparse_vectors.hpp"
 
 namespace catena {
-
-/// Sparse vectors one after the other: vector k has the entries start[k] ... start[k + 1] - 1.
-struct SparseVectors {
-  std::vector<int> start{0};
-  std::vector<int> index;
-  std::vector<double> value;
-
-  int count() const { return static_cast<int>(start.size()) - 1; }
-  std::span<const int> indices(int k) const { return {index.data() + start[k], index.data() + start[k + 1]}; }
-  std::span<const double> values(int k) const { return {value.data() + start[k], value.data() + start[k + 1]}; }
-};
 
 struct ColumnDependencies {
   FactorStatus status = FactorStatus::ok;

@@ -6,6 +6,7 @@
 #include "catena/linalg/column_dependencies.hpp"
 #include "catena/linalg/column_order.hpp"
 #include "catena/linalg/symmetric_factorization.hpp"
+#include "catena/linalg/upper_trapezoid.hpp"
 
 namespace catena {
 namespace {
@@ -13,7 +14,9 @@ namespace {
 // Exactly dependent columns leave pivots of about (rounding + shift) * (1 + |c|^2), c the coefficients of their
 // combination: below the square of gram_tolerance for |c| up to 300. Without a shift a pivot might be exactly zero.
 constexpr double shift = 1e-15;
-constexpr double negligible_coefficient = 1e-9;
+// The square root of rounding, with some room: what cancellation leaves below it is taken as nothing.
+constexpr double negligible_coefficient = 1e-7;
+
 constexpr std::int64_t most_products = 400'000'000;
 
 struct GramMatrix {
@@ -57,23 +60,6 @@ bool form_gram_matrix(const SparsePattern& pattern, std::span<const double> valu
   return true;
 }
 
-/// The rows and columns of a Gram matrix that belong to the columns kept.
-GramMatrix restricted(const GramMatrix& gram, const std::vector<int>& kept) {
-  std::vector<int> place(static_cast<std::size_t>(gram.lower.columns), -1);
-  for (std::size_t k = 0; k < kept.size(); ++k) place[kept[k]] = static_cast<int>(k);
-  GramMatrix part;
-  part.lower.rows = part.lower.columns = static_cast<int>(kept.size());
-  for (int column : kept) {
-    for (int k = gram.lower.column_start[column]; k < gram.lower.column_start[column + 1]; ++k) {
-      if (place[gram.lower.row_index[k]] < 0) continue;
-      part.lower.row_index.push_back(place[gram.lower.row_index[k]]);
-      part.values.push_back(gram.values[k]);
-    }
-    part.lower.column_start.push_back(static_cast<int>(part.lower.row_index.size()));
-  }
-  return part;
-}
-
 /// Tells dependent from independent columns by their pivots. A pivot that is nothing but rounding error makes the ones
 /// after it unreliable; so what was found dependent is taken out of play, and the rest is judged again.
 FactorResult classify(const SparsePattern& pattern, const GramMatrix& gram, SymmetricFactorization& factors,
@@ -106,41 +92,44 @@ FactorResult classify(const SparsePattern& pattern, const GramMatrix& gram, Symm
   return outcome;
 }
 
-/// Least-squares coefficients of column `dependent` in the independent ones, by the normal equations. Their squared
-/// condition is mended by refinement with the residual of the columns themselves.
-void append_null_vector(const SparsePattern& pattern, std::span<const double> values, int dependent,
-                        SymmetricFactorization& factors, Counters& counters, ColumnDependencies& result) {
-  constexpr int refinements = 2;
-  std::vector<double> residual(static_cast<std::size_t>(pattern.rows), 0.0);
-  const auto add_column = [&](int column, double factor) {
-    for (int k = pattern.column_start[column]; k < pattern.column_start[column + 1]; ++k)
-      residual[pattern.row_index[k]] += factor * values[k];
-  };
-  const std::vector<int>& kept = result.independent;
-  std::vector<double> coefficients(kept.size(), 0.0), correction(kept.size());
-  add_column(dependent, 1);
-  for (int step = 0; step <= refinements && !kept.empty(); ++step) {
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-      double sum = 0;
-      for (int k = pattern.column_start[kept[i]]; k < pattern.column_start[kept[i] + 1]; ++k)
-        sum += values[k] * residual[pattern.row_index[k]];
-      correction[i] = sum;
+/// R of A = Q R from A^T A = L D L^T: D^(1/2) L^T, its columns the rows of L. Rows of dependent columns, whose pivots
+/// were replaced, are left out.
+struct TrapezoidArrays {
+  std::vector<std::int64_t> column_start;
+  std::vector<std::int64_t> row_index;
+  std::vector<double> values;
+};
+
+TrapezoidArrays trapezoid_of(const SymmetricFactorization& factors, const std::vector<int>& dependent) {
+  const auto n = static_cast<std::size_t>(factors.size());
+  std::vector<bool> is_dependent(n, false);
+  for (int column : dependent) is_dependent[column] = true;
+  const FactorColumns l = factors.factor_columns();
+  TrapezoidArrays r;
+  r.column_start.assign(n + 1, 0);
+  for (int pass = 0; pass < 2; ++pass) {  // count, then fill
+    std::int64_t row = 0;
+    std::vector<std::int64_t> next(r.column_start.begin(), r.column_start.end() - 1);
+    for (std::size_t j = 0; j < n; ++j) {
+      if (is_dependent[factors.order()[j]]) continue;
+      const double root = std::sqrt(l.value[l.start[j]]);
+      for (int p = l.start[j]; p < l.start[j] + l.length[j]; ++p) {
+        if (pass == 0) {
+          ++r.column_start[static_cast<std::size_t>(l.row[p]) + 1];
+        } else {
+          const auto place = static_cast<std::size_t>(next[l.row[p]]++);
+          r.row_index[place] = row;
+          r.values[place] = p == l.start[j] ? root : root * l.value[p];
+        }
+      }
+      ++row;
     }
-    factors.solve(correction, counters);
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-      coefficients[i] += correction[i];
-      add_column(kept[i], -correction[i]);
-    }
+    if (pass == 1) break;
+    for (std::size_t k = 0; k < n; ++k) r.column_start[k + 1] += r.column_start[k];
+    r.row_index.resize(static_cast<std::size_t>(r.column_start[n]));
+    r.values.resize(r.row_index.size());
   }
-  SparseVectors& vectors = result.null_vectors;
-  vectors.index.push_back(dependent);
-  vectors.value.push_back(1);
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    if (std::abs(coefficients[i]) <= negligible_coefficient) continue;
-    vectors.index.push_back(kept[i]);
-    vectors.value.push_back(-coefficients[i]);
-  }
-  vectors.start.push_back(static_cast<int>(vectors.index.size()));
+  return r;
 }
 
 }  // namespace
@@ -159,12 +148,9 @@ ColumnDependencies dependencies_by_gram_matrix(const SparsePattern& pattern, std
   if (result.status != FactorStatus::ok) return result;
   if (static_cast<int>(result.dependent.size()) > most_null_vectors) return result;
 
-  const GramMatrix kept = restricted(gram, result.independent);
-  FactorResult outcome = factors.analyze(kept.lower, {}, counters);
-  if (outcome.ok()) outcome = factors.factorize(kept.values, 0, counters);
-  result.status = outcome.status;
-  if (!outcome.ok()) return result;
-  for (int column : result.dependent) append_null_vector(pattern, values, column, factors, counters, result);
+  const TrapezoidArrays arrays = trapezoid_of(factors, result.dependent);
+  UpperTrapezoid r(arrays.column_start, arrays.row_index, arrays.values);
+  r.append_null_vectors(factors.order(), negligible_coefficient, result.null_vectors);
   return result;
 }
 

@@ -91,21 +91,6 @@ class QrFactors {
   std::vector<double> values_;
 };
 
-void append_null_vectors(UpperTrapezoid& r, const std::vector<int>& order, double tolerance, SparseVectors& vectors) {
-  std::vector<UpperTrapezoid::Entry> combination;
-  for (int place : r.dead()) {
-    combination.clear();
-    r.combination_of(place, tolerance, combination);
-    vectors.index.push_back(order[place]);
-    vectors.value.push_back(1);
-    for (const UpperTrapezoid::Entry& entry : combination) {
-      vectors.index.push_back(order[r.live()[entry.row]]);
-      vectors.value.push_back(-entry.value);
-    }
-    vectors.start.push_back(static_cast<int>(vectors.index.size()));
-  }
-}
-
 }  // namespace
 
 ColumnDependencies dependencies_by_qr(const SparsePattern& pattern, std::span<const double> values, double tolerance,
@@ -129,7 +114,7 @@ ColumnDependencies dependencies_by_qr(const SparsePattern& pattern, std::span<co
   }
   for (int place : r.dead()) result.dependent.push_back(order[place]);
   if (static_cast<int>(r.dead().size()) <= most_null_vectors)
-    append_null_vectors(r, order, tolerance, result.null_vectors);
+    r.append_null_vectors(order, tolerance, result.null_vectors);
   return result;
 }
 

@@ -83,6 +83,7 @@ FactorResult Factorization::factor_anew(std::span<const double> values, double p
   const FactorResult result = klu_.factor(pattern_, values, pivot_tolerance);
   factorized_ = result.ok();
   pivots_are_fresh_ = true;
+  parities_are_current_ = false;
   return result;
 }
 

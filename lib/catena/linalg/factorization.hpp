@@ -91,6 +91,11 @@ class Factorization {
   /// Smallest pivot of a block. KLU only: throws std::logic_error while UMFPACK is in use or nothing is factored.
   PivotInfo smallest_pivot(int block) const;
 
+  /// Sign of the determinant of every diagonal block, up to a factor that never changes between factorizations: a sign
+  /// that differs tells that a block went through a singular matrix in between. Empty while UMFPACK is in use. No
+  /// allocation after the first call.
+  std::span<const signed char> determinant_signs();
+
   /// A failed result in a sentence for a report.
   std::string describe(const FactorResult& result) const;
 
@@ -110,6 +115,7 @@ class Factorization {
   void require_factors() const;
   void read_block_form();
   void find_unmatched();
+  void find_parities();
 
   SparsePattern pattern_;
   Kernel kernel_ = Kernel::automatic;
@@ -126,6 +132,10 @@ class Factorization {
   std::vector<int> block_start_;
   std::vector<int> unmatched_rows_;
   std::vector<int> unmatched_columns_;
+  bool parities_are_current_ = false;
+  std::vector<signed char> parities_;  // of the pivoting within every block
+  std::vector<signed char> signs_;
+  std::vector<int> place_of_row_, cycle_;
   std::vector<double> right_hand_side_;  // these three for solve_checked only, allocated at its first call
   std::vector<double> correction_;
   std::vector<double> row_scale_;

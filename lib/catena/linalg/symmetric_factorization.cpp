@@ -88,6 +88,11 @@ std::int64_t SymmetricFactorization::factor_entries() const {
   return std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
 }
 
+FactorColumns SymmetricFactorization::factor_columns() const {
+  require_factors();
+  return size() == 0 ? FactorColumns{} : kernel_.columns();
+}
+
 double SymmetricFactorization::pivot(int row) const {
   require_factors();
   return kernel_.pivots()[place_[row]];

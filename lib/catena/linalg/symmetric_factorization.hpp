@@ -70,6 +70,9 @@ class SymmetricFactorization {
   /// Place k of the elimination order holds row order()[k].
   std::span<const int> order() const { return order_; }
 
+  /// L by places of the elimination order; valid until the next `factorize` or `analyze`.
+  FactorColumns factor_columns() const;
+
   /// Entries in L, diagonal included.
   std::int64_t factor_entries() const;
 

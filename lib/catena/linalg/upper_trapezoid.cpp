@@ -69,4 +69,19 @@ void UpperTrapezoid::combination_of(int place, double negligible, std::vector<En
   }
 }
 
+void UpperTrapezoid::append_null_vectors(std::span<const int> order, double negligible, SparseVectors& vectors) {
+  std::vector<Entry> combination;
+  for (int place : dead_) {
+    combination.clear();
+    combination_of(place, negligible, combination);
+    vectors.index.push_back(order[place]);
+    vectors.value.push_back(1);
+    for (const Entry& entry : combination) {
+      vectors.index.push_back(order[live_[entry.row]]);
+      vectors.value.push_back(-entry.value);
+    }
+    vectors.start.push_back(static_cast<int>(vectors.index.size()));
+  }
+}
+
 }  // namespace catena

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "catena/linalg/sparse_vectors.hpp"
+
 namespace catena {
 
 class UpperTrapezoid {
@@ -28,6 +30,10 @@ class UpperTrapezoid {
     double value;
   };
   void combination_of(int place, double negligible, std::vector<Entry>& combination);
+
+  /// For every dead column the combination of columns of A that vanishes: 1 for the dead column, first, the negative
+  /// coefficients of the live ones. order[place] is the column of A at a place.
+  void append_null_vectors(std::span<const int> order, double negligible, SparseVectors& vectors);
 
  private:
   void search(int row);

@@ -1,0 +1,49 @@
+// Signs of the block determinants: product of the pivots' signs and the parity of the row exchanges within a block.
+#include <algorithm>
+
+#include "catena/linalg/factorization.hpp"
+
+namespace catena {
+
+// Place k of a block holds the row that stood at place p(k) before pivoting; the parity of p by its cycles.
+void Factorization::find_parities() {
+  const std::span<const int> before = klu_.row_order(), after = klu_.pivot_rows();
+  const std::size_t n = before.size();
+  place_of_row_.resize(n);
+  cycle_.resize(n);
+  parities_.resize(static_cast<std::size_t>(blocks_));
+  for (std::size_t k = 0; k < n; ++k) place_of_row_[static_cast<std::size_t>(before[k])] = static_cast<int>(k);
+  for (std::size_t k = 0; k < n; ++k) cycle_[k] = place_of_row_[static_cast<std::size_t>(after[k])];
+  for (int block = 0; block < blocks_; ++block) {
+    bool odd = false;
+    const auto first = static_cast<std::size_t>(block_start_[static_cast<std::size_t>(block)]);
+    const auto last = static_cast<std::size_t>(block_start_[static_cast<std::size_t>(block) + 1]);
+    for (std::size_t k = first; k < last; ++k) {
+      // Walking a cycle marks it; every exchange after its first member changes the parity.
+      while (cycle_[k] != static_cast<int>(k)) {
+        std::swap(cycle_[k], cycle_[static_cast<std::size_t>(cycle_[k])]);
+        odd = !odd;
+      }
+    }
+    parities_[static_cast<std::size_t>(block)] = odd ? -1 : 1;
+  }
+  parities_are_current_ = true;
+}
+
+std::span<const signed char> Factorization::determinant_signs() {
+  require_factors();
+  if (umfpack_in_use_ || blocks_ == 0) return {};
+  if (!parities_are_current_) find_parities();
+  signs_.resize(static_cast<std::size_t>(blocks_));
+  const std::span<const double> pivots = klu_.pivots();
+  for (std::size_t block = 0; block < signs_.size(); ++block) {
+    int negative = 0;
+    for (int k = block_start_[block]; k < block_start_[block + 1]; ++k) {
+      negative += pivots[static_cast<std::size_t>(k)] < 0;
+    }
+    signs_[block] = static_cast<signed char>(negative % 2 ? -parities_[block] : parities_[block]);
+  }
+  return signs_;
+}
+
+}  // namespace catena
