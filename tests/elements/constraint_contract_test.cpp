@@ -66,6 +66,17 @@ ConstraintCase<E> random_case(unsigned seed, double size) {
   return x;
 }
 
+/// Whether the element itself says that its row means nothing here, as a contact does at the end of an open curve.
+template <class E>
+bool has_trouble(const ConstraintCase<E>& x) {
+  if constexpr (HasTrouble<E>) {
+    const Frame<double> i = make_frame(x.q[0], x.q[1], x.q[2]), j = make_frame(x.q[3], x.q[4], x.q[5]);
+    return x.element.trouble(Arguments<double>{i, j, x.c.f, x.ground}) != nullptr;
+  } else {
+    return false;
+  }
+}
+
 /// One element as the library stores it, so that the tests run the code that the library runs.
 template <class E>
 struct Stored {
@@ -317,20 +328,23 @@ TYPED_TEST(ConstraintContract, FarFromTheOrigin) {
 }
 
 // Derivatives with respect to design parameters, through complete() as well: Dual parameters against differences of
-// eighth order of the same element with its parameters moved.
+// eighth order of the same element with its parameters moved (a short way: splines have but two smooth derivatives).
 TYPED_TEST(ConstraintContract, ParameterDerivatives) {
   using E = TypeParam;
   using D = Dual<double, 4>;
   using ED = typename Over<E, D>::type;
-  constexpr double step = 0.01, weights[4] = {4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
+  constexpr double step = 1e-4, weights[4] = {4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
   for (unsigned seed = 0; seed < draws; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const ConstraintCase<E> x = random_case<E>(seed, 1);
+    ConstraintCase<E> x = random_case<E>(seed, 1);
     const auto frame = [&]<class T>(std::size_t k, T) { return make_frame(T(x.q[k]), T(x.q[k + 1]), T(x.q[k + 2])); };
     const auto rows_of = [&]<class Element, class T>(const Element& element, T, T* out) {
       const auto i = frame(0, T()), j = frame(3, T());
       element.phi(Arguments<T>{i, j, T(x.c.f), x.ground}, out);
     };
+    ParameterSource<double> plain_source(seed);
+    x.element = random_element<E>(plain_source, frame(0, 0.0), frame(3, 0.0));
+    if (has_trouble(x)) continue;
     ParameterSource<D> dual_source(seed);
     D rows[E::rows];
     rows_of(random_element<ED>(dual_source, frame(0, D()), frame(3, D())), D(), rows);

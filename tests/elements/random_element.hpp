@@ -6,6 +6,7 @@
 
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include "catena/elements/list.hpp"
 
@@ -49,6 +50,7 @@ class ParameterSource {
     return {x, length(-1, 1)};
   }
   bool coin() { return random_.coin(); }
+  int choice(int count) { return static_cast<int>(random_.between(0, count)); }
 
  private:
   Random random_;
@@ -84,6 +86,44 @@ void fill(E& element, const FlagField<M>& field, ParameterSource<S>& source) {
 template <class E, class S, class M>
 void fill(E& element, const SideField<M>& field, ParameterSource<S>& source) {
   element.*field.member = source.coin() ? 1 : -1;
+}
+
+/// Points r(angle) [cos, sin] at equal angles over `turns`, r varying by a tenth: a convex shape, or a part of one.
+template <class S>
+std::vector<Vec2<S>> rounded(ParameterSource<S>& source, std::size_t count, double turns) {
+  using std::cos, std::sin;
+  const S radius = source.length(0.4, 0.6), phase = source.number(-3, 3), height = source.number(0.05, 0.1);
+  std::vector<Vec2<S>> points;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double angle = 2 * std::numbers::pi * turns * static_cast<double>(k) / static_cast<double>(count);
+    const S r = radius * (S(1.0) + height * cos(S(2 * angle) + phase));
+    points.push_back({r * S(std::cos(angle)), r * S(std::sin(angle))});
+  }
+  return points;
+}
+template <class E, class S, class M>
+void fill(E& element, const CurveField<M>& field, ParameterSource<S>& source) {
+  using C = Curve<S>;
+  const auto shape = [&]() -> C {
+    switch (source.choice(5)) {
+      case 0:
+        return C::circle(source.place(), source.length(0.3, 0.6));
+      case 1:
+        return C::line(source.place(), source.place());
+      case 2:
+        return C::spline(rounded(source, 12, 1), SplineEnd::periodic);
+      case 3:
+        return C::spline(rounded(source, 9, 0.6), SplineEnd::natural);
+      default:
+        std::vector<S> angles, radii;
+        for (const Vec2<S>& p : rounded(source, 12, 1)) {
+          angles.push_back(S(2 * std::numbers::pi * static_cast<double>(angles.size()) / 12));
+          radii.push_back(norm(p));
+        }
+        return C::polar(angles, radii);
+    }
+  };
+  element.*field.member = shape();
 }
 template <class E, class S>
 void fill(E&, const FunctionField&, ParameterSource<S>&) {}

@@ -11,9 +11,12 @@
 #include "catena/elements/constraints/absolute_x.hpp"
 #include "catena/elements/constraints/absolute_y.hpp"
 #include "catena/elements/constraints/belt.hpp"
+#include "catena/elements/constraints/cam_cam.hpp"
+#include "catena/elements/constraints/cam_flat.hpp"
 #include "catena/elements/constraints/coupler.hpp"
 #include "catena/elements/constraints/displacement.hpp"
 #include "catena/elements/constraints/gear.hpp"
+#include "catena/elements/constraints/point_on_curve.hpp"
 #include "catena/elements/constraints/rack_pinion.hpp"
 #include "catena/elements/constraints/relative_angle.hpp"
 #include "catena/elements/constraints/relative_distance.hpp"
@@ -35,9 +38,12 @@
   X(AbsoluteX)                \
   X(AbsoluteY)                \
   X(Belt)                     \
+  X(CamCam)                   \
+  X(CamFlat)                  \
   X(Coupler)                  \
   X(Displacement)             \
   X(Gear)                     \
+  X(PointOnCurve)             \
   X(RackPinion)               \
   X(RelativeAngle)            \
   X(RelativeDistance)         \

@@ -43,6 +43,8 @@ struct RollingPair {
     return rolled(i, j, h);
   }
 
+  static const char* trouble(const PairGeometry& p) { return squared_norm(p.h) > 0 ? nullptr : "its centres coincide"; }
+
   void jacobian(const PairGeometry& p, double* entries) const {
     const Vec2<double> g = gradient(p);
     entries[0] = g.x;

@@ -47,6 +47,7 @@ struct Belt {
 
     return std::isnan(value_of(constant)) ? "its centres coincide in the given configuration" : nullptr;
   }
+  const char* trouble(const Arguments<double>& a) const { return RollingPair<S>::trouble(PairGeometry(a, s_i, s_j)); }
 
   template <class T>
   void phi(const Arguments<T>& a, T* out) const {

@@ -1,0 +1,87 @@
+// cam_cam: two cams, a curve of body i and a curve of body j, touch.
+//
+//   p_i, p_j and tangents p_i', p_j' in the frame of i        contact: p_i' x p_j' = 0, p_i'^T (p_j - p_i) = 0
+//   Phi = n^T (p_j - p_i), n = R p_i' / |p_i'|        N = A_i n, r_C the contact
+//   Phi_qi = [-N^T, -((r_C - r_i) x N)]      Phi_qj = [N^T, (r_C - r_j) x N]      nu = 0
+//
+// Phi is the gap along the common normal, m, positive to the left of curve i. Both parameters belong to the element
+// alone: Newton's method from the common normal found last; one more step in the scalar of the derivatives carries
+// their derivatives exactly, and as Phi is stationary in both this makes gamma and the second derivatives exact. Of
+// several common normals the shortest in the given configuration is followed; see common_normal.hpp for what kinds
+// there are. Open curves go on as straight lines. Singular where the curvatures are equal, hollow against round.
+// Multiplier: minus the normal force on j along N, N. Source: Haug, section 3.4 (cam-follower).
+#pragma once
+
+#include "catena/elements/common_normal.hpp"
+#include "catena/elements/element.hpp"
+
+namespace catena {
+
+template <class S = double>
+struct CamCam {
+  static constexpr std::string_view type = "cam_cam";
+  static constexpr std::string_view summary = "Two cams, a curve of body i and a curve of body j, touch.";
+  static constexpr std::string_view equation =
+      "n^T (p_j(s_j) - p_i(s_i)) = 0,  p_i' x p_j' = 0,  p_i'^T (p_j - p_i) = 0,  n = R p_i'/|p_i'|";
+  static constexpr int rows = 1;
+  static constexpr int bodies = 2;
+  static constexpr int functions = 0;
+
+  Vec2<S> s_i, s_j;  // where torques are reported
+  BodyCurve<S> curve_i, curve_j;
+  mutable CommonNormal contact;  // found last
+
+  static constexpr auto fields() {
+    return std::make_tuple(PointField{"i", &CamCam::s_i, 0, "the body with the first cam"},
+                           PointField{"j", &CamCam::s_j, 1, "the body with the second cam"},
+                           CurveField{"curve_i", &CamCam::curve_i, 0, "the first cam, in the frame of body i"},
+                           CurveField{"curve_j", &CamCam::curve_j, 1, "the second cam, in the frame of body j"});
+  }
+
+  void complete(const Frame<S>& i, const Frame<S>& j) {
+    if (curve_i && curve_j && !(curve_i.is_line() && curve_j.is_line()))
+      contact = search_normal(curve_i, curve_j, plain(seen_from(i, j)));
+  }
+  const char* check() const {
+    if (!curve_i || !curve_j) return "lacks a curve";
+    if (curve_i.is_line() && curve_j.is_line()) return "two straight lines have no point of contact";
+    return contact.kind < 0 ? "the cams have no common normal in the given configuration" : nullptr;
+  }
+  const char* trouble(const Arguments<double>& a) const {
+    return find_contact(seen_from(a.i, a.j)) ? nullptr
+                                             : "the cams have no single point of contact: their curvatures are equal";
+  }
+
+  template <class T>
+  void phi(const Arguments<T>& a, T* out) const {
+    const Frame<T> relative = seen_from(a.i, a.j);
+    const bool regular = find_contact(plain(relative));
+    T s(contact.s_i), t(contact.s_j);
+    if (regular) {
+      const CurvePoint<T> i = curve_i.evaluate(s), j = seen_from(curve_j.evaluate(t), relative);
+      const TangencyMatrix m(plain(i), plain(j));
+      const T f = cross(i.d1, j.d1), g = dot(i.d1, j.p - i.p);
+      s = s + (T(m.b) * g - T(m.d) * f) / T(m.determinant);
+      t = t + (T(m.c) * f - T(m.a) * g) / T(m.determinant);
+    }
+    const CurvePoint<T> i = curve_i.evaluate(s), j = seen_from(curve_j.evaluate(t), relative);
+    out[0] = cross(i.d1, j.p - i.p) / norm(i.d1);
+  }
+  void jacobian(const Arguments<double>& a, double* entries) const {
+    find_contact(seen_from(a.i, a.j));
+    const CurvePoint<double> c = curve_i.plain(contact.s_i);
+    contact_jacobian(a.i, a.j, a.i.point(c.p), a.i.axis(c.normal()), entries);
+  }
+
+ private:
+  /// Sets `contact`; false, leaving it as it was, where no common normal of its kind is found.
+  bool find_contact(const Frame<double>& relative) const {
+    CommonNormal found = follow_normal(curve_i, curve_j, relative, contact.s_i, contact.s_j);
+    if (found.kind != contact.kind) found = search_normal(curve_i, curve_j, relative, contact.kind);
+    if (found.kind < 0) return false;
+    contact = found;
+    return true;
+  }
+};
+
+}  // namespace catena

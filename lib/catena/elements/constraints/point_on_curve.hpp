@@ -1,0 +1,85 @@
+// point_on_curve: a point of body j stays on a curve of body i (a follower with a knife edge, a pin in a cam groove).
+//
+//   x = A_i^T (r_Pj - r_i)        foot: (p(s) - x)^T p'(s) = 0        Phi = n(s)^T (x - p(s)), n = R p' / |p'|
+//   Phi_qi = [-N^T, -((r_Pj - r_i) x N)]      Phi_qj = [N^T, A_j s'Pj x N]      N = A_i n        nu = 0
+//
+// Phi is the distance to the left of the curve, m. The parameter s belongs to the element alone: Newton's method from
+// the foot found last (the nearest point at first) keeps the branch where a curve crosses itself; one more step in the
+// scalar of the derivatives carries ds/dq exactly, and as Phi is stationary in s this makes gamma and the second
+// derivatives exact. Open curves go on as straight lines. Singular where x is a centre of curvature, never on the
+// curve. Multiplier: minus the normal force on j, N. Source: Haug, section 3.4 (point follower).
+#pragma once
+
+#include "catena/elements/curve_search.hpp"
+#include "catena/elements/element.hpp"
+
+namespace catena {
+
+template <class S = double>
+struct PointOnCurve {
+  static constexpr std::string_view type = "point_on_curve";
+  static constexpr std::string_view summary = "A point of body j stays on a curve of body i.";
+  static constexpr std::string_view equation =
+      "n(s)^T (x - p(s)) = 0,  (p(s) - x)^T p'(s) = 0,  x = A_i^T (r_Pj - r_i),  n = R p'/|p'|";
+  static constexpr int rows = 1;
+  static constexpr int bodies = 2;
+  static constexpr int functions = 0;
+
+  Vec2<S> s_i, s_j;  // s_i: where torques on i are reported
+  BodyCurve<S> curve;
+  mutable double parameter = std::numeric_limits<double>::quiet_NaN();  // of the foot found last
+
+  static constexpr auto fields() {
+    return std::make_tuple(PointField{"i", &PointOnCurve::s_i, 0, "the body with the curve"},
+                           PointField{"j", &PointOnCurve::s_j, 1, "the point P_j of body j"},
+                           CurveField{"curve", &PointOnCurve::curve, 0, "the curve, in the frame of body i"});
+  }
+
+  void complete(const Frame<S>& i, const Frame<S>& j) {
+    if (curve) parameter = curve.nearest(plain(local(i, j)));
+  }
+  const char* check() const { return curve ? nullptr : "has no curve"; }
+  const char* trouble(const Arguments<double>& a) const {
+    return find_foot(local(a.i, a.j)) ? nullptr : "the point is at a centre of curvature of the curve";
+  }
+
+  template <class T>
+  void phi(const Arguments<T>& a, T* out) const {
+    const Vec2<T> x = local(a.i, a.j);
+    const bool regular = find_foot(plain(x));
+    T s(parameter);
+    if (regular) {
+      const CurvePoint<T> c = curve.evaluate(s);
+      s = s - dot(c.p - x, c.d1) / T(descent(plain(c), plain(x)).bend);
+    }
+    const CurvePoint<T> c = curve.evaluate(s);
+    out[0] = cross(c.d1, x - c.p) / norm(c.d1);
+  }
+  void jacobian(const Arguments<double>& a, double* entries) const {
+    find_foot(local(a.i, a.j));
+    contact_jacobian(a.i, a.j, a.j.point(s_j), a.i.axis(curve.plain(parameter).normal()), entries);
+  }
+
+ private:
+  /// The point in the frame of the curve.
+  template <class T>
+  Vec2<T> local(const Frame<T>& i, const Frame<T>& j) const {
+    return i.to_local(j.point(s_j) - i.origin());
+  }
+  /// Of half the squared distance.
+  static Descent descent(const CurvePoint<double>& c, const Vec2<double>& x) {
+    const double size = squared_norm(c.d1);
+    return {dot(c.p - x, c.d1), size + dot(c.p - x, c.d2), size};
+  }
+  /// Sets `parameter`; false where the distance has no proper minimum.
+  bool find_foot(const Vec2<double>& x) const {
+    const auto towards = [&](const CurvePoint<double>& c) { return descent(c, x); };
+    double s = parameter;
+    bool found = follow_minimum(curve, towards, s);
+    if (!found) found = follow_minimum(curve, towards, s = curve.nearest(x));
+    parameter = found ? s : curve.nearest(x);
+    return found;
+  }
+};
+
+}  // namespace catena

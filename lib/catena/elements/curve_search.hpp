@@ -1,0 +1,52 @@
+// Newton's method along a curve, in plain numbers: how contact elements find the point where two bodies touch.
+//
+// A contact element keeps the parameter found last and starts from there, so that it follows one point of contact and
+// costs one or two evaluations of the curve; only where that fails does it search anew.
+#pragma once
+
+#include <cmath>
+
+#include "catena/elements/body_curve.hpp"
+
+namespace catena {
+
+/// First and second derivative with respect to the curve parameter of what is minimal at the contact, and the size
+/// that the second one is compared with: where it is not positive against it there is no such contact.
+struct Descent {
+  double slope, bend, size;
+};
+
+inline constexpr double singular_bend = 1e-9;
+
+/// Moves s to a minimum; `descent` maps a CurvePoint<double> to Descent. False, s being anything, if Newton's method
+/// meets a place that is no minimum or does not converge.
+template <class S, class F>
+bool follow_minimum(const BodyCurve<S>& curve, const F& descent, double& s) {
+  constexpr int attempts = 30;
+  const double range = curve.range(), longest = range / 8, enough = 1e-9 * range;
+  if (std::isnan(s)) return false;
+  for (int k = 0; k < attempts; ++k) {
+    const Descent d = descent(curve.plain(s));
+    if (!(d.bend > singular_bend * d.size)) return false;
+    const double step = -d.slope / d.bend;
+    s += std::abs(step) > longest ? std::copysign(longest, step) : step;
+    // The step squared, over the range, is what is left.
+    if (std::abs(step) <= enough) {
+      s = curve.within(s);
+      return true;
+    }
+  }
+  return false;
+}
+
+/// The sample at which `value` of the CurvePoint<double> is least.
+template <class S, class F>
+double least_sample(const BodyCurve<S>& curve, const F& value) {
+  double best = 0, least = std::numeric_limits<double>::infinity();
+  for (double s : curve.samples()) {
+    if (const double v = value(curve.plain(s)); v < least) least = v, best = s;
+  }
+  return best;
+}
+
+}  // namespace catena
