@@ -82,6 +82,8 @@ struct ConstraintOperations {
   /// The second derivatives of all elements, weighted with lambda, added to their slots; see hessian_slots.hpp.
   static void add_hessians(const Block&, const Data&, const Frame<double>* frames, const double* lambda, bool convex,
                            const int* slot, double* values);
+  /// nullptr, or why the rows of one element mean nothing at this configuration, as a phrase.
+  static const char* trouble(const Block&, const Data&, const Frame<double>* frames, int e);
   /// Phi_q of one element.
   static LocalJacobian<E> local_jacobian(const Block&, const Data&, const Frame<double>* frames, int e);
   /// Measured quantity of one element: exact derivatives along q(t) with the given qd and qdd (nullptr: zero).

@@ -220,6 +220,17 @@ void ConstraintOperations<E>::add_hessians(const Block& block, const Data& data,
 }
 
 template <class E>
+const char* ConstraintOperations<E>::trouble(const Block& block, const Data& data, const Frame<double>* frames, int e) {
+  if constexpr (HasTrouble<E>) {
+    const detail::ElementFrames<E> f(block, data, frames, e);
+    return data.element[static_cast<std::size_t>(e)].trouble(
+        Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground});
+  } else {
+    return nullptr;
+  }
+}
+
+template <class E>
 LocalJacobian<E> ConstraintOperations<E>::local_jacobian(const Block& block, const Data& data,
                                                          const Frame<double>* frames, int e) {
   LocalJacobian<E> local;

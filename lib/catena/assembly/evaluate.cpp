@@ -332,6 +332,16 @@ Evaluator::ElementJacobian Evaluator::element_jacobian(int element) const {
   return result;
 }
 
+const char* Evaluator::trouble(int element) const {
+  const char* phrase = nullptr;
+  for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
+    const int e = place(element);
+    if (e < 0 || e >= block.size() || list[at(block.entry[at(e)])].id != element) return;
+    phrase = ConstraintOperations<ElementOf<decltype(list)>>::trouble(block, data, frames_.data(), e);
+  });
+  return phrase;
+}
+
 Taylor<double> Evaluator::element_value(int element) const {
   Taylor<double> value;
   for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {

@@ -83,6 +83,8 @@ class Evaluator {
     double entries[18] = {};
   };
   ElementJacobian element_jacobian(int element) const;
+  /// nullptr, or why the rows of the element mean nothing at this configuration, as a phrase ("its centres coincide").
+  const char* trouble(int element) const;
   /// Value of the element's function of time now: c, c', c''.
   Taylor<double> element_value(int element) const;
 
