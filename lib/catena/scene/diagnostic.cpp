@@ -77,16 +77,24 @@ void Diagnostics::error(const SourceText& source, std::size_t offset, std::strin
   const std::string_view line = source.line_at(offset, start);
   add_excerpt(diagnostic, line, std::min(offset, source.text().size()) - start);
   items_.push_back(std::move(diagnostic));
+  places_.emplace_back(&source, offset);
+}
+
+bool Diagnostics::reported(const SourceText& source, std::size_t offset) const {
+  return std::find(places_.begin(), places_.end(), std::pair(&source, offset)) != places_.end();
+}
+
+std::vector<Diagnostic> Diagnostics::in_order() const {
+  std::vector<Diagnostic> order = items_;
+  std::stable_sort(order.begin(), order.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return std::tie(a.file, a.line, a.column) < std::tie(b.file, b.line, b.column);
+  });
+  return order;
 }
 
 std::string Diagnostics::text() const {
-  std::vector<const Diagnostic*> order;
-  for (const Diagnostic& item : items_) order.push_back(&item);
-  std::stable_sort(order.begin(), order.end(), [](const Diagnostic* a, const Diagnostic* b) {
-    return std::tie(a->file, a->line, a->column) < std::tie(b->file, b->line, b->column);
-  });
   std::string text;
-  for (const Diagnostic* item : order) text += to_string(*item);
+  for (const Diagnostic& item : in_order()) text += to_string(item);
   const std::size_t more = count_ - items_.size();
   if (more > 0) text += fmt::format("and {} more error{}\n", more, more == 1 ? "" : "s");
   return text;

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "catena/scene/source_text.hpp"
@@ -34,11 +35,16 @@ class Diagnostics {
 
   void error(const SourceText& source, std::size_t offset, std::string message);
 
+  /// Whether an error at this place was kept: repeated blocks report a place once.
+  bool reported(const SourceText& source, std::size_t offset) const;
+
   bool ok() const { return count_ == 0; }
   /// Whether a further error would only be counted; costly messages and searches can be left out then.
   bool full() const { return count_ >= limit_; }
   std::size_t count() const { return count_; }
   std::span<const Diagnostic> items() const { return items_; }
+  /// The same in the order of the text.
+  std::vector<Diagnostic> in_order() const;
   /// All that were kept, in the order of the text, and how many more there are.
   std::string text() const;
 
@@ -46,6 +52,7 @@ class Diagnostics {
   std::size_t limit_;
   std::size_t count_ = 0;
   std::vector<Diagnostic> items_;
+  std::vector<std::pair<const SourceText*, std::size_t>> places_;  // of the items
 };
 
 /// The text between double quotes, control characters and invalid bytes escaped, clipped to about 60 characters.

@@ -7,11 +7,13 @@ namespace catena {
 void report_evaluation(const SourceText& source, std::size_t offset, std::size_t position, std::string_view message,
                        std::span<const std::string> loop_names, std::span<const double> loop_values,
                        Diagnostics& diagnostics) {
+  const std::size_t place = source.offset_in_string(offset, position);
+  if (!loop_names.empty() && diagnostics.reported(source, place)) return;
   std::string text(message);
   for (std::size_t i = 0; i < loop_names.size() && i < loop_values.size(); ++i) {
     text += fmt::format("{}{} = {}", i == 0 ? " at " : ", ", loop_names[i], loop_values[i]);
   }
-  diagnostics.error(source, source.offset_in_string(offset, position), std::move(text));
+  diagnostics.error(source, place, std::move(text));
 }
 
 }  // namespace catena

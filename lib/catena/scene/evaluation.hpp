@@ -15,7 +15,7 @@
 namespace catena {
 
 /// Reports an error met in an evaluation. `position` is a byte in the text of the JSON string at `offset`. The text
-/// says `message`, then "at k = 3" for the replicate variables.
+/// says `message`, then "at k = 3" for the replicate variables; in a repeated block a place is reported once.
 void report_evaluation(const SourceText& source, std::size_t offset, std::size_t position, std::string_view message,
                        std::span<const std::string> loop_names, std::span<const double> loop_values,
                        Diagnostics& diagnostics);

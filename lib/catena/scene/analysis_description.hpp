@@ -1,0 +1,52 @@
+// The analyses that a scene may list and the keys of each, as plain data: from it follow reader, schema and explain.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "catena/elements/field.hpp"
+
+namespace catena {
+
+enum class KeyKind {
+  number,     ///< in a unit, within a domain
+  whole,      ///< a whole number above zero
+  flag,       ///< true or false
+  word,       ///< one of some words
+  time,       ///< an instant
+  times,      ///< an instant or a list of them
+  columns,    ///< a list of column names
+  parameter,  ///< the name of a parameter
+  set,        ///< parameters and their values
+  events,     ///< a list of events
+};
+
+struct AnalysisKey {
+  std::string_view name;
+  KeyKind kind = KeyKind::number;
+  std::string_view doc;
+  UnitKind unit = UnitKind::none;
+  Domain domain = Domain::positive;
+  std::vector<std::string_view> words = {};  ///< the first is the default
+  bool required = false;
+};
+
+struct AnalysisDescription {
+  std::string_view type, summary;
+  std::string_view results;  ///< its result fields besides rows, for explain
+  bool timed = false;        ///< rows at instants of time
+  bool any_key = false;      ///< keys are not checked
+  std::vector<AnalysisKey> keys;
+
+  const AnalysisKey* find(std::string_view key) const;
+};
+
+/// A key of one event in the list `events`.
+std::span<const AnalysisKey> event_keys();
+
+std::span<const AnalysisDescription> analysis_descriptions();
+/// The analysis of this name, or nullptr.
+const AnalysisDescription* find_analysis_type(std::string_view type);
+
+}  // namespace catena

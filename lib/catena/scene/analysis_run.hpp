@@ -1,0 +1,70 @@
+// One analysis of a scene at work: what it gets, what it gives back; the table from types to functions that run them.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "catena/analysis/row_observer.hpp"
+#include "catena/analysis/system_state.hpp"
+#include "catena/analysis/time_grid.hpp"
+#include "catena/columns/column_set.hpp"
+#include "catena/results/analysis_result.hpp"
+#include "catena/results/column_rows.hpp"
+#include "catena/scene/analysis_task.hpp"
+
+namespace catena {
+
+struct AnalysisContext {
+  const AnalysisTask& task;
+  std::shared_ptr<const Model> model;
+  SystemState& state;  ///< where the analysis starts; it leaves behind where it ended
+  RowSink& rows;
+  const std::atomic<bool>* cancel = nullptr;
+  std::function<void(double)> progress;  ///< fraction done
+};
+
+using AnalysisFunction = void (*)(AnalysisContext& context, AnalysisResult& result);
+
+void run_check(AnalysisContext& context, AnalysisResult& result);
+void run_assemble(AnalysisContext& context, AnalysisResult& result);
+void run_kinematics(AnalysisContext& context, AnalysisResult& result);
+void run_inverse_dynamics(AnalysisContext& context, AnalysisResult& result);
+
+/// What runs an analysis of this type; nullptr if nothing does yet.
+AnalysisFunction analysis_function(std::string_view type);
+
+/// The instants at which the task wants rows, or nothing, with the report refused: before the present time, or outside
+/// the table of a function of time.
+std::optional<TimeGrid> time_grid(const AnalysisContext& context, Report& report);
+/// The instant at which a static analysis is made.
+double frozen_time(const AnalysisContext& context);
+
+/// Sends rows on and tells how far the analysis has come.
+class ReportingRows final : public RowObserver {
+ public:
+  ReportingRows(const ColumnSet& columns, AnalysisContext& context, std::int64_t expected)
+      : rows_(columns, context.rows, context.cancel), context_(context), expected_(expected) {}
+
+  bool observe(const Snapshot& snapshot) override {
+    const bool go_on = rows_.observe(snapshot);
+    if (context_.progress) context_.progress(static_cast<double>(rows_.rows()) / static_cast<double>(expected_));
+    return go_on;
+  }
+  std::int64_t rows() const { return rows_.rows(); }
+
+ private:
+  ColumnRows rows_;
+  AnalysisContext& context_;
+  std::int64_t expected_;
+};
+
+/// The names whose reactions must be solved for, as plan options.
+PlanOptions plan_options(const Model& model, const std::vector<std::string>& outputs);
+
+/// Takes over what an analysis said, in the order: outcome, columns, notes.
+void take_report(AnalysisResult& result, AnalysisReport report, const ColumnSet* columns, std::int64_t rows);
+
+}  // namespace catena

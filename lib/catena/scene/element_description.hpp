@@ -1,0 +1,102 @@
+// What the element types say of themselves, as plain data: made once from the lists and the fields of their types, so
+// that reader, schema and explain are written once and know every type there is.
+//
+// A scene's element keeps its fields as numbers in slots: one slot a number, two for a point or an axis, in the order
+// of the fields. The same layout is known at compile time to whoever fills the members of a type (element_filler.hpp).
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "catena/elements/field.hpp"
+
+namespace catena {
+
+enum class FieldKind { point, axis, place, number, flag, side, choice, curve, table, function, function_pair };
+
+struct FieldDescription {
+  FieldKind kind = FieldKind::number;
+  std::string_view key, doc;
+  int slot = 0;  ///< the first of the element's slots that belong to it
+  bool required = true;
+  UnitKind unit = UnitKind::none, second_unit = UnitKind::none;  ///< the second one: of a table's second numbers
+  Domain domain = Domain::any;
+  Omitted omitted = Omitted::refused;
+  std::string_view first_word, second_word;  ///< of a choice
+  int body = 0;                              ///< of a point, axis or curve: 0 on i, 1 on j
+};
+
+struct ElementDescription {
+  std::string_view type, summary, equation;
+  bool force = false;
+  int number = 0;  ///< in the list of constraint types, or of force types
+  int rows = 0, bodies = 1, functions = 0;
+  bool second_body_optional = false;
+  bool squared = false;  ///< its value is a distance, which may not vanish
+  int slots = 0;
+  std::vector<FieldDescription> fields;
+
+  /// Whether its value may be a function of time in the list of drivers.
+  bool can_be_driven() const { return !force && rows == 1 && functions == 1; }
+  const FieldDescription* find(std::string_view key) const;
+};
+
+/// All types: constraints in the order of their list, then forces.
+std::span<const ElementDescription> element_descriptions();
+/// The type of this name, or nullptr.
+const ElementDescription* find_element_type(std::string_view type);
+
+/// How many slots a field takes.
+constexpr int slots_of(FieldKind kind) {
+  switch (kind) {
+    case FieldKind::point:
+    case FieldKind::axis:
+    case FieldKind::place:
+    case FieldKind::function_pair:
+      return 2;
+    default:
+      return 1;
+  }
+}
+
+template <class M>
+constexpr FieldKind kind_of(const PointField<M>&) {
+  return FieldKind::point;
+}
+template <class M>
+constexpr FieldKind kind_of(const AxisField<M>&) {
+  return FieldKind::axis;
+}
+template <class M>
+constexpr FieldKind kind_of(const PlaceField<M>&) {
+  return FieldKind::place;
+}
+template <class M>
+constexpr FieldKind kind_of(const NumberField<M>&) {
+  return FieldKind::number;
+}
+template <class M>
+constexpr FieldKind kind_of(const FlagField<M>&) {
+  return FieldKind::flag;
+}
+template <class M>
+constexpr FieldKind kind_of(const SideField<M>&) {
+  return FieldKind::side;
+}
+template <class M>
+constexpr FieldKind kind_of(const ChoiceField<M>&) {
+  return FieldKind::choice;
+}
+template <class M>
+constexpr FieldKind kind_of(const CurveField<M>&) {
+  return FieldKind::curve;
+}
+template <class M>
+constexpr FieldKind kind_of(const TableField<M>&) {
+  return FieldKind::table;
+}
+constexpr FieldKind kind_of(const FunctionField&) { return FieldKind::function; }
+constexpr FieldKind kind_of(const FunctionPairField&) { return FieldKind::function_pair; }
+
+}  // namespace catena

@@ -1,0 +1,101 @@
+// assemble and check: where a mechanism can be, and how much it can move from there.
+#include <fmt/format.h>
+
+#include "catena/analysis/kinematics.hpp"
+#include "catena/analysis/mobility.hpp"
+#include "catena/analysis/process_time.hpp"
+#include "catena/scene/analysis_run.hpp"
+
+namespace catena {
+namespace {
+
+std::string quoted_names(const Model& model, const std::vector<int>& elements) {
+  constexpr std::size_t most = 8;
+  std::string text;
+  for (std::size_t k = 0; k < elements.size() && k < most; ++k)
+    text += (k == 0 ? "\"" : ", \"") + model.element_name(elements[k]) + "\"";
+  return elements.size() > most ? text + ", ..." : text;
+}
+
+void start(Kinematics& analysis, const AnalysisContext& context) {
+  SystemState state = context.state;
+  state.t = frozen_time(context);
+  analysis.start_from(state);
+}
+
+void take_outcome(AnalysisReport& report, const AssemblyOutcome& outcome, Kinematics& analysis) {
+  static_cast<Report&>(report) = outcome;
+  report.bodies = analysis.plan().bodies;
+  report.rows = analysis.plan().rows;
+  report.islands = analysis.plan().islands;
+}
+
+void add_misfits(AnalysisResult& result, const AssemblyOutcome& outcome, const Model& model) {
+  if (outcome.misfits.empty()) return;
+  std::vector<FieldRecord> records;
+  for (const Misfit& misfit : outcome.misfits) {
+    records.push_back({{"element", model.element_name(misfit.element)},
+                       {"residual", misfit.size},
+                       {"unit", std::string(misfit.angle ? "rad" : "m")}});
+  }
+  result.fields.push_back({"misfits", std::move(records)});
+}
+
+}  // namespace
+
+void run_assemble(AnalysisContext& context, AnalysisResult& result) {
+  const ProcessTimer timer;
+  const std::vector<std::string> names = context.task.output_names();
+  Kinematics analysis(context.model, plan_options(*context.model, names));
+  const ColumnSet columns =
+      ColumnSet::resolve(*context.model, analysis.plan(), names, {.analysis = context.task.type()});
+  start(analysis, context);
+  ReportingRows rows(columns, context, 1);
+  const AssemblyOutcome outcome = analysis.assemble();
+  AnalysisReport report;
+  take_outcome(report, outcome, analysis);
+  if (outcome.ok()) {
+    analysis.evaluator().set_configuration(analysis.q());
+    rows.observe(
+        {.evaluator = analysis.evaluator(), .t = analysis.time(), .q = analysis.q(), .residual = outcome.residual});
+    context.state = analysis.state();
+  }
+  report.counters = analysis.evaluator().counters;
+  report.seconds = timer.seconds();
+  take_report(result, std::move(report), &columns, rows.rows());
+  result.fields = {
+      {"residual", outcome.residual}, {"moved", outcome.moved}, {"iterations", std::int64_t{outcome.iterations}}};
+  add_misfits(result, outcome, *context.model);
+}
+
+void run_check(AnalysisContext& context, AnalysisResult& result) {
+  const ProcessTimer timer;
+  const Model& model = *context.model;
+  // Every equation counts here, those of welded bodies too.
+  PlanOptions options;
+  for (int e = 0; e < static_cast<int>(model.elements.size()); ++e) options.keep_elements.push_back(e);
+  Kinematics analysis(context.model, options);
+  start(analysis, context);
+  const AssemblyOutcome outcome = analysis.assemble();
+  AnalysisReport report;
+  take_outcome(report, outcome, analysis);
+  const MobilityReport mobility = analyse_mobility(analysis.evaluator(), analysis.q());
+  report.rank = mobility.rank;
+  report.dof = mobility.dof();
+  report.mobility = mobility.mobility();
+  for (const int element : mobility.redundant_elements) report.redundant.push_back(model.element_name(element));
+  report.warnings.insert(report.warnings.end(), mobility.warnings.begin(), mobility.warnings.end());
+  for (std::size_t k = 0; k < mobility.redundant_elements.size() && k < 10; ++k) {
+    if (mobility.dependent_on[k].empty()) continue;
+    report.warnings.push_back(fmt::format("\"{}\" repeats what follows from {}",
+                                          model.element_name(mobility.redundant_elements[k]),
+                                          quoted_names(model, mobility.dependent_on[k])));
+  }
+  report.counters = analysis.evaluator().counters;
+  report.seconds = timer.seconds();
+  take_report(result, std::move(report), nullptr, 0);
+  if (!mobility.free_bodies.empty()) result.fields.push_back({"free_bodies", mobility.free_bodies});
+  add_misfits(result, outcome, model);
+}
+
+}  // namespace catena

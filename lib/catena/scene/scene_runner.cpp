@@ -1,0 +1,220 @@
+#include "catena/scene/scene_runner.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "catena/scene/analysis_run.hpp"
+#include "catena/scene/build_model.hpp"
+#include "catena/scene/command_text.hpp"
+#include "catena/scene/near_miss.hpp"
+#include "catena/scene/scene_reader.hpp"
+
+namespace catena {
+namespace {
+
+/// `four_bar` of `scenes/four_bar.json`.
+std::string stem(const std::string& path) {
+  const std::size_t slash = path.find_last_of('/');
+  std::string name = slash == std::string::npos ? path : path.substr(slash + 1);
+  const std::size_t dot = name.find_last_of('.');
+  return dot == std::string::npos || dot == 0 ? name : name.substr(0, dot);
+}
+
+class SceneRun {
+ public:
+  SceneRun(const RunOptions& options, ResultSink& sink, SceneOutcome& outcome)
+      : options_(options), sink_(sink), outcome_(outcome) {}
+
+  void run(const std::string& path);
+
+ private:
+  /// Reads and checks everything; false if anything is wrong.
+  bool prepare(SourceText source);
+  void read_tasks();
+  void check_columns(const std::vector<PlacedName>& names, const Model& model);
+  void check_task(const AnalysisTask& task);
+  std::shared_ptr<const Model> build(std::span<const double> parameters);
+  void run_all();
+  AnalysisResult run_task(const AnalysisTask& task, int number, SystemState& state, RowSink& rows);
+  void finish_errors();
+
+  const RunOptions& options_;
+  ResultSink& sink_;
+  SceneOutcome& outcome_;
+  Diagnostics diagnostics_;
+  CommandText command_;
+  std::unique_ptr<SceneTemplate> scene_;
+  ParameterTable parameters_;
+  std::shared_ptr<const Model> model_;
+  std::vector<AnalysisTask> tasks_;
+};
+
+std::shared_ptr<const Model> SceneRun::build(std::span<const double> parameters) {
+  return std::make_shared<Model>(build_model<double>(*scene_, parameters, {options_.max_elements}, diagnostics_));
+}
+
+// The names of columns are checked once the model is there; with errors before, half of it may be missing.
+void SceneRun::check_columns(const std::vector<PlacedName>& names, const Model& model) {
+  std::vector<NamedColumn> found;
+  for (const PlacedName& placed : names) {
+    found.clear();
+    const std::optional<UnknownColumn> unknown = find_columns(model, placed.name, found);
+    if (!unknown || diagnostics_.full() || diagnostics_.reported(placed.place.source(), placed.place.offset()))
+      continue;
+    diagnostics_.error(placed.place.source(), placed.place.offset(),
+                       fmt::format("unknown column {}: {}{}", in_quotes(placed.name), unknown->message,
+                                   NearMiss(placed.name).consider_all(unknown->candidates).hint()));
+  }
+}
+
+void SceneRun::check_task(const AnalysisTask& task) {
+  std::shared_ptr<const Model> model = model_;
+  if (task.changes_parameters) {
+    model = build(task.parameters);
+    if (!diagnostics_.ok()) return;
+  }
+  check_columns(task.outputs, *model);
+  for (const EventRequest& event : task.events) {
+    check_columns({{event.column, event.place}}, *model);
+    if (!event.element.empty() && model->find_element(event.element) < 0) {
+      const JsonValue place = task.place;
+      diagnostics_.error(place.source(), place.offset(),
+                         fmt::format("there is no element {} to release or engage", in_quotes(event.element)));
+    }
+  }
+}
+
+void SceneRun::read_tasks() {
+  SceneTemplate& scene = *scene_;
+  const std::vector<double> values = parameters_.evaluate<double>(scene.expressions, diagnostics_);
+  if (scene.outputs) read_outputs(scene.outputs, scene, values, diagnostics_);
+  if (scene.analyses) tasks_ = read_analyses(scene.analyses, scene.outputs, scene, parameters_, diagnostics_);
+  if (options_.verb.empty()) return;
+  // The scene's own analyses were checked, but one from the command line is run in their place.
+  tasks_.clear();
+  if (!command_.read_verb(options_.verb, options_.verb_options, diagnostics_)) return;
+  if (auto task = read_analysis(command_.verb(), scene.outputs, scene, parameters_, diagnostics_))
+    tasks_.push_back(std::move(*task));
+}
+
+bool SceneRun::prepare(SourceText source) {
+  scene_ = read_scene(std::move(source), diagnostics_);
+  if (!scene_) return false;
+  parameters_ = scene_->parameters;
+  if (command_.read_set(options_.set, diagnostics_)) parameters_.set(command_.set(), scene_->expressions, diagnostics_);
+  const std::vector<double> values = parameters_.evaluate<double>(scene_->expressions, diagnostics_);
+  model_ = build(values);
+  const bool model_is_sound = diagnostics_.ok();
+  read_tasks();
+  if (model_is_sound) {
+    for (const AnalysisTask& task : tasks_) check_task(task);
+    if (scene_->outputs && tasks_.empty())
+      check_columns(read_outputs(scene_->outputs, *scene_, values, diagnostics_), *model_);
+  }
+  return diagnostics_.ok();
+}
+
+// Errors in what came from the command line are the caller's, not the scene's.
+void SceneRun::finish_errors() {
+  bool in_scene = false;
+  std::string command_errors;
+  for (const Diagnostic& error : diagnostics_.items()) {
+    if (CommandText::is_command(error.file)) {
+      command_errors += fmt::format("catena: {}: {}\n", error.file, error.message);
+    } else {
+      in_scene = true;
+    }
+  }
+  if (in_scene) {
+    outcome_.exit_code = 3;
+    outcome_.error_text = diagnostics_.text();
+    outcome_.errors = diagnostics_.in_order();
+  } else {
+    outcome_.exit_code = 2;
+    outcome_.error_text = command_errors;
+  }
+}
+
+AnalysisResult SceneRun::run_task(const AnalysisTask& task, int number, SystemState& state, RowSink& rows) {
+  AnalysisResult result;
+  result.type = task.type();
+  const AnalysisFunction function = analysis_function(task.type());
+  if (!function) {
+    result.report.status = Status::refused;
+    result.report.message = fmt::format("{} is not built yet", task.type());
+    return result;
+  }
+  AnalysisContext context{.task = task,
+                          .model = task.changes_parameters ? build(task.parameters) : model_,
+                          .state = state,
+                          .rows = rows,
+                          .cancel = options_.cancel,
+                          .progress = {}};
+  if (options_.progress) {
+    context.progress = [&, number](double fraction) {
+      options_.progress({task.type(), number, static_cast<int>(tasks_.size()), fraction});
+    };
+  }
+  try {
+    function(context, result);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    result.report.status = Status::refused;
+    result.report.message = error.what();
+  }
+  return result;
+}
+
+void SceneRun::run_all() {
+  SystemState state;
+  sink_.begin_run({.scene = outcome_.scene,
+                   .description = std::string(scene_->description),
+                   .gravity = {model_->gravity.x, model_->gravity.y},
+                   .bodies = static_cast<int>(model_->bodies.size()),
+                   .elements = static_cast<int>(model_->elements.size()),
+                   .analyses = static_cast<int>(tasks_.size())});
+  for (std::size_t k = 0; k < tasks_.size(); ++k) {
+    const AnalysisTask& task = tasks_[k];
+    if (k > 0 && outcome_.analyses.back().report.status == Status::cancelled) break;
+    if (task.from_initial) {
+      state = {};
+    } else if (k > 0 && !outcome_.analyses.back().report.ok()) {
+      break;  // there is no state to go on from
+    }
+    RowSink& rows = sink_.begin_analysis(task.type());
+    outcome_.analyses.push_back(run_task(task, static_cast<int>(k), state, rows));
+    sink_.end_analysis(outcome_.analyses.back());
+    if (!outcome_.analyses.back().report.ok()) outcome_.exit_code = 1;
+  }
+  sink_.end_run();
+}
+
+void SceneRun::run(const std::string& path) {
+  outcome_.scene = stem(path);
+  std::optional<SourceText> source;
+  try {
+    source.emplace(SourceText::read(path));
+  } catch (const FileError& error) {
+    outcome_.exit_code = 4;
+    outcome_.error_text = fmt::format("catena: {}\n", error.what());
+    return;
+  }
+  if (!prepare(std::move(*source))) {
+    finish_errors();
+    return;
+  }
+  if (!scene_->name.empty()) outcome_.scene = scene_->name;
+  run_all();
+}
+
+}  // namespace
+
+SceneOutcome run_scene(const std::string& path, const RunOptions& options, ResultSink& sink) {
+  SceneOutcome outcome;
+  SceneRun(options, sink, outcome).run(path);
+  return outcome;
+}
+
+}  // namespace catena
