@@ -20,6 +20,8 @@ constexpr double rounding_floor = 1e-12;
 constexpr double negligible = 1e-14;
 // Factors from further away than this are replaced: a new factorization costs two or three solves.
 constexpr double keep_distance = 1e-4;
+// Old factors do not show a determinant that changes its sign: they are kept only where no pivot is near zero.
+constexpr double keep_rcond = 1e-2;
 // A ratio of successive corrections above this asks for new factors.
 constexpr double poor_contraction = 0.1;
 
@@ -50,7 +52,8 @@ void DrivenSolver::use_rows(std::vector<int> rows) {
   gather_.clear();
   if (all_rows_) return;
   std::vector<int> place(at(plan_.rows), -1);
-  for (std::size_t k = 0; k < rows_.size(); ++k) place[at(rows_[k])] = static_cast<int>(k);
+  in_use_.assign(at(plan_.rows), 0);
+  for (std::size_t k = 0; k < rows_.size(); ++k) place[at(rows_[k])] = static_cast<int>(k), in_use_[at(rows_[k])] = 1;
   matrix_ = {static_cast<int>(rows_.size()), plan_.columns, {0}, {}};
   for (int c = 0; c < plan_.columns; ++c) {
     for (int k = plan_.jacobian.column_start[at(c)]; k < plan_.jacobian.column_start[at(c) + 1]; ++k) {
@@ -108,8 +111,15 @@ bool DrivenSolver::factorize() {
     if (!factor_result_.ok()) return false;
     analyzed_ = true;
   }
-  factor_result_ = factorization_.factorize(values, evaluator_.counters);
+  // Linear constraints give the same values at every configuration: their factors stay.
+  const bool same =
+      factorization_.is_factorized() && std::equal(values.begin(), values.end(), values_factored_.begin());
+  if (!same) {
+    factor_result_ = factorization_.factorize(values, evaluator_.counters);
+    values_factored_.assign(values.begin(), values.end());
+  }
   factors_valid_ = factor_result_.ok();
+  rcond_ = factors_valid_ ? factorization_.rcond() : 0;
   q_factored_ = q_;
   gap_ = 0;
   return factors_valid_;
@@ -123,8 +133,54 @@ void DrivenSolver::evaluate_at(std::span<const double> q) {
   if (factors_valid_ && !plan_.constant_jacobian) gap_ = scaling_.column_distance(q_, q_factored_);
 }
 
+double DrivenSolver::residual_in_use() const {
+  double largest = 0;
+  for (int row : rows_) {
+    const double size = std::abs(phi_[at(row)]) * scaling_.row_unit(row);
+    if (!(size <= largest)) largest = size;
+  }
+  return largest;
+}
+
+double DrivenSolver::redundant_residual(std::span<const double> residual_of_all, int* worst) const {
+  double largest = 0;
+  for (int row = 0; row < plan_.rows && !all_rows_; ++row) {
+    if (in_use_[at(row)]) continue;
+    const double size = std::abs(residual_of_all[at(row)]) * scaling_.row_unit(row);
+    if (!(size <= largest)) largest = size, *worst = row;
+  }
+  return largest;
+}
+
+std::span<const signed char> DrivenSolver::determinant_signs() {
+  if (!factorization_.is_factorized()) return {};
+  return factorization_.determinant_signs();
+}
+
+bool DrivenSolver::left_null_vector(std::span<double> w) {
+  if (!is_square() || !factors_valid_) return false;
+  // A start without symmetry: a null vector orthogonal to it would be missed.
+  for (std::size_t k = 0; k < step_.size(); ++k) step_[k] = 1 + 0.37 * std::sin(1.0 + static_cast<double>(k));
+  for (int iteration = 0; iteration < 4; ++iteration) {
+    factorization_.solve_transposed(step_, evaluator_.counters);
+    double square = 0;
+    for (double x : step_) square += x * x;
+    if (!(square > 0) || !std::isfinite(square)) return false;
+    const double factor = 1 / std::sqrt(square);
+    for (double& x : step_) x *= factor;
+    if (iteration == 3) break;
+    factorization_.solve(step_, evaluator_.counters);
+    square = 0;
+    for (double x : step_) square += x * x;
+    for (double& x : step_) x /= std::sqrt(square);
+  }
+  std::fill(w.begin(), w.end(), 0.0);
+  for (std::size_t k = 0; k < rows_.size(); ++k) w[at(rows_[k])] = step_[k];
+  return true;
+}
+
 bool DrivenSolver::factors_serve() const {
-  return factors_valid_ && (plan_.constant_jacobian || gap_ <= keep_distance);
+  return factors_valid_ && (plan_.constant_jacobian || (gap_ <= keep_distance && rcond_ >= keep_rcond));
 }
 
 NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
@@ -133,7 +189,8 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
   double rate = 0;  // by which the next correction will be smaller
   for (;; ++outcome.iterations) {
     evaluate_at(q);
-    outcome.residual = scaling_.row_norm(phi_);
+    gather_rows(phi_, step_);
+    outcome.residual = all_rows_ ? scaling_.row_norm(phi_) : residual_in_use();
     if (!std::isfinite(outcome.residual)) return outcome;
     // A long structure moves its far end by many length scales: its residuals cannot be rounder than its coordinates.
     const double extent = scaling_.column_norm(q_);
@@ -148,7 +205,6 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
       outcome.factor = factor_result_;
       return outcome;
     }
-    gather_rows(phi_, step_);
     factorization_.solve(step_, evaluator_.counters);
     ++evaluator_.counters.iterations;
     const double last_size = size;
@@ -262,7 +318,7 @@ bool DrivenSolver::solve_multipliers(std::span<const double> rhs, std::span<doub
 double DrivenSolver::factor_at(std::span<const double> q) {
   if (!is_square()) return 0;
   evaluate_at(q);
-  return factorize() ? factorization_.rcond() : 0;
+  return factorize() ? rcond_ : 0;
 }
 
 }  // namespace catena

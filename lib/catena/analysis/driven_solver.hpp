@@ -53,7 +53,14 @@ class DrivenSolver {
   std::span<const double> phi() const { return phi_; }
   /// Phi_q at the last configuration, current after solve_velocity.
   std::span<const double> jacobian();
-  Factorization& factorization() { return factorization_; }
+  const Factorization& factorization() const { return factorization_; }
+  /// Signs of the block determinants of the last factorization (see Factorization::determinant_signs).
+  std::span<const signed char> determinant_signs();
+  /// Left null vector of the matrix near a singular configuration, by inverse iteration with the factors at the last
+  /// configuration: rows of the plan, Euclidean length one. False if there are no factors.
+  bool left_null_vector(std::span<double> w);
+  /// Residual of the rows that are not solved with, in units of the length scale or rad; `worst`: its row.
+  double redundant_residual(std::span<const double> residual_of_all, int* worst) const;
   /// Forgets the factors, as after a change of parameters.
   void invalidate() { factors_valid_ = false; }
 
@@ -61,6 +68,7 @@ class DrivenSolver {
 
  private:
   void evaluate_at(std::span<const double> q);
+  double residual_in_use() const;
   bool factors_serve() const;
   bool factorize();
   /// residual_all_ = rhs_ - Phi_q x_.
@@ -80,11 +88,14 @@ class DrivenSolver {
   std::vector<int> gather_;  // entry of the matrix -> slot in the full Jacobian (empty: the same)
   Factorization factorization_;
   bool analyzed_ = false, factors_valid_ = false, jacobian_valid_ = false;
-  std::vector<double> values_;                     // full Jacobian
-  std::vector<double> matrix_values_;              // rows in use, if not all
+  std::vector<double> values_;         // full Jacobian
+  std::vector<double> matrix_values_;  // rows in use, if not all
+  std::vector<double> values_factored_;
+  std::vector<char> in_use_;                       // per row
   std::vector<double> phi_, rhs_, residual_all_;   // all rows
   std::vector<double> step_, x_, q_, q_factored_;  // columns
   double gap_ = 0;                                 // from q_ to q_factored_: how much worse than exact the factors are
+  double rcond_ = 0;                               // of the last factorization
   FactorResult factor_result_;
 };
 

@@ -14,15 +14,14 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// A step is accepted if its prediction was at most this far off (rad; the constraints are linear in positions) and
-// every correction at most this part of the one before: Newton's iteration then stays where it contracts, on the branch
-// it started from.
-constexpr double largest_correction = 0.1;
-constexpr double largest_contraction = 0.25;
-// Steps below this part of the span, or of the time itself, cannot be told from none.
-constexpr double smallest_step = 1e-13;
+// A given configuration is taken as near to the assembled one if Newton's first correction is at most this large
+// (length scales, rad) and every further one at most this part of the one before.
+constexpr double nearby = 0.1;
+constexpr double nearby_contraction = 0.25;
 // A reciprocal condition number above this leaves no doubt that all rows are independent.
 constexpr double clearly_regular = 1e-9;
+// Residuals of redundant rows, in length scales or rad, above which they contradict the others.
+constexpr double contradiction = 1e-8;
 
 }  // namespace
 
@@ -88,8 +87,7 @@ bool Kinematics::assemble_nearby() {
   trial_ = q_;
   move_whole_turns(evaluator_, trial_);
   newton_ = solver_.solve_position(trial_);
-  if (!newton_.converged || newton_.first_correction > largest_correction ||
-      newton_.contraction > largest_contraction) {
+  if (!newton_.converged || newton_.first_correction > nearby || newton_.contraction > nearby_contraction) {
     return false;
   }
   q_.swap(trial_);
@@ -117,79 +115,35 @@ Report Kinematics::prepare() {
     return report;
   }
   solver_.use_rows(mobility.independent_rows);
+  for (int element : mobility.redundant_elements) redundant_.push_back(model_->element_name(element));
   report.warnings = mobility.warnings;
   prepared_ = true;
   return report;
 }
 
-bool Kinematics::try_step(double t) {
-  evaluator_.set_time(t);
-  trial_ = q_;
-  predictor_.predict(t, trial_, {}, {});
-  newton_ = solver_.solve_position(trial_);
-  if (!newton_.converged) return false;
-  return newton_.first_turn <= largest_correction && newton_.contraction <= largest_contraction;
-}
-
-Report Kinematics::move_to(double t) {
-  const double span = std::abs(t - t_);
-  double step = span;
-  while (t_ != t) {
-    const double remaining = t - t_;
-    const double next = std::abs(remaining) <= step * (1 + 1e-9) ? t : t_ + std::copysign(step, remaining);
-    if (try_step(next)) {
-      q_.swap(trial_);
-      t_ = next;
-      has_velocity_ = has_acceleration_ = false;
-      ++evaluator_.counters.steps;
-      if (t_ != t) {
-        // Between rows the velocity is worth its solve: it makes the next prediction cubic.
-        if (solver_.solve_velocity(qd_, false)) predictor_.push(t_, q_, qd_, {});
-        if (newton_.first_turn < largest_correction / 8) step *= 2;
-      }
-      continue;
-    }
-    ++evaluator_.counters.rejected;
-    step /= 2;
-    if (step < smallest_step * std::max({span, std::abs(t), 1e-300}) || t_ + std::copysign(step, remaining) == t_) {
-      return stuck(next);
-    }
-    if (!has_velocity_) {
-      // Far from the last known motion: a velocity here makes the first prediction.
-      evaluator_.set_time(t_);
-      trial_ = q_;
-      if (solver_.solve_position(trial_).converged && solver_.solve_velocity(qd_, false)) {
-        has_velocity_ = true;
-        predictor_.clear();
-        predictor_.push(t_, q_, qd_, {});
-      }
-    }
-  }
-  return {};
-}
-
-Report Kinematics::stuck(double t) const {
+// Rows that are not solved with must follow from the others at every instant, not only where they were found redundant.
+Report Kinematics::check_redundant_rows() {
   Report report;
-  report.status = Status::singular;
-  std::string where;
-  if (newton_.factor.index >= 0) {
-    const int body = plan_->coordinate[at(newton_.factor.index)] / 3;
-    where = fmt::format(", at body \"{}\"", model_->body_name(plan_->model_body[at(body)]));
-  }
-  report.message = fmt::format(
-      "the motion cannot be continued beyond t = {:.12g} s{}; likely cause: a dead point or lock-up of the drivers",
-      std::min(t_, t), where);
+  int worst = -1;
+  if (!(solver_.redundant_residual(solver_.phi(), &worst) > contradiction)) return report;
+  const int element = plan_->row_element[at(worst)];
+  report.status = Status::inconsistent;
+  report.message = fmt::format("{} \"{}\" contradicts the other constraints at t = {:.12g} s: it misses by {:.3g} {}",
+                               model_->element_type(element), model_->element_name(element), t_,
+                               std::abs(solver_.phi()[at(worst)]), plan_->row_is_angle[at(worst)] ? "rad" : "m");
   return report;
 }
 
 void Kinematics::scatter_applied_forces() {
-  // Q - M qdd by columns: weight and inertia.
+  // Q - M qdd by columns.
+  applied_.resize(at(plan_->coordinates()));
+  evaluator_.applied_forces(qd_, applied_);
   loads_.resize(at(plan_->columns));
   for (int c = 0; c < plan_->columns; ++c) {
-    const int coordinate = plan_->coordinate[at(c)], k = coordinate % 3;
+    const int coordinate = plan_->coordinate[at(c)];
     const auto& body = model_->bodies[at(plan_->model_body[at(coordinate / 3)])];
-    const double gravity = k == 0 ? model_->gravity.x : k == 1 ? model_->gravity.y : 0;
-    loads_[at(c)] = k == 2 ? -body.inertia * qdd_[at(coordinate)] : body.mass * (gravity - qdd_[at(coordinate)]);
+    const double inertia = coordinate % 3 == 2 ? body.inertia : body.mass;
+    loads_[at(c)] = applied_[at(coordinate)] - inertia * qdd_[at(coordinate)];
   }
 }
 
@@ -246,18 +200,22 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& needs, RowObse
   const Report prepared = prepare();
   if (!prepared.ok()) return end(prepared);
   report.warnings = prepared.warnings;
+  report.redundant = redundant_;
   report.rank = plan_->columns;
   report.dof = 0;
   report.mobility = plan_->driver_rows;
   for (std::int64_t k = 0; k < grid.size(); ++k) {
     if (grid[k] != t_) {
-      if (const Report moved = move_to(grid[k]); !moved.ok()) return end(moved);
+      const Report moved = move_to(grid[k]);
+      if (!moved.ok()) return end(moved);
+      report.warnings.insert(report.warnings.end(), moved.warnings.begin(), moved.warnings.end());
     } else {
       trial_ = q_;
       evaluator_.set_time(t_);
       newton_ = solver_.solve_position(trial_);
       if (newton_.converged) q_.swap(trial_);
     }
+    if (const Report consistent = check_redundant_rows(); !consistent.ok()) return end(consistent);
     if (const Report solved = solve_rates(needs); !solved.ok()) return end(solved);
     predictor_.push(t_, q_, has_velocity_ ? std::span<const double>(qd_) : std::span<const double>{},
                     has_acceleration_ ? std::span<const double>(qdd_) : std::span<const double>{});

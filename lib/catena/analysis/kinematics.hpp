@@ -54,8 +54,15 @@ class Kinematics {
  private:
   bool assemble_nearby();
   Report prepare();
-  bool try_step(double t);
-  Report stuck(double t) const;
+  enum class StepOutcome { made, too_long, crossed };
+  StepOutcome try_step(double t);
+  void remember_signs();
+  bool find_velocity();
+  double largest_rate() const;
+  void set_anchor();
+  bool pass_singular(double before, double after, double target);
+  Report stuck(double t);
+  Report check_redundant_rows();
   void scatter_applied_forces();
 
   std::shared_ptr<const Model> model_;
@@ -67,7 +74,13 @@ class Kinematics {
   std::optional<AssemblyOutcome> assembled_;
   bool prepared_ = false, has_velocity_ = false, has_acceleration_ = false;
   double t_ = 0, step_ = 0;
-  std::vector<double> q_, qd_, qdd_, lambda_, trial_, loads_;
+  std::vector<double> q_, qd_, qdd_, lambda_, trial_, loads_, applied_;
+  std::vector<signed char> signs_;  // of the block determinants at q_
+  std::vector<std::string> redundant_;
+
+  // Where the motion was when it first met a singular configuration: to extrapolate across it.
+  double anchor_t_ = 0;
+  std::vector<double> anchor_q_, anchor_qd_, anchor_qdd_;
   NewtonOutcome newton_;
 };
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "catena/linalg/matching.hpp"
 
@@ -29,16 +30,19 @@ FactorResult Factorization::analyze(const SparsePattern& pattern, Kernel kernel,
     block_of_row_ = block_of_column_;
     return umfpack_.analyze(pattern_);
   }
-  const FactorResult result = klu_.analyze(pattern_);
-  if (result.status == FactorStatus::out_of_memory) return result;
-  read_block_form();
-  if (result.status != FactorStatus::singular) return result;
-  find_unmatched();
-  return {FactorStatus::singular, unmatched_columns_.front()};
+  Matching matching = maximum_matching(pattern_);
+  structural_rank_ = matching.structural_rank;
+  if (structural_rank_ < size()) {
+    unmatched_rows_ = std::move(matching.unmatched_rows);
+    unmatched_columns_ = std::move(matching.unmatched_columns);
+    return {FactorStatus::singular, unmatched_columns_.front()};
+  }
+  const FactorResult result = klu_.analyze(pattern_, matching.row_of_column);
+  if (result.ok()) read_block_form();
+  return result;
 }
 
 void Factorization::read_block_form() {
-  structural_rank_ = klu_.structural_rank();
   const std::span<const int> start = klu_.block_starts();
   block_start_.assign(start.begin(), start.end());
   blocks_ = static_cast<int>(start.size()) - 1;
@@ -51,12 +55,6 @@ void Factorization::read_block_form() {
       block_of_row_[klu_.row_order()[place]] = block;
     }
   }
-}
-
-void Factorization::find_unmatched() {
-  Matching matching = maximum_matching(pattern_);
-  unmatched_rows_ = std::move(matching.unmatched_rows);
-  unmatched_columns_ = std::move(matching.unmatched_columns);
 }
 
 FactorResult Factorization::factorize(std::span<const double> values, Counters& counters) {

@@ -82,7 +82,7 @@ class Factorization {
 
   /// Block triangular form: number of diagonal blocks, size of the largest, and the block of every column and row.
   /// Blocks are numbered in the order of the upper triangular form: the last one is solved first. With UMFPACK forced
-  /// there is one block.
+  /// there is one block, for a structurally singular pattern none.
   int blocks() const { return blocks_; }
   int largest_block() const { return largest_block_; }
   std::span<const int> block_of_column() const { return block_of_column_; }
@@ -114,7 +114,6 @@ class Factorization {
   void solve_by_kernel_in_use(std::span<double> x);
   void require_factors() const;
   void read_block_form();
-  void find_unmatched();
   void find_parities();
 
   SparsePattern pattern_;

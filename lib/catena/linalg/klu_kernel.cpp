@@ -39,6 +39,37 @@ bool multipliers_within_limit(const double* block_factors, int start, int length
   return within;
 }
 
+/// Orders rows and columns of every diagonal block by AMD, as klu_analyze does, which klu_analyze_given leaves out.
+bool order_within_blocks(const SparsePattern& pattern, klu_symbolic& symbolic) {
+  std::vector<int> place_of_row(static_cast<std::size_t>(symbolic.n));
+  for (int k = 0; k < symbolic.n; ++k) place_of_row[symbolic.P[k]] = k;
+  std::vector<int> start, index, order, rows, columns;
+  for (int block = 0; block < symbolic.nblocks; ++block) {
+    const int first = symbolic.R[block], end = symbolic.R[block + 1], size = end - first;
+    symbolic.Lnz[block] = 0.5 * size * (size + 1.0);
+    if (size <= 3) continue;
+    start.assign(1, 0);
+    index.clear();
+    for (int k = first; k < end; ++k) {
+      const int column = symbolic.Q[k];
+      for (int p = pattern.column_start[column]; p < pattern.column_start[column + 1]; ++p)
+        if (place_of_row[pattern.row_index[p]] >= first) index.push_back(place_of_row[pattern.row_index[p]] - first);
+      start.push_back(static_cast<int>(index.size()));
+    }
+    order.resize(static_cast<std::size_t>(size));
+    double info[AMD_INFO];
+    if (amd_order(size, start.data(), index.data(), order.data(), nullptr, info) < AMD_OK) return false;
+    symbolic.Lnz[block] = info[AMD_LNZ] + size;
+    rows.assign(symbolic.P + first, symbolic.P + end);
+    columns.assign(symbolic.Q + first, symbolic.Q + end);
+    for (int k = 0; k < size; ++k) {
+      symbolic.P[first + k] = rows[order[k]];
+      symbolic.Q[first + k] = columns[order[k]];
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 struct KluKernel::Handles {
@@ -92,17 +123,16 @@ KluKernel::~KluKernel() = default;
 KluKernel::KluKernel(KluKernel&&) noexcept = default;
 KluKernel& KluKernel::operator=(KluKernel&&) noexcept = default;
 
-FactorResult KluKernel::analyze(const SparsePattern& pattern) {
+FactorResult KluKernel::analyze(const SparsePattern& pattern, std::span<const int> row_of_column) {
   handles_ = std::make_unique<Handles>();
   Handles& h = *handles_;
-  h.symbolic =
-      klu_analyze(pattern.columns, mutable_data(pattern.column_start), mutable_data(pattern.row_index), &h.common);
-  if (h.symbolic == nullptr) return {FactorStatus::out_of_memory, -1};
+  h.symbolic = klu_analyze_given(pattern.columns, mutable_data(pattern.column_start), mutable_data(pattern.row_index),
+                                 mutable_data(row_of_column), nullptr, &h.common);
+  if (h.symbolic == nullptr || !order_within_blocks(pattern, *h.symbolic)) return {FactorStatus::out_of_memory, -1};
   h.block_of_place.resize(h.size());
   for (int block = 0; block < h.symbolic->nblocks; ++block)
     std::fill(h.block_of_place.begin() + h.symbolic->R[block], h.block_of_place.begin() + h.symbolic->R[block + 1],
               block);
-  if (h.symbolic->structural_rank < pattern.columns) return {FactorStatus::singular, -1};
   return {};
 }
 
@@ -146,8 +176,6 @@ double KluKernel::rcond() const {
   klu_rcond(h.symbolic, h.numeric, &h.common);
   return h.common.rcond;
 }
-
-int KluKernel::structural_rank() const { return handles_->symbolic->structural_rank; }
 
 std::span<const int> KluKernel::block_starts() const {
   return {handles_->symbolic->R, static_cast<std::size_t>(handles_->symbolic->nblocks) + 1};

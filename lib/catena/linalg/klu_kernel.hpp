@@ -23,8 +23,9 @@ class KluKernel {
   KluKernel(KluKernel&&) noexcept;
   KluKernel& operator=(KluKernel&&) noexcept;
 
-  /// Orders the n x n pattern, n >= 1. `singular` when no full matching of rows and columns exists.
-  FactorResult analyze(const SparsePattern& pattern);
+  /// Orders the n x n pattern, n >= 1; row_of_column is a full matching of it. (KLU's own search for one is quadratic
+  /// on some chains, see matching.hpp.)
+  FactorResult analyze(const SparsePattern& pattern, std::span<const int> row_of_column);
 
   /// Full factorization with new pivots: the diagonal is preferred unless smaller than pivot_tolerance times the
   /// column's largest entry (1: strict partial pivoting). Allocates. After a failure no factors are held.
@@ -40,7 +41,6 @@ class KluKernel {
   void solve_transposed(std::span<double> x);  ///< A^T X = B in place
 
   double rcond() const;                       ///< smallest over largest pivot magnitude of the row-scaled matrix
-  int structural_rank() const;                ///< n unless the pattern alone makes the matrix singular
   std::span<const int> block_starts() const;  ///< size blocks + 1: places in the permuted matrix
   std::span<const int> column_order() const;  ///< column at every place of the permuted matrix
   std::span<const int> row_order() const;     ///< row at every place; within a block before pivoting
