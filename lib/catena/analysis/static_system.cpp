@@ -1,0 +1,130 @@
+#include "catena/analysis/static_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "catena/analysis/scaling.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// Part of the largest residual force that adds to every body's convex stiffness against turning.
+constexpr double turning_floor = 0.1;
+// Stands for the force where there is none at all, N.
+constexpr double smallest_force = 1e-200;
+
+}  // namespace
+
+StaticSystem::StaticSystem(Evaluator& evaluator)
+    : evaluator_(evaluator),
+      plan_(evaluator.plan()),
+      radius_(evaluator.attachment_radii()),
+      matrix_(evaluator.shared_plan(), radius_),
+      length_(evaluator.length_scale()) {
+  rest_.assign(at(plan_.coordinates()), 0.0);
+  loads_.resize(rest_.size());
+  gradient_.resize(at(plan_.columns));
+  torque_.resize(at(plan_.columns));
+  phi_.resize(at(plan_.rows));
+  jacobian_.resize(at(plan_.trash_slot()) + 1);
+  evaluator_.start_jacobian(jacobian_);
+  solution_.resize(at(plan_.columns + plan_.rows));
+}
+
+void StaticSystem::move_to(std::span<const double> q) {
+  evaluator_.set_configuration(q);
+  evaluator_.applied_forces(rest_, loads_);
+  for (int c = 0; c < plan_.columns; ++c) gradient_[at(c)] = -loads_[at(plan_.coordinate[at(c)])];
+  evaluator_.phi(phi_);
+  evaluator_.jacobian(jacobian_);
+  extent_ = length_;
+  for (int b = 0; b < plan_.moving; ++b) {
+    extent_ = std::max({extent_, std::abs(q[at(3 * b)]), std::abs(q[at(3 * b + 1)])});
+  }
+}
+
+void StaticSystem::residual(std::span<const double> lambda, std::span<double> out) const {
+  std::copy(gradient_.begin(), gradient_.end(), out.begin());
+  multiply_transposed_add(plan_.jacobian, jacobian(), lambda, out);
+}
+
+double StaticSystem::force_norm(std::span<const double> forces) const {
+  double largest = 0, sum = 0;
+  for (int c = 0; c < plan_.columns; ++c) {
+    const int coordinate = plan_.coordinate[at(c)];
+    const double size = std::abs(forces[at(c)]) / (coordinate % 3 == 2 ? radius_[at(coordinate / 3)] : 1.0);
+    largest = std::max(largest, size);
+    sum += size;
+  }
+  return std::isfinite(sum) ? largest : sum;
+}
+
+double StaticSystem::change_norm(std::span<const double> change) const { return column_norm(plan_, change, length_); }
+
+double StaticSystem::phi_norm() const { return row_norm(plan_, phi_, length_); }
+
+double StaticSystem::force_scale(std::span<const double> lambda) const {
+  double largest = force_norm(gradient_);
+  const SparsePattern& a = plan_.jacobian;
+  for (int c = 0; c < plan_.columns; ++c) {
+    const int coordinate = plan_.coordinate[at(c)];
+    const double arm = coordinate % 3 == 2 ? radius_[at(coordinate / 3)] : 1.0;
+    for (int k = a.column_start[at(c)]; k < a.column_start[at(c) + 1]; ++k) {
+      largest = std::max(largest, std::abs(jacobian_[at(k)] * lambda[at(a.row_index[at(k)])]) / arm);
+    }
+  }
+  return largest;
+}
+
+void StaticSystem::fill(std::span<const double> lambda, Curvature curvature, double shift) {
+  force_ = std::max(force_scale(lambda), smallest_force);
+  matrix_.set_hessian(evaluator_, lambda, curvature);
+  if (curvature == Curvature::convex) {
+    residual(lambda, torque_);
+    const std::span<double> turning = matrix_.turning();
+    const double floor = force_norm(torque_);
+    for (int b = 0; b < plan_.moving; ++b) {
+      const int column = plan_.column[at(3 * b + 2)];
+      if (column >= 0)
+        turning[at(b)] = std::hypot(turning[at(b)], torque_[at(column)], turning_floor * floor * radius_[at(b)]);
+    }
+  }
+  matrix_.complete(jacobian(), shift);
+}
+
+void StaticSystem::fill_weights() {
+  force_ = std::max(force_norm(gradient_), smallest_force);
+  matrix_.set_weights(jacobian(), force_ / length_);
+}
+
+FactorResult StaticSystem::factorize() { return matrix_.factorize(force_ / length_, evaluator_.counters); }
+
+StaticStep StaticSystem::solve(std::span<const double> force, std::span<const double> gap, double tolerance) {
+  std::copy(force.begin(), force.end(), solution_.begin());
+  std::copy(gap.begin(), gap.end(), solution_.begin() + plan_.columns);
+  const Refinement outcome = matrix_.solve(solution_, force_, extent_, tolerance, evaluator_.counters);
+  const std::span<const double> all = solution_;
+  return {all.first(at(plan_.columns)), all.subspan(at(plan_.columns)), outcome.residual};
+}
+
+StaticStep StaticSystem::newton_step(double tolerance) {
+  for (std::size_t c = 0; c < gradient_.size(); ++c) solution_[c] = -gradient_[c];
+  for (std::size_t r = 0; r < phi_.size(); ++r) solution_[gradient_.size() + r] = -phi_[r];
+  const Refinement outcome = matrix_.solve(solution_, force_, extent_, tolerance, evaluator_.counters);
+  const std::span<const double> all = solution_;
+  return {all.first(at(plan_.columns)), all.subspan(at(plan_.columns)), outcome.residual};
+}
+
+void StaticSystem::advance(std::span<double> q, std::span<const double> change, double factor,
+                           double largest_turn) const {
+  for (int c = 0; c < plan_.columns; ++c) {
+    const int coordinate = plan_.coordinate[at(c)];
+    double step = factor * change[at(c)];
+    if (coordinate % 3 == 2) step = std::clamp(step, -largest_turn, largest_turn);
+    q[at(coordinate)] += step;
+  }
+}
+
+}  // namespace catena

@@ -1,0 +1,78 @@
+// The equations of static equilibrium at one configuration: what all its solvers and the certificate share.
+//
+//   V_q + Phi_q^T lambda = 0,   Phi = 0        V_q = -Q, Q the applied forces at rest (THEORY section 5)
+//
+// Functions of time are frozen at the evaluator's time. Vectors over columns (forces, N or N m; changes, m or rad) and
+// rows (lambda, Phi); configurations are in plan order. Nothing allocates after construction.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "catena/assembly/evaluate.hpp"
+#include "catena/assembly/kkt_matrix.hpp"
+
+namespace catena {
+
+/// A solution of the linearised equations: the change of the coordinates and the new multipliers.
+struct StaticStep {
+  std::span<const double> change;  ///< columns
+  std::span<const double> lambda;  ///< rows
+  double residual = 0;             ///< relative one that refinement left
+};
+
+class StaticSystem {
+ public:
+  explicit StaticSystem(Evaluator& evaluator);
+
+  /// Evaluates forces, constraints and Phi_q at q (size coordinates()).
+  void move_to(std::span<const double> q);
+  double energy() const { return evaluator_.potential_energy(); }
+  std::span<const double> gradient() const { return gradient_; }  ///< V_q, columns
+  std::span<const double> phi() const { return phi_; }
+  std::span<const double> jacobian() const { return {jacobian_.data(), jacobian_.size() - 1}; }
+
+  /// V_q + Phi_q^T lambda.
+  void residual(std::span<const double> lambda, std::span<double> out) const;
+  /// Largest component of forces over columns, moments divided by the body's radius, N.
+  double force_norm(std::span<const double> forces) const;
+  /// Largest change over columns: lengths in length scales, angles in rad.
+  double change_norm(std::span<const double> change) const;
+  /// Largest constraint residual in length scales or rad.
+  double phi_norm() const;
+  /// Largest force in the mechanism: of V_q and of the constraints' parts of Phi_q^T lambda, N.
+  double force_scale(std::span<const double> lambda) const;
+
+  /// Fills the matrix at the present configuration: K exact, or convex with h against turning made sqrt(h^2 + r^2), r
+  /// the residual torque. `shift` N/m.
+  void fill(std::span<const double> lambda, Curvature curvature, double shift);
+  /// Fills the matrix with force / length x (1, 1, radius^2) in the place of K.
+  void fill_weights();
+  FactorResult factorize();
+  /// Solves for the Newton step with these right-hand sides: K change + Phi_q^T lambda = force, Phi_q change = gap.
+  StaticStep solve(std::span<const double> force, std::span<const double> gap, double tolerance);
+  /// The Newton step itself.
+  StaticStep newton_step(double tolerance);
+
+  /// q += factor x change; angles turned by at most `largest_turn` each.
+  void advance(std::span<double> q, std::span<const double> change, double factor, double largest_turn) const;
+
+  KktMatrix& matrix() { return matrix_; }
+  Evaluator& evaluator() { return evaluator_; }
+  const Plan& plan() const { return plan_; }
+  double length() const { return length_; }  ///< what changes are compared with, m
+  double extent() const { return extent_; }  ///< of the present coordinates, m: rounding grows with it
+  std::span<const double> radius() const { return radius_; }
+
+ private:
+  Evaluator& evaluator_;
+  const Plan& plan_;
+  std::vector<double> radius_;
+  KktMatrix matrix_;
+  double length_, extent_ = 1, force_ = 1;
+  std::vector<double> rest_, loads_;  // zero velocities, Q; all coordinates
+  std::vector<double> gradient_, jacobian_, phi_;
+  std::vector<double> solution_, torque_;
+};
+
+}  // namespace catena

@@ -1,0 +1,185 @@
+#include "catena/assembly/kkt_matrix.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// rho in units of the stiffness of the bodies that a row touches.
+constexpr double augmentation = 4;
+// eps rho: small enough that two refinements remove what it does, large enough to be seen beside rounding.
+constexpr double regularisation = 1e-10;
+// Bodies much softer than the stiffest one count this part of it: pivots need something to divide by.
+constexpr double softest_part = 1e-9;
+
+}  // namespace
+
+KktMatrix::KktMatrix(std::shared_ptr<const Plan> plan, std::span<const double> radius)
+    : plan_(std::move(plan)), structure_(*plan_), moving_(plan_->moving), radius_(radius.begin(), radius.end()) {
+  values_.assign(at(structure_.values()), 0.0);
+  factored_.resize(at(structure_.entries()));
+  rho_.resize(at(structure_.rows));
+  eps_.resize(at(structure_.rows));
+  stiffness_.resize(at(moving_));
+}
+
+void KktMatrix::set_hessian(Evaluator& evaluator, std::span<const double> lambda, Curvature curvature) {
+  std::fill(values_.begin(), values_.end(), 0.0);
+  evaluator.add_hessians(lambda, curvature, structure_.hessian, values_);
+}
+
+void KktMatrix::write_jacobian(std::span<const double> jacobian) {
+  for (std::size_t k = 0; k < structure_.jacobian.size(); ++k) values_[at(structure_.jacobian[k])] = jacobian[k];
+}
+
+void KktMatrix::complete(std::span<const double> jacobian, double shift) {
+  const double* against_turning = values_.data() + structure_.entries();
+  for (int c = 0; c < structure_.columns; ++c) {
+    const int coordinate = plan_->coordinate[at(c)], body = coordinate / 3;
+    double& value = values_[at(structure_.diagonal[at(c)])];
+    if (coordinate % 3 == 2) {
+      value += against_turning[body] + shift * radius_[at(body)] * radius_[at(body)];
+    } else {
+      value += shift;
+    }
+  }
+  write_jacobian(jacobian);
+}
+
+void KktMatrix::set_weights(std::span<const double> jacobian, double stiffness) {
+  std::fill(values_.begin(), values_.end(), 0.0);
+  complete(jacobian, stiffness);
+}
+
+void KktMatrix::choose_augmentation(double least_stiffness) {
+  std::fill(stiffness_.begin(), stiffness_.end(), 0.0);
+  for (int c = 0; c < structure_.columns; ++c) {
+    const int coordinate = plan_->coordinate[at(c)];
+    const std::size_t body = at(coordinate / 3);
+    double k = std::abs(values_[at(structure_.diagonal[at(c)])]);
+    if (coordinate % 3 == 2) k /= radius_[body] * radius_[body];
+    stiffness_[body] = std::max(stiffness_[body], k);
+  }
+  largest_stiffness_ = 0;
+  for (double k : stiffness_) largest_stiffness_ = std::max(largest_stiffness_, k);
+  const double least = std::max(least_stiffness, softest_part * largest_stiffness_);
+  const SparsePattern& phi_q = plan_->jacobian;
+  std::fill(rho_.begin(), rho_.end(), least > 0 ? least : 1.0);
+  for (int c = 0; c < structure_.columns; ++c) {
+    const std::size_t body = at(plan_->coordinate[at(c)] / 3);
+    for (int k = phi_q.column_start[at(c)]; k < phi_q.column_start[at(c) + 1]; ++k) {
+      const std::size_t row = at(phi_q.row_index[at(k)]);
+      // A row in radians holds torques: its stiffness is in N m.
+      const double scale = plan_->row_is_angle[row] ? radius_[body] * radius_[body] : 1;
+      rho_[row] = std::max(rho_[row], augmentation * scale * stiffness_[body]);
+    }
+  }
+  for (std::size_t r = 0; r < rho_.size(); ++r) eps_[r] = regularisation / rho_[r];
+}
+
+FactorResult KktMatrix::factorize(double least_stiffness, Counters& counters) {
+  if (!analyzed_) {
+    const FactorResult result = factorization_.analyze(
+        structure_.pattern, {.ordering = SymmetricOrdering::given, .permutation = structure_.order}, counters);
+    if (!result.ok()) return result;
+    analyzed_ = true;
+  }
+  choose_augmentation(least_stiffness);
+  // A quadratic energy under linear constraints has one matrix for ever: its factors are kept.
+  if (plan_->constant_jacobian) {
+    if (is_factorized() && std::equal(last_.begin(), last_.end(), values_.begin())) return {};
+    last_.assign(values_.begin(), values_.begin() + structure_.entries());
+  }
+  std::copy_n(values_.begin(), factored_.size(), factored_.begin());
+  const int* product = structure_.product_slot.data();
+  for (int r = 0; r < structure_.rows; ++r) {
+    const int begin = structure_.row_start[at(r)], end = structure_.row_start[at(r) + 1];
+    for (int a = begin; a < end; ++a) {
+      const double weighted = rho_[at(r)] * values_[at(structure_.jacobian[at(structure_.row_entry[at(a)])])];
+      for (int b = begin; b <= a; ++b) {
+        factored_[at(*product++)] += weighted * values_[at(structure_.jacobian[at(structure_.row_entry[at(b)])])];
+      }
+    }
+    factored_[at(structure_.diagonal[at(structure_.columns + r)])] = -eps_[at(r)];
+  }
+  return factorization_.factorize(factored_, 0, counters);
+}
+
+void KktMatrix::multiply(std::span<const double> x, std::span<double> y) const {
+  std::fill(y.begin(), y.end(), 0.0);
+  const SparsePattern& a = structure_.pattern;
+  for (int c = 0; c < a.columns; ++c) {
+    const double xc = x[at(c)];
+    double sum = 0;
+    for (int k = a.column_start[at(c)]; k < a.column_start[at(c) + 1]; ++k) {
+      const int r = a.row_index[at(k)];
+      const double value = values_[at(k)];
+      if (r != c) sum += value * x[at(r)];
+      y[at(r)] += value * xc;
+    }
+    y[at(c)] += sum;
+  }
+}
+
+void KktMatrix::multiply_stiffness(std::span<const double> x, std::span<double> y) const {
+  std::fill(y.begin(), y.end(), 0.0);
+  const SparsePattern& a = structure_.pattern;
+  for (int c = 0; c < structure_.columns; ++c) {
+    for (int k = a.column_start[at(c)]; k < a.column_start[at(c) + 1]; ++k) {
+      const int r = a.row_index[at(k)];
+      if (r >= structure_.columns) break;
+      y[at(r)] += values_[at(k)] * x[at(c)];
+      if (r != c) y[at(c)] += values_[at(k)] * x[at(r)];
+    }
+  }
+}
+
+double KktMatrix::absolute_quadratic(std::span<const double> x) const {
+  const SparsePattern& a = structure_.pattern;
+  double sum = 0;
+  for (int c = 0; c < structure_.columns; ++c) {
+    for (int k = a.column_start[at(c)]; k < a.column_start[at(c) + 1]; ++k) {
+      const int r = a.row_index[at(k)];
+      if (r >= structure_.columns) break;
+      sum += (r == c ? 1 : 2) * std::abs(values_[at(k)] * x[at(c)] * x[at(r)]);
+    }
+  }
+  return sum;
+}
+
+Refinement KktMatrix::solve(std::span<double> x, double force, double length, double tolerance, Counters& counters) {
+  const std::vector<double> b(x.begin(), x.end());
+  const auto residual = [&](std::span<const double> solution, std::span<double> r) {
+    multiply(solution, r);
+    double largest = 0;
+    for (int c = 0; c < structure_.columns; ++c) {
+      r[at(c)] = b[at(c)] - r[at(c)];
+      const int coordinate = plan_->coordinate[at(c)];
+      const double size = std::abs(r[at(c)]) / (coordinate % 3 == 2 ? radius_[at(coordinate / 3)] : 1.0) / force;
+      largest = std::max(largest, size);
+    }
+    for (int k = 0; k < structure_.rows; ++k) {
+      const std::size_t row = at(structure_.columns + k);
+      r[row] = b[row] - r[row];
+      largest = std::max(largest, std::abs(r[row]) / (plan_->row_is_angle[at(k)] ? 1.0 : length));
+    }
+    return largest;
+  };
+  return factorization_.solve_refined(x, residual, {.tolerance = tolerance, .max_steps = 4, .least_progress = 1},
+                                      counters);
+}
+
+int KktMatrix::negative_modes() const { return factorization_.inertia().negative - structure_.rows; }
+
+std::vector<int> KktMatrix::dependent_rows() const {
+  std::vector<int> dependent;
+  for (int r = 0; r < structure_.rows; ++r) {
+    if (std::abs(factorization_.pivot(structure_.columns + r)) < 1e3 * eps_[at(r)]) dependent.push_back(r);
+  }
+  return dependent;
+}
+
+}  // namespace catena
