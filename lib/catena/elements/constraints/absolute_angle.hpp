@@ -21,7 +21,7 @@ struct AbsoluteAngle {
   static constexpr std::array pattern = {Entry::zero, Entry::zero, Entry::plus_one};
   static constexpr std::array<HessianEntry, 0> hessian_pattern = {};
 
-  Vec2<S> s_i;  // where the torque is reported; the equation does not contain it
+  Vec2<S> s_i{};  // where the torque is reported; the equation does not contain it
 
   static constexpr UnitKind row_unit(int) { return UnitKind::angle; }
   static constexpr auto fields() {

@@ -26,7 +26,7 @@ struct AbsoluteDistance {
   static constexpr std::array hessian_pattern = {HessianEntry{0, 0}, HessianEntry{1, 1}, HessianEntry{2, 0},
                                                  HessianEntry{2, 1}, HessianEntry{2, 2}};
 
-  Vec2<S> s_i, ground;
+  Vec2<S> s_i{}, ground{};
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &AbsoluteDistance::s_i, 0, "the point P of the body"},

@@ -23,7 +23,7 @@ struct AbsoluteX {
   static constexpr std::array pattern = {Entry::plus_one, Entry::zero, Entry::varying};
   static constexpr std::array hessian_pattern = {HessianEntry{2, 2}};
 
-  Vec2<S> s_i;
+  Vec2<S> s_i{};
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &AbsoluteX::s_i, 0, "the point P of the body"},

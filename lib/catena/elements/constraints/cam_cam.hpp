@@ -27,9 +27,9 @@ struct CamCam {
   static constexpr int bodies = 2;
   static constexpr int functions = 0;
 
-  Vec2<S> s_i, s_j;  // where torques are reported
-  BodyCurve<S> curve_i, curve_j;
-  mutable CommonNormal contact;  // found last
+  Vec2<S> s_i{}, s_j{};  // where torques are reported
+  BodyCurve<S> curve_i{}, curve_j{};
+  mutable CommonNormal contact{};  // found last
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &CamCam::s_i, 0, "the body with the first cam"},

@@ -27,8 +27,8 @@ struct CamFlat {
   static constexpr int bodies = 2;
   static constexpr int functions = 0;
 
-  Vec2<S> s_i, s_j, axis_j;  // s_i: where torques on i are reported
-  BodyCurve<S> curve;
+  Vec2<S> s_i{}, s_j{}, axis_j{};  // s_i: where torques on i are reported
+  BodyCurve<S> curve{};
   double side = 1;  // 1: the contact is farthest along N, -1: against it
   mutable double parameter = std::numeric_limits<double>::quiet_NaN();  // of the contact found last
 

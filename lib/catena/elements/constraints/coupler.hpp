@@ -25,7 +25,7 @@ struct Coupler {
   static constexpr UnitKind value_unit = UnitKind::length;
   static constexpr auto hessian_pattern = squared_distance_hessian_pattern;
 
-  Vec2<S> s_i, s_j;
+  Vec2<S> s_i{}, s_j{};
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &Coupler::s_i, 0, "the pin P_i on body i"},

@@ -25,7 +25,7 @@ struct Displacement {
   static constexpr UnitKind value_unit = UnitKind::length;
   static constexpr auto hessian_pattern = projection_hessian_pattern;
 
-  Vec2<S> s_i, s_j, axis_i;
+  Vec2<S> s_i{}, s_j{}, axis_i{};
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &Displacement::s_i, 0, "the point P_i of body i, from which is measured"},

@@ -24,7 +24,7 @@ struct Gear {
   static constexpr int bodies = 2;
   static constexpr int functions = 0;
 
-  Vec2<S> s_i, s_j;
+  Vec2<S> s_i{}, s_j{};
   S radius_i{}, radius_j{};
   bool internal = false;
   S constant{};  // c

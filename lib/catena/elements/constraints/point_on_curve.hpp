@@ -25,8 +25,8 @@ struct PointOnCurve {
   static constexpr int bodies = 2;
   static constexpr int functions = 0;
 
-  Vec2<S> s_i, s_j;  // s_i: where torques on i are reported
-  BodyCurve<S> curve;
+  Vec2<S> s_i{}, s_j{};  // s_i: where torques on i are reported
+  BodyCurve<S> curve{};
   mutable double parameter = std::numeric_limits<double>::quiet_NaN();  // of the foot found last
 
   static constexpr auto fields() {

@@ -25,7 +25,7 @@ struct RackPinion {
   static constexpr int functions = 0;
   static constexpr auto hessian_pattern = projection_hessian_pattern;
 
-  Vec2<S> s_i, s_j, axis_i;
+  Vec2<S> s_i{}, s_j{}, axis_i{};
   S radius{};
   int side = 1;
   S constant{};  // c

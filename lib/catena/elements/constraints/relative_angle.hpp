@@ -22,7 +22,7 @@ struct RelativeAngle {
                                          Entry::zero, Entry::zero, Entry::plus_one};
   static constexpr std::array<HessianEntry, 0> hessian_pattern = {};
 
-  Vec2<S> s_i, s_j;  // where torques are reported; the equation does not contain them
+  Vec2<S> s_i{}, s_j{};  // where torques are reported; the equation does not contain them
 
   static constexpr UnitKind row_unit(int) { return UnitKind::angle; }
   static constexpr auto fields() {

@@ -24,7 +24,7 @@ struct RelativeDistance {
   static constexpr UnitKind value_unit = UnitKind::length;
   static constexpr auto hessian_pattern = squared_distance_hessian_pattern;
 
-  Vec2<S> s_i, s_j;
+  Vec2<S> s_i{}, s_j{};
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &RelativeDistance::s_i, 0, "the point P_i on body i"},

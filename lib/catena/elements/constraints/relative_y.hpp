@@ -25,7 +25,7 @@ struct RelativeY {
                                          Entry::zero, Entry::plus_one,  Entry::varying};
   static constexpr std::array hessian_pattern = {HessianEntry{2, 2}, HessianEntry{5, 5}};
 
-  Vec2<S> s_i, s_j;
+  Vec2<S> s_i{}, s_j{};
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &RelativeY::s_i, 0, "the point P_i of body i"},

@@ -25,7 +25,7 @@ struct Slot {
   static constexpr UnitKind value_unit = UnitKind::length;
   static constexpr auto hessian_pattern = projection_hessian_pattern;
 
-  Vec2<S> s_i, s_j, axis_i;
+  Vec2<S> s_i{}, s_j{}, axis_i{};
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &Slot::s_i, 0, "a point P_i of the slot, on body i"},

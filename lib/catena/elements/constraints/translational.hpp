@@ -31,8 +31,8 @@ struct Translational {
                                          Entry::zero,    Entry::zero,    Entry::varying};
   static constexpr auto hessian_pattern = projection_hessian_pattern;
 
-  Vec2<S> s_i, s_j, axis_i;
-  Vec2<S> axis_j;  // zero: left out
+  Vec2<S> s_i{}, s_j{}, axis_i{};
+  Vec2<S> axis_j{};  // zero: left out
 
   static constexpr UnitKind row_unit(int row) { return row == 1 ? UnitKind::angle : UnitKind::length; }
   static constexpr auto fields() {

@@ -29,7 +29,7 @@ struct Weld {
                                          Entry::zero,      Entry::zero,      Entry::plus_one};
   static constexpr std::array hessian_pattern = {HessianEntry{2, 2}, HessianEntry{5, 5}};
 
-  Vec2<S> s_i, s_j;
+  Vec2<S> s_i{}, s_j{};
   S angle{};  // c
 
   static constexpr UnitKind row_unit(int row) { return row == 2 ? UnitKind::angle : UnitKind::length; }
