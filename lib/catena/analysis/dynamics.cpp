@@ -8,6 +8,7 @@
 
 #include "catena/analysis/initial_velocities.hpp"
 #include "catena/analysis/process_time.hpp"
+#include "catena/base/flush_denormals.hpp"
 #include "catena/columns/energy.hpp"
 
 namespace catena {
@@ -178,6 +179,7 @@ Report Dynamics::stuck() const {
 
 AnalysisReport Dynamics::run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
   const ProcessTimer timer;
+  const FlushDenormals flush;
   AnalysisReport report;
   report.bodies = static_cast<int>(model_->bodies.size());
   report.rows = plan_->rows;

@@ -8,12 +8,16 @@ namespace catena {
 namespace {
 
 constexpr double safety = 0.9;
-constexpr double largest_growth = 5, largest_cut = 0.2;
-// Ends of steps are kept away from positions where a pivot ratio falls below this; what is tried instead of h.
-constexpr double singular_end = 1e-7;
-constexpr double other_steps[] = {0.8, 0.6, 1.15, 0.4};
-// A filtered error is believed as long as its second-order part, 10 raw^2 tolerance, is below it.
-constexpr double filter_guard = 10;
+constexpr double largest_growth = 2.5, largest_cut = 0.2;
+// The part of an error estimate that the projection will remove counts this much: stages spoil each other by it.
+constexpr double forbidden_part = 0.1;
+// A rejected step with a stage whose pivot ratio is below this is repeated with all stages projected.
+constexpr double projection_ratio = 1e-2;
+// Where no step across a singular position is good enough, the best is taken if its error is below this.
+constexpr double largest_crossing_error = 30;
+// Ends of steps are kept away from positions where a pivot ratio is below this; accelerations lose ratio^1.5 there.
+constexpr double singular_end = 1e-7, lost_digits = 1e-14;
+constexpr double other_steps[] = {0.8, 0.6, 1.15, 0.4};  // what is tried instead of h
 constexpr int rejections_before_low_order = 8, low_order_run = 30;
 constexpr int most_rejections = 100;
 constexpr double smallest_step = 1e-13;    // part of |t| and of the time scale
@@ -29,6 +33,7 @@ RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options) : motion
   error_low_.resize(2 * motion_.coordinates());
   scale_.tolerance = options.tolerance;
   scale_.length = motion_.equations().evaluator().length_scale();
+  singular_ratio_ = std::max(singular_end, std::pow(lost_digits / std::sqrt(options.tolerance), 2.0 / 3));
 }
 
 bool RungeKutta::start(double t, std::span<const double> y) {
@@ -63,11 +68,14 @@ void RungeKutta::combine(const StageSum& sum, double h, const double* from, std:
 
 bool RungeKutta::evaluate_stages(double h) {
   const Tableau& table = tableau();
+  smallest_stage_ratio_ = 1;
   for (std::size_t s = 1; s < static_cast<std::size_t>(table.stages); ++s) {
     combine(table.a[s], h, y_.data(), y_stage_);
-    const bool at_end = table.c[s] == 1;
-    if (!motion_.derivative(t_ + table.c[s] * h, at_end ? Side::before : Side::after, y_stage_, stage_[s]))
-      return false;
+    const double t = t_ + table.c[s] * h;
+    const Side side = table.c[s] == 1 ? Side::before : Side::after;
+    if (projecting_stages_ && !project_stage(t, side)) return false;
+    if (!motion_.derivative(t, side, y_stage_, stage_[s])) return false;
+    smallest_stage_ratio_ = std::min(smallest_stage_ratio_, motion_.equations().smallest_pivot_ratio());
   }
   combine(table.b, h, y_.data(), y_new_);
   combine(table.error, 1, nullptr, error_);
@@ -75,9 +83,21 @@ bool RungeKutta::evaluate_stages(double h) {
   return true;
 }
 
-// Factors at the new point, before it is projected: order 5 had its last stage there.
+// Integrates y' = f(P(y)), P the projection: a smooth extension of the equations whose order is the method's, but in
+// which the errors of stages across the constraints do not grow where those are nearly dependent.
+bool RungeKutta::project_stage(double t, Side side) {
+  EquationsOfMotion& equations = motion_.equations();
+  const std::span<double> y(y_stage_);
+  if (!equations.factorize(t, side, motion_.q(y))) return false;
+  equations.project_position(motion_.q(y), 3);
+  equations.project_velocity(motion_.qd(y), scale_.rate);
+  return true;
+}
+
+// Factors at the new point, before it is projected. Order 5 had its last stage there, order 8 beside it: far from
+// singular positions those factors serve.
 bool RungeKutta::factorize_new_point(double h) {
-  return tableau().order == 5 ||
+  return tableau().order == 5 || motion_.equations().smallest_pivot_ratio() > projection_ratio ||
          motion_.equations().factorize(t_ + h, Side::before, motion_.q(std::span<const double>(y_new_)));
 }
 
@@ -85,28 +105,26 @@ double RungeKutta::error_size(double h) {
   const std::size_t moving = motion_.moving(), offset = motion_.coordinates();
   const double* v = motion_.qd(std::span<const double>(y_)).data();
   const bool two = tableau().order == 8;
-  double high = 0, low = 0, largest = -1;
+  double high = 0, low = 0;
   for (std::size_t c = 0; c < moving; ++c) {
     const double unit = scale_.tolerance * (c % 3 == 2 ? 1 : scale_.length);
     const double q_scale = 1 / unit, v_scale = 1 / (scale_.rate * unit + scale_.tolerance * std::abs(v[c]));
     const double q_error = error_[c] * q_scale, v_error = error_[offset + c] * v_scale;
     const double size = q_error * q_error + v_error * v_error;
-    high += size;
-    if (size > largest) {
-      largest = size;
+    if (!(size <= high)) {
+      high = size;
       culprit_ = static_cast<int>(c);
     }
     if (!two) continue;
     const double q_low = error_low_[c] * q_scale, v_low = error_low_[offset + c] * v_scale;
-    low += q_low * q_low + v_low * v_low;
+    low = std::max(low, q_low * q_low + v_low * v_low);
   }
-  const double count = 2.0 * static_cast<double>(std::max<std::size_t>(moving, 1));
-  if (!two) return std::abs(h) * std::sqrt(high / count);
+  if (!two) return std::abs(h) * std::sqrt(high);
   const double denominator = high + 0.01 * low;
-  return denominator > 0 ? std::abs(h) * high / std::sqrt(denominator * count) : 0 * high;
+  return denominator == 0 ? 0 : std::abs(h) * high / std::sqrt(denominator);
 }
 
-// The error without what the projection at the step's end will remove.
+// The error without most of what the projection at the step's end will remove.
 double RungeKutta::filtered_error(double h, double raw) {
   const std::size_t moving = motion_.moving(), offset = motion_.coordinates();
   EquationsOfMotion& equations = motion_.equations();
@@ -115,7 +133,7 @@ double RungeKutta::filtered_error(double h, double raw) {
     equations.remove_forbidden(std::span(*error).first(moving));
     equations.remove_forbidden(std::span(*error).subspan(offset, moving));
   }
-  return std::min(raw, std::max(error_size(h), filter_guard * raw * raw * scale_.tolerance));
+  return std::min(raw, std::max(error_size(h), forbidden_part * raw));
 }
 
 // Projects the new point and evaluates it; the stages stay as they are for the interpolant.
@@ -136,12 +154,44 @@ void RungeKutta::reject(double h) {
   }
 }
 
+// Another step size in place of h, so that neither its end nor a stage lies beside a singular position.
+bool RungeKutta::detour(double h) {
+  if (detours_ == static_cast<int>(std::size(other_steps))) return false;
+  if (detours_ == 0) undisturbed_step_ = h;
+  ++motion_.equations().evaluator().counters.rejected;
+  h_ = undisturbed_step_ * other_steps[detours_++];
+  return true;
+}
+
+// What to do about a step of size h that failed near a singular position: project its stages; try other sizes; at last
+// take the best of those unless it is bad. False: none of this helps, h_ is as it was.
+bool RungeKutta::try_crossing(double h, double error) {
+  if (!projecting_stages_) {
+    projecting_stages_ = true;
+    best_error_ = largest_crossing_error;
+    best_step_ = 0;
+    h_ = h;
+    return true;
+  }
+  if (error < best_error_) {
+    best_error_ = error;
+    best_step_ = h;
+  }
+  if (detour(h)) return true;
+  if (best_step_ == 0) return false;
+  h_ = best_step_;
+  accepted_error_ = 1.1 * best_error_;
+  best_step_ = 0;
+  return true;
+}
+
 bool RungeKutta::advance(double limit) {
   const bool fixed = options_.fixed_step > 0;
   const double smallest = smallest_step * std::max(std::abs(t_), scale_.rate > 0 ? 1 / scale_.rate : 0.0);
   double proposed = fixed ? options_.fixed_step : h_;
-  double undisturbed = 0;
-  int detours = 0;
+  detours_ = 0;
+  projecting_stages_ = false;
+  accepted_error_ = 1;
   rejections_ = 0;
   stage_[0] = slope_;
   interpolant_ready_ = false;
@@ -151,7 +201,7 @@ bool RungeKutta::advance(double limit) {
     const bool lands = h_ * (fixed ? 1 + 1e-9 : 1.01) >= remaining;
     // Two equal steps instead of a long one and a tiny one.
     double h = lands ? remaining : h_;
-    if (!lands && !fixed && detours == 0 && 2 * h > remaining) h = remaining / 2;
+    if (!lands && !fixed && detours_ == 0 && 2 * h > remaining) h = remaining / 2;
     if ((h < smallest && !lands) || rejections_ > most_rejections) return false;
     if (!evaluate_stages(h)) {
       culprit_ = -1;
@@ -168,7 +218,9 @@ bool RungeKutta::advance(double limit) {
     if (!std::isfinite(error)) error = 1e10;
     const double growth =
         std::clamp(safety * std::pow(std::max(error, 1e-10), -1.0 / tableau().order), largest_cut, largest_growth);
-    if (error > 1) {
+    if (error > accepted_error_) {
+      // Near a singular position a shorter step would only walk into it.
+      if (smallest_stage_ratio_ < projection_ratio && try_crossing(h, error)) continue;
       reject(h * std::min(growth, 1.0));
       continue;
     }
@@ -178,14 +230,9 @@ bool RungeKutta::advance(double limit) {
       continue;
     }
     const double ratio = motion_.equations().smallest_pivot_ratio();
-    if (ratio > 10 * singular_end) passing_singular_ = false;
-    if (ratio < singular_end && !passing_singular_ && !lands && !fixed) {
-      if (detours < static_cast<int>(std::size(other_steps))) {
-        if (detours == 0) undisturbed = h;
-        ++motion_.equations().evaluator().counters.rejected;
-        h_ = undisturbed * other_steps[detours++];
-        continue;
-      }
+    if (ratio > 10 * singular_ratio_) passing_singular_ = false;
+    if (ratio < singular_ratio_ && !passing_singular_ && !lands && !fixed) {
+      if (detour(h)) continue;
       passing_singular_ = true;
     }
     if (!finish_step(h)) {

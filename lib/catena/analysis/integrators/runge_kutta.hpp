@@ -53,10 +53,13 @@ class RungeKutta {
   /// out = from + h sum weight stage; `from` may be nullptr.
   void combine(const StageSum& sum, double h, const double* from, std::span<double> out) const;
   bool evaluate_stages(double h);
+  bool project_stage(double t, Side side);
   bool factorize_new_point(double h);
   double error_size(double h);
   double filtered_error(double h, double raw);
   bool finish_step(double h);
+  bool detour(double h);
+  bool try_crossing(double h, double error);
   void reject(double h);
   void accept(double t, double growth, double proposed);
   void observe_rates();
@@ -70,10 +73,11 @@ class RungeKutta {
   std::vector<std::vector<double>> stage_;
   std::vector<std::vector<double>> interpolant_;
   std::vector<double> error_, error_low_;  // [q, qd]
-  bool interpolant_ready_ = false, step_was_low_order_ = false, passing_singular_ = false;
-  int low_order_left_ = 0, rejections_ = 0, culprit_ = -1;
+  bool interpolant_ready_ = false, step_was_low_order_ = false, passing_singular_ = false, projecting_stages_ = false;
+  int low_order_left_ = 0, rejections_ = 0, detours_ = 0, culprit_ = -1;
   std::int64_t low_order_steps_ = 0;
-  double position_residual_ = 0;
+  double accepted_error_ = 1, best_error_ = 0, best_step_ = 0;
+  double position_residual_ = 0, smallest_stage_ratio_ = 1, undisturbed_step_ = 0, singular_ratio_ = 0;
 };
 
 }  // namespace catena
