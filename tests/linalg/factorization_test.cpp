@@ -102,6 +102,37 @@ TEST(Factorization, ReportsTheSmallestPivotOfEveryBlock) {
   EXPECT_GE(factorization.rcond(), 0.1 * angle);
 }
 
+TEST(Factorization, DeterminantSignsFollowEveryBlockThroughChangesOfPivots) {
+  // Three full blocks of different sizes, redrawn at random: whatever pivots are used, a block's sign changes exactly
+  // when its determinant does.
+  const std::vector<int> sizes{1, 3, 4};
+  std::vector<MatrixEntry> entries;
+  for (int block = 0, first = 0; block < 3; first += sizes[block++])
+    for (int i = 0; i < sizes[block]; ++i)
+      for (int j = 0; j < sizes[block]; ++j) entries.push_back({first + i, first + j});
+  Matrix matrix{build_pattern(8, 8, entries).pattern, std::vector<double>(entries.size())};
+  Random random(21);
+  Counters counters;
+  Factorization factorization;
+  ASSERT_TRUE(factorization.analyze(matrix.pattern, Kernel::klu, counters).ok());
+  ASSERT_EQ(factorization.blocks(), 3);
+  std::vector<int> factor(3, 0);  // sign of the determinant / reported sign, fixed by the first round
+  for (int round = 0; round < 200; ++round) {
+    for (double& value : matrix.values) value = std::pow(10, random.uniform(-5, 0)) * (random.below(2) ? 1 : -1);
+    ASSERT_TRUE(factorization.factorize(matrix.values, counters).ok());
+    const Eigen::MatrixXd a = dense(matrix);
+    const std::span<const signed char> signs = factorization.determinant_signs();
+    ASSERT_EQ(signs.size(), 3u);
+    for (int block = 0, first = 0; block < 3; first += sizes[block++]) {
+      const double determinant = a.block(first, first, sizes[block], sizes[block]).determinant();
+      const int sign = signs[factorization.block_of_column()[first]] * (determinant > 0 ? 1 : -1);
+      if (round == 0) factor[block] = sign;
+      EXPECT_EQ(sign, factor[block]) << "round " << round << " block " << block;
+    }
+  }
+  EXPECT_GT(counters.factorizations - counters.refactorizations, 1) << "pivots must have changed on the way";
+}
+
 TEST(Factorization, RefactorsWithKeptPivotsWhileTheySuit) {
   Random random(14);
   Matrix matrix = dyad_chain(20, random);
