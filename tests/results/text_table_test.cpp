@@ -20,16 +20,17 @@ TEST(NumberFormat, AColumnSharesItsDecimals) {
   EXPECT_EQ(formatted({1, 2, 300}), (Strings{"1", "2", "300"}));
   EXPECT_EQ(formatted({12.3456789, -1}), (Strings{"12.3457", "-1.0000"}));
   EXPECT_EQ(formatted({9.9999999}), Strings{"10"});
-  EXPECT_EQ(formatted({0, 0}), (Strings{"0", "0"}));
+  EXPECT_EQ(formatted({0, -0.0}), (Strings{"0", "0"}));
+  EXPECT_EQ(formatted({-0.0, 3e-9}), (Strings{"0e+00", "3e-09"}));
 }
 
 TEST(NumberFormat, RoundingErrorsBesideARealNumberReadZero) {
   EXPECT_EQ(formatted({1.5, -3e-17}), (Strings{"1.5", "0.0"}));
-  EXPECT_EQ(formatted({2e-17}), Strings{"2.00000e-17"});  // alone it is all there is
+  EXPECT_EQ(formatted({2e-17}), Strings{"2e-17"});  // alone it is all there is
 }
 
 TEST(NumberFormat, LargeAndSmallColumnsHaveExponents) {
-  EXPECT_EQ(formatted({1.25e-5, 0}), (Strings{"1.25000e-05", "0.00000e+00"}));
+  EXPECT_EQ(formatted({1.25e-5, 0}), (Strings{"1.25e-05", "0.00e+00"}));
   EXPECT_EQ(formatted({123456, 1}), (Strings{"123456", "1"}));
   EXPECT_EQ(formatted({1234567}), Strings{"1.23457e+06"});
   EXPECT_EQ(formatted({0.00123456789}), Strings{"0.00123457"});

@@ -10,20 +10,23 @@ namespace {
 constexpr int digits = 6;
 
 std::string to_text(double value, std::chars_format format, int precision) {
-  char buffer[64];  // fixed format is used below 10^7 only
-  std::string text(buffer, std::to_chars(buffer, buffer + sizeof buffer, value, format, precision).ptr);
+  // Fixed format is used below 10^7 only. Adding zero takes the sign off a zero.
+  char buffer[64];
+  std::string text(buffer, std::to_chars(buffer, buffer + sizeof buffer, value + 0.0, format, precision).ptr);
   // What was rounded to zero has no sign.
   if (text[0] == '-' && text.find_first_not_of("-0.") == std::string::npos) text.erase(0, 1);
   return text;
 }
 
-/// How many characters at the end of a fixed number are zeros behind the point, the point itself included if it is
-/// last.
+/// Where the decimals of a number end: at the exponent, if it has one.
+std::size_t decimals_end(const std::string& text) { return std::min(text.find('e'), text.size()); }
+
+/// How many of the characters before decimals_end() are zeros, the point itself included if nothing is left behind it.
 std::size_t trailing_zeros(const std::string& text) {
-  const std::size_t point = text.find('.');
+  const std::size_t point = text.find('.'), end = decimals_end(text);
   if (point == std::string::npos) return 0;
-  const std::size_t last = text.find_last_not_of('0');
-  return text.size() - (last == point ? point : last + 1);
+  const std::size_t last = text.find_last_not_of('0', end - 1);
+  return end - (last == point ? point : last + 1);
 }
 
 }  // namespace
@@ -48,12 +51,10 @@ std::vector<std::string> format_column(std::span<const double> values) {
   std::size_t strip = std::string::npos;  // zeros that all numbers have
   for (double value : values) {
     text.push_back(std::isfinite(value) ? to_text(value, format, decimals) : "-");
-    if (fixed && std::isfinite(value)) strip = std::min(strip, trailing_zeros(text.back()));
+    if (std::isfinite(value)) strip = std::min(strip, trailing_zeros(text.back()));
   }
-  if (fixed && strip != std::string::npos) {
-    for (std::string& number : text) {
-      if (number != "-") number.resize(number.size() - strip);
-    }
+  for (std::string& number : text) {
+    if (number != "-") number.erase(decimals_end(number) - strip, strip);
   }
   return text;
 }

@@ -1,0 +1,177 @@
+// What `catena run` and the single verbs print, write and return.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "cli/program.hpp"
+#include "results/temporary_folder.hpp"
+
+namespace catena::testing {
+namespace {
+
+using nlohmann::json;
+
+const std::string one_second = R"({"type": "kinematics", "until": 1, "every": 0.25})";
+
+class Run : public ::testing::Test {
+ protected:
+  std::string scene(const std::string& analysis = one_second) {
+    return write_scene(folder_ / "crank.json", crank_scene(analysis));
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(Run, PrintsATable) {
+  const ProgramResult result = run_catena({"run", scene()});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  EXPECT_NE(result.out.find("one crank: 1 body"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("kinematics: ok, 5 rows\n"
+                            "     t  crank.tip.x  crank.tip.y  crank.angle\n"
+                            "     s            m            m          rad\n"
+                            "  0.00     0.500000     0.000000          0.0\n"
+                            "  0.25     0.438791     0.239713          0.5\n"
+                            "  0.50     0.270151     0.420735          1.0\n"),
+            std::string::npos)
+      << result.out;
+}
+
+TEST_F(Run, PrintsJsonWithEveryDigit) {
+  const ProgramResult result = run_catena({"run", scene(), "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json document = json::parse(result.out);
+  EXPECT_EQ(document["catena"], 1);
+  EXPECT_EQ(document["scene"], "one crank");
+  const json& analysis = document["analyses"].at(0);
+  EXPECT_EQ(analysis["type"], "kinematics");
+  EXPECT_EQ(analysis["status"], "ok");
+  EXPECT_EQ(analysis["dof"], 0);
+  EXPECT_EQ(analysis["mobility"], 1);
+  EXPECT_EQ(analysis["columns"], json({"t", "crank.tip.x", "crank.tip.y", "crank.angle"}));
+  EXPECT_EQ(analysis["units"], json({"s", "m", "m", "rad"}));
+  ASSERT_EQ(analysis["rows"].size(), 5u);
+  for (std::size_t k = 0; k < 5; ++k) {
+    const json& row = analysis["rows"][k];
+    const double t = 0.25 * static_cast<double>(k);
+    EXPECT_EQ(row[0].get<double>(), t);
+    EXPECT_NEAR(row[1].get<double>(), 0.5 * std::cos(2 * t), 1e-15);
+    EXPECT_NEAR(row[3].get<double>(), 2 * t, 1e-15);
+  }
+  EXPECT_EQ(analysis["counters"]["gammas"], 0);
+}
+
+TEST_F(Run, WritesOneCsvAnAnalysisAndTheReport) {
+  const std::string target = folder_ / "results";
+  const ProgramResult result = run_catena(
+      {"run", scene(R"({"type": "check"},)" + one_second + R"(, {"type": "kinematics", "at": 2})"), "-o", target});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("wrote " + target + "/kinematics-2.csv"), std::string::npos) << result.err;
+  const std::string csv = read_file(target + "/kinematics.csv");
+  EXPECT_TRUE(csv.starts_with("t,crank.tip.x,crank.tip.y,crank.angle\r\n0,0.5,0,0\r\n")) << csv;
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 6);
+  const json report = json::parse(read_file(target + "/report.json"));
+  EXPECT_EQ(report["analyses"].size(), 3u);
+  EXPECT_EQ(report["analyses"][0]["type"], "check");
+  EXPECT_FALSE(std::filesystem::exists(target + "/check.csv"));
+}
+
+TEST_F(Run, SaysWhatCannotBeWrittenAndStillPrintsTheResults) {
+  const std::string in_the_way = write_scene(folder_ / "file", "");
+  const ProgramResult result = run_catena({"run", scene(), "-o", in_the_way});
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_NE(result.err.find(in_the_way), std::string::npos) << result.err;
+  EXPECT_NE(result.out.find("kinematics: ok, 5 rows"), std::string::npos) << result.out;
+}
+
+TEST_F(Run, AFullDiskIsAnError) {
+  const ProgramResult result = run_catena({"run", scene(), "--json"}, {.standard_output = "/dev/full", .during = {}});
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_NE(result.err.find("No space left"), std::string::npos) << result.err;
+}
+
+TEST_F(Run, CountersAreMessagesNotResults) {
+  const ProgramResult result = run_catena({"run", scene(), "--stats", "--json"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.err.find("factorizations"), std::string::npos) << result.err;
+  EXPECT_TRUE(json::accept(result.out));
+}
+
+TEST_F(Run, QuietPrintsNothing) {
+  const ProgramResult result = run_catena({"run", scene(), "-q"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.out + result.err, "");
+}
+
+TEST_F(Run, ParametersCanBeSet) {
+  const ProgramResult result = run_catena({"run", scene(), "--json", "--set", "speed=4"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NEAR(json::parse(result.out)["analyses"][0]["rows"][4][3].get<double>(), 4, 1e-15);
+  EXPECT_EQ(run_catena({"run", scene(), "--set", "sped=4"}).exit_code, 2);
+}
+
+TEST_F(Run, AVerbRunsOneAnalysisWithItsKeysAsOptions) {
+  ProgramResult result = run_catena({"kinematics", scene(R"({"type": "check"})"), "--json", "--at", "0.5,1.5",
+                                     "--outputs", "crank.angle,crank.omega"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json analyses = json::parse(result.out)["analyses"];
+  ASSERT_EQ(analyses.size(), 1u);
+  EXPECT_EQ(analyses[0]["columns"], json({"t", "crank.angle", "crank.omega"}));
+  EXPECT_NEAR(analyses[0]["rows"][1][1].get<double>(), 3, 1e-15);
+
+  result = run_catena({"check", scene()});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.out.find("mobility 1"), std::string::npos) << result.out;
+  EXPECT_EQ(run_catena({"assemble", scene()}).exit_code, 0);
+  EXPECT_EQ(run_catena({"kinematics", scene(), "--until", "soon"}).exit_code, 2);
+}
+
+TEST_F(Run, AnAnalysisThatFailsIsExitCodeOne) {
+  // The tip cannot be 2 m from the pivot.
+  std::string text = crank_scene(R"({"type": "assemble"})");
+  const std::string driver = R"("type": "absolute_angle", "name": "drive", "i": "crank")";
+  text.replace(text.find(driver), driver.size(), R"("type": "absolute_x", "name": "drive", "i": "crank.tip")");
+  text.replace(text.find("[0, \"speed\"]"), 12, "[2]");
+  const ProgramResult result = run_catena({"run", write_scene(folder_ / "far.json", text), "--json"});
+  EXPECT_EQ(result.exit_code, 1);
+  const json analysis = json::parse(result.out)["analyses"][0];
+  EXPECT_EQ(analysis["status"], "not_assembled");
+  EXPECT_NE(analysis["message"], "");
+  EXPECT_NE(result.err.find("not_assembled"), std::string::npos) << result.err;
+}
+
+TEST_F(Run, CtrlCKeepsTheRowsSoFar) {
+  const std::string path = scene(R"({"type": "kinematics", "until": 1e6, "every": 0.001})");
+  const std::string target = folder_ / "results";
+  const ProgramResult result =
+      run_catena({"run", path, "-o", target, "-q"}, {.standard_output = {}, .during = [](int process) {
+                                                       std::this_thread::sleep_for(std::chrono::milliseconds(700));
+                                                       ::kill(process, SIGINT);
+                                                     }});
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  const json analysis = json::parse(read_file(target + "/report.json"))["analyses"][0];
+  EXPECT_EQ(analysis["status"], "cancelled");
+  EXPECT_GT(analysis["rows"].size(), 10u);
+  const std::string csv = read_file(target + "/kinematics.csv");
+  EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), analysis["rows"].size() + 1);
+}
+
+TEST_F(Run, AReaderThatGoesAwayEndsTheProgram) {
+  const std::string path = scene(R"({"type": "kinematics", "until": 1e6, "every": 0.001})");
+  const std::string pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const ProgramResult result = run_catena({"run", path, "--json"}, {.standard_output = pipe, .during = [&](int) {
+                                                                      std::ifstream reader(pipe);
+                                                                      char some[100];
+                                                                      reader.read(some, sizeof some);
+                                                                    }});
+  EXPECT_EQ(result.exit_code, -SIGPIPE);
+  EXPECT_EQ(result.err, "");
+}
+
+}  // namespace
+}  // namespace catena::testing
