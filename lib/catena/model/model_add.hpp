@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "catena/model/given_frames.hpp"
 #include "catena/model/model.hpp"
 
 namespace catena {
@@ -72,7 +73,10 @@ ElementEntry<E, S> BasicModel<S>::place(const E& element, int i, int j) const {
   ElementEntry<E, S> entry{element, i, j};
   const auto origin = [&](int body) { return body < 0 ? Vec2<S>{} : bodies[static_cast<std::size_t>(body)].origin; };
   detail::shift_points(entry.element, origin(i), origin(j));
-  if constexpr (requires { entry.element.complete(frame(i), frame(j)); }) entry.element.complete(frame(i), frame(j));
+  if constexpr (requires { entry.element.complete(Frame<S>{}, Frame<S>{}); }) {
+    const auto [frame_i, frame_j] = given_frames<E>(*this, i, j);
+    entry.element.complete(frame_i, frame_j);
+  }
   if constexpr (requires { entry.element.check(); }) {
     if (const char* wrong = entry.element.check()) throw ModelError(std::string(E::type) + ": " + wrong);
   }
@@ -110,7 +114,8 @@ template <class E>
 int BasicModel<S>::add(std::string_view name, const E& element, int i, int j) {
   ElementEntry<E, S> entry = place(element, i, j);
   if constexpr (E::functions == 1 && when_omitted<E>() == Omitted::given) {
-    entry.values[0].constant = entry.element.measure(frame(i), frame(j));
+    const auto [frame_i, frame_j] = given_frames<E>(*this, i, j);
+    entry.values[0].constant = entry.element.measure(frame_i, frame_j);
     detail::check_value<E>(entry.values[0].constant);
   }
   return append(name, entry, ElementKind::constraint);
