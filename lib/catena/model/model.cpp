@@ -112,5 +112,6 @@ int BasicModel<S>::find_element(std::string_view name) const {
 }
 
 template class BasicModel<double>;
+template class BasicModel<Dual<double, 4>>;
 
 }  // namespace catena

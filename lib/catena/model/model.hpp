@@ -102,6 +102,7 @@ class BasicModel {
 using Model = BasicModel<double>;
 
 extern template class BasicModel<double>;
+extern template class BasicModel<Dual<double, 4>>;
 
 }  // namespace catena
 

@@ -94,7 +94,7 @@ double AnalysisReader::number(const AnalysisKey& key, const JsonValue& value, co
   if (whole && (result < 1 || result != std::round(result) || result > 2e9)) {
     error(value, fmt::format("{} must be a whole number above zero; it is {}", field.text(), result));
   } else if (!whole && !fits(result, key.domain)) {
-    error(value, fmt::format("{} must be {}; it is {}", field.text(), wanted(key.domain), result));
+    error(value, field.text() + " " + out_of_domain(result, key.domain));
   }
   return result;
 }
@@ -243,9 +243,7 @@ std::optional<AnalysisTask> AnalysisReader::read(const JsonValue& object, const 
   task.from_initial = task.word("from") == 1;
   check_times(values, task);
   if (!own_outputs && scene_outputs && task.description->find("outputs")) {
-    // Wrong ones are reported where the scene's outputs are checked.
-    Diagnostics again;
-    task.outputs = AnalysisReader(scene_, parameters_, again).names(scene_outputs, {"outputs"}, task.parameters);
+    task.outputs = names(scene_outputs, {"outputs"}, task.parameters);
   }
   return task;
 }

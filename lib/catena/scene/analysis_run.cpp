@@ -15,7 +15,8 @@ struct Runner {
 constexpr Runner entries[] = {{"check", run_check},
                               {"assemble", run_assemble},
                               {"kinematics", run_kinematics},
-                              {"inverse_dynamics", run_inverse_dynamics}};
+                              {"inverse_dynamics", run_inverse_dynamics},
+                              {"dynamics", run_dynamics}};
 
 /// The element that reads the model's function of time number `function`.
 std::string reader_of(const Model& model, int function) {

@@ -69,6 +69,9 @@ std::string to_string(const Diagnostic& diagnostic) {
 }
 
 void Diagnostics::error(const SourceText& source, std::size_t offset, std::string message) {
+  for (std::size_t k = 0; k < items_.size(); ++k) {
+    if (places_[k] == std::pair(&source, offset) && items_[k].message == message) return;
+  }
   ++count_;
   if (items_.size() >= limit_) return;
   const TextPlace place = source.place(offset);
@@ -77,7 +80,7 @@ void Diagnostics::error(const SourceText& source, std::size_t offset, std::strin
   const std::string_view line = source.line_at(offset, start);
   add_excerpt(diagnostic, line, std::min(offset, source.text().size()) - start);
   items_.push_back(std::move(diagnostic));
-  places_.emplace_back(&source, offset);
+  places_.push_back({&source, offset});
 }
 
 bool Diagnostics::reported(const SourceText& source, std::size_t offset) const {

@@ -1,8 +1,6 @@
 // Fills the members of an element type from the slots of its template: one function a type, made from its fields().
 #pragma once
 
-#include <fmt/format.h>
-
 #include <array>
 #include <tuple>
 
@@ -44,6 +42,9 @@ class Filler {
       entry_.element.*field.member = points_[field.body];
     } else {
       if (given) set(field, source_.first_number + static_cast<std::uint32_t>(slot), slot);
+      if constexpr (requires { field.required; }) {
+        if (!given && field.required) good_ = false;  // reported by the reader
+      }
     }
   }
 
@@ -51,7 +52,7 @@ class Filler {
   void wrong(std::size_t offset, std::string_view key, std::string_view what) {
     good_ = false;
     if (builder_.known_wrong(offset)) return;
-    builder_.report(offset, fmt::format("\"{}\" of {} {}", key, builder_.owner(source_), what));
+    builder_.report(offset, in_quotes(key) + " of " + builder_.owner(source_) + " " + std::string(what));
   }
 
   template <class M>
@@ -69,7 +70,7 @@ class Filler {
   void set(const NumberField<M>& field, std::uint32_t at, int) {
     const S value = builder_.value(number(at));
     if (!fits(value_of(value), field.domain)) {
-      wrong(number(at).offset(), field.key, fmt::format("must be {}; it is {}", wanted(field.domain), value_of(value)));
+      wrong(number(at).offset(), field.key, out_of_domain(value_of(value), field.domain));
     }
     entry_.element.*field.member = value;
   }
@@ -90,10 +91,10 @@ class Filler {
     const CurveTemplate& curve = builder_.scene().curves[static_cast<std::size_t>(number(at).number())];
     try {
       const int body = field.body == 0 ? entry_.i : entry_.j;
-      const Vec2<S> origin = body < 0 ? Vec2<S>{} : builder_.model().bodies[static_cast<std::size_t>(body)].origin;
-      entry_.element.*field.member = builder_.curve(curve, origin);
+      entry_.element.*field.member = builder_.curve(curve);
+      if (body >= 0) entry_.element.*field.member += builder_.model().bodies[static_cast<std::size_t>(body)].origin;
     } catch (const std::invalid_argument& error) {
-      wrong(curve.offset, field.key, fmt::format("is no curve: {}", error.what()));
+      wrong(curve.offset, field.key, std::string("is no curve: ") + error.what());
     }
   }
   template <class M>
@@ -126,7 +127,7 @@ class Filler {
           builder_.model().functions.push_back(made);
         }
       } catch (const std::invalid_argument& error) {
-        wrong(function.offset, key, fmt::format("is no function of time: {}", error.what()));
+        wrong(function.offset, key, std::string("is no function of time: ") + error.what());
       }
     }
   }
@@ -158,7 +159,7 @@ void fill(ModelBuilder<S>& builder, const ElementTemplate& source, const int* bo
   bool good = filler.run();
   const auto wrong = [&](std::size_t offset, std::string_view what) {
     good = false;
-    if (!builder.known_wrong(offset)) builder.report(offset, fmt::format("{}: {}", builder.owner(source), what));
+    if (!builder.known_wrong(offset)) builder.report(offset, builder.owner(source) + ": " + std::string(what));
   };
   if constexpr (requires { entry.element.complete(Frame<S>{}, Frame<S>{}); }) {
     entry.element.complete(model.frame(entry.i), model.frame(entry.j));
@@ -181,10 +182,7 @@ void fill(ModelBuilder<S>& builder, const ElementTemplate& source, const int* bo
       }
     }
   }
-  std::string name;
-  if (!builder.name_element(source, name) || !good) return;
-  model.append(name, entry, kind);
-  builder.remember_name(source.name);
+  if (good) builder.append(source, entry, kind);
 }
 
 }  // namespace filling

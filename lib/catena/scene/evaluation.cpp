@@ -4,10 +4,9 @@
 
 namespace catena {
 
-void report_evaluation(const SourceText& source, std::size_t offset, std::size_t position, std::string_view message,
-                       std::span<const std::string> loop_names, std::span<const double> loop_values,
-                       Diagnostics& diagnostics) {
-  const std::size_t place = source.offset_in_string(offset, position);
+void report_in_block(const SourceText& source, std::size_t place, std::string_view message,
+                     std::span<const std::string> loop_names, std::span<const double> loop_values,
+                     Diagnostics& diagnostics) {
   if (!loop_names.empty() && diagnostics.reported(source, place)) return;
   std::string text(message);
   for (std::size_t i = 0; i < loop_names.size() && i < loop_values.size(); ++i) {

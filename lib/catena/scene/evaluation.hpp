@@ -14,11 +14,18 @@
 
 namespace catena {
 
-/// Reports an error met in an evaluation. `position` is a byte in the text of the JSON string at `offset`. The text
-/// says `message`, then "at k = 3" for the replicate variables; in a repeated block a place is reported once.
-void report_evaluation(const SourceText& source, std::size_t offset, std::size_t position, std::string_view message,
-                       std::span<const std::string> loop_names, std::span<const double> loop_values,
-                       Diagnostics& diagnostics);
+/// Reports an error at byte `place` of the source: `message`, then "at k = 3" for the replicate variables. In a
+/// repeated block a place is reported once.
+void report_in_block(const SourceText& source, std::size_t place, std::string_view message,
+                     std::span<const std::string> loop_names, std::span<const double> loop_values,
+                     Diagnostics& diagnostics);
+
+/// The same for an error met in an evaluation: `position` is a byte in the text of the JSON string at `offset`.
+inline void report_evaluation(const SourceText& source, std::size_t offset, std::size_t position,
+                              std::string_view message, std::span<const std::string> loop_names,
+                              std::span<const double> loop_values, Diagnostics& diagnostics) {
+  report_in_block(source, source.offset_in_string(offset, position), message, loop_names, loop_values, diagnostics);
+}
 
 template <class S>
 class Evaluation {

@@ -21,9 +21,9 @@ std::optional<JsonMember> only_member(const JsonValue& value, std::span<const st
   for (const std::string_view key : keys) list += (list.empty() ? "" : ", ") + std::string(key);
   for (const JsonMember member : value.members()) {
     if (std::find(keys.begin(), keys.end(), member.name()) == keys.end()) {
-      report(member.key,
-             fmt::format("{}: unknown {} {}{}", field.text(), what, in_quotes(member.name()),
-                         NearMiss(member.name()).consider_all(keys).hint()),
+      std::string hint = NearMiss(member.name()).consider_all(keys).hint();
+      if (hint.empty()) hint = "; it may be " + list;
+      report(member.key, fmt::format("{}: unknown {} {}{}", field.text(), what, in_quotes(member.name()), hint),
              diagnostics);
       return {};
     }

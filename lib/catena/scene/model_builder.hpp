@@ -1,4 +1,5 @@
-// The builder behind build_model(): a template on the scalar, instantiated once for each in a file of its own.
+// The builder behind build_model(): expands blocks, makes bodies, finds what elements hang on; what differs between
+// element types is left to their fillers (element_filler.hpp). A template on the scalar, instantiated in one place.
 #pragma once
 
 #include <string>
@@ -38,16 +39,14 @@ class ModelBuilder {
   }
   /// The element that is being built, for messages: `revolute "A"`.
   std::string owner(const ElementTemplate& element) const;
-  /// The function of time in a scene's array.
+  /// Throws std::invalid_argument for what is no function of time.
   TimeFunction<S> function(const FunctionTemplate& source);
-  Curve<S> curve(const CurveTemplate& source, const Vec2<S>& origin);
+  /// In the author's frame of its body. Throws std::invalid_argument.
+  Curve<S> curve(const CurveTemplate& source);
   std::vector<Vec2<S>> table(const TableTemplate& source);
-  /// Takes the element's name, or reports that it is taken.
-  bool name_element(const ElementTemplate& element, std::string& out);
-  /// To be called when an element or body was added.
-  void remember_name(const NameText& name) {
-    if (!name.empty()) name_offset_.push_back(name.offset);
-  }
+  /// Adds an element that is complete, under its name.
+  template <class E>
+  void append(const ElementTemplate& source, const ElementEntry<E, S>& entry, ElementKind kind);
 
  private:
   enum class Pass { bodies, elements };
@@ -60,11 +59,10 @@ class ModelBuilder {
 
   void add_body(const BodyTemplate& source);
   void add_points(int body, const BodyTemplate& source);
-  void add_point(int body, std::string_view name, const Vec2<S>& local, std::size_t offset);
   void compose(const BodyTemplate& source, std::string_view name, BasicBody<S>& body, Vec2<S>& centroid);
   void add_element(const ElementTemplate& source);
   bool make_name(const NameText& name, std::string& out);
-  bool free_name(const NameText& text, std::string_view name);
+  void report_used_name(const NameText& text, std::string_view name);
   bool attach(const ElementTemplate& source, int end, const Vec2<S>* place, int& body, Vec2<S>& local);
   void report_missing_body(const NameText& text, std::string_view name);
 
@@ -87,5 +85,21 @@ using ElementFiller = void (*)(ModelBuilder<S>& builder, const ElementTemplate& 
 /// The filler of a type, by its place in element_descriptions().
 template <class S>
 ElementFiller<S> element_filler(int type);
+
+extern template ElementFiller<double> element_filler(int type);
+extern template ElementFiller<Dual<double, 4>> element_filler(int type);
+
+template <class S>
+template <class E>
+void ModelBuilder<S>::append(const ElementTemplate& source, const ElementEntry<E, S>& entry, ElementKind kind) {
+  name_.clear();
+  if (!source.name.empty() && !make_name(source.name, name_)) return;
+  try {
+    model_.append(name_, entry, kind);
+    if (!name_.empty()) name_offset_.push_back(source.name.offset);
+  } catch (const ModelError&) {
+    report_used_name(source.name, name_);
+  }
+}
 
 }  // namespace catena

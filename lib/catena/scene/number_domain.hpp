@@ -1,6 +1,7 @@
 // Which numbers a field accepts: the test, and its words for messages and the schema.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "catena/elements/field.hpp"
@@ -36,5 +37,8 @@ constexpr std::string_view wanted(Domain domain) {
   }
   return "any number";
 }
+
+/// `must be above zero; it is -3`.
+std::string out_of_domain(double value, Domain domain);
 
 }  // namespace catena

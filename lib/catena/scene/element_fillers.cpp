@@ -1,0 +1,7 @@
+#include "catena/scene/element_filler.hpp"
+
+namespace catena {
+
+template ElementFiller<double> element_filler(int type);
+
+}  // namespace catena
