@@ -20,6 +20,13 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 constexpr double step_part = 0.003;
 constexpr double least_tolerance = 1e-14;
 
+Report cancelled(double t) {
+  Report report;
+  report.status = Status::cancelled;
+  report.message = fmt::format("stopped at t = {:.12g} s; the rows so far are kept", t);
+  return report;
+}
+
 }  // namespace
 
 Dynamics::Dynamics(std::shared_ptr<const Model> model, const PlanOptions& plan_options, const DynamicsOptions& options)
@@ -80,6 +87,7 @@ Report Dynamics::prepare(std::vector<std::string>& warnings) {
                     "by {:.3g} m (RMS)",
                     assembled.moved));
   }
+  if (Report massless = equations_.check_massless(q_); !massless.ok()) return massless;
   const VelocityOutcome velocities = find_initial_velocities(equations_, q_, given_qd_, qd_);
   if (!velocities.ok()) return velocities;
   if (velocities.changed > 1e-9) {
@@ -128,7 +136,6 @@ Snapshot Dynamics::snapshot(double t, std::span<const double> y, const Needs& ne
 }
 
 Report Dynamics::give_row(double t, const Needs& needs, RowObserver& observer) {
-  Report report;
   const std::size_t n = q_.size();
   const std::span<double> y(y_row_);
   if (t == integrator_->time()) {
@@ -148,11 +155,7 @@ Report Dynamics::give_row(double t, const Needs& needs, RowObserver& observer) {
     evaluator_.set_configuration(y.first(n));
   }
   if (account_) account_->driver_work(y.subspan(2 * n), driver_work_);
-  if (!observer.observe(snapshot(t, y, needs))) {
-    report.status = Status::cancelled;
-    report.message = fmt::format("stopped at t = {:.12g} s; the rows so far are kept", t);
-  }
-  return report;
+  return observer.observe(snapshot(t, y, needs)) ? Report{} : cancelled(t);
 }
 
 Report Dynamics::stuck() const {
@@ -235,6 +238,7 @@ Report Dynamics::move(double limit, const TimeGrid& grid, std::int64_t& row, con
   while (t_ < limit) {
     if (!integrator_->advance(limit)) return stuck();
     t_ = integrator_->time();
+    if (!observer.proceed(t_)) return cancelled(t_);
     if (t_ == limit && limit < grid.last()) {
       // A function of time jumps here: the next step starts with what holds afterwards.
       while (row < grid.size() && grid[row] < t_) {

@@ -1,5 +1,7 @@
 #include "catena/analysis/equations_of_motion.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +12,9 @@ namespace catena {
 namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// Part of a load on massless coordinates that may stay unresisted.
+constexpr double undetermined = 1e-6;
 
 }  // namespace
 
@@ -27,9 +32,27 @@ EquationsOfMotion::EquationsOfMotion(Evaluator& evaluator)
 }
 
 Report EquationsOfMotion::use_masses() {
-  const Report report = masses_.load(evaluator_.model(), plan_);
-  if (report.ok()) system_.set_inverse_masses(masses_.inverse);
+  const Report report = masses_.load(evaluator_);
+  if (report.ok()) system_.set_masses(masses_.mass, masses_.substitute);
   factored_ = false;
+  return report;
+}
+
+// Loads on the massless coordinates, none of them special: what has mass must resist all of them.
+Report EquationsOfMotion::check_massless(std::span<const double> q) {
+  Report report;
+  if (masses_.massless.empty()) return report;
+  std::fill(loads_.begin(), loads_.end(), 0.0);
+  std::fill(gamma_.begin(), gamma_.end(), 0.0);
+  for (int c : masses_.massless) loads_[at(c)] = masses_.substitute[at(c)] * (1 + std::abs(std::sin(1.0 + c)));
+  const bool factored = factorize(evaluator_.time(), Side::after, q);
+  if (factored) system_.solve_motion(loads_, gamma_, change_, lambda_, evaluator_.counters);
+  if (factored && system_.massless_residual() < undetermined) return report;
+  const int worst = factored ? system_.worst_massless() : masses_.massless.front();
+  report.status = Status::refused;
+  report.message = fmt::format(
+      "the motion of body \"{}\" is not determined: its {} is zero and the constraints tie it to nothing that has mass",
+      evaluator_.model().body_name(plan_.model_body[at(worst / 3)]), worst % 3 == 2 ? "inertia" : "mass");
   return report;
 }
 

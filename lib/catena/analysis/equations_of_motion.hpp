@@ -25,6 +25,8 @@ class EquationsOfMotion {
 
   /// Takes over the masses, or says which body lacks what.
   Report use_masses();
+  /// Whether accelerations at q and the evaluator's time are unique in spite of massless coordinates.
+  Report check_massless(std::span<const double> q);
 
   /// qdd at (t, q, qd); `side` where a function of time jumps at t. False: something is not finite.
   bool accelerations(double t, Side side, std::span<const double> q, std::span<const double> qd, std::span<double> qdd);

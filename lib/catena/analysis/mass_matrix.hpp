@@ -7,18 +7,18 @@
 #include <string>
 #include <vector>
 
-#include "catena/assembly/plan.hpp"
+#include "catena/assembly/evaluate.hpp"
 #include "catena/base/status.hpp"
 
 namespace catena {
 
 struct MassMatrix {
-  std::vector<double> mass;     ///< by coordinate, 3 plan.moving; of a particle's angle: zero
-  std::vector<double> inverse;  ///< zero where the mass is
-  std::vector<int> massless;    ///< coordinates that can move and have no mass
+  std::vector<double> mass;        ///< by coordinate, 3 plan.moving; of a particle's angle: zero
+  std::vector<double> substitute;  ///< small masses in place of zero ones; zero for all other coordinates
+  std::vector<int> massless;       ///< coordinates that can move and have no mass
 
-  /// Takes the masses from the model, or says of which body something is missing.
-  Report load(const Model& model, const Plan& plan);
+  /// Takes the masses from the evaluator's model, or says of which body something is missing.
+  Report load(const Evaluator& evaluator);
 };
 
 }  // namespace catena

@@ -10,6 +10,11 @@ class RowObserver {
   virtual ~RowObserver() = default;
   /// Called at every row; what was not needed is an empty span. Returning false cancels the analysis.
   virtual bool observe(const Snapshot& snapshot) = 0;
+  /// Called now and then between rows that are far apart, with the time reached. Returning false cancels.
+  virtual bool proceed(double t) {
+    static_cast<void>(t);
+    return true;
+  }
 };
 
 /// Adapts a callable.

@@ -8,8 +8,9 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-constexpr double regularisation = 1e-12;   // part of the diagonal that is added
-constexpr double singular_ratio = 1e-10;   // below this pivot ratio it is
+constexpr double regularisation = 1e-12;  // part of the diagonal that is added
+constexpr double singular_ratio = 1e-10;  // below this pivot ratio it is
+constexpr int massless_rounds = 4;
 constexpr double refinement_ratio = 1e-5;  // below this one solutions are refined
 
 }  // namespace
@@ -28,8 +29,20 @@ SchurSystem::SchurSystem(std::shared_ptr<const Plan> plan) : plan_(std::move(pla
   }
 }
 
-void SchurSystem::set_inverse_masses(std::span<const double> inverse_masses) {
-  std::copy(inverse_masses.begin(), inverse_masses.end(), inverse_masses_.begin());
+void SchurSystem::set_masses(std::span<const double> masses, std::span<const double> substitutes) {
+  masses_.assign(masses.begin(), masses.end());
+  massless_.clear();
+  for (std::size_t c = 0; c < masses.size(); ++c) {
+    const double mass = masses[c] > 0 ? masses[c] : substitutes[c];
+    inverse_masses_[c] = mass > 0 ? 1 / mass : 0;
+    if (!(masses[c] > 0) && mass > 0) massless_.push_back(static_cast<int>(c));
+  }
+  if (!massless_.empty()) {
+    rest_Q_.resize(masses.size());
+    extra_qdd_.resize(masses.size());
+    rest_gamma_.resize(at(plan_->rows));
+    extra_lambda_.resize(at(plan_->rows));
+  }
   constants_known_ = false;
 }
 
@@ -190,6 +203,12 @@ void SchurSystem::solve_refined(std::span<double> lambda, std::span<const double
 
 void SchurSystem::solve_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
                                std::span<double> lambda, Counters& counters) {
+  solve_with_masses(Q, gamma, qdd, lambda, counters);
+  if (!massless_.empty()) refine_massless(Q, gamma, qdd, lambda, counters);
+}
+
+void SchurSystem::solve_with_masses(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
+                                    std::span<double> lambda, Counters& counters) {
   const std::size_t coordinates = inverse_masses_.size();
   for (std::size_t c = 0; c < coordinates; ++c) qdd[c] = inverse_masses_[c] * Q[c];
   if (plan_->rows == 0) return;
@@ -203,6 +222,42 @@ void SchurSystem::solve_motion(std::span<const double> Q, std::span<const double
     double sum = 0;
     for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) sum += jacobian[k] * lambda[at(row[k])];
     qdd[c] -= inverse_masses_[c] * sum;
+  }
+}
+
+// Adds the solution for what the true equations leave: Q - M qdd - Phi_q^T lambda and gamma - Phi_q qdd.
+void SchurSystem::refine_massless(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
+                                  std::span<double> lambda, Counters& counters) {
+  double first = 0;
+  for (int round = 0;; ++round) {
+    double size = 0;
+    for (std::size_t c = 0; c < rest_Q_.size(); ++c) {
+      double rest = 0;
+      if (inverse_masses_[c] > 0) {
+        rest = Q[c] - masses_[c] * qdd[c];
+        for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) {
+          rest -= jacobian_[at(k)] * lambda[at(plan_->jacobian.row_index[at(k)])];
+        }
+      }
+      rest_Q_[c] = rest;
+    }
+    for (int c : massless_) {
+      // As an acceleration, so that coordinates of all kinds compare.
+      const double part = std::abs(rest_Q_[at(c)]) * inverse_masses_[at(c)];
+      if (part > size) {
+        size = part;
+        worst_massless_ = c;
+      }
+    }
+    if (round == 0) first = size;
+    massless_residual_ = first > 0 ? size / first : 0;
+    if (round == massless_rounds || !(size > 1e-15 * first)) return;
+    std::copy(gamma.begin(), gamma.end(), rest_gamma_.begin());
+    for (std::size_t c = 0; c < rest_Q_.size(); ++c) extra_qdd_[c] = -qdd[c];
+    multiply_add(extra_qdd_, rest_gamma_);
+    solve_with_masses(rest_Q_, rest_gamma_, extra_qdd_, extra_lambda_, counters);
+    for (std::size_t c = 0; c < rest_Q_.size(); ++c) qdd[c] += extra_qdd_[c];
+    for (std::size_t k = 0; k < extra_lambda_.size(); ++k) lambda[k] += extra_lambda_[k];
   }
 }
 

@@ -7,6 +7,9 @@
 // is assembled column by column of Phi_q straight into the permuted triangle that CHOLMOD reads; products of constant
 // columns are formed once. Vectors are in coordinates: three a moving body.
 //
+// Massless coordinates (M only positive definite where the constraints leave freedom) get a small mass, and the
+// solution is refined with the true M; the small mass divided by that which really resists is what each round leaves.
+//
 // Singular case: rows that depend on each other make S singular. As soon as a pivot keeps less than 1e-10 of its
 // diagonal, 1e-12 of the diagonal is added and solutions are refined with the true S: accelerations are then exact,
 // multipliers one of many. Source: NUMERICS (singular passages); Nothing allocates after the first factorization.
@@ -26,8 +29,9 @@ class SchurSystem {
  public:
   explicit SchurSystem(std::shared_ptr<const Plan> plan);
 
-  /// Inverse masses by coordinate, size 3 plan.moving; zero holds a coordinate where it is.
-  void set_inverse_masses(std::span<const double> inverse_masses);
+  /// Masses by coordinate, size 3 plan.moving, and what counts for those that are zero; zero there too holds a
+  /// coordinate where it is.
+  void set_masses(std::span<const double> masses, std::span<const double> substitutes);
 
   /// Factors S at the given values of Phi_q (size entries + 1); they must stay where they are for the solves.
   /// False if that is impossible: a value that is not finite.
@@ -36,6 +40,11 @@ class SchurSystem {
   /// qdd and lambda from Q and gamma. Sizes: coordinates (Q, qdd), rows (gamma, lambda). `lambda` may be `gamma`.
   void solve_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
                     std::span<double> lambda, Counters& counters);
+  /// Part of M qdd - Q + Phi_q^T lambda that the last solve_motion() left at massless coordinates, relative to what it
+  /// began with; 0 without such coordinates. Near 1: nothing that has mass determines their motion.
+  double massless_residual() const { return massless_residual_; }
+  /// The coordinate where it was largest.
+  int worst_massless() const { return worst_massless_; }
 
   /// The least x, in the mass metric, with Phi_q x = b. Sizes: rows (b, lambda), coordinates (x).
   void least_change(std::span<const double> b, std::span<double> x, std::span<double> lambda, Counters& counters);
@@ -63,9 +72,14 @@ class SchurSystem {
   /// x = M^-1 Phi_q^T lambda.
   void spread(std::span<const double> lambda, std::span<double> x) const;
   void solve_refined(std::span<double> lambda, std::span<const double> b, Counters& counters);
+  void solve_with_masses(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
+                         std::span<double> lambda, Counters& counters);
+  void refine_massless(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
+                       std::span<double> lambda, Counters& counters);
 
   std::shared_ptr<const Plan> plan_;
-  std::vector<double> inverse_masses_;
+  std::vector<double> masses_, inverse_masses_;
+  std::vector<int> massless_;
   std::span<const double> jacobian_;
   std::vector<int> column_start_;  // of Phi_q, by coordinate
   std::vector<Column> varying_, constant_;
@@ -74,10 +88,12 @@ class SchurSystem {
   SparsePattern upper_;                            // of S permuted
   std::vector<double> constant_values_, values_, diagonal_values_;
   std::vector<double> right_hand_side_, correction_, change_;
+  std::vector<double> rest_Q_, rest_gamma_, extra_qdd_, extra_lambda_;  // for massless coordinates only
   CholmodKernel kernel_;
   bool analyzed_ = false, constants_known_ = false, regularised_ = false;
   double smallest_ratio_ = 1;
-  int weakest_row_ = -1;
+  double massless_residual_ = 0;
+  int weakest_row_ = -1, worst_massless_ = -1;
 };
 
 }  // namespace catena
