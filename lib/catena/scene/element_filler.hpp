@@ -4,6 +4,7 @@
 #include <array>
 #include <tuple>
 
+#include "catena/model/given_frames.hpp"
 #include "catena/model/model_add.hpp"
 #include "catena/scene/element_description.hpp"
 #include "catena/scene/model_builder.hpp"
@@ -162,7 +163,8 @@ void fill(ModelBuilder<S>& builder, const ElementTemplate& source, const int* bo
     if (!builder.known_wrong(offset)) builder.report(offset, builder.owner(source) + ": " + std::string(what));
   };
   if constexpr (requires { entry.element.complete(Frame<S>{}, Frame<S>{}); }) {
-    entry.element.complete(model.frame(entry.i), model.frame(entry.j));
+    const auto [frame_i, frame_j] = given_frames<E>(model, entry.i, entry.j);
+    entry.element.complete(frame_i, frame_j);
   }
   if constexpr (requires { entry.element.check(); }) {
     if (good) {
@@ -171,7 +173,10 @@ void fill(ModelBuilder<S>& builder, const ElementTemplate& source, const int* bo
   }
   ElementKind kind = source.kind;
   if constexpr (E::functions > 0 && requires { E::rows; }) {
-    if (!filler.value_given()) measure_value<E, S>(entry, model.frame(entry.i), model.frame(entry.j));
+    if (!filler.value_given()) {
+      const auto [frame_i, frame_j] = given_frames<E>(model, entry.i, entry.j);
+      measure_value<E, S>(entry, frame_i, frame_j);
+    }
     // What changes with time drives, whichever list it stands in.
     if (entry.values[0].function >= 0) kind = ElementKind::driver;
     if constexpr (HasSquaredValue<E>) {
