@@ -33,6 +33,7 @@ void run_assemble(AnalysisContext& context, AnalysisResult& result);
 void run_kinematics(AnalysisContext& context, AnalysisResult& result);
 void run_inverse_dynamics(AnalysisContext& context, AnalysisResult& result);
 void run_dynamics(AnalysisContext& context, AnalysisResult& result);
+void run_dynamics(AnalysisContext& context, AnalysisResult& result);
 
 /// What runs an analysis of this type; nullptr if nothing does yet.
 AnalysisFunction analysis_function(std::string_view type);
@@ -62,10 +63,28 @@ class ReportingRows final : public RowObserver {
   std::int64_t expected_;
 };
 
+/// Ends an analysis that was asked for what cannot be done.
+inline void refuse(AnalysisResult& result, std::string message) {
+  result.report.status = Status::refused;
+  result.report.message = std::move(message);
+}
+
 /// The names whose reactions must be solved for, as plan options.
 PlanOptions plan_options(const Model& model, const std::vector<std::string>& outputs);
 
 /// Takes over what an analysis said, in the order: outcome, columns, notes.
 void take_report(AnalysisResult& result, AnalysisReport report, const ColumnSet* columns, std::int64_t rows);
+
+/// Runs an analysis that goes through time, from the present state, and leaves the state where it ended.
+template <class Analysis>
+void run_over_time(AnalysisContext& context, AnalysisResult& result, Analysis& analysis, const TimeGrid& grid,
+                   const std::vector<std::string>& outputs, const ColumnSources& sources) {
+  const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), outputs, sources);
+  analysis.start_from(context.state);
+  ReportingRows rows(columns, context, grid.size());
+  AnalysisReport report = analysis.run(grid, columns.needs(), rows);
+  context.state = analysis.state();
+  take_report(result, std::move(report), &columns, rows.rows());
+}
 
 }  // namespace catena

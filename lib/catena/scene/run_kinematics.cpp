@@ -7,33 +7,20 @@ namespace {
 
 void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics) {
   const AnalysisTask& task = context.task;
-  Report refused;
-  const std::optional<TimeGrid> grid = time_grid(context, refused);
-  if (!grid) {
-    static_cast<Report&>(result.report) = refused;
-    return;
-  }
-  if (task.word("free") != 0 || task.has("branch")) {
-    result.report.status = Status::refused;
-    result.report.message = task.has("branch") ? "choosing a branch is not built yet; leave \"branch\" out"
-                                               : "\"free\": \"minimum_norm\" is not built yet; add drivers instead";
-    return;
-  }
+  if (task.has("branch")) return refuse(result, "choosing a branch is not built yet; leave \"branch\" out");
+  if (task.word("free") != 0) return refuse(result, "\"free\": \"minimum_norm\" is not built yet; add drivers instead");
+  const std::optional<TimeGrid> grid = time_grid(context, result.report);
+  if (!grid) return;
   const std::vector<std::string> names = task.output_names();
   KinematicsOptions options;
   options.inverse_dynamics = inverse_dynamics;
   Kinematics analysis(context.model, plan_options(*context.model, names), options);
-  const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), names,
-                                               {.analysis = task.type(),
-                                                .timed = true,
-                                                .velocity = true,
-                                                .acceleration = true,
-                                                .multipliers = inverse_dynamics});
-  analysis.start_from(context.state);
-  ReportingRows rows(columns, context, grid->size());
-  AnalysisReport report = analysis.run(*grid, columns.needs(), rows);
-  context.state = analysis.state();
-  take_report(result, std::move(report), &columns, rows.rows());
+  run_over_time(context, result, analysis, *grid, names,
+                {.analysis = task.type(),
+                 .timed = true,
+                 .velocity = true,
+                 .acceleration = true,
+                 .multipliers = inverse_dynamics});
 }
 
 }  // namespace

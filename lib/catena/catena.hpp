@@ -1,0 +1,18 @@
+// The one include a user needs: models, analyses, results, scenes.
+//
+//   Model model = ...                       model/model.hpp, elements/list.hpp
+//   Kinematics, Dynamics, Assembler ...     analysis/
+//   ColumnSet, ResultStorage, RowSink       columns/, results/
+//   run_scene(path, options, sink)          scene/scene_runner.hpp
+//
+// Units SI, radians. Numerical outcomes are values (base/status.hpp); exceptions are for misuse and bad scenes.
+#pragma once
+
+#include "catena/analysis/dynamics.hpp"
+#include "catena/analysis/kinematics.hpp"
+#include "catena/analysis/mobility.hpp"
+#include "catena/columns/column_set.hpp"
+#include "catena/model/model.hpp"
+#include "catena/results/column_rows.hpp"
+#include "catena/results/result_storage.hpp"
+#include "catena/scene/scene_runner.hpp"
