@@ -24,7 +24,7 @@ class Filler {
       : builder_(builder), source_(source), entry_(entry), points_(points) {}
 
   bool run() {
-    std::apply([this](const auto&... field) { (take(field), ...); }, E::fields());
+    std::apply([&](const auto&... field) { (take(field), ...); }, E::fields());
     return good_;
   }
   /// The text of the value c, or of the element where it was left out.
