@@ -155,6 +155,7 @@ Report Dynamics::give_row(double t, const Needs& needs, RowObserver& observer) {
     evaluator_.set_configuration(y.first(n));
   }
   if (account_) account_->driver_work(y.subspan(2 * n), driver_work_);
+  evaluator_.add_turns(y.first(n));
   return observer.observe(snapshot(t, y, needs)) ? Report{} : cancelled(t);
 }
 
@@ -215,7 +216,11 @@ AnalysisReport Dynamics::run(const TimeGrid& grid, const Needs& needs, RowObserv
   slope_row_.assign(motion.size(), 0.0);
   std::copy(q_.begin(), q_.end(), y_row_.begin());
   std::copy(qd_.begin(), qd_.end(), y_row_.begin() + static_cast<std::ptrdiff_t>(q_.size()));
-  if (!integrator_->start(t_, y_row_)) return end(stuck());
+  evaluator_.take_turns(std::span(y_row_).first(q_.size()));
+  if (!integrator_->start(t_, y_row_)) {
+    evaluator_.forget_turns();
+    return end(stuck());
+  }
   if (account_) initial_energy_ = total_energy(snapshot(t_, y_row_, {}));
   std::int64_t row = 0;
   Report outcome;
@@ -227,6 +232,8 @@ AnalysisReport Dynamics::run(const TimeGrid& grid, const Needs& needs, RowObserv
   const std::span<const double> y = integrator_->state();
   std::copy_n(y.begin(), q_.size(), q_.begin());
   std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(q_.size()), q_.size(), qd_.begin());
+  evaluator_.add_turns(q_);
+  evaluator_.forget_turns();
   evaluator_.set_time(t_);
   evaluator_.set_configuration(q_);
   return end(outcome);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 #include "catena/base/sincos.hpp"
 
@@ -181,6 +183,24 @@ void Evaluator::set_time(double t, Side side) {
 void Evaluator::set_configuration(std::span<const double> q) {
   ++counters.configurations;
   update_frames(q.first(at(3 * plan_->moving)), std::span(frames_).first(at(plan_->moving)));
+  for (std::size_t b = 0; b < turns_.size(); ++b) frames_[b].phi += turns_[b] * (2 * std::numbers::pi);
+}
+
+void Evaluator::take_turns(std::span<double> q) {
+  constexpr double low_part = 2.4492935982947064e-16;  // of 2 pi, below the double
+  for (int b = 0; b < plan_->moving; ++b) {
+    double& angle = q[at(3 * b + 2)];
+    if (!(std::abs(angle) > 1.5 * std::numbers::pi)) continue;
+    if (turns_.empty()) turns_.assign(at(plan_->moving), 0);
+    const double turns = std::round(angle / (2 * std::numbers::pi));
+    if (!(std::abs(turns_[at(b)] + turns) < std::numeric_limits<int>::max())) continue;
+    angle = (angle - turns * (2 * std::numbers::pi)) - turns * low_part;
+    turns_[at(b)] += static_cast<int>(turns);
+  }
+}
+
+void Evaluator::add_turns(std::span<double> q) const {
+  for (std::size_t b = 0; b < turns_.size(); ++b) q[3 * b + 2] += turns_[b] * (2 * std::numbers::pi);
 }
 
 Frame<double> Evaluator::ground_frame(int plan_body) const {

@@ -40,6 +40,13 @@ class Evaluator {
   void set_time(double t, Side side = Side::after);
   double time() const { return time_; }
   void set_configuration(std::span<const double> q);
+  /// Takes whole turns out of the angles in q and remembers them: frames keep showing the full angle, but an angle of
+  /// many turns no longer costs digits in its cosine and sine.
+  void take_turns(std::span<double> q);
+  /// Puts the turns taken out so far back into q.
+  void add_turns(std::span<double> q) const;
+  /// Forgets them: from now on q holds full angles again.
+  void forget_turns() { turns_.clear(); }
   std::span<const Frame<double>> frames() const { return frames_; }
   /// The frame of a plan body in the ground frame.
   Frame<double> ground_frame(int plan_body) const;
@@ -108,6 +115,7 @@ class Evaluator {
   std::vector<double> mass_;           // per plan body
   std::vector<Vec2<double>> origin_;   // per plan body, and the ground's (0, 0)
   std::vector<Frame<double>> frames_;  // relative; the last one is the ground's
+  std::vector<int> turns_;             // per moving body, as taken by take_turns(); empty: none
   std::vector<Taylor<double>> function_;
   std::vector<int> place_;
   double time_ = 0, length_scale_ = 1;

@@ -14,10 +14,10 @@ constexpr double forbidden_part = 0.1;
 // A rejected step with a stage whose pivot ratio is below this is repeated with all stages projected.
 constexpr double projection_ratio = 1e-2;
 // Where no step across a singular position is good enough, the best is taken if its error is below this.
-constexpr double largest_crossing_error = 30;
+constexpr double largest_crossing_error = 300;
 // Ends of steps are kept away from positions where a pivot ratio is below this; accelerations lose ratio^1.5 there.
 constexpr double singular_end = 1e-7, lost_digits = 1e-14;
-constexpr double other_steps[] = {0.8, 0.6, 1.15, 0.4};  // what is tried instead of h
+constexpr double other_steps[] = {0.8, 0.6, 1.15, 0.4, 0.9, 1.3};  // what is tried instead of h
 constexpr int rejections_before_low_order = 8, low_order_run = 30;
 constexpr int most_rejections = 100;
 constexpr double smallest_step = 1e-13;    // part of |t| and of the time scale
@@ -194,6 +194,7 @@ bool RungeKutta::advance(double limit) {
   accepted_error_ = 1;
   rejections_ = 0;
   stage_[0] = slope_;
+  motion_.equations().evaluator().take_turns(motion_.q(std::span(y_)));
   interpolant_ready_ = false;
   h_ = proposed;
   while (true) {
