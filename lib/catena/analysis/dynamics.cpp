@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "catena/analysis/initial_velocities.hpp"
+#include "catena/analysis/mobility.hpp"
 #include "catena/analysis/process_time.hpp"
 #include "catena/base/flush_denormals.hpp"
 #include "catena/columns/energy.hpp"
@@ -17,8 +18,11 @@ namespace {
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // What a step may contribute to the error that was asked for; see the calibration in tests/oracles.
-constexpr double step_part = 0.003;
+constexpr double step_part = 0.002;
 constexpr double least_tolerance = 1e-14;
+// Rows whose smallest pivot ratio is above this need no rank analysis.
+constexpr double independent_ratio = 1e-8;
+constexpr std::size_t most_names = 10;  // in a warning
 
 Report cancelled(double t) {
   Report report;
@@ -123,7 +127,7 @@ Snapshot Dynamics::snapshot(double t, std::span<const double> y, const Needs& ne
   const std::size_t n = q_.size();
   Snapshot s{.evaluator = evaluator_, .t = t, .q = y.first(n), .qd = y.subspan(n, n)};
   if (needs.acceleration || needs.multipliers) s.qdd = std::span<const double>(slope_row_).subspan(n, n);
-  if (needs.multipliers) s.lambda = equations_.multipliers();
+  if (needs.multipliers) s.lambda = lambda_row_;
   s.residual = row_residual_ * evaluator_.length_scale();
   if (account_) {
     const std::span<const double> work = y.subspan(2 * n);
@@ -150,6 +154,7 @@ Report Dynamics::give_row(double t, const Needs& needs, RowObserver& observer) {
   if (needs.acceleration || needs.multipliers) {
     const std::span<double> slope(slope_row_);
     if (!equations_.accelerations(t, Side::after, y.first(n), y.subspan(n, n), slope.subspan(n, n))) return stuck();
+    if (needs.multipliers) find_multipliers();
   } else {
     evaluator_.set_time(t);
     evaluator_.set_configuration(y.first(n));
@@ -157,6 +162,43 @@ Report Dynamics::give_row(double t, const Needs& needs, RowObserver& observer) {
   if (account_) account_->driver_work(y.subspan(2 * n), driver_work_);
   evaluator_.add_turns(y.first(n));
   return observer.observe(snapshot(t, y, needs)) ? Report{} : cancelled(t);
+}
+
+// Multipliers of the row: those of the accelerations, or the least ones where they are not unique.
+void Dynamics::find_multipliers() {
+  lambda_row_.assign(equations_.multipliers().begin(), equations_.multipliers().end());
+  if (!equations_.is_dependent()) return;
+  if (!minimum_norm_) minimum_norm_.emplace(evaluator_);
+  if (!minimum_norm_->factorize()) return;
+  const std::span<const double> Q = equations_.applied_forces(), qdd = std::span(slope_row_).subspan(q_.size());
+  const std::vector<double>& mass = equations_.masses().mass;
+  loads_row_.resize(mass.size());
+  for (std::size_t c = 0; c < mass.size(); ++c) loads_row_[c] = Q[c] - mass[c] * qdd[c];
+  minimum_norm_->solve(loads_row_, lambda_row_);
+  if (!ambiguity_.empty()) return;
+  const std::vector<int> elements = minimum_norm_->find_ambiguous();
+  for (std::size_t k = 0; k < elements.size() && k < most_names; ++k) {
+    ambiguity_ += (k > 0 ? ", \"" : "\"") + model_->element_name(elements[k]) + "\"";
+  }
+  if (elements.size() > most_names) ambiguity_ += fmt::format(" and {} more", elements.size() - most_names);
+  ambiguity_ = fmt::format(
+      "reactions of {} are not unique, since constraints depend on each other: the least are given", ambiguity_);
+  minimum_norm_->solve(loads_row_, lambda_row_);
+}
+
+// Degrees of freedom: by count where rows are independent, else by rank.
+void Dynamics::describe_mobility(AnalysisReport& report) {
+  if (equations_.smallest_pivot_ratio() > independent_ratio) {
+    report.rank = plan_->rows;
+    report.dof = plan_->columns - plan_->rows;
+    report.mobility = plan_->mobility();
+    return;
+  }
+  const MobilityReport mobility = analyse_mobility(evaluator_, std::span<const double>(y_row_).first(q_.size()));
+  report.rank = mobility.rank;
+  report.dof = mobility.dof();
+  report.mobility = mobility.mobility();
+  for (int element : mobility.redundant_elements) report.redundant.push_back(model_->element_name(element));
 }
 
 Report Dynamics::stuck() const {
@@ -195,6 +237,7 @@ AnalysisReport Dynamics::run(const TimeGrid& grid, const Needs& needs, RowObserv
       report.warnings.push_back(fmt::format("order 5 took over for {} steps where order 8 did not get ahead",
                                             integrator_->low_order_steps()));
     }
+    if (!ambiguity_.empty()) report.warnings.push_back(ambiguity_);
     report.counters = evaluator_.counters;
     report.seconds = timer.seconds();
     return report;
@@ -221,6 +264,7 @@ AnalysisReport Dynamics::run(const TimeGrid& grid, const Needs& needs, RowObserv
     evaluator_.forget_turns();
     return end(stuck());
   }
+  describe_mobility(report);
   if (account_) initial_energy_ = total_energy(snapshot(t_, y_row_, {}));
   std::int64_t row = 0;
   Report outcome;

@@ -15,6 +15,7 @@
 #include "catena/analysis/energy_account.hpp"
 #include "catena/analysis/equations_of_motion.hpp"
 #include "catena/analysis/integrators/runge_kutta.hpp"
+#include "catena/analysis/minimum_norm.hpp"
 #include "catena/analysis/row_observer.hpp"
 #include "catena/analysis/system_state.hpp"
 #include "catena/analysis/time_grid.hpp"
@@ -45,6 +46,8 @@ class Dynamics {
   Report check_functions(double last) const;
   Report move(double limit, const TimeGrid& grid, std::int64_t& row, const Needs& needs, RowObserver& observer);
   Report give_row(double t, const Needs& needs, RowObserver& observer);
+  void find_multipliers();
+  void describe_mobility(AnalysisReport& report);
   Report stuck() const;
   double next_breakpoint(double t) const;
   Snapshot snapshot(double t, std::span<const double> y, const Needs& needs) const;
@@ -56,10 +59,12 @@ class Dynamics {
   EquationsOfMotion equations_;
   std::optional<EnergyAccount> account_;
   std::optional<RungeKutta> integrator_;
+  std::optional<MinimumNorm> minimum_norm_;  // made when multipliers turn out not to be unique
+  std::string ambiguity_;                    // whose reactions are not, when that was found
   bool prepared_ = false, has_given_velocities_ = false;
   double t_ = 0, initial_energy_ = 0;
   std::vector<double> q_, qd_, given_qd_, driver_work_;
-  std::vector<double> y_row_, slope_row_;
+  std::vector<double> y_row_, slope_row_, lambda_row_, loads_row_;
   double row_residual_ = 0;
 };
 

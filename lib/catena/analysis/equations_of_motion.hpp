@@ -33,6 +33,9 @@ class EquationsOfMotion {
   /// Multipliers of the solver's rows at the last accelerations().
   std::span<const double> multipliers() const { return lambda_; }
 
+  /// Generalized forces of gravity and force elements at the last accelerations().
+  std::span<const double> applied_forces() const { return loads_; }
+
   // The rest uses the factors, the configuration and the time of the last accelerations() or factorize().
 
   /// Factors at (t, q) without computing accelerations.
@@ -47,6 +50,8 @@ class EquationsOfMotion {
   /// See SchurSystem: near zero where constraints depend on each other.
   double smallest_pivot_ratio() const { return plan_.rows > 0 ? system_.smallest_pivot_ratio() : 1; }
   int weakest_row() const { return system_.weakest_row(); }
+  /// Whether constraints depend on each other so much that multipliers are not unique.
+  bool is_dependent() const { return plan_.rows > 0 && system_.is_regularised(); }
 
   Evaluator& evaluator() { return evaluator_; }
   const Plan& plan() const { return plan_; }
