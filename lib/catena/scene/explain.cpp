@@ -10,7 +10,6 @@
 #include "catena/scene/number_domain.hpp"
 #include "catena/scene/scene_reader.hpp"
 #include "catena/scene/scene_runner.hpp"
-#include "catena/scene/unit.hpp"
 
 namespace catena {
 namespace {
@@ -28,9 +27,21 @@ std::string table(const std::vector<Line>& lines) {
   return out;
 }
 
-std::string unit_text(UnitKind unit) {
-  return unit == UnitKind::none ? "a pure number" : fmt::format("{}, {}", describe(dimension_of(unit)), si_unit(unit));
+/// Names and units one after the other, in lines of at most 100 characters.
+std::string flow(const std::vector<Line>& entries) {
+  std::string out, line;
+  for (const Line& entry : entries) {
+    const std::string text = fmt::format("  {} [{}]", entry.key, entry.text);
+    if (line.size() + text.size() > 100) {
+      out += line + "\n";
+      line.clear();
+    }
+    line += text;
+  }
+  return out + line + "\n";
 }
+
+std::string unit_text(UnitKind unit) { return unit == UnitKind::none ? "a pure number" : std::string(si_unit(unit)); }
 
 /// What may be written for a field: kind, unit, domain.
 std::string form(const FieldDescription& field) {
@@ -83,9 +94,10 @@ std::string explain_element(const ElementDescription& type) {
       type.summary, type.equation);
   std::vector<Line> lines{{"type", fmt::format("\"{}\"", type.type)}, {"name", "its name (default: type#n)"}};
   for (const FieldDescription& field : type.fields) {
-    const std::string omitted = field.required                    ? ""
-                                : field.omitted == Omitted::given ? "; default: as in the given configuration"
-                                                                  : "; optional";
+    std::string omitted;
+    if (!field.required && field.doc.find("default") == std::string_view::npos &&
+        form(field).find("default") == std::string::npos)
+      omitted = field.omitted == Omitted::given ? "; default: as in the given configuration" : "; optional";
     lines.push_back({std::string(field.key), fmt::format("{}: {}{}", field.doc, form(field), omitted)});
   }
   lines.push_back(
@@ -94,8 +106,7 @@ std::string explain_element(const ElementDescription& type) {
   const std::vector<Line> columns = example_columns(type);
   if (!columns.empty()) {
     out += "\nColumns, for the name A\n";
-    for (const Line& column : columns) out += fmt::format("  {} [{}]", column.key, column.text);
-    out += "\n";
+    out += flow(columns);
     if (type.can_be_driven()) out += "  as a driver also A.load, A.power [W], A.work [J]\n";
   }
   return out + "\nExample\n  " + example_of(type) + "\n";
