@@ -8,6 +8,7 @@
 #include "catena/analysis/mobility.hpp"
 #include "catena/analysis/process_time.hpp"
 #include "catena/analysis/whole_turns.hpp"
+#include "catena/columns/energy.hpp"
 
 namespace catena {
 namespace {
@@ -193,6 +194,15 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& needs, RowObse
     report.seconds = timer.seconds();
     return report;
   };
+  if (needs.multipliers) {
+    if (const int body = body_without_mass(*model_, *plan_); body >= 0) {
+      Report refused;
+      refused.status = Status::refused;
+      refused.message =
+          fmt::format("loads and reactions need the mass and the inertia of body \"{}\"", model_->body_name(body));
+      return end(refused);
+    }
+  }
   if (!assembled_) {
     const AssemblyOutcome outcome = assemble();
     if (!outcome.ok()) return end(outcome);
