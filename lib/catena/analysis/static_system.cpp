@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/scaling.hpp"
-
 namespace catena {
 namespace {
 
@@ -22,7 +20,8 @@ StaticSystem::StaticSystem(Evaluator& evaluator)
       plan_(evaluator.plan()),
       radius_(evaluator.attachment_radii()),
       matrix_(evaluator.shared_plan(), radius_),
-      length_(evaluator.length_scale()) {
+      length_(evaluator.length_scale()),
+      scaling_(plan_, length_) {
   rest_.assign(at(plan_.coordinates()), 0.0);
   loads_.resize(rest_.size());
   gradient_.resize(at(plan_.columns));
@@ -33,16 +32,34 @@ StaticSystem::StaticSystem(Evaluator& evaluator)
   solution_.resize(at(plan_.columns + plan_.rows));
 }
 
+void StaticSystem::take_over_model() {
+  radius_ = evaluator_.attachment_radii();
+  matrix_.set_radius(radius_);
+  length_ = evaluator_.length_scale();
+  scaling_ = Scaling(plan_, length_);
+  load_ = 0;
+  linear_ = -1;
+}
+
 void StaticSystem::move_to(std::span<const double> q) {
   evaluator_.set_configuration(q);
   evaluator_.applied_forces(rest_, loads_);
   for (int c = 0; c < plan_.columns; ++c) gradient_[at(c)] = -loads_[at(plan_.coordinate[at(c)])];
+  load_ = std::max(load_, force_norm(gradient_));
   evaluator_.phi(phi_);
   evaluator_.jacobian(jacobian_);
   extent_ = length_;
   for (int b = 0; b < plan_.moving; ++b) {
     extent_ = std::max({extent_, std::abs(q[at(3 * b)]), std::abs(q[at(3 * b + 1)])});
   }
+}
+
+bool StaticSystem::has_linear_constraints() {
+  if (linear_ < 0) {
+    linear_ = plan_.constant_jacobian || matrix_.constraints_are_linear(evaluator_);
+    matrix_.keep_equal_factors(linear_ == 1);
+  }
+  return linear_ == 1;
 }
 
 void StaticSystem::residual(std::span<const double> lambda, std::span<double> out) const {
@@ -61,9 +78,9 @@ double StaticSystem::force_norm(std::span<const double> forces) const {
   return std::isfinite(sum) ? largest : sum;
 }
 
-double StaticSystem::change_norm(std::span<const double> change) const { return column_norm(plan_, change, length_); }
+double StaticSystem::change_norm(std::span<const double> change) const { return scaling_.column_norm(change); }
 
-double StaticSystem::phi_norm() const { return row_norm(plan_, phi_, length_); }
+double StaticSystem::phi_norm() const { return scaling_.row_norm(phi_); }
 
 double StaticSystem::force_scale(std::span<const double> lambda) const {
   double largest = force_norm(gradient_);

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "catena/analysis/scaling.hpp"
 #include "catena/assembly/evaluate.hpp"
 #include "catena/assembly/kkt_matrix.hpp"
 
@@ -25,8 +26,12 @@ class StaticSystem {
  public:
   explicit StaticSystem(Evaluator& evaluator);
 
+  /// Takes over what depends on the numbers of the evaluator's model after they changed.
+  void take_over_model();
   /// Evaluates forces, constraints and Phi_q at q (size coordinates()).
   void move_to(std::span<const double> q);
+  /// Whether the constraints have no second derivatives, as bodies held at their centroids: asked once, where it is.
+  bool has_linear_constraints();
   double energy() const { return evaluator_.potential_energy(); }
   std::span<const double> gradient() const { return gradient_; }  ///< V_q, columns
   std::span<const double> phi() const { return phi_; }
@@ -42,6 +47,16 @@ class StaticSystem {
   double phi_norm() const;
   /// Largest force in the mechanism: of V_q and of the constraints' parts of Phi_q^T lambda, N.
   double force_scale(std::span<const double> lambda) const;
+
+  /// What residual forces are compared with: force_scale at the last fill, N.
+  double force_size() const { return force_; }
+  /// Largest applied force so far, N.
+  double load_size() const { return load_; }
+  /// Changes below this cannot be told from rounding of the coordinates: length scales or rad.
+  double rounding_change() const { return 1e-15 * extent_ / length_; }
+
+  /// Residual forces below this may be rounding: a stiff spring's length is known to so many digits only, N.
+  double rounding_force() const { return 1e-14 * matrix_.largest_stiffness() * extent_; }
 
   /// Fills the matrix at the present configuration: K exact, or convex with h against turning made sqrt(h^2 + r^2), r
   /// the residual torque. `shift` N/m.
@@ -69,7 +84,9 @@ class StaticSystem {
   const Plan& plan_;
   std::vector<double> radius_;
   KktMatrix matrix_;
-  double length_, extent_ = 1, force_ = 1;
+  int linear_ = -1;  // -1: not asked yet
+  double length_, extent_ = 1, force_ = 1, load_ = 0;
+  Scaling scaling_;
   std::vector<double> rest_, loads_;  // zero velocities, Q; all coordinates
   std::vector<double> gradient_, jacobian_, phi_;
   std::vector<double> solution_, torque_;

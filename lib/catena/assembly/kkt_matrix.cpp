@@ -24,11 +24,23 @@ KktMatrix::KktMatrix(std::shared_ptr<const Plan> plan, std::span<const double> r
   rho_.resize(at(structure_.rows));
   eps_.resize(at(structure_.rows));
   stiffness_.resize(at(moving_));
+  residual_work_.resize(at(structure_.columns + structure_.rows));
+  correction_work_.resize(residual_work_.size());
 }
 
 void KktMatrix::set_hessian(Evaluator& evaluator, std::span<const double> lambda, Curvature curvature) {
   std::fill(values_.begin(), values_.end(), 0.0);
   evaluator.add_hessians(lambda, curvature, structure_.hessian, values_);
+}
+
+bool KktMatrix::constraints_are_linear(Evaluator& evaluator) {
+  if (structure_.rows == 0) return true;
+  std::vector<double> lambda(at(structure_.rows), 0.0);
+  set_hessian(evaluator, lambda, Curvature::exact);
+  const std::vector<double> without(values_.begin(), values_.end() - 1);
+  std::fill(lambda.begin(), lambda.end(), 1.0);
+  set_hessian(evaluator, lambda, Curvature::exact);
+  return std::equal(without.begin(), without.end(), values_.begin());
 }
 
 void KktMatrix::write_jacobian(std::span<const double> jacobian) {
@@ -47,6 +59,10 @@ void KktMatrix::complete(std::span<const double> jacobian, double shift) {
     }
   }
   write_jacobian(jacobian);
+}
+
+void KktMatrix::add_diagonal(std::span<const double> weights, double factor) {
+  for (int c = 0; c < structure_.columns; ++c) values_[at(structure_.diagonal[at(c)])] += factor * weights[at(c)];
 }
 
 void KktMatrix::set_weights(std::span<const double> jacobian, double stiffness) {
@@ -89,7 +105,7 @@ FactorResult KktMatrix::factorize(double least_stiffness, Counters& counters) {
   }
   choose_augmentation(least_stiffness);
   // A quadratic energy under linear constraints has one matrix for ever: its factors are kept.
-  if (plan_->constant_jacobian) {
+  if (keep_equal_factors_) {
     if (is_factorized() && std::equal(last_.begin(), last_.end(), values_.begin())) return {};
     last_.assign(values_.begin(), values_.begin() + structure_.entries());
   }
@@ -151,7 +167,8 @@ double KktMatrix::absolute_quadratic(std::span<const double> x) const {
 }
 
 Refinement KktMatrix::solve(std::span<double> x, double force, double length, double tolerance, Counters& counters) {
-  const std::vector<double> b(x.begin(), x.end());
+  right_hand_side_.assign(x.begin(), x.end());
+  const std::vector<double>& b = right_hand_side_;
   const auto residual = [&](std::span<const double> solution, std::span<double> r) {
     multiply(solution, r);
     double largest = 0;
@@ -168,8 +185,23 @@ Refinement KktMatrix::solve(std::span<double> x, double force, double length, do
     }
     return largest;
   };
-  return factorization_.solve_refined(x, residual, {.tolerance = tolerance, .max_steps = 4, .least_progress = 1},
-                                      counters);
+  solve_unrefined(x, counters);
+  return refine([&](std::span<double> correction) { solve_unrefined(correction, counters); }, residual, x,
+                residual_work_, correction_work_, {.tolerance = tolerance, .max_steps = 4, .least_progress = 1});
+}
+
+void KktMatrix::solve_unrefined(std::span<double> x, Counters& counters) {
+  // What was added to the first equation on the left, Phi_q^T R times the second one, is added on the right as well.
+  const SparsePattern& phi_q = plan_->jacobian;
+  for (int c = 0; c < structure_.columns; ++c) {
+    double sum = 0;
+    for (int k = phi_q.column_start[at(c)]; k < phi_q.column_start[at(c) + 1]; ++k) {
+      const std::size_t row = at(phi_q.row_index[at(k)]);
+      sum += values_[at(structure_.jacobian[at(k)])] * rho_[row] * x[at(structure_.columns) + row];
+    }
+    x[at(c)] += sum;
+  }
+  factorization_.solve(x, counters);
 }
 
 int KktMatrix::negative_modes() const { return factorization_.inertia().negative - structure_.rows; }

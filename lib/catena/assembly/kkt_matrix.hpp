@@ -26,7 +26,14 @@ class KktMatrix {
   /// `radius`: per plan body, what a radian is compared with in metres (Evaluator::attachment_radii).
   KktMatrix(std::shared_ptr<const Plan> plan, std::span<const double> radius);
 
+  void set_radius(std::span<const double> radius) { radius_.assign(radius.begin(), radius.end()); }
+
   const KktStructure& structure() const { return structure_; }
+
+  /// Compare the matrix with the one factored last, and keep its factors where nothing changed (linear problems).
+  void keep_equal_factors(bool keep) { keep_equal_factors_ = keep; }
+  /// Whether every K written with these multipliers is the one without: constraints without second derivatives here.
+  bool constraints_are_linear(Evaluator& evaluator);
 
   /// Fills K at the evaluator's configuration, but for the stiffness against turning, which goes to turning().
   void set_hessian(Evaluator& evaluator, std::span<const double> lambda, Curvature curvature);
@@ -34,6 +41,8 @@ class KktMatrix {
   std::span<double> turning() { return {values_.data() + structure_.entries(), static_cast<std::size_t>(moving_)}; }
   /// Adds turning() to K and `shift` x (1, 1, radius^2) to its diagonal, N/m; writes Phi_q.
   void complete(std::span<const double> jacobian, double shift);
+  /// Adds factor x weights (columns) to the diagonal of K: shifted eigenvalue problems.
+  void add_diagonal(std::span<const double> weights, double factor);
   /// K := `stiffness` x (1, 1, radius^2) without anything else, N/m; writes Phi_q.
   void set_weights(std::span<const double> jacobian, double stiffness);
 
@@ -42,6 +51,8 @@ class KktMatrix {
   /// Solves the true equations for x = [columns; rows] in place. Residuals are compared with `force`, N, and `length`,
   /// m, and refined to `tolerance` of these, if rounding allows.
   Refinement solve(std::span<double> x, double force, double length, double tolerance, Counters& counters);
+  /// Solves with the factors as they are, without refinement.
+  void solve_unrefined(std::span<double> x, Counters& counters);
   /// y = true matrix times x, both of size columns + rows.
   void multiply(std::span<const double> x, std::span<double> y) const;
   /// y = K x alone, size columns.
@@ -67,10 +78,11 @@ class KktMatrix {
   std::vector<double> radius_;
   std::vector<double> values_;    // the true matrix; then turning, then what immobile bodies get
   std::vector<double> factored_;  // augmented
-  std::vector<double> last_;      // the true matrix of the last factorization, where Phi_q is constant
+  std::vector<double> last_;      // the true matrix of the last factorization, if factors are to be kept
   std::vector<double> rho_, eps_, stiffness_;
+  std::vector<double> right_hand_side_, residual_work_, correction_work_;
   SymmetricFactorization factorization_;
-  bool analyzed_ = false;
+  bool analyzed_ = false, keep_equal_factors_ = false;
   double largest_stiffness_ = 0;
 };
 

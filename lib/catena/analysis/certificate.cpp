@@ -1,0 +1,194 @@
+#include "catena/analysis/certificate.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+constexpr double neutral_part = 1e-10;
+constexpr double rigid_part = 1e6;
+constexpr int usual_steps = 8, most_steps = 40;
+
+// Lanczos with the inverse on the null space of Phi_q, in the metric W, all vectors kept orthogonal.
+class Lanczos {
+ public:
+  Lanczos(StaticSystem& system, const std::vector<double>& weights) : system_(system), weights_(weights) {}
+
+  // Lowest k found after at most `steps` steps, and its vector; stops where it settles. `negative`: wants k < 0.
+  double lowest(int steps, bool negative, std::vector<double>& mode) {
+    const std::size_t n = weights_.size();
+    std::vector<double> v(n);
+    // A start without structure; anything fixed will do.
+    unsigned seed = 12345;
+    for (double& x : v) {
+      seed = seed * 1664525u + 1013904223u;
+      x = static_cast<double>(seed >> 8) / (1 << 24) - 0.5;
+    }
+    for (std::size_t k = 0; k < n; ++k) v[k] /= std::sqrt(weights_[k]);
+    apply(v);
+    if (!normalise(v)) return 0;
+    basis_.push_back(v);
+    double best = 0, before = 0;
+    Eigen::VectorXd ritz;
+    for (int step = 0; step < steps; ++step) {
+      std::vector<double> w = basis_.back();
+      apply(w);
+      for (int pass = 0; pass < 2; ++pass) {
+        for (std::size_t b = 0; b < basis_.size(); ++b) {
+          const double h = product(basis_[b], w);
+          if (pass == 0 && b + 1 == basis_.size()) alpha_.push_back(h);
+          for (std::size_t k = 0; k < n; ++k) w[k] -= h * basis_[b][k];
+        }
+      }
+      const double length = std::sqrt(product(w, w));
+      ritz = lowest_ritz(best);
+      const bool settled = step > 1 && std::abs(best - before) <= 1e-3 * std::abs(best) && (!negative || best < 0);
+      before = best;
+      if (settled || !(length > 1e-12 * std::abs(alpha_.front()))) break;
+      beta_.push_back(length);
+      for (double& x : w) x /= length;
+      if (step + 1 < steps) basis_.push_back(w);
+    }
+    mode.assign(n, 0.0);
+    for (std::size_t b = 0; b < basis_.size() && b < static_cast<std::size_t>(ritz.size()); ++b) {
+      for (std::size_t k = 0; k < n; ++k) mode[k] += ritz[static_cast<Eigen::Index>(b)] * basis_[b][k];
+    }
+    normalise(mode);
+    return best;
+  }
+
+ private:
+  // v := top part of the inverse times [W v; 0].
+  void apply(std::vector<double>& v) {
+    work_.assign(v.size() + at(system_.plan().rows), 0.0);
+    for (std::size_t k = 0; k < v.size(); ++k) work_[k] = weights_[k] * v[k];
+    system_.matrix().solve_unrefined(work_, system_.evaluator().counters);
+    std::copy_n(work_.begin(), v.size(), v.begin());
+  }
+  double product(const std::vector<double>& a, const std::vector<double>& b) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < a.size(); ++k) sum += weights_[k] * a[k] * b[k];
+    return sum;
+  }
+  bool normalise(std::vector<double>& v) const {
+    const double length = std::sqrt(product(v, v));
+    if (!(length > 0) || !std::isfinite(length)) return false;
+    for (double& x : v) x /= length;
+    return true;
+  }
+  // Eigenvector of the tridiagonal matrix for the most negative k, else the smallest positive.
+  Eigen::VectorXd lowest_ritz(double& k) const {
+    const auto n = static_cast<Eigen::Index>(alpha_.size());
+    Eigen::VectorXd diagonal(n), beside(std::max<Eigen::Index>(n - 1, 0));
+    for (Eigen::Index i = 0; i < n; ++i) diagonal[i] = alpha_[static_cast<std::size_t>(i)];
+    for (Eigen::Index i = 0; i + 1 < n; ++i) beside[i] = beta_[static_cast<std::size_t>(i)];
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+    solver.computeFromTridiagonal(diagonal, beside);
+    // k = 1 / theta: of negative ones the smallest in size is the lowest of the spectrum that is resolved.
+    const Eigen::VectorXd& theta = solver.eigenvalues();
+    const double largest = theta.cwiseAbs().maxCoeff();
+    Eigen::Index chosen = n - 1;
+    for (Eigen::Index i = n - 1; i >= 0; --i) {
+      if (theta[i] < -1e-6 * largest) {
+        chosen = i;
+        break;
+      }
+    }
+    k = 1 / theta[chosen];
+    return solver.eigenvectors().col(chosen);
+  }
+
+  StaticSystem& system_;
+  const std::vector<double>& weights_;
+  std::vector<std::vector<double>> basis_;
+  std::vector<double> alpha_, beta_, work_;
+};
+
+}  // namespace
+
+Certificate certify(StaticSystem& system, std::span<const double> lambda) {
+  Certificate result;
+  const Plan& plan = system.plan();
+  KktMatrix& matrix = system.matrix();
+  if (plan.columns == 0) {
+    result.valid = result.stable = true;
+    return result;
+  }
+  std::vector<double> weights(at(plan.columns));
+  for (int c = 0; c < plan.columns; ++c) {
+    const int coordinate = plan.coordinate[at(c)];
+    const double r = coordinate % 3 == 2 ? system.radius()[at(coordinate / 3)] : 1;
+    weights[at(c)] = r * r;
+  }
+  system.fill(lambda, Curvature::exact, 0);
+  bool factored = system.factorize().ok();
+  const double stiffest = std::max(matrix.largest_stiffness(), system.force_size() / system.length());
+  const double floor = neutral_part * stiffest;
+  if (!factored) {
+    // A pivot vanished exactly: something is neutral. Beside it the factors exist.
+    system.fill(lambda, Curvature::exact, floor);
+    factored = system.factorize().ok();
+    if (!factored) return result;
+  }
+  result.valid = true;
+  result.negative_modes = matrix.negative_modes();
+  const bool unstable = result.negative_modes > 0;
+  Lanczos lanczos(system, weights);
+  const double lowest = lanczos.lowest(unstable ? most_steps : usual_steps, unstable, result.mode);
+  // Where the constraints leave no freedom the inverse is what eps made it: far stiffer than anything in K.
+  if (lowest == 0 || std::abs(lowest) > rigid_part * stiffest) {
+    result.mode.clear();
+    result.stable = result.negative_modes == 0;
+    return result;
+  }
+  // The Rayleigh quotient with the true matrix, and what rounding leaves of it.
+  std::vector<double> product(at(plan.columns));
+  system.fill(lambda, Curvature::exact, 0);
+  matrix.multiply_stiffness(result.mode, product);
+  double quotient = 0;
+  for (std::size_t c = 0; c < product.size(); ++c) quotient += product[c] * result.mode[c];
+  result.softest_stiffness = quotient;
+  result.curvature_floor = neutral_part * matrix.absolute_quadratic(result.mode);
+  if (std::abs(quotient) <= result.curvature_floor) {
+    result.neutral = true;
+    system.fill(lambda, Curvature::exact, floor);
+    if (system.factorize().ok()) result.negative_modes = matrix.negative_modes();
+  }
+  result.stable = result.negative_modes == 0 && !result.neutral;
+  return result;
+}
+
+std::string describe_mode(const Evaluator& evaluator, std::span<const double> mode, std::span<const double> radius) {
+  const Plan& plan = evaluator.plan();
+  int body = -1;
+  double largest = 0, motion[3] = {0, 0, 0};
+  for (int b = 0; b < plan.moving; ++b) {
+    double v[3] = {0, 0, 0};
+    for (int k = 0; k < 3; ++k) {
+      const int c = plan.column[at(3 * b + k)];
+      if (c >= 0) v[k] = mode[at(c)];
+    }
+    const double size = std::hypot(v[0], v[1]) + radius[at(b)] * std::abs(v[2]);
+    if (size > largest * (1 + 1e-6)) {
+      largest = size;
+      body = b;
+      std::copy(v, v + 3, motion);
+    }
+  }
+  if (body < 0) return "nothing";
+  const double travel = std::hypot(motion[0], motion[1]), turn = radius[at(body)] * std::abs(motion[2]);
+  const std::string_view name = evaluator.model().body_name(plan.model_body[at(body)]);
+  if (turn > travel) return fmt::format("body \"{}\" turning", name);
+  // Either sense of a mode is as good: the one with the larger positive component is shown.
+  const double sign = (std::abs(motion[0]) >= std::abs(motion[1]) ? motion[0] : motion[1]) < 0 ? -1 : 1;
+  const auto shown = [&](double v) { return std::abs(v) < 1e-6 * travel ? 0.0 : sign * v / travel; };
+  return fmt::format("body \"{}\" along ({:.3g}, {:.3g})", name, shown(motion[0]), shown(motion[1]));
+}
+
+}  // namespace catena

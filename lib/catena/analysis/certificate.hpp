@@ -1,0 +1,36 @@
+// What a stationary point is: stable, unstable or neutral, from the true matrix of equilibrium without any shift.
+//
+//   K v = k W v on the null space of Phi_q,   W = (1, 1, radius^2):   k, N/m, the stiffness of mode v
+//
+// The number p of negative k comes from the inertia of one factorization (THEORY section 5), whatever the size; the
+// softest mode from a few Lanczos steps with its inverse (all modes at once by a dense solver where they are few).
+// Where the softest k cannot be told from rounding, |v^T K v| <= 1e-10 sum |v_i K_ij v_j|, the point is neutral to
+// second order: then p counts the modes that are negative beyond that. Source: Nour-Omid, Parlett, Ericsson, Jensen,
+// Math. Comp. 48 (1987), for Lanczos with a singular metric.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "catena/analysis/static_system.hpp"
+
+namespace catena {
+
+struct Certificate {
+  bool valid = false;  ///< false: no factorization at all
+  bool stable = false, neutral = false;
+  int negative_modes = 0;
+  double softest_stiffness = 0;  ///< lowest k; where there are negative ones, the most negative that was found
+  std::vector<double> mode;      ///< its shape over columns, v^T W v = 1; empty where nothing can move
+  int neutral_modes = 0;         ///< found so far
+  double curvature_floor = 0;    ///< what |k| is lost in rounding, N/m
+};
+
+/// Certifies the point where the system is, with these multipliers: fills and factors the matrix, exact, unless its
+/// numbers are those of the last factorization.
+Certificate certify(StaticSystem& system, std::span<const double> lambda);
+
+/// "body "rocker" turning" or "body "slider" along (1, 0)": the body that moves most in a mode, for messages.
+std::string describe_mode(const Evaluator& evaluator, std::span<const double> mode, std::span<const double> radius);
+
+}  // namespace catena

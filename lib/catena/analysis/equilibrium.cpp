@@ -1,0 +1,137 @@
+#include "catena/analysis/equilibrium.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "catena/analysis/process_time.hpp"
+#include "catena/analysis/static_holding.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+}  // namespace
+
+Equilibrium::Equilibrium(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
+                         const EquilibriumOptions& options)
+    : model_(std::move(model)),
+      plan_(Plan::make(*model_, plan_options)),
+      options_(options),
+      evaluator_(plan_, *model_),
+      system_(evaluator_) {
+  q_ = evaluator_.given_configuration();
+  lambda_.assign(at(plan_->rows), 0.0);
+}
+
+void Equilibrium::start_from(const SystemState& state) {
+  t_ = state.t;
+  solved_ = false;
+  if (state.q.empty()) return;
+  for (int p = 0; p < plan_->moving; ++p) {
+    const std::size_t source = 3 * at(plan_->model_body[at(p)]), target = 3 * at(p);
+    q_[target] = state.q[source] - evaluator_.origin(p).x;
+    q_[target + 1] = state.q[source + 1] - evaluator_.origin(p).y;
+    q_[target + 2] = state.q[source + 2];
+  }
+}
+
+void Equilibrium::set_model(std::shared_ptr<const Model> model) {
+  // Origins may move with the parameters: places are kept in the ground frame.
+  std::vector<Vec2<double>> before(at(plan_->bodies));
+  for (int p = 0; p < plan_->bodies; ++p) before[at(p)] = evaluator_.origin(p);
+  model_ = std::move(model);
+  evaluator_.set_model(*model_);
+  system_.take_over_model();
+  for (int p = 0; p < plan_->moving; ++p) {
+    q_[3 * at(p)] += before[at(p)].x - evaluator_.origin(p).x;
+    q_[3 * at(p) + 1] += before[at(p)].y - evaluator_.origin(p).y;
+  }
+}
+
+SystemState Equilibrium::state() const {
+  SystemState state{t_, std::vector<double>(3 * model_->bodies.size()), {}};
+  for (int p = 0; p < plan_->bodies; ++p) {
+    const std::size_t target = 3 * at(plan_->model_body[at(p)]), source = 3 * at(p);
+    const Vec2<double> origin = evaluator_.origin(p);
+    state.q[target] = q_[source] + origin.x;
+    state.q[target + 1] = q_[source + 1] + origin.y;
+    state.q[target + 2] = q_[source + 2];
+  }
+  return state;
+}
+
+EquilibriumReport Equilibrium::solve() {
+  const ProcessTimer timer;
+  EquilibriumReport report;
+  report.bodies = static_cast<int>(model_->bodies.size());
+  report.rows = plan_->rows;
+  report.islands = plan_->islands;
+  evaluator_.set_time(t_);
+  const auto end = [&](Report outcome) {
+    report.status = outcome.status;
+    report.message = std::move(outcome.message);
+    for (std::string& warning : outcome.warnings) report.warnings.push_back(std::move(warning));
+    report.counters = evaluator_.counters;
+    report.seconds = timer.seconds();
+    solved_ = report.ok();
+    return report;
+  };
+  system_.move_to(q_);
+  if (std::optional<Report> loose = find_loose_bodies(system_, evaluator_)) return end(*loose);
+  StaticSearch search(system_, {.solver = options_.solver,
+                                .tolerance = options_.tolerance,
+                                .stationary = options_.accept == Accept::stationary,
+                                .warm = solved_,
+                                .verbose = options_.verbose});
+  StaticResult result = search.find(q_, lambda_);
+  report.solver = std::string(result.solver);
+  report.iterations = result.iterations;
+  report.residual = result.residual;
+  report.energy = system_.energy();
+  const Certificate& c = result.certificate;
+  report.certified = c.valid && result.has_energy;
+  report.stable = report.certified && c.stable;
+  report.neutral = report.certified && c.neutral;
+  report.negative_modes = report.certified ? c.negative_modes : 0;
+  report.softest_stiffness = c.softest_stiffness;
+  if (!c.mode.empty()) {
+    report.softest_mode = describe_mode(evaluator_, c.mode, system_.radius());
+    report.softest_shape.assign(3 * model_->bodies.size(), 0.0);
+    for (int k = 0; k < plan_->columns; ++k) {
+      const int coordinate = plan_->coordinate[at(k)];
+      report.softest_shape[3 * at(plan_->model_body[at(coordinate / 3)]) + at(coordinate % 3)] = c.mode[at(k)];
+    }
+  }
+  for (int r : result.dependent_rows) {
+    const std::string name = model_->element_name(plan_->row_element[at(r)]);
+    if (report.redundant.empty() || report.redundant.back() != name) report.redundant.push_back(name);
+  }
+  return end(std::move(result.report));
+}
+
+EquilibriumReport Equilibrium::run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
+  EquilibriumReport report;
+  const ProcessTimer timer;
+  for (std::int64_t k = 0; k < grid.size(); ++k) {
+    t_ = grid[k];
+    report = solve();
+    if (!report.ok()) break;
+    const Snapshot snapshot{.evaluator = evaluator_,
+                            .t = t_,
+                            .q = q_,
+                            .lambda = needs.multipliers ? std::span<const double>(lambda_) : std::span<const double>{},
+                            .residual = system_.phi_norm() * evaluator_.length_scale()};
+    if (!observer.observe(snapshot)) {
+      report.status = Status::cancelled;
+      report.message = fmt::format("stopped at t = {:.12g} s; the rows so far are kept", t_);
+      break;
+    }
+  }
+  report.seconds = timer.seconds();
+  return report;
+}
+
+}  // namespace catena

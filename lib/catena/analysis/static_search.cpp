@@ -1,0 +1,198 @@
+#include "catena/analysis/static_search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "catena/analysis/assemble.hpp"
+#include "catena/analysis/static_descent.hpp"
+#include "catena/analysis/whole_turns.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// Degrees of freedom up to which the valley of the start is followed: the work grows with them, Newton's does not.
+constexpr int few_freedoms = 30;
+constexpr int most_trials = 12;
+constexpr double first_push = 0.05, largest_push = 0.8;
+// Stiffness contributions below this part of the scene's count as absent.
+constexpr double absent_stiffness = 1e-8;
+
+// A reproducible number in [-1, 1).
+double random_number(unsigned& seed) {
+  seed = seed * 1664525u + 1013904223u;
+  return static_cast<double>(seed >> 8) / (1 << 23) - 1;
+}
+
+std::string body_of(const Evaluator& evaluator, int column) {
+  const Plan& plan = evaluator.plan();
+  const int body = plan.model_body[at(plan.coordinate[at(column)] / 3)];
+  return std::string(evaluator.model().body_name(body));
+}
+
+}  // namespace
+
+// Newton from anywhere, or downhill from the nearest assembled configuration.
+StaticOutcome StaticSearch::minimise(std::vector<double>& q, std::vector<double>& lambda, bool warm, bool follow_valley,
+                                     StaticResult& result) {
+  StaticOutcome outcome;
+  system_.move_to(q);
+  if (follow_valley) {
+    Assembler assembler(system_.evaluator());
+    std::vector<double> assembled = q;
+    if (system_.phi_norm() <= 1e-12 || assembler.assemble(assembled).ok()) {
+      q = assembled;
+      outcome = solve_by_descent(system_, q, lambda, {.tolerance = options_.tolerance});
+      result.iterations += outcome.iterations;
+      return outcome;
+    }
+  }
+  outcome = solve_by_newton(system_, q, lambda,
+                            {.tolerance = options_.tolerance, .warm = warm, .stationary = options_.stationary});
+  result.iterations += outcome.iterations;
+  return outcome;
+}
+
+// A push along the mode, its largest component `size` rad or length scales, to the side where the energy is lower.
+void StaticSearch::leave(const Certificate& certificate, std::vector<double>& q, double size) {
+  const double largest = system_.change_norm(certificate.mode);
+  std::vector<double> best;
+  double lowest = 0;
+  for (const double side : {1.0, -1.0}) {
+    std::vector<double> trial = q;
+    system_.advance(trial, certificate.mode, side * size / largest, 10);
+    const bool restored = restore_constraints(system_, trial);
+    const double energy = restored ? system_.energy() : 0;
+    if (best.empty() || (restored && energy < lowest)) {
+      best = trial;
+      lowest = energy;
+    }
+  }
+  q = best;
+}
+
+void StaticSearch::shake(std::vector<double>& q, unsigned seed, double angle) const {
+  const Plan& plan = system_.plan();
+  for (int c = 0; c < plan.columns; ++c) {
+    const int coordinate = plan.coordinate[at(c)];
+    const double size = coordinate % 3 == 2 ? angle : 0.1 * angle * system_.length();
+    q[at(coordinate)] += size * random_number(seed);
+  }
+}
+
+// Whether the neutral mode meets no stiffness at all, not even one that others cancel.
+bool StaticSearch::is_free_motion(const std::vector<double>&, const Certificate& certificate) {
+  const double scale = std::max(system_.matrix().largest_stiffness(), system_.force_size() / system_.length());
+  return certificate.neutral && system_.matrix().absolute_quadratic(certificate.mode) <= absent_stiffness * scale;
+}
+
+Report StaticSearch::explain(const StaticOutcome& outcome, const std::vector<double>& start) {
+  Report report;
+  const Evaluator& evaluator = system_.evaluator();
+  const Plan& plan = system_.plan();
+  if (outcome.end == StaticEnd::unbounded) {
+    int farthest = 0;
+    double most = -1;
+    std::vector<double> fall(at(plan.columns));
+    const std::span<const Frame<double>> frames = evaluator.frames();
+    for (int c = 0; c < plan.columns; ++c) {
+      const int coordinate = plan.coordinate[at(c)];
+      const Frame<double>& f = frames[at(coordinate / 3)];
+      const double now = coordinate % 3 == 0 ? f.x : coordinate % 3 == 1 ? f.y : f.phi;
+      const double gone = std::abs(now - start[at(coordinate)]) / (coordinate % 3 == 2 ? 1 : system_.length());
+      if (gone > most) {
+        most = gone;
+        farthest = c;
+      }
+    }
+    report.status = Status::unbounded;
+    report.message =
+        fmt::format("the energy has no minimum: body \"{}\" {} without end; what should hold it?",
+                    body_of(evaluator, farthest), plan.coordinate[at(farthest)] % 3 == 2 ? "turns" : "moves");
+    return report;
+  }
+  Assembler assembler(system_.evaluator());
+  std::vector<double> assembled = start;
+  const AssemblyOutcome assembly = assembler.assemble(assembled);
+  if (!assembly.ok()) {
+    static_cast<Report&>(report) = assembly;
+    return report;
+  }
+  report.status = Status::not_converged;
+  report.message = fmt::format(
+      "no equilibrium found: the residual force is still {:.3g} N, of {:.3g} N, the constraints miss by {:.3g}; likely "
+      "cause: a start far off, or an energy without a minimum nearby",
+      outcome.residual, system_.force_size(), system_.phi_norm());
+  return report;
+}
+
+StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lambda) {
+  StaticResult result;
+  const Plan& plan = system_.plan();
+  Evaluator& evaluator = system_.evaluator();
+  if (!options_.warm) move_whole_turns(evaluator, q);
+  const std::vector<double> start = q;
+  bool follow_valley = !options_.warm && !options_.stationary && plan.columns - plan.rows <= few_freedoms;
+  double push = first_push;
+  StaticOutcome outcome;
+  bool accepted = false, pushed = false;
+  unsigned shaken = 0;
+  for (int trial = 0; trial < most_trials && !accepted; ++trial) {
+    outcome = minimise(q, lambda, options_.warm && trial == 0, follow_valley, result);
+    if (outcome.end == StaticEnd::unbounded) break;
+    if (outcome.converged()) {
+      result.certificate = certify(system_, lambda);
+      accepted = result.certificate.valid && (options_.stationary || result.certificate.negative_modes == 0);
+      if (accepted || !result.certificate.valid || result.certificate.mode.empty()) break;
+      leave(result.certificate, q, push);
+      push = std::min(2 * push, largest_push);
+      pushed = true;
+      continue;
+    }
+    // Where following the valley does not get anywhere Newton may, and where that does not, another start.
+    q = start;
+    if (follow_valley) {
+      follow_valley = false;
+    } else {
+      ++shaken;
+      shake(q, shaken, shaken == 1 ? 0.1 : 1.0);
+    }
+  }
+  result.residual = outcome.residual;
+  if (!accepted) {
+    result.report = explain(outcome, start);
+    return result;
+  }
+  result.dependent_rows = system_.matrix().dependent_rows();
+  const double scale = std::max(system_.force_scale(lambda), system_.load_size());
+  const bool accurate = result.residual <= options_.tolerance * scale + system_.rounding_force() &&
+                        system_.phi_norm() <= std::max(options_.tolerance, 10 * system_.rounding_change());
+  if (!accurate) {
+    result.report = explain(outcome, start);
+    return result;
+  }
+  const Certificate& c = result.certificate;
+  const std::string motion = c.mode.empty() ? "" : describe_mode(evaluator, c.mode, system_.radius());
+  if (c.neutral && !options_.stationary && is_free_motion(q, c)) {
+    result.report.status = Status::refused;
+    result.report.message = fmt::format(
+        "a motion is free: {} meets no resistance, so that the equilibrium is not one place; add a joint or a spring, "
+        "or ask for any stationary point (\"accept\": \"stationary\")",
+        motion);
+  } else if (c.neutral) {
+    result.report.warnings.push_back(
+        fmt::format("neutral to second order: {} changes the energy by less than rounding", motion));
+  } else if (c.negative_modes > 0) {
+    result.report.warnings.push_back(fmt::format("unstable: {} negative mode{}, the lowest: {}", c.negative_modes,
+                                                 c.negative_modes > 1 ? "s" : "", motion));
+  }
+  if (pushed && result.report.ok()) {
+    result.report.warnings.push_back("the first stationary point found was no minimum and was left downhill");
+  }
+  return result;
+}
+
+}  // namespace catena

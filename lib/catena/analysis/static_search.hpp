@@ -1,0 +1,62 @@
+// The search for one static equilibrium: which solver when, what to do when one fails, and leaving points that are no
+// minimum.
+//
+//   few degrees of freedom and a start that can be assembled nearby   downhill from there, else Newton
+//   otherwise                                                         Newton, restarted from shaken angles
+//   automatic and none of them converged                              Ipopt, polished by Newton
+//   stationary but no minimum                                         a push along the most negative mode, and on
+//
+// Random numbers are fixed: the same scene gives the same answer.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "catena/analysis/certificate.hpp"
+#include "catena/analysis/static_newton.hpp"
+#include "catena/base/status.hpp"
+
+namespace catena {
+
+enum class StaticSolver { automatic, newton, ipopt, nlopt };
+
+struct StaticSearchOptions {
+  StaticSolver solver = StaticSolver::automatic;
+  double tolerance = 1e-11;
+  bool stationary = false;  ///< any stationary point will do
+  bool warm = false;        ///< q and lambda are a solution for slightly different numbers
+  bool verbose = false;
+};
+
+struct StaticResult {
+  Report report;
+  Certificate certificate;
+  bool has_energy = true;
+  std::string_view solver = "newton";
+  int iterations = 0;
+  double residual = 0;              ///< largest residual force, N
+  std::vector<int> dependent_rows;  ///< constraint rows that follow from others
+};
+
+class StaticSearch {
+ public:
+  StaticSearch(StaticSystem& system, const StaticSearchOptions& options) : system_(system), options_(options) {}
+
+  /// Finds an equilibrium from q; leaves q, lambda and the system there, or at the best that was found.
+  StaticResult find(std::vector<double>& q, std::vector<double>& lambda);
+
+ private:
+  StaticOutcome minimise(std::vector<double>& q, std::vector<double>& lambda, bool warm, bool follow_valley,
+                         StaticResult& result);
+  bool judge(const StaticOutcome& outcome, std::vector<double>& q, std::vector<double>& lambda, StaticResult& result);
+  void leave(const Certificate& certificate, std::vector<double>& q, double size);
+  void shake(std::vector<double>& q, unsigned seed, double angle) const;
+  Report explain(const StaticOutcome& outcome, const std::vector<double>& start);
+  bool is_free_motion(const std::vector<double>& q, const Certificate& certificate);
+
+  StaticSystem& system_;
+  StaticSearchOptions options_;
+};
+
+}  // namespace catena
