@@ -61,6 +61,7 @@ class Dynamics {
   std::optional<RungeKutta> integrator_;
   std::optional<MinimumNorm> minimum_norm_;  // made when multipliers turn out not to be unique
   std::string ambiguity_;                    // whose reactions are not, when that was found
+  bool prepared_ = false;
   double t_ = 0, initial_energy_ = 0;
   std::vector<double> q_, qd_, given_qd_, driver_work_;
   std::vector<double> y_row_, slope_row_, lambda_row_, loads_row_;
