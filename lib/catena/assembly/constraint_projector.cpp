@@ -43,7 +43,7 @@ void ConstraintProjector::set_inverse_weights(std::span<const double> inverse_we
 }
 
 FactorResult ConstraintProjector::factorize(std::span<const double> jacobian, Counters& counters, double damping) {
-  jacobian_ = jacobian;
+  jacobian_ = jacobian.first(plan_->jacobian.row_index.size());  // without the scratch slot
   std::fill(values_.begin(), values_.end(), 0.0);
   for (const Product& p : products_) {
     values_[at(p.slot)] += inverse_weights_[at(p.column)] * jacobian[at(p.first)] * jacobian[at(p.second)];
