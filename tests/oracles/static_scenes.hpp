@@ -163,8 +163,7 @@ inline std::shared_ptr<Model> von_mises_truss(double load, double y) {
   model->add("symmetry", AbsoluteX<double>{}, 0, ground, 0.0);
   model->add("flat", AbsoluteAngle<double>{}, 0, ground, 0.0);
   for (const double side : {-1.0, 1.0}) {
-    model->add_force(side < 0 ? "left" : "right",
-                     spring({side, 0}, {0, 0}, 1000, 1.044030650891055), ground, 0);
+    model->add_force(side < 0 ? "left" : "right", spring({side, 0}, {0, 0}, 1000, 1.044030650891055), ground, 0);
   }
   model->add_force("load", PointForce<double>{}, 0, ground, {0.0, -load});
   return model;

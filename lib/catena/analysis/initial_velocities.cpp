@@ -106,7 +106,8 @@ VelocityOutcome find_initial_velocities(EquationsOfMotion& equations, std::span<
     multiply_add(plan.jacobian, values, step, rest);
     int worst = -1;
     const double length = evaluator.length_scale(), left = row_norm(plan, rest, length, &worst);
-    const double scale = std::max(column_norm(plan, velocity, length), row_norm(plan, nu, length));
+    const double scale = std::max(
+        {column_norm(plan, velocity, length), column_norm(plan, wanted.velocity, length), row_norm(plan, nu, length)});
     if (!(left <= 1e-9 * scale) && left > 0) {
       const int element = worst < 0 ? 0 : plan.row_element[at(worst)];
       outcome.status = Status::inconsistent;

@@ -141,8 +141,10 @@ struct Custom {
   typename TimeFunction<S>::Callback function;
   std::vector<double> breaks;
 
-  Taylor<S> evaluate(double t, Side) const {
-    const Taylor<double> value = function(t);
+  Taylor<S> evaluate(double t, Side side) const {
+    // The callback knows of no sides: what holds before its breakpoint is what it says one rounding earlier.
+    const bool before = side == Side::before && std::binary_search(breaks.begin(), breaks.end(), t);
+    const Taylor<double> value = function(before ? std::nextafter(t, -never) : t);
     return {S(value.f), S(value.d), S(value.dd)};
   }
   TimeRange domain() const { return {}; }

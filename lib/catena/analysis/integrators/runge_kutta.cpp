@@ -71,8 +71,10 @@ bool RungeKutta::evaluate_stages(double h) {
   smallest_stage_ratio_ = 1;
   for (std::size_t s = 1; s < static_cast<std::size_t>(table.stages); ++s) {
     combine(table.a[s], h, y_.data(), y_stage_);
-    const double t = t_ + table.c[s] * h;
-    const Side side = table.c[s] == 1 ? Side::before : Side::after;
+    // The last stages lie at the end exactly: a function of time may jump there.
+    const bool at_end = table.c[s] == 1;
+    const double t = at_end ? t_new_ : t_ + table.c[s] * h;
+    const Side side = at_end ? Side::before : Side::after;
     if (projecting_stages_ && !project_stage(t, side)) return false;
     if (!motion_.derivative(t, side, y_stage_, stage_[s])) return false;
     smallest_stage_ratio_ = std::min(smallest_stage_ratio_, motion_.equations().smallest_pivot_ratio());
@@ -96,9 +98,9 @@ bool RungeKutta::project_stage(double t, Side side) {
 
 // Factors at the new point, before it is projected. Order 5 had its last stage there, order 8 beside it: far from
 // singular positions those factors serve.
-bool RungeKutta::factorize_new_point(double h) {
+bool RungeKutta::factorize_new_point() {
   return tableau().order == 5 || motion_.equations().smallest_pivot_ratio() > projection_ratio ||
-         motion_.equations().factorize(t_ + h, Side::before, motion_.q(std::span<const double>(y_new_)));
+         motion_.equations().factorize(t_new_, Side::before, motion_.q(std::span<const double>(y_new_)));
 }
 
 double RungeKutta::error_size(double h) {
@@ -108,7 +110,9 @@ double RungeKutta::error_size(double h) {
   double high = 0, low = 0;
   for (std::size_t c = 0; c < moving; ++c) {
     const double unit = scale_.tolerance * (c % 3 == 2 ? 1 : scale_.length);
-    const double q_scale = 1 / unit, v_scale = 1 / (scale_.rate * unit + scale_.tolerance * std::abs(v[c]));
+    const double v_unit = scale_.rate * unit + scale_.tolerance * std::abs(v[c]);
+    // Where nothing has moved yet velocities have no scale; positions then tell.
+    const double q_scale = 1 / unit, v_scale = v_unit > 0 ? 1 / v_unit : 0;
     const double q_error = error_[c] * q_scale, v_error = error_[offset + c] * v_scale;
     const double size = q_error * q_error + v_error * v_error;
     if (!(size <= high)) {
@@ -137,12 +141,12 @@ double RungeKutta::filtered_error(double h, double raw) {
 }
 
 // Projects the new point and evaluates it; the stages stay as they are for the interpolant.
-bool RungeKutta::finish_step(double h) {
+bool RungeKutta::finish_step() {
   EquationsOfMotion& equations = motion_.equations();
   position_residual_ = equations.project_position(motion_.q(std::span(y_new_)), 4);
   if (!(position_residual_ < largest_residual)) return false;
   equations.project_velocity(motion_.qd(std::span(y_new_)), scale_.rate);
-  return motion_.derivative(t_ + h, Side::before, y_new_, slope_new_);
+  return motion_.derivative(t_new_, Side::before, y_new_, slope_new_);
 }
 
 // Chooses the next step after a rejection; order 5 gets its turn when order 8 does not get ahead.
@@ -204,6 +208,7 @@ bool RungeKutta::advance(double limit) {
     double h = lands ? remaining : h_;
     if (!lands && !fixed && detours_ == 0 && 2 * h > remaining) h = remaining / 2;
     if ((h < smallest && !lands) || rejections_ > most_rejections) return false;
+    t_new_ = lands ? limit : t_ + h;
     if (!evaluate_stages(h)) {
       culprit_ = -1;
       if (fixed) return false;
@@ -213,7 +218,7 @@ bool RungeKutta::advance(double limit) {
     double error = fixed ? 0 : error_size(h);
     bool factored = false;
     if (!(error <= 1) && std::isfinite(error)) {
-      factored = factorize_new_point(h);
+      factored = factorize_new_point();
       if (factored) error = filtered_error(h, error);
     }
     if (!std::isfinite(error)) error = 1e10;
@@ -225,7 +230,7 @@ bool RungeKutta::advance(double limit) {
       reject(h * std::min(growth, 1.0));
       continue;
     }
-    if (!factored && !factorize_new_point(h)) {
+    if (!factored && !factorize_new_point()) {
       if (fixed) return false;
       reject(h / 4);
       continue;
@@ -236,19 +241,19 @@ bool RungeKutta::advance(double limit) {
       if (detour(h)) continue;
       passing_singular_ = true;
     }
-    if (!finish_step(h)) {
+    if (!finish_step()) {
       culprit_ = -1;
       if (fixed) return false;
       reject(h / 4);
       continue;
     }
-    accept(lands ? limit : t_ + h, growth, std::max(proposed, h));
+    accept(growth, std::max(proposed, h));
     return true;
   }
 }
 
-void RungeKutta::accept(double t, double growth, double proposed) {
-  const double h = t - t_;
+void RungeKutta::accept(double growth, double proposed) {
+  const double h = t_new_ - t_;
   ++motion_.equations().evaluator().counters.steps;
   step_was_low_order_ = tableau().order == 5;
   if (low_order_left_ > 0) {
@@ -256,7 +261,7 @@ void RungeKutta::accept(double t, double growth, double proposed) {
     ++low_order_steps_;
   }
   t_before_ = t_;
-  t_ = t;
+  t_ = t_new_;
   y_before_.swap(y_);
   y_.swap(y_new_);
   slope_.swap(slope_new_);

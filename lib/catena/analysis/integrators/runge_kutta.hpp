@@ -54,21 +54,21 @@ class RungeKutta {
   void combine(const StageSum& sum, double h, const double* from, std::span<double> out) const;
   bool evaluate_stages(double h);
   bool project_stage(double t, Side side);
-  bool factorize_new_point(double h);
+  bool factorize_new_point();
   double error_size(double h);
   double filtered_error(double h, double raw);
-  bool finish_step(double h);
+  bool finish_step();
   bool detour(double h);
   bool try_crossing(double h, double error);
   void reject(double h);
-  void accept(double t, double growth, double proposed);
+  void accept(double growth, double proposed);
   void observe_rates();
   void prepare_interpolant();
 
   Motion motion_;
   RungeKuttaOptions options_;
   ErrorScale scale_;
-  double t_ = 0, t_before_ = 0, h_ = 0;
+  double t_ = 0, t_before_ = 0, t_new_ = 0, h_ = 0;
   std::vector<double> y_, y_before_, y_new_, y_stage_, slope_, slope_new_;
   std::vector<std::vector<double>> stage_;
   std::vector<std::vector<double>> interpolant_;
