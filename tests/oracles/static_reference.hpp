@@ -1,5 +1,5 @@
-// Reference values of static problems, read from data/reference (independent high-precision solutions; each file names
-// its own definition, method and cross-check).
+// Reference values of problems whose solution is known independently, read from data/reference (high precision; each
+// file names its own definition, method and cross-check).
 #pragma once
 
 #include <fstream>
