@@ -160,6 +160,29 @@ TEST_F(Run, CtrlCKeepsTheRowsSoFar) {
   EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), analysis["rows"].size() + 1);
 }
 
+// Rows may be far apart: the signal is noticed between the steps that lead to them.
+TEST_F(Run, CtrlCIsNoticedBetweenRows) {
+  for (const std::string type : {"kinematics", "dynamics"}) {
+    std::string text = crank_scene(R"({"type": ")" + type + R"(", "until": 1e7, "every": 1e7})");
+    text.replace(text.find(R"("points")"), 0, R"("mass": 1, "inertia": 1, )");
+    const std::string steady = R"({"polynomial": [0, "speed"]})";
+    text.replace(text.find(steady), steady.size(), R"({"harmonic": {"amplitude": 100, "omega": "speed"}})");
+    const std::string path = write_scene(folder_ / "crank.json", text);
+    std::chrono::steady_clock::time_point signalled;
+    const ProgramResult result =
+        run_catena({"run", path, "--json"}, {.standard_output = {}, .during = [&](int process) {
+                                               std::this_thread::sleep_for(std::chrono::milliseconds(400));
+                                               signalled = std::chrono::steady_clock::now();
+                                               ::kill(process, SIGINT);
+                                             }});
+    EXPECT_LT(std::chrono::steady_clock::now() - signalled, std::chrono::seconds(2)) << type;
+    EXPECT_EQ(result.exit_code, 1) << type << result.err;
+    const json analysis = json::parse(result.out)["analyses"][0];
+    EXPECT_EQ(analysis["status"], "cancelled") << type;
+    EXPECT_EQ(analysis["rows"].size(), 1u) << type;
+  }
+}
+
 TEST_F(Run, AReaderThatGoesAwayEndsTheProgram) {
   const std::string path = scene(R"({"type": "kinematics", "until": 1e6, "every": 0.001})");
   const std::string pipe = folder_ / "pipe";

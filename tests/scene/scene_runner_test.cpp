@@ -140,5 +140,33 @@ TEST(SceneRunner, ProgressIsToldAndARunCanBeCancelled) {
   EXPECT_TRUE(run.sink.ended);
 }
 
+TEST(SceneRunner, ARunIsCancelledBetweenRows) {
+  for (const std::string type : {"kinematics", "inverse_dynamics", "dynamics"}) {
+    std::atomic<bool> cancel = false;
+    RunOptions options;
+    options.cancel = &cancel;
+    options.progress = [&](const Progress& progress) { cancel = progress.fraction > 0.3; };
+    const TextRun run = run_text(crank(R"({"type": ")" + type + R"(", "until": 1000, "every": 1000})"), options);
+    EXPECT_EQ(run.analysis().report.status, Status::cancelled) << type;
+    EXPECT_EQ(run.analysis().rows, 1) << type;
+    EXPECT_EQ(run.outcome.exit_code, 1) << type;
+  }
+}
+
+// check says what dynamics would make of velocities that the constraints do not allow.
+TEST(SceneRunner, CheckTellsOfVelocitiesThatDoNotFit) {
+  const auto pendulum = [](const std::string& velocity) {
+    return R"({"catena": 1, "bodies": {"a": {"mass": 2, "position": [1, 0], "inertia": 1, "angular_velocity": 3)" +
+           velocity + R"(}}, "constraints": [{"type": "revolute", "i": "ground", "j": "a", "at": [0, 0]}],
+      "analyses": [{"type": "check"}]})";
+  };
+  const TextRun wrong = run_text(pendulum(R"(, "velocity": [1, 3])"));
+  ASSERT_EQ(wrong.analysis().report.warnings.size(), 1u);
+  EXPECT_NE(wrong.analysis().report.warnings[0].find("changes them by up to 1 (body \"a\")"), std::string::npos)
+      << wrong.analysis().report.warnings[0];
+  EXPECT_TRUE(run_text(pendulum(R"(, "velocity": [0, 3])")).analysis().report.warnings.empty());
+  EXPECT_TRUE(run_text(pendulum("")).analysis().report.warnings.empty());
+}
+
 }  // namespace
 }  // namespace catena::testing

@@ -186,7 +186,9 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& needs, RowObse
   report.bodies = static_cast<int>(model_->bodies.size());
   report.rows = plan_->rows;
   report.islands = plan_->islands;
+  observer_ = &observer;
   const auto end = [&](const Report& outcome) {
+    observer_ = nullptr;
     report.status = outcome.status;
     report.message = outcome.message;
     report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
@@ -236,12 +238,7 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& needs, RowObse
                             .qdd = has_acceleration_ ? std::span<const double>(qdd_) : std::span<const double>{},
                             .lambda = needs.multipliers ? std::span<const double>(lambda_) : std::span<const double>{},
                             .residual = newton_.residual * evaluator_.length_scale()};
-    if (!observer.observe(snapshot)) {
-      Report cancelled;
-      cancelled.status = Status::cancelled;
-      cancelled.message = fmt::format("stopped at t = {:.12g} s; the rows so far are kept", t_);
-      return end(cancelled);
-    }
+    if (!observer.observe(snapshot)) return end(cancelled());
   }
   return end({});
 }

@@ -56,6 +56,7 @@ class Kinematics {
   Report prepare();
   enum class StepOutcome { made, too_long, crossed };
   StepOutcome try_step(double t);
+  Report cancelled() const;
   void remember_signs();
   bool find_velocity();
   double largest_rate() const;
@@ -73,7 +74,8 @@ class Kinematics {
   Predictor predictor_;
   std::optional<AssemblyOutcome> assembled_;
   bool prepared_ = false, has_velocity_ = false, has_acceleration_ = false;
-  double t_ = 0, step_ = 0;
+  RowObserver* observer_ = nullptr;  // during run(): asked between rows too whether to go on
+  double t_ = 0;
   std::vector<double> q_, qd_, qdd_, lambda_, trial_, loads_, applied_;
   std::vector<signed char> signs_;  // of the block determinants at q_
   std::vector<std::string> redundant_;

@@ -84,6 +84,13 @@ void Kinematics::set_anchor() {
   if (solver_.solve_position(trial_).converged) solver_.solve_acceleration(qd_, anchor_qdd_, false);
 }
 
+Report Kinematics::cancelled() const {
+  Report report;
+  report.status = Status::cancelled;
+  report.message = fmt::format("stopped at t = {:.12g} s; the rows so far are kept", t_);
+  return report;
+}
+
 Report Kinematics::move_to(double t) {
   Report report;
   const double span = std::abs(t - t_), direction = t > t_ ? 1 : -1;
@@ -105,6 +112,7 @@ Report Kinematics::move_to(double t) {
       ++evaluator_.counters.steps;
       if (signs_.empty()) remember_signs();
       if (t_ != t) {
+        if (observer_ && !observer_->proceed(t_)) return cancelled();
         // Between rows the velocity is worth its solve: it makes the next prediction cubic.
         if (solver_.solve_velocity(qd_, false)) {
           has_velocity_ = true;

@@ -1,42 +1,19 @@
+#include "catena/scene/analysis_reader.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "catena/scene/analysis_task.hpp"
 #include "catena/scene/evaluation.hpp"
 #include "catena/scene/near_miss.hpp"
 #include "catena/scene/number_domain.hpp"
-#include "catena/scene/scene_reading.hpp"
 
 namespace catena {
 namespace {
 
 constexpr double most_rows = 1e9;
 
-class AnalysisReader {
- public:
-  AnalysisReader(SceneTemplate& scene, const ParameterTable& parameters, Diagnostics& diagnostics)
-      : scene_(scene), parameters_(parameters), diagnostics_(diagnostics), reading_(scene, diagnostics) {}
-
-  std::optional<AnalysisTask> read(const JsonValue& object, const JsonValue& scene_outputs);
-  std::vector<PlacedName> names(const JsonValue& list, const FieldName& field, std::span<const double> parameters);
-
- private:
-  const AnalysisDescription* read_type(const JsonValue& object);
-  void read_key(const AnalysisKey& key, const JsonValue& value, AnalysisTask& task);
-  double number(const AnalysisKey& key, const JsonValue& value, const FieldName& field);
-  void read_parameters(const JsonValue& set, AnalysisTask& task);
-  void read_events(const JsonValue& list, AnalysisTask& task);
-  void read_event(const JsonValue& object, AnalysisTask& task);
-  void check_times(const std::vector<JsonValue>& values, const AnalysisTask& task);
-  void error(const JsonValue& value, std::string message) { report(value, std::move(message), diagnostics_); }
-
-  SceneTemplate& scene_;
-  const ParameterTable& parameters_;
-  Diagnostics& diagnostics_;
-  SceneReading reading_;
-  std::span<const double> values_;  // of the parameters, for the analysis that is read
-};
+}  // namespace
 
 const AnalysisDescription* AnalysisReader::read_type(const JsonValue& object) {
   const JsonValue type = object.find("type");
@@ -156,37 +133,6 @@ void AnalysisReader::read_key(const AnalysisKey& key, const JsonValue& value, An
   }
 }
 
-void AnalysisReader::read_events(const JsonValue& list, AnalysisTask& task) {
-  if (!list.is(JsonKind::array)) {
-    error(list, fmt::format("\"events\" must be a list; this is {}", describe(list.kind())));
-    return;
-  }
-  for (const JsonValue& object : list.elements()) read_event(object, task);
-}
-
-void AnalysisReader::read_event(const JsonValue& object, AnalysisTask& task) {
-  std::vector<std::string_view> keys;
-  for (const AnalysisKey& key : event_keys()) keys.push_back(key.name);
-  std::vector<JsonValue> v(keys.size());
-  if (!read_members(object, keys, "an event", v, diagnostics_)) return;
-  const auto& words = event_keys();
-  EventRequest event;
-  const auto text = [&](std::size_t k) {
-    return v[k] ? std::string(read_string(v[k], {keys[k], "an event"}, diagnostics_)) : std::string();
-  };
-  event.name = text(0);
-  event.column = text(1);
-  if (!v[1]) error(object, "an event needs \"when\", the column that is watched");
-  event.place = v[1];
-  if (v[2]) event.value = number(words[2], v[2], {keys[2], "an event"});
-  if (v[3]) event.direction = read_word(v[3], words[3].words, {keys[3], "an event"}, diagnostics_);
-  if (v[4]) event.action = read_word(v[4], words[4].words, {keys[4], "an event"}, diagnostics_);
-  event.element = text(5);
-  if (event.action >= 2 && !v[5]) error(object, "an event that releases or engages needs \"element\"");
-  if (event.name.empty()) event.name = "event#" + std::to_string(task.events.size() + 1);
-  if (v[1]) task.events.push_back(std::move(event));
-}
-
 // until, every and at exclude each other in part, and should not ask for more rows than anyone can want.
 void AnalysisReader::check_times(const std::vector<JsonValue>& values, const AnalysisTask& task) {
   const auto given = [&](std::string_view key) {
@@ -247,8 +193,6 @@ std::optional<AnalysisTask> AnalysisReader::read(const JsonValue& object, const 
   }
   return task;
 }
-
-}  // namespace
 
 std::vector<std::string> AnalysisTask::output_names() const {
   std::vector<std::string> names;

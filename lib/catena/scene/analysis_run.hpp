@@ -1,6 +1,7 @@
 // One analysis of a scene at work: what it gets, what it gives back; the table from types to functions that run them.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <memory>
@@ -47,20 +48,29 @@ double frozen_time(const AnalysisContext& context);
 /// Sends rows on and tells how far the analysis has come.
 class ReportingRows final : public RowObserver {
  public:
-  ReportingRows(const ColumnSet& columns, AnalysisContext& context, std::int64_t expected)
-      : rows_(columns, context.rows, context.cancel), context_(context), expected_(expected) {}
+  /// `last`: the instant at which the analysis ends, or the present one.
+  ReportingRows(const ColumnSet& columns, AnalysisContext& context, double last)
+      : rows_(columns, context.rows, context.cancel), context_(context), first_(context.state.t), last_(last) {}
 
   bool observe(const Snapshot& snapshot) override {
-    const bool go_on = rows_.observe(snapshot);
-    if (context_.progress) context_.progress(static_cast<double>(rows_.rows()) / static_cast<double>(expected_));
-    return go_on;
+    tell(snapshot.t);
+    return rows_.observe(snapshot);
+  }
+  bool proceed(double t) override {
+    tell(t);
+    return !(context_.cancel && context_.cancel->load(std::memory_order_relaxed));
   }
   std::int64_t rows() const { return rows_.rows(); }
 
  private:
+  void tell(double t) const {
+    if (context_.progress)
+      context_.progress(last_ == first_ ? 1 : std::clamp((t - first_) / (last_ - first_), 0.0, 1.0));
+  }
+
   ColumnRows rows_;
   AnalysisContext& context_;
-  std::int64_t expected_;
+  double first_, last_;
 };
 
 /// Ends an analysis that was asked for what cannot be done.
@@ -81,7 +91,7 @@ void run_over_time(AnalysisContext& context, AnalysisResult& result, Analysis& a
                    const std::vector<std::string>& outputs, const ColumnSources& sources) {
   const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), outputs, sources);
   analysis.start_from(context.state);
-  ReportingRows rows(columns, context, grid.size());
+  ReportingRows rows(columns, context, grid.last());
   AnalysisReport report = analysis.run(grid, columns.needs(), rows);
   context.state = analysis.state();
   take_report(result, std::move(report), &columns, rows.rows());

@@ -1,6 +1,9 @@
 // assemble and check: where a mechanism can be, and how much it can move from there.
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "catena/analysis/initial_velocities.hpp"
 #include "catena/analysis/kinematics.hpp"
 #include "catena/analysis/mobility.hpp"
 #include "catena/analysis/process_time.hpp"
@@ -41,6 +44,24 @@ void add_misfits(AnalysisResult& result, const AssemblyOutcome& outcome, const M
   result.fields.push_back({"misfits", std::move(records)});
 }
 
+/// What a start of dynamics would make of the velocities that bodies are given.
+void check_velocities(Kinematics& analysis, const Model& model, AnalysisReport& report) {
+  const bool given = std::any_of(model.bodies.begin(), model.bodies.end(),
+                                 [](const auto& body) { return body.velocity_given || body.angular_velocity_given; });
+  EquationsOfMotion equations(analysis.evaluator());
+  if (!given || !equations.use_masses().ok()) return;
+  std::vector<double> qd(analysis.q().size());
+  const VelocityOutcome outcome = find_initial_velocities(equations, analysis.q(), {}, qd);
+  if (!outcome.ok()) {
+    report.warnings.push_back("initial velocities: " + outcome.message);
+  } else if (outcome.changed > 1e-9) {
+    report.warnings.push_back(
+        fmt::format("the given velocities do not meet the constraints: dynamics changes them by up to {:.3g} (body "
+                    "\"{}\")",
+                    outcome.changed, model.body_name(outcome.changed_body)));
+  }
+}
+
 }  // namespace
 
 void run_assemble(AnalysisContext& context, AnalysisResult& result) {
@@ -50,7 +71,7 @@ void run_assemble(AnalysisContext& context, AnalysisResult& result) {
   const ColumnSet columns =
       ColumnSet::resolve(*context.model, analysis.plan(), names, {.analysis = context.task.type()});
   start(analysis, context);
-  ReportingRows rows(columns, context, 1);
+  ReportingRows rows(columns, context, context.state.t);
   const AssemblyOutcome outcome = analysis.assemble();
   AnalysisReport report;
   take_outcome(report, outcome, analysis);
@@ -91,6 +112,7 @@ void run_check(AnalysisContext& context, AnalysisResult& result) {
                                           model.element_name(mobility.redundant_elements[k]),
                                           quoted_names(model, mobility.dependent_on[k])));
   }
+  if (outcome.ok()) check_velocities(analysis, model, report);
   report.counters = analysis.evaluator().counters;
   report.seconds = timer.seconds();
   take_report(result, std::move(report), nullptr, 0);

@@ -36,6 +36,25 @@ bool read_members(const JsonValue& object, std::span<const std::string_view> key
   return true;
 }
 
+std::optional<JsonMember> read_only_member(const JsonValue& value, std::span<const std::string_view> keys,
+                                           const FieldName& field, std::string_view what, Diagnostics& diagnostics) {
+  std::string list;
+  for (const std::string_view key : keys) list += (list.empty() ? "" : ", ") + std::string(key);
+  for (const JsonMember member : value.members()) {
+    if (std::find(keys.begin(), keys.end(), member.name()) == keys.end()) {
+      std::string hint = NearMiss(member.name()).consider_all(keys).hint();
+      if (hint.empty()) hint = "; it may be " + list;
+      report(member.key, fmt::format("{}: unknown {} {}{}", field.text(), what, in_quotes(member.name()), hint),
+             diagnostics);
+      return {};
+    }
+  }
+  if (value.size() == 1) return *value.members().begin();
+  report(value, fmt::format("{} must have one of {}; this object has {} members", field.text(), list, value.size()),
+         diagnostics);
+  return {};
+}
+
 bool read_flag(const JsonValue& value, const FieldName& field, Diagnostics& diagnostics) {
   if (value.is(JsonKind::boolean)) return value.boolean();
   report(value, fmt::format("{} must be true or false; this is {}", field.text(), describe(value.kind())), diagnostics);

@@ -2,7 +2,7 @@
 // names, words and flags with the checks that every key has.
 #pragma once
 
-#include <initializer_list>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,6 +19,11 @@ void report(const JsonValue& value, std::string message, Diagnostics& diagnostic
 /// are none of these are reported, with the nearest one. False, with a report, if `object` is no object.
 bool read_members(const JsonValue& object, std::span<const std::string_view> keys, std::string_view owner,
                   std::span<JsonValue> out, Diagnostics& diagnostics);
+
+/// The only member of an object whose key says what it is, such as {"harmonic": ...}; nothing, with a report, if there
+/// is none or more. `what` is what the keys name: "function of time".
+std::optional<JsonMember> read_only_member(const JsonValue& object, std::span<const std::string_view> keys,
+                                           const FieldName& field, std::string_view what, Diagnostics& diagnostics);
 
 /// true or false.
 bool read_flag(const JsonValue& value, const FieldName& field, Diagnostics& diagnostics);

@@ -6,6 +6,7 @@
 #include "catena/scene/body_keys.hpp"
 #include "catena/scene/element_description.hpp"
 #include "catena/scene/scene_runner.hpp"
+#include "catena/scene/schema_fixed.hpp"
 #include "catena/scene/unit.hpp"
 
 namespace catena {
@@ -151,40 +152,6 @@ json analysis_schema(const AnalysisDescription& type) {
   return schema;
 }
 
-json function_schema() {
-  const json any = reference("number"), numbers = list_of(reference("number"));
-  const auto only = [](std::string_view key, json value) {
-    return object_of({{key, std::move(value)}}, {std::string(key)});
-  };
-  return {{"anyOf",
-           json::array(
-               {any, only("polynomial", numbers),
-                only("harmonic", object_of({{"amplitude", any}, {"omega", any}, {"phase", any}, {"offset", any}},
-                                           {"amplitude", "omega"})),
-                only("step",
-                     object_of({{"t0", any}, {"t1", any}, {"from", any}, {"to", any}, {"order", {{"enum", {3, 5}}}}},
-                               {"t0", "t1", "from", "to"})),
-                only("spline",
-                     object_of(
-                         {{"t", numbers}, {"value", numbers}, {"end", {{"enum", {"natural", "clamped", "periodic"}}}}},
-                         {"t", "value"})),
-                only("sum", list_of(reference("function"))), only("product", list_of(reference("function")))})}};
-}
-
-json curve_schema() {
-  const json any = reference("number"), pair = reference("pair"), numbers = list_of(any);
-  const auto only = [](std::string_view key, json value) {
-    return object_of({{key, std::move(value)}}, {std::string(key)});
-  };
-  return {
-      {"anyOf",
-       json::array({only("circle", object_of({{"centre", pair}, {"radius", any}}, {"centre", "radius"})),
-                    only("spline", object_of({{"points", list_of(pair)}, {"end", {{"enum", {"natural", "periodic"}}}}},
-                                             {"points"})),
-                    only("polar", object_of({{"angle", numbers}, {"radius", numbers}}, {"angle", "radius"})),
-                    only("line", object_of({{"point", pair}, {"axis", pair}}, {"point", "axis"}))})}};
-}
-
 json body_schema() {
   const json pair = reference("pair");
   const auto length = [&](std::string_view doc) { return described(pair, in_unit(doc, UnitKind::length)); };
@@ -222,13 +189,6 @@ json body_schema() {
        {"hold", std::move(hold)}});
 }
 
-json parameter_schema() {
-  return {{"anyOf", json::array({reference("number"), object_of({{"value", reference("number")},
-                                                                 {"min", reference("number")},
-                                                                 {"max", reference("number")}},
-                                                                {"value"})})}};
-}
-
 /// The lists of bodies and elements, which a scene and its blocks both have.
 json sections() {
   return {{"bodies", described(map_of(reference("body")), "name -> body")},
@@ -249,26 +209,16 @@ json definitions() {
   block["count"] = described(reference("number"), "how often the block is repeated");
   block["first"] = described(reference("number"), "first value of k (default 1)");
   block["variable"] = {{"type", "string"}, {"description", "a name to use in place of k"}};
-  return {{"number", described(number_schema(json::object()),
-                               "a number (SI, radians), a quantity \"120 mm\", an expression \"=2*a\" or a parameter")},
-          {"positive", number_schema({{"exclusiveMinimum", 0}})},
-          {"notNegative", number_schema({{"minimum", 0}})},
-          {"pair", pair_of(reference("number"))},
-          {"function", function_schema()},
-          {"curve", curve_schema()},
-          {"attachment",
-           {{"anyOf", json::array({{{"type", "string"}},
-                                   {{"type", "array"},
-                                    {"prefixItems", json::array({{{"type", "string"}}, reference("pair")})},
-                                    {"minItems", 2},
-                                    {"maxItems", 2}}})}}},
-          {"outputs", list_of({{"type", "string"}})},
-          {"body", body_schema()},
-          {"constraint", {{"anyOf", std::move(constraints)}}},
-          {"driver", {{"anyOf", std::move(drivers)}}},
-          {"force", {{"anyOf", std::move(forces)}}},
-          {"block", object_of(std::move(block), {"count"})},
-          {"analysis", {{"anyOf", std::move(analyses)}}}};
+  json all = json::parse(fixed_definitions());
+  all["positive"] = number_schema({{"exclusiveMinimum", 0}});
+  all["notNegative"] = number_schema({{"minimum", 0}});
+  all["body"] = body_schema();
+  all["constraint"] = {{"anyOf", std::move(constraints)}};
+  all["driver"] = {{"anyOf", std::move(drivers)}};
+  all["force"] = {{"anyOf", std::move(forces)}};
+  all["block"] = object_of(std::move(block), {"count"});
+  all["analysis"] = {{"anyOf", std::move(analyses)}};
+  return all;
 }
 
 }  // namespace
@@ -279,7 +229,7 @@ std::string schema_json() {
                   {"name", {{"type", "string"}}},
                   {"description", {{"type", "string"}}},
                   {"gravity", described(reference("pair"), "[gx, gy], default [0, 0] [m/s^2]")},
-                  {"parameters", described(map_of(parameter_schema()), "name -> value")}};
+                  {"parameters", described(map_of(reference("parameter")), "name -> value")}};
   properties.update(sections());
   properties["analyses"] = described(list_of(reference("analysis")), "run in order by catena run");
   properties["outputs"] = described(reference("outputs"), "columns of results (default: x, y, angle of every body)");
