@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/minimum_norm.hpp"
 #include "catena/analysis/process_time.hpp"
 #include "catena/analysis/static_holding.hpp"
 
@@ -12,6 +13,10 @@ namespace catena {
 namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// Reactions balance the loads if nothing more than this part of them is left.
+constexpr double balanced = 1e-9;
+constexpr std::size_t most_names = 6;
 
 }  // namespace
 
@@ -63,6 +68,27 @@ SystemState Equilibrium::state() const {
   return state;
 }
 
+// Where rows depend on each other many multipliers balance the loads: the least of them are given, and that is said.
+void Equilibrium::choose_least_reactions(Report& report) {
+  MinimumNorm least(evaluator_);
+  if (!least.factorize()) return;
+  std::vector<double> loads(at(plan_->coordinates())), multipliers(lambda_.size());
+  evaluator_.applied_forces(std::vector<double>(loads.size(), 0.0), loads);
+  // Least reactions that do not balance the loads would be none.
+  if (!(least.solve(loads, multipliers) <= balanced)) return;
+  lambda_ = std::move(multipliers);
+  const std::vector<int> elements = least.find_ambiguous();
+  std::string names;
+  for (std::size_t k = 0; k < std::min(elements.size(), most_names); ++k) {
+    names += fmt::format("{}\"{}\"", k > 0 ? ", " : "", model_->element_name(elements[k]));
+  }
+  if (elements.size() > most_names) names += fmt::format(" and {} more", elements.size() - most_names);
+  if (names.empty()) return;
+  report.warnings.push_back(fmt::format(
+      "redundant constraints: the reactions of {} are not unique; of all that balance the loads the least are given",
+      names));
+}
+
 EquilibriumReport Equilibrium::solve() {
   const ProcessTimer timer;
   EquilibriumReport report;
@@ -108,6 +134,11 @@ EquilibriumReport Equilibrium::solve() {
   for (int r : result.dependent_rows) {
     const std::string name = model_->element_name(plan_->row_element[at(r)]);
     if (report.redundant.empty() || report.redundant.back() != name) report.redundant.push_back(name);
+  }
+  if (result.report.ok()) {
+    report.rank = plan_->rows - static_cast<int>(result.dependent_rows.size());
+    report.dof = plan_->columns - *report.rank;
+    if (!result.dependent_rows.empty()) choose_least_reactions(result.report);
   }
   return end(std::move(result.report));
 }

@@ -68,12 +68,14 @@ class Equilibrium {
 
   double time() const { return t_; }
   std::span<const double> q() const { return q_; }
-  /// Multipliers of the solver's rows: V_q + Phi_q^T lambda = 0.
+  /// Multipliers of the solver's rows: V_q + Phi_q^T lambda = 0; the least ones where constraints are redundant.
   std::span<const double> lambda() const { return lambda_; }
   /// The present state, absolute and in model order, at rest.
   SystemState state() const;
 
  private:
+  void choose_least_reactions(Report& report);
+
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const Plan> plan_;
   EquilibriumOptions options_;
