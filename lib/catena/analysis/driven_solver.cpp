@@ -243,6 +243,11 @@ bool DrivenSolver::solve_refined(bool has_start) {
     if (!factorize()) return false;
     factored_here = true;
   }
+  // At rest the solution is zero: a start would be refined towards it for ever, no digit of zero being right.
+  if (std::all_of(rhs_.begin(), rhs_.end(), [](double x) { return x == 0; })) {
+    std::fill(x_.begin(), x_.end(), 0.0);
+    return true;
+  }
   if (!has_start) std::fill(x_.begin(), x_.end(), 0.0);
   double size = 0, rate = gap_;
   for (int k = 0; k < max_refinements; ++k) {
