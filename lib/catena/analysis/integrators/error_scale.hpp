@@ -1,33 +1,65 @@
 // What errors of positions and velocities are compared with, so that one number serves all coordinates.
 //
 //   positions    tolerance x L (lengths), tolerance x 1 rad (angles)
-//   velocities   tolerance x (V L + |v|), tolerance x (V + |omega|)
+//   velocities   tolerance x (min(V L, sqrt(2 E / m)) + |v|), tolerance x (min(V, sqrt(2 E / J)) + |omega|)
 //
-// L: the scene's length scale. V, in 1/s: the fastest the mechanism has been so far, and what its accelerations make of
-// a displacement of L or 1 rad: max(|v|/L, |omega|, sqrt(|a|/L), sqrt(|alpha|)). An error of velocity then counts as
-// much as the error of position it grows into.
+// L: the scene's length scale. V, in 1/s: how fast the mechanism is, and what its accelerations make of a displacement
+// of L or 1 rad: max(|v|/L, |omega|, sqrt(|a|/L), sqrt(|alpha|)). An error of velocity then counts as much as the error
+// of position it grows into. A fast passage is forgotten again, but the time scale 1/V grows no faster than time goes
+// by: where a mechanism rests for an instant its velocities keep a scale.
+//
+// E, in J: the largest kinetic energy so far, at the start also what the accelerations do over a length L. No body can
+// be faster than all of E makes it: beside a light part that rushes the velocity of a heavy one still counts.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
+#include <vector>
 
 namespace catena {
 
-struct ErrorScale {
+class ErrorScale {
+ public:
   double tolerance = 1e-8;
   double length = 1;
-  double rate = 0;  ///< V, never falls
 
-  /// Takes note of velocities and accelerations (three a body).
-  void observe(std::span<const double> qd, std::span<const double> qdd) {
-    double fastest = 0, strongest = 0;
+  /// Masses and moments of inertia by coordinate, zeros allowed.
+  void set_masses(std::span<const double> masses) {
+    mass_.assign(masses.begin(), masses.end());
+    speed_.resize(mass_.size());
+    for (std::size_t c = 0; c < mass_.size(); ++c) {
+      speed_[c] = mass_[c] > 0 ? std::sqrt(2 / mass_[c]) : std::numeric_limits<double>::infinity();
+    }
+  }
+
+  double rate() const { return rate_; }
+  /// Of an error of position and of velocity v at coordinate c that count as much as the tolerance; the latter is zero
+  /// where nothing has moved yet.
+  double position_unit(std::size_t c) const { return tolerance * (c % 3 == 2 ? 1 : length); }
+  double velocity_unit(std::size_t c, double v) const {
+    return tolerance * (std::min(rate_ * (c % 3 == 2 ? 1 : length), root_energy_ * speed_[c]) + std::abs(v));
+  }
+
+  /// Takes note of velocities and accelerations (three a body), a time `step` after the last ones; 0: at a start.
+  void observe(double step, std::span<const double> qd, std::span<const double> qdd) {
+    double fastest = 0, strongest = 0, energy = 0;
     for (std::size_t c = 0; c + 2 < qd.size(); c += 3) {
       fastest = std::max({fastest, std::abs(qd[c]) / length, std::abs(qd[c + 1]) / length, std::abs(qd[c + 2])});
       strongest = std::max({strongest, std::abs(qdd[c]) / length, std::abs(qdd[c + 1]) / length, std::abs(qdd[c + 2])});
+      for (std::size_t k = c; k < c + 3; ++k) energy += 0.5 * mass_[k] * qd[k] * qd[k];
     }
-    rate = std::max({rate, fastest, std::sqrt(strongest)});
+    if (step == 0) {
+      for (std::size_t c = 0; c < qd.size(); ++c) energy += mass_[c] * std::abs(qdd[c]) * (c % 3 == 2 ? 1 : length);
+    }
+    rate_ = std::max({rate_ / (1 + std::abs(step) * rate_), fastest, std::sqrt(strongest)});
+    root_energy_ = std::max(root_energy_, std::sqrt(energy));
   }
+
+ private:
+  double rate_ = 0, root_energy_ = 0;
+  std::vector<double> mass_, speed_;  // speed_: of a coordinate that has 1 J
 };
 
 }  // namespace catena

@@ -13,6 +13,8 @@ constexpr double largest_growth = 2.5, largest_cut = 0.2;
 constexpr double forbidden_part = 0.1;
 // A rejected step with a stage whose pivot ratio is below this is repeated with all stages projected.
 constexpr double projection_ratio = 1e-2;
+// ... if the ratio of other stages is this much larger: light parts make it small without any singularity.
+constexpr double ratio_dip = 0.3;
 // Where no step across a singular position is good enough, the best is taken if its error is below this.
 constexpr double largest_crossing_error = 300;
 // Ends of steps are kept away from positions where a pivot ratio is below this; accelerations lose ratio^1.5 there.
@@ -33,6 +35,7 @@ RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options) : motion
   error_low_.resize(2 * motion_.coordinates());
   scale_.tolerance = options.tolerance;
   scale_.length = motion_.equations().evaluator().length_scale();
+  scale_.set_masses(motion_.equations().masses().mass);
   singular_ratio_ = std::max(singular_end, std::pow(lost_digits / std::sqrt(options.tolerance), 2.0 / 3));
 }
 
@@ -40,17 +43,29 @@ bool RungeKutta::start(double t, std::span<const double> y) {
   t_ = t_before_ = t;
   std::copy(y.begin(), y.end(), y_.begin());
   if (!motion_.derivative(t_, Side::after, y_, slope_)) return false;
+  observe_ratio();
   observe_rates();
   if (h_ == 0) {
     const double part = 0.2 * std::pow(options_.tolerance, 1.0 / options_.order);
-    h_ = scale_.rate > 0 ? part / scale_.rate : std::numeric_limits<double>::max();
+    h_ = scale_.rate() > 0 ? part / scale_.rate() : std::numeric_limits<double>::max();
   }
   return true;
 }
 
+double RungeKutta::pivot_ratio() const { return motion_.equations().smallest_pivot_ratio() / usual_ratio_; }
+
+bool RungeKutta::dips() const {
+  return smallest_stage_ratio_ < std::min(projection_ratio, ratio_dip * largest_stage_ratio_);
+}
+
+void RungeKutta::observe_ratio() {
+  usual_ratio_ = std::max(usual_ratio_, motion_.equations().smallest_pivot_ratio());
+  start_ratio_ = pivot_ratio();
+}
+
 void RungeKutta::observe_rates() {
   const std::span<const double> y(y_), k(slope_);
-  scale_.observe(motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()));
+  scale_.observe(t_ - t_before_, motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()));
 }
 
 void RungeKutta::combine(const StageSum& sum, double h, const double* from, std::span<double> out) const {
@@ -68,7 +83,8 @@ void RungeKutta::combine(const StageSum& sum, double h, const double* from, std:
 
 bool RungeKutta::evaluate_stages(double h) {
   const Tableau& table = tableau();
-  smallest_stage_ratio_ = 1;
+  smallest_stage_ratio_ = std::numeric_limits<double>::infinity();
+  largest_stage_ratio_ = start_ratio_;
   for (std::size_t s = 1; s < static_cast<std::size_t>(table.stages); ++s) {
     combine(table.a[s], h, y_.data(), y_stage_);
     // The last stages lie at the end exactly: a function of time may jump there.
@@ -77,7 +93,8 @@ bool RungeKutta::evaluate_stages(double h) {
     const Side side = at_end ? Side::before : Side::after;
     if (projecting_stages_ && !project_stage(t, side)) return false;
     if (!motion_.derivative(t, side, y_stage_, stage_[s])) return false;
-    smallest_stage_ratio_ = std::min(smallest_stage_ratio_, motion_.equations().smallest_pivot_ratio());
+    smallest_stage_ratio_ = std::min(smallest_stage_ratio_, pivot_ratio());
+    largest_stage_ratio_ = std::max(largest_stage_ratio_, pivot_ratio());
   }
   combine(table.b, h, y_.data(), y_new_);
   combine(table.error, 1, nullptr, error_);
@@ -92,14 +109,14 @@ bool RungeKutta::project_stage(double t, Side side) {
   const std::span<double> y(y_stage_);
   if (!equations.factorize(t, side, motion_.q(y))) return false;
   equations.project_position(motion_.q(y), 3);
-  equations.project_velocity(motion_.qd(y), scale_.rate);
+  equations.project_velocity(motion_.qd(y), scale_.rate());
   return true;
 }
 
 // Factors at the new point, before it is projected. Order 5 had its last stage there, order 8 beside it: far from
 // singular positions those factors serve.
 bool RungeKutta::factorize_new_point() {
-  return tableau().order == 5 || motion_.equations().smallest_pivot_ratio() > projection_ratio ||
+  return tableau().order == 5 || pivot_ratio() > projection_ratio ||
          motion_.equations().factorize(t_new_, Side::before, motion_.q(std::span<const double>(y_new_)));
 }
 
@@ -109,10 +126,9 @@ double RungeKutta::error_size(double h) {
   const bool two = tableau().order == 8;
   double high = 0, low = 0;
   for (std::size_t c = 0; c < moving; ++c) {
-    const double unit = scale_.tolerance * (c % 3 == 2 ? 1 : scale_.length);
-    const double v_unit = scale_.rate * unit + scale_.tolerance * std::abs(v[c]);
+    const double v_unit = scale_.velocity_unit(c, v[c]);
     // Where nothing has moved yet velocities have no scale; positions then tell.
-    const double q_scale = 1 / unit, v_scale = v_unit > 0 ? 1 / v_unit : 0;
+    const double q_scale = 1 / scale_.position_unit(c), v_scale = v_unit > 0 ? 1 / v_unit : 0;
     const double q_error = error_[c] * q_scale, v_error = error_[offset + c] * v_scale;
     const double size = q_error * q_error + v_error * v_error;
     if (!(size <= high)) {
@@ -145,7 +161,7 @@ bool RungeKutta::finish_step() {
   EquationsOfMotion& equations = motion_.equations();
   position_residual_ = equations.project_position(motion_.q(std::span(y_new_)), 4);
   if (!(position_residual_ < largest_residual)) return false;
-  equations.project_velocity(motion_.qd(std::span(y_new_)), scale_.rate);
+  equations.project_velocity(motion_.qd(std::span(y_new_)), scale_.rate());
   return motion_.derivative(t_new_, Side::before, y_new_, slope_new_);
 }
 
@@ -191,7 +207,7 @@ bool RungeKutta::try_crossing(double h, double error) {
 
 bool RungeKutta::advance(double limit) {
   const bool fixed = options_.fixed_step > 0;
-  const double smallest = smallest_step * std::max(std::abs(t_), scale_.rate > 0 ? 1 / scale_.rate : 0.0);
+  const double smallest = smallest_step * std::max(std::abs(t_), scale_.rate() > 0 ? 1 / scale_.rate() : 0.0);
   double proposed = fixed ? options_.fixed_step : h_;
   detours_ = 0;
   projecting_stages_ = false;
@@ -226,7 +242,7 @@ bool RungeKutta::advance(double limit) {
         std::clamp(safety * std::pow(std::max(error, 1e-10), -1.0 / tableau().order), largest_cut, largest_growth);
     if (error > accepted_error_) {
       // Near a singular position a shorter step would only walk into it.
-      if (smallest_stage_ratio_ < projection_ratio && try_crossing(h, error)) continue;
+      if (dips() && try_crossing(h, error)) continue;
       reject(h * std::min(growth, 1.0));
       continue;
     }
@@ -235,7 +251,7 @@ bool RungeKutta::advance(double limit) {
       reject(h / 4);
       continue;
     }
-    const double ratio = motion_.equations().smallest_pivot_ratio();
+    const double ratio = pivot_ratio();
     if (ratio > 10 * singular_ratio_) passing_singular_ = false;
     if (ratio < singular_ratio_ && !passing_singular_ && !lands && !fixed) {
       if (detour(h)) continue;
@@ -265,6 +281,7 @@ void RungeKutta::accept(double growth, double proposed) {
   y_before_.swap(y_);
   y_.swap(y_new_);
   slope_.swap(slope_new_);
+  observe_ratio();
   observe_rates();
   // A step that was cut short by a limit says nothing against the longer one.
   h_ = rejections_ > 0 ? h * std::min(growth, 1.0) : std::max(h * growth, h < proposed ? proposed : 0.0);

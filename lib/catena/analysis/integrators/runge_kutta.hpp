@@ -62,6 +62,11 @@ class RungeKutta {
   bool try_crossing(double h, double error);
   void reject(double h);
   void accept(double growth, double proposed);
+  /// Smallest pivot ratio at the last evaluation, compared with the largest so far: very unequal masses make all small.
+  double pivot_ratio() const;
+  /// Whether a singular position lies within the step whose stages were evaluated, as far as they show it.
+  bool dips() const;
+  void observe_ratio();
   void observe_rates();
   void prepare_interpolant();
 
@@ -77,7 +82,8 @@ class RungeKutta {
   int low_order_left_ = 0, rejections_ = 0, detours_ = 0, culprit_ = -1;
   std::int64_t low_order_steps_ = 0;
   double accepted_error_ = 1, best_error_ = 0, best_step_ = 0;
-  double position_residual_ = 0, smallest_stage_ratio_ = 1, undisturbed_step_ = 0, singular_ratio_ = 0;
+  double position_residual_ = 0, smallest_stage_ratio_ = 1, largest_stage_ratio_ = 1, start_ratio_ = 1,
+         undisturbed_step_ = 0, singular_ratio_ = 0, usual_ratio_ = 1e-300;
 };
 
 }  // namespace catena

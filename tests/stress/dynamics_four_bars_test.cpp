@@ -1,0 +1,75 @@
+// IFToMM A02 (n four-bars side by side, every rod with all its joints) at all tolerances from many starts: the bars
+// pass the flat position some twenty times in 20 s, where the constraints depend on each other and another branch
+// begins.
+#include "oracles/dynamics_mechanisms.hpp"
+
+namespace catena {
+namespace {
+
+using testing::four_bars;
+using testing::frame_of;
+
+/// All cranks turn alike while it stays a parallelogram: theta'' = -k cos(theta), by a symplectic composition of order
+/// 6 in small steps.
+class Parallelogram {
+ public:
+  Parallelogram(int n, double speed)
+      : k_(9.81L * ((n + 1) / 2.0L + n) / ((n + 1) / 3.0L + n)), rate_(-static_cast<long double>(speed)) {}
+
+  Vec2<double> crank_end(double t) {
+    constexpr long double w[] = {0.784513610477560L, 0.235573213359357L, -1.17767998417887L};
+    constexpr long double middle = 1 - 2 * (w[0] + w[1] + w[2]);
+    const int steps = static_cast<int>(std::ceil((t - t_) / 2e-4));
+    const long double h = steps > 0 ? (static_cast<long double>(t) - t_) / steps : 0;
+    for (int k = 0; k < steps; ++k) {
+      for (const long double weight : {w[0], w[1], w[2], middle, w[2], w[1], w[0]}) {
+        angle_ += weight * h / 2 * rate_;
+        rate_ -= weight * h * k_ * std::cos(angle_);
+        angle_ += weight * h / 2 * rate_;
+      }
+    }
+    t_ = t;
+    return {static_cast<double>(std::cos(angle_)), static_cast<double>(std::sin(angle_))};
+  }
+
+ private:
+  long double k_, angle_ = std::numbers::pi_v<long double> / 2, rate_, t_ = 0;
+};
+
+void check_all(int n) {
+  int passages = 0;
+  for (int start = 0; start < 20; ++start) {
+    const double speed = 0.8 + 0.05 * start;
+    const auto model = four_bars(n);
+    for (BasicBody<double>& body : model->bodies) {
+      body.velocity = speed * body.velocity;
+      body.angular_velocity *= speed;
+    }
+    Parallelogram exact(n, speed);
+    std::vector<Vec2<double>> want;
+    for (int k = 0; k <= 40; ++k) {
+      want.push_back(exact.crank_end(0.5 * k));
+      if (k > 0 && want[want.size() - 2].y * want.back().y < 0) ++passages;
+    }
+    for (int k = 0; k < 29; ++k) {
+      const double tolerance = std::pow(10, -3 - k / 4.0);
+      double error = 0;
+      std::size_t row = 0;
+      Dynamics dynamics(model, {}, {.tolerance = tolerance});
+      RowFunction compare([&](const Snapshot& s) {
+        error = std::max(error, norm(frame_of(s, 0).point(Vec2<double>{0.5, 0}) - want[row++]));
+        return true;
+      });
+      const AnalysisReport report = dynamics.run(TimeGrid::range(0, 20, 0.5), {}, compare);
+      EXPECT_TRUE(report.ok()) << report.message << " at tolerance " << tolerance << ", speed " << speed;
+      EXPECT_LE(error, 10 * tolerance) << "tolerance " << tolerance << ", speed " << speed;
+    }
+  }
+  EXPECT_GT(passages, 20 * 10) << "the starts were not what this test is about";
+}
+
+TEST(DynamicsFourBars, TwoAtAllTolerancesFromTwentyStarts) { check_all(2); }
+TEST(DynamicsFourBars, FortyAtAllTolerancesFromTwentyStarts) { check_all(40); }
+
+}  // namespace
+}  // namespace catena
