@@ -196,24 +196,6 @@ TEST(DynamicsPendulums, FallingRod) {
   }
 }
 
-// IFToMM A01 over 2000 s, some thousand swings.
-TEST(DynamicsPendulums, SimplePendulumForTwoThousandSeconds) {
-  const auto values = reference_values("A01_udc_2000s");
-  auto model = std::make_shared<Model>();
-  model->gravity = {0, -9.81};
-  const int ball = model->add_body("ball", {.mass = 1, .position = {1, 0}, .particle = true});
-  model->add("link", AbsoluteDistance<>{{0, 0}, {0, 0}}, ball, ground, 1.0);
-  Dynamics dynamics(model, {}, {.tolerance = 1e-12});
-  run_dynamics(dynamics, TimeGrid::list({100, 1000, 2000}), {.velocity = true}, [&](const Snapshot& s) {
-    const auto& want = values.at(key("t=%.0f", s.t));
-    EXPECT_NEAR(frame_of(s, ball).x, want.at("x").get<double>(), 1e-6) << s.t;
-    EXPECT_NEAR(frame_of(s, ball).y, want.at("y").get<double>(), 1e-6) << s.t;
-    const double* v = rates_of(s, s.qd, ball);
-    const double energy = 0.5 * (v[0] * v[0] + v[1] * v[1]) + 9.81 * frame_of(s, ball).y;
-    EXPECT_NEAR(energy, 0, 1e-9 * 9.81) << s.t;
-  });
-}
-
 // The pole has no inertia: its angle is determined by the cart and the mass at its end.
 TEST(DynamicsPendulums, LightCartWithPole) {
   const auto values = reference_values("light_cart_pole");
