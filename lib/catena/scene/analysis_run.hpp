@@ -35,6 +35,7 @@ void run_kinematics(AnalysisContext& context, AnalysisResult& result);
 void run_inverse_dynamics(AnalysisContext& context, AnalysisResult& result);
 void run_dynamics(AnalysisContext& context, AnalysisResult& result);
 void run_equilibrium(AnalysisContext& context, AnalysisResult& result);
+void run_modes(AnalysisContext& context, AnalysisResult& result);
 
 /// What runs an analysis of this type; nullptr if nothing does yet.
 AnalysisFunction analysis_function(std::string_view type);

@@ -1,0 +1,65 @@
+// Small oscillations about the current configuration: natural frequencies and shapes (THEORY section 5).
+//
+//   K v = omega^2 M v   on the null space of Phi_q,   K = V_qq + sum lambda Phi_qq,   M = diag(m, m, J)
+//
+// The lowest omega^2 in 1/s^2, ascending: negative ones (growth rates) first, zero for motions that nothing resists.
+// Lanczos' method with (K - sigma M)^-1 through the factorization of equilibrium, sigma a little below zero, or below
+// the lowest omega^2 where many are negative; that none was missed is certain: the inertia of K - mu M just below the
+// highest one counts those that there must be. Up to 300 degrees of freedom the spectrum is computed completely.
+// Functions of time, drivers among them, are frozen; damping and gyroscopic terms are left out, and warnings say so.
+// Where forces are not in balance there are no small oscillations about that place: done all the same, with a warning.
+// Refused: bodies without mass where the constraints tie them to nothing that has mass; forces without an energy.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "catena/analysis/analysis_report.hpp"
+#include "catena/analysis/modes_operator.hpp"
+#include "catena/analysis/system_state.hpp"
+
+namespace catena {
+
+struct ModesOptions {
+  int count = 0;  ///< how many, 0: all, at most ten
+};
+
+struct ModesReport : AnalysisReport {
+  std::vector<double> omega2;               ///< 1/s^2, ascending
+  std::vector<double> omega;                ///< sqrt(|omega2|), rad/s; a growth rate, 1/s, where omega2 < 0
+  std::vector<std::vector<double>> shapes;  ///< over columns, v^T M v = 1 kg m^2; the largest angle or, where none
+                                            ///< turns, the largest displacement is positive
+  int unstable = 0;                         ///< how many omega^2 below zero there are in all
+};
+
+class Modes {
+ public:
+  explicit Modes(std::shared_ptr<const Model> model, const PlanOptions& plan_options = {},
+                 const ModesOptions& options = {});
+
+  const Plan& plan() const { return *plan_; }
+  Evaluator& evaluator() { return evaluator_; }
+
+  /// The configuration, and the time at which functions are frozen; before that the given one at t = 0.
+  void start_from(const SystemState& state);
+  /// `go_on`: called now and then; false cancels.
+  ModesReport run(const std::function<bool()>& go_on = {});
+
+  double time() const { return t_; }
+  /// The configuration, assembled, plan order.
+  std::span<const double> q() const { return q_; }
+  SystemState state() const;
+
+ private:
+  std::shared_ptr<const Model> model_;
+  std::shared_ptr<const Plan> plan_;
+  ModesOptions options_;
+  Evaluator evaluator_;
+  StaticSystem system_;
+  bool moving_ = false;
+  double t_ = 0;
+  std::vector<double> q_;
+};
+
+}  // namespace catena

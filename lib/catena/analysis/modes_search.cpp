@@ -1,0 +1,232 @@
+#include "catena/analysis/modes_search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace catena {
+namespace {
+
+// First sigma, relative to the upper end of the spectrum.
+constexpr double first_shift = 1e-8;
+// How far, as a factor, sigma may be from the lowest omega^2 that is not zero.
+constexpr double shift_window = 1e4;
+// Degrees of freedom up to which the whole spectrum is computed.
+constexpr int few_freedoms = 300;
+// v^T K v below this part of its terms cannot be told from zero.
+constexpr double zero_part = 1e-14;
+// Where modes are counted: this far below the highest one, relative to it and to the upper end.
+constexpr double count_margin = 1e-8, count_rounding = 1e-15;
+// How closely the lowest omega^2 is bracketed, as a factor.
+constexpr double bracket = 1.05;
+
+// All of the negative thetas, at least `below`, and the `above` largest ones.
+std::vector<int> choose(std::span<const double> theta, int below, int above) {
+  const int n = static_cast<int>(theta.size());
+  int negative = 0;
+  while (negative < n && theta[static_cast<std::size_t>(negative)] < 0) ++negative;
+  if (negative < below || n - negative < above) return {};
+  std::vector<int> chosen;
+  for (int k = 0; k < negative && below > 0; ++k) chosen.push_back(k);
+  for (int k = n - above; k < n; ++k) chosen.push_back(k);
+  return chosen;
+}
+
+bool lower(const Mode& a, const Mode& b) { return a.omega2 < b.omega2; }
+
+}  // namespace
+
+ModeSearch::ModeSearch(StaticSystem& system, std::span<const double> lambda, std::vector<double> mass,
+                       const std::function<bool()>& go_on)
+    : system_(system), lambda_(lambda), mass_(std::move(mass)), go_on_(go_on), op_(system, mass_) {
+  // What K does to a vector in which every mass takes part: the root mean square of omega^2, about.
+  system_.fill(lambda_, Curvature::exact, 0);
+  std::vector<double> v(mass_.size()), product(mass_.size());
+  for (std::size_t c = 0; c < v.size(); ++c) v[c] = op_.typical()[c] * (c % 2 ? 1 : -1);
+  system_.matrix().multiply_stiffness(v, product);
+  double forces = 0, masses = 0;
+  for (std::size_t c = 0; c < v.size(); ++c) {
+    if (!(mass_[c] > 0)) continue;
+    forces += product[c] * product[c] / mass_[c];
+    masses += mass_[c] * v[c] * v[c];
+  }
+  size_ = masses > 0 && forces > 0 ? std::sqrt(forces / masses) : 1;
+}
+
+bool ModeSearch::factorize(double& sigma, double margin) {
+  for (int k = 0; k < 4; ++k, sigma -= margin) {
+    if (op_.factorize(lambda_, sigma)) return true;
+  }
+  return false;
+}
+
+// A sigma with no omega^2 below it, within `bracket` of the lowest one. `upper`: negative, with some below it.
+double ModeSearch::lowest_shift(double upper) {
+  double some = -upper, none = some;
+  do {
+    some = none;
+    none *= 16;
+    double sigma = -none;
+    if (!factorize(sigma, 0.618 * std::abs(sigma))) break;
+  } while (op_.below() > 0);
+  while (none > bracket * some) {
+    const double middle = std::sqrt(some * none);
+    double sigma = -middle;
+    const bool below = factorize(sigma, 0.618 * std::abs(sigma)) && op_.below() > 0;
+    (below ? some : none) = middle;
+  }
+  return -none;
+}
+
+std::vector<Mode> ModeSearch::modes_of(Lanczos& lanczos, double sigma, int count) const {
+  const std::span<const double> theta = lanczos.theta();
+  std::vector<std::pair<double, int>> order;
+  double nearest = 1 / std::max(std::abs(theta.front()), std::abs(theta.back()));
+  for (std::size_t k = 0; k < theta.size(); ++k) order.emplace_back(sigma + 1 / theta[k], static_cast<int>(k));
+  std::sort(order.begin(), order.end());
+  order.resize(std::min(order.size(), static_cast<std::size_t>(count)));
+  double farthest = 0;
+  if (lanczos.exhausted()) {
+    lanczos.resolve_upper_end();
+    farthest = std::max(std::abs(lanczos.energy().front()), std::abs(lanczos.energy().back()));
+  }
+  std::vector<Mode> modes;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    // An error of 1e-16 in the largest theta against one of 1e-16 in the largest omega^2.
+    const double distance = std::abs(order[k].first - sigma);
+    if (lanczos.exhausted() && distance * distance > nearest * farthest) {
+      const int own = static_cast<int>(k);
+      modes.push_back({lanczos.energy()[k] + sigma, lanczos.energy_vector(own)});
+    } else {
+      modes.push_back({order[k].first, lanczos.vector(order[k].second)});
+    }
+  }
+  return modes;
+}
+
+// What cannot be told from zero is zero.
+void ModeSearch::set_zeros(std::vector<Mode>& modes) {
+  system_.fill(lambda_, Curvature::exact, 0);
+  std::vector<double> product(mass_.size());
+  for (Mode& mode : modes) {
+    system_.matrix().multiply_stiffness(mode.shape, product);
+    double energy = 0;
+    for (std::size_t c = 0; c < product.size(); ++c) energy += product[c] * mode.shape[c];
+    if (std::abs(energy) <= zero_part * system_.matrix().absolute_quadratic(mode.shape)) mode.omega2 = 0;
+  }
+}
+
+double ModeSearch::better_shift(const std::vector<Mode>& modes, double sigma) const {
+  double lowest = 0;
+  bool zeros = false;
+  for (const Mode& mode : modes) {
+    zeros = zeros || mode.omega2 == 0;
+    if (mode.omega2 != 0 && (lowest == 0 || std::abs(mode.omega2) < lowest)) lowest = std::abs(mode.omega2);
+  }
+  const bool too_far = -sigma > shift_window * lowest, too_near = zeros && lowest > -shift_window * sigma;
+  return lowest > 0 && (too_far || too_near) ? -0.3 * lowest : sigma;
+}
+
+Report ModeSearch::no_factors() const {
+  Report report;
+  report.status = Status::not_converged;
+  report.message =
+      "the shifted stiffness could not be factored; likely cause: masses or stiffnesses that differ by more "
+      "than rounding allows";
+  return report;
+}
+
+Report ModeSearch::find(int count, std::vector<Mode>& modes) {
+  Report report;
+  modes.clear();
+  const int columns = static_cast<int>(mass_.size());
+  if (columns == 0 || count == 0) return report;
+  const auto cancelled = [&] {
+    report.status = Status::cancelled;
+    report.message = "stopped while modes were looked for";
+    return report;
+  };
+  double sigma = -first_shift * size_;
+  bool complete = false;
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    if (!factorize(sigma, 0.618 * std::abs(sigma))) return no_factors();
+    const int below = op_.below();
+    const int freedoms = columns - system_.plan().rows + static_cast<int>(system_.matrix().dependent_rows().size());
+    complete = freedoms <= few_freedoms || 3 * count >= freedoms;
+    const int most = complete ? columns : std::min(columns, std::max(few_freedoms, 3 * count + 60));
+    const bool many = !complete && below > count;
+    int negative = many ? 0 : below;
+    if (many) {
+      sigma = lowest_shift(sigma);
+      if (!factorize(sigma, 0.618 * std::abs(sigma))) return no_factors();
+    }
+    Lanczos lanczos(op_);
+    const auto wanted = [&](std::span<const double> theta) { return choose(theta, negative, count - negative); };
+    bool settled = lanczos.run(wanted, most, complete, go_on_);
+    if (is_cancelled()) return cancelled();
+    Lanczos again(op_);
+    Lanczos* found = &lanczos;
+    if (!settled && !lanczos.exhausted() && negative > 0) {
+      // Unstable modes far from zero: from their own end.
+      sigma = lowest_shift(sigma);
+      if (!factorize(sigma, 0.618 * std::abs(sigma))) return no_factors();
+      negative = 0;
+      found = &again;
+      settled = again.run(wanted, most, false, go_on_);
+      if (is_cancelled()) return cancelled();
+    }
+    if (!settled && !found->exhausted()) {
+      report.status = Status::not_converged;
+      report.message = fmt::format(
+          "the lowest {} modes did not settle within {} steps of Lanczos' method; likely cause: "
+          "many modes of nearly the same frequency; ask for more of them or for fewer",
+          count, found->steps());
+      return report;
+    }
+    complete = found->exhausted();
+    if (found->steps() > 0) modes = modes_of(*found, sigma, count);
+    set_zeros(modes);
+    const double better = better_shift(modes, sigma);
+    if (attempt > 0 || many || found == &again || better == sigma) break;
+    sigma = better;
+  }
+  // The proof: as many as the inertia counts. Equal frequencies may hide from one start vector.
+  for (int round = 0; !complete && round <= count; ++round) {
+    std::sort(modes.begin(), modes.end(), lower);
+    modes.resize(std::min(modes.size(), static_cast<std::size_t>(count)));
+    const double top = modes.back().omega2;
+    double mu = top - count_margin * std::abs(top) - count_rounding * size_;
+    const int found =
+        static_cast<int>(std::count_if(modes.begin(), modes.end(), [&](const Mode& mode) { return mode.omega2 < mu; }));
+    if (!factorize(mu, top - mu)) return no_factors();
+    const int missing = op_.below() - found;
+    if (missing == 0) break;
+    if (missing < 0 || round == count) {
+      report.status = Status::not_converged;
+      report.message = fmt::format("{} modes below omega^2 = {:.6g} were found, but the inertia counts {}", found, mu,
+                                   found + missing);
+      return report;
+    }
+    if (!factorize(sigma, 0.618 * std::abs(sigma))) return no_factors();
+    std::vector<std::vector<double>> locked;
+    for (const Mode& mode : modes) locked.push_back(mode.shape);
+    Lanczos others(op_, std::move(locked));
+    const int more = std::min(missing, count);
+    others.run([&](std::span<const double> theta) { return choose(theta, 0, more); }, few_freedoms, false, go_on_);
+    if (is_cancelled()) return cancelled();
+    if (others.steps() == 0) continue;
+    std::vector<Mode> extra = modes_of(others, sigma, more);
+    set_zeros(extra);
+    for (Mode& mode : extra) modes.push_back(std::move(mode));
+  }
+  std::sort(modes.begin(), modes.end(), lower);
+  unstable_ = static_cast<int>(std::count_if(modes.begin(), modes.end(), [](const Mode& m) { return m.omega2 < 0; }));
+  if (unstable_ == count && !complete) {
+    double zero = -count_rounding * size_;
+    if (factorize(zero, count_rounding * size_)) unstable_ = std::max(unstable_, op_.below());
+  }
+  return report;
+}
+
+}  // namespace catena

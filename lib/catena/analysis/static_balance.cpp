@@ -1,0 +1,67 @@
+#include "catena/analysis/static_balance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "catena/analysis/assemble.hpp"
+#include "catena/analysis/modes_operator.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// Constraints met to this, in length scales or rad, need no assembly.
+constexpr double assembled = 1e-12;
+// Residual forces below this part of the largest force count as none.
+constexpr double negligible_part = 1e-7, negligible_rounding = 10;
+
+}  // namespace
+
+Report assemble_for_statics(StaticSystem& system, std::vector<double>& q) {
+  system.move_to(q);
+  if (system.phi_norm() <= std::max(assembled, 10 * system.rounding_change())) return {};
+  Assembler assembler(system.evaluator());
+  const Report report = assembler.assemble(q);
+  system.move_to(q);
+  return report;
+}
+
+bool Imbalance::negligible(const StaticSystem& system) const {
+  return relative <= negligible_part || force <= negligible_rounding * system.rounding_force();
+}
+
+Imbalance balance_loads(StaticSystem& system, std::span<double> lambda) {
+  const Plan& plan = system.plan();
+  const std::size_t columns = at(plan.columns);
+  std::fill(lambda.begin(), lambda.end(), 0.0);
+  std::vector<double> residual(columns);
+  if (plan.rows > 0) {
+    system.fill_weights();
+    if (system.factorize().ok()) {
+      // Refined until the multipliers no longer change: a long chain passes its load on through every joint.
+      std::vector<double> weight(columns, 0.0), given(columns + lambda.size(), 0.0), x(given.size()),
+          correction(given.size());
+      for (char angle : plan.row_is_angle) weight.push_back(angle ? 1 / (system.length() * system.length()) : 1);
+      for (std::size_t c = 0; c < columns; ++c) given[c] = -system.gradient()[c];
+      solve_to_rounding(system, weight, given, x, correction);
+      std::copy(x.begin() + plan.columns, x.end(), lambda.begin());
+    }
+  }
+  system.residual(lambda, residual);
+  Imbalance left{.force = system.force_norm(residual)};
+  const double largest = system.force_scale(lambda);
+  left.relative = largest > 0 ? left.force / largest : 0;
+  double most = -1;
+  for (int c = 0; c < plan.columns; ++c) {
+    const int coordinate = plan.coordinate[at(c)];
+    const double arm = coordinate % 3 == 2 ? system.radius()[at(coordinate / 3)] : 1;
+    if (std::abs(residual[at(c)]) / arm > most) {
+      most = std::abs(residual[at(c)]) / arm;
+      left.column = c;
+    }
+  }
+  return left;
+}
+
+}  // namespace catena
