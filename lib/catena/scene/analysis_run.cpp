@@ -12,9 +12,12 @@ struct Runner {
   AnalysisFunction run;
 };
 
-constexpr Runner entries[] = {{"check", run_check},           {"assemble", run_assemble},
-                              {"kinematics", run_kinematics}, {"inverse_dynamics", run_inverse_dynamics},
-                              {"dynamics", run_dynamics},     {"equilibrium", run_equilibrium},
+constexpr Runner entries[] = {{"check", run_check},
+                              {"assemble", run_assemble},
+                              {"kinematics", run_kinematics},
+                              {"inverse_dynamics", run_inverse_dynamics},
+                              {"dynamics", run_dynamics},
+                              {"equilibrium", run_equilibrium},
                               {"modes", run_modes}};
 
 /// The element that reads the model's function of time number `function`.
