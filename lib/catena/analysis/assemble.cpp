@@ -17,6 +17,8 @@ constexpr int max_approach_iterations = 60;
 // A body may turn at most this far in one step: beyond it the linearisation says nothing, and linkages flip.
 constexpr double largest_turn = 0.5;
 constexpr double smallest_factor = 1e-4;
+// Of the largest misfit: below it a constraint counts as met.
+constexpr double negligible_misfit = 1e-6;
 
 }  // namespace
 
@@ -161,9 +163,11 @@ std::vector<Misfit> Assembler::rank_misfits(std::span<const double> q, std::size
     }
   }
   const auto size = [&](const Misfit& m) { return m.angle ? m.size : m.size / evaluator_.length_scale(); };
-  const std::size_t kept = std::min(count, misfits.size());
+  std::size_t kept = std::min(count, misfits.size());
   std::partial_sort(misfits.begin(), misfits.begin() + static_cast<std::ptrdiff_t>(kept), misfits.end(),
                     [&](const Misfit& a, const Misfit& b) { return size(a) > size(b); });
+  // What is met but for rounding is none.
+  while (kept > 1 && size(misfits[kept - 1]) < negligible_misfit * size(misfits.front())) --kept;
   misfits.resize(kept);
   return misfits;
 }

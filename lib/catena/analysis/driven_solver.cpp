@@ -187,6 +187,8 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
   NewtonOutcome outcome;
   double size = 0;  // of the last correction
   double rate = 0;  // by which the next correction will be smaller
+  // Without a set of rows that determines everything there is nothing that could converge.
+  if (!is_square()) return outcome;
   for (;; ++outcome.iterations) {
     evaluate_at(q);
     gather_rows(phi_, step_);
@@ -200,7 +202,7 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
       outcome.converged = true;
       return outcome;
     }
-    if (outcome.iterations == max_iterations || !is_square()) return outcome;
+    if (outcome.iterations == max_iterations) return outcome;
     if (!factors_serve() && !factorize()) {
       outcome.factor = factor_result_;
       return outcome;

@@ -85,6 +85,7 @@ bool Kinematics::assemble_nearby() {
   for (const auto& body : model_->bodies) {
     if (body.hold_x || body.hold_y || body.hold_angle) return false;
   }
+  if (!solver_.is_square()) return false;
   trial_ = q_;
   move_whole_turns(evaluator_, trial_);
   newton_ = solver_.solve_position(trial_);

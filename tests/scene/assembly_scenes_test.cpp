@@ -1,0 +1,68 @@
+// Assembly through scenes from rough sketches: with fewer equations than coordinates, and with more.
+#include <gtest/gtest.h>
+
+#include "scene/run_text.hpp"
+
+namespace catena::testing {
+namespace {
+
+// Two pendulums on each other, sketched far from their pins and left free to swing.
+TEST(AssemblyScene, MechanismsThatAreFreeToMove) {
+  const TextRun run = run_text(R"({"catena": 1,
+      "bodies": {"upper": {"position": [0.7, 0.2], "angle": 0.3, "points": {"end": [1, 0]}},
+                 "lower": {"position": [2, 1], "angle": -0.8}},
+      "constraints": [{"type": "revolute", "name": "O", "i": "ground", "j": "upper"},
+                      {"type": "revolute", "name": "A", "i": "upper.end", "j": "lower"}],
+      "analyses": [{"type": "assemble"}, {"type": "check"}],
+      "outputs": ["upper.x", "upper.y", "upper.end.x", "upper.end.y", "lower.x", "lower.y", "residual"]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  EXPECT_NEAR(run.last("upper.x"), 0, 1e-12);
+  EXPECT_NEAR(run.last("upper.y"), 0, 1e-12);
+  EXPECT_NEAR(run.last("upper.end.x"), run.last("lower.x"), 1e-12);
+  EXPECT_NEAR(run.last("upper.end.y"), run.last("lower.y"), 1e-12);
+  EXPECT_NEAR(std::hypot(run.last("lower.x"), run.last("lower.y")), 1, 1e-12);
+  EXPECT_LE(run.last("residual"), 1e-12);
+  EXPECT_EQ(run.analysis(1).report.dof, 2);
+}
+
+// A parallelogram with a third crank, all sketched by eye: one bar more than it needs, twice an equation that repeats.
+std::string three_cranks(double third_crank) {
+  return R"({"catena": 1, "parameters": {"r": 0.3, "third": )" + std::to_string(third_crank) + R"(},
+      "bodies": {"a": {"position": [0.01, 0], "angle": 0.9, "points": {"end": ["r", 0]}},
+                 "b": {"position": [0.98, 0.02], "angle": 1.1, "points": {"end": ["r", 0]}},
+                 "c": {"position": [2.03, 0], "angle": 1.05, "points": {"end": ["third", 0]}},
+                 "bar": {"position": [0.2, 0.25], "angle": 0.05, "points": {"middle": [1, 0], "end": [2, 0]}}},
+      "constraints": [{"type": "revolute", "i": "ground", "j": "a"},
+                      {"type": "revolute", "i": ["ground", [1, 0]], "j": "b"},
+                      {"type": "revolute", "i": ["ground", [2, 0]], "j": "c"},
+                      {"type": "revolute", "i": "a.end", "j": "bar"},
+                      {"type": "revolute", "i": "b.end", "j": "bar.middle"},
+                      {"type": "revolute", "name": "last", "i": "c.end", "j": "bar.end"}],
+      "drivers": [{"type": "absolute_angle", "name": "drive", "i": "a", "value": {"polynomial": [1, 0.5]}}],
+      "analyses": [{"type": "assemble"}, {"type": "kinematics", "until": 1, "every": 0.1}],
+      "outputs": ["a.angle", "b.angle", "c.angle", "bar.angle", "bar.end.x", "residual"]})";
+}
+
+TEST(AssemblyScene, MechanismsWithMoreEquationsThanTheyNeed) {
+  const TextRun run = run_text(three_cranks(0.3));
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  for (const char* crank : {"a.angle", "b.angle", "c.angle"}) {
+    EXPECT_NEAR(run.last(crank), 1, 1e-11) << crank;
+    EXPECT_NEAR(run.last(crank, 1), 1.5, 1e-11) << crank;
+  }
+  EXPECT_NEAR(run.last("bar.angle"), 0, 1e-11);
+  EXPECT_NEAR(run.last("bar.end.x"), 2 + 0.3 * std::cos(1), 1e-11);
+  EXPECT_LE(run.last("residual"), 1e-11);
+  EXPECT_FALSE(run.analysis(1).report.redundant.empty());
+}
+
+// With a third crank that does not fit there is no configuration, and nothing pretends otherwise.
+TEST(AssemblyScene, ContradictionsAreNotAssembled) {
+  const TextRun run = run_text(three_cranks(0.32));
+  EXPECT_EQ(run.outcome.exit_code, 1);
+  EXPECT_EQ(run.analysis().report.status, Status::not_assembled);
+  EXPECT_NE(run.analysis().report.message.find("\"last\""), std::string::npos) << run.analysis().report.message;
+}
+
+}  // namespace
+}  // namespace catena::testing
