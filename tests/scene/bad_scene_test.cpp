@@ -180,7 +180,7 @@ const BadScene replicated[] = {
        "constraints": [{"type": "revolute", "i": "link{k}", "j": §"link{k+1}"}]}]})",
      "at k = 3"},
     {"OncePerPlace", R"({"catena": 1, "replicate": [{"count": 1000, "bodies": {"link{k}": {"mass": §"=-k"}}}]})",
-     "it is -1 at k = 1"},
+     "it is -1 (at k = 1)"},
     {"NoCount", R"({"catena": 1, "replicate": [§{"bodies": {}}]})", "needs \"count\""},
     {"CountFraction", R"({"catena": 1, "replicate": [{"count": §2.5, "bodies": {"b{k}": {}}}]})", "whole number"},
     {"CountNegative", R"({"catena": 1, "replicate": [{"count": §-2, "bodies": {"b{k}": {}}}]})", "-2"},

@@ -117,8 +117,8 @@ TEST(NumberReader, SaysWhatIsWrongAndWhere) {
       {"\"heavy\"", UnitKind::mass,
        "2:3 \"mass\" of body \"crank\": unknown parameter \"heavy\"; a quantity begins with a digit, an expression "
        "with ="},
-      {"\"=1/(k-3)\"", UnitKind::mass, "2:6 division by zero: 1 / 0 at k = 3"},
-      {"\"=sqrt(-k)\"", UnitKind::mass, "2:5 sqrt(-3) has no finite value at k = 3"},
+      {"\"=1/(k-3)\"", UnitKind::mass, "2:6 division by zero: 1 / 0 (at k = 3)"},
+      {"\"=sqrt(-k)\"", UnitKind::mass, "2:5 sqrt(-3) has no finite value (at k = 3)"},
   };
   for (const auto& c : cases) EXPECT_EQ(error_of_number(c.text, c.kind), std::string(c.error) + "\n") << c.text;
 }
@@ -182,8 +182,8 @@ TEST(Evaluation, ReportsNamesWithTheVariables) {
   evaluation.set_variable(6);
   EXPECT_FALSE(evaluation.append_name(*name, scene.value().offset(), out));
   EXPECT_EQ(scene.errors(),
-            "2:7 division by zero: 6 / 0 at k = 2\n"
-            "2:6 a name needs an integer here, but 6/(k-2) is 1.5 at k = 6\n");
+            "2:7 division by zero: 6 / 0 (at k = 2)\n"
+            "2:6 a name needs an integer here, but 6/(k-2) is 1.5 (at k = 6)\n");
 }
 
 /// Reads every value below as a number and every text as a name too.

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "catena/scene/distance_check.hpp"
+
 namespace catena {
 namespace {
 
@@ -97,6 +99,10 @@ std::optional<TimeGrid> time_grid(const AnalysisContext& context, Report& report
     grid = TimeGrid::instant(context.state.t);
   }
   if (!check_tables(*context.model, first, last, report)) return {};
+  if (const auto problem = vanishing_distance(*context.model, context.state.t, *grid)) {
+    report = refuse(*problem);
+    return {};
+  }
   return grid;
 }
 

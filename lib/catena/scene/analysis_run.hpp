@@ -15,6 +15,7 @@
 #include "catena/results/analysis_result.hpp"
 #include "catena/results/column_rows.hpp"
 #include "catena/scene/analysis_task.hpp"
+#include "catena/scene/gear_check.hpp"
 
 namespace catena {
 
@@ -94,6 +95,7 @@ void run_over_time(AnalysisContext& context, AnalysisResult& result, Analysis& a
   analysis.start_from(context.state);
   ReportingRows rows(columns, context, grid.last());
   AnalysisReport report = analysis.run(grid, columns.needs(), rows);
+  for (std::string& doubt : gears_that_do_not_fit(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
   context.state = analysis.state();
   take_report(result, std::move(report), &columns, rows.rows());
 }

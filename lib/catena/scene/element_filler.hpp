@@ -168,7 +168,9 @@ void fill(ModelBuilder<S>& builder, const ElementTemplate& source, const int* bo
   }
   if constexpr (requires { entry.element.check(); }) {
     if (good) {
-      if (const char* problem = entry.element.check()) wrong(source.offset, problem);
+      const char* problem = entry.element.check();
+      if (problem && !builder.reported(source.offset)) wrong(source.offset, problem);
+      good = good && !problem;
     }
   }
   ElementKind kind = source.kind;

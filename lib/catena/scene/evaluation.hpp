@@ -14,7 +14,7 @@
 
 namespace catena {
 
-/// Reports an error at byte `place` of the source: `message`, then "at k = 3" for the replicate variables. In a
+/// Reports an error at byte `place` of the source: `message`, then "(at k = 3)" for the replicate variables. In a
 /// repeated block a place is reported once.
 void report_in_block(const SourceText& source, std::size_t place, std::string_view message,
                      std::span<const std::string> loop_names, std::span<const double> loop_values,

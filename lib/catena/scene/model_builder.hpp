@@ -37,6 +37,8 @@ class ModelBuilder {
   bool known_wrong(std::size_t offset) const {
     return diagnostics_.full() || (!evaluation_.loop_names().empty() && diagnostics_.reported(*scene_.source, offset));
   }
+  /// Whether anything was said of this place: what follows from a mistake that was reported is not said as well.
+  bool reported(std::size_t offset) const { return diagnostics_.reported(*scene_.source, offset); }
   /// The element that is being built, for messages: `revolute "A"`.
   std::string owner(const ElementTemplate& element) const;
   /// Throws std::invalid_argument for what is no function of time.

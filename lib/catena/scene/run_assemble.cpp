@@ -112,7 +112,10 @@ void run_check(AnalysisContext& context, AnalysisResult& result) {
                                           model.element_name(mobility.redundant_elements[k]),
                                           quoted_names(model, mobility.dependent_on[k])));
   }
-  if (outcome.ok()) check_velocities(analysis, model, report);
+  if (outcome.ok()) {
+    check_velocities(analysis, model, report);
+    for (std::string& doubt : gears_that_do_not_fit(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
+  }
   report.counters = analysis.evaluator().counters;
   report.seconds = timer.seconds();
   take_report(result, std::move(report), nullptr, 0);
