@@ -45,28 +45,6 @@ DrivenSolver::DrivenSolver(Evaluator& evaluator)
   }
 }
 
-void DrivenSolver::use_rows(std::vector<int> rows) {
-  rows_ = std::move(rows);
-  all_rows_ = static_cast<int>(rows_.size()) == plan_.rows;
-  analyzed_ = factors_valid_ = false;
-  gather_.clear();
-  if (all_rows_) return;
-  std::vector<int> place(at(plan_.rows), -1);
-  in_use_.assign(at(plan_.rows), 0);
-  for (std::size_t k = 0; k < rows_.size(); ++k) place[at(rows_[k])] = static_cast<int>(k), in_use_[at(rows_[k])] = 1;
-  matrix_ = {static_cast<int>(rows_.size()), plan_.columns, {0}, {}};
-  for (int c = 0; c < plan_.columns; ++c) {
-    for (int k = plan_.jacobian.column_start[at(c)]; k < plan_.jacobian.column_start[at(c) + 1]; ++k) {
-      const int row = place[at(plan_.jacobian.row_index[at(k)])];
-      if (row < 0) continue;
-      matrix_.row_index.push_back(row);
-      gather_.push_back(k);
-    }
-    matrix_.column_start.push_back(static_cast<int>(gather_.size()));
-  }
-  matrix_values_.resize(gather_.size());
-}
-
 void DrivenSolver::gather_rows(std::span<const double> all, std::span<double> chosen) const {
   if (all_rows_) {
     std::copy(all.begin(), all.end(), chosen.begin());
@@ -152,9 +130,27 @@ double DrivenSolver::redundant_residual(std::span<const double> residual_of_all,
   return largest;
 }
 
-std::span<const signed char> DrivenSolver::determinant_signs() {
+std::span<const BlockMargin> DrivenSolver::block_margins() {
   if (!factorization_.is_factorized()) return {};
-  return factorization_.determinant_signs();
+  return factorization_.block_margins();
+}
+
+double DrivenSolver::residual_at(std::span<const double> q) {
+  evaluate_at(q);
+  return all_rows_ ? scaling_.row_norm(phi_) : residual_in_use();
+}
+
+double DrivenSolver::distance(std::span<const double> a, std::span<const double> b, double* angle) const {
+  const double unit = 1 / evaluator_.length_scale();
+  double shift = 0, turn = 0;
+  for (std::size_t k = 0; k + 2 < 3 * at(plan_.moving); k += 3) {
+    const double x = std::abs(a[k] - b[k]), y = std::abs(a[k + 1] - b[k + 1]), phi = std::abs(a[k + 2] - b[k + 2]);
+    shift = x > shift ? x : shift;
+    shift = y > shift ? y : shift;
+    turn = phi > turn ? phi : turn;
+  }
+  if (angle) *angle = turn;
+  return std::max(shift * unit, turn);
 }
 
 bool DrivenSolver::left_null_vector(std::span<double> w) {

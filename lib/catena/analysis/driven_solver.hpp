@@ -35,11 +35,15 @@ class DrivenSolver {
 
   /// Uses these rows, as many as there are columns, ascending. The default is all rows, if they are as many.
   void use_rows(std::vector<int> rows);
+  /// Exchanges rows in use at q for others that make the matrix better conditioned; false: there are none.
+  bool exchange_rows(std::span<const double> q);
   const std::vector<int>& rows_in_use() const { return rows_; }
   bool is_square() const { return static_cast<int>(rows_.size()) == plan_.columns; }
 
   /// Factors the matrix at q, at the evaluator's time; returns its crude reciprocal condition number, 0 if singular.
   double factor_at(std::span<const double> q);
+  /// The same of the last factorization.
+  double rcond() const { return rcond_; }
   /// Newton from q, at the evaluator's time; q is left at the last iterate.
   NewtonOutcome solve_position(std::span<double> q);
   /// Velocities at the configuration of the last solve_position. `qd` holds a start if `has_start`.
@@ -54,8 +58,12 @@ class DrivenSolver {
   /// Phi_q at the last configuration, current after solve_velocity.
   std::span<const double> jacobian();
   const Factorization& factorization() const { return factorization_; }
-  /// Signs of the block determinants of the last factorization (see Factorization::determinant_signs).
-  std::span<const signed char> determinant_signs();
+  /// How far from singular every block of the last factorization is (see Factorization::block_margins).
+  std::span<const BlockMargin> block_margins();
+  /// Sets the configuration and returns the largest residual of the rows in use, in length scales or rad.
+  double residual_at(std::span<const double> q);
+  /// Largest difference of two configurations, in length scales or rad; `angle`: of the angles alone.
+  double distance(std::span<const double> a, std::span<const double> b, double* angle) const;
   /// Left null vector of the matrix near a singular configuration, by inverse iteration with the factors at the last
   /// configuration: rows of the plan, Euclidean length one. False if there are no factors.
   bool left_null_vector(std::span<double> w);

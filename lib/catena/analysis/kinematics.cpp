@@ -9,6 +9,7 @@
 #include "catena/analysis/process_time.hpp"
 #include "catena/analysis/whole_turns.hpp"
 #include "catena/columns/energy.hpp"
+#include "catena/linalg/rank_revealing.hpp"
 
 namespace catena {
 namespace {
@@ -21,6 +22,12 @@ constexpr double nearby = 0.1;
 constexpr double nearby_contraction = 0.25;
 // A reciprocal condition number above this leaves no doubt that all rows are independent.
 constexpr double clearly_regular = 1e-9;
+// Below this one reactions are rounding errors.
+constexpr double reactions_determined = 1e-9;
+// Rows closer to dependence than this, where a motion starts: configurations are given no more exactly.
+constexpr double start_dependence = 1e-7;
+// How far along a branch (rad, length scales) rows are chosen where it starts.
+constexpr double start_distance = 0.02;
 // Residuals of redundant rows, in length scales or rad, above which they contradict the others.
 constexpr double contradiction = 1e-8;
 
@@ -45,6 +52,9 @@ void Kinematics::start_from(const SystemState& state) {
   t_ = state.t;
   assembled_.reset();
   predictor_.clear();
+  bridge_.clear();
+  choice_.reset();
+  margins_.clear();
   has_velocity_ = has_acceleration_ = false;
   if (state.q.empty()) return;
   for (int p = 0; p < plan_->moving; ++p) {
@@ -97,7 +107,7 @@ bool Kinematics::assemble_nearby() {
 }
 
 // Makes sure that the constraints drive every coordinate, with a working set of rows if there are more than needed.
-Report Kinematics::prepare() {
+Report Kinematics::prepare(double direction) {
   Report report;
   if (prepared_) return report;
   if (!plan_->jacobian.entries() && plan_->columns > 0) {
@@ -112,14 +122,88 @@ Report Kinematics::prepare() {
   }
   const MobilityReport mobility = analyse_mobility(evaluator_, q_);
   if (mobility.rank < plan_->columns) {
+    const SingularPoint point = find_branches(evaluator_, q_, {}, start_dependence);
+    if (plan_->rows >= plan_->columns && point.held_to_second_order) return start_singular(point, direction);
     report.status = Status::under_driven;
     report.message = mobility.describe_freedom();
     return report;
   }
-  solver_.use_rows(mobility.independent_rows);
+  if (plan_->rows > plan_->columns) {
+    choose_rows(q_);
+    chosen_rcond_ = solver_.factor_at(q_);
+  }
   for (int element : mobility.redundant_elements) redundant_.push_back(model_->element_name(element));
   report.warnings = mobility.warnings;
   prepared_ = true;
+  return report;
+}
+
+// Of more rows than needed an independent set, then the best one.
+bool Kinematics::choose_rows(std::span<const double> q) {
+  std::vector<double> values(at(plan_->trash_slot()) + 1);
+  evaluator_.start_jacobian(values);
+  evaluator_.set_configuration(q);
+  evaluator_.jacobian(values);
+  RankOptions options;
+  options.most_dependencies = options.most_null_vectors = 0;
+  RankReport rank =
+      reveal_rank(plan_->jacobian, std::span<const double>(values).first(at(plan_->trash_slot())), options);
+  if (rank.rank < plan_->columns) return false;
+  solver_.use_rows(std::move(rank.independent_rows));
+  solver_.exchange_rows(q);
+  return true;
+}
+
+// Where the rows in use come near to depending on each other others may do better. False: they would not.
+bool Kinematics::choose_better_rows() {
+  if (plan_->rows == plan_->columns) return false;
+  evaluator_.set_time(t_);
+  const bool better = solver_.exchange_rows(q_);
+  chosen_rcond_ = solver_.factor_at(q_);
+  if (better) {
+    margins_.clear();
+    largest_margins_.clear();
+    remember_margins();
+  }
+  return better;
+}
+
+// The mechanism is given where branches meet: nothing says on which of them it is.
+Report Kinematics::start_singular(const SingularPoint& point, double direction) {
+  Report report;
+  singular_points_.push_back(point);
+  const int count = static_cast<int>(point.tangents.size());
+  if (point.kind == SingularPoint::Kind::rest || count == 0) {
+    report.status = Status::singular;
+    report.message = fmt::format(
+        "the motion starts at t = {:.12g} s in a singular configuration {}; start a little before or after it", t_,
+        count == 0 ? "from which no velocity goes on" : "in which the drivers rest");
+    return report;
+  }
+  const int branch = count == 1 ? 1 : options_.branch;
+  if (branch == 0 || branch > count) {
+    report.status = Status::bifurcation;
+    report.message =
+        fmt::format("the motion starts at t = {:.12g} s where branches meet: {}; {}", t_, point.describe_branches(),
+                    branch == 0 ? std::string("choose one with \"branch\", or start a little away")
+                                : fmt::format("\"branch\" asks for number {}", branch));
+    return report;
+  }
+  if (plan_->rows > plan_->columns) {
+    // Rows are chosen a little way along the branch, where they can be told apart.
+    const std::vector<double>& tangent = point.tangents[at(branch - 1)];
+    const std::vector<double> nothing(tangent.size(), 0.0);
+    const double h = direction * start_distance / solver_.distance(tangent, nothing, nullptr);
+    trial_ = q_;
+    for (std::size_t k = 0; k < trial_.size(); ++k) trial_[k] += h * tangent[k];
+    if (!choose_rows(trial_)) {
+      report.status = Status::singular;
+      report.message = fmt::format("the constraints do not determine the motion near its start at t = {:.12g} s", t_);
+      return report;
+    }
+  }
+  report = take_branch(point, branch, direction);
+  prepared_ = report.ok();
   return report;
 }
 
@@ -153,6 +237,16 @@ Report Kinematics::solve_rates(const Needs& needs) {
   Report report;
   const bool acceleration = needs.acceleration || needs.multipliers;
   if (!needs.velocity && !acceleration) return report;
+  if (on_bridge_) {
+    // The bridge has the rates; multipliers need factors of the matrix, and those tell whether it can be.
+    if (needs.multipliers && !(solver_.factor_at(q_) > reactions_determined)) {
+      report.status = Status::singular;
+      report.message = fmt::format(
+          "reactions are not determined at t = {:.12g} s: the mechanism is at a singular configuration", t_);
+      return report;
+    }
+    return needs.multipliers ? solve_multipliers() : report;
+  }
   const bool start = predictor_.predict(t_, {}, qd_, {});
   if (!solver_.solve_velocity(qd_, start)) {
     report.status = Status::singular;
@@ -170,13 +264,16 @@ Report Kinematics::solve_rates(const Needs& needs) {
     return report;
   }
   has_acceleration_ = true;
-  if (needs.multipliers) {
-    lambda_.resize(at(plan_->rows));
-    scatter_applied_forces();
-    if (!solver_.solve_multipliers(loads_, lambda_)) {
-      report.status = Status::singular;
-      report.message = fmt::format("reactions are not determined at t = {:.12g} s", t_);
-    }
+  return needs.multipliers ? solve_multipliers() : report;
+}
+
+Report Kinematics::solve_multipliers() {
+  Report report;
+  lambda_.resize(at(plan_->rows));
+  scatter_applied_forces();
+  if (!solver_.solve_multipliers(loads_, lambda_)) {
+    report.status = Status::singular;
+    report.message = fmt::format("reactions are not determined at t = {:.12g} s", t_);
   }
   return report;
 }
@@ -210,7 +307,7 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& needs, RowObse
     const AssemblyOutcome outcome = assemble();
     if (!outcome.ok()) return end(outcome);
   }
-  const Report prepared = prepare();
+  const Report prepared = prepare(grid.size() > 1 && grid[1] < grid[0] ? -1 : 1);
   if (!prepared.ok()) return end(prepared);
   report.warnings = prepared.warnings;
   report.redundant = redundant_;
@@ -222,6 +319,8 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& needs, RowObse
       const Report moved = move_to(grid[k]);
       if (!moved.ok()) return end(moved);
       report.warnings.insert(report.warnings.end(), moved.warnings.begin(), moved.warnings.end());
+    } else if (on_bridge_ || (!bridge_.empty() && t_ >= bridge_from_ && t_ <= bridge_to_)) {
+      place_on_bridge(t_);
     } else {
       trial_ = q_;
       evaluator_.set_time(t_);

@@ -1,9 +1,10 @@
 // Kinematic analysis: positions, velocities and accelerations of a driven mechanism over time (THEORY section 3).
 //
 // Between rows the motion is followed in steps of its own choice: a step whose prediction was far off, or on which
-// Newton contracted badly, is halved, so that no branch is jumped however coarse the rows are; where no step can be
-// made any more the mechanism is at a singular configuration, and the report says when and where. Velocities,
-// accelerations and multipliers are computed at rows only and only if needed. Zero allocations a step after the first.
+// Newton contracted badly, is halved, so that no branch is jumped however coarse the rows are. Where branches meet the
+// instant is located, the branches are listed, and the one that continues the motion is taken, or the one chosen; where
+// no step can be made any more the mechanism is locked, and the report says when and why. Velocities, accelerations and
+// multipliers are computed at rows only and only if needed. Zero allocations a step after the first.
 #pragma once
 
 #include <memory>
@@ -12,6 +13,9 @@
 #include "catena/analysis/analysis_report.hpp"
 #include "catena/analysis/assemble.hpp"
 #include "catena/analysis/driven_solver.hpp"
+#include "catena/analysis/kinematics_branches.hpp"
+#include "catena/analysis/kinematics_bridge.hpp"
+#include "catena/analysis/mobility.hpp"
 #include "catena/analysis/predictor.hpp"
 #include "catena/analysis/row_observer.hpp"
 #include "catena/analysis/system_state.hpp"
@@ -22,6 +26,9 @@ namespace catena {
 struct KinematicsOptions {
   double tolerance = 1e-12;       ///< of constraint residuals, relative to the length scale
   bool inverse_dynamics = false;  ///< multipliers from Phi_q^T lambda = Q - M qdd
+  /// Which of the branches listed is taken wherever several meet. 0: not chosen: the motion goes on as before, which is
+  /// branch 1; where it starts at such a place it ends with the list.
+  int branch = 0;
 };
 
 class Kinematics {
@@ -50,21 +57,45 @@ class Kinematics {
   /// The present state, absolute and in model order; velocities if they are known.
   SystemState state() const;
   const DrivenSolver& solver() const { return solver_; }
+  /// The singular configurations met so far, in the order in which they were met.
+  const std::vector<SingularPoint>& singular_points() const { return singular_points_; }
 
  private:
   bool assemble_nearby();
-  Report prepare();
-  enum class StepOutcome { made, too_long, crossed };
-  StepOutcome try_step(double t);
+  Report prepare(double direction);
+  Report start_singular(const SingularPoint& point, double direction);
+  bool choose_rows(std::span<const double> q);
+  bool choose_better_rows();
+  enum class StepOutcome { made, dipped, too_long, crossed };
+  StepOutcome try_step(double t, bool ignore_dips);
+  bool heads_for_singularity(double t) const;
+  void remember_margins();
   Report cancelled() const;
-  void remember_signs();
   bool find_velocity();
   double largest_rate() const;
-  void set_anchor();
-  bool pass_singular(double before, double after, double target);
   Report stuck(double t);
   Report check_redundant_rows();
   void scatter_applied_forces();
+  Report solve_multipliers();
+
+  // Singular configurations: kinematics_passage.cpp.
+  enum class Passage { none, regular, passed, failed };
+  bool add_node(MotionBridge& bridge, double t, double allowed);
+  bool build_bridge(MotionBridge& bridge, double centre, double h, double reach);
+  bool follows_constraints(const MotionBridge& bridge, double from, double to);
+  bool margins_on(const MotionBridge& bridge, double t, std::vector<double>& margins);
+  std::vector<double> singular_instants(const MotionBridge& bridge, double from, double to);
+  double refine_instant(const MotionBridge& bridge, std::size_t block, double a, double b);
+  bool find_rest(const MotionBridge& bridge, double& t, double from, double to);
+  SingularPoint look_at(const MotionBridge& bridge, double t, double from, double to);
+  double bridge_length(double centre, double reach);
+  Passage pass_singular(double next, double target, double reach, Report& report);
+  Passage follow_bridge(const MotionBridge& bridge, double t);
+  Report take_branch(const SingularPoint& point, int branch, double direction);
+  void leave_bridge(double end);
+  void place_on_bridge(double t);
+  bool tables_reach(double t) const;
+  void announce(const SingularPoint& point, Report& report);
 
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const Plan> plan_;
@@ -77,13 +108,21 @@ class Kinematics {
   RowObserver* observer_ = nullptr;  // during run(): asked between rows too whether to go on
   double t_ = 0;
   std::vector<double> q_, qd_, qdd_, lambda_, trial_, loads_, applied_;
-  std::vector<signed char> signs_;  // of the block determinants at q_
+  // How far from singular the blocks of Phi_q are at q_, signed; by how much the magnitudes change in unit time; and
+  // the most that each of them has been.
+  std::vector<BlockMargin> margins_, margin_rates_;
+  double margins_t_ = 0;
+  std::vector<double> largest_margins_;
   std::vector<std::string> redundant_;
-
-  // Where the motion was when it first met a singular configuration: to extrapolate across it.
-  double anchor_t_ = 0;
-  std::vector<double> anchor_q_, anchor_qd_, anchor_qdd_;
+  double chosen_rcond_ = 0;  // of the rows in use, where they were chosen
   NewtonOutcome newton_;
+
+  // The stretch of time where rows are taken from the bridge, and the branch point in it that is still ahead.
+  MotionBridge bridge_;
+  double bridge_from_ = 0, bridge_to_ = 0;
+  bool on_bridge_ = false;
+  std::optional<SingularPoint> choice_;
+  std::vector<SingularPoint> singular_points_;
 };
 
 }  // namespace catena

@@ -1,12 +1,13 @@
-// Following the motion of a driven mechanism between two instants: steps, branches, singular configurations.
+// Following the motion of a driven mechanism between two instants: steps, branches, what stops it.
 //
-// A step is made if its prediction was close, if Newton contracted well, and if no block determinant of Phi_q changed
-// its sign: branches that meet at a singular configuration differ by that sign, so a change means a jump, or a passage.
-// A passage is enclosed by halving; then the motion is extrapolated from where it was still regular to the other side,
-// and only the branch that continues the velocity is accepted there.
+// A step is made if its prediction was close, if Newton contracted well, if no body turned far, and if no diagonal
+// block of Phi_q came near to a singular one or changed the sign of its determinant: branches that meet differ by that
+// sign, so a change means a jump, or a passage; with an even nullity the sign stays, but the blocks' smallest pivots
+// dip. Steps are halved until the suspected instant is enclosed; then kinematics_passage.cpp looks at it.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "catena/analysis/kinematics.hpp"
@@ -20,25 +21,57 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 // one before: Newton's iteration then stays where it contracts.
 constexpr double largest_turn = 0.1;
 constexpr double largest_contraction = 0.25;
+// No body may turn further than this in a step: a singular configuration in between would not show.
+constexpr double longest_step = 0.5;
 // Steps below this part of the span, or of the time itself, cannot be told from none.
 constexpr double smallest_step = 1e-13;
-// Steps shorter than this part of the span are a sign of a singular configuration ahead.
-constexpr double suspicious_step = 1e-4;
-// A singular passage is enclosed to this part of the span before it is crossed.
-constexpr double enclosure = 1e-10;
-// The anchor lies about this motion (rad, length scales) before the passage.
-constexpr double anchor_distance = 0.05;
-// Mean of the velocities before and after a passage against the motion between them: other branches miss by far more.
-constexpr double largest_kink = 0.05;
+// A block whose smallest pivot and determinant fall below the first part of what they were a step before may be on its
+// way through a singular matrix: they do so if they vanish linearly, whichever way steps of equal length fall around
+// that instant. Where there is no determinant the pivot must fall below the second part of the most that it has been.
+constexpr double sudden_part = 0.6, small_part = 0.3;
+// The same from the step before: as much as this must be left of them if they go on as they did.
+constexpr double remaining_part = 0.3;
+// Passages are tried over stretches of this much motion (rad, length scales), one after the other.
+constexpr std::array<double, 5> reaches = {0.2, 0.05, 0.015, 0.004, 0.001};
+// Rows are chosen anew where their reciprocal condition number has fallen to this part of what it was.
+constexpr double drifted = 0.01;
+// Steps made after one that failed before their length may grow again.
+constexpr int patience = 2;
 
 }  // namespace
 
-void Kinematics::remember_signs() {
-  const auto signs = solver_.determinant_signs();
-  signs_.assign(signs.begin(), signs.end());
+void Kinematics::remember_margins() {
+  const auto margins = solver_.block_margins();
+  const bool continued = margins_.size() == margins.size() && t_ != margins_t_;
+  const double per_time = continued ? 1 / std::abs(t_ - margins_t_) : 0;
+  margin_rates_.assign(margins.size(), {});
+  for (std::size_t k = 0; k < margins.size() && continued; ++k) {
+    margin_rates_[k] = {(std::abs(margins[k].pivot) - std::abs(margins_[k].pivot)) * per_time,
+                        (std::abs(margins[k].determinant) - std::abs(margins_[k].determinant)) * per_time};
+  }
+  margins_.assign(margins.begin(), margins.end());
+  margins_t_ = t_;
+  if (largest_margins_.size() != margins_.size()) largest_margins_.assign(margins_.size(), 0.0);
+  for (std::size_t k = 0; k < margins_.size(); ++k) {
+    largest_margins_[k] = std::max(largest_margins_[k], std::abs(margins_[k].pivot));
+  }
 }
 
-Kinematics::StepOutcome Kinematics::try_step(double t) {
+// Whether a block that goes on as in the step before is nearly singular at t, or was before.
+bool Kinematics::heads_for_singularity(double t) const {
+  const double h = std::abs(t - t_);
+  bool heads = false;
+  for (std::size_t k = 0; k < margins_.size(); ++k) {
+    const double pivot = std::abs(margins_[k].pivot), determinant = std::abs(margins_[k].determinant);
+    const bool small = margins_[k].pivot != margins_[k].determinant || pivot < small_part * largest_margins_[k];
+    heads |= small && pivot + h * margin_rates_[k].pivot < remaining_part * pivot &&
+             determinant + h * margin_rates_[k].determinant < remaining_part * determinant;
+  }
+  return heads;
+}
+
+Kinematics::StepOutcome Kinematics::try_step(double t, bool ignore_dips) {
+  if (!ignore_dips && heads_for_singularity(t)) return StepOutcome::dipped;
   evaluator_.set_time(t);
   trial_ = q_;
   predictor_.predict(t, trial_, {}, {});
@@ -46,11 +79,24 @@ Kinematics::StepOutcome Kinematics::try_step(double t) {
   if (!newton_.converged || newton_.first_turn > largest_turn || newton_.contraction > largest_contraction) {
     return StepOutcome::too_long;
   }
-  const auto signs = solver_.determinant_signs();
-  if (!signs_.empty() && signs.size() == signs_.size() && !std::equal(signs.begin(), signs.end(), signs_.begin())) {
-    return StepOutcome::crossed;
+  if (plan_->constant_jacobian) return StepOutcome::made;
+  double turn = 0;
+  solver_.distance(trial_, q_, &turn);
+  if (turn > longest_step) return StepOutcome::too_long;
+  // Without a correction the factors are those of the step before.
+  if (newton_.iterations == 0) solver_.factor_at(trial_);
+  const auto margins = solver_.block_margins();
+  if (margins.size() != margins_.size()) return StepOutcome::made;
+  bool crossed = false, dipped = false;
+  for (std::size_t k = 0; k < margins.size(); ++k) {
+    crossed |= (margins[k].pivot < 0) != (margins_[k].pivot < 0);
+    const double size = std::abs(margins[k].pivot);
+    const bool small = margins[k].pivot != margins[k].determinant || size < small_part * largest_margins_[k];
+    dipped |= small && size < sudden_part * std::abs(margins_[k].pivot) &&
+              std::abs(margins[k].determinant) < sudden_part * std::abs(margins_[k].determinant);
   }
-  return StepOutcome::made;
+  if (crossed) return StepOutcome::crossed;
+  return dipped && !ignore_dips ? StepOutcome::dipped : StepOutcome::made;
 }
 
 // The velocity at the present point makes the first prediction where none is known yet.
@@ -72,18 +118,6 @@ double Kinematics::largest_rate() const {
   return largest;
 }
 
-// The acceleration bends the extrapolation; where it cannot be had the step across is shorter.
-void Kinematics::set_anchor() {
-  if (!has_velocity_) find_velocity();
-  anchor_t_ = t_;
-  anchor_q_ = q_;
-  anchor_qd_ = qd_;
-  anchor_qdd_.assign(qd_.size(), 0.0);
-  evaluator_.set_time(t_);
-  trial_ = q_;
-  if (solver_.solve_position(trial_).converged) solver_.solve_acceleration(qd_, anchor_qdd_, false);
-}
-
 Report Kinematics::cancelled() const {
   Report report;
   report.status = Status::cancelled;
@@ -96,95 +130,74 @@ Report Kinematics::move_to(double t) {
   const double span = std::abs(t - t_), direction = t > t_ ? 1 : -1;
   const double tiny = smallest_step * std::max(span, std::abs(t));
   double step = span;
-  bool enclosing = false;
-  if (signs_.empty()) {
+  std::size_t attempt = 0;
+  int made_since_failure = patience;
+  bool ignore_dips = false;
+  if (margins_.empty() && bridge_.empty()) {
     solver_.factor_at(q_);
-    remember_signs();
+    remember_margins();
   }
+  on_bridge_ = false;
   while (t_ != t) {
+    if (!bridge_.empty()) {
+      if (choice_ && direction * (t - choice_->t) > 0) {
+        const SingularPoint point = *choice_;
+        if (const Report taken = take_branch(point, options_.branch, direction); !taken.ok()) return taken;
+      }
+      if (t >= bridge_from_ && t <= bridge_to_) {
+        place_on_bridge(t);
+        break;
+      }
+      leave_bridge(direction > 0 ? bridge_to_ : bridge_from_);
+      step = std::max(std::abs(t - t_), tiny);
+      continue;
+    }
     const bool last = std::abs(t - t_) <= step * (1 + 1e-9);
     const double next = last ? t : t_ + direction * step;
-    const StepOutcome outcome = try_step(next);
+    const StepOutcome outcome = try_step(next, ignore_dips);
     if (outcome == StepOutcome::made) {
       q_.swap(trial_);
       t_ = next;
-      has_velocity_ = has_acceleration_ = false;
+      has_velocity_ = has_acceleration_ = ignore_dips = false;
       ++evaluator_.counters.steps;
-      if (signs_.empty()) remember_signs();
+      ++made_since_failure;
+      remember_margins();
+      if (chosen_rcond_ > 0 && solver_.rcond() < drifted * chosen_rcond_) choose_better_rows();
       if (t_ != t) {
         if (observer_ && !observer_->proceed(t_)) return cancelled();
         // Between rows the velocity is worth its solve: it makes the next prediction cubic.
         if (solver_.solve_velocity(qd_, false)) {
           has_velocity_ = true;
           predictor_.push(t_, q_, qd_, {});
+          if (step * largest_rate() > reaches.front()) attempt = 0;
         }
-        if (!enclosing && newton_.first_turn < largest_turn / 8) step *= 2;
-        // Nearer to the passage, but not so near that velocities lose their digits.
-        if (enclosing && has_velocity_ && step * largest_rate() > anchor_distance) set_anchor();
+        if (made_since_failure > patience && newton_.first_turn < largest_turn / 8) step *= 2;
       }
       continue;
     }
     ++evaluator_.counters.rejected;
-    // Branches that meet show by a changed sign, or by a Newton iteration that contracts badly however short the step.
-    if (!enclosing && (outcome == StepOutcome::crossed || step < suspicious_step * span)) {
-      enclosing = true;
-      set_anchor();
-    }
-    if (enclosing && step <= std::max(enclosure * span, 4 * tiny)) {
-      if (!pass_singular(t_, next, t)) return stuck(next);
-      report.warnings.push_back(fmt::format(
-          "at t = {:.9g} s the mechanism passes a singular configuration where branches meet; it stays on the one that "
-          "continues its velocity",
-          next));
-      enclosing = false;
-      step = std::max(std::abs(t - t_), tiny);
+    made_since_failure = 0;
+    if (!has_velocity_) find_velocity();
+    const double wide = has_velocity_ ? std::abs(next - t_) * largest_rate() : 1;
+    if (attempt < reaches.size() && wide <= reaches[attempt] / 2) {
+      if (attempt == 0 && choose_better_rows()) continue;
+      const Passage passage = pass_singular(next, t, reaches[attempt], report);
+      if (passage == Passage::failed) return report;
+      if (passage != Passage::none) {
+        attempt = 0;
+        continue;
+      }
+      ++attempt;
+      ignore_dips = outcome == StepOutcome::dipped && attempt == reaches.size();
+      if (ignore_dips) continue;
+    } else if (outcome == StepOutcome::dipped && attempt == reaches.size()) {
+      ignore_dips = true;
       continue;
     }
-    step /= 2;
+    step = std::min(step, std::abs(next - t_)) / 2;
     if (step < tiny || t_ + direction * step == t_) return stuck(next);
-    if (!has_velocity_) find_velocity();
   }
   return report;
-}
-
-// Extrapolates from the anchor across the enclosed singular instant and accepts the point only if the motion between is
-// what the velocities at both ends say.
-bool Kinematics::pass_singular(double before, double after, double target) {
-  const double distance = std::abs(after - anchor_t_), direction = target > before ? 1 : -1;
-  std::vector<double> rates(q_.size());
-  for (double part : {1.0, 0.5, 0.25, 0.1, 0.03, 0.01, 1e-3, 1e-4}) {
-    double t = after + direction * part * std::max(distance, 1e-6 * std::abs(target - before));
-    if ((target - t) * direction < 0) t = target;
-    if (t == after) continue;
-    const double h = t - anchor_t_;
-    for (std::size_t k = 0; k < q_.size(); ++k) {
-      trial_[k] = anchor_q_[k] + h * (anchor_qd_[k] + h / 2 * anchor_qdd_[k]);
-    }
-    evaluator_.set_time(t);
-    newton_ = solver_.solve_position(trial_);
-    if (!newton_.converged || newton_.first_turn > largest_turn) continue;
-    if (!solver_.solve_velocity(rates, false)) continue;
-    double motion = 0, kink = 0;
-    for (int c = 0; c < plan_->columns; ++c) {
-      const auto k = at(plan_->coordinate[at(c)]);
-      const double moved = trial_[k] - anchor_q_[k];
-      const double scale = k % 3 == 2 ? 1 : 1 / evaluator_.length_scale();
-      motion = std::max(motion, std::abs(moved) * scale);
-      kink = std::max(kink, std::abs(moved - h / 2 * (anchor_qd_[k] + rates[k])) * scale);
-    }
-    if (kink > largest_kink * motion) continue;
-    q_.swap(trial_);
-    t_ = t;
-    qd_.swap(rates);
-    has_velocity_ = true;
-    has_acceleration_ = false;
-    predictor_.clear();
-    predictor_.push(t_, q_, qd_, {});
-    remember_signs();
-    ++evaluator_.counters.steps;
-    return true;
-  }
-  return false;
 }
 
 // No step can be made: says whether the drivers ask for the impossible (w^T nu != 0) or branches meet here.
@@ -207,17 +220,21 @@ Report Kinematics::stuck(double t) {
       found ? fmt::format("; most concerned: {} \"{}\"", model_->element_type(plan_->row_element[at(heaviest)]),
                           model_->element_name(plan_->row_element[at(heaviest)]))
             : "";
-  const double singular = t_ + (t - t_) / 2;
+  SingularPoint point;
+  point.t = t_ + (t - t_) / 2;
+  point.q = q_;
   if (found && std::abs(product) > 1e-6 * std::sqrt(square)) {
+    point.kind = SingularPoint::Kind::lock_up;
     report.status = Status::lock_up;
     report.message = fmt::format(
         "lock-up at t = {:.12g} s: the drivers ask for a motion that the mechanism cannot make (a dead point){}",
-        singular, where);
+        point.t, where);
   } else {
     report.status = found && square > 0 ? Status::bifurcation : Status::singular;
     report.message = fmt::format("the motion cannot be continued beyond the singular configuration at t = {:.12g} s{}",
-                                 singular, where);
+                                 point.t, where);
   }
+  singular_points_.push_back(std::move(point));
   return report;
 }
 

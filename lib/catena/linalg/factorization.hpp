@@ -42,6 +42,15 @@ struct PivotInfo {
   int column = -1;  ///< in the caller's numbering
 };
 
+/// How far a diagonal block is from a singular matrix. Both carry the sign of its determinant, up to a factor that
+/// never changes, and vanish where the block is singular; the pivot may be small elsewhere too, the determinant is
+/// smooth.
+struct BlockMargin {
+  static constexpr int largest_block = 64;
+  double pivot = 0;        ///< the smallest, of the row-scaled matrix
+  double determinant = 0;  ///< of the row-scaled block; of blocks larger than largest_block the pivot again
+};
+
 class Factorization {
  public:
   /// Orders the matrix. `pattern` must be square (std::invalid_argument otherwise) and is copied.
@@ -95,6 +104,8 @@ class Factorization {
   /// that differs tells that a block went through a singular matrix in between. Empty while UMFPACK is in use. No
   /// allocation after the first call.
   std::span<const signed char> determinant_signs();
+  /// How far every diagonal block is from a singular matrix, as above.
+  std::span<const BlockMargin> block_margins();
 
   /// A failed result in a sentence for a report.
   std::string describe(const FactorResult& result) const;
@@ -134,6 +145,7 @@ class Factorization {
   bool parities_are_current_ = false;
   std::vector<signed char> parities_;  // of the pivoting within every block
   std::vector<signed char> signs_;
+  std::vector<BlockMargin> margins_;
   std::vector<int> place_of_row_, cycle_;
   std::vector<double> right_hand_side_;  // these three for solve_checked only, allocated at its first call
   std::vector<double> correction_;

@@ -1,5 +1,7 @@
 // Signs of the block determinants: product of the pivots' signs and the parity of the row exchanges within a block.
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "catena/linalg/factorization.hpp"
 
@@ -44,6 +46,28 @@ std::span<const signed char> Factorization::determinant_signs() {
     signs_[block] = static_cast<signed char>(negative % 2 ? -parities_[block] : parities_[block]);
   }
   return signs_;
+}
+
+std::span<const BlockMargin> Factorization::block_margins() {
+  require_factors();
+  if (umfpack_in_use_ || blocks_ == 0) return {};
+  if (!parities_are_current_) find_parities();
+  margins_.resize(static_cast<std::size_t>(blocks_));
+  const std::span<const double> pivots = klu_.pivots();
+  for (std::size_t block = 0; block < margins_.size(); ++block) {
+    const int first = block_start_[block], last = block_start_[block + 1];
+    const bool large = last - first > BlockMargin::largest_block;
+    bool negative = parities_[block] < 0;
+    double least = std::numeric_limits<double>::infinity(), product = 1;
+    for (int k = first; k < last; ++k) {
+      const double pivot = pivots[static_cast<std::size_t>(k)], size = std::abs(pivot);
+      negative ^= pivot < 0;
+      least = size < least ? size : least;
+      product = large ? least : product * size;
+    }
+    margins_[block] = negative ? BlockMargin{-least, -product} : BlockMargin{least, product};
+  }
+  return margins_;
 }
 
 }  // namespace catena

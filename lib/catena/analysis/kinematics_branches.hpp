@@ -1,0 +1,53 @@
+// Branches at a singular configuration: which velocities the mechanism may go on with (THEORY section 3).
+//
+//   Phi_q qd = nu  has the solutions  qd = qd0 + sum_j a_j z_j,  z_j the right null vectors of Phi_q;
+//   a motion goes on along qd only if  Phi_q qdd = gamma(q, qd)  can be solved as well:
+//   w_i^T gamma(q, qd0 + sum_j a_j z_j) = 0  for all left null vectors w_i
+//
+// quadratic equations in a, one for one at a simple branch point: two real roots = two branches, a double root = they
+// touch, none = the configuration is isolated. With more null vectors the real roots are searched for by Newton's
+// method from many starts, up to a nullity of `most_nullity`; above it the nullity and the bodies are all that is said.
+// Where the drivers rest (nu = 0) no velocity tells branches apart.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "catena/assembly/evaluate.hpp"
+
+namespace catena {
+
+struct SingularPoint {
+  enum class Kind {
+    branch_point,  ///< branches with different velocities meet
+    tangency,      ///< branches touch with the same velocity, or the configuration is regular again to second order
+    rest,          ///< the drivers rest there, and the motion goes through or turns back
+    isolated,      ///< no velocity goes on from here
+    lock_up,       ///< the drivers ask for a motion that is not possible
+  };
+  Kind kind = Kind::branch_point;
+  double t = 0;
+  int nullity = 1;        ///< of the driven Jacobian
+  std::vector<double> q;  ///< the configuration, plan order
+  std::vector<std::vector<double>>
+      tangents;                       ///< velocities of the branches, plan order; the first one goes on as before
+  std::vector<std::string> branches;  ///< the same in words: which bodies move how
+  std::vector<std::string> bodies;    ///< those that take part in the null vectors, the most mobile first
+  /// Whether positions near this one are only reached by moving the drivers: a null vector that cannot be followed.
+  bool held_to_second_order = false;
+
+  /// The name used in result files.
+  std::string_view kind_name() const;
+  /// "branch 1 (goes on as before): ...; branch 2: ..."
+  std::string describe_branches() const;
+};
+
+inline constexpr int most_nullity = 6;
+
+/// The branches at the evaluator's time and the singular configuration q. `along`: the velocity of the motion that came
+/// here, empty if it starts here. `threshold`: length below which rows count as dependent, see RankOptions.
+SingularPoint find_branches(Evaluator& evaluator, std::span<const double> q, std::span<const double> along,
+                            double threshold);
+
+}  // namespace catena

@@ -1,0 +1,447 @@
+// Across singular configurations: where they are, which branches meet there, and on which one the motion goes on.
+//
+// The branch is extrapolated from two instants before the suspected one to two behind it and solved for there, where
+// the equations determine it again. Hermite's polynomial through the four (kinematics_bridge.hpp) must then meet the
+// constraints all the way: with links that only nearly align it does not, since the true branch turns away. Along it
+// the smallest pivots of the blocks are smooth, without the rounding that Newton's method suffers here, and the instant
+// at which one vanishes is found to some 1e-13 of the bridge; there the null spaces and the branches are taken.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "catena/analysis/kinematics.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// A node's prediction may be off by this part of the bridge's motion. Whether the nodes lie on one branch is judged by
+// the constraints along the polynomial.
+constexpr double allowance = 0.2;
+// Residual of the polynomial, in length scales or rad, beyond what rounding explains.
+constexpr double bridge_tolerance = 2e-12;
+constexpr int samples = 9;
+// A pivot whose least size is this part of what it is at the ends vanishes.
+constexpr double vanishing = 1e-6;
+// Drivers that move less than the first part of what they do at the ends of the bridge may rest nearby; they do if less
+// than the second part is left.
+constexpr double slow = 1e-3, resting = 1e-6;
+// Length below which rows count as dependent at a singular configuration found to rounding.
+constexpr double dependence = 1e-7;
+// The other branch is entered over this much motion; it must be found this near to its tangent, as part of its distance
+// from the nearest other branch.
+constexpr double entries[] = {0.02, 0.01, 0.005, 0.002, 0.001, 3e-4};
+constexpr double entry_allowance = 0.2;
+
+double norm_of(std::span<const double> x) {
+  double sum = 0;
+  for (double value : x) sum += value * value;
+  return std::sqrt(sum);
+}
+
+}  // namespace
+
+bool Kinematics::tables_reach(double t) const {
+  return std::all_of(model_->functions.begin(), model_->functions.end(), [&](const auto& function) {
+    const TimeRange range = function.domain();
+    return t >= range.first && t <= range.last;
+  });
+}
+
+// Solves at t from the prediction in trial_.
+bool Kinematics::add_node(MotionBridge& bridge, double t, double allowed) {
+  if (!tables_reach(t)) return false;
+  evaluator_.set_time(t);
+  newton_ = solver_.solve_position(trial_);
+  if (!newton_.converged || newton_.first_correction > allowed) return false;
+  // Once more: rounding in a node is enlarged on the bridge.
+  if (!solver_.solve_position(trial_).converged) return false;
+  std::vector<double> rates(q_.size(), 0.0), accelerations(q_.size(), 0.0);
+  if (!solver_.solve_velocity(rates, false) || !solver_.solve_acceleration(rates, accelerations, false)) return false;
+  bridge.add(t, trial_, rates, accelerations);
+  return true;
+}
+
+// Nodes at centre + {-2, -1, 1, 2} h (h is negative when time runs backwards). Those behind are predicted from four
+// before, so sharply that it is the same branch even where others lie near; where a table of a driver ends too early
+// for them, the four before make the bridge.
+bool Kinematics::build_bridge(MotionBridge& bridge, double centre, double h, double reach) {
+  MotionBridge before;
+  for (int k = 1; k <= MotionBridge::capacity; ++k) {
+    const double t = centre - k * h;
+    if (!tables_reach(t)) break;
+    if (before.empty()) {
+      trial_ = q_;
+      predictor_.predict(t, trial_, {}, {});
+    } else {
+      before.evaluate(t, trial_, {}, {});
+    }
+    if (!add_node(before, t, allowance * reach)) break;
+  }
+  if (before.size() < 2) return false;
+  bridge = before;
+  if (!tables_reach(centre + 2 * h)) return true;
+  bridge.keep_first(2);
+  for (int k = 1; k <= 2; ++k) {
+    (k == 1 ? before : bridge).evaluate(centre + k * h, trial_, {}, {});
+    if (!add_node(bridge, centre + k * h, allowance * reach)) return false;
+  }
+  return true;
+}
+
+bool Kinematics::follows_constraints(const MotionBridge& bridge, double from, double to) {
+  std::vector<double> q(q_.size());
+  double extent = 0;
+  for (std::size_t k = 0; k < q_.size(); ++k) extent = std::max(extent, std::abs(q_[k]) / evaluator_.length_scale());
+  const double tolerance = bridge_tolerance + 1e-14 * extent;
+  for (int k = 0; k < samples; ++k) {
+    const double t = from + (to - from) * k / (samples - 1);
+    evaluator_.set_time(t);
+    bridge.evaluate(t, q, {}, {});
+    if (!(solver_.residual_at(q) <= tolerance)) return false;
+  }
+  return true;
+}
+
+// False where the matrix is singular to the last digit.
+bool Kinematics::margins_on(const MotionBridge& bridge, double t, std::vector<double>& margins) {
+  evaluator_.set_time(t);
+  bridge.evaluate(t, trial_, {}, {});
+  if (!(solver_.factor_at(trial_) > 0)) return false;
+  margins.clear();
+  for (const BlockMargin& margin : solver_.block_margins()) margins.push_back(margin.pivot);
+  return true;
+}
+
+// The instant between a and b where the block's margin changes its sign, or else where it is least.
+double Kinematics::refine_instant(const MotionBridge& bridge, std::size_t block, double a, double b) {
+  std::vector<double> margins;
+  bool hit = false;
+  const auto margin = [&](double t) {
+    hit = hit || !margins_on(bridge, t, margins);
+    return hit ? 0.0 : margins[block];
+  };
+  double fa = margin(a), fb = margin(b);
+  const double width = 1e-15 * (std::abs(a) + std::abs(b)) + 1e-14 * std::abs(b - a);
+  if ((fa < 0) != (fb < 0)) {
+    // Regula falsi with halving of a value that stays (Illinois), and a bisection now and then.
+    for (int k = 0; k < 80 && std::abs(b - a) > width; ++k) {
+      double t = k % 4 == 3 || fb == fa ? (a + b) / 2 : b - fb * (b - a) / (fb - fa);
+      if (!(std::min(a, b) < t && t < std::max(a, b))) t = (a + b) / 2;
+      const double f = margin(t);
+      if (hit || f == 0) return t;
+      if ((f < 0) != (fb < 0)) {
+        a = b;
+        fa = fb;
+      } else {
+        fa /= 2;
+      }
+      b = t;
+      fb = f;
+    }
+    return b;
+  }
+  const double golden = (std::sqrt(5.0) - 1) / 2;
+  double c = b - golden * (b - a), d = a + golden * (b - a);
+  double fc = std::abs(margin(c)), fd = std::abs(margin(d));
+  for (int k = 0; k < 70 && std::abs(b - a) > width; ++k) {
+    const bool left = fc < fd;
+    (left ? b : a) = left ? d : c;
+    (left ? d : c) = left ? c : d;
+    (left ? fd : fc) = left ? fc : fd;
+    const double t = left ? b - golden * (b - a) : a + golden * (b - a);
+    (left ? c : d) = t;
+    (left ? fc : fd) = std::abs(margin(t));
+    if (hit) return t;
+  }
+  return (a + b) / 2;
+}
+
+std::vector<double> Kinematics::singular_instants(const MotionBridge& bridge, double from, double to) {
+  std::vector<double> instants, times;
+  std::vector<std::vector<double>> margins;
+  for (int k = 0; k < samples; ++k) {
+    double t = from + (to - from) * k / (samples - 1);
+    std::vector<double> found;
+    // A sample that falls on the singular instant itself is moved off it.
+    for (int nudge = 0; nudge < 3 && !margins_on(bridge, t, found); ++nudge) t += 1e-9 * (to - from);
+    if (found.empty()) continue;
+    times.push_back(t);
+    margins.push_back(std::move(found));
+  }
+  if (times.size() < 3) return instants;
+  const std::size_t blocks = margins.front().size();
+  std::vector<double> before, after;
+  for (std::size_t k = 0; k + 1 < times.size(); ++k) {
+    std::vector<char> explained(blocks, 0);
+    for (std::size_t b = 0; b < blocks; ++b) {
+      if (explained[b] || (margins[k][b] < 0) == (margins[k + 1][b] < 0)) continue;
+      const double t = refine_instant(bridge, b, times[k], times[k + 1]);
+      instants.push_back(t);
+      // What changes at the same instant is explained by it.
+      const double near = 1e-7 * (to - from);
+      if (!margins_on(bridge, t - near, before) || !margins_on(bridge, t + near, after)) continue;
+      for (std::size_t other = b; other < blocks; ++other) {
+        if ((before[other] < 0) != (after[other] < 0)) explained[other] = 1;
+      }
+    }
+  }
+  if (instants.empty()) {
+    // No sign changed: pivots that come and go, an even number of them or one that only touches zero.
+    double least = 1;
+    std::size_t block = 0, place = 0;
+    for (std::size_t b = 0; b < blocks; ++b) {
+      const double ends = std::max(std::abs(margins.front()[b]), std::abs(margins.back()[b]));
+      for (std::size_t k = 1; k + 1 < times.size(); ++k) {
+        const double part = std::abs(margins[k][b]) / ends;
+        if (part < least) least = part, block = b, place = k;
+      }
+    }
+    if (least < 1) {
+      const double ends = std::max(std::abs(margins.front()[block]), std::abs(margins.back()[block]));
+      const double t = refine_instant(bridge, block, times[place - 1], times[place + 1]);
+      if (!margins_on(bridge, t, before) || std::abs(before[block]) < vanishing * ends) instants.push_back(t);
+    }
+  }
+  std::sort(instants.begin(), instants.end());
+  return instants;
+}
+
+// The instant near t at which the drivers rest: where they turn back the velocity tells it better than a pivot that
+// only touches zero, and where they go through the pivot is flat. t itself if they do not rest.
+bool Kinematics::find_rest(const MotionBridge& bridge, double& t, double from, double to) {
+  std::vector<double> nu(at(plan_->rows)), reference(nu), q(q_.size());
+  const auto nu_at = [&](double instant, std::vector<double>& out) {
+    evaluator_.set_time(instant);
+    bridge.evaluate(instant, q, {}, {});
+    evaluator_.set_configuration(q);
+    evaluator_.nu(out);
+    return norm_of(out);
+  };
+  const double most = std::max(nu_at(to, nu), nu_at(from, reference));
+  if (nu_at(t, nu) > slow * most) return false;
+  const auto along = [&](double instant) {
+    nu_at(instant, nu);
+    double sum = 0;
+    for (std::size_t r = 0; r < nu.size(); ++r) sum += nu[r] * reference[r];
+    return sum;
+  };
+  double a = from, b = to, rest = t;
+  if (along(b) < 0) {
+    while (std::abs(b - a) > 1e-15 * std::abs(to - from) && (a + b) / 2 != a && (a + b) / 2 != b) {
+      const double middle = (a + b) / 2;
+      (along(middle) > 0 ? a : b) = middle;
+    }
+    rest = (a + b) / 2;
+  } else {
+    a = t - 0.05 * (to - from), b = t + 0.05 * (to - from);
+    for (int k = 0; k < 80; ++k) {
+      const double left = a + (b - a) / 3, right = b - (b - a) / 3;
+      (nu_at(left, nu) < nu_at(right, nu) ? b : a) = nu_at(left, nu) < nu_at(right, nu) ? right : left;
+    }
+    rest = (a + b) / 2;
+  }
+  if (nu_at(rest, nu) > resting * most || std::abs(rest - t) > 0.05 * std::abs(to - from)) return false;
+  t = rest;
+  return true;
+}
+
+SingularPoint Kinematics::look_at(const MotionBridge& bridge, double t, double from, double to) {
+  const bool rests = find_rest(bridge, t, from, to);
+  std::vector<double> q(q_.size()), qd(q_.size());
+  evaluator_.set_time(t);
+  bridge.evaluate(t, q, qd, {});
+  SingularPoint point = find_branches(evaluator_, q, qd, dependence);
+  if (rests && point.nullity > 0) {
+    point.kind = SingularPoint::Kind::rest;
+    point.branches.clear();
+    point.tangents.resize(std::min<std::size_t>(1, point.tangents.size()));
+  }
+  return point;
+}
+
+void Kinematics::announce(const SingularPoint& point, Report& report) {
+  std::string text;
+  switch (point.kind) {
+    case SingularPoint::Kind::branch_point:
+      text = fmt::format("at t = {:.12g} s branches meet: {}; {} ", point.t, point.describe_branches(),
+                         options_.branch <= 1 ? "the motion goes on as before, along" : "the motion takes");
+      text += fmt::format("branch {}", std::max(1, options_.branch));
+      break;
+    case SingularPoint::Kind::rest:
+      text = fmt::format(
+          "at t = {:.12g} s the drivers rest in a singular configuration; the motion goes on as smoothly as it came",
+          point.t);
+      break;
+    default:
+      text = fmt::format("at t = {:.12g} s the mechanism passes a singular configuration; the motion goes on as before",
+                         point.t);
+  }
+  if (point.nullity > 1) {
+    text += fmt::format(" ({} motions are undetermined at that instant)", point.nullity);
+  }
+  report.warnings.push_back(std::move(text));
+}
+
+// The time in which the mechanism moves by `reach`, at the greatest speed that the drivers have within twice that time:
+// where they come to rest the present speed says nothing. 0: it does not move.
+double Kinematics::bridge_length(double centre, double reach) {
+  const double rate = largest_rate();
+  std::vector<double> nu(at(plan_->rows));
+  const auto speed = [&](double t) {
+    if (!tables_reach(t)) return 0.0;
+    evaluator_.set_time(t);
+    evaluator_.nu(nu);
+    return norm_of(nu);
+  };
+  const double present = speed(t_);
+  double h = reach / rate;
+  if (!(present > 0) || !std::isfinite(h)) return 0;
+  for (int k = 0; k < 60; ++k) {
+    double most = present;
+    for (int s = -2; s <= 2; ++s) most = std::max(most, speed(centre + s * h));
+    if (h * rate * most <= 1.5 * reach * present) return h;
+    h *= 0.7;
+  }
+  return 0;
+}
+
+// Looks for singular configurations about the suspected stretch from t_ to `next`. Passed: the bridge is in place.
+Kinematics::Passage Kinematics::pass_singular(double next, double target, double reach, Report& report) {
+  const double centre = t_ + (next - t_) / 2, length = bridge_length(centre, reach);
+  if (!(length > 0)) return Passage::none;
+  const double h = target > t_ ? length : -length;
+  MotionBridge bridge;
+  if (!build_bridge(bridge, centre, h, reach)) return Passage::none;
+  double from = centre - std::abs(h), to = centre + std::abs(h);
+  if (!tables_reach(centre + 2 * h)) (h > 0 ? to : from) = target;
+  if (!follows_constraints(bridge, from, to)) return Passage::none;
+  // Those behind have been dealt with.
+  std::vector<double> instants = singular_instants(bridge, from, to);
+  std::erase_if(instants, [&](double instant) { return (instant - t_) * h <= 0; });
+  if (instants.empty()) return follow_bridge(bridge, h > 0 ? std::min(to, target) : std::max(from, target));
+  // Around the singular instant itself the nodes lie where rounding is least.
+  const double first = h > 0 ? instants.front() : instants.back();
+  MotionBridge centred;
+  bool moved = tables_reach(first - 2 * h) && tables_reach(first + 2 * h);
+  for (int k : {-1, -2, 1, 2}) {
+    if (!moved) break;
+    bridge.evaluate(first + k * h, trial_, {}, {});
+    moved = add_node(centred, first + k * h, allowance * reach);
+  }
+  const double covered = std::abs(h);
+  if (moved && (target - (first - h)) * h >= 0 && follows_constraints(centred, first - covered, first + covered)) {
+    bridge = std::move(centred);
+    from = first - covered;
+    to = first + covered;
+  }
+  for (double instant : instants) {
+    // Instants closer than they are known are one.
+    if (!singular_points_.empty() && instant != first &&
+        std::abs(instant - singular_points_.back().t) < 1e-9 * (to - from)) {
+      continue;
+    }
+    SingularPoint point = look_at(bridge, instant, from, to);
+    // Only the rows in use depend on each other, others take their place.
+    if (point.nullity == 0) continue;
+    if (options_.branch > 1 && point.kind == SingularPoint::Kind::branch_point) {
+      if (options_.branch > static_cast<int>(point.tangents.size())) {
+        report.status = Status::bifurcation;
+        report.message = fmt::format("at t = {:.12g} s branch {} was asked for, but {} meet: {}", point.t,
+                                     options_.branch, point.tangents.size(), point.describe_branches());
+        singular_points_.push_back(std::move(point));
+        return Passage::failed;
+      }
+      choice_ = point;
+    }
+    announce(point, report);
+    singular_points_.push_back(std::move(point));
+    if (choice_) break;
+  }
+  bridge_ = std::move(bridge);
+  bridge_from_ = from;
+  bridge_to_ = to;
+  if (choice_) (h > 0 ? bridge_to_ : bridge_from_) = choice_->t;
+  return Passage::passed;
+}
+
+// Nothing is singular about the stretch after all: the bridge shows the way across it.
+Kinematics::Passage Kinematics::follow_bridge(const MotionBridge& bridge, double t) {
+  evaluator_.set_time(t);
+  bridge.evaluate(t, trial_, {}, {});
+  newton_ = solver_.solve_position(trial_);
+  if (!newton_.converged || newton_.first_correction > 1e3 * bridge_tolerance) return Passage::none;
+  q_.swap(trial_);
+  t_ = t;
+  has_velocity_ = has_acceleration_ = false;
+  ++evaluator_.counters.steps;
+  solver_.factor_at(q_);
+  remember_margins();
+  if (solver_.solve_velocity(qd_, false)) {
+    has_velocity_ = true;
+    predictor_.push(t_, q_, qd_, {});
+  }
+  return Passage::regular;
+}
+
+// Leaves the branch that came for the one chosen, a little beyond the branch point, and bridges the way there.
+Report Kinematics::take_branch(const SingularPoint& point, int branch, double direction) {
+  Report report;
+  choice_.reset();
+  const std::vector<double>& tangent = point.tangents[at(branch - 1)];
+  double rate = 0, apart = std::numeric_limits<double>::infinity();
+  const std::vector<double> nothing(tangent.size(), 0.0);
+  for (const auto& other : point.tangents) {
+    rate = std::max(rate, solver_.distance(other, nothing, nullptr));
+    if (&other != &tangent) apart = std::min(apart, solver_.distance(other, tangent, nullptr));
+  }
+  std::vector<double> q(q_.size()), qd(q_.size()), qdd(q_.size());
+  for (double entry : entries) {
+    const double h = direction * entry / rate;
+    for (std::size_t k = 0; k < q.size(); ++k) trial_[k] = point.q[k] + h * tangent[k];
+    MotionBridge bridge;
+    if (!add_node(bridge, point.t + h, entry_allowance * std::abs(h) * std::min(apart, rate))) continue;
+    const bool whole = tables_reach(point.t - 2 * h);
+    const double offsets[2][3] = {{2, -1, -2}, {2, 3, 4}};
+    bool built = true;
+    for (double offset : offsets[whole ? 0 : 1]) {
+      bridge.evaluate(point.t + offset * h, trial_, {}, {});
+      built = built && add_node(bridge, point.t + offset * h, allowance * entry);
+    }
+    if (!built || !follows_constraints(bridge, point.t, point.t + h)) continue;
+    bridge_ = std::move(bridge);
+    bridge_from_ = std::min(point.t, point.t + h);
+    bridge_to_ = std::max(point.t, point.t + h);
+    return report;
+  }
+  report.status = Status::bifurcation;
+  report.message = fmt::format("at t = {:.12g} s branch {} could not be entered: {}", point.t, branch,
+                               branch <= static_cast<int>(point.branches.size()) ? point.branches[at(branch - 1)] : "");
+  return report;
+}
+
+void Kinematics::place_on_bridge(double t) {
+  bridge_.evaluate(t, q_, qd_, qdd_);
+  t_ = t;
+  has_velocity_ = has_acceleration_ = on_bridge_ = true;
+  evaluator_.set_time(t);
+  newton_ = {};
+  newton_.converged = true;
+  newton_.residual = solver_.residual_at(q_);
+}
+
+void Kinematics::leave_bridge(double end) {
+  place_on_bridge(end);
+  predictor_.clear();
+  predictor_.push(t_, q_, qd_, qdd_);
+  bridge_.clear();
+  on_bridge_ = false;
+  solver_.factor_at(q_);
+  margins_.clear();
+  remember_margins();
+  choose_better_rows();
+}
+
+}  // namespace catena
