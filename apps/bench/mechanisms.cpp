@@ -12,19 +12,18 @@ namespace {
 
 std::string name(const char* kind, int k) { return kind + std::to_string(k); }
 
-/// A uniform rod of 1 kg from `from` to `to`.
-int add_rod(Model& model, const std::string& label, Vec2<double> from, Vec2<double> to) {
-  const Vec2<double> along = to - from;
-  const double length = norm(along);
-  return model.add_body(label, {.mass = 1,
-                                .inertia = length * length / 12,
-                                .position = 0.5 * (from + to),
-                                .angle = std::atan2(along.y, along.x)});
-}
-
 Vec2<double> along(double length) { return {length, 0}; }
 
 }  // namespace
+
+int add_rod(Model& model, const std::string& label, Vec2<double> from, Vec2<double> to) {
+  const Vec2<double> direction = to - from;
+  const double length = norm(direction);
+  return model.add_body(label, {.mass = 1,
+                                .inertia = length * length / 12,
+                                .position = 0.5 * (from + to),
+                                .angle = std::atan2(direction.y, direction.x)});
+}
 
 std::shared_ptr<Model> chain(int links) {
   auto model = std::make_shared<Model>();
