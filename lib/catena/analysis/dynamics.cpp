@@ -254,6 +254,7 @@ AnalysisReport Dynamics::run(const TimeGrid& grid, const Needs& needs, RowObserv
   integrator_.emplace(motion, RungeKuttaOptions{.order = options_.method == IntegrationMethod::rk5 ? 5 : 8,
                                                 .tolerance = step_part * options_.tolerance,
                                                 .fixed_step = options_.step,
+                                                .horizon = grid.last(),
                                                 .may_lower_order = options_.method != IntegrationMethod::rk8});
   y_row_.assign(motion.size(), 0.0);
   slope_row_.assign(motion.size(), 0.0);

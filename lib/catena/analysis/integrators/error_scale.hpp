@@ -10,6 +10,10 @@
 //
 // E, in J: the largest kinetic energy so far, at the start also what the accelerations do over a length L. No body can
 // be faster than all of E makes it: beside a light part that rushes the velocity of a heavy one still counts.
+//
+// tolerance: `step_tolerance` of a run of up to n0 = 200 radians of V. In a longer one errors of energy turn into
+// errors of phase, so that errors of steps add up with the square of the length: they are given (n0/n)^2 of it, n =
+// integral of V so far and as long as V now is to go. Never less than what double precision holds.
 #pragma once
 
 #include <algorithm>
@@ -22,8 +26,9 @@ namespace catena {
 
 class ErrorScale {
  public:
-  double tolerance = 1e-8;
+  double step_tolerance = 1e-10;
   double length = 1;
+  double horizon = 0;  ///< s; where the run ends
 
   /// Masses and moments of inertia by coordinate, zeros allowed.
   void set_masses(std::span<const double> masses) {
@@ -35,15 +40,16 @@ class ErrorScale {
   }
 
   double rate() const { return rate_; }
+  double tolerance() const { return tolerance_; }
   /// Of an error of position and of velocity v at coordinate c that count as much as the tolerance; the latter is zero
   /// where nothing has moved yet.
-  double position_unit(std::size_t c) const { return tolerance * (c % 3 == 2 ? 1 : length); }
+  double position_unit(std::size_t c) const { return tolerance_ * (c % 3 == 2 ? 1 : length); }
   double velocity_unit(std::size_t c, double v) const {
-    return tolerance * (std::min(rate_ * (c % 3 == 2 ? 1 : length), root_energy_ * speed_[c]) + std::abs(v));
+    return tolerance_ * (std::min(rate_ * (c % 3 == 2 ? 1 : length), root_energy_ * speed_[c]) + std::abs(v));
   }
 
-  /// Takes note of velocities and accelerations (three a body), a time `step` after the last ones; 0: at a start.
-  void observe(double step, std::span<const double> qd, std::span<const double> qdd) {
+  /// Takes note of velocities and accelerations (three a body) at t, a time `step` after the last ones; 0: at a start.
+  void observe(double t, double step, std::span<const double> qd, std::span<const double> qdd) {
     double fastest = 0, strongest = 0, energy = 0;
     for (std::size_t c = 0; c + 2 < qd.size(); c += 3) {
       fastest = std::max({fastest, std::abs(qd[c]) / length, std::abs(qd[c + 1]) / length, std::abs(qd[c + 2])});
@@ -55,10 +61,14 @@ class ErrorScale {
     }
     rate_ = std::max({rate_ / (1 + std::abs(step) * rate_), fastest, std::sqrt(strongest)});
     root_energy_ = std::max(root_energy_, std::sqrt(energy));
+    radians_ += rate_ * std::abs(step);
+    const double part = std::min(1.0, brief_run / (radians_ + rate_ * std::max(horizon - t, 0.0)));
+    tolerance_ = std::max(step_tolerance * part * part, least_tolerance);
   }
 
  private:
-  double rate_ = 0, root_energy_ = 0;
+  static constexpr double brief_run = 200, least_tolerance = 1e-15;
+  double rate_ = 0, root_energy_ = 0, radians_ = 0, tolerance_ = 0;
   std::vector<double> mass_, speed_;  // speed_: of a coordinate that has 1 J
 };
 

@@ -11,14 +11,14 @@ constexpr double safety = 0.9;
 constexpr double largest_growth = 2.5, largest_cut = 0.2;
 // The part of an error estimate that the projection will remove counts this much: stages spoil each other by it.
 constexpr double forbidden_part = 0.1;
-// A rejected step with a stage whose pivot ratio is below this is repeated with all stages projected.
+// A step with a stage whose pivot ratio is below this is repeated with all stages projected ...
 constexpr double projection_ratio = 1e-2;
 // ... if the ratio of other stages is this much larger: light parts make it small without any singularity.
 constexpr double ratio_dip = 0.3;
 // Where no step across a singular position is good enough, the best is taken if its error is below this.
 constexpr double largest_crossing_error = 300;
 // Ends of steps are kept away from positions where a pivot ratio is below this; accelerations lose ratio^1.5 there.
-constexpr double singular_end = 1e-7, lost_digits = 1e-14;
+constexpr double singular_end = 1e-7, lost_digits = 2e-11;
 constexpr double other_steps[] = {0.8, 0.6, 1.15, 0.4, 0.9, 1.3};  // what is tried instead of h
 constexpr int rejections_before_low_order = 8, low_order_run = 30;
 constexpr int most_rejections = 100;
@@ -33,7 +33,8 @@ RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options) : motion
   stage_.assign(16, std::vector<double>(size, 0.0));
   error_.resize(2 * motion_.coordinates());
   error_low_.resize(2 * motion_.coordinates());
-  scale_.tolerance = options.tolerance;
+  scale_.step_tolerance = options.tolerance;
+  scale_.horizon = options.horizon;
   scale_.length = motion_.equations().evaluator().length_scale();
   scale_.set_masses(motion_.equations().masses().mass);
   singular_ratio_ = std::max(singular_end, std::pow(lost_digits / std::sqrt(options.tolerance), 2.0 / 3));
@@ -46,7 +47,7 @@ bool RungeKutta::start(double t, std::span<const double> y) {
   observe_ratio();
   observe_rates();
   if (h_ == 0) {
-    const double part = 0.2 * std::pow(options_.tolerance, 1.0 / options_.order);
+    const double part = 0.2 * std::pow(scale_.tolerance(), 1.0 / options_.order);
     h_ = scale_.rate() > 0 ? part / scale_.rate() : std::numeric_limits<double>::max();
   }
   return true;
@@ -65,7 +66,7 @@ void RungeKutta::observe_ratio() {
 
 void RungeKutta::observe_rates() {
   const std::span<const double> y(y_), k(slope_);
-  scale_.observe(t_ - t_before_, motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()));
+  scale_.observe(t_, t_ - t_before_, motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()));
 }
 
 void RungeKutta::combine(const StageSum& sum, double h, const double* from, std::span<double> out) const {
@@ -183,14 +184,18 @@ bool RungeKutta::detour(double h) {
   return true;
 }
 
+void RungeKutta::repeat_with_projected_stages(double h) {
+  projecting_stages_ = true;
+  best_error_ = largest_crossing_error;
+  best_step_ = 0;
+  h_ = h;
+}
+
 // What to do about a step of size h that failed near a singular position: project its stages; try other sizes; at last
 // take the best of those unless it is bad. False: none of this helps, h_ is as it was.
 bool RungeKutta::try_crossing(double h, double error) {
   if (!projecting_stages_) {
-    projecting_stages_ = true;
-    best_error_ = largest_crossing_error;
-    best_step_ = 0;
-    h_ = h;
+    repeat_with_projected_stages(h);
     return true;
   }
   if (error < best_error_) {
@@ -240,6 +245,11 @@ bool RungeKutta::advance(double limit) {
     if (!std::isfinite(error)) error = 1e10;
     const double growth =
         std::clamp(safety * std::pow(std::max(error, 1e-10), -1.0 / tableau().order), largest_cut, largest_growth);
+    if (error <= accepted_error_ && !fixed && !projecting_stages_ && dips()) {
+      // Errors of stages across the constraints spoil each other here, and the estimate does not see all of it.
+      repeat_with_projected_stages(h);
+      continue;
+    }
     if (error > accepted_error_) {
       // Near a singular position a shorter step would only walk into it.
       if (dips() && try_crossing(h, error)) continue;

@@ -1,10 +1,11 @@
 // Adaptive explicit Runge-Kutta integration of a constrained motion: orders 8 and 5 (tableau.hpp), both projected onto
 // the constraints after every step, positions and velocities, in the mass metric.
 //
-// Passing singular positions (flat four-bars) without knowing of them takes three things, all found by experiment (see
-// NUMERICS.md): the part of an error estimate that the projection removes does not count; no step ends where a pivot of
-// the Schur complement keeps less than 1e-7 of itself; where order 8 does not get ahead, order 5 takes over for a
-// while. One object an integration; nothing allocates after construction.
+// Passing singular positions (flat four-bars) without knowing of them takes four things, all found by experiment (see
+// NUMERICS.md): the part of an error estimate that the projection removes does not count; a step across such a position
+// is made with all its stages projected; none ends where a pivot of the Schur complement keeps less than 1e-7 of
+// itself, or what the tolerance makes of it; where order 8 does not get ahead, order 5 takes over for a while. One
+// object an integration; nothing allocates after construction.
 #pragma once
 
 #include <cstdint>
@@ -21,6 +22,7 @@ struct RungeKuttaOptions {
   int order = 8;             ///< 5 or 8
   double tolerance = 1e-10;  ///< of a step's error, see error_scale.hpp
   double fixed_step = 0;     ///< s; 0: adaptive
+  double horizon = 0;        ///< s, where the run ends: the tolerance of a step depends on how far that is
   bool may_lower_order = true;
 };
 
@@ -59,6 +61,7 @@ class RungeKutta {
   double filtered_error(double h, double raw);
   bool finish_step();
   bool detour(double h);
+  void repeat_with_projected_stages(double h);
   bool try_crossing(double h, double error);
   void reject(double h);
   void accept(double growth, double proposed);
