@@ -27,19 +27,6 @@ bool is_damped(const Evaluator& evaluator) {
   return evaluator.dissipation(qd) != 0;
 }
 
-// The largest angle positive, or, where nothing turns, the largest displacement: either sense of a mode is as good.
-void choose_sense(const Plan& plan, std::vector<double>& shape) {
-  double largest[2] = {0, 0};
-  for (int c = 0; c < plan.columns; ++c) {
-    double& most = largest[plan.coordinate[at(c)] % 3 == 2];
-    if (std::abs(shape[at(c)]) > (1 + 1e-9) * std::abs(most)) most = shape[at(c)];
-  }
-  const double decisive = std::abs(largest[1]) > 1e-9 * std::abs(largest[0]) ? largest[1] : largest[0];
-  if (decisive < 0) {
-    for (double& x : shape) x = -x;
-  }
-}
-
 }  // namespace
 
 Modes::Modes(std::shared_ptr<const Model> model, const PlanOptions& plan_options, const ModesOptions& options)
@@ -98,7 +85,7 @@ ModesReport Modes::run(const std::function<bool()>& go_on) {
   std::vector<Mode> modes;
   const int wanted = options_.count > 0 ? options_.count : default_count;
   Report outcome = search.find(std::min(wanted, plan_->columns), modes);
-  if (!left.negligible(system_)) {
+  if (!left.negligible()) {
     const int body = plan_->model_body[at(plan_->coordinate[at(left.column)] / 3)];
     report.warnings.push_back(fmt::format(
         "the configuration is no equilibrium: {:.3g} N would set body \"{}\" in motion; an equilibrium analysis before "
@@ -109,7 +96,8 @@ ModesReport Modes::run(const std::function<bool()>& go_on) {
   for (Mode& mode : modes) {
     report.omega2.push_back(mode.omega2);
     report.omega.push_back(std::sqrt(std::abs(mode.omega2)));
-    choose_sense(*plan_, mode.shape);
+    const double sense = std::copysign(1.0, decisive_component(*plan_, mode.shape));
+    for (double& x : mode.shape) x *= sense;
     report.shapes.push_back(std::move(mode.shape));
   }
   const int found = static_cast<int>(modes.size());

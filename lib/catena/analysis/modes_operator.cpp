@@ -33,6 +33,16 @@ std::vector<double> length_weights(const StaticSystem& system) {
   return weights;
 }
 
+double decisive_component(const Plan& plan, std::span<const double> shape) {
+  double largest[2] = {0, 0};
+  for (int c = 0; c < plan.columns; ++c) {
+    double& most = largest[plan.coordinate[at(c)] % 3 == 2];
+    // Equal ones but for rounding: the first.
+    if (std::abs(shape[at(c)]) > (1 + 1e-9) * std::abs(most)) most = shape[at(c)];
+  }
+  return std::abs(largest[1]) > 1e-9 * std::abs(largest[0]) ? largest[1] : largest[0];
+}
+
 void solve_to_rounding(StaticSystem& system, std::span<const double> weight, std::span<const double> given,
                        std::span<double> x, std::span<double> correction) {
   KktMatrix& matrix = system.matrix();

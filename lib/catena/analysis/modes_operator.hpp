@@ -39,6 +39,10 @@ class ModeOperator final : public SpectralOperator {
 /// Weights (1, 1, radius^2) of the columns.
 std::vector<double> length_weights(const StaticSystem& system);
 
+/// The component that decides about the sense of a shape, either being as good: the largest angle or, where nothing
+/// turns, the largest displacement.
+double decisive_component(const Plan& plan, std::span<const double> shape);
+
 /// Solves with the factors of the system's matrix for the right-hand side `given` = [columns; rows] and refines with
 /// the matrix itself until rounding ends the gain. `weight`: in which corrections are measured; `correction`: work.
 void solve_to_rounding(StaticSystem& system, std::span<const double> weight, std::span<const double> given,

@@ -14,7 +14,7 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 // Constraints met to this, in length scales or rad, need no assembly.
 constexpr double assembled = 1e-12;
 // Residual forces below this part of the largest force count as none.
-constexpr double negligible_part = 1e-7, negligible_rounding = 10;
+constexpr double negligible_part = 1e-7, rounding_part = 1e-13;
 
 }  // namespace
 
@@ -27,9 +27,7 @@ Report assemble_for_statics(StaticSystem& system, std::vector<double>& q) {
   return report;
 }
 
-bool Imbalance::negligible(const StaticSystem& system) const {
-  return relative <= negligible_part || force <= negligible_rounding * system.rounding_force();
-}
+bool Imbalance::negligible() const { return relative <= negligible_part || force <= rounding; }
 
 Imbalance balance_loads(StaticSystem& system, std::span<double> lambda) {
   const Plan& plan = system.plan();
@@ -52,6 +50,16 @@ Imbalance balance_loads(StaticSystem& system, std::span<double> lambda) {
   Imbalance left{.force = system.force_norm(residual)};
   const double largest = system.force_scale(lambda);
   left.relative = largest > 0 ? left.force / largest : 0;
+  // What K does to places that are off by one extent each, in no particular pattern.
+  std::vector<double> places(columns), forces(columns);
+  for (int c = 0; c < plan.columns; ++c) {
+    const int coordinate = plan.coordinate[at(c)];
+    const double arm = coordinate % 3 == 2 ? system.radius()[at(coordinate / 3)] : 1;
+    places[at(c)] = (c % 2 ? 1.0 : -1.0) / arm;
+  }
+  system.fill(lambda, Curvature::exact, 0);
+  system.matrix().multiply_stiffness(places, forces);
+  left.rounding = rounding_part * system.force_norm(forces) * system.extent();
   double most = -1;
   for (int c = 0; c < plan.columns; ++c) {
     const int coordinate = plan.coordinate[at(c)];

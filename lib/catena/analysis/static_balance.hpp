@@ -20,9 +20,10 @@ Report assemble_for_statics(StaticSystem& system, std::vector<double>& q);
 /// What is left unbalanced: the largest force, N, also relative to the largest force in the mechanism, and where.
 struct Imbalance {
   double force = 0, relative = 0;
-  int column = -1;  ///< where it is largest
-  /// Small beside the forces, or rounding of stiff springs, K being what the system factored last.
-  bool negligible(const StaticSystem& system) const;
+  int column = -1;      ///< where it is largest
+  double rounding = 0;  ///< N, what rounding of the places makes of stiff springs
+  /// Small beside the forces, or rounding.
+  bool negligible() const;
 };
 
 /// Fills lambda (rows).

@@ -103,12 +103,13 @@ FactorResult KktMatrix::factorize(double least_stiffness, Counters& counters) {
     if (!result.ok()) return result;
     analyzed_ = true;
   }
-  choose_augmentation(least_stiffness);
-  // A quadratic energy under linear constraints has one matrix for ever: its factors are kept.
+  // A quadratic energy under linear constraints has one matrix for ever: its factors are kept, with the augmentation
+  // that is in them.
   if (keep_equal_factors_) {
-    if (is_factorized() && std::equal(last_.begin(), last_.end(), values_.begin())) return {};
+    if (is_factorized() && !last_.empty() && std::equal(last_.begin(), last_.end(), values_.begin())) return {};
     last_.assign(values_.begin(), values_.begin() + structure_.entries());
   }
+  choose_augmentation(least_stiffness);
   std::copy_n(values_.begin(), factored_.size(), factored_.begin());
   const int* product = structure_.product_slot.data();
   for (int r = 0; r < structure_.rows; ++r) {

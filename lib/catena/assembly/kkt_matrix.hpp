@@ -31,7 +31,10 @@ class KktMatrix {
   const KktStructure& structure() const { return structure_; }
 
   /// Compare the matrix with the one factored last, and keep its factors where nothing changed (linear problems).
-  void keep_equal_factors(bool keep) { keep_equal_factors_ = keep; }
+  void keep_equal_factors(bool keep) {
+    if (keep != keep_equal_factors_) last_.clear();
+    keep_equal_factors_ = keep;
+  }
   /// Whether every K written with these multipliers is the one without: constraints without second derivatives here.
   bool constraints_are_linear(Evaluator& evaluator);
 

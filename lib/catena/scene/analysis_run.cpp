@@ -14,13 +14,11 @@ struct Runner {
   AnalysisFunction run;
 };
 
-constexpr Runner entries[] = {{"check", run_check},
-                              {"assemble", run_assemble},
-                              {"kinematics", run_kinematics},
-                              {"inverse_dynamics", run_inverse_dynamics},
-                              {"dynamics", run_dynamics},
-                              {"equilibrium", run_equilibrium},
-                              {"modes", run_modes}};
+constexpr Runner entries[] = {{"check", run_check},           {"assemble", run_assemble},
+                              {"kinematics", run_kinematics}, {"inverse_dynamics", run_inverse_dynamics},
+                              {"dynamics", run_dynamics},     {"equilibrium", run_equilibrium},
+                              {"modes", run_modes},           {"path", run_path},
+                              {"buckling", run_buckling}};
 
 /// The element that reads the model's function of time number `function`.
 std::string reader_of(const Model& model, int function) {

@@ -26,6 +26,10 @@ struct AnalysisContext {
   RowSink& rows;
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(double)> progress;  ///< fraction done
+  /// The model with another value of parameter number `parameter`, all else as in `model`; nullptr if the scene does
+  /// not allow it.
+  std::function<std::shared_ptr<const Model>(int parameter, double value)> model_at{};
+  std::string_view parameter_name{};  ///< of the task's parameter
 };
 
 using AnalysisFunction = void (*)(AnalysisContext& context, AnalysisResult& result);
@@ -37,6 +41,8 @@ void run_inverse_dynamics(AnalysisContext& context, AnalysisResult& result);
 void run_dynamics(AnalysisContext& context, AnalysisResult& result);
 void run_equilibrium(AnalysisContext& context, AnalysisResult& result);
 void run_modes(AnalysisContext& context, AnalysisResult& result);
+void run_path(AnalysisContext& context, AnalysisResult& result);
+void run_buckling(AnalysisContext& context, AnalysisResult& result);
 
 /// What runs an analysis of this type; nullptr if nothing does yet.
 AnalysisFunction analysis_function(std::string_view type);

@@ -36,6 +36,8 @@ class SceneRun {
   void check_task(const AnalysisTask& task);
   std::shared_ptr<const Model> build(std::span<const double> parameters);
   void run_all();
+  /// Builds models in which one parameter of the task has another value.
+  std::function<std::shared_ptr<const Model>(int, double)> builder_of(const AnalysisTask& task);
   AnalysisResult run_task(const AnalysisTask& task, int number, SystemState& state, RowSink& rows);
   void finish_errors();
 
@@ -136,6 +138,19 @@ void SceneRun::finish_errors() {
   }
 }
 
+std::function<std::shared_ptr<const Model>(int, double)> SceneRun::builder_of(const AnalysisTask& task) {
+  auto table = std::make_shared<ParameterTable>(parameters_);
+  if (task.changes_parameters) table->set(task.place.find("set"), scene_->expressions, diagnostics_);
+  return [this, table](int parameter, double value) -> std::shared_ptr<const Model> {
+    Diagnostics diagnostics(1);
+    const ParameterSeed<double> seed[] = {{parameter, value}};
+    const std::vector<double> values = table->evaluate<double>(scene_->expressions, diagnostics, seed);
+    if (!diagnostics.ok()) return nullptr;
+    auto model = std::make_shared<Model>(build_model<double>(*scene_, values, {options_.max_elements}, diagnostics));
+    return diagnostics.ok() ? model : nullptr;
+  };
+}
+
 AnalysisResult SceneRun::run_task(const AnalysisTask& task, int number, SystemState& state, RowSink& rows) {
   AnalysisResult result;
   result.type = task.type();
@@ -150,7 +165,13 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& task, int number, SystemSt
                           .state = state,
                           .rows = rows,
                           .cancel = options_.cancel,
-                          .progress = {}};
+                          .progress = {},
+                          .model_at = {},
+                          .parameter_name = {}};
+  if (task.has("parameter")) {
+    context.model_at = builder_of(task);
+    context.parameter_name = parameters_.names().all()[static_cast<std::size_t>(task.word("parameter"))];
+  }
   if (options_.progress) {
     context.progress = [&, number](double fraction) {
       options_.progress({task.type(), number, static_cast<int>(tasks_.size()), fraction});

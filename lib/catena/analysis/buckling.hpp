@@ -1,0 +1,70 @@
+// Buckling: the values of a load parameter at which the current equilibrium, kept in place, loses its stability.
+//
+//   K(p) v = 0 on the null space of Phi_q,   K(p) = K0 + (p - p0) K'        K0 > 0: stable at the present value p0
+//
+// Solved as K0^-1 (K0 - K(p1)) v = theta v by Lanczos' method, p = p0 + (p1 - p0) / theta. Loads enter K linearly, so
+// that this is exact; where a parameter does not (a length, say), every value is iterated with p1 = p until it is.
+// Multipliers belong to each value of the parameter, the configuration to the present one: where the load moves the
+// equilibrium, a warning says so, and what is found is the estimate of linear buckling theory; a path finds the true
+// critical points. The values nearest to the present one come first. Refused: an equilibrium that is not stable, a
+// parameter that moves constraints.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "catena/analysis/analysis_report.hpp"
+#include "catena/analysis/path_system.hpp"
+#include "catena/analysis/system_state.hpp"
+
+namespace catena {
+
+struct BucklingOptions {
+  double present = 0;  ///< value p0 of the parameter
+  int count = 1;
+};
+
+struct BucklingReport : AnalysisReport {
+  std::vector<double> loads;                ///< values of the parameter, nearest to the present one first
+  std::vector<std::vector<double>> shapes;  ///< over columns; the largest turning or displacement is 1 rad or m
+};
+
+class Buckling {
+ public:
+  /// `model`: at options.present.
+  Buckling(std::shared_ptr<const Model> model, ModelAt model_at, const BucklingOptions& options);
+
+  const Plan& plan() const { return *plan_; }
+  Evaluator& evaluator() { return evaluator_; }
+
+  void start_from(const SystemState& state);
+  BucklingReport run(const std::function<bool()>& go_on = {});
+
+  double time() const { return t_; }
+  /// The configuration, assembled, plan order.
+  std::span<const double> q() const { return point_.q; }
+  SystemState state() const;
+
+ private:
+  struct Load {
+    double distance = 0;  // p - p0
+    std::vector<double> shape;
+  };
+  Report find(BucklingReport& report, const std::function<bool()>& go_on);
+  /// Loads by the difference of K between p0 and p0 + step.
+  Report find_with(double step, int count, std::vector<Load>& loads, double& effect,
+                   const std::function<bool()>& go_on);
+
+  std::shared_ptr<const Model> model_;
+  std::shared_ptr<const Plan> plan_;
+  BucklingOptions options_;
+  Evaluator evaluator_;
+  StaticSystem system_;
+  PathSystem path_;
+  PathPoint point_;
+  double t_ = 0;
+  bool moves_ = false;  // the load moves the equilibrium
+};
+
+}  // namespace catena

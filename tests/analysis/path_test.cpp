@@ -1,0 +1,204 @@
+// Paths of equilibria against closed forms: through limit points, past branch points and onto the branches.
+#include "catena/analysis/path.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "oracles/static_reference.hpp"
+#include "oracles/static_scenes.hpp"
+
+namespace catena {
+namespace {
+
+using namespace testing;
+
+struct Row {
+  double p;
+  std::vector<double> q;  // absolute, model order
+};
+
+struct Followed {
+  PathReport report;
+  std::vector<Row> rows;
+};
+
+Followed follow(const ModelAt& model_at, const PathOptions& options) {
+  Followed run;
+  Path path(model_at(options.from), model_at, options);
+  run.report = path.run([&](double p, const Snapshot& snapshot) {
+    Row row{p, {}};
+    const Plan& plan = snapshot.evaluator.plan();
+    for (int b = 0; b < plan.bodies; ++b) {
+      const Frame<double> frame = snapshot.evaluator.ground_frame(plan.plan_body[static_cast<std::size_t>(b)]);
+      row.q.insert(row.q.end(), {frame.x, frame.y, frame.phi});
+    }
+    run.rows.push_back(std::move(row));
+    return true;
+  });
+  return run;
+}
+
+TEST(Path, GoesThroughTheLimitPointsOfTheTruss) {
+  const auto reference = reference_values("von_mises_truss");
+  const double limit = reference.at("P_limit"), y_limit = reference.at("y_limit"), length = reference.at("L0");
+  const Followed run = follow([](double load) { return von_mises_truss(load, 0.3); }, {.from = 0, .to = 12});
+  ASSERT_TRUE(run.report.ok()) << run.report.message;
+  EXPECT_TRUE(run.report.warnings.empty()) << run.report.warnings.front();
+  // Every row lies on P(y) = 2 k (L0 / sqrt(b^2 + y^2) - 1) y.
+  for (const Row& row : run.rows) {
+    const double y = row.q[1];
+    EXPECT_NEAR(row.p, 2000 * (length / std::sqrt(1 + y * y) - 1) * y, 1e-9) << y;
+  }
+  ASSERT_EQ(run.report.critical.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const PathCritical& critical = run.report.critical[k];
+    const double side = k == 0 ? 1 : -1;
+    EXPECT_FALSE(critical.branch);
+    EXPECT_NEAR(critical.value, side * limit, 1e-10);
+    EXPECT_NEAR(run.rows.at(static_cast<std::size_t>(critical.row)).q[1], side * y_limit, 1e-8);
+    EXPECT_EQ(critical.modes, 1);
+  }
+  EXPECT_EQ(run.rows.front().p, 0);
+  EXPECT_EQ(run.rows.back().p, 12);
+  EXPECT_LT(run.rows.back().q[1], -0.3);
+  // Stable, unstable between the limits, stable.
+  ASSERT_EQ(run.report.negative_modes.size(), run.rows.size());
+  for (std::size_t k = 0; k < run.rows.size(); ++k) {
+    const double y = run.rows[k].q[1];
+    if (std::abs(std::abs(y) - y_limit) < 1e-6) continue;
+    EXPECT_EQ(run.report.negative_modes[k], std::abs(y) < y_limit ? 1 : 0) << y;
+  }
+}
+
+TEST(Path, EndsWhereTheParameterReachesItsValueFirst) {
+  const auto value = reference_values("von_mises_truss").at("equilibria").at("P=0.9*Plim");
+  const Followed run = follow([](double load) { return von_mises_truss(load, 0.3); },
+                              {.from = 0, .to = value.at("P").get<double>(), .arc = 0.3});
+  ASSERT_TRUE(run.report.ok()) << run.report.message;
+  EXPECT_NEAR(run.rows.back().q[1], value.at("y_pre").get<double>(), 1e-11);
+  EXPECT_TRUE(run.report.critical.empty());
+  // Backwards from beyond the snap: past the other limit point and up.
+  const Followed back = follow([](double load) { return von_mises_truss(load, -0.35); }, {.from = 12, .to = -12});
+  ASSERT_TRUE(back.report.ok()) << back.report.message;
+  ASSERT_EQ(back.report.critical.size(), 2u);
+  EXPECT_NEAR(back.report.critical[0].value, -reference_values("von_mises_truss").at("P_limit").get<double>(), 1e-10);
+}
+
+TEST(Path, LeavesThePitchforkOnRequest) {
+  const auto reference = reference_values("inverted_pendulum_torsion_spring");
+  const auto model_at = [](double weight) { return inverted_pendulum(weight); };
+  for (const int branch : {0, 1, 2, 3}) {
+    const Followed run = follow(model_at, {.from = 0.5, .to = 2, .branch = branch});
+    ASSERT_TRUE(run.report.ok()) << run.report.message;
+    ASSERT_EQ(run.report.critical.size(), 1u) << branch;
+    EXPECT_TRUE(run.report.critical[0].branch);
+    EXPECT_NEAR(run.report.critical[0].value, 1, 1e-9);
+    const double theta = run.rows.back().q[2];
+    if (branch < 2) {
+      EXPECT_NEAR(theta, 0, 1e-12);
+      EXPECT_EQ(run.report.negative_modes.back(), 1);
+      continue;
+    }
+    EXPECT_EQ(run.report.negative_modes.back(), 0);
+    EXPECT_NEAR(std::abs(theta), reference.at("mgl_over_k=2").at("theta").get<double>(), 1e-10);
+    EXPECT_EQ(run.report.warnings.size(), 0u);
+    for (const Row& row : run.rows) {
+      if (row.p > 1 + 1e-6) {
+        EXPECT_NEAR(row.q[2], row.p * std::sin(row.q[2]), 1e-10);
+      }
+    }
+  }
+  const double up = follow(model_at, {.from = 0.5, .to = 2, .branch = 2}).rows.back().q[2];
+  const double down = follow(model_at, {.from = 0.5, .to = 2, .branch = 3}).rows.back().q[2];
+  EXPECT_NEAR(up, -down, 1e-10);
+}
+
+TEST(Path, CountsTheBucklingLoadsOfAColumnThatStaysStraight) {
+  // N rods pressed along their line, springs at the joints: P_j l / c = 4 sin^2(j pi / 2 N), a branch point each.
+  const int count = 5;
+  const double c = 3, l = 0.2;
+  const auto column = [&](double load) {
+    auto model = std::make_shared<Model>();
+    for (int k = 0; k < count; ++k) {
+      model->add_body("rod" + std::to_string(k), {.mass = 1, .inertia = 1, .position = {(k + 0.5) * l, 0}});
+      model->add("", Revolute<double>{.s_i = {k == 0 ? 0 : l / 2, 0}, .s_j = {-l / 2, 0}}, k - 1, k);
+      if (k > 0) model->add_force("", torsion_spring(c, 0), k - 1, k);
+    }
+    model->add("", AbsoluteY<double>{.s_i = {l / 2, 0}}, count - 1, ground, 0.0);
+    model->add_force("", PointForce<double>{.s_i = {l / 2, 0}}, count - 1, ground, {-load, 0.0});
+    return model;
+  };
+  const Followed run = follow(column, {.from = 0, .to = 60});
+  ASSERT_TRUE(run.report.ok()) << run.report.message;
+  ASSERT_EQ(run.report.critical.size(), static_cast<std::size_t>(count - 1));
+  for (int j = 1; j < count; ++j) {
+    const PathCritical& critical = run.report.critical[static_cast<std::size_t>(j - 1)];
+    EXPECT_TRUE(critical.branch);
+    EXPECT_NEAR(critical.value, 4 * c / l * std::pow(std::sin(j * std::numbers::pi / 2 / count), 2), 1e-8);
+  }
+  EXPECT_EQ(run.report.negative_modes.back(), count - 1);
+}
+
+TEST(Path, RaisesTheSideForceOfAHangingChain) {
+  const auto references = reference_values("hanging_chain_side_force");
+  for (const auto& [name, reference] : references.items()) {
+    const int count = std::stoi(name.substr(1));
+    if (count > 100) continue;
+    const Followed run = follow([&](double force) { return chain_with_side_force(count, 1, 1, force); },
+                                {.from = 0, .to = 5, .arc = 0.5});
+    ASSERT_TRUE(run.report.ok()) << name << run.report.message;
+    EXPECT_NEAR(run.rows.back().q[2], reference.at("phi_1").get<double>(), 1e-10) << name;
+    EXPECT_TRUE(run.report.critical.empty());
+  }
+}
+
+TEST(Path, MovesSupportsAndTakesStiffnessAsWell) {
+  // The support of a pendulum on a spring is moved: the chain of places follows, whatever the given configuration says.
+  const auto model_at = [](double x) {
+    auto model = std::make_shared<Model>();
+    model->gravity = {0, -10};
+    model->add_body("bob", {.mass = 2, .position = {x, -1}, .particle = true});
+    model->add_force("", spring({x, 0}, {0, 0}, 100, 1), ground, 0);
+    return model;
+  };
+  const Followed run = follow(model_at, {.from = 0, .to = 3});
+  ASSERT_TRUE(run.report.ok()) << run.report.message;
+  for (const Row& row : run.rows) {
+    EXPECT_NEAR(row.q[0], row.p, 1e-10);
+    EXPECT_NEAR(row.q[1], -1.2, 1e-10);
+  }
+}
+
+TEST(Path, SaysWhereItEnds) {
+  const Followed few =
+      follow([](double load) { return von_mises_truss(load, 0.3); }, {.from = 0, .to = 12, .max_steps = 3});
+  ASSERT_TRUE(few.report.ok());
+  EXPECT_EQ(few.rows.size(), 4u);
+  ASSERT_EQ(few.report.warnings.size(), 1u);
+  // A scene without a model beyond 5.
+  const auto fenced = [](double load) -> std::shared_ptr<const Model> {
+    return load > 5 ? nullptr : von_mises_truss(load, 0.3);
+  };
+  const Followed inside = follow(fenced, {.from = 0, .to = 5});
+  ASSERT_TRUE(inside.report.ok()) << inside.report.message;
+  EXPECT_EQ(inside.rows.back().p, 5);
+  const Followed outside = follow(fenced, {.from = 0, .to = 6});
+  EXPECT_EQ(outside.report.status, Status::step_too_small);
+  EXPECT_NE(outside.report.message.find("beyond"), std::string::npos) << outside.report.message;
+  EXPECT_GT(outside.rows.back().p, 4.9);
+  const Followed nowhere = follow(fenced, {.from = 3, .to = 3});
+  EXPECT_EQ(nowhere.report.status, Status::refused);
+}
+
+TEST(Path, KeepsOneSymbolicAnalysis) {
+  const Followed run =
+      follow([](double force) { return chain_with_side_force(200, 1, 1, force); }, {.from = 0, .to = 5, .arc = 0.5});
+  ASSERT_TRUE(run.report.ok());
+  EXPECT_EQ(run.report.counters.symbolic, 1);
+  EXPECT_LT(run.report.counters.factorizations, 8 * run.report.steps + 12);
+}
+
+}  // namespace
+}  // namespace catena
