@@ -60,16 +60,21 @@ const std::vector<Verb>& verbs() {
       {"path",
        "path",
        "Equilibria as a parameter changes",
-       {{"parameter", "the parameter that changes"},
+       {at,
+        {"parameter", "the parameter that changes"},
         {"to", "its last value"},
         {"max_steps", "largest number of steps"},
         {"arc", "length of a step"},
         branch,
         outputs}},
+      {"buckling",
+       "buckling",
+       "Values of a load parameter at which the equilibrium loses its stability",
+       {at, {"parameter", "the parameter that changes"}, {"count", "how many loads"}, outputs}},
       {"modes",
        "modes",
        "Small oscillations about the configuration",
-       {{"count", "how many modes"}, {"shapes", "whether to give the shapes"}, outputs}},
+       {at, {"count", "how many modes"}, {"shapes", "whether to give the shapes"}, outputs}},
   };
   return all;
 }
