@@ -1,6 +1,7 @@
 #include "catena/analysis/driven_solver.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -20,6 +21,8 @@ constexpr double rounding_floor = 1e-12;
 constexpr double negligible = 1e-14;
 // Factors from further away than this are replaced: a new factorization costs two or three solves.
 constexpr double keep_distance = 1e-4;
+// Refinement that leaves more than this of an error takes longer than new factors.
+constexpr double keep_rate = 1e-2;
 // Old factors do not show a determinant that changes its sign: they are kept only where no pivot is near zero.
 constexpr double keep_rcond = 1e-2;
 // A ratio of successive corrections above this asks for new factors.
@@ -45,27 +48,23 @@ DrivenSolver::DrivenSolver(Evaluator& evaluator)
   }
 }
 
-void DrivenSolver::gather_rows(std::span<const double> all, std::span<double> chosen) const {
-  if (all_rows_) {
-    std::copy(all.begin(), all.end(), chosen.begin());
-    return;
+// Entries of the rows in use; returns their norm over all rows in use.
+double DrivenSolver::gather_rows(std::span<const double> all, std::span<double> chosen) const {
+  if (all_rows_) return scaling_.scan_rows(all.size(), [&](std::size_t k) { return chosen[k] = all[k]; });
+  double largest = 0;
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    chosen[k] = all[at(rows_[k])];
+    const double size = std::abs(chosen[k]) * scaling_.row_unit(rows_[k]);
+    if (!(size <= largest)) largest = size;
   }
-  for (std::size_t k = 0; k < rows_.size(); ++k) chosen[k] = all[at(rows_[k])];
+  return largest;
 }
 
 void DrivenSolver::to_columns(std::span<const double> coordinates, std::span<double> columns) const {
-  if (plan_.contiguous) {
-    std::copy_n(coordinates.begin(), columns.size(), columns.begin());
-    return;
-  }
   for (std::size_t c = 0; c < columns.size(); ++c) columns[c] = coordinates[at(plan_.coordinate[c])];
 }
 
 void DrivenSolver::to_coordinates(std::span<const double> columns, std::span<double> coordinates) const {
-  if (plan_.contiguous) {
-    std::copy(columns.begin(), columns.end(), coordinates.begin());
-    return;
-  }
   for (std::size_t c = 0; c < columns.size(); ++c) coordinates[at(plan_.coordinate[c])] = columns[c];
 }
 
@@ -75,6 +74,13 @@ std::span<const double> DrivenSolver::jacobian() {
     jacobian_valid_ = true;
   }
   return std::span(values_).first(at(plan_.trash_slot()));
+}
+
+bool DrivenSolver::values_never_changed(std::span<const double> values) {
+  if (values_changed_) return false;
+  values_changed_ = !std::equal(values.begin(), values.end(), first_values_.begin(), first_values_.end());
+  if (values_changed_) first_values_ = {};
+  return !values_changed_;
 }
 
 bool DrivenSolver::factorize() {
@@ -88,36 +94,39 @@ bool DrivenSolver::factorize() {
         factorization_.analyze(all_rows_ ? plan_.jacobian : matrix_, Kernel::automatic, evaluator_.counters);
     if (!factor_result_.ok()) return false;
     analyzed_ = true;
+    values_changed_ = false;
+    first_values_.assign(values.begin(), values.end());
   }
-  // Linear constraints give the same values at every configuration: their factors stay.
-  const bool same =
-      factorization_.is_factorized() && std::equal(values.begin(), values.end(), values_factored_.begin());
-  if (!same) {
-    factor_result_ = factorization_.factorize(values, evaluator_.counters);
-    values_factored_.assign(values.begin(), values.end());
-  }
+  // Linear constraints, and joints at the origins of their bodies, give the same values at every configuration: their
+  // factors stay. Once the values have changed they are not compared again.
+  const bool same = factorization_.is_factorized() && (plan_.constant_jacobian || values_never_changed(values));
+  if (!same) factor_result_ = factorization_.factorize(values, evaluator_.counters);
   factors_valid_ = factor_result_.ok();
   rcond_ = factors_valid_ ? factorization_.rcond() : 0;
   q_factored_ = q_;
+  t_factored_ = evaluator_.time();
   gap_ = 0;
   return factors_valid_;
 }
 
+// Evaluates the constraints at q, which it keeps, with its distance from where the factors were made.
 void DrivenSolver::evaluate_at(std::span<const double> q) {
   evaluator_.set_configuration(q);
   evaluator_.phi(phi_);
   jacobian_valid_ = jacobian_valid_ && plan_.constant_jacobian;
-  to_columns(q, q_);
-  if (factors_valid_ && !plan_.constant_jacobian) gap_ = scaling_.column_distance(q_, q_factored_);
-}
-
-double DrivenSolver::residual_in_use() const {
-  double largest = 0;
-  for (int row : rows_) {
-    const double size = std::abs(phi_[at(row)]) * scaling_.row_unit(row);
-    if (!(size <= largest)) largest = size;
+  const auto keep = [&](auto&& coordinate) {
+    const auto sizes = scaling_.scan_columns<2>(q_.size(), [&](std::size_t c) {
+      const double value = q_[c] = q[coordinate(c)];
+      return std::array{value, value - q_factored_[c]};
+    });
+    extent_ = sizes[0].all;
+    gap_ = sizes[1].all;
+  };
+  if (plan_.contiguous) {
+    keep([](std::size_t c) { return c; });
+  } else {
+    keep([&](std::size_t c) { return at(plan_.coordinate[c]); });
   }
-  return largest;
 }
 
 double DrivenSolver::redundant_residual(std::span<const double> residual_of_all, int* worst) const {
@@ -137,7 +146,7 @@ std::span<const BlockMargin> DrivenSolver::block_margins() {
 
 double DrivenSolver::residual_at(std::span<const double> q) {
   evaluate_at(q);
-  return all_rows_ ? scaling_.row_norm(phi_) : residual_in_use();
+  return gather_rows(phi_, step_);
 }
 
 double DrivenSolver::distance(std::span<const double> a, std::span<const double> b, double* angle) const {
@@ -176,8 +185,16 @@ bool DrivenSolver::left_null_vector(std::span<double> w) {
 }
 
 bool DrivenSolver::factors_serve() const {
-  return factors_valid_ && (plan_.constant_jacobian || (gap_ <= keep_distance && rcond_ >= keep_rcond));
+  if (!factors_valid_) return false;
+  const bool exact = plan_.constant_jacobian || (gap_ == 0 && t_factored_ == evaluator_.time());
+  return exact || (gap_ <= keep_distance && rcond_ >= keep_rcond);
 }
+
+// What is left of an error after one refinement with factors made at a distance.
+double DrivenSolver::refinement_rate() const { return plan_.constant_jacobian || gap_ == 0 ? 0 : gap_ / rcond_; }
+
+// A linear system needs no determinant: factors serve as long as refinement with them converges fast.
+bool DrivenSolver::factors_refine() const { return factors_valid_ && refinement_rate() <= keep_rate; }
 
 NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
   NewtonOutcome outcome;
@@ -187,14 +204,12 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
   if (!is_square()) return outcome;
   for (;; ++outcome.iterations) {
     evaluate_at(q);
-    gather_rows(phi_, step_);
-    outcome.residual = all_rows_ ? scaling_.row_norm(phi_) : residual_in_use();
+    outcome.residual = gather_rows(phi_, step_);
     if (!std::isfinite(outcome.residual)) return outcome;
     // A long structure moves its far end by many length scales: its residuals cannot be rounder than its coordinates.
-    const double extent = scaling_.column_norm(q_);
-    const double attainable = std::max(tolerance, 8 * epsilon * extent);
+    const double attainable = std::max(tolerance, 8 * epsilon * extent_);
     if (outcome.residual <= rounding || (outcome.iterations > 0 && outcome.residual <= attainable &&
-                                         rate * size <= std::max(negligible, epsilon * extent))) {
+                                         rate * size <= std::max(negligible, epsilon * extent_))) {
       outcome.converged = true;
       return outcome;
     }
@@ -206,14 +221,15 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
     factorization_.solve(step_, evaluator_.counters);
     ++evaluator_.counters.iterations;
     const double last_size = size;
-    size = scaling_.column_norm(step_);
+    const Scaling::Size correction = plan_.contiguous ? subtract_step(q) : scaling_.column_size(step_);
+    size = correction.all;
     if (!std::isfinite(size)) return outcome;
     // A correction with factors from a distance g leaves about (g + size) size.
     rate = plan_.constant_jacobian ? 0 : gap_ + size;
     if (outcome.iterations == 0) {
       outcome.first_correction = size;
-      outcome.first_turn = scaling_.largest_angle(step_, plan_);
-    } else if (size > std::max(rounding_floor, 64 * epsilon * extent)) {
+      outcome.first_turn = correction.angle;
+    } else if (size > std::max(rounding_floor, 64 * epsilon * extent_)) {
       const double ratio = size / last_size;
       outcome.contraction = std::max(outcome.contraction, ratio);
       rate = std::max(rate, ratio);
@@ -221,43 +237,57 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
     } else if (outcome.residual <= attainable) {
       rate = 0;  // what is left is rounding
     }
+    if (plan_.contiguous) continue;
     for (std::size_t c = 0; c < step_.size(); ++c) q[at(plan_.coordinate[c])] -= step_[c];
   }
 }
 
-void DrivenSolver::subtract_product(std::span<const double> values) {
+// q -= step_, measured on the way.
+Scaling::Size DrivenSolver::subtract_step(std::span<double> q) {
+  return scaling_.scan_columns<1>(step_.size(), [&](std::size_t c) {
+    q[c] -= step_[c];
+    return std::array{step_[c]};
+  })[0];
+}
+
+void DrivenSolver::subtract_product(std::span<const double> values, std::span<const double> x,
+                                    std::span<double> rest) const {
   const int* start = plan_.jacobian.column_start.data();
   const int* row = plan_.jacobian.row_index.data();
   for (int c = 0; c < plan_.columns; ++c) {
-    const double x = x_[at(c)];
-    for (int k = start[c]; k < start[c + 1]; ++k) residual_all_[at(row[k])] -= values[at(k)] * x;
+    const double factor = x[at(c)];
+    for (int k = start[c]; k < start[c + 1]; ++k) rest[at(row[k])] -= values[at(k)] * factor;
   }
 }
 
-bool DrivenSolver::solve_refined(bool has_start) {
-  std::span<const double> values = jacobian();
+bool DrivenSolver::solve_refined(std::span<double> x, bool has_start) {
+  const std::span<const double> values = jacobian();
   bool factored_here = false;
-  if (!factors_serve()) {
+  if (!factors_refine()) {
     if (!factorize()) return false;
     factored_here = true;
   }
   // At rest the solution is zero: a start would be refined towards it for ever, no digit of zero being right.
-  if (std::all_of(rhs_.begin(), rhs_.end(), [](double x) { return x == 0; })) {
-    std::fill(x_.begin(), x_.end(), 0.0);
+  if (std::all_of(rhs_.begin(), rhs_.end(), [](double value) { return value == 0; })) {
+    std::fill(x.begin(), x.end(), 0.0);
     return true;
   }
-  if (!has_start) std::fill(x_.begin(), x_.end(), 0.0);
-  double size = 0, rate = gap_;
+  if (!has_start) std::fill(x.begin(), x.end(), 0.0);
+  const std::span<double> rest = all_rows_ ? std::span<double>(step_) : std::span<double>(residual_all_);
+  double size = 0, all = 0, rate = refinement_rate();
   for (int k = 0; k < max_refinements; ++k) {
-    std::copy(rhs_.begin(), rhs_.end(), residual_all_.begin());
-    if (has_start || k > 0) subtract_product(values);
-    gather_rows(residual_all_, step_);
+    std::copy(rhs_.begin(), rhs_.end(), rest.begin());
+    if (has_start || k > 0) subtract_product(values, x, rest);
+    if (!all_rows_) gather_rows(rest, step_);
     factorization_.solve(step_, evaluator_.counters);
     const double last_size = size;
-    size = scaling_.column_norm(step_);
+    const auto sizes = scaling_.scan_columns<2>(x.size(), [&](std::size_t c) {
+      x[c] += step_[c];
+      return std::array{step_[c], x[c]};
+    });
+    size = sizes[0].all;
+    all = sizes[1].all;
     if (!std::isfinite(size)) return false;
-    for (std::size_t c = 0; c < x_.size(); ++c) x_[c] += step_[c];
-    const double all = scaling_.column_norm(x_);
     if (k > 0) rate = std::max(rate, size / last_size);
     if (rate * size <= negligible * all || size <= rounding * all) return true;
     if (k > 0 && size > poor_contraction * last_size && size > rounding_floor * all && !factored_here) {
@@ -266,31 +296,34 @@ bool DrivenSolver::solve_refined(bool has_start) {
       rate = 0;
     }
   }
-  return size <= tolerance * scaling_.column_norm(x_);
+  return size <= tolerance * all;
+}
+
+// Solves for the columns of a vector over all coordinates, in place where they are the same.
+bool DrivenSolver::solve_rate(std::span<double> rate, bool has_start) {
+  if (plan_.contiguous) return solve_refined(rate.first(at(plan_.columns)), has_start);
+  if (has_start) to_columns(rate, x_);
+  if (!solve_refined(x_, has_start)) return false;
+  to_coordinates(x_, rate);
+  return true;
 }
 
 bool DrivenSolver::solve_velocity(std::span<double> qd, bool has_start) {
   if (!is_square()) return false;
-  if (has_start) to_columns(qd, x_);
   evaluator_.nu(rhs_);
-  if (!solve_refined(has_start)) return false;
-  to_coordinates(x_, qd);
-  return true;
+  return solve_rate(qd, has_start);
 }
 
 bool DrivenSolver::solve_acceleration(std::span<const double> qd, std::span<double> qdd, bool has_start) {
   if (!is_square()) return false;
-  if (has_start) to_columns(qdd, x_);
   evaluator_.gamma(qd, rhs_);
-  if (!solve_refined(has_start)) return false;
-  to_coordinates(x_, qdd);
-  return true;
+  return solve_rate(qdd, has_start);
 }
 
 bool DrivenSolver::solve_multipliers(std::span<const double> rhs, std::span<double> lambda) {
   if (!is_square()) return false;
   const std::span<const double> values = jacobian();
-  if (!factors_serve() && !factorize()) return false;
+  if (!factors_refine() && !factorize()) return false;
   std::fill(lambda.begin(), lambda.end(), 0.0);
   double size = 0;
   for (int k = 0; k < max_refinements; ++k) {
@@ -311,7 +344,7 @@ bool DrivenSolver::solve_multipliers(std::span<const double> rhs, std::span<doub
       all = std::max(all, std::abs(x));
     }
     if (!std::isfinite(all)) return false;
-    const double rate = k > 0 ? size / last_size : gap_;
+    const double rate = k > 0 ? size / last_size : refinement_rate();
     if (rate * size <= negligible * all || size <= rounding * all) return true;
     if (k > 0 && rate > poor_contraction) return size <= tolerance * all;
   }

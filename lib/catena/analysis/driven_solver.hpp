@@ -69,21 +69,23 @@ class DrivenSolver {
   bool left_null_vector(std::span<double> w);
   /// Residual of the rows that are not solved with, in units of the length scale or rad; `worst`: its row.
   double redundant_residual(std::span<const double> residual_of_all, int* worst) const;
-  /// Forgets the factors, as after a change of parameters.
-  void invalidate() { factors_valid_ = false; }
 
   double tolerance = 1e-12;  ///< on residuals, relative to the length scale
 
  private:
   void evaluate_at(std::span<const double> q);
-  double residual_in_use() const;
   bool factors_serve() const;
+  double refinement_rate() const;
+  bool factors_refine() const;
+  bool values_never_changed(std::span<const double> values);
   bool factorize();
-  /// residual_all_ = rhs_ - Phi_q x_.
-  void subtract_product(std::span<const double> values);
-  /// x_ = Phi_q^-1 rhs_ by refinement of the start in x_, against the true Jacobian at q_.
-  bool solve_refined(bool has_start);
-  void gather_rows(std::span<const double> all, std::span<double> chosen) const;
+  Scaling::Size subtract_step(std::span<double> q);
+  /// rest -= Phi_q x.
+  void subtract_product(std::span<const double> values, std::span<const double> x, std::span<double> rest) const;
+  /// x = Phi_q^-1 rhs_ by refinement of the start in x (columns), against the true Jacobian at q_.
+  bool solve_refined(std::span<double> x, bool has_start);
+  bool solve_rate(std::span<double> rate, bool has_start);
+  double gather_rows(std::span<const double> all, std::span<double> chosen) const;
   void to_columns(std::span<const double> coordinates, std::span<double> columns) const;
   void to_coordinates(std::span<const double> columns, std::span<double> coordinates) const;
 
@@ -95,15 +97,17 @@ class DrivenSolver {
   SparsePattern matrix_;     // the rows in use
   std::vector<int> gather_;  // entry of the matrix -> slot in the full Jacobian (empty: the same)
   Factorization factorization_;
-  bool analyzed_ = false, factors_valid_ = false, jacobian_valid_ = false;
-  std::vector<double> values_;         // full Jacobian
-  std::vector<double> matrix_values_;  // rows in use, if not all
-  std::vector<double> values_factored_;
+  bool analyzed_ = false, factors_valid_ = false, jacobian_valid_ = false, values_changed_ = false;
+  std::vector<double> values_;                     // full Jacobian
+  std::vector<double> matrix_values_;              // rows in use, if not all
+  std::vector<double> first_values_;               // of the first factorization, until they change
   std::vector<char> in_use_;                       // per row
   std::vector<double> phi_, rhs_, residual_all_;   // all rows
   std::vector<double> step_, x_, q_, q_factored_;  // columns
-  double gap_ = 0;                                 // from q_ to q_factored_: how much worse than exact the factors are
-  double rcond_ = 0;                               // of the last factorization
+  double t_factored_ = 0;
+  double gap_ = 0;     // from q_ to q_factored_: how much worse than exact the factors are
+  double extent_ = 0;  // norm of q_
+  double rcond_ = 0;   // of the last factorization
   FactorResult factor_result_;
 };
 

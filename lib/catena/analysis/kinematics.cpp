@@ -247,7 +247,9 @@ Report Kinematics::solve_rates(const Needs& needs) {
     }
     return needs.multipliers ? solve_multipliers() : report;
   }
-  const bool start = predictor_.predict(t_, {}, qd_, {});
+  const bool start = predicted_ == t_;
+  predicted_.reset();
+  if (start) qd_.swap(predicted_qd_);
   if (!solver_.solve_velocity(qd_, start)) {
     report.status = Status::singular;
     report.message =
@@ -256,8 +258,8 @@ Report Kinematics::solve_rates(const Needs& needs) {
   }
   has_velocity_ = true;
   if (!acceleration) return report;
-  const bool start_acceleration = start && predictor_.predict(t_, {}, {}, qdd_);
-  if (!solver_.solve_acceleration(qd_, qdd_, start_acceleration)) {
+  if (start) qdd_.swap(predicted_qdd_);
+  if (!solver_.solve_acceleration(qd_, qdd_, start)) {
     report.status = Status::singular;
     report.message = fmt::format(
         "accelerations are not determined at t = {:.12g} s: the mechanism is at a singular configuration", t_);
@@ -307,6 +309,9 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& needs, RowObse
     const AssemblyOutcome outcome = assemble();
     if (!outcome.ok()) return end(outcome);
   }
+  predicted_qd_.resize(needs.velocity || needs.acceleration || needs.multipliers ? q_.size() : 0);
+  predicted_qdd_.resize(needs.acceleration || needs.multipliers ? q_.size() : 0);
+  predicted_.reset();
   const Report prepared = prepare(grid.size() > 1 && grid[1] < grid[0] ? -1 : 1);
   if (!prepared.ok()) return end(prepared);
   report.warnings = prepared.warnings;

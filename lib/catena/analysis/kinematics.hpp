@@ -113,6 +113,8 @@ class Kinematics {
   std::vector<BlockMargin> margins_, margin_rates_;
   double margins_t_ = 0;
   std::vector<double> largest_margins_;
+  std::vector<double> predicted_qd_, predicted_qdd_;  // rates at `predicted_`, of the sizes that are needed
+  std::optional<double> predicted_;
   std::vector<std::string> redundant_;
   double chosen_rcond_ = 0;  // of the rows in use, where they were chosen
   NewtonOutcome newton_;

@@ -74,7 +74,8 @@ Kinematics::StepOutcome Kinematics::try_step(double t, bool ignore_dips) {
   if (!ignore_dips && heads_for_singularity(t)) return StepOutcome::dipped;
   evaluator_.set_time(t);
   trial_ = q_;
-  predictor_.predict(t, trial_, {}, {});
+  // Positions and rates in one pass over the history.
+  predicted_ = predictor_.predict(t, trial_, predicted_qd_, predicted_qdd_) ? std::optional(t) : std::nullopt;
   newton_ = solver_.solve_position(trial_);
   if (!newton_.converged || newton_.first_turn > largest_turn || newton_.contraction > largest_contraction) {
     return StepOutcome::too_long;

@@ -93,17 +93,22 @@ bool Predictor::predict(double t, std::span<double> q, std::span<double> qd, std
   const auto weights = weights_at(nodes, t);
   // Always six terms, those without data with weight zero: a fixed count lets the compiler vectorise over entries.
   for (int k = nodes.count; k < max_nodes; ++k) data[static_cast<std::size_t>(k)] = data[0];
-  const auto combine = [&](std::span<double> out, const Weights& w) {
-    const double *a = data[0], *b = data[1], *c = data[2], *d = data[3], *e = data[4], *f = data[5];
-    double* target = out.data();
-    const std::size_t n = out.size();
-    for (std::size_t i = 0; i < n; ++i) {
-      target[i] = w[0] * a[i] + w[1] * b[i] + w[2] * c[i] + w[3] * d[i] + w[4] * e[i] + w[5] * f[i];
-    }
+  const double *a = data[0], *b = data[1], *c = data[2], *d = data[3], *e = data[4], *f = data[5];
+  const auto sum = [&](const Weights& w, std::size_t i) {
+    return w[0] * a[i] + w[1] * b[i] + w[2] * c[i] + w[3] * d[i] + w[4] * e[i] + w[5] * f[i];
   };
-  combine(q, weights[0]);
-  combine(qd, weights[1]);
-  combine(qdd, weights[2]);
+  // In one pass if all are wanted: what a large scene pays for is reading the data.
+  double *position = q.data(), *velocity = qd.data(), *acceleration = qdd.data();
+  if (!q.empty() && !qd.empty() && !qdd.empty()) {
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      const double x = sum(weights[0], i), v = sum(weights[1], i), w = sum(weights[2], i);
+      position[i] = x, velocity[i] = v, acceleration[i] = w;
+    }
+    return true;
+  }
+  for (std::size_t i = 0; i < q.size(); ++i) position[i] = sum(weights[0], i);
+  for (std::size_t i = 0; i < qd.size(); ++i) velocity[i] = sum(weights[1], i);
+  for (std::size_t i = 0; i < qdd.size(); ++i) acceleration[i] = sum(weights[2], i);
   return true;
 }
 

@@ -1,7 +1,14 @@
 // Norms in which metres and radians can be compared, so that a machine in millimetres and one in kilometres converge
 // alike: lengths are divided by the scene's length scale, angles are taken as they are.
+//
+//   |x| = max_k |x_k| u_k        u_k = 1 / length scale for x, y and residuals in metres, 1 for angles
+//
+// A large scene does not fit into the caches, so that a pass over a vector costs memory traffic, not arithmetic: `scan`
+// measures vectors in the same pass that computes or moves them, and reads no units where they repeat. Norms of vectors
+// with an entry that is not finite are NaN.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -12,62 +19,105 @@ namespace catena {
 
 class Scaling {
  public:
-  Scaling(const Plan& plan, double length) : columns_(plan.coordinate.size()), rows_(plan.row_is_angle.size()) {
-    for (std::size_t c = 0; c < columns_.size(); ++c) columns_[c] = plan.coordinate[c] % 3 == 2 ? 1.0 : 1.0 / length;
-    for (std::size_t r = 0; r < rows_.size(); ++r) rows_[r] = plan.row_is_angle[r] ? 1.0 : 1.0 / length;
+  /// Largest entry in units, and largest of the angles alone, rad.
+  struct Size {
+    double all = 0, angle = 0;
+  };
+
+  Scaling(const Plan& plan, double length) {
+    // Without particles the units of the columns repeat with every body; mostly those of the rows are all the same.
+    const std::size_t columns = plan.contiguous ? lanes : plan.coordinate.size();
+    columns_.repeat = plan.contiguous;
+    for (std::size_t c = 0; c < columns; ++c) {
+      columns_.push_back((plan.contiguous ? static_cast<int>(c) : plan.coordinate[c]) % 3 == 2, length);
+    }
+    bool any = false, all = true;
+    for (bool angle : plan.row_is_angle) any = any || angle, all = all && angle;
+    rows_.repeat = !any || all;
+    for (std::size_t r = 0; r < (rows_.repeat ? lanes : plan.row_is_angle.size()); ++r) {
+      rows_.push_back(rows_.repeat ? any : plan.row_is_angle[r], length);
+    }
   }
 
-  /// Largest entry of a vector over the columns of Phi_q; NaN if any entry is not finite.
-  double column_norm(std::span<const double> x) const { return largest(x, columns_); }
-  /// Largest difference of two vectors over the columns.
-  double column_distance(std::span<const double> a, std::span<const double> b) const {
-    double most = 0;
-    for (std::size_t k = 0; k < a.size(); ++k) {
-      const double size = std::abs(a[k] - b[k]) * columns_[k];
-      most = size > most ? size : most;
-    }
-    return most;
+  /// Calls `entry(k)` for k = 0 ... n - 1, which returns N entries of vectors over the columns, and measures them.
+  template <int N, class Entry>
+  std::array<Size, static_cast<std::size_t>(N)> scan_columns(std::size_t n, Entry&& entry) const {
+    return scan<static_cast<std::size_t>(N)>(columns_, n, entry);
   }
-  /// Largest residual; NaN if any is not finite.
-  double row_norm(std::span<const double> r) const { return largest(r, rows_); }
-  /// Largest angle of a vector over the columns, rad.
-  double largest_angle(std::span<const double> x, const Plan& plan) const {
-    double most = 0;
-    for (std::size_t k = 0; k < x.size(); ++k) {
-      const double size = plan.coordinate[k] % 3 == 2 ? std::abs(x[k]) : 0;
-      most = size > most ? size : most;
-    }
-    return most;
+  /// The same for one vector over the rows.
+  template <class Entry>
+  double scan_rows(std::size_t n, Entry&& entry) const {
+    return scan<1>(rows_, n, [&](std::size_t k) { return std::array{entry(k)}; })[0].all;
   }
-  double row_unit(int row) const { return rows_[static_cast<std::size_t>(row)]; }
+
+  /// Largest entry of a vector over the columns of Phi_q.
+  double column_norm(std::span<const double> x) const { return column_size(x).all; }
+  Size column_size(std::span<const double> x) const {
+    return scan_columns<1>(x.size(), [&](std::size_t k) { return std::array{x[k]}; })[0];
+  }
+  /// Largest residual.
+  double row_norm(std::span<const double> r) const {
+    return scan_rows(r.size(), [&](std::size_t k) { return r[k]; });
+  }
+  double row_unit(int row) const { return rows_.unit[rows_.repeat ? 0 : static_cast<std::size_t>(row)]; }
 
  private:
-  // Independent lanes let the compiler vectorise a maximum, whose order of evaluation it may not change itself.
-  static double largest(std::span<const double> x, const std::vector<double>& scale) {
-    constexpr std::size_t lanes = 8;
-    double most[lanes] = {}, sum[lanes] = {};
+  // Independent lanes let the compiler vectorise a maximum, whose order of evaluation it may not change itself; three
+  // coordinates a body and vectors of up to eight entries make it 24.
+  static constexpr std::size_t lanes = 24;
+
+  struct Units {
+    bool repeat = false;
+    std::vector<double> unit;
+    std::vector<double> angle;  // 1 for angles, else 0
+    void push_back(bool is_angle, double length) {
+      unit.push_back(is_angle ? 1.0 : 1.0 / length);
+      angle.push_back(is_angle ? 1.0 : 0.0);
+    }
+  };
+
+  template <std::size_t N, class Entry>
+  static std::array<Size, N> scan(const Units& units, std::size_t n, Entry&& entry) {
+    double most[N][lanes] = {}, sum[N][lanes] = {};
+    std::array<Size, N> result{};
+    double total[N] = {};
     std::size_t k = 0;
-    for (; k + lanes <= x.size(); k += lanes) {
-      for (std::size_t l = 0; l < lanes; ++l) {
-        const double size = std::abs(x[k + l]) * scale[k + l];
-        most[l] = size > most[l] ? size : most[l];
-        sum[l] += size;
+    if (units.repeat) {
+      double unit[lanes];
+      for (std::size_t l = 0; l < lanes; ++l) unit[l] = units.unit[l];
+      for (; k + lanes <= n; k += lanes) {
+        for (std::size_t l = 0; l < lanes; ++l) {
+          const std::array<double, N> x = entry(k + l);
+          for (std::size_t v = 0; v < N; ++v) {
+            const double size = std::abs(x[v]) * unit[l];
+            most[v][l] = size > most[v][l] ? size : most[v][l];
+            sum[v][l] += size;
+          }
+        }
       }
     }
-    for (; k < x.size(); ++k) {
-      const double size = std::abs(x[k]) * scale[k];
-      most[0] = size > most[0] ? size : most[0];
-      sum[0] += size;
+    for (; k < n; ++k) {
+      const std::size_t l = units.repeat ? k % lanes : 0, u = units.repeat ? l : k;
+      const std::array<double, N> x = entry(k);
+      for (std::size_t v = 0; v < N; ++v) {
+        const double size = std::abs(x[v]) * units.unit[u], angle = size * units.angle[u];
+        result[v].all = size > result[v].all ? size : result[v].all;
+        result[v].angle = angle > result[v].angle ? angle : result[v].angle;
+        total[v] += size;
+      }
     }
-    double result = 0, total = 0;
-    for (std::size_t l = 0; l < lanes; ++l) {
-      result = most[l] > result ? most[l] : result;
-      total += sum[l];
+    for (std::size_t v = 0; v < N; ++v) {
+      for (std::size_t l = 0; l < lanes; ++l) {
+        result[v].all = most[v][l] > result[v].all ? most[v][l] : result[v].all;
+        if (units.repeat && units.angle[l] != 0 && most[v][l] > result[v].angle) result[v].angle = most[v][l];
+        total[v] += sum[v][l];
+      }
+      if (!std::isfinite(total[v])) result[v].all = result[v].angle = total[v] - total[v];  // infinite - infinite: NaN
     }
-    return std::isfinite(total) ? result : total - total;  // infinite - infinite is NaN
+    return result;
   }
 
-  std::vector<double> columns_, rows_;
+  Units columns_, rows_;
 };
 
 /// The same norms for a single use.
