@@ -131,8 +131,8 @@ Snapshot Dynamics::snapshot(double t, std::span<const double> y, const Needs& ne
   s.residual = row_residual_ * evaluator_.length_scale();
   if (account_) {
     const std::span<const double> work = y.subspan(2 * n);
-    s.work = EnergyAccount::supplied(work);
-    s.dissipated = EnergyAccount::dissipated(work);
+    s.work = earlier_.supplied + EnergyAccount::supplied(work);
+    s.dissipated = earlier_.dissipated + EnergyAccount::dissipated(work);
     s.driver_work = driver_work_;
     s.initial_energy = initial_energy_;
   }
@@ -140,6 +140,13 @@ Snapshot Dynamics::snapshot(double t, std::span<const double> y, const Needs& ne
 }
 
 Report Dynamics::give_row(double t, const Needs& needs, RowObserver& observer) {
+  const std::optional<Snapshot> state = state_at(t, needs);
+  if (!state) return stuck();
+  return observer.observe(*state) ? Report{} : cancelled(t);
+}
+
+// The mechanism at an instant of the last step, on its constraints; nothing where that cannot be had.
+std::optional<Snapshot> Dynamics::state_at(double t, const Needs& needs) {
   const std::size_t n = q_.size();
   const std::span<double> y(y_row_);
   if (t == integrator_->time()) {
@@ -147,21 +154,24 @@ Report Dynamics::give_row(double t, const Needs& needs, RowObserver& observer) {
     row_residual_ = integrator_->position_residual();
   } else {
     integrator_->interpolate(t, y);
-    if (!equations_.factorize(t, Side::after, y.first(n))) return stuck();
+    if (!equations_.factorize(t, Side::after, y.first(n))) return {};
     row_residual_ = equations_.project_position(y.first(n), 4);
     equations_.project_velocity(y.subspan(n, n), 0);
   }
   if (needs.acceleration || needs.multipliers) {
     const std::span<double> slope(slope_row_);
-    if (!equations_.accelerations(t, Side::after, y.first(n), y.subspan(n, n), slope.subspan(n, n))) return stuck();
+    if (!equations_.accelerations(t, Side::after, y.first(n), y.subspan(n, n), slope.subspan(n, n))) return {};
     if (needs.multipliers) find_multipliers();
   } else {
     evaluator_.set_time(t);
     evaluator_.set_configuration(y.first(n));
   }
-  if (account_) account_->driver_work(y.subspan(2 * n), driver_work_);
+  if (account_) {
+    account_->driver_work(y.subspan(2 * n), driver_work_);
+    for (std::size_t e = 0; e < earlier_.by_driver.size(); ++e) driver_work_[e] += earlier_.by_driver[e];
+  }
   evaluator_.add_turns(y.first(n));
-  return observer.observe(snapshot(t, y, needs)) ? Report{} : cancelled(t);
+  return snapshot(t, y, needs);
 }
 
 // Multipliers of the row: those of the accelerations, or the least ones where they are not unique.
@@ -223,9 +233,12 @@ Report Dynamics::stuck() const {
   return report;
 }
 
-AnalysisReport Dynamics::run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
+AnalysisReport Dynamics::run(const TimeGrid& grid, const Needs& asked, RowObserver& observer) {
   const ProcessTimer timer;
   const FlushDenormals flush;
+  Needs needs = asked;
+  if (events_) needs |= events_->needs();
+  stopped_by_ = -1;
   AnalysisReport report;
   report.bodies = static_cast<int>(model_->bodies.size());
   report.rows = plan_->rows;
@@ -266,18 +279,24 @@ AnalysisReport Dynamics::run(const TimeGrid& grid, const Needs& needs, RowObserv
     return end(stuck());
   }
   describe_mobility(report);
-  if (account_) initial_energy_ = total_energy(snapshot(t_, y_row_, {}));
-  std::int64_t row = 0;
+  if (account_) {
+    initial_energy_ = total_energy(snapshot(t_, y_row_, {}));
+    if (!earlier_.by_driver.empty()) {
+      earlier_.dissipated += earlier_.energy - initial_energy_;
+      initial_energy_ = earlier_.initial_energy;
+    }
+  }
+  std::int64_t& row = next_row_ = 0;
   Report outcome;
   while (outcome.ok() && row < grid.size() && grid[row] <= t_) outcome = give_row(grid[row++], needs, observer);
-  while (outcome.ok() && row < grid.size()) {
+  while (outcome.ok() && row < grid.size() && stopped_by_ < 0) {
     const double limit = std::min(next_breakpoint(t_), grid.last());
     outcome = move(limit, grid, row, needs, observer);
   }
-  const std::span<const double> y = integrator_->state();
+  const std::span<const double> y = stopped_by_ < 0 ? integrator_->state() : std::span<const double>(y_row_);
   std::copy_n(y.begin(), q_.size(), q_.begin());
   std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(q_.size()), q_.size(), qd_.begin());
-  evaluator_.add_turns(q_);
+  if (stopped_by_ < 0) evaluator_.add_turns(q_);
   evaluator_.forget_turns();
   evaluator_.set_time(t_);
   evaluator_.set_configuration(q_);
@@ -289,8 +308,13 @@ Report Dynamics::move(double limit, const TimeGrid& grid, std::int64_t& row, con
                       RowObserver& observer) {
   while (t_ < limit) {
     if (!integrator_->advance(limit)) return stuck();
+    const double before = t_;
     t_ = integrator_->time();
     if (!observer.proceed(t_)) return cancelled(t_);
+    if (events_) {
+      const Report found = find_events(before, grid, row, needs, observer);
+      if (!found.ok() || stopped_by_ >= 0) return found;
+    }
     if (t_ == limit && limit < grid.last()) {
       // A function of time jumps here: the next step starts with what holds afterwards.
       while (row < grid.size() && grid[row] < t_) {
@@ -306,6 +330,31 @@ Report Dynamics::move(double limit, const TimeGrid& grid, std::int64_t& row, con
     }
   }
   return {};
+}
+
+// Events within the last step, in order: rows before each, then its own.
+Report Dynamics::find_events(double from, const TimeGrid& grid, std::int64_t& row, const Needs& needs,
+                             RowObserver& observer) {
+  const auto state = [&](double t) { return state_at(t, needs); };
+  while (const std::optional<FoundEvent> found = events_->find(from, t_, state)) {
+    while (row < grid.size() && grid[row] < found->t) {
+      if (const Report given = give_row(grid[row++], needs, observer); !given.ok()) return given;
+    }
+    if (row < grid.size() && grid[row] == found->t) ++row;
+    if (const Report given = give_row(found->t, needs, observer); !given.ok()) return given;
+    from = found->t;
+    if (!events_->take(*found)) continue;
+    stopped_by_ = found->event;
+    t_ = found->t;
+    return {};
+  }
+  return {};
+}
+
+WorkSoFar Dynamics::work_so_far() const {
+  if (!account_) return {};
+  const Snapshot now = snapshot(t_, y_row_, {});
+  return {now.work, now.dissipated, initial_energy_, total_energy(now), driver_work_};
 }
 
 }  // namespace catena

@@ -14,6 +14,7 @@
 #include "catena/analysis/dynamics_options.hpp"
 #include "catena/analysis/energy_account.hpp"
 #include "catena/analysis/equations_of_motion.hpp"
+#include "catena/analysis/event_watch.hpp"
 #include "catena/analysis/integrators/runge_kutta.hpp"
 #include "catena/analysis/minimum_norm.hpp"
 #include "catena/analysis/row_observer.hpp"
@@ -21,6 +22,13 @@
 #include "catena/analysis/time_grid.hpp"
 
 namespace catena {
+
+/// Energies at an event, for a motion that goes on with other constraints. Units: J.
+struct WorkSoFar {
+  double supplied = 0, dissipated = 0;  ///< by loads and drivers; by damping
+  double initial_energy = 0, energy = 0;
+  std::vector<double> by_driver;  ///< by number of the element; empty: nothing was summed up
+};
 
 class Dynamics {
  public:
@@ -35,6 +43,15 @@ class Dynamics {
   /// Assembles and makes velocities consistent, if nothing did before, and goes through the grid.
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
 
+  /// Looks for events during run(): a row is given at each, and one that acts ends the run there. nullptr: none.
+  void watch(EventWatch* events) { events_ = events; }
+  /// The event at which the last run ended before the end of its grid, or -1; and the row of the grid that was next.
+  int stopped_by() const { return stopped_by_; }
+  std::int64_t next_row() const { return next_row_; }
+  WorkSoFar work_so_far() const;
+  /// Counts work from an earlier start; energy that is missing against then counts as dissipated (an impact).
+  void carry_on(WorkSoFar work) { earlier_ = std::move(work); }
+
   double time() const { return t_; }
   std::span<const double> q() const { return q_; }
   std::span<const double> qd() const { return qd_; }
@@ -46,6 +63,8 @@ class Dynamics {
   Report check_functions(double last) const;
   Report move(double limit, const TimeGrid& grid, std::int64_t& row, const Needs& needs, RowObserver& observer);
   Report give_row(double t, const Needs& needs, RowObserver& observer);
+  std::optional<Snapshot> state_at(double t, const Needs& needs);
+  Report find_events(double from, const TimeGrid& grid, std::int64_t& row, const Needs& needs, RowObserver& observer);
   void find_multipliers();
   void describe_mobility(AnalysisReport& report);
   Report stuck() const;
@@ -66,6 +85,10 @@ class Dynamics {
   std::vector<double> q_, qd_, given_qd_, driver_work_;
   std::vector<double> y_row_, slope_row_, lambda_row_, loads_row_;
   double row_residual_ = 0;
+  EventWatch* events_ = nullptr;
+  int stopped_by_ = -1;
+  std::int64_t next_row_ = 0;
+  WorkSoFar earlier_;
 };
 
 }  // namespace catena

@@ -28,24 +28,34 @@ class TimeGrid {
     return grid;
   }
 
-  std::int64_t size() const {
+  /// The instants from number `first` on.
+  TimeGrid from_row(std::int64_t first) const {
+    TimeGrid rest = *this;
+    rest.skipped_ += first;
+    return rest;
+  }
+
+  std::int64_t size() const { return all() - skipped_; }
+  double operator[](std::int64_t k) const { return at(k + skipped_); }
+  double last() const { return at(all() - 1); }
+
+ private:
+  explicit TimeGrid(std::vector<double> times) : times_(std::move(times)) {}
+  std::int64_t all() const {
     if (every_ == 0) return static_cast<std::int64_t>(times_.size());
     if (until_ <= from_) return 1;
     return (last_ >= first_ ? last_ - first_ + 1 : 0) + 2;
   }
-  double operator[](std::int64_t k) const {
+  double at(std::int64_t k) const {
     if (every_ == 0) return times_[static_cast<std::size_t>(k)];
     if (k == 0) return from_;
-    if (k == size() - 1) return until_;
+    if (k == all() - 1) return until_;
     return static_cast<double>(first_ + k - 1) * every_;
   }
-  double last() const { return (*this)[size() - 1]; }
 
- private:
-  explicit TimeGrid(std::vector<double> times) : times_(std::move(times)) {}
   std::vector<double> times_;
   double from_ = 0, until_ = 0, every_ = 0;
-  std::int64_t first_ = 0, last_ = 0;
+  std::int64_t first_ = 0, last_ = 0, skipped_ = 0;
 };
 
 }  // namespace catena

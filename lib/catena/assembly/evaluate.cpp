@@ -70,7 +70,7 @@ void Evaluator::load_values() {
   // Where everything is given: origins of the relative coordinates, poses of the immobile bodies.
   std::vector<char> keep_weld;
   for (const auto& weld : std::get<std::vector<ElementEntry<Weld<double>, double>>>(model_->constraints)) {
-    keep_weld.push_back(plan.element_row[at(weld.id)] >= 0);
+    keep_weld.push_back(plan.element_row[at(weld.id)] >= 0 || plan.is_released(weld.id));
   }
   const Elimination elimination = eliminate_bodies(*model_, keep_weld);
   mass_.resize(at(plan.bodies));
@@ -320,7 +320,27 @@ void Evaluator::add_hessians(std::span<const double> lambda, Curvature curvature
   });
 }
 
+// A constraint that does not hold for the time being is in no block, but what it measures can be seen all the same.
+Measured Evaluator::measure_released(int element, std::span<const double> qd) const {
+  Measured result;
+  const ElementRecord& record = model_->elements[at(element)];
+  const auto motion = [&](int body) {
+    const int p = body < 0 ? plan_->bodies : plan_->plan_body[at(body)];
+    const double* v = qd.empty() ? nullptr : &qd[at(3 * p)];
+    return moving(ground_frame(p), v ? v[0] : 0, v ? v[1] : 0, v ? v[2] : 0);
+  };
+  with_list(model_->constraints, record.type, [&](const auto& list) {
+    const auto& entry = list[at(record.index)];
+    if constexpr (requires { entry.element.measure(Frame<double>{}, Frame<double>{}); }) {
+      const Taylor<double> m = entry.element.measure(motion(entry.i), motion(entry.j));
+      result = {m.f, m.d, m.dd};
+    }
+  });
+  return result;
+}
+
 Measured Evaluator::measure(int element, std::span<const double> qd, std::span<const double> qdd) const {
+  if (plan_->is_released(element)) return measure_released(element, qd);
   Measured result;
   for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
     if (block.size() == 0 || place(element) < 0) return;

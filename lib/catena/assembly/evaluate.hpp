@@ -80,7 +80,8 @@ class Evaluator {
   void add_hessians(std::span<const double> lambda, Curvature curvature, const HessianSlots& slots,
                     std::span<double> values);
 
-  /// Measured quantity of a scalar constraint with time derivatives; qd, qdd may be empty (zero).
+  /// Measured quantity of a scalar constraint with time derivatives; qd, qdd may be empty (zero). The second derivative
+  /// of one that is released lacks the accelerations' part.
   Measured measure(int element, std::span<const double> qd, std::span<const double> qdd) const;
   /// Dense Phi_q of one element in THEORY's form: rows x 6 (columns 3 ... 5 zero for absolute types), and its scale.
   struct ElementJacobian {
@@ -105,6 +106,7 @@ class Evaluator {
 
  private:
   void load_values();
+  Measured measure_released(int element, std::span<const double> qd) const;
   /// Place of an element in its block, -1 if it has no rows.
   int place(int element) const { return place_[static_cast<std::size_t>(element)]; }
 

@@ -13,10 +13,11 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 std::vector<char> welds_to_keep(const Model& model, const PlanOptions& options) {
   const auto& welds = std::get<std::vector<ElementEntry<Weld<double>, double>>>(model.constraints);
   std::vector<char> keep;
-  if (options.keep_elements.empty() || welds.empty()) return keep;
+  if ((options.keep_elements.empty() && options.released_elements.empty()) || welds.empty()) return keep;
   keep.assign(welds.size(), 0);
   std::vector<char> wanted(model.elements.size(), 0);
   for (int e : options.keep_elements) wanted[at(e)] = 1;
+  for (int e : options.released_elements) wanted[at(e)] = 1;
   for (std::size_t k = 0; k < welds.size(); ++k) keep[k] = wanted[at(welds[k].id)];
   return keep;
 }
@@ -138,14 +139,22 @@ std::shared_ptr<const Plan> Plan::make(const Model& model, const PlanOptions& op
   const Elimination elimination = eliminate_bodies(model, welds_to_keep(model, options));
   number_coordinates(model, elimination, *plan);
   plan->element_row.assign(model.elements.size(), -1);
+  if (!options.released_elements.empty()) plan->released.assign(model.elements.size(), 0);
+  for (int e : options.released_elements) plan->released[at(e)] = 1;
   plan->row_element.reserve(2 * model.elements.size());
   plan->row_is_angle.reserve(2 * model.elements.size());
   for_each_list(model.constraints, [&](const auto& list, int type) {
     using E = ElementOf<decltype(list)>;
     auto& block = std::get<ConstraintBlock<E>>(plan->blocks);
-    static_cast<void>(type);
     const bool weld = std::is_same_v<E, Weld<double>>;
-    choose_elements(list, weld ? elimination.weld_eliminated : std::vector<char>{}, *plan, block);
+    std::vector<char> skip = weld ? elimination.weld_eliminated : std::vector<char>{};
+    for (int e : options.released_elements) {
+      const ElementRecord& record = model.elements[at(e)];
+      if (record.kind == ElementKind::force || record.type != type) continue;
+      skip.resize(list.size());
+      skip[at(record.index)] = 1;
+    }
+    choose_elements(list, skip, *plan, block);
     number_rows(model, list, block, *plan);
   });
   for_each_list(model.forces, [&](const auto& list, int) {

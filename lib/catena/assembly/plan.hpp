@@ -42,7 +42,10 @@ using ConstraintValues = detail::BlocksOf<ConstraintLists<double>>::Data;
 
 struct PlanOptions {
   /// Elements whose reactions are wanted: a weld among them is solved for instead of eliminated.
-  std::vector<int> keep_elements;
+  std::vector<int> keep_elements = {};
+  /// Constraints that do not hold for the time being: they get no rows. Bodies are numbered as if they did, so that
+  /// plans that differ in this alone number them alike.
+  std::vector<int> released_elements = {};
 };
 
 struct Plan {
@@ -61,6 +64,7 @@ struct Plan {
   bool contiguous = true;       ///< column == coordinate for all columns: no particles
 
   std::vector<int> element_row;    ///< first row of an element of the model's list, -1: none
+  std::vector<char> released;      ///< of an element: it does not hold for the time being; empty: none
   std::vector<int> row_element;    ///< element of a row
   std::vector<char> row_is_angle;  ///< residual in radians; else in metres
 
@@ -70,6 +74,7 @@ struct Plan {
   bool constant_jacobian = true;   ///< no entry of Phi_q varies
   std::vector<char> body_has_row;  ///< per plan body: some constraint touches it
 
+  bool is_released(int element) const { return !released.empty() && released[static_cast<std::size_t>(element)]; }
   int trash_slot() const { return jacobian.entries(); }  ///< where entries of immobile bodies go
   int coordinates() const { return 3 * (bodies + 1); }   ///< of all bodies and, last and always zero, the ground
   int mobility() const { return columns - (rows - driver_rows); }  ///< Grübler's count

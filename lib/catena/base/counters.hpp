@@ -22,6 +22,24 @@ struct Counters {
   std::int64_t steps = 0;             ///< time steps taken
   std::int64_t rejected = 0;          ///< time steps rejected
 
+  Counters& operator+=(const Counters& other) {
+    symbolic += other.symbolic;
+    factorizations += other.factorizations;
+    refactorizations += other.refactorizations;
+    solves += other.solves;
+    iterations += other.iterations;
+    configurations += other.configurations;
+    phis += other.phis;
+    jacobians += other.jacobians;
+    nus += other.nus;
+    gammas += other.gammas;
+    forces += other.forces;
+    hessians += other.hessians;
+    fallbacks += other.fallbacks;
+    steps += other.steps;
+    rejected += other.rejected;
+    return *this;
+  }
   friend bool operator==(const Counters&, const Counters&) = default;
 };
 

@@ -40,6 +40,7 @@ Arms arms_of(const Model& model, int element, const Attachment& attachment, cons
 
 ElementReactions element_reactions(const Snapshot& snapshot, int element) {
   const Evaluator& evaluator = snapshot.evaluator;
+  if (evaluator.plan().is_released(element)) return {};  // what does not hold exerts nothing
   const ElementJacobian jacobian = evaluator.element_jacobian(element);
   const Attachment attachment = attachment_of(evaluator.model(), element);
   const auto first_row = static_cast<std::size_t>(evaluator.plan().element_row[static_cast<std::size_t>(element)]);

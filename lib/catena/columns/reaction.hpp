@@ -22,7 +22,7 @@ struct ElementReactions {
   double multiplier[3]{};  ///< of THEORY's forms, one a row
 };
 
-/// Needs snapshot.lambda; the element must have rows in the plan.
+/// Needs snapshot.lambda; the element must have rows in the plan, or be released: then there are none.
 ElementReactions element_reactions(const Snapshot& snapshot, int element);
 
 }  // namespace catena

@@ -15,7 +15,7 @@ struct Snapshot {
   const Evaluator& evaluator;  ///< set to this time and configuration
   double t = 0;
   std::span<const double> q{}, qd{}, qdd{}, lambda{};
-  double residual = 0;                    ///< largest constraint residual, m or rad
+  double residual = 0;                    ///< largest constraint residual, m; angles times the length scale
   double work = 0;                        ///< of drivers and applied loads since the start, J
   double dissipated = 0;                  ///< J
   double initial_energy = 0;              ///< total_energy() at the start, J
@@ -28,6 +28,14 @@ struct Needs {
   bool acceleration = false;
   bool multipliers = false;
   bool work = false;  ///< integrals of power: work of drivers and loads, dissipation, the energy at the start
+
+  Needs& operator|=(const Needs& other) {
+    velocity |= other.velocity;
+    acceleration |= other.acceleration;
+    multipliers |= other.multipliers;
+    work |= other.work;
+    return *this;
+  }
 };
 
 }  // namespace catena

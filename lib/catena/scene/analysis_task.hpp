@@ -18,7 +18,7 @@ struct EventRequest {
   int direction = 0;  ///< position among the words of the key: any, up, down
   int action = 0;     ///< record, stop, release, engage
   std::string element;
-  JsonValue place;  ///< of the column
+  JsonValue place, element_place;  ///< of the column; of the element
 };
 
 /// A name that an analysis uses, and where it stands.

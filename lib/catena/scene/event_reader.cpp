@@ -31,7 +31,11 @@ void AnalysisReader::read_event(const JsonValue& object, AnalysisTask& task) {
   if (v[3]) event.direction = read_word(v[3], words[3].words, {keys[3], "an event"}, diagnostics_);
   if (v[4]) event.action = read_word(v[4], words[4].words, {keys[4], "an event"}, diagnostics_);
   event.element = text(5);
+  event.element_place = v[5];
   if (event.action >= 2 && !v[5]) error(object, "an event that releases or engages needs \"element\"");
+  if (event.action < 2 && v[5])
+    error(v[5], fmt::format("\"element\" of an event that is to {} has no meaning",
+                            words[4].words[static_cast<std::size_t>(event.action)]));
   if (event.name.empty()) event.name = "event#" + std::to_string(task.events.size() + 1);
   if (v[1]) task.events.push_back(std::move(event));
 }

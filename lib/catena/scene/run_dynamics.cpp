@@ -1,12 +1,40 @@
 // dynamics: the motion that follows from forces.
-#include "catena/analysis/dynamics.hpp"
+#include "catena/analysis/dynamics_with_events.hpp"
 #include "catena/scene/analysis_run.hpp"
 
 namespace catena {
+namespace {
+
+std::vector<Event> events_of(const AnalysisTask& task, const Model& model) {
+  // In the order of the keys' words.
+  constexpr EventDirection directions[] = {EventDirection::any, EventDirection::up, EventDirection::down};
+  constexpr EventAction actions[] = {EventAction::record, EventAction::stop, EventAction::release, EventAction::engage};
+  std::vector<Event> events;
+  for (const EventRequest& request : task.events) {
+    events.push_back({request.name, request.column, request.value, directions[request.direction],
+                      actions[request.action], request.element.empty() ? -1 : model.find_element(request.element)});
+  }
+  return events;
+}
+
+void run_with_events(AnalysisContext& context, AnalysisResult& result, const TimeGrid& grid,
+                     const DynamicsOptions& options, const std::vector<std::string>& names,
+                     const ColumnSources& sources) {
+  std::vector<std::string> reactions = names;
+  for (const EventRequest& request : context.task.events) reactions.push_back(request.column);
+  DynamicsWithEvents analysis(context.model, plan_options(*context.model, reactions), options,
+                              events_of(context.task, *context.model), sources);
+  run_over_time(context, result, analysis, grid, names, sources);
+  std::vector<FieldRecord> records;
+  for (const EventRecord& record : analysis.records())
+    records.push_back({{"name", record.name}, {"t", record.t}, {"row", record.row}});
+  result.fields.push_back({"events", std::move(records)});
+}
+
+}  // namespace
 
 void run_dynamics(AnalysisContext& context, AnalysisResult& result) {
   const AnalysisTask& task = context.task;
-  if (!task.events.empty()) return refuse(result, "events are not built yet; leave \"events\" out");
   const std::optional<TimeGrid> grid = time_grid(context, result.report);
   if (!grid) return;
   // In the order of the key's words.
@@ -17,14 +45,15 @@ void run_dynamics(AnalysisContext& context, AnalysisResult& result) {
   options.tolerance = task.number("tolerance", options.tolerance);
   options.step = task.number("step", options.step);
   const std::vector<std::string> names = task.output_names();
+  const ColumnSources sources{.analysis = task.type(),
+                              .timed = true,
+                              .velocity = true,
+                              .acceleration = true,
+                              .multipliers = true,
+                              .work = true};
+  if (!task.events.empty()) return run_with_events(context, result, *grid, options, names, sources);
   Dynamics analysis(context.model, plan_options(*context.model, names), options);
-  run_over_time(context, result, analysis, *grid, names,
-                {.analysis = task.type(),
-                 .timed = true,
-                 .velocity = true,
-                 .acceleration = true,
-                 .multipliers = true,
-                 .work = true});
+  run_over_time(context, result, analysis, *grid, names, sources);
 }
 
 }  // namespace catena

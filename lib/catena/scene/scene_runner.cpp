@@ -9,6 +9,7 @@
 #include "catena/scene/command_text.hpp"
 #include "catena/scene/near_miss.hpp"
 #include "catena/scene/scene_reader.hpp"
+#include "catena/scene/scene_reading.hpp"
 
 namespace catena {
 namespace {
@@ -19,6 +20,14 @@ std::string stem(const std::string& path) {
   std::string name = slash == std::string::npos ? path : path.substr(slash + 1);
   const std::size_t dot = name.find_last_of('.');
   return dot == std::string::npos || dot == 0 ? name : name.substr(0, dot);
+}
+
+/// For a "did you mean": names of at most some thousand elements.
+std::vector<std::string> element_names(const Model& model) {
+  std::vector<std::string> names;
+  for (int e = 0; e < static_cast<int>(std::min<std::size_t>(model.elements.size(), 2000)); ++e)
+    names.push_back(model.element_name(e));
+  return names;
 }
 
 class SceneRun {
@@ -34,6 +43,7 @@ class SceneRun {
   void read_tasks();
   void check_columns(const std::vector<PlacedName>& names, const Model& model);
   void check_task(const AnalysisTask& task);
+  void check_event(const EventRequest& event, const Model& model);
   std::shared_ptr<const Model> build(std::span<const double> parameters);
   void run_all();
   /// Builds models in which one parameter of the task has another value.
@@ -77,13 +87,29 @@ void SceneRun::check_task(const AnalysisTask& task) {
     if (!diagnostics_.ok()) return;
   }
   check_columns(task.outputs, *model);
-  for (const EventRequest& event : task.events) {
-    check_columns({{event.column, event.place}}, *model);
-    if (!event.element.empty() && model->find_element(event.element) < 0) {
-      const JsonValue place = task.place;
-      diagnostics_.error(place.source(), place.offset(),
-                         fmt::format("there is no element {} to release or engage", in_quotes(event.element)));
-    }
+  for (const EventRequest& event : task.events) check_event(event, *model);
+}
+
+void SceneRun::check_event(const EventRequest& event, const Model& model) {
+  check_columns({{event.column, event.place}}, model);
+  std::vector<NamedColumn> found;
+  if (!find_columns(model, event.column, found) && found.size() > 1) {
+    report(event.place,
+           fmt::format("\"when\" of an event wants one column; {} stands for {} of them, such as {}",
+                       in_quotes(event.column), found.size(), in_quotes(found.front().info.name)),
+           diagnostics_);
+  }
+  if (event.element.empty()) return;
+  const int element = model.find_element(event.element);
+  if (element < 0) {
+    report(event.element_place,
+           fmt::format("there is no constraint {} to release or engage{}", in_quotes(event.element),
+                       NearMiss(event.element).consider_all(element_names(model)).hint()),
+           diagnostics_);
+  } else if (model.elements[static_cast<std::size_t>(element)].kind == ElementKind::force) {
+    report(event.element_place,
+           fmt::format("{} is a force; only constraints and drivers are released or engaged", in_quotes(event.element)),
+           diagnostics_);
   }
 }
 

@@ -1,0 +1,141 @@
+#include "catena/analysis/dynamics_with_events.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace catena {
+namespace {
+
+// Events that act this often without time going on would do so for ever.
+constexpr int most_at_once = 100;
+// A constraint is engaged where it holds already, to this part of the length scale, or rad.
+constexpr double misfit = 1e-6;
+
+/// Passes rows on and counts them.
+class CountingObserver final : public RowObserver {
+ public:
+  explicit CountingObserver(RowObserver& target) : target_(target) {}
+  bool observe(const Snapshot& snapshot) override {
+    ++rows_;
+    return target_.observe(snapshot);
+  }
+  bool proceed(double t) override { return target_.proceed(t); }
+  std::int64_t rows() const { return rows_; }
+
+ private:
+  RowObserver& target_;
+  std::int64_t rows_ = 0;
+};
+
+void add_counts(AnalysisReport& total, const AnalysisReport& part) {
+  const std::vector<std::string> warnings = total.warnings;
+  const Counters counters = total.counters;
+  const double seconds = total.seconds;
+  total = part;
+  total.counters += counters;
+  total.seconds += seconds;
+  total.warnings = warnings;
+  for (const std::string& warning : part.warnings) {
+    if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) total.warnings.push_back(warning);
+  }
+}
+
+}  // namespace
+
+DynamicsWithEvents::DynamicsWithEvents(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
+                                       const DynamicsOptions& options, std::vector<Event> events,
+                                       const ColumnSources& sources)
+    : model_(std::move(model)), plan_options_(plan_options), options_(options) {
+  for (const Event& event : events) {
+    if (event.action != EventAction::release && event.action != EventAction::engage) continue;
+    plan_options_.keep_elements.push_back(event.element);
+    if (event.action == EventAction::engage) plan_options_.released_elements.push_back(event.element);
+  }
+  make_dynamics();
+  watch_ = std::make_unique<EventWatch>(std::move(events), *model_, dynamics_->plan(), sources);
+}
+
+void DynamicsWithEvents::make_dynamics() { dynamics_ = std::make_unique<Dynamics>(model_, plan_options_, options_); }
+
+Report DynamicsWithEvents::check_fit(int element) {
+  Report report;
+  Evaluator& evaluator = dynamics_->evaluator();
+  evaluator.set_time(dynamics_->time());
+  std::vector<double> q = evaluator.given_configuration();
+  const SystemState state = dynamics_->state();
+  const Plan& plan = dynamics_->plan();
+  for (std::size_t p = 0; p < static_cast<std::size_t>(plan.moving); ++p) {
+    const std::size_t source = 3 * static_cast<std::size_t>(plan.model_body[p]);
+    const Vec2<double> origin = evaluator.origin(static_cast<int>(p));
+    q[3 * p] = state.q[source] - origin.x;
+    q[3 * p + 1] = state.q[source + 1] - origin.y;
+    q[3 * p + 2] = state.q[source + 2];
+  }
+  evaluator.set_configuration(q);
+  std::vector<double> phi(static_cast<std::size_t>(plan.rows));
+  evaluator.phi(phi);
+  for (std::size_t row = 0; row < phi.size(); ++row) {
+    if (plan.row_element[row] != element) continue;
+    const bool angle = plan.row_is_angle[row] != 0;
+    if (std::abs(phi[row]) <= misfit * (angle ? 1 : evaluator.length_scale())) continue;
+    report.status = Status::inconsistent;
+    report.message = fmt::format(
+        "\"{}\" cannot be engaged at t = {:.12g} s: it misses by {:.3g} {}; an event must happen where it holds",
+        model_->element_name(element), dynamics_->time(), std::abs(phi[row]), angle ? "rad" : "m");
+    return report;
+  }
+  return report;
+}
+
+Report DynamicsWithEvents::act(const Event& event, bool sum_up_work) {
+  std::vector<int>& released = plan_options_.released_elements;
+  const bool engage = event.action == EventAction::engage;
+  std::erase(released, event.element);
+  if (!engage) released.push_back(event.element);
+  const SystemState state = dynamics_->state();
+  WorkSoFar work = dynamics_->work_so_far();
+  make_dynamics();
+  dynamics_->start_from(state);
+  if (sum_up_work) dynamics_->carry_on(std::move(work));
+  return engage ? check_fit(event.element) : Report{};
+}
+
+AnalysisReport DynamicsWithEvents::run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
+  CountingObserver rows(observer);
+  watch_->rows_given = [&] { return rows.rows(); };
+  AnalysisReport total;
+  TimeGrid rest = grid;
+  double last_action = -1;
+  int at_once = 0;
+  for (;;) {
+    dynamics_->watch(watch_.get());
+    add_counts(total, dynamics_->run(rest, needs, rows));
+    const int stopped_by = dynamics_->stopped_by();
+    if (!total.ok() || stopped_by < 0) return total;
+    const Event& event = watch_->events()[static_cast<std::size_t>(stopped_by)];
+    if (event.action == EventAction::stop) {
+      if (dynamics_->next_row() < rest.size())
+        total.message = fmt::format("event \"{}\" ended it at t = {:.12g} s", event.name, dynamics_->time());
+      return total;
+    }
+    rest = rest.from_row(dynamics_->next_row());
+    at_once = dynamics_->time() > last_action ? 1 : at_once + 1;
+    last_action = dynamics_->time();
+    Report acted = act(event, needs.work || watch_->needs().work);
+    if (acted.ok() && at_once > most_at_once) {
+      acted.status = Status::step_too_small;
+      acted.message = fmt::format("event \"{}\" and others follow each other without end at t = {:.12g} s", event.name,
+                                  last_action);
+    }
+    if (!acted.ok()) {
+      total.status = acted.status;
+      total.message = acted.message;
+      return total;
+    }
+    if (rest.size() == 0) return total;
+  }
+}
+
+}  // namespace catena
