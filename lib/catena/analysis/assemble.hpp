@@ -27,7 +27,7 @@ struct Misfit {
 
 struct AssemblyOutcome : Report {
   int iterations = 0;
-  double residual = 0;          ///< largest, m or rad
+  double residual = 0;          ///< largest, in length scales or rad
   double moved = 0;             ///< how far the estimate was off: weighted RMS over bodies, m
   std::vector<Misfit> misfits;  ///< the worst first, at most ten; filled when not assembled
 };

@@ -9,7 +9,7 @@ namespace catena {
 
 enum class ColumnKind : unsigned char {
   time,      ///< t, s
-  residual,  ///< largest constraint residual, m or rad
+  residual,  ///< largest constraint residual, m (angles times the length scale); rad if all are angles
 
   // index = plan body (the ground: plan.bodies), detail = point of the model or -1
   x,

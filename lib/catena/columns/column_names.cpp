@@ -65,7 +65,7 @@ class Lookup {
 
   std::optional<UnknownColumn> run() {
     if (name_ == "t") return take("t", UnitKind::time, {ColumnKind::time});
-    // The residual of a scene with rotations alone is in radians; metres is what it nearly always is.
+    // In radians if the plan turns out to have rows of angles alone; see ColumnSet::resolve.
     if (name_ == "residual") return take("residual", UnitKind::length, {ColumnKind::residual});
     if (head_ == "energy") return group(energy_columns);
     if (head_ == "momentum") return group(momentum_columns);

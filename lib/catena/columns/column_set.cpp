@@ -1,6 +1,8 @@
 #include "catena/columns/column_set.hpp"
 
+#include <algorithm>
 #include <array>
+#include <functional>
 #include <optional>
 #include <unordered_set>
 
@@ -94,7 +96,10 @@ class Resolver {
     if (needs.multipliers && !sources_.multipliers) return no_multipliers;
     if (needs.work && !sources_.work) return no_work;
     if (needs_mass(column.kind, model_) && without_mass_ >= 0) return no_mass;
-    if (is_reaction(column.kind) && plan_.element_row[static_cast<std::size_t>(column.index)] < 0) return eliminated;
+    if (is_reaction(column.kind) && plan_.element_row[static_cast<std::size_t>(column.index)] < 0 &&
+        !plan_.is_released(column.index)) {
+      return eliminated;
+    }
     return {};
   }
 
@@ -154,6 +159,7 @@ std::vector<NamedColumn> named_columns(const Model& model, std::span<const std::
 ColumnSet ColumnSet::resolve(const Model& model, const Plan& plan, std::span<const std::string> names,
                              const ColumnSources& sources) {
   ColumnSet set;
+  set.only_angles_ = plan.rows > 0 && std::all_of(plan.row_is_angle.begin(), plan.row_is_angle.end(), std::identity());
   Resolver resolver(model, plan, sources);
   std::vector<NamedColumn> named = named_columns(model, names, sources.timed);
   set.info_.reserve(named.size());
@@ -166,6 +172,7 @@ ColumnSet ColumnSet::resolve(const Model& model, const Plan& plan, std::span<con
     set.needs_.multipliers |= needs.multipliers;
     set.needs_.work |= needs.work;
     set.columns_.push_back(resolver.in_plan(column.column));
+    if (set.only_angles_ && column.column.kind == ColumnKind::residual) column.info.unit = UnitKind::angle;
     set.info_.push_back(std::move(column.info));
   }
   set.notes_ = resolver.notes();

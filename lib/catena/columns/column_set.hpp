@@ -57,6 +57,7 @@ class ColumnSet {
   std::vector<Column> columns_;
   Needs needs_;
   std::vector<std::string> notes_;
+  bool only_angles_ = false;  // all rows of constraints are angles: so is their residual
 };
 
 }  // namespace catena

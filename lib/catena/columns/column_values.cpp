@@ -13,14 +13,15 @@ namespace {
 /// Values of one row. Neighbouring columns mostly show the same element: what was computed last is kept.
 class RowValues {
  public:
-  explicit RowValues(const Snapshot& snapshot) : s_(snapshot), evaluator_(snapshot.evaluator) {}
+  RowValues(const Snapshot& snapshot, bool only_angles)
+      : s_(snapshot), evaluator_(snapshot.evaluator), only_angles_(only_angles) {}
 
   double value(const Column& column) {
     switch (column.kind) {
       case ColumnKind::time:
         return s_.t;
       case ColumnKind::residual:
-        return s_.residual;
+        return only_angles_ ? s_.residual / evaluator_.length_scale() : s_.residual;
       case ColumnKind::x:
         return position(column).x;
       case ColumnKind::y:
@@ -183,6 +184,7 @@ class RowValues {
 
   const Snapshot& s_;
   const Evaluator& evaluator_;
+  const bool only_angles_;
   int reactions_of_ = -1, joint_of_ = -1;
   ElementReactions reactions_;
   Joint joint_;
@@ -193,7 +195,7 @@ class RowValues {
 }  // namespace
 
 void ColumnSet::evaluate(const Snapshot& snapshot, std::span<double> out) const {
-  RowValues row(snapshot);
+  RowValues row(snapshot, only_angles_);
   for (std::size_t k = 0; k < columns_.size(); ++k) out[k] = row.value(columns_[k]);
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "catena/analysis/initial_velocities.hpp"
 #include "catena/analysis/kinematics.hpp"
@@ -75,17 +76,24 @@ void run_assemble(AnalysisContext& context, AnalysisResult& result) {
   const AssemblyOutcome outcome = analysis.assemble();
   AnalysisReport report;
   take_outcome(report, outcome, analysis);
+  // In metres, as the column: angles count times the length scale, unless there is nothing else.
+  const std::vector<char>& angles = analysis.plan().row_is_angle;
+  const bool only_angles = !angles.empty() && std::all_of(angles.begin(), angles.end(), std::identity());
+  const double scale = analysis.evaluator().length_scale();
   if (outcome.ok()) {
     analysis.evaluator().set_configuration(analysis.q());
-    rows.observe(
-        {.evaluator = analysis.evaluator(), .t = analysis.time(), .q = analysis.q(), .residual = outcome.residual});
+    rows.observe({.evaluator = analysis.evaluator(),
+                  .t = analysis.time(),
+                  .q = analysis.q(),
+                  .residual = outcome.residual * scale});
     context.state = analysis.state();
   }
   report.counters = analysis.evaluator().counters;
   report.seconds = timer.seconds();
   take_report(result, std::move(report), &columns, rows.rows());
-  result.fields = {
-      {"residual", outcome.residual}, {"moved", outcome.moved}, {"iterations", std::int64_t{outcome.iterations}}};
+  result.fields = {{"residual", outcome.residual * (only_angles ? 1 : scale)},
+                   {"moved", outcome.moved},
+                   {"iterations", std::int64_t{outcome.iterations}}};
   add_misfits(result, outcome, *context.model);
 }
 
