@@ -25,6 +25,7 @@ class Exact {
   friend Exact operator*(const Exact& a, const Exact& b);
   friend Exact operator/(const Exact& a, const Exact& b);
   Exact& operator+=(const Exact& b) { return *this = *this + b; }
+  Exact& operator-=(const Exact& b) { return *this = *this - b; }
   friend Exact sqrt(const Exact& a);
   friend Exact cos(const Exact& a);
   friend Exact sin(const Exact& a);

@@ -125,8 +125,25 @@ void fill(E& element, const CurveField<M>& field, ParameterSource<S>& source) {
   };
   element.*field.member = shape();
 }
+template <class E, class S, class M>
+void fill(E& element, const ChoiceField<M>& field, ParameterSource<S>& source) {
+  element.*field.member = source.coin();
+}
+template <class E, class S, class M>
+void fill(E& element, const TableField<M>& field, ParameterSource<S>& source) {
+  // Rising pairs around zero; now and then none.
+  if (source.coin()) return;
+  std::vector<Vec2<S>> pairs;
+  for (int k = -2; k <= 2; ++k) {
+    const S x = S(0.7 * k) + source.number(-0.2, 0.2);
+    pairs.push_back({x, S(1.5 * k) + source.number(-1, 1)});
+  }
+  element.*field.member = pairs;
+}
 template <class E, class S>
 void fill(E&, const FunctionField&, ParameterSource<S>&) {}
+template <class E, class S>
+void fill(E&, const FunctionPairField&, ParameterSource<S>&) {}
 
 /// An element that its own check() accepts, completed at the given frames.
 template <class E, class S>

@@ -170,6 +170,20 @@ const BadScene elements[] = {
     {"TableLengths", constraint(R"({"type": "absolute_x", "i": "crank",
        "value": {"spline": {"t": [0, 1, 2], "value": §[0, 1]}}})"),
      "3 times, but 2 values"},
+    {"SpringWithoutLaw", force(R"(§{"type": "spring_damper", "i": "crank", "j": "rod"})"),
+     "spring_damper needs \"k\" or \"curve\""},
+    {"CurveOfOnePair", force(R"({"type": "spring_damper", "i": "crank", "j": "rod", "curve": §[[0, 1]]})"),
+     "needs at least 2 points"},
+    {"CurveFallsBack", force(R"({"type": "spring_damper", "i": "crank", "j": "rod", "curve": §[[0, 1], [0, 2]]})"),
+     "must increase"},
+    {"CurveUnit", force(R"({"type": "spring_damper", "i": "crank", "j": "rod", "curve": [[0, 0], [§"1 N", 2]]})"),
+     "must be a length"},
+    {"CurveNoPair", force(R"({"type": "spring_damper", "i": "crank", "j": "rod", "curve": [§3]})"), "list of pairs"},
+    {"BushingOfNothing", force(R"(§{"type": "bushing", "i": "crank", "j": "rod"})"), "\"kx\""},
+    {"BushingUnit", force(R"({"type": "bushing", "i": "crank", "j": "rod", "kt": §"3 N/m"})"),
+     "must be a torsional stiffness"},
+    {"NotBuiltYet", force(R"({"type": §"friction", "joint": "A", "mu": 0.2})"), "is not built yet"},
+    {"OnlyInCpp", force(R"({"type": §"custom_force", "i": "crank", "j": "rod"})"), "unknown type"},
 };
 
 const BadScene replicated[] = {

@@ -22,6 +22,7 @@ SceneFacts four_bar_facts();      ///< four-bars, six-bars and straight lines
 SceneFacts leg_facts();           ///< walking legs
 SceneFacts machine_facts();       ///< pantograph, excavator, wiper, lift, steering
 SceneFacts gear_and_cam_facts();  ///< planetary set, rolling pinion, belts, cams
+SceneFacts force_facts();         ///< nonlinear springs, bushings, events
 
 /// Where the run's kinematics is in the list of analyses: after `check`.
 constexpr std::size_t kinematic = 1;

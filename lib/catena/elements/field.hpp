@@ -38,7 +38,7 @@ struct PlaceField {
   std::string_view doc;
 };
 
-/// A number. If `required` is false the member's initial value is the default.
+/// A number. If `required` is false, or the key `unless` is given in its place, the member's initial value stands.
 template <class Member>
 struct NumberField {
   std::string_view key;
@@ -47,6 +47,7 @@ struct NumberField {
   Domain domain;
   bool required;
   std::string_view doc;
+  std::string_view unless = {};
 };
 
 /// true or false; the member's initial value is the default.
@@ -123,6 +124,8 @@ template <class M>
 PlaceField(std::string_view, M, std::string_view) -> PlaceField<M>;
 template <class M>
 NumberField(std::string_view, M, UnitKind, Domain, bool, std::string_view) -> NumberField<M>;
+template <class M>
+NumberField(std::string_view, M, UnitKind, Domain, bool, std::string_view, std::string_view) -> NumberField<M>;
 template <class M>
 FlagField(std::string_view, M, std::string_view) -> FlagField<M>;
 template <class M>

@@ -14,6 +14,7 @@
 #include "catena/elements/constraints/cam_cam.hpp"
 #include "catena/elements/constraints/cam_flat.hpp"
 #include "catena/elements/constraints/coupler.hpp"
+#include "catena/elements/constraints/custom_constraint.hpp"
 #include "catena/elements/constraints/displacement.hpp"
 #include "catena/elements/constraints/gear.hpp"
 #include "catena/elements/constraints/point_on_curve.hpp"
@@ -26,12 +27,14 @@
 #include "catena/elements/constraints/slot.hpp"
 #include "catena/elements/constraints/translational.hpp"
 #include "catena/elements/constraints/weld.hpp"
+#include "catena/elements/forces/bushing.hpp"
+#include "catena/elements/forces/custom_force.hpp"
 #include "catena/elements/forces/point_force.hpp"
 #include "catena/elements/forces/spring_damper.hpp"
 #include "catena/elements/forces/torque.hpp"
 #include "catena/elements/forces/torsion_spring.hpp"
 
-/// CATENA_CONSTRAINTS(X) expands X(Type) for every constraint type.
+/// CATENA_CONSTRAINTS(X) expands X(Type) for every constraint type that a scene may name.
 #define CATENA_CONSTRAINTS(X) \
   X(AbsoluteAngle)            \
   X(AbsoluteDistance)         \
@@ -54,9 +57,20 @@
   X(Translational)            \
   X(Weld)
 
-/// CATENA_FORCES(X) expands X(Type) for every force type.
+/// The same with those that only C++ can make; they come last.
+#define CATENA_ALL_CONSTRAINTS(X) \
+  CATENA_CONSTRAINTS(X)           \
+  X(CustomConstraint)
+
+/// CATENA_FORCES(X) expands X(Type) for every force type that a scene may name.
 #define CATENA_FORCES(X) \
+  X(Bushing)             \
   X(PointForce)          \
   X(SpringDamper)        \
   X(Torque)              \
   X(TorsionSpring)
+
+/// The same with those that only C++ can make; they come last.
+#define CATENA_ALL_FORCES(X) \
+  CATENA_FORCES(X)           \
+  X(CustomForce)

@@ -42,11 +42,11 @@ struct DropFirst<First, Lists...> {
 #define CATENA_LIST_OF(Type) , std::vector<ElementEntry<Type<S>, S>>
 template <class S>
 struct ConstraintLists {
-  using type = typename DropFirst<void CATENA_CONSTRAINTS(CATENA_LIST_OF)>::type;
+  using type = typename DropFirst<void CATENA_ALL_CONSTRAINTS(CATENA_LIST_OF)>::type;
 };
 template <class S>
 struct ForceLists {
-  using type = typename DropFirst<void CATENA_FORCES(CATENA_LIST_OF)>::type;
+  using type = typename DropFirst<void CATENA_ALL_FORCES(CATENA_LIST_OF)>::type;
 };
 #undef CATENA_LIST_OF
 

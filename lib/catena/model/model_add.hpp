@@ -17,7 +17,7 @@ consteval int constraint_type() {
 #define CATENA_MATCH(Type)                   \
   if (std::is_same_v<E, Type<S>>) found = k; \
   ++k;
-  CATENA_CONSTRAINTS(CATENA_MATCH)
+  CATENA_ALL_CONSTRAINTS(CATENA_MATCH)
   return found;
 }
 
@@ -25,7 +25,7 @@ consteval int constraint_type() {
 template <class S, class E>
 consteval int force_type() {
   int found = -1, k = 0;
-  CATENA_FORCES(CATENA_MATCH)
+  CATENA_ALL_FORCES(CATENA_MATCH)
 #undef CATENA_MATCH
   return found;
 }

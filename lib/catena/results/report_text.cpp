@@ -89,6 +89,8 @@ std::string header_text(const RunHeader& header) {
                      count(header.elements, "element", "elements") + ", gravity [" + format_number(header.gravity[0]) +
                      ", " + format_number(header.gravity[1]) + "] m/s^2\n";
   if (!header.description.empty()) text += "  " + header.description + "\n";
+  if (header.analyses == 0)
+    text += "  the scene lists no \"analyses\"; catena check SCENE, catena kinematics SCENE ... run one\n";
   return text;
 }
 

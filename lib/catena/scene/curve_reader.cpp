@@ -22,6 +22,7 @@ void append_pairs(const JsonValue& list, const ExpectedDimension& first, const E
   for (const JsonValue& pair : list.elements()) {
     if (!pair.is(JsonKind::array) || pair.size() != 2) {
       report(pair, fmt::format("{} must be a list of pairs [a, b]", field.text()), diagnostics);
+      out.insert(out.end(), 2, NumberValue());  // what was reported counts as known
       continue;
     }
     auto element = pair.elements().begin();

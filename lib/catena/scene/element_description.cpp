@@ -14,6 +14,7 @@ FieldDescription describe_field(const Field& field) {
   d.key = field.key;
   d.doc = field.doc;
   if constexpr (requires { field.required; }) d.required = field.required;
+  if constexpr (requires { field.unless; }) d.unless = field.unless;
   if constexpr (requires { field.unit; }) d.unit = field.unit;
   if constexpr (requires { field.domain; }) d.domain = field.domain;
   if constexpr (requires { field.body; }) d.body = field.body;

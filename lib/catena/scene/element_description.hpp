@@ -20,6 +20,7 @@ struct FieldDescription {
   std::string_view key, doc;
   int slot = 0;  ///< the first of the element's slots that belong to it
   bool required = true;
+  std::string_view unless;                                       ///< a key that may stand in place of a required one
   UnitKind unit = UnitKind::none, second_unit = UnitKind::none;  ///< the second one: of a table's second numbers
   Domain domain = Domain::any;
   Omitted omitted = Omitted::refused;

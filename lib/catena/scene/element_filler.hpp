@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <tuple>
 
 #include "catena/model/given_frames.hpp"
@@ -44,7 +45,11 @@ class Filler {
     } else {
       if (given) set(field, source_.first_number + static_cast<std::uint32_t>(slot), slot);
       if constexpr (requires { field.required; }) {
-        if (!given && field.required) good_ = false;  // reported by the reader
+        if constexpr (requires { field.unless; }) {
+          if (!given && field.required && field.unless.empty()) good_ = false;  // reported by the reader
+        } else {
+          if (!given && field.required) good_ = false;
+        }
       }
     }
   }
@@ -101,7 +106,16 @@ class Filler {
   template <class M>
   void set(const TableField<M>& field, std::uint32_t at, int) {
     const TableTemplate& table = builder_.scene().tables[static_cast<std::size_t>(number(at).number())];
-    entry_.element.*field.member = builder_.table(table);
+    const auto pairs = builder_.table(table);
+    for (const auto& pair : pairs) {
+      if (std::isnan(value_of(pair.x) + value_of(pair.y))) good_ = false;  // reported where it stands
+    }
+    if (!good_) return;
+    try {
+      entry_.element.*field.member = pairs;
+    } catch (const std::invalid_argument& error) {
+      wrong(table.offset, field.key, std::string("is no curve: ") + error.what());
+    }
   }
   void set(const FunctionField& field, std::uint32_t at, int slot) {
     value_offset_ = number(at).offset();

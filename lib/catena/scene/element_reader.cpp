@@ -1,6 +1,7 @@
 // Constraints, drivers and forces: from JSON to templates, by the descriptions of their types.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "catena/scene/element_description.hpp"
@@ -12,6 +13,8 @@ namespace catena {
 namespace {
 
 constexpr std::size_t most_keys = 32;
+// Types that the format has, but this version does not know.
+constexpr std::array<std::string_view, 4> announced{"friction", "contact", "stop", "cable"};
 
 /// `revolute "A"`, or the type alone for an element without a name.
 std::string owner_text(std::string_view type, const JsonValue& name) {
@@ -50,7 +53,11 @@ const ElementDescription* read_type(const JsonValue& object, const JsonValue& ty
     if (near.best().empty()) {
       for (const ElementDescription& d : element_descriptions()) near.consider(d.type);
     }
-    report(type, fmt::format("unknown type {} in \"{}\"{}", in_quotes(text), list, near.hint()), diagnostics);
+    const bool later = std::find(announced.begin(), announced.end(), text) != announced.end();
+    report(type,
+           later ? fmt::format("the type {} is not built yet", in_quotes(text))
+                 : fmt::format("unknown type {} in \"{}\"{}", in_quotes(text), list, near.hint()),
+           diagnostics);
     return nullptr;
   }
   if (const std::string problem = wrong_list(*found, list); !problem.empty()) {
@@ -167,7 +174,9 @@ void SceneReading::element(const JsonValue& object, std::string_view list, Block
     const JsonValue& value = v[key_of_field[f]];
     if (!value) {
       const bool driven = element.kind == ElementKind::driver && field.kind == FieldKind::function;
-      if (field.required || driven) error(object, fmt::format("{} needs {}", owner, in_quotes(field.key)));
+      if (!field.unless.empty() && object.find(field.unless)) continue;
+      const std::string or_else = field.unless.empty() ? "" : " or " + in_quotes(field.unless);
+      if (field.required || driven) error(object, fmt::format("{} needs {}{}", owner, in_quotes(field.key), or_else));
       continue;
     }
     element.given |= 1u << f;

@@ -49,8 +49,12 @@ std::string example_of(const ElementDescription& type) {
   std::string out = "{";
   add_member(out, "type", "\"" + std::string(type.type) + "\"");
   add_member(out, "name", "\"A\"");
+  // An elastic element shows its stiffnesses, be they optional one by one.
+  const auto elastic = [&](const FieldDescription& field) {
+    return type.force && (field.unit == UnitKind::stiffness || field.unit == UnitKind::torsion_stiffness);
+  };
   for (const FieldDescription& field : type.fields) {
-    if (field.required || (field.kind == FieldKind::function && !type.force))
+    if (field.required || elastic(field) || (field.kind == FieldKind::function && !type.force))
       add_member(out, field.key, value_of_field(field));
   }
   return out + "}";

@@ -151,7 +151,8 @@ load: of a driver, load = lambda dPhi/dc, so that power = load dc/dt: positive p
   energy.kinetic .potential .total .dissipated .balance [J]   zero of the potential at the ground's origin;
                                balance = total - initial total - work of drivers and loads + dissipated
   momentum.x momentum.y [kg m/s], momentum.angular [kg m^2/s] about the ground's origin
-  residual                     largest constraint residual
+  residual                     largest constraint residual, m (angles times the mean distance of attachment points);
+                               rad where every constraint is an angle
   t                            time, s
 )"},
       {{"analyses", "set", "from"},
@@ -165,12 +166,16 @@ Example
 )"},
       {{"events"},
        R"(events: what dynamics watches for
-  name        in the results
+  name        in the results (default: event#n)
   when        a column
-  value       at which it happens (default 0)
+  value       at which it happens, SI units and radians (default 0)
   direction   "any" (default), "up" or "down"
-  action      "record" (default), "stop", "release" or "engage"
-  element     the constraint that is released or engaged
+  action      "record" (default): nothing but a row; "stop": the analysis ends there, the next goes on from there;
+              "release": a constraint ceases to hold; "engage": a constraint begins to hold, and does not before
+  element     the constraint or driver that is released or engaged
+  Every event gets a row of its own between the others, and an entry {"name", "t", "row"} in the result "events"; rows
+  count from 0. A column that starts at its value has no event there. What engages must hold already, to 1e-6 of the
+  scene's size; velocities then change as in a plastic impact, and the energy lost counts as dissipated.
 
 Example
   "events": [{"name": "landing", "when": "ball.y", "value": 0.1, "direction": "down", "action": "stop"}]

@@ -87,7 +87,8 @@ json element_schema(const ElementDescription& type, bool driver) {
   std::vector<std::string> required{"type"};
   for (const FieldDescription& field : type.fields) {
     properties[std::string(field.key)] = field_schema(field);
-    if (field.required || (driver && field.kind == FieldKind::function)) required.emplace_back(field.key);
+    if ((field.required && field.unless.empty()) || (driver && field.kind == FieldKind::function))
+      required.emplace_back(field.key);
   }
   // Bodies are named even where an element has no point there.
   for (int body = 0; body < type.bodies; ++body) {

@@ -1,13 +1,15 @@
 // spring_damper: translational spring, damper and actuator between a point of body i and a point of body j.
 //
-//   h = r_Pj - r_Pi    l = |h|    f = k (l - l0) + c ld + F(t)        on i +f h/l at P_i, on j -f h/l at P_j
-//   V = k (l - l0)^2 / 2 + F l, F frozen        dissipation c ld^2
+//   h = r_Pj - r_Pi    l = |h|    e = l - l0
+//   f = k e + g(e) + c ld + F(t)        on i +f h/l at P_i, on j -f h/l at P_j
+//   V = k e^2 / 2 + integral of g from 0 to e + F l, F frozen        dissipation c ld^2
 //
-// Symbols: k N/m, c N s/m, l0 m, F N (tension positive). l = 0 with a length l0 = 0 and no damper or actuator is
-// regular (f h/l = k h); otherwise the direction is lost there: the force is then taken as zero.
-// Source: Haug, section 6.2.
+// Symbols: k N/m, c N s/m, l0 m, F N (tension positive); g is the optional curve, see force_curve.hpp. l = 0 with a
+// length l0 = 0 and no damper, curve or actuator is regular (f h/l = k h); otherwise the direction is lost there: the
+// force is then taken as zero. Source: Haug, section 6.2.
 #pragma once
 
+#include "catena/elements/force_curve.hpp"
 #include "catena/elements/force_element.hpp"
 
 namespace catena {
@@ -16,22 +18,26 @@ template <class S = double>
 struct SpringDamper {
   static constexpr std::string_view type = "spring_damper";
   static constexpr std::string_view summary = "A spring, a damper and an actuator along the line between two points.";
-  static constexpr std::string_view equation = "f = k (l - l0) + c dl/dt + F,  +f h/l on i, -f h/l on j";
+  static constexpr std::string_view equation = "f = k (l - l0) + g(l - l0) + c dl/dt + F,  +f h/l on i, -f h/l on j";
   static constexpr int bodies = 2;
   static constexpr int functions = 1;
 
   Vec2<S> s_i, s_j;
   S k{}, c{}, length{-1.0};  // a negative length: not given, taken from the given configuration
+  ForceCurve<S> curve = {};
 
   static constexpr auto fields() {
     return std::make_tuple(
         PointField{"i", &SpringDamper::s_i, 0, "the end P_i on body i"},
         PointField{"j", &SpringDamper::s_j, 1, "the end P_j on body j"},
-        NumberField{"k", &SpringDamper::k, UnitKind::stiffness, Domain::any, true, "stiffness"},
+        NumberField{"k", &SpringDamper::k, UnitKind::stiffness, Domain::any, true,
+                    "stiffness (with a curve: default 0)", "curve"},
         NumberField{"c", &SpringDamper::c, UnitKind::damping, Domain::any, false, "damping (default 0)"},
         NumberField{"length", &SpringDamper::length, UnitKind::length, Domain::not_negative, false,
                     "free length l0 (default: the given distance)"},
-        FunctionField{"force", 0, UnitKind::force, Omitted::zero, "added to the tension (default 0)"});
+        FunctionField{"force", 0, UnitKind::force, Omitted::zero, "F, added to the tension (default 0)"},
+        TableField{"curve", &SpringDamper::curve, UnitKind::length, UnitKind::force,
+                   "g, added to the tension: a smooth curve through pairs [elongation l - l0, tension]"});
   }
 
   void complete(const Frame<S>& i, const Frame<S>& j) {
@@ -58,9 +64,11 @@ struct SpringDamper {
     Vec2<T> pull = T(k) * h;
     if (value_of(square) > 0) {
       using std::sqrt;
-      const T l = sqrt(square);
+      const T l = sqrt(square), stretch = l - T(length);
       const T rate = dot(h, span_rate(a)) / l;
-      pull = ((T(k) * (l - T(length)) + T(c) * rate + a.f[0]) / l) * h;
+      T tension = T(k) * stretch + T(c) * rate + a.f[0];
+      if (curve) tension += curve.force(stretch);
+      pull = (tension / l) * h;
     }
     add_force_at(a.i.axis(s_i), pull, on_i);
     add_force_at(a.j.axis(s_j), -pull, on_j);
@@ -69,10 +77,12 @@ struct SpringDamper {
   T potential(const ForceArguments<T>& a) const {
     const Vec2<T> h = span(a.i, a.j);
     const T square = squared_norm(h);
-    if (!(value_of(square) > 0)) return T(k) * (square + T(length) * T(length)) * T(0.5);
+    if (!(value_of(square) > 0)) {
+      return T(k) * (square + T(length) * T(length)) * T(0.5) + curve.energy(-T(length));
+    }
     using std::sqrt;
     const T l = sqrt(square), stretch = l - T(length);
-    return T(k) * stretch * stretch * T(0.5) + a.f[0] * l;
+    return T(k) * stretch * stretch * T(0.5) + curve.energy(stretch) + a.f[0] * l;
   }
   double dissipation(const ForceArguments<double>& a) const {
     const Vec2<double> h = span(a.i, a.j);

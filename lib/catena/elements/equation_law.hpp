@@ -1,0 +1,55 @@
+// The user's own scalar equation between two bodies, behind one virtual call; see constraints/custom_constraint.hpp.
+//
+// A law is a struct with
+//
+//   template <class T> T measure(const Frame<T>& i, const Frame<T>& j) const       the quantity that is to equal c, m
+//
+// T is one of the scalars below: from these the library has the row, Phi_q, nu, gamma and second derivatives, exact to
+// rounding.
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "catena/base/dual.hpp"
+#include "catena/base/frame.hpp"
+#include "catena/base/taylor.hpp"
+
+/// The scalars a law is evaluated in: numbers, time series, first and second derivatives by six coordinates.
+#define CATENA_LAW_SCALARS(X) \
+  X(double)                   \
+  X(Taylor<double>)           \
+  X(Gradient)                 \
+  X(Second)
+
+namespace catena {
+
+class EquationLaw {
+ public:
+  using Gradient = Dual<double, 6>;
+  using Second = Dual<Gradient, 6>;
+
+  virtual ~EquationLaw() = default;
+#define CATENA_DECLARE(T) virtual T measure(const Frame<T>& i, const Frame<T>& j) const = 0;
+  CATENA_LAW_SCALARS(CATENA_DECLARE)
+#undef CATENA_DECLARE
+};
+
+/// A law of the user's type.
+template <class Law>
+class EquationLawOf final : public EquationLaw {
+ public:
+  explicit EquationLawOf(Law law) : law_(std::move(law)) {}
+
+#define CATENA_OVERRIDE(T) \
+  T measure(const Frame<T>& i, const Frame<T>& j) const override { return law_.measure(i, j); }
+  CATENA_LAW_SCALARS(CATENA_OVERRIDE)
+#undef CATENA_OVERRIDE
+
+ private:
+  Law law_;
+};
+
+}  // namespace catena
+
+#undef CATENA_LAW_SCALARS
