@@ -85,6 +85,7 @@ TEST(TextSink, WritesHeaderTableAndReportAndTheHintOnce) {
   header.bodies = 1;
   header.elements = 2;
   header.gravity = {0, -9.81};
+  header.analyses = 3;
   sink.begin_run(header);
   for (int k = 0; k < 2; ++k) {
     RowSink& rows = sink.begin_analysis("kinematics");
@@ -107,6 +108,14 @@ TEST(TextSink, WritesHeaderTableAndReportAndTheHintOnce) {
             "\nkinematics: ok, 2 rows\n  t\n  s\n  0\n  ... 1 more row\n"
             "\ncheck: ok\n" +
                 report_text(check()));
+}
+
+TEST(TextSink, TellsWhoHasNoAnalysesWhatToDo) {
+  RunHeader header;
+  header.scene = "crank";
+  EXPECT_NE(header_text(header).find("the scene lists no \"analyses\"; catena check SCENE"), std::string::npos);
+  header.analyses = 1;
+  EXPECT_EQ(header_text(header).find("analyses"), std::string::npos);
 }
 
 TEST(ResultStorage, KeepsRowsUpToItsLimit) {
