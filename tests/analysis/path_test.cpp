@@ -194,10 +194,10 @@ TEST(Path, SaysWhereItEnds) {
 
 TEST(Path, KeepsOneSymbolicAnalysis) {
   const Followed run =
-      follow([](double force) { return chain_with_side_force(200, 1, 1, force); }, {.from = 0, .to = 5, .arc = 0.5});
+      follow([](double force) { return chain_with_side_force(200, 1, 1, force); }, {.from = 0, .to = 5});
   ASSERT_TRUE(run.report.ok());
   EXPECT_EQ(run.report.counters.symbolic, 1);
-  EXPECT_LT(run.report.counters.factorizations, 8 * run.report.steps + 12);
+  EXPECT_LT(run.report.counters.factorizations, 6 * run.report.steps + 12);
 }
 
 }  // namespace

@@ -18,6 +18,8 @@ namespace {
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double shortest_step = 1e-9;
+// Steps shorter than this part of the usual one are kept though a critical point in them could not be located.
+constexpr double unlocated_step = 1e-4;
 // Iterations after which the next step is shorter, and up to which it may be longer.
 constexpr int many_iterations = 7, few_iterations = 4;
 // The cosine between the directions at both ends of a step, at least.
@@ -173,8 +175,18 @@ class Path::March {
       }
       bool left = false;
       if (modes != modes_) {
-        const Progress progress = pass_critical({x_, direction_, s, modes_, modes}, left);
-        if (progress != Progress::going) return progress;
+        bool complete = false;
+        const std::vector<CriticalPoint> critical =
+            find_critical_points(system_, {x_, direction_, s, modes_, modes}, complete);
+        if (!complete && length_ > unlocated_step * options_.arc) {
+          // Modes that change without a critical point in between: the step went astray, onto another path.
+          length_ *= 0.5;
+          continue;
+        }
+        if (!complete) {
+          report_->warnings.push_back(fmt::format("a critical point near {:.10g} could not be located", x_.p));
+        }
+        if (!pass(critical, left)) return Progress::cancelled;
       }
       if (left) return Progress::going;
       x_ = std::move(next);
@@ -189,32 +201,23 @@ class Path::March {
     return Progress::stuck;
   }
 
-  // Rows and records of the critical points in a step; `left`: the path went over to another branch.
-  Progress pass_critical(const PathStep& step, bool& left) {
-    bool complete = false;
-    for (CriticalPoint& critical : find_critical_points(system_, step, complete)) {
-      if (!write(critical.point)) return Progress::cancelled;
+  // Rows and records of the critical points in a step; `left`: the path went over to another branch. False: cancelled.
+  bool pass(const std::vector<CriticalPoint>& points, bool& left) {
+    for (const CriticalPoint& critical : points) {
+      if (!write(critical.point)) return false;
       report_->critical.push_back({.branch = critical.branch,
                                    .value = critical.point.p,
                                    .row = static_cast<int>(report_->negative_modes.size()) - 1,
                                    .mode = describe_mode(path_.evaluator_, critical.mode, path_.system_.radius()),
                                    .modes = critical.modes});
-      if (critical.branch && options_.branch > 1 && !switched_) {
-        switched_ = true;
-        left = leave(critical);
-        if (!left) {
-          report_->warnings.push_back(fmt::format(
-              "the branch that leaves at {:.10g} could not be reached; the path goes straight on", critical.point.p));
-        } else if (!write(x_)) {
-          return Progress::cancelled;
-        }
-        if (left) return Progress::going;
-      }
+      if (!critical.branch || options_.branch < 2 || switched_) continue;
+      switched_ = true;
+      left = leave(critical);
+      if (left) return write(x_);
+      report_->warnings.push_back(fmt::format(
+          "the branch that leaves at {:.10g} could not be reached; the path goes straight on", critical.point.p));
     }
-    if (!complete) {
-      report_->warnings.push_back(fmt::format("a critical point near {:.10g} could not be located", step.start.p));
-    }
-    return Progress::going;
+    return true;
   }
 
   // Onto the branch that crosses at the critical point, to the side asked for.

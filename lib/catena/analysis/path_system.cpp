@@ -15,7 +15,7 @@ constexpr int most_iterations = 12;
 constexpr double solved = 1e-13, place_solved = 1e-12;
 // Good enough where rounding lets it get no better.
 constexpr double nearly_solved = 1e-9;
-// Steps beyond this are astray: length scales or rad.
+// Steps beyond this are astray: parts of the mechanism's extent, or rad.
 constexpr double astray = 3;
 constexpr double difference = 1e-5;
 
@@ -30,8 +30,18 @@ PathSystem::PathSystem(StaticSystem& system, ModelAt model_at, double p, double 
       scale_(scale),
       time_(evaluator_.time()),
       weight_(length_weights(system)) {
-  for (int b = 0; b < plan_.moving; ++b) first_origin_.push_back(evaluator_.origin(b));
-  for (double& w : weight_) w /= plan_.moving * system.length() * system.length();
+  Vec2<double> mean{};
+  for (int b = 0; b < plan_.moving; ++b) {
+    first_origin_.push_back(evaluator_.origin(b));
+    mean += (1.0 / plan_.moving) * evaluator_.origin(b);
+  }
+  double square = 0;
+  for (const Vec2<double>& origin : first_origin_) square += squared_norm(origin - mean) / plan_.moving;
+  extent_ = std::max(system.length(), std::sqrt(square));
+  for (int c = 0; c < plan_.columns; ++c) {
+    const double length = plan_.coordinate[at(c)] % 3 == 2 ? system.length() : extent_;
+    weight_[at(c)] /= plan_.moving * length * length;
+  }
   placed_.assign(at(plan_.coordinates()), 0.0);
   given_.resize(at(plan_.columns + plan_.rows));
   for (auto* vector : {&correction_, &newton_, &along_, &derivative_, &side_}) vector->resize(given_.size());
@@ -39,8 +49,14 @@ PathSystem::PathSystem(StaticSystem& system, ModelAt model_at, double p, double 
 
 bool PathSystem::set_parameter(double p) {
   if (p == p_) return true;
-  std::shared_ptr<const Model> model = model_at_(p);
+  const auto known =
+      std::find_if(models_.begin(), models_.end(), [&](const auto& entry) { return entry.second && entry.first == p; });
+  std::shared_ptr<const Model> model = known != models_.end() ? known->second : model_at_(p);
   if (!model) return false;
+  if (known == models_.end()) {
+    models_[next_model_] = {p, model};
+    next_model_ = (next_model_ + 1) % models_.size();
+  }
   evaluator_.set_model(*model);
   model_ = std::move(model);
   evaluator_.set_time(time_);
@@ -146,7 +162,17 @@ int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t,
     if (!std::isfinite(error)) return -1;
     before = error;
     if (k == most_iterations) break;
-    parameter_derivative(x, derivative_);
+    // One-sided: it steers the iteration only.
+    PathPoint beside = x;
+    beside.p += difference * std::max(scale_, std::abs(x.p));
+    if (move_to(beside)) {
+      residual(beside, derivative_);
+      for (std::size_t i = 0; i < derivative_.size(); ++i)
+        derivative_[i] = (derivative_[i] - given_[i]) / (beside.p - x.p);
+      move_to(x);
+    } else {
+      parameter_derivative(x, derivative_);
+    }
     system_.fill(x.lambda, Curvature::exact, 0);
     if (!system_.factorize().ok()) {
       // Exactly singular: a little beside it will do for a step.
@@ -164,7 +190,10 @@ int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t,
     }
     const double dp = -rest / own;
     for (std::size_t i = 0; i < newton_.size(); ++i) newton_[i] += dp * along_[i];
-    if (!(system_.change_norm({newton_.data(), at(plan_.columns)}) < astray)) return -1;
+    for (int c = 0; c < plan_.columns; ++c) {
+      const double unit = plan_.coordinate[at(c)] % 3 == 2 ? 1 : extent_;
+      if (!(std::abs(newton_[at(c)]) < astray * unit)) return -1;
+    }
     for (int c = 0; c < plan_.columns; ++c) x.q[at(plan_.coordinate[at(c)])] += newton_[at(c)];
     for (int r = 0; r < plan_.rows; ++r) x.lambda[at(r)] += newton_[at(plan_.columns + r)];
     x.p += dp;

@@ -2,17 +2,20 @@
 // says where on the path the point is wanted (Keller's pseudo-arc-length).
 //
 //   V_q + Phi_q^T lambda = 0,   Phi = 0,   <t, x - x0> = s        x = (q, lambda, p)
-//   <a, b> = sum_bodies (a_r . b_r + radius^2 a_phi b_phi) / (bodies length^2) + a_p b_p / scale^2
+//   <a, b> = mean_bodies (a_r . b_r / extent^2 + radius^2 a_phi b_phi / length^2) + a_p b_p / scale^2
 //
-// so that s is a number: root mean square travel of the bodies in length scales, the parameter in parts of its range.
-// Solved by Newton's method with the factorization of equilibrium, two solutions an iteration. The derivative by p is a
-// central difference of the residual with 1e-5 of the parameter's range: it steers the iteration, while what counts as
-// solved is the residual itself. A parameter may change anything but the structure: loads, stiffnesses, lengths,
+// so that s is a number: root mean square travel of the bodies in parts of the mechanism's extent (RMS distance of the
+// given places from their middle, or the length scale where that is more), the parameter in parts of its range. Solved
+// by Newton's method with the factorization of equilibrium, two solutions an iteration. The derivative by p is a
+// difference of the residual over 1e-5 of the parameter's range: it steers the iteration, while what counts as solved
+// is the residual itself. A parameter may change anything but the structure: loads, stiffnesses, lengths,
 // places. Source: H. Keller, Lectures on Numerical Methods in Bifurcation Problems, 1987, chapters 4 and 5.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "catena/analysis/static_system.hpp"
@@ -73,7 +76,9 @@ class PathSystem {
   const Plan& plan_;
   ModelAt model_at_;
   std::shared_ptr<const Model> model_;
-  double p_, scale_, time_;
+  std::array<std::pair<double, std::shared_ptr<const Model>>, 3> models_{};  // the last ones
+  std::size_t next_model_ = 0;
+  double p_, scale_, time_, extent_ = 1;
   std::vector<Vec2<double>> first_origin_;
   std::vector<double> weight_, placed_, correction_, given_, newton_, along_, derivative_, side_;
 };

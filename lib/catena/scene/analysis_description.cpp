@@ -79,7 +79,8 @@ std::vector<AnalysisDescription> describe_all() {
             {"to", KeyKind::number, "last value of the parameter", UnitKind::none, Domain::any, {}, true},
             {"max_steps", KeyKind::whole, "largest number of steps (default 500)"},
             {"arc", KeyKind::number,
-             "longest step: travel of the bodies in length scales and change of the parameter in parts of its range "
+             "longest step: travel of the bodies in parts of the extent and change of the parameter in parts of its "
+             "range "
              "(default 0.05)",
              UnitKind::none, Domain::positive},
             {"branch", KeyKind::whole,
