@@ -9,7 +9,9 @@
 #include <numbers>
 
 #include "catena/analysis/equilibrium.hpp"
+#include "oracles/dense_modes.hpp"
 #include "oracles/mode_scenes.hpp"
+#include "oracles/random_statics.hpp"
 #include "oracles/static_reference.hpp"
 
 namespace catena {
@@ -203,6 +205,28 @@ TEST(Modes, AboutTheEquilibriumThatWasFound) {
   const ModesReport elsewhere = modes_of(model);
   ASSERT_FALSE(elsewhere.warnings.empty());
   EXPECT_NE(elsewhere.warnings.front().find("no equilibrium"), std::string::npos);
+}
+
+TEST(Modes, OfRandomMechanismsAreThoseOfDenseAlgebra) {
+  int compared = 0;
+  for (unsigned seed = 1; seed <= 400; ++seed) {
+    RandomStatics random(seed);
+    const std::shared_ptr<Model> model = seed % 2 ? random.network() : random.linkage();
+    Equilibrium equilibrium(model);
+    if (!equilibrium.solve().ok()) continue;
+    Modes modes(model, {}, {.count = 1000});
+    modes.start_from(equilibrium.state());
+    const ModesReport report = modes.run();
+    ASSERT_TRUE(report.ok()) << seed << ": " << report.message;
+    const std::vector<double> wanted = dense_omega2(modes.evaluator(), modes.q());
+    ASSERT_EQ(report.omega2.size(), wanted.size()) << seed;
+    // Dense algebra is good to rounding of its largest value; the highest of 24 over many orders is good to a few 1e-9.
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      EXPECT_NEAR(report.omega2[k], wanted[k], 1e-8 * std::abs(wanted[k]) + 1e-12 * wanted.back()) << seed << " " << k;
+    }
+    ++compared;
+  }
+  EXPECT_GT(compared, 380);
 }
 
 TEST(Modes, DoNotMindRedundantJoints) {

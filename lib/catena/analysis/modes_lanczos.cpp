@@ -72,11 +72,18 @@ bool Lanczos::add_new_vector() {
   const double left = length(v);
   if (!(left > nothing_new * inside) || !std::isfinite(left)) return false;
   for (double& x : v) x /= left;
+  if (!clean(v)) return false;
+  basis_.push_back(std::move(v));
+  return true;
+}
+
+// Puts a vector of length 1 back into the null space; false if little of it lies there: then it was rounding.
+bool Lanczos::clean(std::vector<double>& v) {
   op_.project(v);
   orthogonalise(v, nullptr);
   const double one = length(v);
+  if (!(one > 0.5)) return false;
   for (double& x : v) x /= one;
-  basis_.push_back(std::move(v));
   return true;
 }
 
@@ -119,13 +126,11 @@ bool Lanczos::run(const Choice& choose, int most, bool completely, const std::fu
       beta = 0;
     } else if (!last) {
       for (double& x : w) x /= beta;
-      if (beta <= polluted_part * scale) {
-        op_.project(w);
-        orthogonalise(w, nullptr);
-        const double one = length(w);
-        for (double& x : w) x /= one;
+      if (beta <= polluted_part * scale && !clean(w)) {
+        beta = 0;
+      } else {
+        basis_.push_back(std::move(w));
       }
-      basis_.push_back(std::move(w));
     }
     beta_.push_back(beta);
     if (last) break;

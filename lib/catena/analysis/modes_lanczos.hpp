@@ -60,6 +60,7 @@ class Lanczos {
 
  private:
   bool add_new_vector();
+  bool clean(std::vector<double>& v);
   void orthogonalise(std::vector<double>& w, double* last);
   double length(const std::vector<double>& w);
   bool update_spectrum(const Choice& choose);

@@ -1,0 +1,63 @@
+// Small oscillations by dense algebra, from the elements' second derivatives one by one: what the sparse search must
+// find. K and M are projected on an orthonormal basis of the null space of Phi_q; multipliers by least squares.
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "catena/assembly/evaluate.hpp"
+
+namespace catena::testing {
+
+/// All omega^2, ascending, about q (plan order) at the evaluator's time.
+inline std::vector<double> dense_omega2(Evaluator& evaluator, std::span<const double> q) {
+  using Eigen::MatrixXd;
+  using Eigen::VectorXd;
+  const Plan& plan = evaluator.plan();
+  const Eigen::Index n = plan.columns, m = plan.rows;
+  const auto at = [](auto k) { return static_cast<std::size_t>(k); };
+  evaluator.set_configuration(q);
+  std::vector<double> values(at(plan.trash_slot()) + 1), rest(at(plan.coordinates()), 0.0), loads(rest.size());
+  evaluator.start_jacobian(values);
+  evaluator.jacobian(values);
+  MatrixXd jacobian = MatrixXd::Zero(m, n);
+  for (int c = 0; c < plan.columns; ++c) {
+    for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k)
+      jacobian(plan.jacobian.row_index[at(k)], c) = values[at(k)];
+  }
+  evaluator.applied_forces(rest, loads);
+  VectorXd force(n), mass(n);
+  for (Eigen::Index c = 0; c < n; ++c) {
+    const int coordinate = plan.coordinate[at(c)];
+    force[c] = loads[at(coordinate)];
+    const auto& body = evaluator.model().bodies[at(plan.model_body[at(coordinate / 3)])];
+    mass[c] = coordinate % 3 == 2 ? body.inertia : body.mass;
+  }
+  std::vector<double> lambda(at(m), 0.0);
+  MatrixXd basis = MatrixXd::Identity(n, n);
+  if (m > 0) {
+    const Eigen::JacobiSVD<MatrixXd> transposed(jacobian.transpose(), Eigen::ComputeThinU | Eigen::ComputeThinV);
+    Eigen::Map<VectorXd>(lambda.data(), m) = transposed.solve(force);
+    const Eigen::JacobiSVD<MatrixXd> svd(jacobian, Eigen::ComputeFullV);
+    basis = svd.matrixV().rightCols(n - svd.rank());
+  }
+  MatrixXd stiffness = MatrixXd::Zero(n, n);
+  const auto add = [&](int body_i, int body_j, const auto& element) {
+    const int body[2] = {body_i, body_j};
+    for (int r = 0; r < 6; ++r) {
+      for (int c = 0; c < 6; ++c) {
+        const int b = body[r / 3], d = body[c / 3];
+        if (b < 0 || d < 0 || b >= plan.moving || d >= plan.moving) continue;
+        const int row = plan.column[at(3 * b + r % 3)], column = plan.column[at(3 * d + c % 3)];
+        if (row >= 0 && column >= 0) stiffness(row, column) += element[at(6 * r + c)];
+      }
+    }
+  };
+  evaluator.visit_stiffness({}, add);
+  evaluator.visit_constraint_hessians(lambda, add);
+  const MatrixXd k = basis.transpose() * stiffness * basis, mm = basis.transpose() * mass.asDiagonal() * basis;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver((k + k.transpose()) / 2, mm, Eigen::EigenvaluesOnly);
+  return {solver.eigenvalues().data(), solver.eigenvalues().data() + solver.eigenvalues().size()};
+}
+
+}  // namespace catena::testing
