@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "dynamics_table.hpp"
 #include "kinematics_table.hpp"
 
 int main(int argc, char** argv) {
@@ -14,6 +15,8 @@ int main(int argc, char** argv) {
   if (argc == 2 && std::strcmp(argv[1], "--table") == 0) {
     bench::print_step_costs();
     bench::print_kinematic_errors();
+    bench::print_acceleration_costs();
+    bench::print_dynamic_errors();
     return 0;
   }
   benchmark::Initialize(&argc, argv);

@@ -1,0 +1,14 @@
+// Tables of dynamics: what an evaluation of accelerations costs, and run time against error.
+#pragma once
+
+namespace bench {
+
+/// Accelerations of a chain of 10^2 ... 10^6 rods, ns a body.
+void print_acceleration_costs();
+
+/// Error against processor time at tolerances 1e-3 ... 1e-11, both methods: a falling chain, four-bars through their
+/// flat position, Andrews' squeezing mechanism. Errors are
+/// differences from a run at 1e-13, of the four-bars at 1e-11.
+void print_dynamic_errors();
+
+}  // namespace bench
