@@ -108,7 +108,7 @@ void add_common_options(CLI::App& command, Parsed& parsed) {
       ->type_name("DIR");
   command.add_flag("--stats", run.stats, "print what was computed how often");
   command.add_flag("-q,--quiet", run.quiet, "print no table, report or progress");
-  command.add_flag("-v,--verbose", run.verbose, "print all rows and columns");
+  command.add_flag("-v,--verbose", run.verbose, "print all rows and columns, and the logs of solvers");
   command.add_option("--set", parsed.set, "change a parameter: NAME=VALUE, in the syntax of scenes")
       ->allow_extra_args(false)
       ->type_name("NAME=VALUE");

@@ -89,6 +89,7 @@ int execute(const RunCommand& command) {
 
   RunOptions options = command.options;
   options.cancel = &catch_interrupts();
+  options.verbose = command.verbose;
   if (bar.visible()) {
     options.progress = [&](const Progress& progress) {
       bar.update(fmt::format("{} {}/{}", progress.analysis, progress.number + 1, progress.analyses), progress.fraction);

@@ -22,3 +22,17 @@ if grep -E 'umfpack|spqr|ipopt|nlopt' <<<"$needed"; then
 fi
 "$program" run "$SOURCE_DIR/data/scenes/crank_rocker.json" >"$work/crank_rocker.txt"
 head -n 20 "$work/crank_rocker.txt"
+
+# What needs a library that was left out says so.
+for solver in ipopt nlopt; do
+  cat >"$work/held_$solver.json" <<SCENE
+{"catena": 1, "gravity": [0, -10], "bodies": {"bar": {"mass": 1, "rod": {"from": [0, 0], "to": [1, 0]}}},
+ "constraints": [{"type": "revolute", "i": "ground", "j": "bar.from"}],
+ "analyses": [{"type": "equilibrium", "solver": "$solver"}]}
+SCENE
+  if "$program" run "$work/held_$solver.json" >"$work/held_$solver.txt" 2>&1; then
+    echo "equilibrium by $solver ran although it was left out"
+    exit 1
+  fi
+  grep -i "built without $solver" "$work/held_$solver.txt"
+done

@@ -7,6 +7,8 @@
 
 #include "catena/analysis/assemble.hpp"
 #include "catena/analysis/static_descent.hpp"
+#include "catena/analysis/static_ipopt.hpp"
+#include "catena/analysis/static_nlopt.hpp"
 #include "catena/analysis/whole_turns.hpp"
 
 namespace catena {
@@ -16,7 +18,13 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Degrees of freedom up to which the valley of the start is followed: the work grows with them, Newton's does not.
 constexpr int few_freedoms = 30;
-constexpr int most_trials = 12;
+constexpr int most_trials = 14;
+// Starts of Newton's that fail before Ipopt is asked.
+constexpr int starts_before_ipopt = 4;
+// Newton may move what another solver found by this much, length scales or rad: more is another place.
+constexpr double largest_polish = 0.05;
+// Beyond this interior points only gather rounding: the rest is polished.
+constexpr double finest_barrier = 1e-10;
 constexpr double first_push = 0.05, largest_push = 0.8;
 // Stiffness contributions below this part of the scene's count as absent.
 constexpr double absent_stiffness = 1e-8;
@@ -35,12 +43,44 @@ std::string body_of(const Evaluator& evaluator, int column) {
 
 }  // namespace
 
-// Newton from anywhere, or downhill from the nearest assembled configuration.
-StaticOutcome StaticSearch::minimise(std::vector<double>& q, std::vector<double>& lambda, bool warm, bool follow_valley,
+// What an optimiser found to its own tolerance, to rounding; kept as it is where Newton would leave the place.
+StaticOutcome StaticSearch::polish_by_newton(std::vector<double>& q, std::vector<double>& lambda,
+                                             StaticOutcome outcome) {
+  const std::vector<double> found = q, multipliers = lambda;
+  const StaticOutcome polished = solve_by_newton(
+      system_, q, lambda, {.max_iterations = 20, .tolerance = options_.tolerance, .warm = true, .stationary = true});
+  std::vector<double> change(at(system_.plan().columns));
+  for (std::size_t c = 0; c < change.size(); ++c) {
+    const std::size_t k = at(system_.plan().coordinate[c]);
+    change[c] = q[k] - found[k];
+  }
+  if (polished.converged() && system_.change_norm(change) <= largest_polish) {
+    outcome.residual = polished.residual;
+    return outcome;
+  }
+  q = found;
+  lambda = multipliers;
+  system_.move_to(q);
+  return outcome;
+}
+
+// One solver from one start.
+StaticOutcome StaticSearch::minimise(std::vector<double>& q, std::vector<double>& lambda, bool warm, Way way,
                                      StaticResult& result) {
   StaticOutcome outcome;
   system_.move_to(q);
-  if (follow_valley) {
+  if (way == Way::ipopt || way == Way::nlopt) {
+    result.solver = way == Way::ipopt ? "ipopt" : "nlopt";
+    outcome = way == Way::ipopt ? solve_by_ipopt(system_, q, lambda,
+                                                 {.tolerance = std::max(options_.tolerance, finest_barrier),
+                                                  .warm = warm,
+                                                  .verbose = options_.verbose})
+                                : solve_by_nlopt(system_, q, lambda, {.tolerance = options_.tolerance});
+    result.iterations += outcome.iterations;
+    return outcome.converged() ? polish_by_newton(q, lambda, outcome) : outcome;
+  }
+  result.solver = "newton";
+  if (way == Way::valley) {
     Assembler assembler(system_.evaluator());
     std::vector<double> assembled = q;
     if (system_.phi_norm() <= 1e-12 || assembler.assemble(assembled).ok()) {
@@ -135,13 +175,18 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
   Evaluator& evaluator = system_.evaluator();
   if (!options_.warm) move_whole_turns(evaluator, q);
   const std::vector<double> start = q;
-  bool follow_valley = !options_.warm && !options_.stationary && plan.columns - plan.rows <= few_freedoms;
+  const bool own = options_.solver == StaticSolver::automatic || options_.solver == StaticSolver::newton;
+  const bool few = !options_.warm && !options_.stationary && plan.columns - plan.rows <= few_freedoms;
+  Way way = options_.solver == StaticSolver::ipopt   ? Way::ipopt
+            : options_.solver == StaticSolver::nlopt ? Way::nlopt
+            : few                                    ? Way::valley
+                                                     : Way::newton;
   double push = first_push;
   StaticOutcome outcome;
-  bool accepted = false, pushed = false;
+  bool accepted = false, pushed = false, ask_ipopt = options_.solver == StaticSolver::automatic && ipopt_is_built_in();
   unsigned shaken = 0;
   for (int trial = 0; trial < most_trials && !accepted; ++trial) {
-    outcome = minimise(q, lambda, options_.warm && trial == 0, follow_valley, result);
+    outcome = minimise(q, lambda, options_.warm && trial == 0, way, result);
     if (outcome.end == StaticEnd::unbounded) break;
     if (outcome.converged()) {
       result.certificate = certify(system_, lambda);
@@ -152,10 +197,14 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
       pushed = true;
       continue;
     }
-    // Where following the valley does not get anywhere Newton may, and where that does not, another start.
+    if (!own) break;
+    // Where following the valley does not get anywhere Newton may, and where that does not, another start or Ipopt.
     q = start;
-    if (follow_valley) {
-      follow_valley = false;
+    if (way != Way::newton) {
+      way = Way::newton;
+    } else if (ask_ipopt && shaken >= starts_before_ipopt) {
+      ask_ipopt = false;
+      way = Way::ipopt;
     } else {
       ++shaken;
       shake(q, shaken, shaken == 1 ? 0.1 : 1.0);

@@ -3,7 +3,8 @@
 //
 //   few degrees of freedom and a start that can be assembled nearby   downhill from there, else Newton
 //   otherwise                                                         Newton, restarted from shaken angles
-//   automatic and none of them converged                              Ipopt, polished by Newton
+//   automatic and several of them did not converge                    Ipopt; then Newton from other angles again
+//   Ipopt or NLopt converged, asked for or not                        polished by Newton
 //   stationary but no minimum                                         a push along the most negative mode, and on
 //
 // Random numbers are fixed: the same scene gives the same answer.
@@ -47,9 +48,9 @@ class StaticSearch {
   StaticResult find(std::vector<double>& q, std::vector<double>& lambda);
 
  private:
-  StaticOutcome minimise(std::vector<double>& q, std::vector<double>& lambda, bool warm, bool follow_valley,
-                         StaticResult& result);
-  bool judge(const StaticOutcome& outcome, std::vector<double>& q, std::vector<double>& lambda, StaticResult& result);
+  enum class Way { valley, newton, ipopt, nlopt };
+  StaticOutcome minimise(std::vector<double>& q, std::vector<double>& lambda, bool warm, Way way, StaticResult& result);
+  StaticOutcome polish_by_newton(std::vector<double>& q, std::vector<double>& lambda, StaticOutcome outcome);
   void leave(const Certificate& certificate, std::vector<double>& q, double size);
   void shake(std::vector<double>& q, unsigned seed, double angle) const;
   Report explain(const StaticOutcome& outcome, const std::vector<double>& start);

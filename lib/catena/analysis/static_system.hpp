@@ -22,6 +22,9 @@ struct StaticStep {
   double residual = 0;             ///< relative one that refinement left
 };
 
+/// What a constraint row asks for: Phi = 0, Phi >= 0, Phi <= 0.
+enum class RowSide : signed char { both, at_least, at_most };
+
 class StaticSystem {
  public:
   explicit StaticSystem(Evaluator& evaluator);
@@ -32,6 +35,7 @@ class StaticSystem {
   void move_to(std::span<const double> q);
   /// Whether the constraints have no second derivatives, as bodies held at their centroids: asked once, where it is.
   bool has_linear_constraints();
+  RowSide side(int) const { return RowSide::both; }
   double energy() const { return evaluator_.potential_energy(); }
   std::span<const double> gradient() const { return gradient_; }  ///< V_q, columns
   std::span<const double> phi() const { return phi_; }

@@ -49,6 +49,9 @@ class KktMatrix {
   /// K := `stiffness` x (1, 1, radius^2) without anything else, N/m; writes Phi_q.
   void set_weights(std::span<const double> jacobian, double stiffness);
 
+  /// The true matrix by slots of structure().pattern.
+  std::span<const double> values() const { return {values_.data(), static_cast<std::size_t>(structure_.entries())}; }
+
   /// Factors; analyses first where nothing did. `least_stiffness`, N/m: what a body counts that has none of its own.
   FactorResult factorize(double least_stiffness, Counters& counters);
   /// Solves the true equations for x = [columns; rows] in place. Residuals are compared with `force`, N, and `length`,

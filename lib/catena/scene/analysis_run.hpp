@@ -26,6 +26,7 @@ struct AnalysisContext {
   RowSink& rows;
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(double)> progress;  ///< fraction done
+  bool verbose = false;                  ///< solvers print their own logs to standard error
   /// The model with another value of parameter number `parameter`, all else as in `model`; nullptr if the scene does
   /// not allow it.
   std::function<std::shared_ptr<const Model>(int parameter, double value)> model_at{};

@@ -1,5 +1,9 @@
 // equilibrium: the configuration at rest, certified.
+#include <fmt/format.h>
+
 #include "catena/analysis/equilibrium.hpp"
+#include "catena/analysis/static_ipopt.hpp"
+#include "catena/analysis/static_nlopt.hpp"
 #include "catena/scene/analysis_run.hpp"
 
 namespace catena {
@@ -11,9 +15,16 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
                                       StaticSolver::nlopt};
   EquilibriumOptions options;
   options.solver = solvers[task.word("solver")];
-  if (options.solver == StaticSolver::ipopt || options.solver == StaticSolver::nlopt) {
-    return refuse(result, "the solvers ipopt and nlopt are not built yet; leave \"solver\" out");
+  const bool built_in = options.solver == StaticSolver::ipopt   ? ipopt_is_built_in()
+                        : options.solver == StaticSolver::nlopt ? nlopt_is_built_in()
+                                                                : true;
+  if (!built_in) {
+    const std::string name = options.solver == StaticSolver::ipopt ? "Ipopt" : "NLopt";
+    return refuse(result, fmt::format("this catena was built without {} (CATENA_WITH_{}=OFF); leave \"solver\" out, or "
+                                      "take \"newton\"",
+                                      name, name == "Ipopt" ? "IPOPT" : "NLOPT"));
   }
+  options.verbose = context.verbose;
   if (task.number("find", 1) > 1) {
     return refuse(result, "looking for several equilibria is not built yet; leave \"find\" out");
   }
@@ -25,6 +36,11 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
     return refuse(result,
                   "follower forces have no energy, and the equilibrium of forces without one is not built yet; give "
                   "the forces in ground axes");
+  }
+  if (options.solver == StaticSolver::nlopt && analysis.plan().columns > StaticNloptOptions::most_columns) {
+    return refuse(result,
+                  fmt::format("the solver nlopt is dense and made for at most {} coordinates; this scene has {}",
+                              StaticNloptOptions::most_columns, analysis.plan().columns));
   }
   const ColumnSet columns =
       ColumnSet::resolve(*context.model, analysis.plan(), names, {.analysis = task.type(), .multipliers = true});

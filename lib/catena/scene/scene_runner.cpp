@@ -192,6 +192,7 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& task, int number, SystemSt
                           .rows = rows,
                           .cancel = options_.cancel,
                           .progress = {},
+                          .verbose = options_.verbose,
                           .model_at = {},
                           .parameter_name = {}};
   if (task.has("parameter")) {

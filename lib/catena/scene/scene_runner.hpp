@@ -39,6 +39,7 @@ struct RunOptions {
   std::int64_t max_elements = 10'000'000;  ///< a larger scene is refused
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(const Progress&)> progress;  ///< called often; may be empty
+  bool verbose = false;                           ///< solvers print their own logs to standard error
 };
 
 struct SceneOutcome {
