@@ -143,23 +143,29 @@ EquilibriumReport Equilibrium::solve() {
   return end(std::move(result.report));
 }
 
+bool Equilibrium::send_row(const Needs& needs, RowObserver& observer, Report& report) {
+  const Snapshot snapshot{.evaluator = evaluator_,
+                          .t = t_,
+                          .q = q_,
+                          .lambda = needs.multipliers ? std::span<const double>(lambda_) : std::span<const double>{},
+                          .residual = system_.phi_norm() * evaluator_.length_scale()};
+  if (observer.observe(snapshot)) return true;
+  report.status = Status::cancelled;
+  report.message = fmt::format("stopped at t = {:.12g} s; the rows so far are kept", t_);
+  return false;
+}
+
 EquilibriumReport Equilibrium::run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
   EquilibriumReport report;
   const ProcessTimer timer;
   for (std::int64_t k = 0; k < grid.size(); ++k) {
     t_ = grid[k];
-    report = solve();
-    if (!report.ok()) break;
-    const Snapshot snapshot{.evaluator = evaluator_,
-                            .t = t_,
-                            .q = q_,
-                            .lambda = needs.multipliers ? std::span<const double>(lambda_) : std::span<const double>{},
-                            .residual = system_.phi_norm() * evaluator_.length_scale()};
-    if (!observer.observe(snapshot)) {
-      report.status = Status::cancelled;
-      report.message = fmt::format("stopped at t = {:.12g} s; the rows so far are kept", t_);
+    if (options_.find > 1) {
+      report = find_several(needs, observer);
       break;
     }
+    report = solve();
+    if (!report.ok() || !send_row(needs, observer, report)) break;
   }
   report.seconds = timer.seconds();
   return report;

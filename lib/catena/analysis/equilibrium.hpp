@@ -4,9 +4,10 @@
 //
 // Solvers: Newton of our own from anywhere (StaticNewton), downhill on the constraints where few degrees of freedom
 // make the valley of the start worth keeping (StaticDescent), Ipopt, NLopt; `automatic` tries them in this order and
-// polishes what the last two find. Every result is certified; a stationary point that is no minimum is left along its
-// most negative mode, and minimising goes on, unless stationary points were asked for. Refused, with the motion named:
-// what nothing holds; energies without a minimum.
+// polishes what the last two find. Forces that follow a body have no energy: their balance is found by settling. Every
+// result is certified; a stationary point that is no minimum is left along its most negative mode, and minimising goes
+// on, unless stationary points were asked for. Refused, with the motion named: what nothing holds; energies without a
+// minimum.
 #pragma once
 
 #include <memory>
@@ -34,6 +35,14 @@ struct EquilibriumOptions {
   bool verbose = false;  ///< the solvers' own logs, to standard error
 };
 
+/// One of several equilibria.
+struct FoundEquilibrium {
+  double energy = 0;  ///< J
+  bool stable = false;
+  int negative_modes = 0;
+  double residual = 0;  ///< N
+};
+
 /// Outcome of the last equilibrium computed; see SCENES.md, Results.
 struct EquilibriumReport : AnalysisReport {
   double energy = 0;       ///< potential energy, J
@@ -47,6 +56,7 @@ struct EquilibriumReport : AnalysisReport {
   double residual = 0;                ///< largest residual force, N
   std::string solver;                 ///< the one that found it
   int iterations = 0;
+  std::vector<FoundEquilibrium> found;  ///< with `find`: one a row, the lowest energy first
 };
 
 class Equilibrium {
@@ -61,7 +71,8 @@ class Equilibrium {
   void start_from(const SystemState& state);
   /// Takes over changed parameter values of a model with the same structure: the last solution is the next start.
   void set_model(std::shared_ptr<const Model> model);
-  /// One equilibrium at every instant of the grid, each from the one before; one row each, or `find` rows.
+  /// One equilibrium at every instant of the grid, each from the one before; one row each. With `find` above 1: up to
+  /// as many different ones at the first instant, from random starts, a row each, the lowest energy first.
   EquilibriumReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
   /// One equilibrium at the present time; no row.
   EquilibriumReport solve();
@@ -75,6 +86,8 @@ class Equilibrium {
 
  private:
   void choose_least_reactions(Report& report);
+  EquilibriumReport find_several(const Needs& needs, RowObserver& observer);
+  bool send_row(const Needs& needs, RowObserver& observer, Report& report);
 
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const Plan> plan_;

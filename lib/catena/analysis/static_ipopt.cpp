@@ -6,6 +6,7 @@
 #include <IpTNLP.hpp>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <vector>
 
@@ -23,9 +24,10 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 constexpr double no_bound = 2e19;
 // Of the complementarity at a warm start.
 constexpr double near_barrier = 1e-9;
-// Forces of the first multipliers that are larger than this many loads say nothing about the solution.
-constexpr double largest_force = 1e6;
-
+// Of a start at a singular position: length scales or rad.
+constexpr double smallest_disturbance = 1e-3;
+// What Ipopt calls solved must balance to this part of the forces, and meet the constraints to it.
+constexpr double rough = 1e-5;
 std::mutex& only_one() {
   static std::mutex mutex;
   return mutex;
@@ -41,11 +43,14 @@ class Problem final : public Ipopt::TNLP {
     start_.resize(at(plan.columns));
     for (int c = 0; c < plan.columns; ++c) start_[at(c)] = q[at(plan.coordinate[at(c)])];
     trial_.assign(q.begin(), q.end());
+    length_ = scene_extent();
+    double load = 0;
+    for (int c = 0; c < plan.columns; ++c) {
+      const int coordinate = plan.coordinate[at(c)];
+      load += std::abs(system.gradient()[at(c)]) / (coordinate % 3 == 2 ? system.radius()[at(coordinate / 3)] : 1);
+    }
+    energy_ = (load > 0 ? load : 1) * length_;
     keep_independent_rows();
-    // Multipliers of size one: MUMPS pivots on what the Hessian holds beside the Jacobian.
-    const double load = std::max(system.load_size(), 1e-100);
-    energy_ = std::min(system.force_scale(lambda), largest_force * load) * system.length();
-    if (!(energy_ > 0)) energy_ = load * system.length();
     row_multiplier_.resize(at(plan.rows));
   }
 
@@ -81,18 +86,18 @@ class Problem final : public Ipopt::TNLP {
     }
     return true;
   }
-  bool eval_f(Index, const Number* x, bool is_new, Number& f) override {
-    move_to(x, is_new);
+  bool eval_f(Index, const Number* x, bool, Number& f) override {
+    move_to(x);
     f = system_.energy() / energy_;
     return std::isfinite(f);
   }
-  bool eval_grad_f(Index n, const Number* x, bool is_new, Number* gradient) override {
-    move_to(x, is_new);
+  bool eval_grad_f(Index n, const Number* x, bool, Number* gradient) override {
+    move_to(x);
     for (Index c = 0; c < n; ++c) gradient[c] = system_.gradient()[at(c)] * unit(c) / energy_;
     return true;
   }
-  bool eval_g(Index, const Number* x, bool is_new, Index m, Number* g) override {
-    move_to(x, is_new);
+  bool eval_g(Index, const Number* x, bool, Index m, Number* g) override {
+    move_to(x);
     double sum = 0;
     for (Index k = 0; k < m; ++k) {
       g[k] = system_.phi()[at(row_[at(k)])] / row_unit(k);
@@ -100,7 +105,7 @@ class Problem final : public Ipopt::TNLP {
     }
     return std::isfinite(sum);
   }
-  bool eval_jac_g(Index, const Number* x, bool is_new, Index, Index entries, Index* rows, Index* columns,
+  bool eval_jac_g(Index, const Number* x, bool, Index, Index entries, Index* rows, Index* columns,
                   Number* values) override {
     if (!values) {
       for (Index k = 0; k < entries; ++k) {
@@ -109,14 +114,14 @@ class Problem final : public Ipopt::TNLP {
       }
       return true;
     }
-    move_to(x, is_new);
+    move_to(x);
     for (Index k = 0; k < entries; ++k) {
       const Entry& e = entry_[at(k)];
       values[k] = system_.jacobian()[at(e.slot)] * unit(e.column) / row_unit(e.row);
     }
     return true;
   }
-  bool eval_h(Index, const Number* x, bool is_new, Number factor, Index m, const Number* lambda, bool, Index entries,
+  bool eval_h(Index, const Number* x, bool, Number factor, Index m, const Number* lambda, bool, Index entries,
               Index* rows, Index* columns, Number* values) override {
     if (!values) {
       for (Index k = 0; k < entries; ++k) {
@@ -125,7 +130,7 @@ class Problem final : public Ipopt::TNLP {
       }
       return true;
     }
-    move_to(x, is_new);
+    move_to(x);
     for (Index k = 0; k < m; ++k) row_multiplier_[at(row_[at(k)])] = lambda[k] * energy_ / row_unit(k);
     hessian_.evaluate(factor, row_multiplier_);
     for (Index k = 0; k < entries; ++k) {
@@ -143,7 +148,7 @@ class Problem final : public Ipopt::TNLP {
   void finalize_solution(Ipopt::SolverReturn, Index, const Number* x, const Number*, const Number*, Index m,
                          const Number*, const Number* lambda, Number, const Ipopt::IpoptData*,
                          Ipopt::IpoptCalculatedQuantities*) override {
-    move_to(x, true);
+    move_to(x);
     std::copy(trial_.begin(), trial_.end(), q_.begin());
     std::fill(lambda_.begin(), lambda_.end(), 0.0);
     for (Index k = 0; k < m; ++k) lambda_[at(row_[at(k)])] = lambda[k] * energy_ / row_unit(k);
@@ -154,15 +159,30 @@ class Problem final : public Ipopt::TNLP {
     int row, column, slot;
   };
 
-  // Equalities that follow from others at the start are dropped; without a factorization there all rows stay.
+  // Equalities that follow from others wherever the mechanism is are dropped: those that still do beside the start. A
+  // start at which more of them depend on each other, as a straight chain's, is left by a little.
   void keep_independent_rows() {
     const Plan& plan = system_.plan();
-    std::vector<char> dropped(at(plan.rows), 0);
-    std::vector<double> first(lambda_.size());
-    if (first_multipliers(system_, first)) {
-      for (int r : system_.matrix().dependent_rows()) dropped[at(r)] = system_.side(r) == RowSide::both;
-      if (!warm_) std::copy(first.begin(), first.end(), lambda_.begin());
+    std::vector<double> first(lambda_.size()), beside = trial_, near = trial_;
+    unsigned seed = 1;
+    for (int c = 0; c < plan.columns; ++c) {
+      seed = seed * 1664525u + 1013904223u;
+      const double noise = (static_cast<double>(seed >> 8) / (1 << 23) - 1) * unit(c);
+      beside[at(plan.coordinate[at(c)])] += 0.1 * noise;
+      near[at(plan.coordinate[at(c)])] += smallest_disturbance * noise;
     }
+    std::vector<char> dropped(at(plan.rows), 0);
+    const auto dependent_rows = [&](std::span<const double> place) {
+      system_.move_to(place);
+      return first_multipliers(system_, first) ? system_.matrix().dependent_rows() : std::vector<int>();
+    };
+    const std::vector<int> everywhere = dependent_rows(beside);
+    for (int r : everywhere) dropped[at(r)] = system_.side(r) == RowSide::both;
+    if (dependent_rows(trial_).size() > everywhere.size()) {
+      for (int c = 0; c < plan.columns; ++c) start_[at(c)] = near[at(plan.coordinate[at(c)])];
+      dependent_rows(near);
+    }
+    if (!warm_) std::copy(first.begin(), first.end(), lambda_.begin());
     std::vector<int> place(at(plan.rows), -1);
     for (int r = 0; r < plan.rows; ++r) {
       if (dropped[at(r)]) continue;
@@ -176,24 +196,36 @@ class Problem final : public Ipopt::TNLP {
       }
     }
   }
-  double unit(int column) const { return system_.plan().coordinate[at(column)] % 3 == 2 ? 1.0 : system_.length(); }
-  double row_unit(int kept) const { return system_.plan().row_is_angle[at(row_[at(kept)])] ? 1.0 : system_.length(); }
-  void move_to(const Number* x, bool is_new) {
-    if (!is_new && moved_) return;
+  // The larger side of the box that holds all bodies, at least the length scale.
+  double scene_extent() const {
+    constexpr double far = std::numeric_limits<double>::infinity();
+    Vec2<double> low{far, far}, high{-far, -far};
+    for (int b = 0; b < system_.plan().moving; ++b) {
+      const Vec2<double> place = system_.evaluator().ground_frame(b).origin();
+      low = {std::min(low.x, place.x), std::min(low.y, place.y)};
+      high = {std::max(high.x, place.x), std::max(high.y, place.y)};
+    }
+    return std::max({system_.length(), high.x - low.x, high.y - low.y});
+  }
+  double unit(int column) const { return system_.plan().coordinate[at(column)] % 3 == 2 ? 1.0 : length_; }
+  double row_unit(int kept) const { return system_.plan().row_is_angle[at(row_[at(kept)])] ? 1.0 : length_; }
+  // Ipopt evaluates all functions at one place before it goes to the next.
+  void move_to(const Number* x) {
+    if (std::equal(last_.begin(), last_.end(), x) && !last_.empty()) return;
     const Plan& plan = system_.plan();
+    last_.assign(x, x + plan.columns);
     for (int c = 0; c < plan.columns; ++c) trial_[at(plan.coordinate[at(c)])] = x[c] * unit(c);
     system_.move_to(trial_);
-    moved_ = true;
   }
 
   StaticSystem& system_;
   StaticHessian hessian_;
   std::span<double> q_, lambda_;
-  bool warm_, moved_ = false;
-  std::vector<double> start_, trial_, row_multiplier_;
+  bool warm_;
+  std::vector<double> start_, trial_, last_, row_multiplier_;
   std::vector<int> row_;  // of the plan
   std::vector<Entry> entry_;
-  double energy_ = 1;
+  double energy_ = 1, length_ = 1;
   int iterations_ = 0;
 };
 
@@ -201,7 +233,6 @@ StaticEnd ending(Ipopt::ApplicationReturnStatus status) {
   switch (status) {
     case Ipopt::Solve_Succeeded:
     case Ipopt::Solved_To_Acceptable_Level:
-    case Ipopt::Search_Direction_Becomes_Too_Small:
       return StaticEnd::stationary;
     case Ipopt::Diverging_Iterates:
       return StaticEnd::unbounded;
@@ -250,6 +281,8 @@ StaticOutcome solve_by_ipopt(StaticSystem& system, std::span<double> q, std::spa
   std::vector<double> residual(system.gradient().size());
   system.residual(lambda, residual);
   outcome.residual = system.force_norm(residual);
+  const bool balanced = outcome.residual <= rough * system.force_scale(lambda) && system.phi_norm() <= rough;
+  if (outcome.converged() && !balanced) outcome.end = StaticEnd::diverged;
   return outcome;
 }
 

@@ -1,8 +1,8 @@
 // Static equilibrium by Ipopt's interior-point method with MUMPS: exact gradient, Jacobian and Hessian of the
 // Lagrangian, their patterns from the plan.
 //
-// Ipopt's tolerance is absolute, so it is given a scaled problem: lengths in length scales L, angles in rad, forces in
-// units of the largest force F that the first multipliers show in the mechanism, energies in F L. Rows that depend on
+// Ipopt's tolerance is absolute, so it is given a scaled problem: lengths in extents L of the scene, angles in rad,
+// forces in units of the sum F of all applied forces, energies in F L. Rows that depend on
 // others at the start are left out (their multipliers are zero): an interior-point method wants independent equations.
 // One-sided rows become bounds on them. What it cannot do: tell a minimum from another stationary point (the
 // certificate does), nor promise the valley of the start. One problem at a time runs in a process: MUMPS shares its
@@ -16,7 +16,7 @@
 namespace catena {
 
 struct StaticIpoptOptions {
-  int max_iterations = 3000;
+  int max_iterations = 500;
   double tolerance = 1e-11;  ///< of residual forces relative to the largest force, of constraints to the length
   bool warm = false;         ///< q and lambda are near a solution
   bool verbose = false;      ///< Ipopt's log to standard error

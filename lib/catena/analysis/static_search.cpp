@@ -9,6 +9,7 @@
 #include "catena/analysis/static_descent.hpp"
 #include "catena/analysis/static_ipopt.hpp"
 #include "catena/analysis/static_nlopt.hpp"
+#include "catena/analysis/static_settling.hpp"
 #include "catena/analysis/whole_turns.hpp"
 
 namespace catena {
@@ -20,9 +21,10 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 constexpr int few_freedoms = 30;
 constexpr int most_trials = 14;
 // Starts of Newton's that fail before Ipopt is asked.
-constexpr int starts_before_ipopt = 4;
+constexpr unsigned starts_before_ipopt = 4;
 // Newton may move what another solver found by this much, length scales or rad: more is another place.
 constexpr double largest_polish = 0.05;
+constexpr double rounding_tolerance = 1e-15;
 // Beyond this interior points only gather rounding: the rest is polished.
 constexpr double finest_barrier = 1e-10;
 constexpr double first_push = 0.05, largest_push = 0.8;
@@ -47,8 +49,9 @@ std::string body_of(const Evaluator& evaluator, int column) {
 StaticOutcome StaticSearch::polish_by_newton(std::vector<double>& q, std::vector<double>& lambda,
                                              StaticOutcome outcome) {
   const std::vector<double> found = q, multipliers = lambda;
+  // On to rounding, whatever was asked for: the steps cost next to nothing beside what went before.
   const StaticOutcome polished = solve_by_newton(
-      system_, q, lambda, {.max_iterations = 20, .tolerance = options_.tolerance, .warm = true, .stationary = true});
+      system_, q, lambda, {.max_iterations = 20, .tolerance = rounding_tolerance, .warm = true, .stationary = true});
   std::vector<double> change(at(system_.plan().columns));
   for (std::size_t c = 0; c < change.size(); ++c) {
     const std::size_t k = at(system_.plan().coordinate[c]);
@@ -76,6 +79,12 @@ StaticOutcome StaticSearch::minimise(std::vector<double>& q, std::vector<double>
                                                   .warm = warm,
                                                   .verbose = options_.verbose})
                                 : solve_by_nlopt(system_, q, lambda, {.tolerance = options_.tolerance});
+    result.iterations += outcome.iterations;
+    return outcome.converged() ? polish_by_newton(q, lambda, outcome) : outcome;
+  }
+  if (way == Way::settling) {
+    result.solver = "settling";
+    outcome = solve_by_settling(system_, q, lambda, {.tolerance = options_.tolerance});
     result.iterations += outcome.iterations;
     return outcome.converged() ? polish_by_newton(q, lambda, outcome) : outcome;
   }
@@ -169,11 +178,39 @@ Report StaticSearch::explain(const StaticOutcome& outcome, const std::vector<dou
   return report;
 }
 
+// Forces that follow their body: the residual alone, and nothing that could certify what is found.
+StaticResult StaticSearch::find_without_energy(std::vector<double>& q, std::vector<double>& lambda) {
+  StaticResult result;
+  result.has_energy = false;
+  result.solver = "settling";
+  const std::vector<double> start = q;
+  StaticOutcome outcome;
+  for (unsigned trial = 0; trial < starts_before_ipopt; ++trial) {
+    if (trial > 0) {
+      q = start;
+      shake(q, trial, trial == 1 ? 0.1 : 1.0);
+    }
+    outcome = solve_by_settling(system_, q, lambda, {.tolerance = options_.tolerance});
+    result.iterations += outcome.iterations;
+    if (outcome.converged() || outcome.end == StaticEnd::unbounded) break;
+  }
+  result.residual = outcome.residual;
+  if (!outcome.converged()) {
+    result.report = explain(outcome, start);
+    return result;
+  }
+  result.report.warnings.push_back(
+      "forces that turn with their body have no energy: the forces balance here, but nothing certifies that this "
+      "equilibrium is stable");
+  return result;
+}
+
 StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lambda) {
   StaticResult result;
   const Plan& plan = system_.plan();
   Evaluator& evaluator = system_.evaluator();
   if (!options_.warm) move_whole_turns(evaluator, q);
+  if (!evaluator.conservative()) return find_without_energy(q, lambda);
   const std::vector<double> start = q;
   const bool own = options_.solver == StaticSolver::automatic || options_.solver == StaticSolver::newton;
   const bool few = !options_.warm && !options_.stationary && plan.columns - plan.rows <= few_freedoms;
@@ -200,7 +237,9 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
     if (!own) break;
     // Where following the valley does not get anywhere Newton may, and where that does not, another start or Ipopt.
     q = start;
-    if (way != Way::newton) {
+    if (trial + 2 == most_trials && options_.solver == StaticSolver::automatic) {
+      way = Way::settling;
+    } else if (way != Way::newton) {
       way = Way::newton;
     } else if (ask_ipopt && shaken >= starts_before_ipopt) {
       ask_ipopt = false;

@@ -4,6 +4,8 @@
 //   few degrees of freedom and a start that can be assembled nearby   downhill from there, else Newton
 //   otherwise                                                         Newton, restarted from shaken angles
 //   automatic and several of them did not converge                    Ipopt; then Newton from other angles again
+//   automatic and nothing converged                                   damped settling (StaticSettling)
+//   forces that follow their body: no energy                          damped settling, no certificate
 //   Ipopt or NLopt converged, asked for or not                        polished by Newton
 //   stationary but no minimum                                         a push along the most negative mode, and on
 //
@@ -47,12 +49,16 @@ class StaticSearch {
   /// Finds an equilibrium from q; leaves q, lambda and the system there, or at the best that was found.
   StaticResult find(std::vector<double>& q, std::vector<double>& lambda);
 
+  /// Disturbs every coordinate by a random amount: angles by at most `angle`, rad, places by a tenth of that in length
+  /// scales. The same seed gives the same numbers.
+  void shake(std::vector<double>& q, unsigned seed, double angle) const;
+
  private:
-  enum class Way { valley, newton, ipopt, nlopt };
+  enum class Way { valley, newton, ipopt, nlopt, settling };
   StaticOutcome minimise(std::vector<double>& q, std::vector<double>& lambda, bool warm, Way way, StaticResult& result);
   StaticOutcome polish_by_newton(std::vector<double>& q, std::vector<double>& lambda, StaticOutcome outcome);
   void leave(const Certificate& certificate, std::vector<double>& q, double size);
-  void shake(std::vector<double>& q, unsigned seed, double angle) const;
+  StaticResult find_without_energy(std::vector<double>& q, std::vector<double>& lambda);
   Report explain(const StaticOutcome& outcome, const std::vector<double>& start);
   bool is_free_motion(const std::vector<double>& q, const Certificate& certificate);
 

@@ -25,17 +25,17 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
                                       name, name == "Ipopt" ? "IPOPT" : "NLOPT"));
   }
   options.verbose = context.verbose;
-  if (task.number("find", 1) > 1) {
-    return refuse(result, "looking for several equilibria is not built yet; leave \"find\" out");
-  }
+  options.find = static_cast<int>(task.number("find", 1));
   options.tolerance = task.number("tolerance", options.tolerance);
   options.accept = task.word("accept") == 0 ? Accept::stable : Accept::stationary;
   const std::vector<std::string> names = task.output_names();
   Equilibrium analysis(context.model, plan_options(*context.model, names), options);
-  if (!analysis.evaluator().conservative()) {
+  const bool conservative = analysis.evaluator().conservative();
+  if (!conservative && (options.solver == StaticSolver::ipopt || options.solver == StaticSolver::nlopt)) {
     return refuse(result,
-                  "follower forces have no energy, and the equilibrium of forces without one is not built yet; give "
-                  "the forces in ground axes");
+                  fmt::format("the solver {} minimises an energy, which forces that turn with their body do not "
+                              "have; leave \"solver\" out",
+                              options.solver == StaticSolver::ipopt ? "ipopt" : "nlopt"));
   }
   if (options.solver == StaticSolver::nlopt && analysis.plan().columns > StaticNloptOptions::most_columns) {
     return refuse(result,
@@ -53,10 +53,22 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   if (report.certified) {
     result.fields = {{"energy", report.energy},
                      {"stable", report.stable},
-                     {"negative_modes", static_cast<std::int64_t>(report.negative_modes)},
-                     {"residual", report.residual},
-                     {"solver", report.solver},
-                     {"iterations", static_cast<std::int64_t>(report.iterations)}};
+                     {"negative_modes", static_cast<std::int64_t>(report.negative_modes)}};
+  }
+  if (report.certified || report.ok()) {
+    result.fields.push_back({"residual", report.residual});
+    result.fields.push_back({"solver", report.solver});
+    result.fields.push_back({"iterations", static_cast<std::int64_t>(report.iterations)});
+  }
+  if (!report.found.empty()) {
+    std::vector<FieldRecord> list;
+    for (const FoundEquilibrium& f : report.found) {
+      list.push_back({{"row", static_cast<std::int64_t>(list.size())},
+                      {"energy", f.energy},
+                      {"stable", f.stable},
+                      {"negative_modes", static_cast<std::int64_t>(f.negative_modes)}});
+    }
+    result.fields.push_back({"equilibria", std::move(list)});
   }
   take_report(result, report, &columns, rows.rows());
 }
