@@ -1,0 +1,128 @@
+// Equilibria beyond one minimum of an energy: several in one scene, forces that follow their body, the choice of the
+// solver.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "catena/analysis/static_ipopt.hpp"
+#include "catena/analysis/static_nlopt.hpp"
+#include "scene/run_text.hpp"
+
+namespace catena::testing {
+namespace {
+
+template <class T>
+T field(const TextRun& run, const std::string& name) {
+  for (const NamedField& f : run.analysis().fields) {
+    if (f.name == name) return std::get<T>(f.value);
+  }
+  ADD_FAILURE() << "no field " << name << "; " << run.analysis().report.message << run.outcome.error_text;
+  return {};
+}
+
+// The inverted bar on a torsion spring of 1 N m/rad, m g l = 2 N m: upright unstable, tilted by theta stable.
+std::string inverted_bar(const std::string& keys) {
+  return R"({"catena": 1, "gravity": [0, -10], "bodies": {"bar": {"mass": 0.2, "inertia": 0, "position": [0, 1]}},
+    "constraints": [{"type": "revolute", "i": "ground", "j": ["bar", [0, -1]]}],
+    "forces": [{"type": "torsion_spring", "i": "ground", "j": "bar", "k": 1, "angle": 0}],
+    "analyses": [{"type": "equilibrium", )" +
+         keys + R"(}], "outputs": ["bar.angle"]})";
+}
+constexpr double tilt = 1.89549426703398;
+
+TEST(SeveralEquilibria, BothBranchesOfThePitchforkAndTheUprightBetween) {
+  const TextRun stable = run_text(inverted_bar(R"("find": 2)"));
+  ASSERT_EQ(stable.outcome.exit_code, 0) << stable.outcome.error_text << stable.analysis().report.message;
+  const std::vector<double> angles = stable.column("bar.angle");
+  ASSERT_EQ(angles.size(), 2u);
+  EXPECT_NEAR(std::abs(angles[0]), tilt, 1e-10);
+  EXPECT_NEAR(angles[0] + angles[1], 0, 1e-10);
+  EXPECT_TRUE(field<bool>(stable, "stable"));
+
+  const TextRun all = run_text(inverted_bar(R"("find": 3, "accept": "stationary")"));
+  ASSERT_EQ(all.outcome.exit_code, 0) << all.analysis().report.message;
+  const auto list = field<std::vector<FieldRecord>>(all, "equilibria");
+  ASSERT_EQ(list.size(), 3u);
+  // The highest energy comes last: upright.
+  EXPECT_NEAR(all.last("bar.angle"), 0, 1e-10);
+  EXPECT_FALSE(std::get<bool>(list[2][2].second));
+  EXPECT_TRUE(std::get<bool>(list[0][2].second));
+  EXPECT_LT(std::get<double>(list[0][1].second), std::get<double>(list[2][1].second) - 0.1);
+}
+
+TEST(SeveralEquilibria, SaysHowManyThereWere) {
+  const TextRun run = run_text(inverted_bar(R"("find": 5)"));
+  ASSERT_EQ(run.outcome.exit_code, 0);
+  EXPECT_EQ(run.column("bar.angle").size(), 2u);
+  ASSERT_FALSE(run.analysis().report.warnings.empty());
+  EXPECT_NE(run.analysis().report.warnings.back().find("2 different equilibria"), std::string::npos);
+  EXPECT_NE(run.analysis().report.warnings.back().find("5 wanted"), std::string::npos);
+}
+
+TEST(FollowerForces, BalanceWithoutACertificate) {
+  // A bar on a pin and a torsion spring of 4 N m/rad; 3 N across its end, always across: the moment is 6 N m whatever
+  // the angle, so that it turns by 1.5 rad. A dead load would stop earlier.
+  const std::string scene = R"({"catena": 1, "bodies": {"bar": {"mass": 1, "rod": {"from": [0, 0], "to": [2, 0]}}},
+    "constraints": [{"type": "revolute", "name": "A", "i": "ground", "j": "bar.from"}],
+    "forces": [{"type": "torsion_spring", "i": "ground", "j": "bar", "k": 4, "angle": 0},
+      {"type": "point_force", "i": "bar.to", "force": [0, 3], "frame": "body"}],
+    "analyses": [{"type": "equilibrium")";
+  const TextRun run = run_text(scene + R"(}], "outputs": ["bar.angle", "A.fx", "A.fy"]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.analysis().report.message << run.outcome.error_text;
+  EXPECT_NEAR(run.last("bar.angle"), 1.5, 1e-10);
+  EXPECT_NEAR(run.last("A.fx"), 3 * std::sin(1.5), 1e-9);
+  EXPECT_NEAR(run.last("A.fy"), -3 * std::cos(1.5), 1e-9);
+  for (const NamedField& f : run.analysis().fields) EXPECT_NE(f.name, "stable");
+  ASSERT_FALSE(run.analysis().report.warnings.empty());
+  EXPECT_NE(run.analysis().report.warnings.front().find("no energy"), std::string::npos);
+  if (!ipopt_is_built_in()) return;
+  const TextRun refused = run_text(scene + R"(, "solver": "ipopt"}]})");
+  EXPECT_EQ(refused.analysis().report.status, Status::refused);
+}
+
+TEST(FollowerForces, BendTheTipOfAChainByTheirMoments) {
+  // Six links of 1 m on torsion springs of 10 N m/rad, 2 N across the last one's end: the moment in the spring before
+  // link k, counted from the tip in that link's axes, gives one angle after the other.
+  const TextRun run = run_text(R"({"catena": 1, "replicate": [
+    {"count": 6, "bodies": {"l{k}": {"mass": 0, "inertia": 0, "position": ["=k-0.5", 0]}}},
+    {"count": 5, "first": 2, "constraints": [{"type": "revolute", "i": ["l{k-1}", [0.5, 0]], "j": ["l{k}", [-0.5, 0]]}],
+      "forces": [{"type": "torsion_spring", "i": "l{k-1}", "j": "l{k}", "k": 10, "angle": 0}]}],
+    "constraints": [{"type": "revolute", "i": "ground", "j": ["l1", [-0.5, 0]]}],
+    "forces": [{"type": "torsion_spring", "i": "ground", "j": "l1", "k": 10, "angle": 0},
+      {"type": "point_force", "i": ["l6", [0.5, 0]], "force": [0, 2], "frame": "body"}],
+    "analyses": [{"type": "equilibrium"}], "outputs": ["l1.angle", "l6.angle"]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.analysis().report.message << run.outcome.error_text;
+  // In the axes of the last link: its root at (-1, 0) from the tip, the next ones turned back by the springs' angles.
+  double direction = 0, x = 0, total = 0, first = 0;
+  for (int k = 0; k < 6; ++k) {
+    x += std::cos(direction);
+    const double twist = 2 * x / 10;
+    direction -= twist;
+    total += twist;
+    first = twist;
+  }
+  EXPECT_NEAR(run.last("l6.angle"), total, 1e-10);
+  EXPECT_NEAR(run.last("l1.angle"), first, 1e-10);
+}
+
+TEST(Solvers, AreChosenByName) {
+  for (const char* solver : {"auto", "newton", "ipopt", "nlopt"}) {
+    const std::string name = solver;
+    if (name == "ipopt" && !ipopt_is_built_in()) continue;
+    if (name == "nlopt" && !nlopt_is_built_in()) continue;
+    const TextRun run = run_text(inverted_bar(R"("solver": ")" + name + "\""));
+    ASSERT_EQ(run.outcome.exit_code, 0) << name << run.analysis().report.message;
+    EXPECT_EQ(field<std::string>(run, "solver"), name == "auto" ? "newton" : name);
+    EXPECT_NEAR(std::abs(run.last("bar.angle")), tilt, 1e-10) << name;
+    EXPECT_TRUE(field<bool>(run, "stable"));
+  }
+  const TextRun large = run_text(R"({"catena": 1, "gravity": [0, -10], "replicate": [{"count": 50,
+      "bodies": {"b{k}": {"mass": 1, "inertia": 1, "position": ["=k", 0]}},
+      "constraints": [{"type": "revolute", "i": ["ground", ["=k", 1]], "j": ["b{k}", [0, 1]]}]}],
+    "analyses": [{"type": "equilibrium", "solver": "nlopt"}]})");
+  EXPECT_EQ(large.analysis().report.status, Status::refused);
+  EXPECT_NE(large.analysis().report.message.find("150"), std::string::npos) << large.analysis().report.message;
+}
+
+}  // namespace
+}  // namespace catena::testing
