@@ -19,6 +19,10 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double rounding = 1e-16;
 constexpr double rounding_floor = 1e-12;
 constexpr double negligible = 1e-14;
+// Residual of a linear system that is rounding, as part of the terms of its row.
+constexpr double backward_rounding = 64 * epsilon;
+// Shifts are compared with the length scale, or with this part of the extent of a long structure.
+constexpr double part_of_extent = 0.01;
 // Factors from further away than this are replaced: a new factorization costs two or three solves.
 constexpr double keep_distance = 1e-4;
 // Refinement that leaves more than this of an error takes longer than new factors.
@@ -41,6 +45,14 @@ DrivenSolver::DrivenSolver(Evaluator& evaluator)
   x_.resize(at(plan_.columns));
   rhs_.resize(at(plan_.rows));
   residual_all_.resize(at(plan_.rows));
+  // The end of a long structure moves by many of the lengths that its parts are made of while they hardly turn.
+  Vec2<double> low{}, high{};
+  for (int p = 0; p < plan_.moving; ++p) {
+    const Vec2<double> place = evaluator_.origin(p) - evaluator_.origin(0);
+    low = {std::min(low.x, place.x), std::min(low.y, place.y)};
+    high = {std::max(high.x, place.x), std::max(high.y, place.y)};
+  }
+  motion_unit_ = std::max(evaluator_.length_scale(), part_of_extent * std::max(high.x - low.x, high.y - low.y));
   if (plan_.rows == plan_.columns) {
     rows_.resize(at(plan_.rows));
     std::iota(rows_.begin(), rows_.end(), 0);
@@ -150,7 +162,7 @@ double DrivenSolver::residual_at(std::span<const double> q) {
 }
 
 double DrivenSolver::distance(std::span<const double> a, std::span<const double> b, double* angle) const {
-  const double unit = 1 / evaluator_.length_scale();
+  const double unit = 1 / motion_unit_;
   double shift = 0, turn = 0;
   for (std::size_t k = 0; k + 2 < 3 * at(plan_.moving); k += 3) {
     const double x = std::abs(a[k] - b[k]), y = std::abs(a[k + 1] - b[k + 1]), phi = std::abs(a[k + 2] - b[k + 2]);
@@ -200,6 +212,7 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
   NewtonOutcome outcome;
   double size = 0;  // of the last correction
   double rate = 0;  // by which the next correction will be smaller
+  double last_residual = std::numeric_limits<double>::infinity();
   // Without a set of rows that determines everything there is nothing that could converge.
   if (!is_square()) return outcome;
   for (;; ++outcome.iterations) {
@@ -208,11 +221,15 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
     if (!std::isfinite(outcome.residual)) return outcome;
     // A long structure moves its far end by many length scales: its residuals cannot be rounder than its coordinates.
     const double attainable = std::max(tolerance, 8 * epsilon * extent_);
-    if (outcome.residual <= rounding || (outcome.iterations > 0 && outcome.residual <= attainable &&
-                                         rate * size <= std::max(negligible, epsilon * extent_))) {
+    // Corrections are the residual times a condition: they need not become small, but then the residual stays.
+    const bool small = outcome.residual <= attainable;
+    const bool settled =
+        rate * size <= std::max(negligible, epsilon * extent_) || outcome.residual > poor_contraction * last_residual;
+    if (outcome.residual <= rounding || (outcome.iterations > 0 && small && settled)) {
       outcome.converged = true;
       return outcome;
     }
+    last_residual = outcome.residual;
     if (outcome.iterations == max_iterations) return outcome;
     if (!factors_serve() && !factorize()) {
       outcome.factor = factor_result_;
@@ -229,12 +246,12 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
     if (outcome.iterations == 0) {
       outcome.first_correction = size;
       outcome.first_turn = correction.angle;
-    } else if (size > std::max(rounding_floor, 64 * epsilon * extent_)) {
+    } else if (!small && size > std::max(rounding_floor, 64 * epsilon * extent_)) {
       const double ratio = size / last_size;
       outcome.contraction = std::max(outcome.contraction, ratio);
       rate = std::max(rate, ratio);
       if (ratio > poor_contraction) factors_valid_ = false;
-    } else if (outcome.residual <= attainable) {
+    } else if (small) {
       rate = 0;  // what is left is rounding
     }
     if (plan_.contiguous) continue;
@@ -290,13 +307,33 @@ bool DrivenSolver::solve_refined(std::span<double> x, bool has_start) {
     if (!std::isfinite(size)) return false;
     if (k > 0) rate = std::max(rate, size / last_size);
     if (rate * size <= negligible * all || size <= rounding * all) return true;
-    if (k > 0 && size > poor_contraction * last_size && size > rounding_floor * all && !factored_here) {
-      if (!factorize()) return false;
-      factored_here = true;
-      rate = 0;
+    if (k > 0 && size > poor_contraction * last_size) {
+      if (size > rounding_floor * all && !factored_here) {
+        if (!factorize()) return false;
+        factored_here = true;
+        rate = 0;
+      } else if (k > 1 && is_solved_to_rounding(values, x)) {
+        return true;
+      }
     }
   }
-  return size <= tolerance * all;
+  return size <= tolerance * all || is_solved_to_rounding(values, x);
+}
+
+// In a structure of very many parts corrections end well above the rounding of x: its own condition multiplies it. What
+// is left then is an exact solution of equations that differ from the given ones by rounding, row by row.
+bool DrivenSolver::is_solved_to_rounding(std::span<const double> values, std::span<const double> x) {
+  std::copy(rhs_.begin(), rhs_.end(), residual_all_.begin());
+  subtract_product(values, x, residual_all_);
+  terms_.resize(rhs_.size());
+  for (std::size_t r = 0; r < rhs_.size(); ++r) terms_[r] = std::abs(rhs_[r]);
+  for (int c = 0; c < plan_.columns; ++c) {
+    for (int k = plan_.jacobian.column_start[at(c)]; k < plan_.jacobian.column_start[at(c) + 1]; ++k) {
+      terms_[at(plan_.jacobian.row_index[at(k)])] += std::abs(values[at(k)] * x[at(c)]);
+    }
+  }
+  return std::all_of(rows_.begin(), rows_.end(),
+                     [&](int row) { return std::abs(residual_all_[at(row)]) <= backward_rounding * terms_[at(row)]; });
 }
 
 // Solves for the columns of a vector over all coordinates, in place where they are the same.

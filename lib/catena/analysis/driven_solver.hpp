@@ -62,7 +62,9 @@ class DrivenSolver {
   std::span<const BlockMargin> block_margins();
   /// Sets the configuration and returns the largest residual of the rows in use, in length scales or rad.
   double residual_at(std::span<const double> q);
-  /// Largest difference of two configurations, in length scales or rad; `angle`: of the angles alone.
+  /// How far apart two configurations are, or how large a rate is: the larger of the largest angle, rad, and the
+  /// largest shift in length scales (of a structure much longer than these: in hundredths of its extent). `angle`: the
+  /// angle alone.
   double distance(std::span<const double> a, std::span<const double> b, double* angle) const;
   /// Left null vector of the matrix near a singular configuration, by inverse iteration with the factors at the last
   /// configuration: rows of the plan, Euclidean length one. False if there are no factors.
@@ -84,6 +86,7 @@ class DrivenSolver {
   void subtract_product(std::span<const double> values, std::span<const double> x, std::span<double> rest) const;
   /// x = Phi_q^-1 rhs_ by refinement of the start in x (columns), against the true Jacobian at q_.
   bool solve_refined(std::span<double> x, bool has_start);
+  bool is_solved_to_rounding(std::span<const double> values, std::span<const double> x);
   bool solve_rate(std::span<double> rate, bool has_start);
   double gather_rows(std::span<const double> all, std::span<double> chosen) const;
   void to_columns(std::span<const double> coordinates, std::span<double> columns) const;
@@ -104,6 +107,8 @@ class DrivenSolver {
   std::vector<char> in_use_;                       // per row
   std::vector<double> phi_, rhs_, residual_all_;   // all rows
   std::vector<double> step_, x_, q_, q_factored_;  // columns
+  std::vector<double> terms_;  // all rows
+  double motion_unit_ = 1;     // m: what shifts are compared with in distance()
   double t_factored_ = 0;
   double gap_ = 0;     // from q_ to q_factored_: how much worse than exact the factors are
   double extent_ = 0;  // norm of q_

@@ -45,6 +45,7 @@ Kinematics::Kinematics(std::shared_ptr<const Model> model, const PlanOptions& pl
   q_ = evaluator_.given_configuration();
   qd_.assign(q_.size(), 0.0);
   qdd_.assign(q_.size(), 0.0);
+  nothing_.assign(q_.size(), 0.0);
   trial_ = q_;
 }
 
@@ -192,8 +193,7 @@ Report Kinematics::start_singular(const SingularPoint& point, double direction) 
   if (plan_->rows > plan_->columns) {
     // Rows are chosen a little way along the branch, where they can be told apart.
     const std::vector<double>& tangent = point.tangents[at(branch - 1)];
-    const std::vector<double> nothing(tangent.size(), 0.0);
-    const double h = direction * start_distance / solver_.distance(tangent, nothing, nullptr);
+    const double h = direction * start_distance / solver_.distance(tangent, nothing_, nullptr);
     trial_ = q_;
     for (std::size_t k = 0; k < trial_.size(); ++k) trial_[k] += h * tangent[k];
     if (!choose_rows(trial_)) {

@@ -83,7 +83,7 @@ class Kinematics {
   bool add_node(MotionBridge& bridge, double t, double allowed);
   bool build_bridge(MotionBridge& bridge, double centre, double h, double reach);
   bool follows_constraints(const MotionBridge& bridge, double from, double to);
-  bool margins_on(const MotionBridge& bridge, double t, std::vector<double>& margins);
+  bool margins_on(const MotionBridge& bridge, double t, std::vector<BlockMargin>& margins);
   std::vector<double> singular_instants(const MotionBridge& bridge, double from, double to);
   double refine_instant(const MotionBridge& bridge, std::size_t block, double a, double b);
   bool find_rest(const MotionBridge& bridge, double& t, double from, double to);
@@ -107,7 +107,7 @@ class Kinematics {
   bool prepared_ = false, has_velocity_ = false, has_acceleration_ = false;
   RowObserver* observer_ = nullptr;  // during run(): asked between rows too whether to go on
   double t_ = 0;
-  std::vector<double> q_, qd_, qdd_, lambda_, trial_, loads_, applied_;
+  std::vector<double> q_, qd_, qdd_, lambda_, trial_, loads_, applied_, nothing_;
   // How far from singular the blocks of Phi_q are at q_, signed; by how much the magnitudes change in unit time; and
   // the most that each of them has been.
   std::vector<BlockMargin> margins_, margin_rates_;

@@ -32,7 +32,9 @@ constexpr double sudden_part = 0.6, small_part = 0.3;
 // The same from the step before: as much as this must be left of them if they go on as they did.
 constexpr double remaining_part = 0.3;
 // Passages are tried over stretches of this much motion (rad, length scales), one after the other.
-constexpr std::array<double, 5> reaches = {0.2, 0.05, 0.015, 0.004, 0.001};
+constexpr std::array<double, 6> reaches = {0.2, 0.1, 0.05, 0.015, 0.004, 0.001};
+// They are tried anew once steps have become this part of what they were at the first trial.
+constexpr double try_again = 1.0 / 32;
 // Rows are chosen anew where their reciprocal condition number has fallen to this part of what it was.
 constexpr double drifted = 0.01;
 // Steps made after one that failed before their length may grow again.
@@ -110,14 +112,7 @@ bool Kinematics::find_velocity() {
   return true;
 }
 
-double Kinematics::largest_rate() const {
-  double largest = 0;
-  for (int c = 0; c < plan_->columns; ++c) {
-    const auto k = at(plan_->coordinate[at(c)]);
-    largest = std::max(largest, std::abs(qd_[k]) / (k % 3 == 2 ? 1 : evaluator_.length_scale()));
-  }
-  return largest;
-}
+double Kinematics::largest_rate() const { return solver_.distance(qd_, nothing_, nullptr); }
 
 Report Kinematics::cancelled() const {
   Report report;
@@ -134,6 +129,7 @@ Report Kinematics::move_to(double t) {
   std::size_t attempt = 0;
   int made_since_failure = patience;
   bool ignore_dips = false;
+  double first_trial = 0;
   if (margins_.empty() && bridge_.empty()) {
     solver_.factor_at(q_);
     remember_margins();
@@ -179,9 +175,13 @@ Report Kinematics::move_to(double t) {
     ++evaluator_.counters.rejected;
     made_since_failure = 0;
     if (!has_velocity_) find_velocity();
-    const double wide = has_velocity_ ? std::abs(next - t_) * largest_rate() : 1;
-    if (attempt < reaches.size() && wide <= reaches[attempt] / 2) {
-      if (attempt == 0 && choose_better_rows()) continue;
+    const double length = std::abs(next - t_);
+    if (length < try_again * first_trial) attempt = 0;
+    if (attempt < reaches.size() && has_velocity_ && length <= bridge_length((t_ + next) / 2, reaches[attempt]) / 2) {
+      if (attempt == 0) {
+        first_trial = length;
+        if (choose_better_rows()) continue;
+      }
       const Passage passage = pass_singular(next, t, reaches[attempt], report);
       if (passage == Passage::failed) return report;
       if (passage != Passage::none) {

@@ -106,22 +106,23 @@ bool Kinematics::follows_constraints(const MotionBridge& bridge, double from, do
 }
 
 // False where the matrix is singular to the last digit.
-bool Kinematics::margins_on(const MotionBridge& bridge, double t, std::vector<double>& margins) {
+bool Kinematics::margins_on(const MotionBridge& bridge, double t, std::vector<BlockMargin>& margins) {
   evaluator_.set_time(t);
   bridge.evaluate(t, trial_, {}, {});
   if (!(solver_.factor_at(trial_) > 0)) return false;
-  margins.clear();
-  for (const BlockMargin& margin : solver_.block_margins()) margins.push_back(margin.pivot);
+  const auto found = solver_.block_margins();
+  margins.assign(found.begin(), found.end());
   return true;
 }
 
-// The instant between a and b where the block's margin changes its sign, or else where it is least.
+// The instant between a and b where the block's determinant changes its sign, or else where it is least: nearly so
+// first, since a pivot alone may be small elsewhere, then by the pivot, which vanishes more sharply.
 double Kinematics::refine_instant(const MotionBridge& bridge, std::size_t block, double a, double b) {
-  std::vector<double> margins;
-  bool hit = false;
+  std::vector<BlockMargin> margins;
+  bool hit = false, sharp = false;
   const auto margin = [&](double t) {
     hit = hit || !margins_on(bridge, t, margins);
-    return hit ? 0.0 : margins[block];
+    return hit ? 0.0 : sharp ? margins[block].pivot : margins[block].determinant;
   };
   double fa = margin(a), fb = margin(b);
   const double width = 1e-15 * (std::abs(a) + std::abs(b)) + 1e-14 * std::abs(b - a);
@@ -143,28 +144,31 @@ double Kinematics::refine_instant(const MotionBridge& bridge, std::size_t block,
     }
     return b;
   }
-  const double golden = (std::sqrt(5.0) - 1) / 2;
-  double c = b - golden * (b - a), d = a + golden * (b - a);
-  double fc = std::abs(margin(c)), fd = std::abs(margin(d));
-  for (int k = 0; k < 70 && std::abs(b - a) > width; ++k) {
-    const bool left = fc < fd;
-    (left ? b : a) = left ? d : c;
-    (left ? d : c) = left ? c : d;
-    (left ? fd : fc) = left ? fc : fd;
-    const double t = left ? b - golden * (b - a) : a + golden * (b - a);
-    (left ? c : d) = t;
-    (left ? fc : fd) = std::abs(margin(t));
-    if (hit) return t;
+  const double golden = (std::sqrt(5.0) - 1) / 2, rough = 1e-5 * std::abs(b - a);
+  for (const double enough : {rough, width}) {
+    if (enough == width) a -= rough, b += rough, sharp = true;
+    double c = b - golden * (b - a), d = a + golden * (b - a);
+    double fc = std::abs(margin(c)), fd = std::abs(margin(d));
+    while (std::abs(b - a) > std::max(enough, 4e-16 * std::abs(b))) {
+      const bool left = fc < fd;
+      (left ? b : a) = left ? d : c;
+      (left ? d : c) = left ? c : d;
+      (left ? fd : fc) = left ? fc : fd;
+      const double t = left ? b - golden * (b - a) : a + golden * (b - a);
+      (left ? c : d) = t;
+      (left ? fc : fd) = std::abs(margin(t));
+      if (hit) return t;
+    }
   }
   return (a + b) / 2;
 }
 
 std::vector<double> Kinematics::singular_instants(const MotionBridge& bridge, double from, double to) {
   std::vector<double> instants, times;
-  std::vector<std::vector<double>> margins;
+  std::vector<std::vector<BlockMargin>> margins;
   for (int k = 0; k < samples; ++k) {
     double t = from + (to - from) * k / (samples - 1);
-    std::vector<double> found;
+    std::vector<BlockMargin> found;
     // A sample that falls on the singular instant itself is moved off it.
     for (int nudge = 0; nudge < 3 && !margins_on(bridge, t, found); ++nudge) t += 1e-9 * (to - from);
     if (found.empty()) continue;
@@ -173,18 +177,18 @@ std::vector<double> Kinematics::singular_instants(const MotionBridge& bridge, do
   }
   if (times.size() < 3) return instants;
   const std::size_t blocks = margins.front().size();
-  std::vector<double> before, after;
+  std::vector<BlockMargin> before, after;
   for (std::size_t k = 0; k + 1 < times.size(); ++k) {
     std::vector<char> explained(blocks, 0);
     for (std::size_t b = 0; b < blocks; ++b) {
-      if (explained[b] || (margins[k][b] < 0) == (margins[k + 1][b] < 0)) continue;
+      if (explained[b] || (margins[k][b].pivot < 0) == (margins[k + 1][b].pivot < 0)) continue;
       const double t = refine_instant(bridge, b, times[k], times[k + 1]);
       instants.push_back(t);
       // What changes at the same instant is explained by it.
       const double near = 1e-7 * (to - from);
       if (!margins_on(bridge, t - near, before) || !margins_on(bridge, t + near, after)) continue;
       for (std::size_t other = b; other < blocks; ++other) {
-        if ((before[other] < 0) != (after[other] < 0)) explained[other] = 1;
+        if ((before[other].pivot < 0) != (after[other].pivot < 0)) explained[other] = 1;
       }
     }
   }
@@ -193,16 +197,18 @@ std::vector<double> Kinematics::singular_instants(const MotionBridge& bridge, do
     double least = 1;
     std::size_t block = 0, place = 0;
     for (std::size_t b = 0; b < blocks; ++b) {
-      const double ends = std::max(std::abs(margins.front()[b]), std::abs(margins.back()[b]));
+      const double ends = std::max(std::abs(margins.front()[b].determinant), std::abs(margins.back()[b].determinant));
       for (std::size_t k = 1; k + 1 < times.size(); ++k) {
-        const double part = std::abs(margins[k][b]) / ends;
+        const double part = std::abs(margins[k][b].determinant) / ends;
         if (part < least) least = part, block = b, place = k;
       }
     }
     if (least < 1) {
-      const double ends = std::max(std::abs(margins.front()[block]), std::abs(margins.back()[block]));
+      const double ends =
+          std::max(std::abs(margins.front()[block].determinant), std::abs(margins.back()[block].determinant));
       const double t = refine_instant(bridge, block, times[place - 1], times[place + 1]);
-      if (!margins_on(bridge, t, before) || std::abs(before[block]) < vanishing * ends) instants.push_back(t);
+      if (!margins_on(bridge, t, before) || std::abs(before[block].determinant) < vanishing * ends)
+        instants.push_back(t);
     }
   }
   std::sort(instants.begin(), instants.end());
@@ -310,14 +316,22 @@ double Kinematics::bridge_length(double centre, double reach) {
 
 // Looks for singular configurations about the suspected stretch from t_ to `next`. Passed: the bridge is in place.
 Kinematics::Passage Kinematics::pass_singular(double next, double target, double reach, Report& report) {
-  const double centre = t_ + (next - t_) / 2, length = bridge_length(centre, reach);
+  const double middle = t_ + (next - t_) / 2, length = bridge_length(middle, reach);
   if (!(length > 0)) return Passage::none;
   const double h = target > t_ ? length : -length;
+  // A node that falls on the singular instant spoils the first bridge, not the second.
   MotionBridge bridge;
-  if (!build_bridge(bridge, centre, h, reach)) return Passage::none;
-  double from = centre - std::abs(h), to = centre + std::abs(h);
-  if (!tables_reach(centre + 2 * h)) (h > 0 ? to : from) = target;
-  if (!follows_constraints(bridge, from, to)) return Passage::none;
+  double from = 0, to = 0;
+  bool built = false;
+  for (double shift : {0.0, 0.5}) {
+    const double centre = middle + shift * h;
+    from = centre - length, to = centre + length;
+    if (!tables_reach(centre + 2 * h)) (h > 0 ? to : from) = target;
+    built = build_bridge(bridge, centre, h, reach) && follows_constraints(bridge, from, to);
+    if (built) break;
+    bridge.clear();
+  }
+  if (!built) return Passage::none;
   // Those behind have been dealt with.
   std::vector<double> instants = singular_instants(bridge, from, to);
   std::erase_if(instants, [&](double instant) { return (instant - t_) * h <= 0; });
@@ -331,11 +345,10 @@ Kinematics::Passage Kinematics::pass_singular(double next, double target, double
     bridge.evaluate(first + k * h, trial_, {}, {});
     moved = add_node(centred, first + k * h, allowance * reach);
   }
-  const double covered = std::abs(h);
-  if (moved && (target - (first - h)) * h >= 0 && follows_constraints(centred, first - covered, first + covered)) {
+  if (moved && (target - (first - h)) * h >= 0 && follows_constraints(centred, first - length, first + length)) {
     bridge = std::move(centred);
-    from = first - covered;
-    to = first + covered;
+    from = first - length;
+    to = first + length;
   }
   for (double instant : instants) {
     // Instants closer than they are known are one.
@@ -392,9 +405,8 @@ Report Kinematics::take_branch(const SingularPoint& point, int branch, double di
   choice_.reset();
   const std::vector<double>& tangent = point.tangents[at(branch - 1)];
   double rate = 0, apart = std::numeric_limits<double>::infinity();
-  const std::vector<double> nothing(tangent.size(), 0.0);
   for (const auto& other : point.tangents) {
-    rate = std::max(rate, solver_.distance(other, nothing, nullptr));
+    rate = std::max(rate, solver_.distance(other, nothing_, nullptr));
     if (&other != &tangent) apart = std::min(apart, solver_.distance(other, tangent, nullptr));
   }
   std::vector<double> q(q_.size()), qd(q_.size()), qdd(q_.size());
