@@ -251,7 +251,7 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
       outcome.contraction = std::max(outcome.contraction, ratio);
       rate = std::max(rate, ratio);
       if (ratio > poor_contraction) factors_valid_ = false;
-    } else if (small) {
+    } else if (small && size <= std::max(rounding_floor, 64 * epsilon * extent_)) {
       rate = 0;  // what is left is rounding
     }
     if (plan_.contiguous) continue;

@@ -107,8 +107,8 @@ class DrivenSolver {
   std::vector<char> in_use_;                       // per row
   std::vector<double> phi_, rhs_, residual_all_;   // all rows
   std::vector<double> step_, x_, q_, q_factored_;  // columns
-  std::vector<double> terms_;  // all rows
-  double motion_unit_ = 1;     // m: what shifts are compared with in distance()
+  std::vector<double> terms_;                      // all rows
+  double motion_unit_ = 1;                         // m: what shifts are compared with in distance()
   double t_factored_ = 0;
   double gap_ = 0;     // from q_ to q_factored_: how much worse than exact the factors are
   double extent_ = 0;  // norm of q_

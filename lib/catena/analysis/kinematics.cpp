@@ -46,6 +46,9 @@ Kinematics::Kinematics(std::shared_ptr<const Model> model, const PlanOptions& pl
   qd_.assign(q_.size(), 0.0);
   qdd_.assign(q_.size(), 0.0);
   nothing_.assign(q_.size(), 0.0);
+  for (int k = 0; k < plan_->coordinates(); ++k) {
+    if (k >= 3 * plan_->bodies || plan_->column[at(k)] < 0) fixed_.push_back(k);
+  }
   trial_ = q_;
 }
 

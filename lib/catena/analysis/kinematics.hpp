@@ -71,6 +71,8 @@ class Kinematics {
   bool heads_for_singularity(double t) const;
   void remember_margins();
   Report cancelled() const;
+  bool predict(double t, std::span<double> q, std::span<double> qd, std::span<double> qdd) const;
+  void restore_fixed(std::span<double> q, std::span<double> qd, std::span<double> qdd) const;
   bool find_velocity();
   double largest_rate() const;
   Report stuck(double t);
@@ -115,6 +117,7 @@ class Kinematics {
   std::vector<double> largest_margins_;
   std::vector<double> predicted_qd_, predicted_qdd_;  // rates at `predicted_`, of the sizes that are needed
   std::optional<double> predicted_;
+  std::vector<int> fixed_;  // coordinates that are no unknowns: of immobile bodies, angles of particles
   std::vector<std::string> redundant_;
   double chosen_rcond_ = 0;  // of the rows in use, where they were chosen
   NewtonOutcome newton_;

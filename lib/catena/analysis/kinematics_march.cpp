@@ -77,7 +77,7 @@ Kinematics::StepOutcome Kinematics::try_step(double t, bool ignore_dips) {
   evaluator_.set_time(t);
   trial_ = q_;
   // Positions and rates in one pass over the history.
-  predicted_ = predictor_.predict(t, trial_, predicted_qd_, predicted_qdd_) ? std::optional(t) : std::nullopt;
+  predicted_ = predict(t, trial_, predicted_qd_, predicted_qdd_) ? std::optional(t) : std::nullopt;
   newton_ = solver_.solve_position(trial_);
   if (!newton_.converged || newton_.first_turn > largest_turn || newton_.contraction > largest_contraction) {
     return StepOutcome::too_long;
@@ -100,6 +100,21 @@ Kinematics::StepOutcome Kinematics::try_step(double t, bool ignore_dips) {
   }
   if (crossed) return StepOutcome::crossed;
   return dipped && !ignore_dips ? StepOutcome::dipped : StepOutcome::made;
+}
+
+// Extrapolation is exact for constants but for rounding, which nothing corrects where there is no unknown.
+void Kinematics::restore_fixed(std::span<double> q, std::span<double> qd, std::span<double> qdd) const {
+  for (int k : fixed_) {
+    if (!q.empty()) q[at(k)] = q_[at(k)];
+    if (!qd.empty()) qd[at(k)] = 0;
+    if (!qdd.empty()) qdd[at(k)] = 0;
+  }
+}
+
+bool Kinematics::predict(double t, std::span<double> q, std::span<double> qd, std::span<double> qdd) const {
+  const bool known = predictor_.predict(t, q, qd, qdd);
+  restore_fixed(q, qd, qdd);
+  return known;
 }
 
 // The velocity at the present point makes the first prediction where none is known yet.

@@ -54,6 +54,7 @@ bool Kinematics::tables_reach(double t) const {
 bool Kinematics::add_node(MotionBridge& bridge, double t, double allowed) {
   if (!tables_reach(t)) return false;
   evaluator_.set_time(t);
+  restore_fixed(trial_, {}, {});
   newton_ = solver_.solve_position(trial_);
   if (!newton_.converged || newton_.first_correction > allowed) return false;
   // Once more: rounding in a node is enlarged on the bridge.
@@ -74,7 +75,7 @@ bool Kinematics::build_bridge(MotionBridge& bridge, double centre, double h, dou
     if (!tables_reach(t)) break;
     if (before.empty()) {
       trial_ = q_;
-      predictor_.predict(t, trial_, {}, {});
+      predict(t, trial_, {}, {});
     } else {
       before.evaluate(t, trial_, {}, {});
     }
@@ -384,6 +385,7 @@ Kinematics::Passage Kinematics::pass_singular(double next, double target, double
 Kinematics::Passage Kinematics::follow_bridge(const MotionBridge& bridge, double t) {
   evaluator_.set_time(t);
   bridge.evaluate(t, trial_, {}, {});
+  restore_fixed(trial_, {}, {});
   newton_ = solver_.solve_position(trial_);
   if (!newton_.converged || newton_.first_correction > 1e3 * bridge_tolerance) return Passage::none;
   q_.swap(trial_);
@@ -435,7 +437,9 @@ Report Kinematics::take_branch(const SingularPoint& point, int branch, double di
 }
 
 void Kinematics::place_on_bridge(double t) {
-  bridge_.evaluate(t, q_, qd_, qdd_);
+  bridge_.evaluate(t, trial_, qd_, qdd_);
+  restore_fixed(trial_, qd_, qdd_);
+  q_.swap(trial_);
   t_ = t;
   has_velocity_ = has_acceleration_ = on_bridge_ = true;
   evaluator_.set_time(t);
