@@ -157,6 +157,62 @@ TEST(Kinematics, AnEstimateWholeTurnsOffIsTurnedBack) {
   EXPECT_NEAR(kinematics.q()[2], 0.3, 1e-12);
 }
 
+// Wheels on fixed pins, geared or belted to a body that is turned back: none of them need change its pose.
+TEST(Kinematics, WholeTurnsGoThroughGearsAndBelts) {
+  for (int turns : {1, 2, -3}) {
+    for (double ratio : {1.0, 2.0, 1.5, 0.75}) {
+      auto model = std::make_shared<Model>();
+      const auto wheel = [&](const char* name, Vec2<double> place, double angle) {
+        const int body = model->add_body(name, {.mass = 1, .inertia = 1, .position = place, .angle = angle});
+        model->add("", Revolute<>{place, {0, 0}}, ground, body);
+        return body;
+      };
+      const double r = 0.1;
+      const int first = wheel("first", {0, 0}, 0.3), second = wheel("second", {r * (1 + ratio), 0}, -0.7);
+      const int third = wheel("third", {0, 1}, 1.1), fourth = wheel("fourth", {1, 1}, 0.2);
+      model->add("gear", Gear<>{{}, {}, r, ratio * r, false, 0}, first, second);
+      model->add("belt", Belt<>{{}, {}, r, ratio * r, false, 0}, second, third);
+      model->add("crossed belt", Belt<>{{}, {}, r, r, true, 0}, third, fourth);
+      model->add_driver("drive", AbsoluteAngle<>{}, first, ground, ramp(0.3 + turns * 2 * std::numbers::pi, 1));
+      Kinematics kinematics(model);
+      const AssemblyOutcome outcome = kinematics.assemble();
+      ASSERT_TRUE(outcome.ok()) << outcome.message;
+      for (int body : {first, second, third, fourth}) {
+        const auto place =
+            static_cast<std::size_t>(3 * kinematics.plan().plan_body[static_cast<std::size_t>(body)] + 2);
+        const double given = model->bodies[static_cast<std::size_t>(body)].angle;
+        EXPECT_NEAR(wrapped(kinematics.q()[place] - given), 0, 1e-12)
+            << body << " turns " << turns << " ratio " << ratio;
+      }
+      EXPECT_NEAR(kinematics.q()[2], 0.3 + turns * 2 * std::numbers::pi, 1e-12);
+    }
+  }
+}
+
+// A cam whose arc ends: the contact leaves it, and from there on the row says nothing.
+TEST(Kinematics, AContactThatLeavesItsCurveIsReported) {
+  std::vector<Vec2<double>> quarter;
+  for (int k = 0; k <= 8; ++k) {
+    quarter.push_back({std::cos(std::numbers::pi * k / 16), std::sin(std::numbers::pi * k / 16)});
+  }
+  auto model = std::make_shared<Model>();
+  const int cam = model->add_body("cam", {.angle = 0.5}), follower = model->add_body("follower", {.position = {0, 1}});
+  model->add("O", Revolute<>{}, ground, cam);
+  model->add_driver("drive", AbsoluteAngle<>{}, cam, ground, ramp(0.5, -1));
+  model->add("guide", AbsoluteX<>{}, follower, ground, 0.0);
+  model->add("upright", AbsoluteAngle<>{}, follower, ground, 0.0);
+  model->add("lift", CamFlat<>{.axis_j = {-1, 0}, .curve = Curve<double>::spline(quarter, SplineEnd::natural)}, cam,
+             follower);
+  Kinematics kinematics(model);
+  RowFunction none([](const Snapshot&) { return true; });
+  const AnalysisReport report = kinematics.run(TimeGrid::range(0, 1, 0.05), {}, none);
+  EXPECT_EQ(report.status, Status::singular);
+  EXPECT_NE(report.message.find("\"lift\""), std::string::npos) << report.message;
+  EXPECT_NE(report.message.find("no curvature where it should touch"), std::string::npos) << report.message;
+  EXPECT_LT(kinematics.time(), 0.6);
+  EXPECT_GT(kinematics.time(), 0.4);
+}
+
 // Flat at crank angles 0 and pi: the parallelogram and the antiparallelogram meet there, and the motion stays what it
 // was.
 TEST(Kinematics, AParallelogramStaysOneThroughItsFlatPositions) {

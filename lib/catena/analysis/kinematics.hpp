@@ -77,6 +77,7 @@ class Kinematics {
   double largest_rate() const;
   Report stuck(double t);
   Report check_redundant_rows();
+  Report check_elements() const;
   void scatter_applied_forces();
   Report solve_multipliers();
 
@@ -117,7 +118,8 @@ class Kinematics {
   std::vector<double> largest_margins_;
   std::vector<double> predicted_qd_, predicted_qdd_;  // rates at `predicted_`, of the sizes that are needed
   std::optional<double> predicted_;
-  std::vector<int> fixed_;  // coordinates that are no unknowns: of immobile bodies, angles of particles
+  std::vector<int> fixed_;    // coordinates that are no unknowns: of immobile bodies, angles of particles
+  std::vector<int> watched_;  // elements whose rows may mean nothing somewhere
   std::vector<std::string> redundant_;
   double chosen_rcond_ = 0;  // of the rows in use, where they were chosen
   NewtonOutcome newton_;
