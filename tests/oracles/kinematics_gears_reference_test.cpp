@@ -9,6 +9,41 @@ namespace {
 using nlohmann::json;
 constexpr double pi = std::numbers::pi;
 
+// The planetary set with the speeds of the sun and of one other member given.
+TextRun planetary(double sun, const std::string& member, double speed) {
+  json scene = data_scene("planetary_gear");
+  scene["parameters"]["sun_speed"] = sun;
+  scene["parameters"]["ring_speed"] = speed;
+  scene["drivers"][1]["i"] = member;
+  const TextRun run = run_text(scene.dump());
+  EXPECT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  return run;
+}
+
+TEST(KinematicReference, PlanetaryGear) {
+  const json values = reference_values("planetary_gear_willis");
+  Comparison comparison;
+  // Many turns: the speeds at the last row, 20 s on, and the mean speeds up to it.
+  const auto add = [&](const TextRun& run, const std::string& column, double speed) {
+    comparison.add("speed", velocity_error, run.last(column + ".omega", 1), speed);
+    return run.last(column + ".omega", 1);
+  };
+  const json& fixed_ring = values.at("ring_fixed_ws_100");
+  const TextRun ring = planetary(100, "ring", 0);
+  const double carrier = add(ring, "carrier", fixed_ring.at("omega_carrier"));
+  comparison.add("ratio", velocity_error, 100 / carrier, fixed_ring.at("ratio_ws_over_wc"));
+  add(ring, "planet1", fixed_ring.at("omega_planet"));
+  comparison.add("angle", position_error, ring.last("planet1.angle", 1) / 20, fixed_ring.at("omega_planet"));
+  add(planetary(0, "ring", 30), "carrier", values.at("sun_fixed_wr_30").at("omega_carrier"));
+  const TextRun fixed_carrier = planetary(10, "carrier", 0);
+  add(fixed_carrier, "ring", values.at("carrier_fixed_ws_10").at("omega_ring"));
+  add(fixed_carrier, "planet1", values.at("carrier_fixed_ws_10").at("omega_planet"));
+  const TextRun free = planetary(12, "carrier", -5);
+  add(free, "ring", values.at("free_ws_12_wc_-5").at("omega_ring"));
+  add(free, "planet1", values.at("free_ws_12_wc_-5").at("omega_planet"));
+  comparison.expect();
+}
+
 TEST(KinematicReference, RackAndPinion) {
   const json values = reference_values("rack_pinion_kinematics");
   json scene = data_scene("rolling_pinion");

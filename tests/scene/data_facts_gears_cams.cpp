@@ -14,6 +14,7 @@ SceneFacts gear_and_cam_facts() {
       {"planetary_gear.json",
        [](const TextRun& run) {
          expect_mobility(run, 2);
+         EXPECT_TRUE(run.analysis(kinematic).report.warnings.empty());
          // Of three planets one would do: each further one repeats an equation.
          EXPECT_EQ(run.analysis(0).report.redundant.size(), 2u);
          // Willis, ring at rest: carrier = sun 20/(20 + 70), after 318 turns of the sun.
