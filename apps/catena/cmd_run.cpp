@@ -105,7 +105,8 @@ void add_common_options(CLI::App& command, Parsed& parsed) {
   command.add_flag("--json", run.json, "print results as JSON, every digit");
   command
       .add_option("-o,--output", run.directory, "also write one CSV file an analysis and report.json to this folder")
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->check([](const std::string& folder) { return folder.empty() ? "the folder has no name" : ""; });
   command.add_flag("--stats", run.stats, "print what was computed how often");
   command.add_flag("-q,--quiet", run.quiet, "print no table, report or progress");
   command.add_flag("-v,--verbose", run.verbose, "print all rows and columns, and the logs of solvers");

@@ -28,6 +28,7 @@ TEST(Usage, MistakesAreExitCodeTwoAndSayWhatWasMeant) {
       {{"run", scene, "second.json"}, "unexpected argument \"second.json\""},
       {{"--frobnicate"}, "unknown option \"--frobnicate\""},
       {{"run", scene, "-o"}, "--output"},
+      {{"run", scene, "-o", ""}, "the folder has no name"},
       {{"run", scene, "--set", "speed"}, "wants NAME=VALUE, not \"speed\""},
       {{"run", scene, "--max-elements", "-3"}, "--max-elements"},
       {{"run", scene, "--max-elements", "many"}, "wants a whole number above 0, not many"},

@@ -216,6 +216,7 @@ const BadScene analyses[] = {
     {"UntilZero", analysis(R"({"type": "kinematics", "until": §0})"), "must be above zero; it is 0"},
     {"UntilUnit", analysis(R"({"type": "kinematics", "until": §"3 m"})"), "must be a time"},
     {"EveryNegative", analysis(R"({"type": "kinematics", "until": 1, "every": §-1})"), "must be above zero"},
+    {"EveryZero", analysis(R"({"type": "kinematics", "until": 1, "every": §0})"), "must be above zero"},
     {"EveryAlone", analysis(R"({"type": "kinematics", "every": §1})"), "needs \"until\""},
     {"AtAndUntil", analysis(R"({"type": "kinematics", "until": 1, "at": §1})"), "together"},
     {"TooManyRows", analysis(R"({"type": "kinematics", "until": 1, "every": §1e-12})"), "rows"},

@@ -146,7 +146,8 @@ void AnalysisReader::check_times(const std::vector<JsonValue>& values, const Ana
     error(at, fmt::format("{} may not have \"at\" together with \"until\" or \"every\"", task.type()));
   } else if (every && !until) {
     error(every, fmt::format("\"every\" of {} needs \"until\" too", task.type()));
-  } else if (until && every && task.number("until", 0) / task.number("every", 1) > most_rows) {
+  } else if (until && every && task.number("every", 1) > 0 &&
+             task.number("until", 0) / task.number("every", 1) > most_rows) {
     error(every, fmt::format("{} would give more than {} rows", task.type(), most_rows));
   }
 }

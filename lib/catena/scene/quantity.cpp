@@ -132,7 +132,7 @@ class QuantityParser {
       const char* const from = text_.data() + at_ + 1;
       const auto [end, code] = std::from_chars(from, text_.data() + text_.size(), exponent);
       if (code != std::errc() || exponent < -9 || exponent > 9 || exponent == 0) {
-        fail(at_ + 1, "expected an integer exponent between -9 and 9, not 0");
+        fail(at_ + 1, "an exponent is a whole number from 1 to 9 or from -9 to -1");
         return false;
       }
       at_ = static_cast<std::size_t>(end - text_.data());
