@@ -1,8 +1,11 @@
 // Small oscillations by dense algebra, from the elements' second derivatives one by one: what the sparse search must
-// find. K and M are projected on an orthonormal basis of the null space of Phi_q; multipliers by least squares.
+// find. K and M are projected on an orthonormal basis of the null space of Phi_q; multipliers by least squares. The
+// algebra is in 80 bits, so that its rounding, relative to the largest of eigenvalues over many orders, does not count.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
 #include <vector>
 
 #include "catena/assembly/evaluate.hpp"
@@ -11,8 +14,9 @@ namespace catena::testing {
 
 /// All omega^2, ascending, about q (plan order) at the evaluator's time.
 inline std::vector<double> dense_omega2(Evaluator& evaluator, std::span<const double> q) {
-  using Eigen::MatrixXd;
-  using Eigen::VectorXd;
+  using Wide = long double;
+  using Matrix = Eigen::Matrix<Wide, Eigen::Dynamic, Eigen::Dynamic>;
+  using Vector = Eigen::Matrix<Wide, Eigen::Dynamic, 1>;
   const Plan& plan = evaluator.plan();
   const Eigen::Index n = plan.columns, m = plan.rows;
   const auto at = [](auto k) { return static_cast<std::size_t>(k); };
@@ -20,13 +24,13 @@ inline std::vector<double> dense_omega2(Evaluator& evaluator, std::span<const do
   std::vector<double> values(at(plan.trash_slot()) + 1), rest(at(plan.coordinates()), 0.0), loads(rest.size());
   evaluator.start_jacobian(values);
   evaluator.jacobian(values);
-  MatrixXd jacobian = MatrixXd::Zero(m, n);
+  Matrix jacobian = Matrix::Zero(m, n);
   for (int c = 0; c < plan.columns; ++c) {
     for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k)
       jacobian(plan.jacobian.row_index[at(k)], c) = values[at(k)];
   }
   evaluator.applied_forces(rest, loads);
-  VectorXd force(n), mass(n);
+  Vector force(n), mass(n);
   for (Eigen::Index c = 0; c < n; ++c) {
     const int coordinate = plan.coordinate[at(c)];
     force[c] = loads[at(coordinate)];
@@ -34,14 +38,18 @@ inline std::vector<double> dense_omega2(Evaluator& evaluator, std::span<const do
     mass[c] = coordinate % 3 == 2 ? body.inertia : body.mass;
   }
   std::vector<double> lambda(at(m), 0.0);
-  MatrixXd basis = MatrixXd::Identity(n, n);
+  Matrix basis = Matrix::Identity(n, n);
   if (m > 0) {
-    const Eigen::JacobiSVD<MatrixXd> transposed(jacobian.transpose(), Eigen::ComputeThinU | Eigen::ComputeThinV);
-    Eigen::Map<VectorXd>(lambda.data(), m) = transposed.solve(force);
-    const Eigen::JacobiSVD<MatrixXd> svd(jacobian, Eigen::ComputeFullV);
-    basis = svd.matrixV().rightCols(n - svd.rank());
+    // Phi_q is given to double precision: what it has of rank below that is rounding.
+    Eigen::ColPivHouseholderQR<Matrix> transposed(n, m);
+    transposed.setThreshold(1e-12L);
+    transposed.compute(jacobian.transpose());
+    const Vector multipliers = transposed.solve(force);
+    std::copy(multipliers.data(), multipliers.data() + m, lambda.begin());
+    const Matrix all = transposed.householderQ() * Matrix::Identity(n, n);
+    basis = all.rightCols(n - transposed.rank());
   }
-  MatrixXd stiffness = MatrixXd::Zero(n, n);
+  Matrix stiffness = Matrix::Zero(n, n);
   const auto add = [&](int body_i, int body_j, const auto& element) {
     const int body[2] = {body_i, body_j};
     for (int r = 0; r < 6; ++r) {
@@ -55,8 +63,8 @@ inline std::vector<double> dense_omega2(Evaluator& evaluator, std::span<const do
   };
   evaluator.visit_stiffness({}, add);
   evaluator.visit_constraint_hessians(lambda, add);
-  const MatrixXd k = basis.transpose() * stiffness * basis, mm = basis.transpose() * mass.asDiagonal() * basis;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver((k + k.transpose()) / 2, mm, Eigen::EigenvaluesOnly);
+  const Matrix k = basis.transpose() * stiffness * basis, mm = basis.transpose() * mass.asDiagonal() * basis;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solver((k + k.transpose()) / 2, mm, Eigen::EigenvaluesOnly);
   return {solver.eigenvalues().data(), solver.eigenvalues().data() + solver.eigenvalues().size()};
 }
 

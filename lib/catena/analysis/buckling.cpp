@@ -7,9 +7,9 @@
 
 #include "catena/analysis/modes_operator.hpp"
 #include "catena/analysis/process_time.hpp"
+#include "catena/analysis/state_conversion.hpp"
 #include "catena/analysis/static_balance.hpp"
 #include "catena/analysis/static_holding.hpp"
-#include "catena/analysis/static_state.hpp"
 
 namespace catena {
 namespace {

@@ -9,6 +9,7 @@
 #include "catena/analysis/initial_velocities.hpp"
 #include "catena/analysis/mobility.hpp"
 #include "catena/analysis/process_time.hpp"
+#include "catena/analysis/state_conversion.hpp"
 #include "catena/base/flush_denormals.hpp"
 #include "catena/columns/energy.hpp"
 
@@ -46,30 +47,11 @@ Dynamics::Dynamics(std::shared_ptr<const Model> model, const PlanOptions& plan_o
 void Dynamics::start_from(const SystemState& state) {
   t_ = state.t;
   prepared_ = false;
-  given_qd_.clear();
-  if (state.q.empty()) return;
-  if (!state.qd.empty()) given_qd_.assign(q_.size(), 0.0);
-  for (int p = 0; p < plan_->moving; ++p) {
-    const std::size_t source = 3 * at(plan_->model_body[at(p)]), target = 3 * at(p);
-    q_[target] = state.q[source] - evaluator_.origin(p).x;
-    q_[target + 1] = state.q[source + 1] - evaluator_.origin(p).y;
-    q_[target + 2] = state.q[source + 2];
-    if (!state.qd.empty()) std::copy_n(&state.qd[source], 3, &given_qd_[target]);
-  }
+  take_over_places(evaluator_, state, q_);
+  given_qd_ = velocities_of(evaluator_, state);
 }
 
-SystemState Dynamics::state() const {
-  SystemState state{t_, std::vector<double>(3 * model_->bodies.size()), std::vector<double>(3 * model_->bodies.size())};
-  for (int p = 0; p < plan_->bodies; ++p) {
-    const std::size_t target = 3 * at(plan_->model_body[at(p)]), source = 3 * at(p);
-    const Vec2<double> origin = evaluator_.origin(p);
-    state.q[target] = q_[source] + origin.x;
-    state.q[target + 1] = q_[source + 1] + origin.y;
-    state.q[target + 2] = q_[source + 2];
-    std::copy_n(&qd_[source], 3, &state.qd[target]);
-  }
-  return state;
-}
+SystemState Dynamics::state() const { return state_of(evaluator_, t_, q_, qd_); }
 
 Report Dynamics::prepare(std::vector<std::string>& warnings) {
   Report masses = equations_.use_masses();

@@ -7,6 +7,7 @@
 
 #include "catena/analysis/minimum_norm.hpp"
 #include "catena/analysis/process_time.hpp"
+#include "catena/analysis/state_conversion.hpp"
 #include "catena/analysis/static_holding.hpp"
 
 namespace catena {
@@ -34,13 +35,7 @@ Equilibrium::Equilibrium(std::shared_ptr<const Model> model, const PlanOptions& 
 void Equilibrium::start_from(const SystemState& state) {
   t_ = state.t;
   solved_ = false;
-  if (state.q.empty()) return;
-  for (int p = 0; p < plan_->moving; ++p) {
-    const std::size_t source = 3 * at(plan_->model_body[at(p)]), target = 3 * at(p);
-    q_[target] = state.q[source] - evaluator_.origin(p).x;
-    q_[target + 1] = state.q[source + 1] - evaluator_.origin(p).y;
-    q_[target + 2] = state.q[source + 2];
-  }
+  take_over_places(evaluator_, state, q_);
 }
 
 void Equilibrium::set_model(std::shared_ptr<const Model> model) {
@@ -56,17 +51,7 @@ void Equilibrium::set_model(std::shared_ptr<const Model> model) {
   }
 }
 
-SystemState Equilibrium::state() const {
-  SystemState state{t_, std::vector<double>(3 * model_->bodies.size()), {}};
-  for (int p = 0; p < plan_->bodies; ++p) {
-    const std::size_t target = 3 * at(plan_->model_body[at(p)]), source = 3 * at(p);
-    const Vec2<double> origin = evaluator_.origin(p);
-    state.q[target] = q_[source] + origin.x;
-    state.q[target + 1] = q_[source + 1] + origin.y;
-    state.q[target + 2] = q_[source + 2];
-  }
-  return state;
-}
+SystemState Equilibrium::state() const { return state_of(evaluator_, t_, q_); }
 
 // Where rows depend on each other many multipliers balance the loads: the least of them are given, and that is said.
 void Equilibrium::choose_least_reactions(Report& report) {

@@ -7,6 +7,7 @@
 
 #include "catena/analysis/mobility.hpp"
 #include "catena/analysis/process_time.hpp"
+#include "catena/analysis/state_conversion.hpp"
 #include "catena/analysis/whole_turns.hpp"
 #include "catena/columns/energy.hpp"
 #include "catena/linalg/rank_revealing.hpp"
@@ -67,27 +68,11 @@ void Kinematics::start_from(const SystemState& state) {
   choice_.reset();
   margins_.clear();
   has_velocity_ = has_acceleration_ = false;
-  if (state.q.empty()) return;
-  for (int p = 0; p < plan_->moving; ++p) {
-    const std::size_t source = 3 * at(plan_->model_body[at(p)]), target = 3 * at(p);
-    q_[target] = state.q[source] - evaluator_.origin(p).x;
-    q_[target + 1] = state.q[source + 1] - evaluator_.origin(p).y;
-    q_[target + 2] = state.q[source + 2];
-  }
+  take_over_places(evaluator_, state, q_);
 }
 
 SystemState Kinematics::state() const {
-  SystemState state{t_, std::vector<double>(3 * model_->bodies.size()), {}};
-  if (has_velocity_) state.qd.resize(state.q.size());
-  for (int p = 0; p < plan_->bodies; ++p) {
-    const std::size_t target = 3 * at(plan_->model_body[at(p)]), source = 3 * at(p);
-    const Vec2<double> origin = evaluator_.origin(p);
-    state.q[target] = q_[source] + origin.x;
-    state.q[target + 1] = q_[source + 1] + origin.y;
-    state.q[target + 2] = q_[source + 2];
-    if (has_velocity_) std::copy_n(&qd_[source], 3, &state.qd[target]);
-  }
-  return state;
+  return state_of(evaluator_, t_, q_, has_velocity_ ? std::span<const double>(qd_) : std::span<const double>{});
 }
 
 AssemblyOutcome Kinematics::assemble() {

@@ -10,8 +10,8 @@
 #include "catena/analysis/mass_matrix.hpp"
 #include "catena/analysis/modes_search.hpp"
 #include "catena/analysis/process_time.hpp"
+#include "catena/analysis/state_conversion.hpp"
 #include "catena/analysis/static_balance.hpp"
-#include "catena/analysis/static_state.hpp"
 
 namespace catena {
 namespace {

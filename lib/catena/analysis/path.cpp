@@ -7,10 +7,10 @@
 
 #include "catena/analysis/certificate.hpp"
 #include "catena/analysis/process_time.hpp"
+#include "catena/analysis/state_conversion.hpp"
 #include "catena/analysis/static_balance.hpp"
 #include "catena/analysis/static_holding.hpp"
 #include "catena/analysis/static_search.hpp"
-#include "catena/analysis/static_state.hpp"
 
 namespace catena {
 namespace {

@@ -100,11 +100,9 @@ class Factorization {
   /// Smallest pivot of a block. KLU only: throws std::logic_error while UMFPACK is in use or nothing is factored.
   PivotInfo smallest_pivot(int block) const;
 
-  /// Sign of the determinant of every diagonal block, up to a factor that never changes between factorizations: a sign
-  /// that differs tells that a block went through a singular matrix in between. Empty while UMFPACK is in use. No
-  /// allocation after the first call.
-  std::span<const signed char> determinant_signs();
-  /// How far every diagonal block is from a singular matrix, as above.
+  /// How far every diagonal block is from a singular matrix, with the sign of its determinant up to a factor that never
+  /// changes between factorizations: a sign that differs tells that a block went through a singular matrix in between.
+  /// Empty while UMFPACK is in use. No allocation after the first call.
   std::span<const BlockMargin> block_margins();
 
   /// A failed result in a sentence for a report.
@@ -144,7 +142,6 @@ class Factorization {
   std::vector<int> unmatched_columns_;
   bool parities_are_current_ = false;
   std::vector<signed char> parities_;  // of the pivoting within every block
-  std::vector<signed char> signs_;
   std::vector<BlockMargin> margins_;
   std::vector<int> place_of_row_, cycle_;
   std::vector<double> right_hand_side_;  // these three for solve_checked only, allocated at its first call

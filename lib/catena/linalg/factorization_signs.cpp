@@ -32,22 +32,6 @@ void Factorization::find_parities() {
   parities_are_current_ = true;
 }
 
-std::span<const signed char> Factorization::determinant_signs() {
-  require_factors();
-  if (umfpack_in_use_ || blocks_ == 0) return {};
-  if (!parities_are_current_) find_parities();
-  signs_.resize(static_cast<std::size_t>(blocks_));
-  const std::span<const double> pivots = klu_.pivots();
-  for (std::size_t block = 0; block < signs_.size(); ++block) {
-    int negative = 0;
-    for (int k = block_start_[block]; k < block_start_[block + 1]; ++k) {
-      negative += pivots[static_cast<std::size_t>(k)] < 0;
-    }
-    signs_[block] = static_cast<signed char>(negative % 2 ? -parities_[block] : parities_[block]);
-  }
-  return signs_;
-}
-
 std::span<const BlockMargin> Factorization::block_margins() {
   require_factors();
   if (umfpack_in_use_ || blocks_ == 0) return {};

@@ -1,0 +1,25 @@
+// Between states as analyses hand them on (absolute, model order) and configurations as they compute with them (plan
+// order, positions relative to the bodies' origins; see assembly/plan.hpp). Lengths m, angles rad.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "catena/analysis/system_state.hpp"
+#include "catena/assembly/evaluate.hpp"
+
+namespace catena {
+
+/// Puts the moving bodies where the state has them; q (size coordinates()) keeps the rest, all if the state has none.
+void take_over_places(const Evaluator& evaluator, const SystemState& state, std::span<double> q);
+
+/// The state's configuration, size coordinates(); that of the model where the state has none.
+std::vector<double> configuration_of(const Evaluator& evaluator, const SystemState& state);
+
+/// The state's velocities, size coordinates(); zero for bodies that do not move, empty where the state has none.
+std::vector<double> velocities_of(const Evaluator& evaluator, const SystemState& state);
+
+/// The state of a configuration; `qd` empty: without velocities.
+SystemState state_of(const Evaluator& evaluator, double t, std::span<const double> q, std::span<const double> qd = {});
+
+}  // namespace catena
