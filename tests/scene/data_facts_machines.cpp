@@ -25,6 +25,29 @@ double knuckle_angle(double rack, int side) {
   return direction(pivot, arm) - std::atan2(straight.y, straight.x);
 }
 
+// The generalized momentum of the redundant arm in the motion that nothing drives: links turn by n, their common end
+// stays.
+double idle_momentum(const TextRun& run, std::size_t row) {
+  const auto value = [&](const std::string& column) { return run.column(column, kinematic)[row]; };
+  const double length[] = {std::hypot(0.3, 0.52), 0.6, std::hypot(0.2, 0.42)}, mass[] = {4, 3, 1};
+  const char* name[] = {"upper", "fore", "hand"};
+  double angle[3];
+  for (int k = 0; k < 3; ++k) angle[k] = value(name[k] + std::string(".angle"));
+  double sum = 0;
+  Point joint{0, 0};  // its velocity
+  for (int k = 0; k < 3; ++k) {
+    const double n = std::sin(angle[(k + 2) % 3] - angle[(k + 1) % 3]) / length[k];
+    const Point half = n * length[k] / 2 * Point{-std::sin(angle[k]), std::cos(angle[k])};
+    const Point centre = joint + half;
+    const std::string body = name[k];
+    sum += mass[k] * (centre.x * value(body + ".vx") + centre.y * value(body + ".vy") +
+                      length[k] * length[k] / 12 * n * value(body + ".omega"));
+    joint = centre + half;
+  }
+  EXPECT_NEAR(norm(joint), 0, 1e-12);
+  return sum;
+}
+
 }  // namespace
 
 SceneFacts machine_facts() {
@@ -89,6 +112,21 @@ SceneFacts machine_facts() {
          ASSERT_EQ(left.size(), 73u);
          for (std::size_t k = 0; k + 36 < left.size(); ++k) EXPECT_NEAR(left[k], -right[k + 36], 1e-12);
          EXPECT_GT(left[18], 1.1 * right[18]);
+       }},
+      {"redundant_arm.json",
+       [](const TextRun& run) {
+         EXPECT_EQ(run.analysis(0).report.dof, 1);
+         EXPECT_EQ(run.analysis(0).report.mobility, 3);
+         expect_column(
+             run, "hand.to.x", "t", [](double t) { return 0.9 + 0.2 * std::cos(2 * pi * t); }, 1e-12);
+         expect_column(
+             run, "hand.to.y", "t", [](double t) { return 0.1 + 0.2 * std::sin(2 * pi * t); }, 1e-12);
+         // Least kinetic energy: the momenta do no work in the one motion that leaves the hand's end where it is.
+         for (std::size_t row = 0; row < 200; row += 7) EXPECT_NEAR(idle_momentum(run, row), 0, 1e-12);
+         // The arm is not where it began after a round: C. Klein, C. Huang (1983).
+         const std::vector<double> angle = run.column("upper.angle", kinematic);
+         ASSERT_EQ(angle.size(), 201u);
+         EXPECT_GT(std::abs(angle[50] - angle[0]), 1e-3);
        }},
   };
 }

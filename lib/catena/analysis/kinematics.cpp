@@ -41,19 +41,13 @@ Kinematics::Kinematics(std::shared_ptr<const Model> model, const PlanOptions& pl
       evaluator_(plan_, *model_),
       options_(options),
       solver_(evaluator_),
+      watched_(evaluator_),
       predictor_(at(plan_->coordinates())) {
   solver_.tolerance = options.tolerance;
   q_ = evaluator_.given_configuration();
   qd_.assign(q_.size(), 0.0);
   qdd_.assign(q_.size(), 0.0);
   nothing_.assign(q_.size(), 0.0);
-  for_each_list(model_->constraints, [&](const auto& list, int) {
-    if constexpr (HasTrouble<ElementOf<decltype(list)>>) {
-      for (const auto& entry : list) {
-        if (plan_->element_row[at(entry.id)] >= 0) watched_.push_back(entry.id);
-      }
-    }
-  });
   for (int k = 0; k < plan_->coordinates(); ++k) {
     if (k >= 3 * plan_->bodies || plan_->column[at(k)] < 0) fixed_.push_back(k);
   }
@@ -202,20 +196,6 @@ Report Kinematics::start_singular(const SingularPoint& point, double direction) 
   return report;
 }
 
-// Some rows mean nothing at some configurations: contacts that leave their curve, gears whose centres coincide.
-Report Kinematics::check_elements() const {
-  Report report;
-  for (int element : watched_) {
-    const char* trouble = evaluator_.trouble(element);
-    if (!trouble) continue;
-    report.status = Status::singular;
-    report.message = fmt::format("{} \"{}\" determines nothing at t = {:.12g} s: {}", model_->element_type(element),
-                                 model_->element_name(element), t_, trouble);
-    return report;
-  }
-  return report;
-}
-
 // Rows that are not solved with must follow from the others at every instant, not only where they were found redundant.
 Report Kinematics::check_redundant_rows() {
   Report report;
@@ -342,7 +322,7 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& needs, RowObse
       if (newton_.converged) q_.swap(trial_);
     }
     if (const Report consistent = check_redundant_rows(); !consistent.ok()) return end(consistent);
-    if (const Report sound = check_elements(); !sound.ok()) return end(sound);
+    if (const Report sound = watched_.check(); !sound.ok()) return end(sound);
     if (const Report solved = solve_rates(needs); !solved.ok()) return end(solved);
     predictor_.push(t_, q_, has_velocity_ ? std::span<const double>(qd_) : std::span<const double>{},
                     has_acceleration_ ? std::span<const double>(qdd_) : std::span<const double>{});

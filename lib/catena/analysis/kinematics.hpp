@@ -20,6 +20,7 @@
 #include "catena/analysis/row_observer.hpp"
 #include "catena/analysis/system_state.hpp"
 #include "catena/analysis/time_grid.hpp"
+#include "catena/analysis/watched_elements.hpp"
 
 namespace catena {
 
@@ -77,7 +78,6 @@ class Kinematics {
   double largest_rate() const;
   Report stuck(double t);
   Report check_redundant_rows();
-  Report check_elements() const;
   void scatter_applied_forces();
   Report solve_multipliers();
 
@@ -105,6 +105,7 @@ class Kinematics {
   Evaluator evaluator_;
   KinematicsOptions options_;
   DrivenSolver solver_;
+  WatchedElements watched_;
   Predictor predictor_;
   std::optional<AssemblyOutcome> assembled_;
   bool prepared_ = false, has_velocity_ = false, has_acceleration_ = false;
@@ -118,8 +119,7 @@ class Kinematics {
   std::vector<double> largest_margins_;
   std::vector<double> predicted_qd_, predicted_qdd_;  // rates at `predicted_`, of the sizes that are needed
   std::optional<double> predicted_;
-  std::vector<int> fixed_;    // coordinates that are no unknowns: of immobile bodies, angles of particles
-  std::vector<int> watched_;  // elements whose rows may mean nothing somewhere
+  std::vector<int> fixed_;  // coordinates that are no unknowns: of immobile bodies, angles of particles
   std::vector<std::string> redundant_;
   double chosen_rcond_ = 0;  // of the rows in use, where they were chosen
   NewtonOutcome newton_;

@@ -1,5 +1,6 @@
 // kinematics and inverse_dynamics: a driven mechanism over time.
 #include "catena/analysis/kinematics.hpp"
+#include "catena/analysis/minimum_norm_motion.hpp"
 #include "catena/scene/analysis_run.hpp"
 
 namespace catena {
@@ -21,9 +22,16 @@ void add_singular_points(AnalysisResult& result, const std::vector<SingularPoint
   result.fields.push_back({"singular", std::move(records)});
 }
 
+/// Whether constraints and drivers determine the motion where the analysis starts.
+bool is_driven(const AnalysisContext& context) {
+  Kinematics analysis(context.model);
+  analysis.start_from(context.state);
+  RowFunction nothing([](const Snapshot&) { return true; });
+  return analysis.run(TimeGrid::instant(context.state.t), {}, nothing).status != Status::under_driven;
+}
+
 void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics) {
   const AnalysisTask& task = context.task;
-  if (task.word("free") != 0) return refuse(result, "\"free\": \"minimum_norm\" is not built yet; add drivers instead");
   const std::optional<TimeGrid> grid = time_grid(context, result.report);
   if (!grid) return;
   const std::vector<std::string> names = task.output_names();
@@ -33,13 +41,19 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
     options.branch = static_cast<int>(task.number("branch", 0));
     if (options.branch < 1) return refuse(result, "branches are numbered from 1");
   }
+  const ColumnSources sources{
+      .analysis = task.type(), .timed = true, .velocity = true, .acceleration = true, .multipliers = inverse_dynamics};
+  if (task.word("free") != 0 && !is_driven(context)) {
+    if (inverse_dynamics) {
+      return refuse(result,
+                    "\"minimum_norm\" is for kinematics alone: motions that nothing drives would need forces of their "
+                    "own; add drivers");
+    }
+    MinimumNormMotion analysis(context.model, plan_options(*context.model, names));
+    return run_over_time(context, result, analysis, *grid, names, sources);
+  }
   Kinematics analysis(context.model, plan_options(*context.model, names), options);
-  run_over_time(context, result, analysis, *grid, names,
-                {.analysis = task.type(),
-                 .timed = true,
-                 .velocity = true,
-                 .acceleration = true,
-                 .multipliers = inverse_dynamics});
+  run_over_time(context, result, analysis, *grid, names, sources);
   add_singular_points(result, analysis.singular_points());
 }
 
