@@ -112,15 +112,17 @@ void error_table(const char* title, const std::shared_ptr<Model>& model, const T
                  double least = 1e-13) {
   AnalysisReport report;
   const std::vector<double> exact = coordinates(model, grid, {.tolerance = least}, &report);
-  fmt::print("\n{}\n{:>6} {:>10} {:>12} {:>8} {:>10}\n", title, "method", "tolerance",
-             angles ? "error, rad" : "error, m", "steps", "ms");
-  for (const IntegrationMethod method : {IntegrationMethod::rk8, IntegrationMethod::rk5}) {
+  fmt::print("\n{}\n{:>12} {:>10} {:>12} {:>8} {:>10} {:>10}\n", title, "method", "tolerance",
+             angles ? "error, rad" : "error, m", "steps", "evaluated", "ms");
+  // All but the first, which chooses one of the others.
+  for (std::size_t m = 1; m < integration_methods.size(); ++m) {
+    const auto method = static_cast<IntegrationMethod>(m);
     for (double tolerance : {1e-3, 1e-5, 1e-7, 1e-9, 1e-11}) {
       if (tolerance < 10 * least) continue;
       const DynamicsOptions options{.method = method, .tolerance = tolerance};
       const std::vector<double> rows = coordinates(model, grid, options, &report);
       if (!report.ok() || rows.size() != exact.size()) {
-        fmt::print("{:>6} {:10.0e} {}\n", method == IntegrationMethod::rk8 ? "rk8" : "rk5", tolerance, report.message);
+        fmt::print("{:>12} {:10.0e} {}\n", to_string(method), tolerance, report.message);
         continue;
       }
       double error = 0;
@@ -128,8 +130,8 @@ void error_table(const char* title, const std::shared_ptr<Model>& model, const T
         if ((c % 3 == 2) == angles) error = std::max(error, std::abs(rows[c] - exact[c]));
       }
       const double time = least_time(3, 1, [&] { coordinates(model, grid, options, &report); });
-      fmt::print("{:>6} {:10.0e} {:12.2e} {:8} {:10.3f}\n", method == IntegrationMethod::rk8 ? "rk8" : "rk5", tolerance,
-                 error, report.counters.steps, 1e3 * time);
+      fmt::print("{:>12} {:10.0e} {:12.2e} {:8} {:10} {:10.3f}\n", to_string(method), tolerance, error,
+                 report.counters.steps, report.counters.forces, 1e3 * time);
     }
   }
 }

@@ -70,10 +70,9 @@ TEST_P(DynamicsCalibration, Squeezer) { check(squeezer(), 0.03, GetParam(), 1e-1
 TEST_P(DynamicsCalibration, FourBarsThroughTheFlatPosition) { check(four_bars(2), 5, GetParam(), 1e-8); }
 
 std::string method_name(const ::testing::TestParamInfo<IntegrationMethod>& info) {
-  return info.param == IntegrationMethod::rk8 ? "rk8" : "rk5";
+  return std::string(to_string(info.param));
 }
-INSTANTIATE_TEST_SUITE_P(Methods, DynamicsCalibration,
-                         ::testing::Values(IntegrationMethod::rk8, IntegrationMethod::rk5), method_name);
+INSTANTIATE_TEST_SUITE_P(Methods, DynamicsCalibration, ::testing::ValuesIn(testing::all_methods), method_name);
 
 // A thousand swings: errors of energy would turn into errors of phase.
 TEST(DynamicsLongRun, PendulumOverTwoThousandSeconds) {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "catena/analysis/initial_velocities.hpp"
+#include "catena/analysis/integrators/runge_kutta.hpp"
 #include "catena/analysis/mobility.hpp"
 #include "catena/analysis/process_time.hpp"
 #include "catena/analysis/state_conversion.hpp"
@@ -20,6 +21,7 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // What a step may contribute to the error that was asked for; see the calibration in tests/oracles.
 constexpr double step_part = 0.002;
+constexpr double drift_part = 0.2;  // of it, where constraints drift: that adds to errors
 constexpr double least_tolerance = 1e-14;
 // Rows whose smallest pivot ratio is above this need no rank analysis.
 constexpr double independent_ratio = 1e-8;
@@ -127,7 +129,8 @@ Report Dynamics::give_row(double t, const Needs& needs, RowObserver& observer) {
   return observer.observe(*state) ? Report{} : cancelled(t);
 }
 
-// The mechanism at an instant of the last step, on its constraints; nothing where that cannot be had.
+// The mechanism at an instant of the last step, on its constraints if the method keeps to them; nothing where that
+// cannot be had.
 std::optional<Snapshot> Dynamics::state_at(double t, const Needs& needs) {
   const std::size_t n = q_.size();
   const std::span<double> y(y_row_);
@@ -136,9 +139,14 @@ std::optional<Snapshot> Dynamics::state_at(double t, const Needs& needs) {
     row_residual_ = integrator_->position_residual();
   } else {
     integrator_->interpolate(t, y);
-    if (!equations_.factorize(t, Side::after, y.first(n))) return {};
-    row_residual_ = equations_.project_position(y.first(n), 4);
-    equations_.project_velocity(y.subspan(n, n), 0);
+    if (integrator_->meets_constraints()) {
+      if (!equations_.factorize(t, Side::after, y.first(n))) return {};
+      row_residual_ = equations_.project_position(y.first(n), 4);
+      equations_.project_velocity(y.subspan(n, n), 0);
+    } else {
+      evaluator_.set_time(t);
+      row_residual_ = equations_.position_residual(y.first(n));
+    }
   }
   if (needs.acceleration || needs.multipliers) {
     const std::span<double> slope(slope_row_);
@@ -215,6 +223,20 @@ Report Dynamics::stuck() const {
   return report;
 }
 
+std::unique_ptr<Integrator> Dynamics::make_integrator(const Motion& motion, double horizon) const {
+  const IntegrationMethod method = options_.method;
+  RungeKuttaOptions options{.tolerance = step_part * options_.tolerance,
+                            .fixed_step = options_.step,
+                            .horizon = horizon,
+                            .may_lower_order = method != IntegrationMethod::rk8};
+  if (method == IntegrationMethod::rk5) options.order = 5;
+  if (method == IntegrationMethod::baumgarte) {
+    options.keeping = ConstraintKeeping::stabilisation;
+    options.tolerance *= drift_part;
+  }
+  return std::make_unique<RungeKutta>(motion, options);
+}
+
 AnalysisReport Dynamics::run(const TimeGrid& grid, const Needs& asked, RowObserver& observer) {
   const ProcessTimer timer;
   const FlushDenormals flush;
@@ -228,9 +250,8 @@ AnalysisReport Dynamics::run(const TimeGrid& grid, const Needs& asked, RowObserv
   const auto end = [&](const Report& outcome) {
     report.status = outcome.status;
     report.message = outcome.message;
-    if (integrator_ && integrator_->low_order_steps() > 0) {
-      report.warnings.push_back(fmt::format("order 5 took over for {} steps where order 8 did not get ahead",
-                                            integrator_->low_order_steps()));
+    if (integrator_) {
+      for (std::string& remark : integrator_->remarks()) report.warnings.push_back(std::move(remark));
     }
     if (!ambiguity_.empty()) report.warnings.push_back(ambiguity_);
     report.counters = evaluator_.counters;
@@ -246,11 +267,7 @@ AnalysisReport Dynamics::run(const TimeGrid& grid, const Needs& asked, RowObserv
   if (needs.work) account_.emplace(evaluator_);
   driver_work_.assign(account_ ? model_->elements.size() : 0, 0.0);
   const Motion motion(equations_, account_ ? &*account_ : nullptr);
-  integrator_.emplace(motion, RungeKuttaOptions{.order = options_.method == IntegrationMethod::rk5 ? 5 : 8,
-                                                .tolerance = step_part * options_.tolerance,
-                                                .fixed_step = options_.step,
-                                                .horizon = grid.last(),
-                                                .may_lower_order = options_.method != IntegrationMethod::rk8});
+  integrator_ = make_integrator(motion, grid.last());
   y_row_.assign(motion.size(), 0.0);
   slope_row_.assign(motion.size(), 0.0);
   std::copy(q_.begin(), q_.end(), y_row_.begin());

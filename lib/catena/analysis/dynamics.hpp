@@ -15,7 +15,7 @@
 #include "catena/analysis/energy_account.hpp"
 #include "catena/analysis/equations_of_motion.hpp"
 #include "catena/analysis/event_watch.hpp"
-#include "catena/analysis/integrators/runge_kutta.hpp"
+#include "catena/analysis/integrators/integrator.hpp"
 #include "catena/analysis/minimum_norm.hpp"
 #include "catena/analysis/row_observer.hpp"
 #include "catena/analysis/system_state.hpp"
@@ -29,6 +29,8 @@ struct WorkSoFar {
   double initial_energy = 0, energy = 0;
   std::vector<double> by_driver;  ///< by number of the element; empty: nothing was summed up
 };
+
+class Motion;
 
 class Dynamics {
  public:
@@ -60,6 +62,7 @@ class Dynamics {
 
  private:
   Report prepare(std::vector<std::string>& warnings);
+  std::unique_ptr<Integrator> make_integrator(const Motion& motion, double horizon) const;
   Report check_functions(double last) const;
   Report move(double limit, const TimeGrid& grid, std::int64_t& row, const Needs& needs, RowObserver& observer);
   Report give_row(double t, const Needs& needs, RowObserver& observer);
@@ -77,7 +80,7 @@ class Dynamics {
   Evaluator evaluator_;
   EquationsOfMotion equations_;
   std::optional<EnergyAccount> account_;
-  std::optional<RungeKutta> integrator_;
+  std::unique_ptr<Integrator> integrator_;
   std::optional<MinimumNorm> minimum_norm_;  // made when multipliers turn out not to be unique
   std::string ambiguity_;                    // whose reactions are not, when that was found
   bool prepared_ = false;

@@ -1,13 +1,24 @@
 // How a motion is to be integrated.
 #pragma once
 
+#include <array>
+#include <string_view>
+
 namespace catena {
 
 enum class IntegrationMethod {
   automatic,  ///< chooses, and says what it chose
   rk8,        ///< Dormand-Prince, order 8, with projection
   rk5,        ///< Dormand-Prince, order 5, with projection
+  baumgarte,  ///< Dormand-Prince, order 8, with stabilised constraints in place of projection
 };
+
+/// The names used in scenes and results, in the order of the enumeration.
+inline constexpr std::array<std::string_view, 4> integration_methods{"auto", "rk8", "rk5", "baumgarte"};
+
+inline std::string_view to_string(IntegrationMethod method) {
+  return integration_methods[static_cast<std::size_t>(method)];
+}
 
 struct DynamicsOptions {
   IntegrationMethod method = IntegrationMethod::automatic;

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "catena/analysis/scaling.hpp"
-
 namespace catena {
 namespace {
 
@@ -19,7 +17,10 @@ constexpr double undetermined = 1e-6;
 }  // namespace
 
 EquationsOfMotion::EquationsOfMotion(Evaluator& evaluator)
-    : evaluator_(evaluator), plan_(evaluator.plan()), system_(evaluator.shared_plan()) {
+    : evaluator_(evaluator),
+      plan_(evaluator.plan()),
+      scaling_(plan_, evaluator.length_scale()),
+      system_(evaluator.shared_plan()) {
   const std::size_t rows = at(plan_.rows), coordinates = at(plan_.coordinates());
   jacobian_.resize(at(plan_.trash_slot()) + 1);
   evaluator_.start_jacobian(jacobian_);
@@ -70,23 +71,38 @@ bool EquationsOfMotion::factorize(double t, Side side, std::span<const double> q
 }
 
 bool EquationsOfMotion::accelerations(double t, Side side, std::span<const double> q, std::span<const double> qd,
-                                      std::span<double> qdd) {
+                                      std::span<double> qdd, double stabilisation) {
   if (!evaluate_jacobian(t, side, q)) return false;
   evaluator_.applied_forces(qd, loads_);
   if (plan_.rows > 0) evaluator_.gamma(qd, gamma_);
+  if (plan_.rows > 0 && stabilisation > 0) stabilise(qd, stabilisation);
   system_.solve_motion(loads_, gamma_, qdd, lambda_, evaluator_.counters);
   double sum = 0;
   for (std::size_t c = 0; c < change_.size(); ++c) sum += qdd[c];
   return std::isfinite(sum);
 }
 
+void EquationsOfMotion::stabilise(std::span<const double> qd, double rate) {
+  evaluator_.nu(residual_);
+  for (double& value : residual_) value = -value;
+  system_.multiply_add(qd, residual_);
+  for (std::size_t k = 0; k < gamma_.size(); ++k) gamma_[k] -= 2 * rate * residual_[k];
+  evaluator_.phi(residual_);
+  for (std::size_t k = 0; k < gamma_.size(); ++k) gamma_[k] -= rate * rate * residual_[k];
+}
+
+double EquationsOfMotion::position_residual(std::span<const double> q) {
+  if (plan_.rows == 0) return 0;
+  evaluator_.set_configuration(q);
+  evaluator_.phi(residual_);
+  return scaling_.row_norm(residual_);
+}
+
 double EquationsOfMotion::project_position(std::span<double> q, int max_iterations) {
   if (plan_.rows == 0) return 0;
   double before = std::numeric_limits<double>::infinity();
   for (int k = 0;; ++k) {
-    evaluator_.set_configuration(q);
-    evaluator_.phi(residual_);
-    const double size = row_norm(plan_, residual_, evaluator_.length_scale());
+    const double size = position_residual(q);
     // Stop at rounding, when nothing is gained any more, or when the residual is NaN.
     if (!(size > position_rounding) || k == max_iterations || size > 0.5 * before) return size;
     before = size;
@@ -104,7 +120,7 @@ double EquationsOfMotion::project_velocity(std::span<double> qd, double rate) {
     evaluator_.nu(residual_);
     for (double& value : residual_) value = -value;
     system_.multiply_add(qd, residual_);
-    const double size = row_norm(plan_, residual_, evaluator_.length_scale());
+    const double size = scaling_.row_norm(residual_);
     if (k == 0) first = size;
     if (!(size > position_rounding * rate) || k == 2) break;
     system_.least_change(residual_, change_, multipliers_, evaluator_.counters);

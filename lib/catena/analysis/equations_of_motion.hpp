@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "catena/analysis/mass_matrix.hpp"
+#include "catena/analysis/scaling.hpp"
 #include "catena/assembly/evaluate.hpp"
 #include "catena/assembly/schur_system.hpp"
 #include "catena/base/status.hpp"
@@ -28,8 +29,10 @@ class EquationsOfMotion {
   /// Whether accelerations at q and the evaluator's time are unique in spite of massless coordinates.
   Report check_massless(std::span<const double> q);
 
-  /// qdd at (t, q, qd); `side` where a function of time jumps at t. False: something is not finite.
-  bool accelerations(double t, Side side, std::span<const double> q, std::span<const double> qd, std::span<double> qdd);
+  /// qdd at (t, q, qd); `side` where a function of time jumps at t. False: something is not finite. `stabilisation`, s
+  /// in 1/s: constraints that are not met return to zero by Phi'' + 2 s Phi' + s^2 Phi = 0.
+  bool accelerations(double t, Side side, std::span<const double> q, std::span<const double> qd, std::span<double> qdd,
+                     double stabilisation = 0);
   /// Multipliers of the solver's rows at the last accelerations().
   std::span<const double> multipliers() const { return lambda_; }
 
@@ -40,6 +43,8 @@ class EquationsOfMotion {
 
   /// Factors at (t, q) without computing accelerations.
   bool factorize(double t, Side side, std::span<const double> q);
+  /// Largest residual of positions, in length scales or rad.
+  double position_residual(std::span<const double> q);
   /// Moves q onto the constraints. Returns the largest residual left, in length scales or rad.
   double project_position(std::span<double> q, int max_iterations);
   /// Changes qd to what the constraints allow at the configuration that project_position() left, until the residual is
@@ -61,10 +66,12 @@ class EquationsOfMotion {
 
  private:
   bool evaluate_jacobian(double t, Side side, std::span<const double> q);
+  void stabilise(std::span<const double> qd, double rate);
 
   Evaluator& evaluator_;
   const Plan& plan_;
   MassMatrix masses_;
+  Scaling scaling_;
   SchurSystem system_;
   bool factored_ = false;
   std::vector<double> jacobian_, gamma_, lambda_, loads_, residual_, multipliers_, change_;

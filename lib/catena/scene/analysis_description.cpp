@@ -1,5 +1,7 @@
 #include "catena/scene/analysis_description.hpp"
 
+#include "catena/analysis/dynamics_options.hpp"
+
 namespace catena {
 namespace {
 
@@ -60,7 +62,13 @@ std::vector<AnalysisDescription> describe_all() {
             every,
             at_times,
             tolerance,
-            {"method", KeyKind::word, "integrator", {}, {}, {"auto", "rk8", "rk5"}},
+            {"method",
+             KeyKind::word,
+             "integrator: rk8 and rk5 project onto the constraints after every step, baumgarte stabilises them and "
+             "shows how they drift",
+             {},
+             {},
+             {integration_methods.begin(), integration_methods.end()}},
             {"step", KeyKind::number, "fixed step, s (default: chosen by the tolerance)", UnitKind::time},
             {"events", KeyKind::events, "what to watch for, and what to do then"}}),
       make("equilibrium", "A configuration at rest, and whether it is stable.",

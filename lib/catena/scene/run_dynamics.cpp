@@ -37,11 +37,8 @@ void run_dynamics(AnalysisContext& context, AnalysisResult& result) {
   const AnalysisTask& task = context.task;
   const std::optional<TimeGrid> grid = time_grid(context, result.report);
   if (!grid) return;
-  // In the order of the key's words.
-  constexpr IntegrationMethod methods[] = {IntegrationMethod::automatic, IntegrationMethod::rk8,
-                                           IntegrationMethod::rk5};
   DynamicsOptions options;
-  options.method = methods[task.word("method")];
+  options.method = static_cast<IntegrationMethod>(task.word("method"));  // in the order of the key's words
   options.tolerance = task.number("tolerance", options.tolerance);
   options.step = task.number("step", options.step);
   const std::vector<std::string> names = task.output_names();

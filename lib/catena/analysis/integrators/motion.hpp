@@ -31,12 +31,12 @@ class Motion {
   std::span<const double> qd(std::span<const double> y) const { return y.subspan(coordinates_, coordinates_); }
   std::span<const double> work(std::span<const double> y) const { return y.subspan(2 * coordinates_); }
 
-  /// y' at (t, y) into k; false where it does not exist.
-  bool derivative(double t, Side side, std::span<const double> y, std::span<double> k) const {
+  /// y' at (t, y) into k; false where it does not exist. `stabilisation`: see EquationsOfMotion::accelerations.
+  bool derivative(double t, Side side, std::span<const double> y, std::span<double> k, double stabilisation = 0) const {
     const std::span<const double> v = qd(y);
     std::copy(v.begin(), v.end(), k.begin());
     const std::span<double> a = k.subspan(coordinates_, coordinates_);
-    if (!equations_.accelerations(t, side, q(y), v, a)) return false;
+    if (!equations_.accelerations(t, side, q(y), v, a, stabilisation)) return false;
     if (account_) account_->powers(v, equations_.multipliers(), k.subspan(2 * coordinates_));
     return true;
   }
