@@ -14,6 +14,8 @@ constexpr double largest_turn = 1;
 constexpr double near_change = 0.3;
 constexpr double polishing_change = 1e-4;
 constexpr int polishing_steps = 4;
+// What a correction may leave of the residual, what rounding leaves of forces, and how many times that is rounding too.
+constexpr double polishing_part = 1e-2, rounding_part = 1e-15, few_roundings = 10;
 // Below this nothing more is to be had.
 constexpr double last_change = 1e-10;
 // Multipliers beyond this many times the applied forces belong to rows that depend on each other and contradict.
@@ -33,17 +35,20 @@ bool first_multipliers(StaticSystem& system, std::span<double> lambda) {
 void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda, StaticOutcome& outcome) {
   std::vector<double> residual(at(system.plan().columns)), gap(at(system.plan().rows)), q_before, lambda_before;
   const double force = system.force_size(), rounding = system.rounding_change();
+  // In units of what rounding may leave.
   const auto size = [&] {
     system.residual(lambda, residual);
     outcome.residual = system.force_norm(residual);
-    return std::max(outcome.residual / force, system.phi_norm());
+    return std::max(outcome.residual / (rounding_part * force), system.phi_norm() / rounding);
   };
   double now = size(), before = outcome.step;
   for (int k = 0; k < polishing_steps; ++k) {
     // The factors are those of the point before: the multipliers' change is solved for, not they themselves.
     for (double& r : residual) r = -r;
     for (std::size_t r = 0; r < gap.size(); ++r) gap[r] = -system.phi()[r];
-    const StaticStep step = system.solve(residual, gap, 1e-15);
+    const double tolerance =
+        polishing_part * std::max(outcome.residual / force, system.phi_norm() * system.length() / system.extent());
+    const StaticStep step = system.solve(residual, gap, tolerance);
     const double change = system.change_norm(step.change);
     q_before.assign(q.begin(), q.end());
     lambda_before.assign(lambda.begin(), lambda.end());
@@ -51,8 +56,10 @@ void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda,
     for (std::size_t r = 0; r < lambda.size(); ++r) lambda[r] += step.lambda[r];
     system.move_to(q);
     const double then = size();
-    // Where residuals are rounding already, a step that is much shorter than the one before still improves soft modes.
-    if (!(then < now || (then <= 4 * now && change < 0.1 * before))) {
+    // Residuals of rounding's size say nothing any more. What the Newton step left in soft modes the first correction
+    // removes; further ones are worth it while they shrink.
+    const bool rounded = then <= std::max(4 * now, few_roundings);
+    if (!(then < now || (rounded && (k == 0 || change < 0.1 * before)))) {
       std::copy(q_before.begin(), q_before.end(), q.begin());
       std::copy(lambda_before.begin(), lambda_before.end(), lambda.begin());
       system.move_to(q);
@@ -61,7 +68,7 @@ void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda,
     }
     outcome.step = before = change;
     now = then;
-    if (change <= rounding && now <= 1e-15) return;
+    if (change <= rounding && now <= 1) return;
   }
 }
 
@@ -104,7 +111,7 @@ StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::sp
       outcome.end = StaticEnd::singular;
       return outcome;
     }
-    const StaticStep step = system.newton_step(outcome.step < 1e-2 ? 1e-13 : 1e-9);
+    const StaticStep step = system.newton_step(1e-9);
     const double change = system.change_norm(step.change);
     if (!(change < largest_change)) {
       outcome.end = StaticEnd::diverged;

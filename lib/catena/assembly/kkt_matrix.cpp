@@ -98,9 +98,7 @@ void KktMatrix::choose_augmentation(double least_stiffness) {
 
 FactorResult KktMatrix::factorize(double least_stiffness, Counters& counters) {
   if (!analyzed_) {
-    const FactorResult result = factorization_.analyze(
-        structure_.pattern, {.ordering = SymmetricOrdering::given, .permutation = structure_.order}, counters);
-    if (!result.ok()) return result;
+    factorization_.analyze(structure_.pattern, structure_.order, structure_.node_start, counters);
     analyzed_ = true;
   }
   // A quadratic energy under linear constraints has one matrix for ever: its factors are kept, with the augmentation
@@ -122,7 +120,7 @@ FactorResult KktMatrix::factorize(double least_stiffness, Counters& counters) {
     }
     factored_[at(structure_.diagonal[at(structure_.columns + r)])] = -eps_[at(r)];
   }
-  return factorization_.factorize(factored_, 0, counters);
+  return factorization_.factorize(factored_, counters);
 }
 
 void KktMatrix::multiply(std::span<const double> x, std::span<double> y) const {
@@ -205,7 +203,7 @@ void KktMatrix::solve_unrefined(std::span<double> x, Counters& counters) {
   factorization_.solve(x, counters);
 }
 
-int KktMatrix::negative_modes() const { return factorization_.inertia().negative - structure_.rows; }
+int KktMatrix::negative_modes() const { return factorization_.negative_pivots() - structure_.rows; }
 
 std::vector<int> KktMatrix::dependent_rows() const {
   std::vector<int> dependent;

@@ -17,7 +17,8 @@
 
 #include "catena/assembly/evaluate.hpp"
 #include "catena/assembly/kkt_structure.hpp"
-#include "catena/linalg/symmetric_factorization.hpp"
+#include "catena/linalg/frontal_factorization.hpp"
+#include "catena/linalg/refinement.hpp"
 
 namespace catena {
 
@@ -87,7 +88,7 @@ class KktMatrix {
   std::vector<double> last_;      // the true matrix of the last factorization, if factors are to be kept
   std::vector<double> rho_, eps_, stiffness_;
   std::vector<double> right_hand_side_, residual_work_, correction_work_;
-  SymmetricFactorization factorization_;
+  FrontalFactorization factorization_;
   bool analyzed_ = false, keep_equal_factors_ = false;
   double largest_stiffness_ = 0;
 };

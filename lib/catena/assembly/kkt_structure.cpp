@@ -1,6 +1,7 @@
 #include "catena/assembly/kkt_structure.hpp"
 
 #include <algorithm>
+#include <new>
 
 #include "catena/linalg/symmetric_factorization.hpp"
 
@@ -59,7 +60,7 @@ void list_rows(const SparsePattern& jacobian, KktStructure& s) {
 }
 
 // Bodies by minimum degree, every constraint row after the last of its bodies.
-std::vector<int> elimination_order(const Plan& plan, const KktStructure& s, const std::vector<int>& column_of_entry) {
+void choose_order(const Plan& plan, const std::vector<int>& column_of_entry, KktStructure& s) {
   const auto body_of_column = [&](int column) { return plan.coordinate[at(column)] / 3; };
   std::vector<MatrixEntry> pairs;
   for (int b = 0; b < plan.moving; ++b) pairs.push_back({b, b});
@@ -76,7 +77,7 @@ std::vector<int> elimination_order(const Plan& plan, const KktStructure& s, cons
   }
   SymmetricFactorization bodies;
   Counters unused;
-  if (!bodies.analyze(build_pattern(plan.moving, plan.moving, pairs).pattern, {}, unused).ok()) return {};
+  if (!bodies.analyze(build_pattern(plan.moving, plan.moving, pairs).pattern, {}, unused).ok()) throw std::bad_alloc();
 
   // Columns of body b: first_column[b] ... first_column[b + 1] - 1, ascending with b.
   std::vector<int> first_column(at(plan.moving) + 1, s.columns), place(at(plan.moving)), last_place(at(s.rows), -1);
@@ -95,16 +96,21 @@ std::vector<int> elimination_order(const Plan& plan, const KktStructure& s, cons
   std::vector<int> next(start.begin(), start.end() - 1);
   for (int r = 0; r < s.rows; ++r) sorted[at(next[at(last_place[at(r)] + 1)]++)] = r;
 
-  std::vector<int> order;
-  order.reserve(at(s.columns + s.rows));
+  s.order.reserve(at(s.columns + s.rows));
   for (int k = -1; k < plan.moving; ++k) {
     if (k >= 0) {
-      const int body = bodies.order()[at(k)];
-      for (int c = first_column[at(body)]; c < s.columns && body_of_column(c) == body; ++c) order.push_back(c);
+      const int body = bodies.order()[at(k)], first = first_column[at(body)];
+      if (first < s.columns && body_of_column(first) == body) s.node_start.push_back(static_cast<int>(s.order.size()));
+      for (int c = first; c < s.columns && body_of_column(c) == body; ++c) s.order.push_back(c);
     }
-    for (int n = start[at(k + 1)]; n < start[at(k + 2)]; ++n) order.push_back(s.columns + sorted[at(n)]);
+    for (int n = start[at(k + 1)], element = -1; n < start[at(k + 2)]; ++n) {
+      const int row = sorted[at(n)], own = plan.row_element[at(row)];
+      if (own != element || k < 0) s.node_start.push_back(static_cast<int>(s.order.size()));
+      element = own;
+      s.order.push_back(s.columns + row);
+    }
   }
-  return order;
+  s.node_start.push_back(static_cast<int>(s.order.size()));
 }
 
 }  // namespace
@@ -148,7 +154,7 @@ KktStructure::KktStructure(const Plan& plan) : columns(plan.columns), rows(plan.
     std::vector<int>& slots = constraint ? hessian.constraints[at(type)] : hessian.forces[at(type)];
     slots.push_back(row >= 0 ? slotted.slot[next++] : row == turning_only ? turning(column) : trash());
   });
-  order = elimination_order(plan, *this, column_of_entry);
+  choose_order(plan, column_of_entry, *this);
 }
 
 }  // namespace catena

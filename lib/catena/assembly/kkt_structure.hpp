@@ -19,11 +19,13 @@
 namespace catena {
 
 struct KktStructure {
-  int columns = 0;            ///< coordinates
-  int rows = 0;               ///< constraint rows
-  int moving = 0;             ///< bodies solved for
-  SparsePattern pattern;      ///< lower triangle, size columns + rows
-  std::vector<int> order;     ///< elimination order: place k holds row order[k] of the matrix
+  int columns = 0;         ///< coordinates
+  int rows = 0;            ///< constraint rows
+  int moving = 0;          ///< bodies solved for
+  SparsePattern pattern;   ///< lower triangle, size columns + rows
+  std::vector<int> order;  ///< elimination order: place k holds row order[k] of the matrix
+  /// Rows of a body, or of an element: node k holds places node_start[k] ... node_start[k + 1] - 1 of the order.
+  std::vector<int> node_start;
   std::vector<int> diagonal;  ///< slot of every diagonal entry
   HessianSlots hessian;
   std::vector<int> jacobian;  ///< slot of every entry of Phi_q

@@ -1,0 +1,155 @@
+// The dense work of a multifrontal factorization on one front: a trapezoid `panel` of `height` rows and c columns,
+// stored by columns, and the update of the rows below. For frontal_factorization.cpp.
+//
+// Columns are worked off in groups of at most `group`, whose number the compiler knows: what they do to another column
+// is one pass over it.
+#pragma once
+
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+
+namespace catena::detail {
+
+constexpr int group = 6;
+
+/// Columns first ... first + c - 1 of the panel, to which all earlier ones have been applied: L below, D on the
+/// diagonal, also in `pivots` (of all columns). Result: c, or how many columns came before a pivot that is zero.
+template <int c>
+int factor_group(double* panel, int height, int first, double* pivots) {
+  for (int k = 0; k < c; ++k) {
+    double* const own = panel + static_cast<std::size_t>(first + k) * static_cast<std::size_t>(height);
+    const double d = own[first + k];
+    pivots[first + k] = d;
+    // Not finite ones are looked for afterwards, all together.
+    if (d == 0) return k;
+    const double inverse = 1 / d;
+    for (int j = k + 1; j < c; ++j) {
+      double* const other = panel + static_cast<std::size_t>(first + j) * static_cast<std::size_t>(height);
+      const double factor = own[first + j] * inverse;
+      for (int i = first + j; i < height; ++i) other[i] -= factor * own[i];
+    }
+    for (int i = first + k + 1; i < height; ++i) own[i] *= inverse;
+  }
+  return c;
+}
+
+/// Column -= L D L^T of one group: `l` points at the group's first column, in the row of the column's own diagonal;
+/// `count` rows from there on.
+template <int c>
+void update_column(const double* l, int height, const double* pivots, double* column, int count) {
+  double weight[c];
+  for (int k = 0; k < c; ++k) weight[k] = l[static_cast<std::size_t>(k) * static_cast<std::size_t>(height)] * pivots[k];
+  for (int i = 0; i < count; ++i) {
+    double sum = column[i];
+    for (int k = 0; k < c; ++k)
+      sum -= l[static_cast<std::size_t>(k) * static_cast<std::size_t>(height) + i] * weight[k];
+    column[i] = sum;
+  }
+}
+
+/// A group of c columns of the panel, and what it does to the columns after it and to the update.
+template <int c>
+int eliminate_group(double* panel, int height, int columns, int first, double* pivots, double* update) {
+  const int done = factor_group<c>(panel, height, first, pivots);
+  if (done < c) return done;
+  const double* const l = panel + static_cast<std::size_t>(first) * static_cast<std::size_t>(height);
+  for (int j = first + c; j < columns; ++j) {
+    update_column<c>(l + j, height, pivots + first,
+                     panel + static_cast<std::size_t>(j) * static_cast<std::size_t>(height) + j, height - j);
+  }
+  const int below = height - columns;
+  for (int j = 0; j < below; ++j) {
+    update_column<c>(l + columns + j, height, pivots + first,
+                     update + static_cast<std::size_t>(j) * static_cast<std::size_t>(below) + j, below - j);
+  }
+  return c;
+}
+
+/// Calls f with min(count, group) as a constant.
+template <class F>
+auto with_group(int count, F&& f) {
+  switch (count) {
+    case 1:
+      return f(std::integral_constant<int, 1>());
+    case 2:
+      return f(std::integral_constant<int, 2>());
+    case 3:
+      return f(std::integral_constant<int, 3>());
+    case 4:
+      return f(std::integral_constant<int, 4>());
+    case 5:
+      return f(std::integral_constant<int, 5>());
+    default:
+      return f(std::integral_constant<int, group>());
+  }
+}
+
+/// The whole front. Result: `columns`, or how many came before a pivot that is zero.
+inline int eliminate_front(double* panel, int height, int columns, double* pivots, double* update) {
+  int first = 0;
+  while (first < columns) {
+    const auto [done, all] = with_group(columns - first, [&](auto c) {
+      return std::pair(eliminate_group<c>(panel, height, columns, first, pivots, update), int{c});
+    });
+    first += done;
+    if (done < all) break;
+  }
+  return first;
+}
+
+/// y := L^-1 y of the front's columns, `own` being their part of y; what follows from it for the rows below, whose
+/// places in y are `rows`, is taken off there.
+inline void solve_forward(const double* panel, int height, int columns, const int* rows, double* own, double* y) {
+  for (int first = 0; first < columns;) {
+    first += with_group(columns - first, [&](auto c) {
+      const double* const l = panel + static_cast<std::size_t>(first) * static_cast<std::size_t>(height);
+      double value[c];
+      for (int k = 0; k < c; ++k) {
+        value[k] = own[first + k];
+        for (int j = 0; j < k; ++j)
+          value[k] -= l[static_cast<std::size_t>(j) * static_cast<std::size_t>(height) + first + k] * value[j];
+        own[first + k] = value[k];
+      }
+      const auto sum_of_row = [&](int i) {
+        double sum = 0;
+        for (int k = 0; k < c; ++k)
+          sum += l[static_cast<std::size_t>(k) * static_cast<std::size_t>(height) + i] * value[k];
+        return sum;
+      };
+      for (int i = first + c; i < columns; ++i) own[i] -= sum_of_row(i);
+      for (int i = columns; i < height; ++i) y[rows[i - columns]] -= sum_of_row(i);
+      return int{c};
+    });
+  }
+}
+
+/// y := L^-T D^-1 y of the front's columns, the rows below being solved already.
+inline void solve_backward(const double* panel, int height, int columns, const int* rows, double* own,
+                           const double* y) {
+  for (int left = columns; left > 0;) {
+    left -= with_group(left, [&](auto c) {
+      const int first = left - c;
+      const double* const l = panel + static_cast<std::size_t>(first) * static_cast<std::size_t>(height);
+      const auto entry = [&](int i, int k) {
+        return l[static_cast<std::size_t>(k) * static_cast<std::size_t>(height) + i];
+      };
+      double value[c];
+      for (int k = 0; k < c; ++k) value[k] = own[first + k] / entry(first + k, k);
+      for (int i = columns; i < height; ++i) {
+        const double known = y[rows[i - columns]];
+        for (int k = 0; k < c; ++k) value[k] -= entry(i, k) * known;
+      }
+      for (int i = left; i < columns; ++i) {
+        for (int k = 0; k < c; ++k) value[k] -= entry(i, k) * own[i];
+      }
+      for (int k = c - 1; k >= 0; --k) {
+        for (int j = k + 1; j < c; ++j) value[k] -= entry(first + j, k) * value[j];
+        own[first + k] = value[k];
+      }
+      return int{c};
+    });
+  }
+}
+
+}  // namespace catena::detail

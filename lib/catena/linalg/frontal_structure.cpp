@@ -1,0 +1,206 @@
+#include "catena/linalg/frontal_structure.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "catena/linalg/elimination_tree.hpp"
+
+namespace catena {
+namespace {
+
+[[noreturn]] void refuse(const char* what) { throw std::invalid_argument(std::string("FrontalStructure: ") + what); }
+
+// Node of every row, after checks that every row occurs once.
+std::vector<int> nodes_of_rows(const SparsePattern& lower, std::span<const int> order,
+                               std::span<const int> node_start) {
+  if (lower.rows != lower.columns) refuse("the matrix must be square");
+  const int n = lower.columns;
+  if (static_cast<int>(order.size()) != n) refuse("not a permutation of the rows");
+  if (node_start.empty() || node_start.front() != 0 || node_start.back() != n) refuse("nodes must hold all rows");
+  std::vector<int> node(order.size(), -1);
+  for (std::size_t k = 0; k + 1 < node_start.size(); ++k) {
+    if (node_start[k + 1] <= node_start[k]) refuse("empty node");
+    for (int p = node_start[k]; p < node_start[k + 1]; ++p) {
+      const int row = order[p];
+      if (row < 0 || row >= n || node[row] >= 0) refuse("not a permutation of the rows");
+      node[row] = static_cast<int>(k);
+    }
+  }
+  return node;
+}
+
+// Neighbours of every node that are eliminated later. The entries of a pair of nodes may stand in the columns of both.
+SparsePattern later_neighbours(const SparsePattern& lower, std::span<const int> order, std::span<const int> node_start,
+                               const std::vector<int>& node) {
+  const int nodes = static_cast<int>(node_start.size()) - 1;
+  std::vector<MatrixEntry> pairs;
+  std::vector<int> met(static_cast<std::size_t>(nodes), -1);
+  for (int k = 0; k < nodes; ++k) {
+    for (int p = node_start[k]; p < node_start[k + 1]; ++p) {
+      const int column = order[p];
+      for (int e = lower.column_start[column]; e < lower.column_start[column + 1]; ++e) {
+        if (lower.row_index[e] < column) refuse("entry above the diagonal");
+        const int other = node[lower.row_index[e]];
+        if (other == k || met[other] == k) continue;
+        met[other] = k;
+        pairs.push_back({std::max(k, other), std::min(k, other)});
+      }
+    }
+  }
+  return build_pattern(nodes, nodes, pairs).pattern;
+}
+
+}  // namespace
+
+FrontalStructure::FrontalStructure(const SparsePattern& lower, std::span<const int> given_order,
+                                   std::span<const int> node_start) {
+  const std::vector<int> node = nodes_of_rows(lower, given_order, node_start);
+  SparsePattern later = later_neighbours(lower, given_order, node_start, node);
+  const int nodes = later.columns;
+
+  std::vector<int> parent = elimination_tree(later), width(parent.size());
+  {
+    // Everything by the places of the postorder from here on.
+    const std::vector<int> old_node = postorder(parent);
+    std::vector<int> new_node(old_node.size()), old_parent = std::move(parent);
+    for (int k = 0; k < nodes; ++k) new_node[old_node[k]] = k;
+    parent.resize(old_parent.size());
+    SparsePattern renumbered{.rows = nodes, .columns = nodes, .column_start = {0}, .row_index = {}};
+    renumbered.column_start.reserve(later.column_start.size());
+    renumbered.row_index.reserve(later.row_index.size());
+    order.reserve(given_order.size());
+    for (int k = 0; k < nodes; ++k) {
+      const int old = old_node[k];
+      parent[k] = old_parent[old] < 0 ? -1 : new_node[old_parent[old]];
+      width[k] = node_start[old + 1] - node_start[old];
+      order.insert(order.end(), given_order.begin() + node_start[old], given_order.begin() + node_start[old + 1]);
+      for (int e = later.column_start[old]; e < later.column_start[old + 1]; ++e) {
+        renumbered.row_index.push_back(new_node[later.row_index[e]]);
+      }
+      renumbered.column_start.push_back(static_cast<int>(renumbered.row_index.size()));
+    }
+    later = std::move(renumbered);
+  }
+  place.resize(order.size());
+  for (int k = 0; k < size(); ++k) place[order[k]] = k;
+
+  const FactorStructure structure = factor_structure(later, parent);
+  later = {};
+  make_fronts(width, parent, structure.start, structure.row);
+  list_values(lower);
+}
+
+// A node joins its child's front where their columns of L have the same rows: then neither holds zeros.
+void FrontalStructure::make_fronts(const std::vector<int>& width, const std::vector<int>& parent,
+                                   const std::vector<std::size_t>& below_start, const std::vector<int>& below) {
+  const int nodes = static_cast<int>(width.size());
+  std::vector<int> first_place(width.size() + 1, 0), front_of_node(width.size()), last_node;
+  for (int k = 0; k < nodes; ++k) first_place[k + 1] = first_place[k] + width[k];
+  const auto rows_below = [&](int node) {
+    int count = 0;
+    for (std::size_t k = below_start[node]; k < below_start[node + 1]; ++k) count += width[below[k]];
+    return count;
+  };
+  for (int k = 0; k < nodes; ++k) {
+    const int height = rows_below(k);
+    const bool joins = k > 0 && parent[k - 1] == k && fronts.back().below == width[k] + height;
+    if (!joins) {
+      fronts.push_back({});
+      fronts.back().first = first_place[k];
+      last_node.push_back(k);
+    }
+    Front& front = fronts.back();
+    front.columns += width[k];
+    front.below = height;
+    last_node.back() = k;
+    front_of_node[k] = static_cast<int>(fronts.size()) - 1;
+  }
+
+  std::vector<int> parent_of_front(fronts.size(), -1);
+  for (std::size_t s = 0; s < fronts.size(); ++s) {
+    const int last = last_node[s];
+    if (parent[last] >= 0) parent_of_front[s] = front_of_node[parent[last]];
+    const Front& front = fronts[s];
+    updates.push_back({.rows = rows.size()});
+    panel_entries += static_cast<std::size_t>(front.height()) * static_cast<std::size_t>(front.columns);
+    for (std::size_t k = below_start[last]; k < below_start[last + 1]; ++k) {
+      for (int p = first_place[below[k]]; p < first_place[below[k] + 1]; ++p) rows.push_back(p);
+    }
+  }
+  // Rows below as rows of the parent's front: both lists ascend.
+  relative.reserve(rows.size());
+  for (std::size_t s = 0; s < fronts.size(); ++s) {
+    if (fronts[s].below == 0) continue;
+    const Front& above = fronts[parent_of_front[s]];
+    const int* const list = rows.data() + updates[parent_of_front[s]].rows;
+    int k = 0;
+    for (int r = 0; r < fronts[s].below; ++r) {
+      const int p = rows[updates[s].rows + r];
+      if (p < above.first + above.columns) {
+        relative.push_back(p - above.first);
+        continue;
+      }
+      while (list[k] != p) ++k;
+      relative.push_back(above.columns + k);
+    }
+  }
+  list_children(parent_of_front);
+
+  // The stack: a front's update takes the place of those of its children, of which the first lies lowest.
+  std::size_t top = 0;
+  for (std::size_t s = 0; s < fronts.size(); ++s) {
+    const std::size_t own = static_cast<std::size_t>(fronts[s].below) * static_cast<std::size_t>(fronts[s].below);
+    const bool has_children = child_start[s] < child_start[s + 1];
+    updates[s].formed = top;
+    updates[s].waiting = has_children ? updates[child[child_start[s]]].waiting : top;
+    stack_entries = std::max(stack_entries, top + own);
+    top = updates[s].waiting + own;
+  }
+  fronts.push_back({.first = size()});
+}
+
+void FrontalStructure::list_children(const std::vector<int>& parent_of_front) {
+  child_start.assign(fronts.size() + 1, 0);
+  for (int p : parent_of_front) child_start[p + 1] += p >= 0 ? 1 : 0;
+  for (std::size_t s = 0; s < fronts.size(); ++s) child_start[s + 1] += child_start[s];
+  child.resize(static_cast<std::size_t>(child_start.back()));
+  std::vector<int> next(child_start.begin(), child_start.end() - 1);
+  for (std::size_t s = 0; s < fronts.size(); ++s) {
+    if (parent_of_front[s] >= 0) child[next[parent_of_front[s]]++] = static_cast<int>(s);
+  }
+}
+
+// Every entry stands in the column of its earlier place.
+void FrontalStructure::list_values(const SparsePattern& lower) {
+  std::vector<int> front_of_place(order.size());
+  for (int s = 0; s < count(); ++s) {
+    for (int p = fronts[s].first; p < fronts[s + 1].first; ++p) front_of_place[p] = s;
+  }
+  std::vector<int> start(static_cast<std::size_t>(count()) + 1, 0);
+  const auto visit = [&](auto&& f) {
+    for (int j = 0; j < lower.columns; ++j) {
+      for (int e = lower.column_start[j]; e < lower.column_start[j + 1]; ++e) {
+        const auto [column, row] = std::minmax(place[j], place[lower.row_index[e]]);
+        f(e, front_of_place[column], row, column);
+      }
+    }
+  };
+  visit([&](int, int s, int, int) { ++start[s + 1]; });
+  for (int s = 0; s < count(); ++s) start[s + 1] += start[s];
+  for (std::size_t s = 0; s < fronts.size(); ++s) fronts[s].values = start[s];
+  source.resize(lower.row_index.size());
+  target.resize(source.size());
+  visit([&](int e, int s, int row, int column) {
+    const Front& front = fronts[s];
+    const int* const list = rows.data() + updates[s].rows;
+    const int local = row < front.first + front.columns
+                          ? row - front.first
+                          : front.columns + static_cast<int>(std::lower_bound(list, list + front.below, row) - list);
+    const int k = start[s]++;
+    source[k] = e;
+    target[k] = local + front.height() * (column - front.first);
+  });
+}
+
+}  // namespace catena
