@@ -7,6 +7,10 @@
 #include <numbers>
 
 #include "catena/analysis/dynamics.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/elements/forces/spring_damper.hpp"
+#include "catena/elements/forces/torque.hpp"
+#include "catena/model/model_add.hpp"
 #include "mechanisms.hpp"
 #include "timing.hpp"
 

@@ -4,6 +4,11 @@
 #include <cmath>
 #include <string>
 
+#include "catena/elements/constraints/absolute_angle.hpp"
+#include "catena/elements/constraints/absolute_y.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/model/model_add.hpp"
+
 namespace bench {
 
 using namespace catena;

@@ -2,6 +2,13 @@
 #include <cmath>
 #include <string>
 
+#include "catena/elements/constraints/absolute_angle.hpp"
+#include "catena/elements/constraints/cam_flat.hpp"
+#include "catena/elements/constraints/gear.hpp"
+#include "catena/elements/constraints/relative_angle.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/elements/constraints/translational.hpp"
+#include "catena/model/model_add.hpp"
 #include "mechanisms.hpp"
 
 namespace bench {

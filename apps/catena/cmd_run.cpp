@@ -119,6 +119,18 @@ void add_common_options(CLI::App& command, Parsed& parsed) {
       ->check(whole_number);
 }
 
+/// The entries of a list that may be written as in a scene: [0.1, 0.2] for 0.1,0.2.
+std::vector<std::string> without_brackets(std::vector<std::string> values) {
+  if (values.empty() || !values.front().starts_with('[') || !values.back().ends_with(']')) return values;
+  values.front().erase(0, 1);
+  values.back().pop_back();
+  for (std::string& value : values) {
+    value.erase(0, value.find_first_not_of(' '));
+    value.erase(value.find_last_not_of(' ') + 1);
+  }
+  return values;
+}
+
 /// What was read, as the scene runner wants it. Throws CLI::ValidationError.
 RunCommand complete(const Parsed& parsed, const std::string& analysis) {
   RunCommand run = parsed.run;
@@ -130,7 +142,7 @@ RunCommand complete(const Parsed& parsed, const std::string& analysis) {
     run.options.set.emplace_back(assignment.substr(0, equals), assignment.substr(equals + 1));
   }
   for (const auto& [key, values] : parsed.keys) {
-    for (const std::string& value : values) run.options.verb_options.emplace_back(key, value);
+    for (const std::string& value : without_brackets(values)) run.options.verb_options.emplace_back(key, value);
   }
   return run;
 }

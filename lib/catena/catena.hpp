@@ -1,6 +1,6 @@
 // The one include a user needs: models, analyses, results, scenes.
 //
-//   Model model = ...                       model/model.hpp, elements/list.hpp
+//   Model model = ...                       model/model.hpp, model/model_add.hpp, elements/all.hpp
 //   Kinematics, Dynamics, Assembler ...     analysis/
 //   ColumnSet, ResultStorage, RowSink       columns/, results/
 //   run_scene(path, options, sink)          scene/scene_runner.hpp
@@ -12,7 +12,8 @@
 #include "catena/analysis/kinematics.hpp"
 #include "catena/analysis/mobility.hpp"
 #include "catena/columns/column_set.hpp"
-#include "catena/model/model.hpp"
+#include "catena/elements/all.hpp"
+#include "catena/model/model_add.hpp"
 #include "catena/results/column_rows.hpp"
 #include "catena/results/result_storage.hpp"
 #include "catena/scene/scene_runner.hpp"

@@ -5,6 +5,12 @@
 
 #include "catena/columns/energy.hpp"
 #include "catena/columns/reaction.hpp"
+#include "catena/elements/constraints/absolute_angle.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/elements/forces/point_force.hpp"
+#include "catena/elements/forces/spring_damper.hpp"
+#include "catena/elements/forces/torque.hpp"
+#include "catena/model/model_add.hpp"
 #include "oracles/dynamics_mechanisms.hpp"
 
 namespace catena {

@@ -5,6 +5,12 @@
 #include <numbers>
 
 #include "catena/analysis/equilibrium.hpp"
+#include "catena/elements/constraints/absolute_x.hpp"
+#include "catena/elements/constraints/absolute_y.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/elements/constraints/translational.hpp"
+#include "catena/elements/forces/torque.hpp"
+#include "catena/model/model_add.hpp"
 #include "oracles/static_reference.hpp"
 #include "oracles/static_scenes.hpp"
 

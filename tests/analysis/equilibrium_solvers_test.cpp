@@ -7,6 +7,8 @@
 #include "catena/analysis/equilibrium.hpp"
 #include "catena/analysis/static_ipopt.hpp"
 #include "catena/analysis/static_nlopt.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/model/model_add.hpp"
 #include "oracles/static_reference.hpp"
 #include "oracles/static_scenes.hpp"
 

@@ -13,6 +13,15 @@
 #include <vector>
 
 #include "catena/analysis/kinematics.hpp"
+#include "catena/elements/constraints/coupler.hpp"
+#include "catena/elements/constraints/gear.hpp"
+#include "catena/elements/constraints/relative_angle.hpp"
+#include "catena/elements/constraints/relative_distance.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/elements/constraints/slot.hpp"
+#include "catena/elements/constraints/translational.hpp"
+#include "catena/elements/constraints/weld.hpp"
+#include "catena/model/model_add.hpp"
 
 namespace catena {
 namespace {

@@ -6,6 +6,13 @@
 #include <vector>
 
 #include "analysis/linkages.hpp"
+#include "catena/elements/constraints/absolute_angle.hpp"
+#include "catena/elements/constraints/absolute_x.hpp"
+#include "catena/elements/constraints/belt.hpp"
+#include "catena/elements/constraints/cam_flat.hpp"
+#include "catena/elements/constraints/gear.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/model/model_add.hpp"
 
 namespace catena {
 namespace {

@@ -6,7 +6,10 @@
 #include <memory>
 #include <string>
 
+#include "catena/elements/constraints/absolute_angle.hpp"
+#include "catena/elements/constraints/revolute.hpp"
 #include "catena/model/model.hpp"
+#include "catena/model/model_add.hpp"
 
 namespace catena::testing {
 

@@ -10,6 +10,9 @@
 
 #include "analysis/linkages.hpp"
 #include "catena/analysis/kinematics.hpp"
+#include "catena/elements/constraints/absolute_x.hpp"
+#include "catena/elements/constraints/absolute_y.hpp"
+#include "catena/model/model_add.hpp"
 
 namespace catena::testing {
 namespace {

@@ -9,6 +9,13 @@
 #include <numbers>
 
 #include "catena/analysis/equilibrium.hpp"
+#include "catena/elements/constraints/absolute_angle.hpp"
+#include "catena/elements/constraints/absolute_x.hpp"
+#include "catena/elements/constraints/absolute_y.hpp"
+#include "catena/elements/constraints/relative_angle.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/elements/forces/spring_damper.hpp"
+#include "catena/model/model_add.hpp"
 #include "oracles/dense_modes.hpp"
 #include "oracles/mode_scenes.hpp"
 #include "oracles/random_statics.hpp"

@@ -6,6 +6,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "catena/elements/constraints/absolute_y.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/elements/forces/point_force.hpp"
+#include "catena/model/model_add.hpp"
 #include "oracles/static_reference.hpp"
 #include "oracles/static_scenes.hpp"
 

@@ -5,6 +5,9 @@
 
 #include "analysis/linkages.hpp"
 #include "catena/analysis/kinematics.hpp"
+#include "catena/elements/constraints/absolute_angle.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/model/model_add.hpp"
 
 namespace catena::testing {
 namespace {

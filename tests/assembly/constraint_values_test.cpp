@@ -7,6 +7,26 @@
 #include <vector>
 
 #include "catena/assembly/evaluate.hpp"
+#include "catena/elements/constraints/absolute_angle.hpp"
+#include "catena/elements/constraints/absolute_distance.hpp"
+#include "catena/elements/constraints/absolute_x.hpp"
+#include "catena/elements/constraints/absolute_y.hpp"
+#include "catena/elements/constraints/belt.hpp"
+#include "catena/elements/constraints/cam_cam.hpp"
+#include "catena/elements/constraints/cam_flat.hpp"
+#include "catena/elements/constraints/coupler.hpp"
+#include "catena/elements/constraints/displacement.hpp"
+#include "catena/elements/constraints/gear.hpp"
+#include "catena/elements/constraints/point_on_curve.hpp"
+#include "catena/elements/constraints/rack_pinion.hpp"
+#include "catena/elements/constraints/relative_angle.hpp"
+#include "catena/elements/constraints/relative_distance.hpp"
+#include "catena/elements/constraints/relative_x.hpp"
+#include "catena/elements/constraints/relative_y.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/elements/constraints/slot.hpp"
+#include "catena/elements/constraints/translational.hpp"
+#include "catena/elements/constraints/weld.hpp"
 #include "catena/model/model_add.hpp"
 
 namespace catena {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "catena/assembly/evaluate.hpp"
+#include "catena/elements/all.hpp"
 #include "catena/model/model_add.hpp"
 
 namespace catena {

@@ -123,6 +123,12 @@ TEST_F(Run, AVerbRunsOneAnalysisWithItsKeysAsOptions) {
   EXPECT_EQ(analyses[0]["columns"], json({"t", "crank.angle", "crank.omega"}));
   EXPECT_NEAR(analyses[0]["rows"][1][1].get<double>(), 3, 1e-15);
 
+  // Lists may be written as in a scene.
+  result =
+      run_catena({"kinematics", scene(), "--json", "--at", "[0.5, 1.5]", "--outputs", "[crank.angle, crank.omega]"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(json::parse(result.out)["analyses"][0]["rows"], analyses[0]["rows"]);
+
   result = run_catena({"check", scene()});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_NE(result.out.find("mobility 1"), std::string::npos) << result.out;

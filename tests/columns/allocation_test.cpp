@@ -4,6 +4,9 @@
 #include <cstdlib>
 #include <new>
 
+#include "catena/elements/constraints/translational.hpp"
+#include "catena/elements/forces/spring_damper.hpp"
+#include "catena/model/model_add.hpp"
 #include "columns/two_bodies.hpp"
 
 namespace {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "catena/elements/constraints/revolute.hpp"
+
 namespace catena::testing {
 namespace {
 

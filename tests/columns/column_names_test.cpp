@@ -4,6 +4,10 @@
 
 #include <algorithm>
 
+#include "catena/elements/forces/point_force.hpp"
+#include "catena/elements/forces/spring_damper.hpp"
+#include "catena/elements/forces/torsion_spring.hpp"
+#include "catena/model/model_add.hpp"
 #include "columns/two_bodies.hpp"
 
 namespace catena::testing {

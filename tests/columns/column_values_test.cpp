@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "catena/elements/constraints/displacement.hpp"
+#include "catena/elements/constraints/translational.hpp"
+#include "catena/model/model_add.hpp"
 #include "columns/two_bodies.hpp"
 
 namespace catena::testing {

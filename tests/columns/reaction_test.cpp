@@ -1,6 +1,10 @@
 // Reactions against THEORY section 4, by hand and by virtual work.
 #include <gtest/gtest.h>
 
+#include "catena/elements/constraints/gear.hpp"
+#include "catena/elements/constraints/translational.hpp"
+#include "catena/elements/constraints/weld.hpp"
+#include "catena/model/model_add.hpp"
 #include "columns/two_bodies.hpp"
 
 namespace catena::testing {

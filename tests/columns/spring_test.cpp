@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "catena/elements/forces/spring_damper.hpp"
+#include "catena/elements/forces/torsion_spring.hpp"
+#include "catena/model/model_add.hpp"
 #include "columns/two_bodies.hpp"
 
 namespace catena::testing {

@@ -8,6 +8,13 @@
 #include <vector>
 
 #include "catena/columns/column_set.hpp"
+#include "catena/elements/constraints/absolute_angle.hpp"
+#include "catena/elements/constraints/absolute_distance.hpp"
+#include "catena/elements/constraints/absolute_x.hpp"
+#include "catena/elements/constraints/relative_angle.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/elements/constraints/weld.hpp"
+#include "catena/model/model_add.hpp"
 
 namespace catena::testing {
 

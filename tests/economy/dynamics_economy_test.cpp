@@ -1,4 +1,6 @@
 // What dynamics must not do: work that the scene or the question does not ask for.
+#include "catena/elements/constraints/absolute_angle.hpp"
+#include "catena/model/model_add.hpp"
 #include "oracles/dynamics_mechanisms.hpp"
 
 namespace catena {

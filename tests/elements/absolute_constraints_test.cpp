@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "catena/elements/list.hpp"
+#include "catena/elements/all.hpp"
 #include "elements/exact.hpp"
 
 namespace catena {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "catena/elements/list.hpp"
+#include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {

@@ -5,6 +5,10 @@
 #include <numbers>
 
 #include "catena/analysis/dynamics.hpp"
+#include "catena/elements/constraints/custom_constraint.hpp"
+#include "catena/elements/forces/custom_force.hpp"
+#include "catena/elements/forces/spring_damper.hpp"
+#include "catena/model/model_add.hpp"
 #include "catena/results/result_storage.hpp"
 #include "elements/random_element.hpp"
 

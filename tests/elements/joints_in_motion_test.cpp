@@ -7,6 +7,16 @@
 #include <numbers>
 
 #include "catena/analysis/kinematics.hpp"
+#include "catena/elements/constraints/absolute_angle.hpp"
+#include "catena/elements/constraints/belt.hpp"
+#include "catena/elements/constraints/cam_cam.hpp"
+#include "catena/elements/constraints/cam_flat.hpp"
+#include "catena/elements/constraints/gear.hpp"
+#include "catena/elements/constraints/point_on_curve.hpp"
+#include "catena/elements/constraints/rack_pinion.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/elements/constraints/slot.hpp"
+#include "catena/elements/constraints/translational.hpp"
 #include "catena/model/model_add.hpp"
 
 namespace catena {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "catena/elements/list.hpp"
+#include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "catena/elements/list.hpp"
+#include "catena/elements/all.hpp"
 
 namespace catena {
 

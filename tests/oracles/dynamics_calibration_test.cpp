@@ -1,6 +1,9 @@
 // What `tolerance` promises: on motions that are not chaotic the error, in lengths of the scene or rad, is at most ten
 // times what was asked for, however short or long they are. References are runs of the same code at 2e-13, whose errors
 // other tests compare with independent solutions.
+#include "catena/elements/constraints/absolute_distance.hpp"
+#include "catena/elements/forces/spring_damper.hpp"
+#include "catena/model/model_add.hpp"
 #include "oracles/dynamics_mechanisms.hpp"
 
 namespace catena {

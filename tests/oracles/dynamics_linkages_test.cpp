@@ -1,5 +1,14 @@
 // Linkages against their independent solutions in data/reference, and what `tolerance` promises of them.
 #include "catena/columns/reaction.hpp"
+#include "catena/elements/constraints/absolute_angle.hpp"
+#include "catena/elements/constraints/absolute_y.hpp"
+#include "catena/elements/constraints/rack_pinion.hpp"
+#include "catena/elements/constraints/relative_distance.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/elements/constraints/slot.hpp"
+#include "catena/elements/constraints/translational.hpp"
+#include "catena/elements/forces/spring_damper.hpp"
+#include "catena/model/model_add.hpp"
 #include "oracles/dynamics_mechanisms.hpp"
 
 namespace catena {

@@ -10,6 +10,10 @@
 #include <vector>
 
 #include "catena/analysis/dynamics.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/elements/forces/spring_damper.hpp"
+#include "catena/elements/forces/torque.hpp"
+#include "catena/model/model_add.hpp"
 #include "oracles/static_reference.hpp"
 
 namespace catena::testing {

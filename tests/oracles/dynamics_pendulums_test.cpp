@@ -2,6 +2,13 @@
 #include <map>
 
 #include "catena/columns/reaction.hpp"
+#include "catena/elements/constraints/absolute_angle.hpp"
+#include "catena/elements/constraints/absolute_distance.hpp"
+#include "catena/elements/constraints/absolute_y.hpp"
+#include "catena/elements/constraints/relative_distance.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/elements/forces/spring_damper.hpp"
+#include "catena/model/model_add.hpp"
 #include "oracles/dynamics_mechanisms.hpp"
 
 namespace catena {

@@ -6,6 +6,11 @@
 #include <numbers>
 #include <string>
 
+#include "catena/elements/constraints/absolute_distance.hpp"
+#include "catena/elements/constraints/absolute_y.hpp"
+#include "catena/elements/constraints/coupler.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/model/model_add.hpp"
 #include "oracles/static_scenes.hpp"
 
 namespace catena::testing {

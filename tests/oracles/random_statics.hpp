@@ -7,6 +7,11 @@
 #include <random>
 #include <string>
 
+#include "catena/elements/constraints/coupler.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/elements/constraints/translational.hpp"
+#include "catena/elements/forces/point_force.hpp"
+#include "catena/model/model_add.hpp"
 #include "oracles/static_scenes.hpp"
 
 namespace catena::testing {

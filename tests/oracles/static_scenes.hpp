@@ -7,7 +7,14 @@
 #include <random>
 #include <string>
 
+#include "catena/elements/constraints/absolute_angle.hpp"
+#include "catena/elements/constraints/absolute_x.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/elements/forces/point_force.hpp"
+#include "catena/elements/forces/spring_damper.hpp"
+#include "catena/elements/forces/torsion_spring.hpp"
 #include "catena/model/model.hpp"
+#include "catena/model/model_add.hpp"
 
 namespace catena::testing {
 

@@ -6,6 +6,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "catena/elements/constraints/absolute_x.hpp"
+#include "catena/elements/constraints/absolute_y.hpp"
+#include "catena/elements/constraints/coupler.hpp"
+#include "catena/elements/constraints/relative_angle.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/elements/constraints/slot.hpp"
+#include "catena/elements/constraints/weld.hpp"
+#include "catena/elements/forces/spring_damper.hpp"
+#include "catena/elements/forces/torque.hpp"
 #include "catena/scene/scene_reader.hpp"
 
 namespace catena::testing {

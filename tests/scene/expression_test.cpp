@@ -142,7 +142,7 @@ TEST(Expression, RefusesWhatItCannotRead) {
       {"crank rod", 6, "expected an operator here"},
       {"2(3)", 1, "expected an operator here"},
       {"2**3", 1, "write ^ for a power"},
-      {"1e999", 0, "this number is out of range"},
+      {"1e999", 0, "this number is too large"},
       {"crank.x", 5, "expected an operator here"},
       {"1,2", 1, "unexpected \",\" in an expression"},
       {"1 \xe2\x88\x92 2", 2, "unexpected \"\xe2\x88\x92\" in an expression"},

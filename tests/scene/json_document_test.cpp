@@ -106,6 +106,19 @@ TEST(JsonDocument, ReportsEveryDuplicateKeyWithBothPlaces) {
             "1001:1 duplicate key \"link7\"; it was given before at line 8, column 1\n");
 }
 
+TEST(JsonDocument, ANumberTooLargeDoesNotHideWhatFollows) {
+  EXPECT_EQ(errors_of("{\"a\": 1e400,\n \"b\": [-2e999, 3],\n \"a\": x}"),
+            "1:7 the number 1e400 is too large\n"
+            "2:8 the number -2e999 is too large\n"
+            "3:7 \"x\" is not a value; text needs double quotes\n");
+  const SourceText source("scene.json", "{\"a\": 1e400, \"b\": 2}");
+  Diagnostics diagnostics;
+  const auto document = JsonDocument::parse(source, diagnostics);
+  ASSERT_TRUE(document);
+  EXPECT_EQ(diagnostics.count(), 1u);
+  EXPECT_EQ(document->root().find("b").number(), 2);
+}
+
 struct Wrong {
   const char* text;
   const char* error;
@@ -143,6 +156,9 @@ TEST(JsonDocument, NamesWhatIsWrongAndWhere) {
       {"{\"a\": .5}", "1:7 \".5\" is not a number; write it like -0.5, 12 or 1e-3"},
       {"{\"a\": +1}", "1:7 \"+1\" is not a number; write it like -0.5, 12 or 1e-3"},
       {"{\"a\": 1.}", "1:7 \"1.\" is not a number; write it like -0.5, 12 or 1e-3"},
+      {"{\"a\": [01]}", "1:8 \"01\" is not a number; write it like -0.5, 12 or 1e-3"},
+      {"{\"a\": 1-2}", "1:7 \"1-2\" is not a number; write it like -0.5, 12 or 1e-3"},
+      {"{\"a\": 1.2.3}", "1:7 \"1.2.3\" is not a number; write it like -0.5, 12 or 1e-3"},
       {"{\"a\": -}", "1:7 \"-\" is not a number; write it like -0.5, 12 or 1e-3"},
       {"{\"a\": \"xy\n\"}", "1:7 this text is not closed with \" before the end of the line"},
       {"{\"a\": \"xy", "1:7 this text is not closed with \" before the end of the file"},

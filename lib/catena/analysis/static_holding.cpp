@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "catena/elements/all.hpp"
+
 namespace catena {
 namespace {
 

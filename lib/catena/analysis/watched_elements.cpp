@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "catena/elements/all.hpp"
+
 namespace catena {
 
 WatchedElements::WatchedElements(const Evaluator& evaluator) : evaluator_(evaluator) {

@@ -4,6 +4,12 @@
 #include <numbers>
 #include <vector>
 
+#include "catena/elements/constraints/absolute_angle.hpp"
+#include "catena/elements/constraints/belt.hpp"
+#include "catena/elements/constraints/gear.hpp"
+#include "catena/elements/constraints/relative_angle.hpp"
+#include "catena/elements/constraints/weld.hpp"
+
 namespace catena {
 namespace {
 

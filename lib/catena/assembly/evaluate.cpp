@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "catena/base/sincos.hpp"
+#include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {
@@ -51,6 +52,12 @@ double extent(const Model& model) {
 }
 
 }  // namespace
+
+Evaluator::Evaluator(const Evaluator&) = default;
+Evaluator::Evaluator(Evaluator&&) noexcept = default;
+Evaluator& Evaluator::operator=(const Evaluator&) = default;
+Evaluator& Evaluator::operator=(Evaluator&&) noexcept = default;
+Evaluator::~Evaluator() = default;
 
 Evaluator::Evaluator(std::shared_ptr<const Plan> plan, const Model& model) : plan_(std::move(plan)), model_(&model) {
   place_.assign(model.elements.size(), -1);

@@ -22,6 +22,12 @@ namespace catena {
 class Evaluator {
  public:
   Evaluator(std::shared_ptr<const Plan> plan, const Model& model);
+  // Defined where the element types are complete; here they are only declared.
+  Evaluator(const Evaluator&);
+  Evaluator(Evaluator&&) noexcept;
+  Evaluator& operator=(const Evaluator&);
+  Evaluator& operator=(Evaluator&&) noexcept;
+  ~Evaluator();
 
   const Plan& plan() const { return *plan_; }
   const std::shared_ptr<const Plan>& shared_plan() const { return plan_; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <new>
 
+#include "catena/elements/all.hpp"
 #include "catena/linalg/symmetric_factorization.hpp"
 
 namespace catena {

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "catena/assembly/numbering.hpp"
+#include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {

@@ -26,12 +26,12 @@ namespace catena {
 namespace detail {
 template <class Lists>
 struct BlocksOf;
-template <class... Lists>
-struct BlocksOf<std::tuple<Lists...>> {
-  using Blocks = std::tuple<ConstraintBlock<typename Lists::value_type::Element>...>;
-  using Data = std::tuple<ConstraintData<typename Lists::value_type::Element>...>;
-  using Forces = std::tuple<ForceBlock<typename Lists::value_type::Element>...>;
-  using ForceValues = std::tuple<ForceData<typename Lists::value_type::Element>...>;
+template <class... Elements>
+struct BlocksOf<std::tuple<std::vector<ElementEntry<Elements, double>>...>> {
+  using Blocks = std::tuple<ConstraintBlock<Elements>...>;
+  using Data = std::tuple<ConstraintData<Elements>...>;
+  using Forces = std::tuple<ForceBlock<Elements>...>;
+  using ForceValues = std::tuple<ForceData<Elements>...>;
 };
 }  // namespace detail
 

@@ -6,6 +6,7 @@
 #include "catena/columns/energy.hpp"
 #include "catena/columns/reaction.hpp"
 #include "catena/columns/spring.hpp"
+#include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {

@@ -1,6 +1,7 @@
 #include "catena/columns/reaction.hpp"
 
 #include "catena/columns/attachment.hpp"
+#include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {

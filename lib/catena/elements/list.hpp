@@ -1,38 +1,12 @@
-// The list of element types: a new joint is one file in constraints/ (a new force, in forces/) and its lines here.
+// The list of element types: a new joint is one file in constraints/ (a new force, in forces/), its line here and its
+// include in all.hpp.
+//
+// Here the types are only declared: who stores or hands on elements compiles without them; who looks into them includes
+// the element's own file, or all.hpp. An edited element then recompiles those that know it, not everybody.
 //
 // Everything that treats all types alike (model storage, plan, evaluation, columns, scene reader, schema, explain,
 // derivative tests) goes through these lists at compile time: no registration, no virtual call, no switch over types.
 #pragma once
-
-#include <tuple>
-
-#include "catena/elements/constraints/absolute_angle.hpp"
-#include "catena/elements/constraints/absolute_distance.hpp"
-#include "catena/elements/constraints/absolute_x.hpp"
-#include "catena/elements/constraints/absolute_y.hpp"
-#include "catena/elements/constraints/belt.hpp"
-#include "catena/elements/constraints/cam_cam.hpp"
-#include "catena/elements/constraints/cam_flat.hpp"
-#include "catena/elements/constraints/coupler.hpp"
-#include "catena/elements/constraints/custom_constraint.hpp"
-#include "catena/elements/constraints/displacement.hpp"
-#include "catena/elements/constraints/gear.hpp"
-#include "catena/elements/constraints/point_on_curve.hpp"
-#include "catena/elements/constraints/rack_pinion.hpp"
-#include "catena/elements/constraints/relative_angle.hpp"
-#include "catena/elements/constraints/relative_distance.hpp"
-#include "catena/elements/constraints/relative_x.hpp"
-#include "catena/elements/constraints/relative_y.hpp"
-#include "catena/elements/constraints/revolute.hpp"
-#include "catena/elements/constraints/slot.hpp"
-#include "catena/elements/constraints/translational.hpp"
-#include "catena/elements/constraints/weld.hpp"
-#include "catena/elements/forces/bushing.hpp"
-#include "catena/elements/forces/custom_force.hpp"
-#include "catena/elements/forces/point_force.hpp"
-#include "catena/elements/forces/spring_damper.hpp"
-#include "catena/elements/forces/torque.hpp"
-#include "catena/elements/forces/torsion_spring.hpp"
 
 /// CATENA_CONSTRAINTS(X) expands X(Type) for every constraint type that a scene may name.
 #define CATENA_CONSTRAINTS(X) \
@@ -74,3 +48,14 @@
 #define CATENA_ALL_FORCES(X) \
   CATENA_FORCES(X)           \
   X(CustomForce)
+
+namespace catena {
+
+#define CATENA_DECLARE(Type) \
+  template <class S>         \
+  struct Type;
+CATENA_ALL_CONSTRAINTS(CATENA_DECLARE)
+CATENA_ALL_FORCES(CATENA_DECLARE)
+#undef CATENA_DECLARE
+
+}  // namespace catena

@@ -1,6 +1,21 @@
 #include "catena/model/model.hpp"
 
+#include "catena/elements/all.hpp"
+
 namespace catena {
+
+template <class S>
+BasicModel<S>::BasicModel() = default;
+template <class S>
+BasicModel<S>::BasicModel(const BasicModel&) = default;
+template <class S>
+BasicModel<S>::BasicModel(BasicModel&&) noexcept = default;
+template <class S>
+BasicModel<S>& BasicModel<S>::operator=(const BasicModel&) = default;
+template <class S>
+BasicModel<S>& BasicModel<S>::operator=(BasicModel&&) noexcept = default;
+template <class S>
+BasicModel<S>::~BasicModel() = default;
 
 template <class S>
 int BasicModel<S>::claim_name(std::string_view name, int target) {

@@ -3,7 +3,7 @@
 //
 // Templated on the scalar S of its parameters: BasicModel<double> is analysed, BasicModel<Dual> carries derivatives
 // with respect to design parameters through everything that was derived from them. Units SI, radians.
-// Errors: every add_... throws ModelError naming the culprit.
+// Errors: every add_... throws ModelError naming the culprit. Adding elements is in model_add.hpp.
 #pragma once
 
 #include <initializer_list>
@@ -39,6 +39,14 @@ struct ElementRecord {
 template <class S>
 class BasicModel {
  public:
+  // Defined where the element types are complete; here they are only declared.
+  BasicModel();
+  BasicModel(const BasicModel&);
+  BasicModel(BasicModel&&) noexcept;
+  BasicModel& operator=(const BasicModel&);
+  BasicModel& operator=(BasicModel&&) noexcept;
+  ~BasicModel();
+
   Vec2<S> gravity{};
   std::vector<BasicBody<S>> bodies;
   std::vector<BasicPoint<S>> points;
@@ -105,5 +113,3 @@ extern template class BasicModel<double>;
 extern template class BasicModel<Dual<double, 4>>;
 
 }  // namespace catena
-
-#include "catena/model/model_add.hpp"

@@ -1,8 +1,10 @@
-// The templates of BasicModel that are instantiated per element type: adding elements by hand.
+// The templates of BasicModel that are instantiated per element type: adding elements by hand. Include the files of the
+// elements that you add, or elements/all.hpp.
 #pragma once
 
 #include <algorithm>
 
+#include "catena/elements/element.hpp"
 #include "catena/model/given_frames.hpp"
 #include "catena/model/model.hpp"
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "catena/elements/all.hpp"
 #include "catena/scene/distance_check.hpp"
 
 namespace catena {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "catena/elements/all.hpp"
 #include "catena/elements/element.hpp"
 
 namespace catena {

@@ -2,7 +2,7 @@
 
 #include <tuple>
 
-#include "catena/elements/list.hpp"
+#include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "catena/elements/all.hpp"
 #include "catena/model/given_frames.hpp"
 #include "catena/model/model_add.hpp"
 #include "catena/scene/element_description.hpp"

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <numbers>
 
+#include "catena/scene/decimal.hpp"
 #include "catena/scene/diagnostic.hpp"
 #include "catena/scene/expression.hpp"
 #include "catena/scene/expression_functions.hpp"
@@ -112,13 +112,12 @@ class ExpressionParser {
   }
 
   bool number() {
-    double value = 0;
-    const auto [end, code] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
     const std::size_t begin = at_;
-    if (code == std::errc::invalid_argument) return unexpected();
-    if (code != std::errc()) return fail(begin, "this number is out of range");
-    at_ = static_cast<std::size_t>(end - text_.data());
-    return emit(Operation::constant, begin, 1, value);
+    const Decimal number = read_decimal(text_.substr(begin));
+    if (number.length == 0) return unexpected();
+    if (number.too_large) return fail(begin, "this number is too large");
+    at_ += number.length;
+    return emit(Operation::constant, begin, 1, number.value);
   }
 
   std::string_view word() {

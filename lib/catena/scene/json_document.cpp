@@ -25,8 +25,8 @@ bool is_number_character(char c) {
 /// two events stand only separators, blanks and comments.
 class JsonBuilder {
  public:
-  JsonBuilder(const SourceText& source, Diagnostics& diagnostics)
-      : document_(source), diagnostics_(diagnostics), text_(source.text()), cursor_(text_.data()) {
+  JsonBuilder(const SourceText& source, std::string_view text, Diagnostics& diagnostics)
+      : document_(source), diagnostics_(diagnostics), text_(text), cursor_(text_.data()) {
     position_.end = text_.starts_with("\xef\xbb\xbf") ? 3 : 0;
     // Scenes have a value every 10 to 12 bytes; memory reserved and not touched costs nothing.
     document_.nodes_.reserve(text_.size() / 8 + 16);
@@ -43,6 +43,9 @@ class JsonBuilder {
     if (!good) return std::nullopt;
     return std::move(document_);
   }
+
+  /// Where a number too large for a double ended the parse.
+  std::optional<std::size_t> too_large() const { return too_large_; }
 
   bool null() {
     append(JsonKind::null);
@@ -120,7 +123,14 @@ class JsonBuilder {
     // The parser has read one character more than the number, or stands at the end of the text.
     std::size_t end = node.offset;
     while (end < text_.size() && is_number_character(text_[end])) ++end;
+    if (offset_of_cursor() <= end && end < text_.size()) return malformed_number(node.offset, end);
     return finish_value(end);
+  }
+
+  /// The parser has taken a part of what stands there, as 0 of 01.
+  bool malformed_number(std::size_t begin, std::size_t end) {
+    diagnostics_.error(*document_.source_, begin, not_a_number(text_.substr(begin, end - begin)));
+    return false;
   }
 
   void finish(JsonEvent event, std::size_t end) {
@@ -196,6 +206,7 @@ class JsonBuilder {
     constexpr int out_of_range = 406;
     const SyntaxError error = explain_syntax_error(*document_.source_, position_, library_code == out_of_range);
     diagnostics_.error(*document_.source_, error.offset, error.message);
+    if (library_code == out_of_range) too_large_ = error.offset;
     return false;
   }
 
@@ -204,6 +215,7 @@ class JsonBuilder {
   std::string_view text_;
   const char* cursor_;
   JsonPosition position_;
+  std::optional<std::size_t> too_large_;
   std::vector<Open> open_;
   std::vector<Key> keys_;  // of all objects that are open
 };
@@ -214,7 +226,21 @@ std::string_view describe(JsonKind kind) {
 }
 
 std::optional<JsonDocument> JsonDocument::parse(const SourceText& source, Diagnostics& diagnostics) {
-  return JsonBuilder(source, diagnostics).parse();
+  JsonBuilder builder(source, source.text(), diagnostics);
+  std::optional<JsonDocument> document = builder.parse();
+  // The parser stops at a number too large for a double. So that it does not hide the other errors, the text is read
+  // again with 1 in its place; what was said of a place already is not said twice.
+  std::string patched;
+  for (std::optional<std::size_t> at = builder.too_large(); at && !diagnostics.full();) {
+    if (patched.empty()) patched = source.text();
+    std::size_t end = *at;
+    while (end < patched.size() && is_number_character(patched[end])) patched[end++] = ' ';
+    patched[*at] = '1';
+    JsonBuilder again(source, patched, diagnostics);
+    document = again.parse();
+    at = again.too_large();
+  }
+  return document;
 }
 
 JsonValue JsonValue::find(std::string_view key) const {

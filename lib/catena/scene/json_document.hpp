@@ -145,8 +145,8 @@ class JsonMembers {
 class JsonDocument {
  public:
   /// Parses JSON with // and /* */ comments; a byte order mark is tolerated. Reports to `diagnostics` and returns
-  /// nothing if the text is not JSON: the first violation of the grammar, nesting deeper than 64, invalid UTF-8,
-  /// numbers that are not finite. Keys given twice are reported too, all of them, but leave the document readable, so
+  /// nothing if the text is not JSON: the first violation of the grammar, nesting deeper than 64, invalid UTF-8. Keys
+  /// given twice and numbers too large for a double are reported too, all of them, but leave the document readable, so
   /// that the errors in it can be found as well. `source` must outlive the document and stay where it is.
   static std::optional<JsonDocument> parse(const SourceText& source, Diagnostics& diagnostics);
 

@@ -103,10 +103,12 @@ class JsonSink final : public ResultSink, private RowSink {
     text_ = count_++ > 0 ? ",\n  {\"type\": " : "\n  {\"type\": ";
     catena::append_json(text_, type);
     rows_ = -1;
+    has_table_ = type != "check";
     send();
     return *this;
   }
   void end_analysis(const AnalysisResult& result) override {
+    if (has_table_ && rows_ < 0) begin({});  // refused before its columns were known: a table without any
     text_.clear();
     if (rows_ >= 0) text_ += rows_ > 0 ? "\n  ]" : "]";
     append_report(result);
@@ -177,6 +179,7 @@ class JsonSink final : public ResultSink, private RowSink {
   std::string text_;  // what goes out next; kept for its memory
   int count_ = 0;     // analyses so far
   std::int64_t rows_ = -1;
+  bool has_table_ = false;
 };
 
 }  // namespace

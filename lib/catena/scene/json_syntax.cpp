@@ -108,12 +108,16 @@ SyntaxError explain_value(std::string_view text, std::size_t at, bool out_of_ran
             fmt::format("{} is not a value{}", in_quotes(word), hint.empty() ? "; text needs double quotes" : hint)};
   }
   if (is_digit(c) || c == '-' || c == '+' || c == '.') {
-    return {at, fmt::format("{} is not a number; write it like -0.5, 12 or 1e-3", in_quotes(word))};
+    return {at, not_a_number(word)};
   }
   return unexpected_character(text, at);
 }
 
 }  // namespace
+
+std::string not_a_number(std::string_view word) {
+  return fmt::format("{} is not a number; write it like -0.5, 12 or 1e-3", in_quotes(word));
+}
 
 std::size_t skip_blanks(std::string_view text, std::size_t at) {
   for (; at < text.size(); ++at) {

@@ -30,6 +30,9 @@ struct SyntaxError {
 /// `out_of_range`: the text is a number too large for a double.
 SyntaxError explain_syntax_error(const SourceText& source, const JsonPosition& position, bool out_of_range);
 
+/// What is said of a word that begins like a number and is none.
+std::string not_a_number(std::string_view word);
+
 /// The offset of the first byte at or after `at` that is neither blank nor in a comment.
 std::size_t skip_blanks(std::string_view text, std::size_t at);
 /// The same, over commas and colons too.

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "catena/scene/decimal.hpp"
 #include "catena/scene/diagnostic.hpp"
 #include "catena/scene/near_miss.hpp"
 
@@ -102,19 +103,15 @@ class QuantityParser {
       fail(0, "expected a number before the unit; an expression begins with =");
       return false;
     }
-    const char* const begin = text_.data() + (text_.starts_with('+') ? 1 : 0);
-    const auto [end, code] = std::from_chars(begin, text_.data() + text_.size(), result_.value);
-    if (code == std::errc::result_out_of_range && !is_tiny({begin, end})) {
+    const std::size_t begin = text_.starts_with('+') ? 1 : 0;
+    const Decimal number = read_decimal(text_.substr(begin));
+    if (number.too_large) {
       fail(0, "this number is too large");
       return false;
     }
-    at_ = static_cast<std::size_t>(end - text_.data());
+    result_.value = number.value;
+    at_ = begin + number.length;
     return true;
-  }
-
-  /// Out of range towards zero: reads as 0, as a JSON number does.
-  static bool is_tiny(std::string_view digits) {
-    return digits.find("e-") != digits.npos || digits.find("E-") != digits.npos;
   }
 
   bool read_unit(bool divide) {
