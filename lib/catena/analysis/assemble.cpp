@@ -17,8 +17,6 @@ constexpr int max_approach_iterations = 60;
 // A body may turn at most this far in one step: beyond it the linearisation says nothing, and linkages flip.
 constexpr double largest_turn = 0.5;
 constexpr double smallest_factor = 1e-4;
-// Of the largest misfit: below it a constraint counts as met.
-constexpr double negligible_misfit = 1e-6;
 
 }  // namespace
 
@@ -151,27 +149,6 @@ void Assembler::approach_estimate(std::span<double> q, std::span<const double> e
   }
 }
 
-std::vector<Misfit> Assembler::rank_misfits(std::span<const double> q, std::size_t count) {
-  merit(q);
-  std::vector<Misfit> misfits;
-  for (std::size_t r = 0; r < phi_.size(); ++r) {
-    const int element = plan_.row_element[r];
-    if (misfits.empty() || misfits.back().element != element) misfits.push_back({element, 0, false});
-    if (std::abs(phi_[r]) >= misfits.back().size) {
-      misfits.back().size = std::abs(phi_[r]);
-      misfits.back().angle = plan_.row_is_angle[r];
-    }
-  }
-  const auto size = [&](const Misfit& m) { return m.angle ? m.size : m.size / evaluator_.length_scale(); };
-  std::size_t kept = std::min(count, misfits.size());
-  std::partial_sort(misfits.begin(), misfits.begin() + static_cast<std::ptrdiff_t>(kept), misfits.end(),
-                    [&](const Misfit& a, const Misfit& b) { return size(a) > size(b); });
-  // What is met but for rounding is none.
-  while (kept > 1 && size(misfits[kept - 1]) < negligible_misfit * size(misfits.front())) --kept;
-  misfits.resize(kept);
-  return misfits;
-}
-
 AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
   AssemblyOutcome outcome;
   if (plan_.rows == 0) return outcome;
@@ -180,13 +157,12 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
   const std::vector<double> estimate(q.begin(), q.end());
   if (!restore(q, tolerance, outcome)) {
     // The best configuration found may differ a lot from what was given without being any use: keep what was given.
-    outcome.misfits = rank_misfits(q, 10);
+    const Conflict conflict = find_conflict(evaluator_, projector_, q);
+    outcome.misfits = conflict.unmet;
     outcome.status = Status::not_assembled;
     outcome.message = fmt::format(
-        "the constraints cannot all be met from the given configuration; nearest: {}; likely cause: lengths that do "
-        "not "
-        "close the loop, or an estimate too far off",
-        describe_misfits(evaluator_.model(), outcome.misfits));
+        "the constraints cannot all be met from the given configuration; nearest: {}; likely cause: {}",
+        describe_misfits(evaluator_.model(), outcome.misfits), describe_cause(evaluator_.model(), conflict));
     std::copy(given.begin(), given.end(), q.begin());
     evaluator_.set_configuration(q);
     return outcome;
@@ -198,17 +174,6 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
   outcome.residual = scaling_.row_norm(phi_);
   outcome.moved = weighted_distance(q, estimate) / std::sqrt(std::max(1, plan_.moving));
   return outcome;
-}
-
-std::string describe_misfits(const Model& model, std::span<const Misfit> misfits) {
-  std::string text;
-  for (const Misfit& m : misfits) {
-    if (!text.empty()) text += ", ";
-    text += fmt::format("{} \"{}\" misses by {:.3g} {}", model.element_type(m.element), model.element_name(m.element),
-                        m.size, m.angle ? "rad" : "m");
-    if (text.size() > 300) break;
-  }
-  return text;
 }
 
 }  // namespace catena

@@ -4,26 +4,21 @@
 //
 // Whole turns are moved first; then damped Gauss-Newton steps of least weighted size, none of which may enlarge the
 // residual; then, where freedom is left, sliding along the constraints towards the estimate. Never returns a worse
-// configuration than it was given and never reports success above the tolerance. Where constraints cannot be met they
-// are ranked by misfit, in metres or radians.
+// configuration than it was given and never reports success above the tolerance. Where constraints cannot be met those
+// that stand in the way are named (misfits.hpp).
 #pragma once
 
 #include <span>
 #include <string>
 #include <vector>
 
+#include "catena/analysis/misfits.hpp"
 #include "catena/analysis/scaling.hpp"
 #include "catena/assembly/constraint_projector.hpp"
 #include "catena/assembly/evaluate.hpp"
 #include "catena/base/status.hpp"
 
 namespace catena {
-
-struct Misfit {
-  int element = -1;
-  double size = 0;  ///< largest residual of its rows
-  bool angle = false;
-};
 
 struct AssemblyOutcome : Report {
   int iterations = 0;
@@ -38,9 +33,6 @@ class Assembler {
 
   /// Assembles q (plan order) in place at the evaluator's time. `tolerance` is relative to the length scale.
   AssemblyOutcome assemble(std::span<double> q, double tolerance = 1e-12);
-
-  /// Elements ranked by the size of their residual at q, in the published units.
-  std::vector<Misfit> rank_misfits(std::span<const double> q, std::size_t count);
 
  private:
   bool restore(std::span<double> q, double tolerance, AssemblyOutcome& outcome);
@@ -57,8 +49,5 @@ class Assembler {
   std::vector<double> weights_;  // per column
   std::vector<double> values_, phi_, lambda_, step_, trial_;
 };
-
-/// "pin "B" by 0.12 m" ... in one line, worst first.
-std::string describe_misfits(const Model& model, std::span<const Misfit> misfits);
 
 }  // namespace catena

@@ -42,12 +42,26 @@ void ConstraintProjector::set_inverse_weights(std::span<const double> inverse_we
   std::copy(inverse_weights.begin(), inverse_weights.end(), inverse_weights_.begin());
 }
 
-FactorResult ConstraintProjector::factorize(std::span<const double> jacobian, Counters& counters, double damping) {
+void ConstraintProjector::multiply(std::span<const double> jacobian) {
   jacobian_ = jacobian.first(plan_->jacobian.row_index.size());  // without the scratch slot
   std::fill(values_.begin(), values_.end(), 0.0);
   for (const Product& p : products_) {
     values_[at(p.slot)] += inverse_weights_[at(p.column)] * jacobian[at(p.first)] * jacobian[at(p.second)];
   }
+}
+
+FactorResult ConstraintProjector::factorize_values(Counters& counters) {
+  if (!analyzed_) {
+    const FactorResult result = schur_.analyze(pattern_, {.form = SymmetricForm::ldl}, counters);
+    if (!result.ok()) return result;
+    analyzed_ = true;
+  }
+  return schur_.factorize(values_, 0, counters);
+}
+
+FactorResult ConstraintProjector::factorize(std::span<const double> jacobian, Counters& counters, double damping) {
+  multiply(jacobian);
+  compliance_ = {};
   double largest = 0;
   for (int d : diagonal_) largest = std::max(largest, values_[at(d)]);
   // A row that touches nothing that can move has an empty diagonal; it must not stop the others.
@@ -56,12 +70,15 @@ FactorResult ConstraintProjector::factorize(std::span<const double> jacobian, Co
     value += (regularisation + damping) * value;
     if (!(value > 0)) value = largest > 0 ? largest : 1;
   }
-  if (!analyzed_) {
-    const FactorResult result = schur_.analyze(pattern_, {.form = SymmetricForm::ldl}, counters);
-    if (!result.ok()) return result;
-    analyzed_ = true;
-  }
-  return schur_.factorize(values_, 0, counters);
+  return factorize_values(counters);
+}
+
+FactorResult ConstraintProjector::factorize_compliant(std::span<const double> jacobian,
+                                                      std::span<const double> compliance, Counters& counters) {
+  multiply(jacobian);
+  compliance_ = compliance;
+  for (std::size_t r = 0; r < diagonal_.size(); ++r) values_[at(diagonal_[r])] += compliance[r];
+  return factorize_values(counters);
 }
 
 double ConstraintProjector::solve(std::span<const double> b, std::span<double> x, std::span<double> lambda,
@@ -82,6 +99,7 @@ double ConstraintProjector::solve(std::span<const double> b, std::span<double> x
     for (double& value : x) value = -value;
     std::copy(b.begin(), b.end(), r.begin());
     multiply_add(plan_->jacobian, jacobian_, x, r);
+    for (std::size_t k = 0; k < compliance_.size(); ++k) r[k] -= compliance_[k] * multipliers[k];
     double size = 0;
     for (double value : r) size = std::max(size, std::abs(value));
     return size_b > 0 ? size / size_b : size;

@@ -27,6 +27,10 @@ class ConstraintProjector {
   /// Factors Phi_q W^-1 Phi_q^T. `jacobian`: values of Phi_q; `damping`: part of the diagonal added on top, for steps
   /// that must stay short (0: none). Keeps a reference to the values for refinement.
   FactorResult factorize(std::span<const double> jacobian, Counters& counters, double damping = 0);
+  /// Factors Phi_q W^-1 Phi_q^T + C, C = `compliance` > 0 on the diagonal: solve() then gives the x of least
+  /// x^T W x + (Phi_q x - b)^T C^-1 (Phi_q x - b), in which rows need not be met. Keeps a reference to both.
+  FactorResult factorize_compliant(std::span<const double> jacobian, std::span<const double> compliance,
+                                   Counters& counters);
   /// The least x with Phi_q x = b. b: rows, x: columns, lambda: rows. Returns the largest relative residual left.
   double solve(std::span<const double> b, std::span<double> x, std::span<double> lambda, Counters& counters);
   /// Smallest pivot ratio of the last factorization: near zero where rows depend on each other.
@@ -39,13 +43,15 @@ class ConstraintProjector {
     int slot;
   };
   void make_pattern();
+  void multiply(std::span<const double> jacobian);
+  FactorResult factorize_values(Counters& counters);
 
   std::shared_ptr<const Plan> plan_;
   SparsePattern pattern_;  // lower triangle
   std::vector<Product> products_;
   std::vector<int> diagonal_;
   std::vector<double> inverse_weights_, values_, work_;
-  std::span<const double> jacobian_;
+  std::span<const double> jacobian_, compliance_;
   SymmetricFactorization schur_;
   bool analyzed_ = false;
 };
