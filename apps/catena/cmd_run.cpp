@@ -47,7 +47,7 @@ const std::vector<Verb>& verbs() {
       {"dynamics",
        "dynamics",
        "Motion under forces",
-       {until, every, tolerance, {"method", "integrator: auto, rk8, rk5, baumgarte"}, {"step", "fixed step"}, outputs}},
+       {until, every, tolerance, {"method", "integrator: auto, rk8, rk5, baumgarte, adams"}, {"step", "fixed step"}, outputs}},
       {"equilibrium",
        "equilibrium",
        "Static equilibrium",

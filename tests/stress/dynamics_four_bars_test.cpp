@@ -75,6 +75,7 @@ TEST(DynamicsFourBars, TwoWithStabilisedConstraints) {
   check_all(2, IntegrationMethod::baumgarte, down_to_1e9);
   ;
 }
+TEST(DynamicsFourBars, TwoByAdams) { check_all(2, IntegrationMethod::adams, down_to_1e9); }
 TEST(DynamicsFourBars, FortyAtAllTolerancesFromTwentyStarts) { check_all(40); }
 
 }  // namespace

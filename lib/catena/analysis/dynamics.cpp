@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "catena/analysis/initial_velocities.hpp"
+#include "catena/analysis/integrators/adams.hpp"
 #include "catena/analysis/integrators/runge_kutta.hpp"
 #include "catena/analysis/mobility.hpp"
 #include "catena/analysis/process_time.hpp"
@@ -21,7 +22,8 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // What a step may contribute to the error that was asked for; see the calibration in tests/oracles.
 constexpr double step_part = 0.002;
-constexpr double drift_part = 0.2;  // of it, where constraints drift: that adds to errors
+constexpr double drift_part = 0.2;      // of it, where constraints drift: that adds to errors
+constexpr double multistep_part = 0.2;  // where errors of one step go on in those after it
 constexpr double least_tolerance = 1e-14;
 // Rows whose smallest pivot ratio is above this need no rank analysis.
 constexpr double independent_ratio = 1e-8;
@@ -233,6 +235,10 @@ std::unique_ptr<Integrator> Dynamics::make_integrator(const Motion& motion, doub
   if (method == IntegrationMethod::baumgarte) {
     options.keeping = ConstraintKeeping::stabilisation;
     options.tolerance *= drift_part;
+  }
+  if (method == IntegrationMethod::adams) {
+    options.tolerance *= multistep_part;
+    return std::make_unique<Adams>(motion, options);
   }
   return std::make_unique<RungeKutta>(motion, options);
 }

@@ -64,8 +64,9 @@ std::vector<AnalysisDescription> describe_all() {
             tolerance,
             {"method",
              KeyKind::word,
-             "integrator: rk8 and rk5 project onto the constraints after every step, baumgarte stabilises them and "
-             "shows how they drift",
+             "integrator: rk8, rk5 (Runge-Kutta) and adams (multistep, fewest evaluations in smooth motions) project "
+             "onto "
+             "the constraints after every step, baumgarte stabilises them and shows how they drift",
              {},
              {},
              {integration_methods.begin(), integration_methods.end()}},

@@ -82,6 +82,17 @@ std::vector<std::string> RungeKutta::remarks() const {
   return all;
 }
 
+bool RungeKutta::take_over(double t, std::span<const double> y, double h, const ErrorScale& scale, double usual_ratio) {
+  t_ = t_before_ = t;
+  std::copy(y.begin(), y.end(), y_.begin());
+  scale_ = scale;
+  h_ = h;
+  usual_ratio_ = usual_ratio;
+  if (!derivative(t_, Side::after, y_, slope_)) return false;
+  observe_ratio();
+  return true;
+}
+
 double RungeKutta::pivot_ratio() const { return motion_.equations().smallest_pivot_ratio() / usual_ratio_; }
 
 bool RungeKutta::dips(double far) const {

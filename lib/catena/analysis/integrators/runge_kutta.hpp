@@ -47,6 +47,17 @@ class RungeKutta final : public Integrator {
   /// Of order 7 or 5.
   void interpolate(double t, std::span<double> y) override;
   std::vector<std::string> remarks() const override;
+  /// Goes on with steps of size h (s) where another method came to at (t, y), with what that knows of the motion: the
+  /// scale of errors and the largest pivot ratio.
+  bool take_over(double t, std::span<const double> y, double h, const ErrorScale& scale, double usual_ratio);
+  std::span<const double> slope() const { return slope_; }
+  const ErrorScale& scale() const { return scale_; }
+  /// Smallest pivot ratio at the last evaluation, compared with the largest so far: very unequal masses make all small.
+  double pivot_ratio() const;
+  /// Whether a singular position lies within the step whose stages were evaluated, as far as they show it; `far`: what
+  /// pivot ratios are looked at, compared with those within a step that passes it.
+  bool dips(double far = 1) const;
+
   bool meets_constraints() const override { return options_.keeping == ConstraintKeeping::projection; }
 
  private:
@@ -72,11 +83,6 @@ class RungeKutta final : public Integrator {
   bool try_crossing(double h, double error);
   void reject(double h);
   void accept(double growth, double proposed);
-  /// Smallest pivot ratio at the last evaluation, compared with the largest so far: very unequal masses make all small.
-  double pivot_ratio() const;
-  /// Whether a singular position lies within the step whose stages were evaluated, as far as they show it; `far`: what
-  /// pivot ratios are looked at, compared with those within a step that passes it.
-  bool dips(double far = 1) const;
   void observe_ratio();
   void observe_rates();
   void prepare_interpolant();
