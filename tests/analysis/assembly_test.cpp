@@ -9,6 +9,10 @@
 
 #include "analysis/linkages.hpp"
 #include "catena/analysis/assemble.hpp"
+#include "catena/elements/constraints/absolute_angle.hpp"
+#include "catena/elements/constraints/coupler.hpp"
+#include "catena/elements/constraints/revolute.hpp"
+#include "catena/model/model_add.hpp"
 
 namespace catena::testing {
 namespace {

@@ -11,7 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "catena/model/model.hpp"
+#include "catena/elements/all.hpp"
+#include "catena/model/model_add.hpp"
 
 namespace catena::testing {
 
