@@ -130,7 +130,8 @@ Certificate certify(StaticSystem& system, std::span<const double> lambda) {
   bool factored = system.factorize().ok();
   const double stiffest = std::max(matrix.largest_stiffness(), system.force_size() / system.length());
   const double floor = neutral_part * stiffest;
-  if (!factored) {
+  const bool shifted = !factored;
+  if (shifted) {
     // A pivot vanished exactly: something is neutral. Beside it the factors exist.
     system.fill(lambda, Curvature::exact, floor);
     factored = system.factorize().ok();
@@ -149,7 +150,7 @@ Certificate certify(StaticSystem& system, std::span<const double> lambda) {
   }
   // The Rayleigh quotient with the true matrix, and what rounding leaves of it.
   std::vector<double> product(at(plan.columns));
-  system.fill(lambda, Curvature::exact, 0);
+  if (shifted) system.fill(lambda, Curvature::exact, 0);
   matrix.multiply_stiffness(result.mode, product);
   double quotient = 0;
   for (std::size_t c = 0; c < product.size(); ++c) quotient += product[c] * result.mode[c];

@@ -18,8 +18,12 @@ constexpr int polishing_steps = 4;
 constexpr double polishing_part = 1e-2, rounding_part = 1e-15, few_roundings = 10;
 // Below this nothing more is to be had.
 constexpr double last_change = 1e-10;
-// Multipliers beyond this many times the applied forces belong to rows that depend on each other and contradict.
-constexpr double largest_multiplier = 1e7;
+// Multipliers beyond this many times the largest applied force, and the sum of all, belong to rows that depend on each
+// other and contradict.
+constexpr double largest_multiplier = 1e7, largest_of_sum = 1e5;
+// Of the linearised equations, relative to the forces and the extent: what one step leaves, the next one and the
+// corrections at the end remove.
+constexpr double step_tolerance = 1e-7, first_tolerance = 1e-4;
 constexpr double largest_change = 1e14;
 
 }  // namespace
@@ -27,7 +31,7 @@ constexpr double largest_change = 1e14;
 bool first_multipliers(StaticSystem& system, std::span<double> lambda) {
   system.fill_weights();
   if (!system.factorize().ok()) return false;
-  const StaticStep step = system.newton_step(1e-8);
+  const StaticStep step = system.newton_step(first_tolerance);
   std::copy(step.lambda.begin(), step.lambda.end(), lambda.begin());
   return true;
 }
@@ -66,9 +70,11 @@ void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda,
       size();
       return;
     }
+    // What one more correction would bring: each is shorter than the one before by the same factor.
+    const double next = change * std::min(change / before, 1.0);
     outcome.step = before = change;
     now = then;
-    if (change <= rounding && now <= 1) return;
+    if (next <= rounding && now <= few_roundings) return;
   }
 }
 
@@ -111,7 +117,7 @@ StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::sp
       outcome.end = StaticEnd::singular;
       return outcome;
     }
-    const StaticStep step = system.newton_step(1e-9);
+    const StaticStep step = system.newton_step(near ? step_tolerance : first_tolerance);
     const double change = system.change_norm(step.change);
     if (!(change < largest_change)) {
       outcome.end = StaticEnd::diverged;
@@ -124,7 +130,8 @@ StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::sp
     outcome.residual = system.force_norm(residual);
     outcome.step = change;
     near = change <= near_change;
-    if (!(system.force_scale(lambda) <= largest_multiplier * system.load_size())) {
+    if (!(system.force_scale(lambda) <=
+          std::max(largest_multiplier * system.load_size(), largest_of_sum * system.total_load()))) {
       outcome.end = StaticEnd::diverged;
       return outcome;
     }

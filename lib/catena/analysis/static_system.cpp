@@ -37,7 +37,7 @@ void StaticSystem::take_over_model() {
   matrix_.set_radius(radius_);
   length_ = evaluator_.length_scale();
   scaling_ = Scaling(plan_, length_);
-  load_ = 0;
+  load_ = total_load_ = 0;
   linear_ = -1;
 }
 
@@ -45,7 +45,9 @@ void StaticSystem::move_to(std::span<const double> q) {
   evaluator_.set_configuration(q);
   evaluator_.applied_forces(rest_, loads_);
   for (int c = 0; c < plan_.columns; ++c) gradient_[at(c)] = -loads_[at(plan_.coordinate[at(c)])];
-  load_ = std::max(load_, force_norm(gradient_));
+  const ForceSize applied = measure(gradient_);
+  load_ = std::max(load_, applied.largest);
+  total_load_ = std::max(total_load_, applied.sum);
   evaluator_.phi(phi_);
   evaluator_.jacobian(jacobian_);
   extent_ = length_;
@@ -67,15 +69,21 @@ void StaticSystem::residual(std::span<const double> lambda, std::span<double> ou
   multiply_transposed_add(plan_.jacobian, jacobian(), lambda, out);
 }
 
-double StaticSystem::force_norm(std::span<const double> forces) const {
-  double largest = 0, sum = 0;
-  for (int c = 0; c < plan_.columns; ++c) {
-    const int coordinate = plan_.coordinate[at(c)];
-    const double size = std::abs(forces[at(c)]) / (coordinate % 3 == 2 ? radius_[at(coordinate / 3)] : 1.0);
-    largest = std::max(largest, size);
-    sum += size;
+StaticSystem::ForceSize StaticSystem::measure(std::span<const double> forces) const {
+  const std::span<const double> inverse_arms = matrix_.inverse_arms();
+  ForceSize size;
+  for (std::size_t c = 0; c < inverse_arms.size(); ++c) {
+    const double force = std::abs(forces[c]) * inverse_arms[c];
+    size.largest = std::max(size.largest, force);
+    size.sum += force;
   }
-  return std::isfinite(sum) ? largest : sum;
+  return size;
+}
+
+double StaticSystem::force_norm(std::span<const double> forces) const {
+  const ForceSize size = measure(forces);
+  // A sum shows what is not finite, a maximum may not.
+  return std::isfinite(size.sum) ? size.largest : size.sum;
 }
 
 double StaticSystem::change_norm(std::span<const double> change) const { return scaling_.column_norm(change); }
@@ -86,11 +94,11 @@ double StaticSystem::force_scale(std::span<const double> lambda) const {
   double largest = force_norm(gradient_);
   const SparsePattern& a = plan_.jacobian;
   for (int c = 0; c < plan_.columns; ++c) {
-    const int coordinate = plan_.coordinate[at(c)];
-    const double arm = coordinate % 3 == 2 ? radius_[at(coordinate / 3)] : 1.0;
+    double own = 0;
     for (int k = a.column_start[at(c)]; k < a.column_start[at(c) + 1]; ++k) {
-      largest = std::max(largest, std::abs(jacobian_[at(k)] * lambda[at(a.row_index[at(k)])]) / arm);
+      own = std::max(own, std::abs(jacobian_[at(k)] * lambda[at(a.row_index[at(k)])]));
     }
+    largest = std::max(largest, own * matrix_.inverse_arms()[at(c)]);
   }
   return largest;
 }

@@ -56,6 +56,8 @@ class StaticSystem {
   double force_size() const { return force_; }
   /// Largest applied force so far, N.
   double load_size() const { return load_; }
+  /// Largest sum of all applied forces' sizes so far, N: what may pass through one joint.
+  double total_load() const { return total_load_; }
   /// Changes below this cannot be told from rounding of the coordinates: length scales or rad.
   double rounding_change() const { return 1e-15 * extent_ / length_; }
 
@@ -84,12 +86,17 @@ class StaticSystem {
   std::span<const double> radius() const { return radius_; }
 
  private:
+  struct ForceSize {
+    double largest = 0, sum = 0;
+  };
+  ForceSize measure(std::span<const double> forces) const;
+
   Evaluator& evaluator_;
   const Plan& plan_;
   std::vector<double> radius_;
   KktMatrix matrix_;
   int linear_ = -1;  // -1: not asked yet
-  double length_, extent_ = 1, force_ = 1, load_ = 0;
+  double length_, extent_ = 1, force_ = 1, load_ = 0, total_load_ = 0;
   Scaling scaling_;
   std::vector<double> rest_, loads_;  // zero velocities, Q; all coordinates
   std::vector<double> gradient_, jacobian_, phi_;

@@ -18,7 +18,8 @@ constexpr double softest_part = 1e-9;
 }  // namespace
 
 KktMatrix::KktMatrix(std::shared_ptr<const Plan> plan, std::span<const double> radius)
-    : plan_(std::move(plan)), structure_(*plan_), moving_(plan_->moving), radius_(radius.begin(), radius.end()) {
+    : plan_(std::move(plan)), structure_(*plan_), moving_(plan_->moving) {
+  set_radius(radius);
   values_.assign(at(structure_.values()), 0.0);
   factored_.resize(at(structure_.entries()));
   rho_.resize(at(structure_.rows));
@@ -26,6 +27,15 @@ KktMatrix::KktMatrix(std::shared_ptr<const Plan> plan, std::span<const double> r
   stiffness_.resize(at(moving_));
   residual_work_.resize(at(structure_.columns + structure_.rows));
   correction_work_.resize(residual_work_.size());
+}
+
+void KktMatrix::set_radius(std::span<const double> radius) {
+  radius_.assign(radius.begin(), radius.end());
+  inverse_arms_.assign(at(structure_.columns), 1.0);
+  for (int c = 0; c < structure_.columns; ++c) {
+    const int coordinate = plan_->coordinate[at(c)];
+    if (coordinate % 3 == 2) inverse_arms_[at(c)] = 1 / radius_[at(coordinate / 3)];
+  }
 }
 
 void KktMatrix::set_hessian(Evaluator& evaluator, std::span<const double> lambda, Curvature curvature) {
@@ -73,11 +83,9 @@ void KktMatrix::set_weights(std::span<const double> jacobian, double stiffness) 
 void KktMatrix::choose_augmentation(double least_stiffness) {
   std::fill(stiffness_.begin(), stiffness_.end(), 0.0);
   for (int c = 0; c < structure_.columns; ++c) {
-    const int coordinate = plan_->coordinate[at(c)];
-    const std::size_t body = at(coordinate / 3);
-    double k = std::abs(values_[at(structure_.diagonal[at(c)])]);
-    if (coordinate % 3 == 2) k /= radius_[body] * radius_[body];
-    stiffness_[body] = std::max(stiffness_[body], k);
+    double& stiffness = stiffness_[at(plan_->coordinate[at(c)] / 3)];
+    const double k = std::abs(values_[at(structure_.diagonal[at(c)])]) * inverse_arms_[at(c)] * inverse_arms_[at(c)];
+    stiffness = std::max(stiffness, k);
   }
   largest_stiffness_ = 0;
   for (double k : stiffness_) largest_stiffness_ = std::max(largest_stiffness_, k);
@@ -123,16 +131,18 @@ FactorResult KktMatrix::factorize(double least_stiffness, Counters& counters) {
   return factorization_.factorize(factored_, counters);
 }
 
+// Every column begins with its diagonal entry; those of constraint rows hold nothing else, and that is zero.
 void KktMatrix::multiply(std::span<const double> x, std::span<double> y) const {
   std::fill(y.begin(), y.end(), 0.0);
   const SparsePattern& a = structure_.pattern;
-  for (int c = 0; c < a.columns; ++c) {
+  for (int c = 0; c < structure_.columns; ++c) {
     const double xc = x[at(c)];
-    double sum = 0;
-    for (int k = a.column_start[at(c)]; k < a.column_start[at(c) + 1]; ++k) {
+    const int begin = a.column_start[at(c)], end = a.column_start[at(c) + 1];
+    double sum = values_[at(begin)] * xc;
+    for (int k = begin + 1; k < end; ++k) {
       const int r = a.row_index[at(k)];
       const double value = values_[at(k)];
-      if (r != c) sum += value * x[at(r)];
+      sum += value * x[at(r)];
       y[at(r)] += value * xc;
     }
     y[at(c)] += sum;
@@ -173,10 +183,9 @@ Refinement KktMatrix::solve(std::span<double> x, double force, double length, do
     double largest = 0;
     for (int c = 0; c < structure_.columns; ++c) {
       r[at(c)] = b[at(c)] - r[at(c)];
-      const int coordinate = plan_->coordinate[at(c)];
-      const double size = std::abs(r[at(c)]) / (coordinate % 3 == 2 ? radius_[at(coordinate / 3)] : 1.0) / force;
-      largest = std::max(largest, size);
+      largest = std::max(largest, std::abs(r[at(c)]) * inverse_arms_[at(c)]);
     }
+    largest /= force;
     for (int k = 0; k < structure_.rows; ++k) {
       const std::size_t row = at(structure_.columns + k);
       r[row] = b[row] - r[row];
@@ -192,7 +201,9 @@ Refinement KktMatrix::solve(std::span<double> x, double force, double length, do
 void KktMatrix::solve_unrefined(std::span<double> x, Counters& counters) {
   // What was added to the first equation on the left, Phi_q^T R times the second one, is added on the right as well.
   const SparsePattern& phi_q = plan_->jacobian;
-  for (int c = 0; c < structure_.columns; ++c) {
+  const std::span<const double> second = x.subspan(at(structure_.columns));
+  const bool nothing = std::all_of(second.begin(), second.end(), [](double v) { return v == 0; });
+  for (int c = 0; c < structure_.columns && !nothing; ++c) {
     double sum = 0;
     for (int k = phi_q.column_start[at(c)]; k < phi_q.column_start[at(c) + 1]; ++k) {
       const std::size_t row = at(phi_q.row_index[at(k)]);

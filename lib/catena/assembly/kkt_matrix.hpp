@@ -27,7 +27,9 @@ class KktMatrix {
   /// `radius`: per plan body, what a radian is compared with in metres (Evaluator::attachment_radii).
   KktMatrix(std::shared_ptr<const Plan> plan, std::span<const double> radius);
 
-  void set_radius(std::span<const double> radius) { radius_.assign(radius.begin(), radius.end()); }
+  void set_radius(std::span<const double> radius);
+  /// Per column 1, or 1 / radius of the body where it is an angle: turns moments into forces, 1/m.
+  std::span<const double> inverse_arms() const { return inverse_arms_; }
 
   const KktStructure& structure() const { return structure_; }
 
@@ -82,7 +84,7 @@ class KktMatrix {
   std::shared_ptr<const Plan> plan_;
   KktStructure structure_;
   int moving_;
-  std::vector<double> radius_;
+  std::vector<double> radius_, inverse_arms_;
   std::vector<double> values_;    // the true matrix; then turning, then what immobile bodies get
   std::vector<double> factored_;  // augmented
   std::vector<double> last_;      // the true matrix of the last factorization, if factors are to be kept
