@@ -1,22 +1,32 @@
-// catena_bench: Google Benchmark's options, or --table for run time against error.
+// catena_bench: Google Benchmark's options, or --table [kinematics | dynamics | statics] for run time against error.
 //
 // Figures are processor time, minimum of repeats; build with the preset `native` for the machine at hand.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
 #include <cstring>
+#include <string_view>
 
 #include "dynamics_table.hpp"
 #include "kinematics_table.hpp"
+#include "static_table.hpp"
 
 int main(int argc, char** argv) {
   // Threads of the BLAS would count as processor time and gain nothing on matrices of this kind.
   setenv("OPENBLAS_NUM_THREADS", "1", 0);
-  if (argc == 2 && std::strcmp(argv[1], "--table") == 0) {
-    bench::print_step_costs();
-    bench::print_kinematic_errors();
-    bench::print_acceleration_costs();
-    bench::print_dynamic_errors();
+  if (argc >= 2 && argc <= 3 && std::strcmp(argv[1], "--table") == 0) {
+    const std::string_view wanted = argc == 3 ? argv[2] : "";
+    const auto is_wanted = [&](std::string_view name) { return wanted.empty() || wanted == name; };
+    // Statics first: it shows the peak of the memory.
+    if (is_wanted("statics")) bench::print_static_tables();
+    if (is_wanted("kinematics")) {
+      bench::print_step_costs();
+      bench::print_kinematic_errors();
+    }
+    if (is_wanted("dynamics")) {
+      bench::print_acceleration_costs();
+      bench::print_dynamic_errors();
+    }
     return 0;
   }
   benchmark::Initialize(&argc, argv);

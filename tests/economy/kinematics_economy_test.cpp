@@ -1,10 +1,6 @@
 // What kinematics must not do: work that the scene or the question does not ask for.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
 #include "analysis/linkages.hpp"
 #include "catena/analysis/kinematics.hpp"
 #include "catena/elements/constraints/absolute_angle.hpp"
@@ -13,28 +9,13 @@
 #include "catena/elements/constraints/relative_angle.hpp"
 #include "catena/elements/constraints/weld.hpp"
 #include "catena/model/model_add.hpp"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size ? size : 1)) return p;
-  throw std::bad_alloc();
-}
-// Algorithms that can do without a buffer ask for it this way; it goes back through the same delete.
-[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(size ? size : 1);
-}
-[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+#include "economy/allocations.hpp"
 
 namespace catena {
 namespace {
 
 using testing::add_rod;
+using testing::allocations;
 using testing::driven_four_bar;
 using testing::FourBar;
 using testing::pin;
