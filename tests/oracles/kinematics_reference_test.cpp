@@ -7,23 +7,75 @@ namespace {
 
 using nlohmann::json;
 
-// Adds twelve crank positions of a column in the analysis number `analysis`.
-void add_turn(Comparison& comparison, const TextRun& run, std::size_t analysis, const std::string& column,
-              double allowed, const json& values, const std::function<double(const json&)>& pick) {
-  const std::vector<double> computed = run.column(column, analysis);
-  ASSERT_EQ(computed.size(), 73u) << column;
-  for (int k = 0; k < 12; ++k) comparison.add(column, allowed, computed[crank_row(k)], pick(values.at(crank_key(k))));
-}
+using Pick = std::function<double(const json&)>;
 
-std::function<double(const json&)> key(const std::string& name) {
+Pick key(const std::string& name) {
   return [name](const json& v) { return v.at(name).get<double>(); };
 }
-std::function<double(const json&)> entry(const std::string& name, std::size_t k) {
+Pick entry(const std::string& name, std::size_t k) {
   return [name, k](const json& v) { return v.at(name).at(k).get<double>(); };
 }
 
+/// Twelve crank positions of a run against a reference solution.
+class Turn {
+ public:
+  Turn(const TextRun& run, const std::string& reference) : run_(run), values_(reference_values(reference)) {}
+  ~Turn() { comparison_.expect(12); }
+
+  void add(std::size_t analysis, const std::string& column, double allowed, const Pick& pick) {
+    const std::vector<double> computed = run_.column(column, analysis);
+    ASSERT_EQ(computed.size(), 73u) << column;
+    for (int k = 0; k < 12; ++k) {
+      comparison_.add(column, allowed, computed[crank_row(k)], pick(values_.at(crank_key(k))));
+    }
+  }
+  /// Position, velocity and acceleration, in the kinematics: the second analysis.
+  void motion(const std::array<std::string, 3>& columns, const std::array<Pick, 3>& picks) {
+    for (std::size_t k = 0; k < 3; ++k) add(1, columns[k], allowed_[k], picks[k]);
+  }
+  void angle(const std::string& body, const std::array<Pick, 3>& picks) {
+    motion({body + ".angle", body + ".omega", body + ".alpha"}, picks);
+  }
+  void place(const std::string& point, const char* axis, const std::array<Pick, 3>& picks) {
+    motion({point + "." + axis, point + ".v" + axis, point + ".a" + axis}, picks);
+  }
+  /// Loads, in the inverse dynamics: the third analysis.
+  void load(const std::string& column, const Pick& pick) { add(2, column, load_error, pick); }
+  void force(const std::string& joint, const std::string& name) {
+    load(joint + ".fx", entry(name, 0));
+    load(joint + ".fy", entry(name, 1));
+  }
+
+ private:
+  static constexpr std::array allowed_ = {position_error, velocity_error, acceleration_error};
+  const TextRun& run_;
+  json values_;
+  Comparison comparison_;
+};
+
+/// A mechanism modelled in several ways: a scene, and the body or point that slides in it.
+using Models = std::vector<std::pair<const char*, std::string>>;
+
+/// Every model against the reference, by `compare`, and at every row with what the first one gives.
+template <class Compare>
+void compare_models(const Models& models, const char* reference, const Compare& compare) {
+  const TextRun first = run_data_scene(models[0].first);
+  for (const auto& [name, slide] : models) {
+    SCOPED_TRACE(name);
+    const TextRun run = run_data_scene(name);
+    Turn turn(run, reference);
+    compare(turn, slide);
+    Comparison rows;
+    for (const auto& [end, allowed] : {std::pair{".x", 1e-14}, {".vx", 1e-13}, {".ax", 1e-12}}) {
+      const std::vector<double> a = run.column(slide + end, 1), b = first.column(models[0].second + end, 1);
+      ASSERT_EQ(a.size(), b.size());
+      for (std::size_t k = 0; k < a.size(); ++k) rows.add(end, allowed, a[k], b[k]);
+    }
+    rows.expect(73);
+  }
+}
+
 TEST(KinematicReference, FourBarWithCouplerPointAndReactions) {
-  const json values = reference_values("fourbar_crank_rocker");
   json scene = data_scene("crank_rocker");
   // The reference's coupler point lies 0.12 m from A along the coupler, whose middle is at 0.125 m.
   scene["outputs"] = {"coupler.angle",  "rocker.angle",   "coupler.omega",  "rocker.omega",
@@ -32,117 +84,57 @@ TEST(KinematicReference, FourBarWithCouplerPointAndReactions) {
   scene["analyses"][2]["outputs"] = {"drive.load", "O2.fx", "O2.fy", "A.fx", "A.fy", "B.fx", "B.fy", "O4.fx", "O4.fy"};
   const TextRun run = run_text(scene.dump());
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
-  Comparison comparison;
-  add_turn(comparison, run, 1, "coupler.angle", position_error, values, key("theta3"));
-  add_turn(comparison, run, 1, "rocker.angle", position_error, values, key("theta4"));
-  add_turn(comparison, run, 1, "coupler.omega", velocity_error, values, key("omega3"));
-  add_turn(comparison, run, 1, "rocker.omega", velocity_error, values, key("omega4"));
-  add_turn(comparison, run, 1, "coupler.alpha", acceleration_error, values, key("alpha3"));
-  add_turn(comparison, run, 1, "rocker.alpha", acceleration_error, values, key("alpha4"));
-  const char* const axes[] = {"x", "y"};
-  const std::pair<const char*, const char*> joints[] = {{"O2", "R_ground_on_crank_O2"},
-                                                        {"A", "R_crank_on_coupler_A"},
-                                                        {"B", "R_coupler_on_rocker_B"},
-                                                        {"O4", "R_ground_on_rocker_O4"}};
-  for (std::size_t k = 0; k < 2; ++k) {
-    const std::string pen = "coupler.pen.", axis = axes[k];
-    add_turn(comparison, run, 1, pen + axis, position_error, values, entry("P", k));
-    add_turn(comparison, run, 1, pen + "v" + axis, velocity_error, values, entry("P_vel", k));
-    add_turn(comparison, run, 1, pen + "a" + axis, acceleration_error, values, entry("P_acc", k));
-    for (const auto& [joint, force] : joints)
-      add_turn(comparison, run, 2, std::string(joint) + ".f" + axis, load_error, values, entry(force, k));
-  }
-  add_turn(comparison, run, 2, "drive.load", load_error, values, key("torque_crank"));
-  comparison.expect(12);
+  Turn turn(run, "fourbar_crank_rocker");
+  turn.angle("coupler", {key("theta3"), key("omega3"), key("alpha3")});
+  turn.angle("rocker", {key("theta4"), key("omega4"), key("alpha4")});
+  turn.place("coupler.pen", "x", {entry("P", 0), entry("P_vel", 0), entry("P_acc", 0)});
+  turn.place("coupler.pen", "y", {entry("P", 1), entry("P_vel", 1), entry("P_acc", 1)});
+  turn.force("O2", "R_ground_on_crank_O2");
+  turn.force("A", "R_crank_on_coupler_A");
+  turn.force("B", "R_coupler_on_rocker_B");
+  turn.force("O4", "R_ground_on_rocker_O4");
+  turn.load("drive.load", key("torque_crank"));
 }
 
 TEST(KinematicReference, SliderCrankWithTorqueAndReactions) {
-  const json values = reference_values("slider_crank_inverse_dynamics");
   const TextRun run = run_data_scene("slider_crank_joints");
-  Comparison comparison;
-  add_turn(comparison, run, 1, "slider.x", position_error, values, key("slider_x"));
-  add_turn(comparison, run, 1, "slider.vx", velocity_error, values, key("slider_v"));
-  add_turn(comparison, run, 1, "slider.ax", acceleration_error, values, key("slider_a"));
-  add_turn(comparison, run, 1, "rod.angle", position_error, values, key("phi_rod"));
-  add_turn(comparison, run, 1, "rod.omega", velocity_error, values, key("omega_rod"));
-  add_turn(comparison, run, 1, "rod.alpha", acceleration_error, values, key("alpha_rod"));
-  add_turn(comparison, run, 2, "drive.load", load_error, values, key("torque_crank"));
-  add_turn(comparison, run, 2, "guide.fy", load_error, values, key("guide_normal_on_slider_y"));
-  const std::pair<const char*, const char*> joints[] = {
-      {"O", "R_ground_on_crank"}, {"A", "R_crank_on_rod"}, {"B", "R_rod_on_slider"}};
-  for (const auto& [joint, force] : joints) {
-    add_turn(comparison, run, 2, std::string(joint) + ".fx", load_error, values, entry(force, 0));
-    add_turn(comparison, run, 2, std::string(joint) + ".fy", load_error, values, entry(force, 1));
-  }
-  comparison.expect(12);
+  Turn turn(run, "slider_crank_inverse_dynamics");
+  turn.place("slider", "x", {key("slider_x"), key("slider_v"), key("slider_a")});
+  turn.angle("rod", {key("phi_rod"), key("omega_rod"), key("alpha_rod")});
+  turn.load("drive.load", key("torque_crank"));
+  turn.load("guide.fy", key("guide_normal_on_slider_y"));
+  turn.force("O", "R_ground_on_crank");
+  turn.force("A", "R_crank_on_rod");
+  turn.force("B", "R_rod_on_slider");
 }
 
 TEST(KinematicReference, SliderCrankInFourModels) {
-  const json values = reference_values("slider_crank_inverse_dynamics");
-  const std::pair<const char*, const char*> models[] = {{"slider_crank_joints", "slider"},
-                                                        {"slider_crank_slot", "rod.to"},
-                                                        {"slider_crank_coupler", "slider"},
-                                                        {"slider_crank_drivers", "rod.to"}};
-  const TextRun first = run_data_scene("slider_crank_joints");
-  for (const auto& [name, slide] : models) {
-    SCOPED_TRACE(name);
-    const TextRun run = run_data_scene(name);
-    Comparison comparison;
-    const std::string body = slide;
-    add_turn(comparison, run, 1, body + ".x", position_error, values, key("slider_x"));
-    add_turn(comparison, run, 1, body + ".vx", velocity_error, values, key("slider_v"));
-    add_turn(comparison, run, 1, body + ".ax", acceleration_error, values, key("slider_a"));
-    comparison.expect(12);
-    // And at every row what the joints give.
-    Comparison rows;
-    for (const auto& [end, allowed] : {std::pair{".x", 1e-14}, {".vx", 1e-13}, {".ax", 1e-12}}) {
-      const std::vector<double> a = run.column(body + end, 1), b = first.column(std::string("slider") + end, 1);
-      ASSERT_EQ(a.size(), b.size());
-      for (std::size_t k = 0; k < a.size(); ++k) rows.add(end, allowed, a[k], b[k]);
-    }
-    rows.expect(73);
-  }
+  const Models models = {{"slider_crank_joints", "slider"},
+                         {"slider_crank_slot", "rod.to"},
+                         {"slider_crank_coupler", "slider"},
+                         {"slider_crank_drivers", "rod.to"}};
+  compare_models(models, "slider_crank_inverse_dynamics", [](Turn& turn, const std::string& slide) {
+    turn.place(slide, "x", {key("slider_x"), key("slider_v"), key("slider_a")});
+  });
 }
 
 TEST(KinematicReference, QuickReturnInFourModels) {
-  const json values = reference_values("crank_slotted_lever_quick_return");
-  const std::pair<const char*, const char*> models[] = {{"quick_return_joints", "ram"},
-                                                        {"quick_return_slot", "link.end"},
-                                                        {"quick_return_coupler", "ram"},
-                                                        {"quick_return_drivers", "link.end"}};
-  const TextRun first = run_data_scene("quick_return_joints");
-  for (const auto& [name, ram] : models) {
-    SCOPED_TRACE(name);
-    const TextRun run = run_data_scene(name);
-    Comparison comparison;
-    add_turn(comparison, run, 1, "lever.angle", position_error, values, key("psi"));
-    add_turn(comparison, run, 1, "lever.omega", velocity_error, values, key("psi_d"));
-    add_turn(comparison, run, 1, "lever.alpha", acceleration_error, values, key("psi_dd"));
-    add_turn(comparison, run, 1, "slot.slide", position_error, values, key("s"));
-    add_turn(comparison, run, 1, "slot.slide_rate", velocity_error, values, key("s_d"));
-    comparison.expect(12);
-    Comparison rows;
-    for (const auto& [end, allowed] : {std::pair{".x", 1e-14}, {".vx", 1e-13}, {".ax", 1e-12}}) {
-      const std::vector<double> a = run.column(std::string(ram) + end, 1),
-                                b = first.column(std::string("ram") + end, 1);
-      ASSERT_EQ(a.size(), b.size());
-      for (std::size_t k = 0; k < a.size(); ++k) rows.add(end, allowed, a[k], b[k]);
-    }
-    rows.expect(73);
-  }
+  const Models models = {{"quick_return_joints", "ram"},
+                         {"quick_return_slot", "link.end"},
+                         {"quick_return_coupler", "ram"},
+                         {"quick_return_drivers", "link.end"}};
+  compare_models(models, "crank_slotted_lever_quick_return", [](Turn& turn, const std::string&) {
+    turn.angle("lever", {key("psi"), key("psi_d"), key("psi_dd")});
+    turn.add(1, "slot.slide", position_error, key("s"));
+    turn.add(1, "slot.slide_rate", velocity_error, key("s_d"));
+  });
 }
 
 TEST(KinematicReference, ChebyshevLambda) {
-  const json values = reference_values("chebyshev_lambda");
   const TextRun run = run_data_scene("chebyshev");
-  Comparison comparison;
-  add_turn(comparison, run, 1, "coupler.pen.x", position_error, values, key("Px"));
-  add_turn(comparison, run, 1, "coupler.pen.vx", velocity_error, values, key("Px_d"));
-  add_turn(comparison, run, 1, "coupler.pen.ax", acceleration_error, values, key("Px_dd"));
-  add_turn(comparison, run, 1, "coupler.pen.y", position_error, values, key("Py"));
-  add_turn(comparison, run, 1, "coupler.pen.vy", velocity_error, values, key("Py_d"));
-  add_turn(comparison, run, 1, "coupler.pen.ay", acceleration_error, values, key("Py_dd"));
-  comparison.expect(12);
+  Turn turn(run, "chebyshev_lambda");
+  turn.place("coupler.pen", "x", {key("Px"), key("Px_d"), key("Px_dd")});
+  turn.place("coupler.pen", "y", {key("Py"), key("Py_d"), key("Py_dd")});
 }
 
 // The reference gives speed and acceleration of the crank at each angle: twelve starts.
