@@ -10,7 +10,6 @@
 #include "catena/analysis/state_conversion.hpp"
 #include "catena/analysis/whole_turns.hpp"
 #include "catena/columns/energy.hpp"
-#include "catena/linalg/rank_revealing.hpp"
 
 namespace catena {
 namespace {
@@ -29,8 +28,8 @@ constexpr double reactions_determined = 1e-9;
 constexpr double start_dependence = 1e-7;
 // How far along a branch (rad, length scales) rows are chosen where it starts.
 constexpr double start_distance = 0.02;
-// Residuals of redundant rows, in length scales or rad, above which they contradict the others.
-constexpr double contradiction = 1e-8;
+// After so much time (s) drivers that rest at the start are looked at again.
+constexpr double moments[] = {1e-6, 1e-4, 1e-2, 1, 100};
 
 }  // namespace
 
@@ -128,46 +127,34 @@ Report Kinematics::prepare(double direction) {
   return report;
 }
 
-// Of more rows than needed an independent set, then the best one.
-bool Kinematics::choose_rows(std::span<const double> q) {
-  std::vector<double> values(at(plan_->trash_slot()) + 1);
-  evaluator_.start_jacobian(values);
-  evaluator_.set_configuration(q);
-  evaluator_.jacobian(values);
-  RankOptions options;
-  options.most_dependencies = options.most_null_vectors = 0;
-  RankReport rank =
-      reveal_rank(plan_->jacobian, std::span<const double>(values).first(at(plan_->trash_slot())), options);
-  if (rank.rank < plan_->columns) return false;
-  solver_.use_rows(std::move(rank.independent_rows));
-  solver_.exchange_rows(q);
-  return true;
-}
-
-// Where the rows in use come near to depending on each other others may do better. False: they would not.
-bool Kinematics::choose_better_rows() {
-  if (plan_->rows == plan_->columns) return false;
-  evaluator_.set_time(t_);
-  const bool better = solver_.exchange_rows(q_);
-  chosen_rcond_ = solver_.factor_at(q_);
-  if (better) {
-    margins_.clear();
-    largest_margins_.clear();
-    remember_margins();
+// Where the drivers rest: the branches along which the mechanism can go once they move, soon after, if they do.
+void Kinematics::find_ways(SingularPoint& point, double direction) {
+  std::vector<double> nu(at(plan_->rows));
+  for (double later : moments) {
+    if (!tables_reach(t_ + direction * later)) break;
+    evaluator_.set_time(t_ + direction * later);
+    evaluator_.nu(nu);
+    if (std::all_of(nu.begin(), nu.end(), [](double rate) { return rate == 0; })) continue;
+    point = find_branches(evaluator_, q_, {}, start_dependence, Drivers::about_to_move);
+    point.t = t_;
+    point.kind = SingularPoint::Kind::rest;
+    break;
   }
-  return better;
+  evaluator_.set_time(t_);
 }
 
 // The mechanism is given where branches meet: nothing says on which of them it is.
-Report Kinematics::start_singular(const SingularPoint& point, double direction) {
+Report Kinematics::start_singular(SingularPoint point, double direction) {
   Report report;
+  if (point.kind == SingularPoint::Kind::rest) find_ways(point, direction);
   singular_points_.push_back(point);
   const int count = static_cast<int>(point.tangents.size());
   if (point.kind == SingularPoint::Kind::rest || count == 0) {
     report.status = Status::singular;
     report.message = fmt::format(
-        "the motion starts at t = {:.12g} s in a singular configuration {}; start a little before or after it", t_,
-        count == 0 ? "from which no velocity goes on" : "in which the drivers rest");
+        "the motion starts at t = {:.12g} s in a singular configuration {}{}; start a little before or after it", t_,
+        point.kind != SingularPoint::Kind::rest ? "from which no velocity goes on" : "in which the drivers rest",
+        point.branches.empty() ? "" : ", at one of the branches, " + point.describe_ways());
     return report;
   }
   const int branch = count == 1 ? 1 : options_.branch;
@@ -193,19 +180,6 @@ Report Kinematics::start_singular(const SingularPoint& point, double direction) 
   }
   report = take_branch(point, branch, direction);
   prepared_ = report.ok();
-  return report;
-}
-
-// Rows that are not solved with must follow from the others at every instant, not only where they were found redundant.
-Report Kinematics::check_redundant_rows() {
-  Report report;
-  int worst = -1;
-  if (!(solver_.redundant_residual(solver_.phi(), &worst) > contradiction)) return report;
-  const int element = plan_->row_element[at(worst)];
-  report.status = Status::inconsistent;
-  report.message = fmt::format("{} \"{}\" contradicts the other constraints at t = {:.12g} s: it misses by {:.3g} {}",
-                               model_->element_type(element), model_->element_name(element), t_,
-                               std::abs(solver_.phi()[at(worst)]), plan_->row_is_angle[at(worst)] ? "rad" : "m");
   return report;
 }
 
@@ -324,6 +298,7 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& needs, RowObse
     if (const Report consistent = check_redundant_rows(); !consistent.ok()) return end(consistent);
     if (const Report sound = watched_.check(); !sound.ok()) return end(sound);
     if (const Report solved = solve_rates(needs); !solved.ok()) return end(solved);
+    if (const Report consistent = check_redundant_rates(); !consistent.ok()) return end(consistent);
     predictor_.push(t_, q_, has_velocity_ ? std::span<const double>(qd_) : std::span<const double>{},
                     has_acceleration_ ? std::span<const double>(qdd_) : std::span<const double>{});
     const Snapshot snapshot{.evaluator = evaluator_,

@@ -64,7 +64,8 @@ class Kinematics {
  private:
   bool assemble_nearby();
   Report prepare(double direction);
-  Report start_singular(const SingularPoint& point, double direction);
+  void find_ways(SingularPoint& point, double direction);
+  Report start_singular(SingularPoint point, double direction);
   bool choose_rows(std::span<const double> q);
   bool choose_better_rows();
   enum class StepOutcome { made, dipped, too_long, crossed };
@@ -78,10 +79,12 @@ class Kinematics {
   double largest_rate() const;
   Report stuck(double t);
   Report check_redundant_rows();
+  Report check_redundant_rates();
+  Report contradicts(int row, const std::string& how);
   void scatter_applied_forces();
   Report solve_multipliers();
 
-  // Singular configurations: kinematics_passage.cpp.
+  // Singular configurations: kinematics_passage.cpp, kinematics_instants.cpp.
   enum class Passage { none, regular, passed, failed };
   bool add_node(MotionBridge& bridge, double t, double allowed);
   bool build_bridge(MotionBridge& bridge, double centre, double h, double reach);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "catena/analysis/redundancy.hpp"
 #include "catena/linalg/rank_revealing.hpp"
 
 namespace catena {
@@ -98,21 +99,25 @@ MobilityReport analyse_mobility(Evaluator& evaluator, std::span<const double> q)
   report.columns = plan.columns;
   report.rows = plan.rows;
   report.rank = rank.rank;
-  report.independent_rows = rank.independent_rows;
-  report.redundant_rows = rank.dependent_rows;
   report.rank_without_drivers = rank_without_drivers(evaluator, entries, rank.rank);
   if (!rank.warning.empty()) report.warnings.push_back(rank.warning);
-  for (std::size_t k = 0; k < rank.dependent_rows.size(); ++k) {
-    const int element = plan.row_element[at(rank.dependent_rows[k])];
+  std::vector<double> nu(at(plan.rows));
+  if (!rank.dependent_rows.empty()) evaluator.nu(nu);
+  for (const RedundantRow& redundant : choose_redundant_rows(plan, rank)) {
+    const int element = plan.row_element[at(redundant.row)];
     if (report.redundant_elements.empty() || report.redundant_elements.back() != element) {
       report.redundant_elements.push_back(element);
       report.dependent_on.emplace_back();
     }
-    if (static_cast<int>(k) >= rank.left_null_vectors.count()) continue;
     std::vector<int>& others = report.dependent_on.back();
-    for (int n = rank.left_null_vectors.start[k]; n < rank.left_null_vectors.start[k + 1]; ++n) {
-      const int other = plan.row_element[at(rank.left_null_vectors.index[at(n)])];
+    for (const auto& [row, weight] : redundant.combination) {
+      const int other = plan.row_element[at(row)];
       if (other != element && std::find(others.begin(), others.end(), other) == others.end()) others.push_back(other);
+    }
+    std::sort(others.begin(), others.end());
+    std::vector<int>& contradictory = report.contradictory_elements;
+    if (!agrees(redundant, nu) && (contradictory.empty() || contradictory.back() != element)) {
+      contradictory.push_back(element);
     }
   }
   if (report.dof() > 0) report.free_bodies = name_free_bodies(evaluator, rank);

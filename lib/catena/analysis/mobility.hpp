@@ -19,10 +19,9 @@ struct MobilityReport {
   int columns = 0, rows = 0;
   int rank = 0;  ///< of Phi_q
   int rank_without_drivers = 0;
-  std::vector<int> independent_rows;           ///< a maximal independent set, ascending
-  std::vector<int> redundant_rows;             ///< the others
-  std::vector<int> redundant_elements;         ///< elements with redundant rows, model numbering
+  std::vector<int> redundant_elements;         ///< elements with redundant rows (redundancy.hpp), model numbering
   std::vector<std::vector<int>> dependent_on;  ///< per redundant element: the elements it depends on
+  std::vector<int> contradictory_elements;     ///< redundant ones whose velocities the others do not allow
   std::vector<std::string> free_bodies;        ///< bodies that take part in the free motions, the most mobile first
   std::vector<std::string> warnings;
 

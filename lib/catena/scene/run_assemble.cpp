@@ -116,9 +116,12 @@ void run_check(AnalysisContext& context, AnalysisResult& result) {
   report.warnings.insert(report.warnings.end(), mobility.warnings.begin(), mobility.warnings.end());
   for (std::size_t k = 0; k < mobility.redundant_elements.size() && k < 10; ++k) {
     if (mobility.dependent_on[k].empty()) continue;
-    report.warnings.push_back(fmt::format("\"{}\" repeats what follows from {}",
-                                          model.element_name(mobility.redundant_elements[k]),
-                                          quoted_names(model, mobility.dependent_on[k])));
+    const std::vector<int>& wrong = mobility.contradictory_elements;
+    const bool agrees = std::find(wrong.begin(), wrong.end(), mobility.redundant_elements[k]) == wrong.end();
+    report.warnings.push_back(fmt::format("\"{}\" {} {}{}", model.element_name(mobility.redundant_elements[k]),
+                                          agrees ? "repeats what follows from" : "contradicts",
+                                          quoted_names(model, mobility.dependent_on[k]),
+                                          agrees ? "" : ": the places fit, the velocities do not"));
   }
   if (outcome.ok()) {
     check_velocities(analysis, model, report);
