@@ -213,6 +213,41 @@ TEST(KinematicsSingular, DriversThatRestAtAFlatPositionPassIt) {
   }
 }
 
+// The branches at rest are those of the moving mechanism, for a crank that turns at 1 rad/s once it turns.
+TEST(KinematicsSingular, BranchesAreListedWhereTheDriversRest) {
+  RowFunction none([](const Snapshot&) { return true; });
+  Kinematics moving(driven_four_bar(parallelogram, ramp(pi - 1, 1)));
+  ASSERT_TRUE(moving.run(TimeGrid::range(0, 2, 0.1), {}, none).ok());
+  const SingularPoint& reference = moving.singular_points().at(0);
+  ASSERT_EQ(reference.tangents.size(), 2u);
+  const std::array through = {pi - 1, 3.0, -3.0, 1.0}, back = {pi - 1, 2.0, -1.0, 0.0};
+  for (const auto& [function, sign] : {std::pair(through, 1.0), std::pair(back, -1.0)}) {
+    Kinematics kinematics(driven_four_bar(parallelogram, TimeFunction<double>::polynomial(function)));
+    const AnalysisReport report = kinematics.run(TimeGrid::range(0, 2, 0.1), {}, none);
+    ASSERT_TRUE(report.ok()) << report.message;
+    const SingularPoint& point = kinematics.singular_points().at(0);
+    ASSERT_EQ(point.tangents.size(), 2u);
+    for (std::size_t k = 0; k < 2; ++k) {
+      for (std::size_t c = 0; c < 9; ++c) EXPECT_NEAR(point.tangents[k][c], sign * reference.tangents[k][c], 1e-5);
+    }
+    ASSERT_EQ(report.warnings.size(), 1u);
+    EXPECT_NE(report.warnings[0].find("branch 2"), std::string::npos) << report.warnings[0];
+  }
+}
+
+TEST(KinematicsSingular, BranchesAreListedWhereTheMotionStartsAtRest) {
+  RowFunction none([](const Snapshot&) { return true; });
+  auto model = driven_four_bar(parallelogram, TimeFunction<double>::polynomial(std::array{pi, 0.0, 0.5}));
+  Kinematics kinematics(model);
+  const AnalysisReport report = kinematics.run(TimeGrid::range(0, 2, 0.1), {}, none);
+  EXPECT_EQ(report.status, Status::singular);
+  EXPECT_NE(report.message.find("the drivers rest"), std::string::npos) << report.message;
+  EXPECT_NE(report.message.find("branch 2"), std::string::npos) << report.message;
+  ASSERT_EQ(kinematics.singular_points().size(), 1u);
+  ASSERT_EQ(kinematics.singular_points()[0].tangents.size(), 2u);
+  for (const auto& tangent : kinematics.singular_points()[0].tangents) EXPECT_NEAR(tangent[2], 1, 1e-9);
+}
+
 // Two parallelograms in one loop of equations: rocker 1 turns crank 2, and the distance of two points, one on crank 1
 // and one on rocker 2, is driven. Both are flat at the same instant: nullity two, and no determinant changes its sign.
 TEST(KinematicsSingular, AnEvenNullityIsNotMissed) {

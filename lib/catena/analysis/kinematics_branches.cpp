@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
-#include "catena/analysis/scaling.hpp"
+#include "catena/analysis/quadratics.hpp"
 #include "catena/assembly/constraint_projector.hpp"
 #include "catena/linalg/rank_revealing.hpp"
 
@@ -15,123 +14,7 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// Coefficients below this part of the terms they are made of are zero.
-constexpr double vanishing = 1e-6;
-// Roots closer than this, in units of the motion's own rates, are the same; double roots are found no sharper.
-constexpr double same_root = 1e-3;
-constexpr std::size_t most_branches = 64;
-constexpr int starts_per_root = 40;
-constexpr int most_iterations = 60;
-
-/// Quadratic polynomials F_i(a) = c_i + L_i a + a^T Q_i a in k unknowns.
-struct Quadratics {
-  std::size_t k = 0;
-  std::vector<double> constant;                // per polynomial
-  std::vector<std::vector<double>> linear;     // k each
-  std::vector<std::vector<double>> quadratic;  // k x k each, symmetric
-
-  void evaluate(std::span<const double> a, std::vector<double>& f, std::vector<double>& jacobian) const {
-    f.assign(constant.size(), 0);
-    jacobian.assign(constant.size() * k, 0);
-    for (std::size_t i = 0; i < constant.size(); ++i) {
-      f[i] = constant[i];
-      for (std::size_t j = 0; j < k; ++j) {
-        double row = 0;
-        for (std::size_t l = 0; l < k; ++l) row += quadratic[i][j * k + l] * a[l];
-        f[i] += a[j] * (linear[i][j] + row);
-        jacobian[i * k + j] = linear[i][j] + 2 * row;
-      }
-    }
-  }
-};
-
-double square_sum(std::span<const double> x) {
-  double sum = 0;
-  for (double value : x) sum += value * value;
-  return sum;
-}
-
-/// Solves (J^T J + damping I) x = -J^T f by elimination with pivots; J has k columns.
-std::vector<double> damped_step(const std::vector<double>& jacobian, const std::vector<double>& f, std::size_t k,
-                                double damping) {
-  std::vector<double> m(k * (k + 1), 0.0);
-  for (std::size_t r = 0; r < k; ++r) {
-    for (std::size_t c = 0; c < k; ++c) {
-      for (std::size_t i = 0; i < f.size(); ++i) m[r * (k + 1) + c] += jacobian[i * k + r] * jacobian[i * k + c];
-    }
-    m[r * (k + 1) + r] += damping;
-    for (std::size_t i = 0; i < f.size(); ++i) m[r * (k + 1) + k] -= jacobian[i * k + r] * f[i];
-  }
-  for (std::size_t p = 0; p < k; ++p) {
-    std::size_t best = p;
-    for (std::size_t r = p + 1; r < k; ++r) {
-      if (std::abs(m[r * (k + 1) + p]) > std::abs(m[best * (k + 1) + p])) best = r;
-    }
-    for (std::size_t c = 0; c <= k; ++c) std::swap(m[p * (k + 1) + c], m[best * (k + 1) + c]);
-    for (std::size_t r = 0; r < k; ++r) {
-      if (r == p) continue;
-      const double factor = m[r * (k + 1) + p] / m[p * (k + 1) + p];
-      for (std::size_t c = p; c <= k; ++c) m[r * (k + 1) + c] -= factor * m[p * (k + 1) + c];
-    }
-  }
-  std::vector<double> x(k);
-  for (std::size_t r = 0; r < k; ++r) x[r] = m[r * (k + 1) + k] / m[r * (k + 1) + r];
-  return x;
-}
-
-/// Levenberg-Marquardt from `a`; true at a root.
-bool solve_from(const Quadratics& system, std::vector<double>& a) {
-  std::vector<double> f, jacobian, trial, trial_f, trial_jacobian;
-  system.evaluate(a, f, jacobian);
-  double now = square_sum(f), damping = 1e-6;
-  for (int iteration = 0; iteration < most_iterations && now > 1e-30; ++iteration) {
-    const std::vector<double> step = damped_step(jacobian, f, system.k, damping);
-    trial = a;
-    for (std::size_t j = 0; j < system.k; ++j) trial[j] += step[j];
-    system.evaluate(trial, trial_f, trial_jacobian);
-    const double then = square_sum(trial_f);
-    if (!(then < now)) {
-      damping = std::max(10 * damping, 1e-12);
-      if (damping > 1e6) break;
-      continue;
-    }
-    damping /= 10;
-    a = trial;
-    f = trial_f;
-    jacobian = trial_jacobian;
-    now = then;
-  }
-  return now < vanishing * vanishing;
-}
-
-/// The real roots; `first` is taken as one, unless empty. Sorted by their distance from the first.
-std::vector<std::vector<double>> real_roots(const Quadratics& system, const std::vector<double>& first) {
-  std::vector<std::vector<double>> roots;
-  if (!first.empty()) roots.push_back(first);
-  const auto distance = [](const std::vector<double>& a, const std::vector<double>& b) {
-    double sum = 0;
-    for (std::size_t j = 0; j < a.size(); ++j) sum += (a[j] - b[j]) * (a[j] - b[j]);
-    return std::sqrt(sum);
-  };
-  std::mt19937_64 random(1);
-  std::normal_distribution<double> normal;
-  const int starts = starts_per_root << system.k;
-  for (int s = 0; s < starts && roots.size() < most_branches; ++s) {
-    std::vector<double> a(system.k);
-    const double reach = std::exp(1.5 * normal(random));
-    for (double& value : a) value = reach * normal(random);
-    if (!solve_from(system, a)) continue;
-    const double size = 1 + std::sqrt(square_sum(a));
-    const bool known =
-        std::any_of(roots.begin(), roots.end(), [&](const auto& root) { return distance(root, a) < same_root * size; });
-    if (!known && size < 1e6) roots.push_back(a);
-  }
-  if (roots.empty()) return roots;
-  const std::vector<double> origin = first.empty() ? std::vector<double>(system.k, 0.0) : first;
-  std::stable_sort(roots.begin(), roots.end(),
-                   [&](const auto& a, const auto& b) { return distance(a, origin) < distance(b, origin); });
-  return roots;
-}
+constexpr double vanishing = Quadratics::vanishing;
 
 /// What the search works on: Phi_q at the singular configuration and its null spaces.
 struct NullSpaces {
@@ -167,9 +50,9 @@ NullSpaces find_null_spaces(Evaluator& evaluator, std::span<const double> q, dou
   return spaces;
 }
 
-/// w_i^T gamma(qd0 + rate sum a_j z_j) / rate^2; with `resting` less what it is for qd = 0.
+/// w_i^T (gamma(qd0 + rate sum a_j z_j) - own) / rate^2; `own`: what is no condition on the direction, empty: nothing.
 Quadratics make_quadratics(Evaluator& evaluator, const NullSpaces& spaces, std::span<const double> qd0, double rate,
-                           bool resting) {
+                           std::span<const double> own) {
   const Plan& plan = evaluator.plan();
   const std::size_t k = spaces.z.size();
   const auto count = at(spaces.rank.left_null_vectors.count());
@@ -220,15 +103,10 @@ Quadratics make_quadratics(Evaluator& evaluator, const NullSpaces& spaces, std::
     for (std::size_t i = 0; i < count; ++i) mixed[i][j * k + j] = (plus[j][i] + minus[j][i]) / 2 - centre[i];
   }
   std::vector<double> still(count, 0.0);
-  if (resting) {
-    // What the drivers' own accelerations add is no condition on the direction.
-    const std::vector<double> nothing(qd.size(), 0.0);
-    evaluator.gamma(nothing, gamma);
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto rows = spaces.rank.left_null_vectors.indices(static_cast<int>(i));
-      const auto weights = spaces.rank.left_null_vectors.values(static_cast<int>(i));
-      for (std::size_t n = 0; n < rows.size(); ++n) still[i] += weights[n] * gamma[at(rows[n])] / (rate * rate);
-    }
+  for (std::size_t i = 0; i < count && !own.empty(); ++i) {
+    const auto rows = spaces.rank.left_null_vectors.indices(static_cast<int>(i));
+    const auto weights = spaces.rank.left_null_vectors.values(static_cast<int>(i));
+    for (std::size_t n = 0; n < rows.size(); ++n) still[i] += weights[n] * own[at(rows[n])] / (rate * rate);
   }
   for (std::size_t i = 0; i < count; ++i) {
     std::vector<double> linear(k);
@@ -247,6 +125,23 @@ Quadratics make_quadratics(Evaluator& evaluator, const NullSpaces& spaces, std::
     all.quadratic.push_back(std::move(mixed[i]));
   }
   return all;
+}
+
+/// The speed of the fastest driver, m/s or rad/s; the accelerations of all of them go to their rows of `own`, of other
+/// rows zero.
+double largest_driver_speed(const Evaluator& evaluator, std::span<double> own) {
+  const Plan& plan = evaluator.plan();
+  double speed = 0;
+  for (int r = 0; r < plan.rows; ++r) {
+    const int element = plan.row_element[at(r)];
+    own[at(r)] = 0;
+    if (evaluator.model().elements[at(element)].kind != ElementKind::driver) continue;
+    // In the solver's rows those of squared distances have the second derivative of c as others have.
+    const Taylor<double> value = evaluator.element_value(element);
+    own[at(r)] = value.dd;
+    speed = std::max(speed, std::abs(value.d));
+  }
+  return speed;
 }
 
 /// Bodies ordered by `share`, those with less than a thousandth of the largest left out.
@@ -299,6 +194,12 @@ void put_into_words(const Evaluator& evaluator, SingularPoint& point) {
 
 }  // namespace
 
+void SingularPoint::put_first(std::size_t k) {
+  const auto place = static_cast<std::ptrdiff_t>(k);
+  std::rotate(tangents.begin(), tangents.begin() + place, tangents.begin() + place + 1);
+  if (k < branches.size()) std::rotate(branches.begin(), branches.begin() + place, branches.begin() + place + 1);
+}
+
 std::string_view SingularPoint::kind_name() const {
   switch (kind) {
     case Kind::branch_point:
@@ -325,8 +226,13 @@ std::string SingularPoint::describe_branches() const {
   return text;
 }
 
+std::string SingularPoint::describe_ways() const {
+  return fmt::format("{} that meet there (for a fastest driver of 1 rad/s or m/s: {})", branches.size(),
+                     describe_branches());
+}
+
 SingularPoint find_branches(Evaluator& evaluator, std::span<const double> q, std::span<const double> along,
-                            double threshold) {
+                            double threshold, Drivers drivers) {
   const Plan& plan = evaluator.plan();
   SingularPoint point;
   point.t = evaluator.time();
@@ -368,7 +274,9 @@ SingularPoint find_branches(Evaluator& evaluator, std::span<const double> q, std
   }
   // Whether a null vector can be followed with the drivers at rest: w^T gamma is then zero for it.
   const std::vector<double> nothing(qd0.size(), 0.0);
-  const Quadratics still = make_quadratics(evaluator, spaces, nothing, 1, true);
+  std::vector<double> own(at(plan.rows));
+  evaluator.gamma(nothing, own);
+  const Quadratics still = make_quadratics(evaluator, spaces, nothing, 1, own);
   point.held_to_second_order = true;
   for (std::size_t j = 0; j < still.k; ++j) {
     bool held = false;
@@ -382,13 +290,20 @@ SingularPoint find_branches(Evaluator& evaluator, std::span<const double> q, std
     point.tangents.push_back(qd0);
     return point;
   }
-  const Quadratics system = make_quadratics(evaluator, spaces, qd0, rate, false);
+  double speed = 1;
+  if (drivers == Drivers::about_to_move) {
+    speed = largest_driver_speed(evaluator, own);
+  } else {
+    own.clear();
+  }
+  const Quadratics system = make_quadratics(evaluator, spaces, qd0, rate, own);
   std::vector<double> first;
   if (!along.empty()) first.assign(system.k, 0.0);
   for (const auto& root : real_roots(system, first)) {
     std::vector<double> tangent = qd0;
     for (std::size_t c = 0; c < tangent.size(); ++c) {
       for (std::size_t j = 0; j < system.k; ++j) tangent[c] += rate * root[j] * spaces.z[j][c];
+      tangent[c] /= speed;
     }
     point.tangents.push_back(std::move(tangent));
   }

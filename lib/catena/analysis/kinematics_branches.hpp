@@ -7,7 +7,9 @@
 // quadratic equations in a, one for one at a simple branch point: two real roots = two branches, a double root = they
 // touch, none = the configuration is isolated. With more null vectors the real roots are searched for by Newton's
 // method from many starts, up to a nullity of `most_nullity`; above it the nullity and the bodies are all that is said.
-// Where the drivers rest (nu = 0) no velocity tells branches apart.
+// Where the drivers rest (nu = 0) no velocity tells branches apart, but the ways do along which the mechanism moves
+// once they do: the same equations with the speeds that the drivers have a moment later, and no accelerations of
+// theirs.
 #pragma once
 
 #include <span>
@@ -28,26 +30,35 @@ struct SingularPoint {
   };
   Kind kind = Kind::branch_point;
   double t = 0;
-  int nullity = 1;        ///< of the driven Jacobian
-  std::vector<double> q;  ///< the configuration, plan order
-  std::vector<std::vector<double>>
-      tangents;                       ///< velocities of the branches, plan order; the first one goes on as before
-  std::vector<std::string> branches;  ///< the same in words: which bodies move how
-  std::vector<std::string> bodies;    ///< those that take part in the null vectors, the most mobile first
+  int nullity = 1;                            ///< of the driven Jacobian
+  std::vector<double> q;                      ///< the configuration, plan order
+  std::vector<std::vector<double>> tangents;  ///< velocities of the branches, plan order; the first one goes on as
+                                              ///< before. At rest: for a fastest driver of speed 1
+  std::vector<std::string> branches;          ///< the same in words: which bodies move how
+  std::vector<std::string> bodies;            ///< those that take part in the null vectors, the most mobile first
   /// Whether positions near this one are only reached by moving the drivers: a null vector that cannot be followed.
   bool held_to_second_order = false;
 
+  /// Makes branch k, counted from zero, the first one.
+  void put_first(std::size_t k);
   /// The name used in result files.
   std::string_view kind_name() const;
   /// "branch 1 (goes on as before): ...; branch 2: ..."
   std::string describe_branches() const;
+  /// The same for drivers that rest: where the branches lead once they move.
+  std::string describe_ways() const;
 };
 
 inline constexpr int most_nullity = 6;
 
+enum class Drivers {
+  moving,         ///< at the evaluator's time as in the motion
+  about_to_move,  ///< they rest, and the evaluator's time is a moment later: tangents for a fastest driver of speed 1
+};
+
 /// The branches at the evaluator's time and the singular configuration q. `along`: the velocity of the motion that came
 /// here, empty if it starts here. `threshold`: length below which rows count as dependent, see RankOptions.
 SingularPoint find_branches(Evaluator& evaluator, std::span<const double> q, std::span<const double> along,
-                            double threshold);
+                            double threshold, Drivers drivers = Drivers::moving);
 
 }  // namespace catena

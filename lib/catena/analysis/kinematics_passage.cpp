@@ -1,14 +1,15 @@
-// Across singular configurations: where they are, which branches meet there, and on which one the motion goes on.
+// Across singular configurations: which branches meet there, and on which one the motion goes on.
 //
 // The branch is extrapolated from two instants before the suspected one to two behind it and solved for there, where
 // the equations determine it again. Hermite's polynomial through the four (kinematics_bridge.hpp) must then meet the
 // constraints all the way: with links that only nearly align it does not, since the true branch turns away. Along it
-// the smallest pivots of the blocks are smooth, without the rounding that Newton's method suffers here, and the instant
-// at which one vanishes is found to some 1e-13 of the bridge; there the null spaces and the branches are taken.
+// the singular instants are found (kinematics_instants.cpp), and there the null spaces and the branches are taken.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "catena/analysis/kinematics.hpp"
 
@@ -23,23 +24,14 @@ constexpr double allowance = 0.2;
 // Residual of the polynomial, in length scales or rad, beyond what rounding explains.
 constexpr double bridge_tolerance = 2e-12;
 constexpr int samples = 9;
-// A pivot whose least size is this part of what it is at the ends vanishes.
-constexpr double vanishing = 1e-6;
-// Drivers that move less than the first part of what they do at the ends of the bridge may rest nearby; they do if less
-// than the second part is left.
-constexpr double slow = 1e-3, resting = 1e-6;
+// So much of a bridge is a moment: drivers that rest move a moment later, and the mechanism is still there.
+constexpr double moment = 2e-3;
 // Length below which rows count as dependent at a singular configuration found to rounding.
 constexpr double dependence = 1e-7;
 // The other branch is entered over this much motion; it must be found this near to its tangent, as part of its distance
 // from the nearest other branch.
 constexpr double entries[] = {0.02, 0.01, 0.005, 0.002, 0.001, 3e-4};
 constexpr double entry_allowance = 0.2;
-
-double norm_of(std::span<const double> x) {
-  double sum = 0;
-  for (double value : x) sum += value * value;
-  return std::sqrt(sum);
-}
 
 }  // namespace
 
@@ -106,166 +98,30 @@ bool Kinematics::follows_constraints(const MotionBridge& bridge, double from, do
   return true;
 }
 
-// False where the matrix is singular to the last digit.
-bool Kinematics::margins_on(const MotionBridge& bridge, double t, std::vector<BlockMargin>& margins) {
-  evaluator_.set_time(t);
-  bridge.evaluate(t, trial_, {}, {});
-  if (!(solver_.factor_at(trial_) > 0)) return false;
-  const auto found = solver_.block_margins();
-  margins.assign(found.begin(), found.end());
-  return true;
-}
-
-// The instant between a and b where the block's determinant changes its sign, or else where it is least: nearly so
-// first, since a pivot alone may be small elsewhere, then by the pivot, which vanishes more sharply.
-double Kinematics::refine_instant(const MotionBridge& bridge, std::size_t block, double a, double b) {
-  std::vector<BlockMargin> margins;
-  bool hit = false, sharp = false;
-  const auto margin = [&](double t) {
-    hit = hit || !margins_on(bridge, t, margins);
-    return hit ? 0.0 : sharp ? margins[block].pivot : margins[block].determinant;
-  };
-  double fa = margin(a), fb = margin(b);
-  const double width = 1e-15 * (std::abs(a) + std::abs(b)) + 1e-14 * std::abs(b - a);
-  if ((fa < 0) != (fb < 0)) {
-    // Regula falsi with halving of a value that stays (Illinois), and a bisection now and then.
-    for (int k = 0; k < 80 && std::abs(b - a) > width; ++k) {
-      double t = k % 4 == 3 || fb == fa ? (a + b) / 2 : b - fb * (b - a) / (fb - fa);
-      if (!(std::min(a, b) < t && t < std::max(a, b))) t = (a + b) / 2;
-      const double f = margin(t);
-      if (hit || f == 0) return t;
-      if ((f < 0) != (fb < 0)) {
-        a = b;
-        fa = fb;
-      } else {
-        fa /= 2;
-      }
-      b = t;
-      fb = f;
-    }
-    return b;
-  }
-  const double golden = (std::sqrt(5.0) - 1) / 2, rough = 1e-5 * std::abs(b - a);
-  for (const double enough : {rough, width}) {
-    if (enough == width) a -= rough, b += rough, sharp = true;
-    double c = b - golden * (b - a), d = a + golden * (b - a);
-    double fc = std::abs(margin(c)), fd = std::abs(margin(d));
-    while (std::abs(b - a) > std::max(enough, 4e-16 * std::abs(b))) {
-      const bool left = fc < fd;
-      (left ? b : a) = left ? d : c;
-      (left ? d : c) = left ? c : d;
-      (left ? fd : fc) = left ? fc : fd;
-      const double t = left ? b - golden * (b - a) : a + golden * (b - a);
-      (left ? c : d) = t;
-      (left ? fc : fd) = std::abs(margin(t));
-      if (hit) return t;
-    }
-  }
-  return (a + b) / 2;
-}
-
-std::vector<double> Kinematics::singular_instants(const MotionBridge& bridge, double from, double to) {
-  std::vector<double> instants, times;
-  std::vector<std::vector<BlockMargin>> margins;
-  for (int k = 0; k < samples; ++k) {
-    double t = from + (to - from) * k / (samples - 1);
-    std::vector<BlockMargin> found;
-    // A sample that falls on the singular instant itself is moved off it.
-    for (int nudge = 0; nudge < 3 && !margins_on(bridge, t, found); ++nudge) t += 1e-9 * (to - from);
-    if (found.empty()) continue;
-    times.push_back(t);
-    margins.push_back(std::move(found));
-  }
-  if (times.size() < 3) return instants;
-  const std::size_t blocks = margins.front().size();
-  std::vector<BlockMargin> before, after;
-  for (std::size_t k = 0; k + 1 < times.size(); ++k) {
-    std::vector<char> explained(blocks, 0);
-    for (std::size_t b = 0; b < blocks; ++b) {
-      if (explained[b] || (margins[k][b].pivot < 0) == (margins[k + 1][b].pivot < 0)) continue;
-      const double t = refine_instant(bridge, b, times[k], times[k + 1]);
-      instants.push_back(t);
-      // What changes at the same instant is explained by it.
-      const double near = 1e-7 * (to - from);
-      if (!margins_on(bridge, t - near, before) || !margins_on(bridge, t + near, after)) continue;
-      for (std::size_t other = b; other < blocks; ++other) {
-        if ((before[other].pivot < 0) != (after[other].pivot < 0)) explained[other] = 1;
-      }
-    }
-  }
-  if (instants.empty()) {
-    // No sign changed: pivots that come and go, an even number of them or one that only touches zero.
-    double least = 1;
-    std::size_t block = 0, place = 0;
-    for (std::size_t b = 0; b < blocks; ++b) {
-      const double ends = std::max(std::abs(margins.front()[b].determinant), std::abs(margins.back()[b].determinant));
-      for (std::size_t k = 1; k + 1 < times.size(); ++k) {
-        const double part = std::abs(margins[k][b].determinant) / ends;
-        if (part < least) least = part, block = b, place = k;
-      }
-    }
-    if (least < 1) {
-      const double ends =
-          std::max(std::abs(margins.front()[block].determinant), std::abs(margins.back()[block].determinant));
-      const double t = refine_instant(bridge, block, times[place - 1], times[place + 1]);
-      if (!margins_on(bridge, t, before) || std::abs(before[block].determinant) < vanishing * ends)
-        instants.push_back(t);
-    }
-  }
-  std::sort(instants.begin(), instants.end());
-  return instants;
-}
-
-// The instant near t at which the drivers rest: where they turn back the velocity tells it better than a pivot that
-// only touches zero, and where they go through the pivot is flat. t itself if they do not rest.
-bool Kinematics::find_rest(const MotionBridge& bridge, double& t, double from, double to) {
-  std::vector<double> nu(at(plan_->rows)), reference(nu), q(q_.size());
-  const auto nu_at = [&](double instant, std::vector<double>& out) {
-    evaluator_.set_time(instant);
-    bridge.evaluate(instant, q, {}, {});
-    evaluator_.set_configuration(q);
-    evaluator_.nu(out);
-    return norm_of(out);
-  };
-  const double most = std::max(nu_at(to, nu), nu_at(from, reference));
-  if (nu_at(t, nu) > slow * most) return false;
-  const auto along = [&](double instant) {
-    nu_at(instant, nu);
-    double sum = 0;
-    for (std::size_t r = 0; r < nu.size(); ++r) sum += nu[r] * reference[r];
-    return sum;
-  };
-  double a = from, b = to, rest = t;
-  if (along(b) < 0) {
-    while (std::abs(b - a) > 1e-15 * std::abs(to - from) && (a + b) / 2 != a && (a + b) / 2 != b) {
-      const double middle = (a + b) / 2;
-      (along(middle) > 0 ? a : b) = middle;
-    }
-    rest = (a + b) / 2;
-  } else {
-    a = t - 0.05 * (to - from), b = t + 0.05 * (to - from);
-    for (int k = 0; k < 80; ++k) {
-      const double left = a + (b - a) / 3, right = b - (b - a) / 3;
-      (nu_at(left, nu) < nu_at(right, nu) ? b : a) = nu_at(left, nu) < nu_at(right, nu) ? right : left;
-    }
-    rest = (a + b) / 2;
-  }
-  if (nu_at(rest, nu) > resting * most || std::abs(rest - t) > 0.05 * std::abs(to - from)) return false;
-  t = rest;
-  return true;
-}
-
 SingularPoint Kinematics::look_at(const MotionBridge& bridge, double t, double from, double to) {
   const bool rests = find_rest(bridge, t, from, to);
   std::vector<double> q(q_.size()), qd(q_.size());
-  evaluator_.set_time(t);
   bridge.evaluate(t, q, qd, {});
+  evaluator_.set_time(t);
   SingularPoint point = find_branches(evaluator_, q, qd, dependence);
-  if (rests && point.nullity > 0) {
-    point.kind = SingularPoint::Kind::rest;
-    point.branches.clear();
-    point.tangents.resize(std::min<std::size_t>(1, point.tangents.size()));
+  if (!rests || point.nullity == 0) return point;
+  // Where the drivers rest the velocity says nothing; a moment later it does.
+  const double later = t + std::copysign(moment * (to - from), t - t_);
+  bridge.evaluate(later, {}, qd, {});
+  evaluator_.set_time(later);
+  point = find_branches(evaluator_, q, {}, dependence, Drivers::about_to_move);
+  point.kind = SingularPoint::Kind::rest;
+  point.t = t;
+  // The branch that goes on as before comes first.
+  const double rate = solver_.distance(qd, nothing_, nullptr);
+  std::size_t before = 0;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < point.tangents.size(); ++k) {
+    const double size = rate / solver_.distance(point.tangents[k], nothing_, nullptr);
+    for (std::size_t c = 0; c < trial_.size(); ++c) trial_[c] = size * point.tangents[k][c];
+    if (const double off = solver_.distance(trial_, qd, nullptr); off < nearest) nearest = off, before = k;
   }
+  if (before > 0) point.put_first(before);
   return point;
 }
 
@@ -279,8 +135,8 @@ void Kinematics::announce(const SingularPoint& point, Report& report) {
       break;
     case SingularPoint::Kind::rest:
       text = fmt::format(
-          "at t = {:.12g} s the drivers rest in a singular configuration; the motion goes on as smoothly as it came",
-          point.t);
+          "at t = {:.12g} s the drivers rest in a singular configuration; the motion goes on as smoothly as it came{}",
+          point.t, point.tangents.size() > 1 ? ", along branch 1 of " + point.describe_ways() : "");
       break;
     default:
       text = fmt::format("at t = {:.12g} s the mechanism passes a singular configuration; the motion goes on as before",
@@ -301,7 +157,7 @@ double Kinematics::bridge_length(double centre, double reach) {
     if (!tables_reach(t)) return 0.0;
     evaluator_.set_time(t);
     evaluator_.nu(nu);
-    return norm_of(nu);
+    return std::sqrt(std::inner_product(nu.begin(), nu.end(), nu.begin(), 0.0));
   };
   const double present = speed(t_);
   double h = reach / rate;
