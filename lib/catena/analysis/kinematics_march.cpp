@@ -225,11 +225,15 @@ Report Kinematics::stuck(double t) {
   solver_.factor_at(q_);
   const bool found = solver_.left_null_vector(w);
   evaluator_.nu(nu);
-  double product = 0, square = 0;
+  // Rows in metres and rows in radians compare in length scales, whatever the unit of the machine.
+  double product = 0, square = 0, weight = 0;
   int heaviest = 0;
   for (std::size_t r = 0; r < w.size(); ++r) {
+    const double unit = plan_->row_is_angle[r] ? 1 : evaluator_.length_scale();
     product += w[r] * nu[r];
-    square += nu[r] * nu[r];
+    square += nu[r] * nu[r] / (unit * unit);
+    w[r] *= unit;
+    weight += w[r] * w[r];
     if (std::abs(w[r]) > std::abs(w[at(heaviest)])) heaviest = static_cast<int>(r);
   }
   const std::string where =
@@ -239,7 +243,7 @@ Report Kinematics::stuck(double t) {
   SingularPoint point;
   point.t = t_ + (t - t_) / 2;
   point.q = q_;
-  if (found && std::abs(product) > 1e-6 * std::sqrt(square)) {
+  if (found && std::abs(product) > 1e-6 * std::sqrt(square * weight)) {
     point.kind = SingularPoint::Kind::lock_up;
     report.status = Status::lock_up;
     report.message = fmt::format(

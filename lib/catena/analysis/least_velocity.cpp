@@ -148,9 +148,12 @@ std::vector<int> LeastVelocity::worst_elements() const {
 }
 
 int LeastVelocity::heaviest_row() const {
-  const auto heaviest =
-      std::max_element(mu_.begin(), mu_.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  return static_cast<int>(heaviest - mu_.begin());
+  int heaviest = 0;
+  const auto size = [&](int r) { return std::abs(mu_[at(r)]) / scaling_.row_unit(r); };
+  for (int r = 0; r < plan_.rows; ++r) {
+    if (size(r) > size(heaviest)) heaviest = r;
+  }
+  return heaviest;
 }
 
 }  // namespace catena
