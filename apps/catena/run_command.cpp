@@ -17,11 +17,16 @@
 namespace catena::cli {
 namespace {
 
-/// Wipes the progress bar away before results appear on the same terminal.
-class BarWiper final : public ResultSink, private RowSink {
+/// Goes before the other sinks. Wipes the progress bar away before results appear on the same terminal, and catches
+/// Ctrl-C from the moment there are results to keep: before that, as while a scene is read from a pipe, it ends the
+/// program as it ends any other.
+class BeforeResults final : public ResultSink, private RowSink {
  public:
-  explicit BarWiper(ProgressBar& bar) : bar_(bar) {}
-  void begin_run(const RunHeader&) override { bar_.clear(); }
+  explicit BeforeResults(ProgressBar& bar) : bar_(bar) {}
+  void begin_run(const RunHeader&) override {
+    catch_interrupts();
+    bar_.clear();
+  }
   RowSink& begin_analysis(std::string_view) override { return *this; }
   void end_analysis(const AnalysisResult&) override { bar_.clear(); }
   void end_run() override { bar_.clear(); }
@@ -72,14 +77,14 @@ int execute(const RunCommand& command) {
   std::signal(SIGPIPE, command.directory.empty() ? SIG_DFL : SIG_IGN);
 
   ProgressBar bar(!command.quiet);
-  BarWiper wiper(bar);
+  BeforeResults before(bar);
   TextOutput output = TextOutput::standard_output();
   TextSink text(output, table_limits(command.verbose),
                 "-v shows everything, -o DIR writes CSV files, --json prints every digit");
   std::unique_ptr<ResultSink> json = command.json ? json_result_sink(output) : nullptr;
   std::optional<ResultFolder> folder;
   TeeSink sinks;
-  if (bar.visible()) sinks.add(wiper);
+  sinks.add(before);
   if (command.json) {
     sinks.add(*json);
   } else if (!command.quiet) {
@@ -88,7 +93,7 @@ int execute(const RunCommand& command) {
   if (!command.directory.empty()) sinks.add(folder.emplace(command.directory));
 
   RunOptions options = command.options;
-  options.cancel = &catch_interrupts();
+  options.cancel = &interrupt_flag();
   options.verbose = command.verbose;
   if (bar.visible()) {
     options.progress = [&](const Progress& progress) {

@@ -189,6 +189,19 @@ TEST_F(Run, CtrlCIsNoticedBetweenRows) {
   }
 }
 
+// Nothing is lost by ending there, and the reading of a pipe may never end by itself.
+TEST_F(Run, CtrlCEndsTheReadingOfAScene) {
+  const std::string pipe = folder_ / "scene.json";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::ofstream writer;  // open to the end: a program that goes on reading is killed
+  const ProgramResult result = run_catena({"run", pipe}, {.standard_output = {}, .during = [&](int process) {
+                                                            writer.open(pipe);  // returns when it is read
+                                                            writer << "{" << std::flush;
+                                                            ::kill(process, SIGINT);
+                                                          }});
+  EXPECT_EQ(result.exit_code, -SIGINT) << result.err;
+}
+
 TEST_F(Run, AReaderThatGoesAwayEndsTheProgram) {
   const std::string path = scene(R"({"type": "kinematics", "until": 1e6, "every": 0.001})");
   const std::string pipe = folder_ / "pipe";

@@ -165,7 +165,8 @@ TEST(ProgressBar, ShowsAFractionWhateverItIsGiven) {
 }
 
 TEST(Interrupt, SetsAFlagInsteadOfEndingTheProgram) {
-  const std::atomic<bool>& flag = catch_interrupts();
+  const std::atomic<bool>& flag = interrupt_flag();
+  catch_interrupts();
   EXPECT_FALSE(flag.load());
   std::raise(SIGINT);
   EXPECT_TRUE(flag.load());

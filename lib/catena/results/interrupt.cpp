@@ -12,7 +12,9 @@ extern "C" void set_interrupted(int) { interrupted.store(true, std::memory_order
 
 }  // namespace
 
-const std::atomic<bool>& catch_interrupts() {
+const std::atomic<bool>& interrupt_flag() { return interrupted; }
+
+void catch_interrupts() {
   struct sigaction action = {};
   action.sa_handler = set_interrupted;
   sigemptyset(&action.sa_mask);
@@ -21,7 +23,6 @@ const std::atomic<bool>& catch_interrupts() {
   action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  return interrupted;
 }
 
 }  // namespace catena

@@ -5,7 +5,10 @@
 
 namespace catena {
 
-/// From now on the first SIGINT or SIGTERM sets the flag that is returned; the second one ends the program.
-const std::atomic<bool>& catch_interrupts();
+/// False until a signal was caught.
+const std::atomic<bool>& interrupt_flag();
+
+/// From now on the first SIGINT or SIGTERM sets the flag; the second one ends the program.
+void catch_interrupts();
 
 }  // namespace catena
