@@ -227,9 +227,8 @@ TEST(Modes, OfRandomMechanismsAreThoseOfDenseAlgebra) {
     ASSERT_TRUE(report.ok()) << seed << ": " << report.message;
     const std::vector<double> wanted = dense_omega2(modes.evaluator(), modes.q());
     ASSERT_EQ(report.omega2.size(), wanted.size()) << seed;
-    // Values are found as 1 / (omega2 - shift): the highest lose digits to the lowest, two of all here more than 1e-9.
     for (std::size_t k = 0; k < wanted.size(); ++k) {
-      EXPECT_NEAR(report.omega2[k], wanted[k], 1e-8 * std::abs(wanted[k]) + 1e-12 * wanted.back()) << seed << " " << k;
+      EXPECT_NEAR(report.omega2[k], wanted[k], 1e-9 * std::abs(wanted[k]) + 1e-12 * wanted.back()) << seed << " " << k;
     }
     ++compared;
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace catena {
 namespace {
@@ -105,15 +106,28 @@ std::vector<Mode> ModeSearch::modes_of(Lanczos& lanczos, double sigma, int count
   return modes;
 }
 
-// What cannot be told from zero is zero.
-void ModeSearch::set_zeros(std::vector<Mode>& modes) {
+// Values come as sigma + 1 / theta, whose rounding grows with the square of the distance from sigma. The Rayleigh
+// quotient of the true matrices is wrong by the square of the shape's error and by its own rounding alone. What cannot
+// be told from zero is zero.
+void ModeSearch::refine_values(std::vector<Mode>& modes, double sigma) {
+  if (modes.empty()) return;
   system_.fill(lambda_, Curvature::exact, 0);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Mode& mode : modes) nearest = std::min(nearest, std::abs(mode.omega2 - sigma));
   std::vector<double> product(mass_.size());
   for (Mode& mode : modes) {
     system_.matrix().multiply_stiffness(mode.shape, product);
-    double energy = 0;
-    for (std::size_t c = 0; c < product.size(); ++c) energy += product[c] * mode.shape[c];
-    if (std::abs(energy) <= zero_part * system_.matrix().absolute_quadratic(mode.shape)) mode.omega2 = 0;
+    double energy = 0, inertia = 0;
+    for (std::size_t c = 0; c < product.size(); ++c) {
+      energy += product[c] * mode.shape[c];
+      inertia += mass_[c] * mode.shape[c] * mode.shape[c];
+    }
+    const double terms = system_.matrix().absolute_quadratic(mode.shape), distance = std::abs(mode.omega2 - sigma);
+    if (std::abs(energy) <= zero_part * terms) {
+      mode.omega2 = 0;
+    } else if (terms * nearest < distance * distance * inertia) {
+      mode.omega2 = energy / inertia;
+    }
   }
 }
 
@@ -186,7 +200,7 @@ Report ModeSearch::find(int count, std::vector<Mode>& modes) {
     }
     complete = found->exhausted();
     if (found->steps() > 0) modes = modes_of(*found, sigma, count);
-    set_zeros(modes);
+    refine_values(modes, sigma);
     const double better = better_shift(modes, sigma);
     if (attempt > 0 || many || found == &again || better == sigma) break;
     sigma = better;
@@ -217,7 +231,7 @@ Report ModeSearch::find(int count, std::vector<Mode>& modes) {
     if (is_cancelled()) return cancelled();
     if (others.steps() == 0) continue;
     std::vector<Mode> extra = modes_of(others, sigma, more);
-    set_zeros(extra);
+    refine_values(extra, sigma);
     for (Mode& mode : extra) modes.push_back(std::move(mode));
   }
   std::sort(modes.begin(), modes.end(), lower);

@@ -40,7 +40,7 @@ class ModeSearch {
   bool factorize(double& sigma, double margin);
   double lowest_shift(double upper);
   std::vector<Mode> modes_of(Lanczos& lanczos, double sigma, int count) const;
-  void set_zeros(std::vector<Mode>& modes);
+  void refine_values(std::vector<Mode>& modes, double sigma);
   double better_shift(const std::vector<Mode>& modes, double sigma) const;
   bool is_cancelled() const { return go_on_ && !go_on_(); }
 

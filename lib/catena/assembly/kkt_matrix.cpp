@@ -21,7 +21,6 @@ KktMatrix::KktMatrix(std::shared_ptr<const Plan> plan, std::span<const double> r
     : plan_(std::move(plan)), structure_(*plan_), moving_(plan_->moving) {
   set_radius(radius);
   values_.assign(at(structure_.values()), 0.0);
-  factored_.resize(at(structure_.entries()));
   rho_.resize(at(structure_.rows));
   eps_.resize(at(structure_.rows));
   stiffness_.resize(at(moving_));
@@ -38,8 +37,13 @@ void KktMatrix::set_radius(std::span<const double> radius) {
   }
 }
 
+void KktMatrix::clear() {
+  std::fill_n(values_.begin(), structure_.entries(), 0.0);
+  std::fill(values_.begin() + structure_.turning(0), values_.end(), 0.0);
+}
+
 void KktMatrix::set_hessian(Evaluator& evaluator, std::span<const double> lambda, Curvature curvature) {
-  std::fill(values_.begin(), values_.end(), 0.0);
+  clear();
   evaluator.add_hessians(lambda, curvature, structure_.hessian, values_);
 }
 
@@ -58,7 +62,7 @@ void KktMatrix::write_jacobian(std::span<const double> jacobian) {
 }
 
 void KktMatrix::complete(std::span<const double> jacobian, double shift) {
-  const double* against_turning = values_.data() + structure_.entries();
+  const double* against_turning = values_.data() + structure_.turning(0);
   for (int c = 0; c < structure_.columns; ++c) {
     const int coordinate = plan_->coordinate[at(c)], body = coordinate / 3;
     double& value = values_[at(structure_.diagonal[at(c)])];
@@ -76,7 +80,7 @@ void KktMatrix::add_diagonal(std::span<const double> weights, double factor) {
 }
 
 void KktMatrix::set_weights(std::span<const double> jacobian, double stiffness) {
-  std::fill(values_.begin(), values_.end(), 0.0);
+  clear();
   complete(jacobian, stiffness);
 }
 
@@ -106,7 +110,7 @@ void KktMatrix::choose_augmentation(double least_stiffness) {
 
 FactorResult KktMatrix::factorize(double least_stiffness, Counters& counters) {
   if (!analyzed_) {
-    factorization_.analyze(structure_.pattern, structure_.order, structure_.node_start, counters);
+    factorization_.analyze(structure_.factored_places(), structure_.order, structure_.node_start, counters);
     analyzed_ = true;
   }
   // A quadratic energy under linear constraints has one matrix for ever: its factors are kept, with the augmentation
@@ -116,22 +120,22 @@ FactorResult KktMatrix::factorize(double least_stiffness, Counters& counters) {
     last_.assign(values_.begin(), values_.begin() + structure_.entries());
   }
   choose_augmentation(least_stiffness);
-  std::copy_n(values_.begin(), factored_.size(), factored_.begin());
-  const int* product = structure_.product_slot.data();
+  double* product = values_.data() + structure_.products();
+  double* const minus_eps = values_.data() + structure_.regularisation();
   for (int r = 0; r < structure_.rows; ++r) {
     const int begin = structure_.row_start[at(r)], end = structure_.row_start[at(r) + 1];
     for (int a = begin; a < end; ++a) {
       const double weighted = rho_[at(r)] * values_[at(structure_.jacobian[at(structure_.row_entry[at(a)])])];
       for (int b = begin; b <= a; ++b) {
-        factored_[at(*product++)] += weighted * values_[at(structure_.jacobian[at(structure_.row_entry[at(b)])])];
+        *product++ = weighted * values_[at(structure_.jacobian[at(structure_.row_entry[at(b)])])];
       }
     }
-    factored_[at(structure_.diagonal[at(structure_.columns + r)])] = -eps_[at(r)];
+    minus_eps[r] = -eps_[at(r)];
   }
-  return factorization_.factorize(factored_, counters);
+  return factorization_.factorize(std::span<const double>(values_).first(at(structure_.factored())), counters);
 }
 
-// Every column begins with its diagonal entry; those of constraint rows hold nothing else, and that is zero.
+// Every coordinate's column begins with its diagonal entry; those of constraint rows are empty.
 void KktMatrix::multiply(std::span<const double> x, std::span<double> y) const {
   std::fill(y.begin(), y.end(), 0.0);
   const SparsePattern& a = structure_.pattern;

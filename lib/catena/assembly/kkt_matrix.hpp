@@ -44,7 +44,7 @@ class KktMatrix {
   /// Fills K at the evaluator's configuration, but for the stiffness against turning, which goes to turning().
   void set_hessian(Evaluator& evaluator, std::span<const double> lambda, Curvature curvature);
   /// Per moving body, N m: may be changed between set_hessian and complete.
-  std::span<double> turning() { return {values_.data() + structure_.entries(), static_cast<std::size_t>(moving_)}; }
+  std::span<double> turning() { return {values_.data() + structure_.turning(0), static_cast<std::size_t>(moving_)}; }
   /// Adds turning() to K and `shift` x (1, 1, radius^2) to its diagonal, N/m; writes Phi_q.
   void complete(std::span<const double> jacobian, double shift);
   /// Adds factor x weights (columns) to the diagonal of K: shifted eigenvalue problems.
@@ -78,6 +78,7 @@ class KktMatrix {
   double largest_stiffness() const { return largest_stiffness_; }
 
  private:
+  void clear();
   void write_jacobian(std::span<const double> jacobian);
   void choose_augmentation(double least_stiffness);
 
@@ -85,9 +86,8 @@ class KktMatrix {
   KktStructure structure_;
   int moving_;
   std::vector<double> radius_, inverse_arms_;
-  std::vector<double> values_;    // the true matrix; then turning, then what immobile bodies get
-  std::vector<double> factored_;  // augmented
-  std::vector<double> last_;      // the true matrix of the last factorization, if factors are to be kept
+  std::vector<double> values_;  // see KktStructure
+  std::vector<double> last_;    // the true matrix of the last factorization, if factors are to be kept
   std::vector<double> rho_, eps_, stiffness_;
   std::vector<double> right_hand_side_, residual_work_, correction_work_;
   FrontalFactorization factorization_;

@@ -65,15 +65,23 @@ void choose_order(const Plan& plan, const std::vector<int>& column_of_entry, Kkt
   const auto body_of_column = [&](int column) { return plan.coordinate[at(column)] / 3; };
   std::vector<MatrixEntry> pairs;
   for (int b = 0; b < plan.moving; ++b) pairs.push_back({b, b});
+  const auto tie = [&](int a, int b) {
+    const MatrixEntry pair{std::max(a, b), std::min(a, b)};
+    if (a != b && (pair.row != pairs.back().row || pair.column != pairs.back().column)) pairs.push_back(pair);
+  };
   for (int c = 0; c < s.columns; ++c) {
-    const int own = body_of_column(c);
-    int last = own;
     for (int k = s.pattern.column_start[at(c)]; k < s.pattern.column_start[at(c) + 1]; ++k) {
       const int row = s.pattern.row_index[at(k)];
       if (row >= s.columns) break;
-      const int body = body_of_column(row);
-      if (body != last) pairs.push_back({body, own});
-      last = body;
+      tie(body_of_column(row), body_of_column(c));
+    }
+  }
+  for (int r = 0; r < s.rows; ++r) {
+    const auto body = [&](int k) { return body_of_column(column_of_entry[at(s.row_entry[at(k)])]); };
+    for (int a = s.row_start[at(r)]; a < s.row_start[at(r) + 1]; ++a) {
+      // Entries of one body stand side by side.
+      if (a > s.row_start[at(r)] && body(a) == body(a - 1)) continue;
+      for (int b = s.row_start[at(r)]; b < a; ++b) tie(body(a), body(b));
     }
   }
   SymmetricFactorization bodies;
@@ -125,18 +133,9 @@ KktStructure::KktStructure(const Plan& plan) : columns(plan.columns), rows(plan.
   }
 
   std::vector<MatrixEntry> places;
-  for (int k = 0; k < columns + rows; ++k) places.push_back({k, k});
+  for (int c = 0; c < columns; ++c) places.push_back({c, c});
   for (int k = 0; k < phi_q.entries(); ++k) {
     places.push_back({columns + phi_q.row_index[at(k)], column_of_entry[at(k)]});
-  }
-  std::size_t products = places.size();
-  for (int r = 0; r < rows; ++r) {
-    for (int a = row_start[at(r)]; a < row_start[at(r) + 1]; ++a) {
-      for (int b = row_start[at(r)]; b <= a; ++b) {
-        const int first = column_of_entry[at(row_entry[at(a)])], second = column_of_entry[at(row_entry[at(b)])];
-        places.push_back({std::max(first, second), std::min(first, second)});
-      }
-    }
   }
   const std::size_t hessians = places.size();
   visit_hessians(plan, [&](bool, int, int row, int column) {
@@ -147,15 +146,36 @@ KktStructure::KktStructure(const Plan& plan) : columns(plan.columns), rows(plan.
   places = {};
   pattern = std::move(slotted.pattern);
   const auto slot = slotted.slot.begin();
-  diagonal.assign(slot, slot + columns + rows);
-  jacobian.assign(slot + columns + rows, slot + static_cast<std::ptrdiff_t>(products));
-  product_slot.assign(slot + static_cast<std::ptrdiff_t>(products), slot + static_cast<std::ptrdiff_t>(hessians));
+  diagonal.assign(slot, slot + columns);
+  jacobian.assign(slot + columns, slot + static_cast<std::ptrdiff_t>(hessians));
+  for (int r = 0; r < rows; ++r) {
+    const int length = row_start[at(r) + 1] - row_start[at(r)];
+    product_count += length * (length + 1) / 2;
+  }
   std::size_t next = hessians;
   visit_hessians(plan, [&](bool constraint, int type, int row, int column) {
     std::vector<int>& slots = constraint ? hessian.constraints[at(type)] : hessian.forces[at(type)];
     slots.push_back(row >= 0 ? slotted.slot[next++] : row == turning_only ? turning(column) : trash());
   });
   choose_order(plan, column_of_entry, *this);
+}
+
+std::vector<MatrixEntry> KktStructure::factored_places() const {
+  std::vector<MatrixEntry> places(at(entries()));
+  for (int c = 0; c < columns; ++c) {
+    for (int k = pattern.column_start[at(c)]; k < pattern.column_start[at(c) + 1]; ++k) {
+      places[at(k)] = {pattern.row_index[at(k)], c};
+    }
+  }
+  places.reserve(at(factored()));
+  for (int r = 0; r < rows; ++r) {
+    const auto column = [&](int k) { return places[at(jacobian[at(row_entry[at(k)])])].column; };
+    for (int a = row_start[at(r)]; a < row_start[at(r) + 1]; ++a) {
+      for (int b = row_start[at(r)]; b <= a; ++b) places.push_back({column(a), column(b)});
+    }
+  }
+  for (int r = 0; r < rows; ++r) places.push_back({columns + r, columns + r});
+  return places;
 }
 
 }  // namespace catena

@@ -22,25 +22,32 @@ struct KktStructure {
   int columns = 0;         ///< coordinates
   int rows = 0;            ///< constraint rows
   int moving = 0;          ///< bodies solved for
-  SparsePattern pattern;   ///< lower triangle, size columns + rows
+  SparsePattern pattern;   ///< lower triangle of the matrix with R = E = 0, size columns + rows
   std::vector<int> order;  ///< elimination order: place k holds row order[k] of the matrix
   /// Rows of a body, or of an element: node k holds places node_start[k] ... node_start[k + 1] - 1 of the order.
   std::vector<int> node_start;
-  std::vector<int> diagonal;  ///< slot of every diagonal entry
+  std::vector<int> diagonal;  ///< slot of the diagonal entry of every coordinate: the first one of its column
   HessianSlots hessian;
   std::vector<int> jacobian;  ///< slot of every entry of Phi_q
 
-  // Phi_q by rows: entries row_start[r] ... row_start[r + 1] - 1 of row_entry are entries of Phi_q in row r; product k
-  // of two of them, the second not after the first, belongs to product_slot[k], rows one after the other.
-  std::vector<int> row_start, row_entry, product_slot;
+  // Phi_q by rows: entries row_start[r] ... row_start[r + 1] - 1 of row_entry are entries of Phi_q in row r.
+  std::vector<int> row_start, row_entry;
+  int product_count = 0;  ///< of two entries of the same row, the second not after the first, all rows in turn
 
   int entries() const { return pattern.entries(); }
-  /// Values come with one stiffness against turning a body and a place for what immobile bodies would get.
-  int turning(int body) const { return entries() + body; }
-  int trash() const { return entries() + moving; }
-  int values() const { return entries() + moving + 1; }
+  /// Values of the pattern come first; then what is factored besides: products, and -eps of every row; then one
+  /// stiffness against turning a body, and a place for what immobile bodies would get.
+  int products() const { return entries(); }
+  int regularisation() const { return products() + product_count; }
+  int factored() const { return regularisation() + rows; }
+  int turning(int body) const { return factored() + body; }
+  int trash() const { return factored() + moving; }
+  int values() const { return trash() + 1; }
 
   explicit KktStructure(const Plan& plan);
+
+  /// Places of the values 0 ... factored() - 1 in the matrix that is factored, where equal places add up.
+  std::vector<MatrixEntry> factored_places() const;
 };
 
 }  // namespace catena

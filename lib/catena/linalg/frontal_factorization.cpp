@@ -13,11 +13,11 @@ std::size_t product(int a, int b) { return static_cast<std::size_t>(a) * static_
 
 }  // namespace
 
-void FrontalFactorization::analyze(const SparsePattern& lower, std::span<const int> order,
+void FrontalFactorization::analyze(std::span<const MatrixEntry> entries, std::span<const int> order,
                                    std::span<const int> node_start, Counters& counters) {
   *this = FrontalFactorization();
   ++counters.symbolic;
-  structure_ = FrontalStructure(lower, order, node_start);
+  structure_ = FrontalStructure(entries, order, node_start);
   // Left as it comes: every panel is cleared when it is assembled.
   panels_ = std::make_unique_for_overwrite<double[]>(structure_.panel_entries);
   stack_.resize(structure_.stack_entries);
@@ -35,7 +35,7 @@ void FrontalFactorization::assemble(int s, const double* values, double* panel) 
   const int* const source = structure_.source.data();
   const int* const target = structure_.target.data();
   const int end = structure_.fronts[s + 1].values;
-  for (int k = front.values; k < end; ++k) panel[target[k]] = values[source[k]];
+  for (int k = front.values; k < end; ++k) panel[target[k]] += values[source[k]];
   for (int n = structure_.child_start[s]; n < structure_.child_start[s + 1]; ++n) {
     const FrontalStructure::Update& child = structure_.updates[structure_.child[n]];
     const int* const relative = structure_.relative.data() + child.rows;
@@ -56,7 +56,7 @@ void FrontalFactorization::assemble(int s, const double* values, double* panel) 
 
 FactorResult FrontalFactorization::factorize(std::span<const double> values, Counters& counters) {
   if (values.size() != structure_.source.size())
-    throw std::invalid_argument("FrontalFactorization: as many values as the pattern has entries are needed");
+    throw std::invalid_argument("FrontalFactorization: as many values as entries are needed");
   ++counters.factorizations;
   counters.refactorizations += factored_before_ ? 1 : 0;
   factored_before_ = true;

@@ -23,10 +23,10 @@ namespace catena {
 class FrontalFactorization {
  public:
   /// Finds the structure of L; see FrontalStructure for the arguments.
-  void analyze(const SparsePattern& lower, std::span<const int> order, std::span<const int> node_start,
+  void analyze(std::span<const MatrixEntry> entries, std::span<const int> order, std::span<const int> node_start,
                Counters& counters);
 
-  /// Factors A; values[k] belongs to entry k of the pattern. singular and not_finite name the row.
+  /// Factors A; values[k] belongs to entries[k]. singular and not_finite name the row.
   FactorResult factorize(std::span<const double> values, Counters& counters);
 
   /// A x = b in place. Throws std::logic_error without a valid factorization.

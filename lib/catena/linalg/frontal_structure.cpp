@@ -12,11 +12,8 @@ namespace {
 [[noreturn]] void refuse(const char* what) { throw std::invalid_argument(std::string("FrontalStructure: ") + what); }
 
 // Node of every row, after checks that every row occurs once.
-std::vector<int> nodes_of_rows(const SparsePattern& lower, std::span<const int> order,
-                               std::span<const int> node_start) {
-  if (lower.rows != lower.columns) refuse("the matrix must be square");
-  const int n = lower.columns;
-  if (static_cast<int>(order.size()) != n) refuse("not a permutation of the rows");
+std::vector<int> nodes_of_rows(std::span<const int> order, std::span<const int> node_start) {
+  const int n = static_cast<int>(order.size());
   if (node_start.empty() || node_start.front() != 0 || node_start.back() != n) refuse("nodes must hold all rows");
   std::vector<int> node(order.size(), -1);
   for (std::size_t k = 0; k + 1 < node_start.size(); ++k) {
@@ -30,34 +27,29 @@ std::vector<int> nodes_of_rows(const SparsePattern& lower, std::span<const int> 
   return node;
 }
 
-// Neighbours of every node that are eliminated later. The entries of a pair of nodes may stand in the columns of both.
-SparsePattern later_neighbours(const SparsePattern& lower, std::span<const int> order, std::span<const int> node_start,
-                               const std::vector<int>& node) {
-  const int nodes = static_cast<int>(node_start.size()) - 1;
+// Neighbours of every node that are eliminated later.
+SparsePattern later_neighbours(std::span<const MatrixEntry> entries, int nodes, const std::vector<int>& node) {
+  const int rows = static_cast<int>(node.size());
   std::vector<MatrixEntry> pairs;
-  std::vector<int> met(static_cast<std::size_t>(nodes), -1);
-  for (int k = 0; k < nodes; ++k) {
-    for (int p = node_start[k]; p < node_start[k + 1]; ++p) {
-      const int column = order[p];
-      for (int e = lower.column_start[column]; e < lower.column_start[column + 1]; ++e) {
-        if (lower.row_index[e] < column) refuse("entry above the diagonal");
-        const int other = node[lower.row_index[e]];
-        if (other == k || met[other] == k) continue;
-        met[other] = k;
-        pairs.push_back({std::max(k, other), std::min(k, other)});
-      }
-    }
+  MatrixEntry last{-1, -1};
+  for (const MatrixEntry& entry : entries) {
+    if (entry.row < 0 || entry.row >= rows || entry.column < 0 || entry.column >= rows) refuse("entry outside");
+    const auto [first, second] = std::minmax(node[entry.row], node[entry.column]);
+    // Most of those that repeat a pair follow each other.
+    if (first == second || (first == last.column && second == last.row)) continue;
+    last = {second, first};
+    pairs.push_back(last);
   }
   return build_pattern(nodes, nodes, pairs).pattern;
 }
 
 }  // namespace
 
-FrontalStructure::FrontalStructure(const SparsePattern& lower, std::span<const int> given_order,
+FrontalStructure::FrontalStructure(std::span<const MatrixEntry> entries, std::span<const int> given_order,
                                    std::span<const int> node_start) {
-  const std::vector<int> node = nodes_of_rows(lower, given_order, node_start);
-  SparsePattern later = later_neighbours(lower, given_order, node_start, node);
-  const int nodes = later.columns;
+  const std::vector<int> node = nodes_of_rows(given_order, node_start);
+  const int nodes = static_cast<int>(node_start.size()) - 1;
+  SparsePattern later = later_neighbours(entries, nodes, node);
 
   std::vector<int> parent = elimination_tree(later), width(parent.size());
   {
@@ -88,7 +80,7 @@ FrontalStructure::FrontalStructure(const SparsePattern& lower, std::span<const i
   const FactorStructure structure = factor_structure(later, parent);
   later = {};
   make_fronts(width, parent, structure.start, structure.row);
-  list_values(lower);
+  list_values(entries);
 }
 
 // A node joins its child's front where their columns of L have the same rows: then neither holds zeros.
@@ -172,24 +164,22 @@ void FrontalStructure::list_children(const std::vector<int>& parent_of_front) {
 }
 
 // Every entry stands in the column of its earlier place.
-void FrontalStructure::list_values(const SparsePattern& lower) {
+void FrontalStructure::list_values(std::span<const MatrixEntry> entries) {
   std::vector<int> front_of_place(order.size());
   for (int s = 0; s < count(); ++s) {
     for (int p = fronts[s].first; p < fronts[s + 1].first; ++p) front_of_place[p] = s;
   }
   std::vector<int> start(static_cast<std::size_t>(count()) + 1, 0);
   const auto visit = [&](auto&& f) {
-    for (int j = 0; j < lower.columns; ++j) {
-      for (int e = lower.column_start[j]; e < lower.column_start[j + 1]; ++e) {
-        const auto [column, row] = std::minmax(place[j], place[lower.row_index[e]]);
-        f(e, front_of_place[column], row, column);
-      }
+    for (std::size_t e = 0; e < entries.size(); ++e) {
+      const auto [column, row] = std::minmax(place[entries[e].row], place[entries[e].column]);
+      f(static_cast<int>(e), front_of_place[column], row, column);
     }
   };
   visit([&](int, int s, int, int) { ++start[s + 1]; });
   for (int s = 0; s < count(); ++s) start[s + 1] += start[s];
   for (std::size_t s = 0; s < fronts.size(); ++s) fronts[s].values = start[s];
-  source.resize(lower.row_index.size());
+  source.resize(entries.size());
   target.resize(source.size());
   visit([&](int e, int s, int row, int column) {
     const Front& front = fronts[s];

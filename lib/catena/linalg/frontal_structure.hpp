@@ -46,16 +46,16 @@ struct FrontalStructure {
   std::vector<int> relative;     ///< the same as rows of the parent's front
   std::vector<int> child_start;  ///< children of front s: child[child_start[s]] ... child[child_start[s + 1] - 1]
   std::vector<int> child;
-  std::vector<int> source;        ///< values of the matrix by fronts: entry of the pattern ...
+  std::vector<int> source;        ///< values of the matrix by fronts: their number ...
   std::vector<int> target;        ///< ... and where it goes in the trapezoid
   std::size_t panel_entries = 0;  ///< size of all trapezoids
   std::size_t stack_entries = 0;  ///< size of the stack of updates
 
   FrontalStructure() = default;
-  /// `lower`: square pattern of the lower triangle. `order`: a permutation of its rows. Node k: the rows
-  /// order[node_start[k]] ... order[node_start[k + 1] - 1]. The order of nodes is changed only where that changes no
-  /// number. Throws std::invalid_argument for what is none of this.
-  FrontalStructure(const SparsePattern& lower, std::span<const int> order, std::span<const int> node_start);
+  /// Value k of the matrix belongs to entries[k], of either triangle; values of equal places add up. `order`: a
+  /// permutation of the rows. Node k: the rows order[node_start[k]] ... order[node_start[k + 1] - 1]. The order of
+  /// nodes is changed only where that changes no number. Throws std::invalid_argument for what is none of this.
+  FrontalStructure(std::span<const MatrixEntry> entries, std::span<const int> order, std::span<const int> node_start);
 
   int count() const { return static_cast<int>(fronts.size()) - 1; }
   int size() const { return static_cast<int>(order.size()); }
@@ -63,7 +63,7 @@ struct FrontalStructure {
  private:
   void make_fronts(const std::vector<int>& width, const std::vector<int>& parent,
                    const std::vector<std::size_t>& below_start, const std::vector<int>& below);
-  void list_values(const SparsePattern& lower);
+  void list_values(std::span<const MatrixEntry> entries);
   void list_children(const std::vector<int>& parent_of_front);
 };
 
