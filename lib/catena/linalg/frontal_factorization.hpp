@@ -1,7 +1,7 @@
 // A x = b for a symmetric sparse matrix by P A P^T = L D L^T without pivoting, in small dense fronts (multifrontal):
-// five times as fast as a factorization row by row where the rows come in nodes of two to six, as those of bodies and
-// joints do. `analyze` once, `factorize` at every change of the values, `solve` as often as wanted; after the analysis
-// neither allocates.
+// three to four times as fast as a factorization row by row where the rows come in nodes of two to six, as those of
+// bodies and joints do, in chains and in nets. `analyze` once, `factorize` at every change of the values, `solve` as
+// often as wanted; after the analysis neither allocates.
 //
 // Which matrices: quasi-definite ones and others for which L D L^T exists in the given order
 // (symmetric_factorization.hpp says more; pivots and inertia are the same as there). Singular case: a pivot of exactly
