@@ -114,6 +114,8 @@ class Evaluator {
   void load_values();
   Measured measure_released(int element, std::span<const double> qd) const;
   /// Place of an element in its block, -1 if it has no rows.
+  template <class F>
+  void with_element(int element, F&& f) const;
   int place(int element) const { return place_[static_cast<std::size_t>(element)]; }
 
   std::shared_ptr<const Plan> plan_;

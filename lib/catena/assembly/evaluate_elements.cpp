@@ -1,0 +1,134 @@
+// What the evaluator gives of single elements: measured quantities, their part of Phi_q, where they are attached.
+#include <algorithm>
+#include <cmath>
+
+#include "catena/assembly/evaluate.hpp"
+#include "catena/elements/all.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// Calls f(local point, body) for every attachment point of an element.
+template <class E, class F>
+void visit_points(const ElementEntry<E, double>& entry, F&& f) {
+  std::apply(
+      [&](const auto&... field) {
+        (
+            [&] {
+              if constexpr (requires { field.body; }) {
+                if constexpr (
+                    requires { entry.element.*field.member + Vec2<double>{}; } && !requires { field.required; }) {
+                  f(entry.element.*field.member, field.body == 0 ? entry.i : entry.j);
+                }
+              }
+            }(),
+            ...);
+      },
+      E::fields());
+}
+
+}  // namespace
+
+// Calls f(block, data, e) where the element is the block's e-th; not at all for one that is in no block.
+template <class F>
+void Evaluator::with_element(int element, F&& f) const {
+  const int e = place(element);
+  if (e < 0) return;
+  with_list(plan_->blocks, model_->elements[at(element)].type, [&](const auto& block) {
+    using E = typename std::remove_cvref_t<decltype(block)>::Element;
+    f(block, std::get<ConstraintData<E>>(values_), e);
+  });
+}
+
+// A constraint that does not hold for the time being is in no block, but what it measures can be seen all the same.
+Measured Evaluator::measure_released(int element, std::span<const double> qd) const {
+  Measured result;
+  const ElementRecord& record = model_->elements[at(element)];
+  const auto motion = [&](int body) {
+    const int p = body < 0 ? plan_->bodies : plan_->plan_body[at(body)];
+    const double* v = qd.empty() ? nullptr : &qd[at(3 * p)];
+    return moving(ground_frame(p), v ? v[0] : 0, v ? v[1] : 0, v ? v[2] : 0);
+  };
+  with_list(model_->constraints, record.type, [&](const auto& list) {
+    const auto& entry = list[at(record.index)];
+    if constexpr (requires { entry.element.measure(Frame<double>{}, Frame<double>{}); }) {
+      const Taylor<double> m = entry.element.measure(motion(entry.i), motion(entry.j));
+      result = {m.f, m.d, m.dd};
+    }
+  });
+  return result;
+}
+
+Measured Evaluator::measure(int element, std::span<const double> qd, std::span<const double> qdd) const {
+  if (plan_->is_released(element)) return measure_released(element, qd);
+  Measured result;
+  with_element(element, [&](const auto& block, const auto& data, int e) {
+    using E = typename std::remove_cvref_t<decltype(block)>::Element;
+    result = ConstraintOperations<E>::measure(block, data, frames_.data(), qd.empty() ? nullptr : qd.data(),
+                                              qdd.empty() ? nullptr : qdd.data(), e);
+  });
+  return result;
+}
+
+Evaluator::ElementJacobian Evaluator::element_jacobian(int element) const {
+  ElementJacobian result;
+  with_element(element, [&](const auto& block, const auto& data, int e) {
+    using E = typename std::remove_cvref_t<decltype(block)>::Element;
+    const LocalJacobian<E> local = ConstraintOperations<E>::local_jacobian(block, data, frames_.data(), e);
+    result.rows = E::rows;
+    result.bodies = E::bodies;
+    result.body_i = block.body_i[at(e)];
+    result.body_j = block.body_j[at(e)];
+    result.scale = local.scale;
+    for (int r = 0; r < E::rows; ++r) {
+      for (int k = 0; k < 3 * E::bodies; ++k) result.entries[6 * r + k] = local.entries[at(r * 3 * E::bodies + k)];
+    }
+  });
+  return result;
+}
+
+const char* Evaluator::trouble(int element) const {
+  const char* phrase = nullptr;
+  with_element(element, [&](const auto& block, const auto& data, int e) {
+    using E = typename std::remove_cvref_t<decltype(block)>::Element;
+    phrase = ConstraintOperations<E>::trouble(block, data, frames_.data(), e);
+  });
+  return phrase;
+}
+
+Taylor<double> Evaluator::element_value(int element) const {
+  Taylor<double> value;
+  with_element(element, [&](const auto&, const auto& data, int e) {
+    if (!data.value.empty()) value = data.value[at(e)];
+  });
+  return value;
+}
+
+std::vector<double> Evaluator::attachment_radii(double* mean) const {
+  std::vector<double> squares(at(plan_->bodies), 0.0);
+  std::vector<int> count(at(plan_->bodies), 0);
+  double sum = 0;
+  std::int64_t points = 0;
+  for_each_list(model_->constraints, [&](const auto& list, int) {
+    for (const auto& entry : list) {
+      visit_points(entry, [&](const Vec2<double>& local, int body) {
+        if (body < 0) return;
+        const double square = squared_norm(local);
+        squares[at(plan_->plan_body[at(body)])] += square;
+        ++count[at(plan_->plan_body[at(body)])];
+        sum += std::sqrt(square);
+        ++points;
+      });
+    }
+  });
+  for (std::size_t b = 0; b < squares.size(); ++b) {
+    const double radius = count[b] > 0 ? std::sqrt(squares[b] / count[b]) : 0;
+    squares[b] = radius > 0 ? radius : 1;
+  }
+  if (mean) *mean = points > 0 ? sum / static_cast<double>(points) : 0;
+  return squares;
+}
+
+}  // namespace catena
