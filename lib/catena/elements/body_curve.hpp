@@ -56,6 +56,13 @@ class BodyCurve {
 
   /// A straight line without ends.
   bool is_line() const { return std::isinf(shape_->first()); }
+  /// Whether the curve is a circle; then its centre and radius, in the frame of the body.
+  bool is_circle() const { return shape_->periodic() && shape_->knots().empty(); }
+  Vec2<S> centre() const {
+    const CurvePoint<S> c = evaluate(S(0.0));
+    return c.p + c.d2;
+  }
+  S radius() const { return norm(shape_->evaluate(S(0.0)).d1); }
   /// Length of the parameter's range.
   double range() const { return shape_->last() - shape_->first(); }
   /// s moved by whole periods into the range, on a closed curve.

@@ -12,6 +12,8 @@
 // Multiplier: minus the normal force on j along N, N. Source: Haug, section 3.4 (cam-follower).
 #pragma once
 
+#include <type_traits>
+
 #include "catena/elements/common_normal.hpp"
 #include "catena/elements/element.hpp"
 
@@ -29,7 +31,9 @@ struct CamCam {
 
   Vec2<S> s_i{}, s_j{};  // where torques are reported
   BodyCurve<S> curve_i{}, curve_j{};
-  mutable CommonNormal contact{};  // found last
+  mutable CommonNormal contact{};                            // found last
+  mutable Frame<double> found_for{contact.s_i, 0, 0, 1, 0};  // j seen from i then, and whether it was found
+  mutable bool found = false;
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &CamCam::s_i, 0, "the body with the first cam"},
@@ -41,6 +45,7 @@ struct CamCam {
   void complete(const Frame<S>& i, const Frame<S>& j) {
     if (curve_i && curve_j && !(curve_i.is_line() && curve_j.is_line()))
       contact = search_normal(curve_i, curve_j, plain(seen_from(i, j)));
+    found_for.x = std::numeric_limits<double>::quiet_NaN();
   }
   const char* check() const {
     if (!curve_i || !curve_j) return "lacks a curve";
@@ -48,16 +53,17 @@ struct CamCam {
     return contact.kind < 0 ? "the cams have no common normal in the given configuration" : nullptr;
   }
   const char* trouble(const Arguments<double>& a) const {
-    return find_contact(seen_from(a.i, a.j)) ? nullptr
-                                             : "the cams have no single point of contact: their curvatures are equal";
+    return follow_contact(seen_from(a.i, a.j)) ? nullptr
+                                               : "the cams have no single point of contact: their curvatures are equal";
   }
 
   template <class T>
   void phi(const Arguments<T>& a, T* out) const {
     const Frame<T> relative = seen_from(a.i, a.j);
-    const bool regular = find_contact(plain(relative));
+    const bool regular = follow_contact(plain(relative));
     T s(contact.s_i), t(contact.s_j);
-    if (regular) {
+    // The value itself is stationary in s and t.
+    if (regular && !std::is_same_v<T, double>) {
       const CurvePoint<T> i = curve_i.evaluate(s), j = seen_from(curve_j.evaluate(t), relative);
       const TangencyMatrix m(plain(i), plain(j));
       const T f = cross(i.d1, j.d1), g = dot(i.d1, j.p - i.p);
@@ -68,18 +74,27 @@ struct CamCam {
     out[0] = cross(i.d1, j.p - i.p) / norm(i.d1);
   }
   void jacobian(const Arguments<double>& a, double* entries) const {
-    find_contact(seen_from(a.i, a.j));
+    follow_contact(seen_from(a.i, a.j));
     const CurvePoint<double> c = curve_i.plain(contact.s_i);
     contact_jacobian(a.i, a.j, a.i.point(c.p), a.i.axis(c.normal()), entries);
   }
 
  private:
+  /// The same as find_contact(), once a place of the bodies: rows and their derivatives are evaluated in turns.
+  bool follow_contact(const Frame<double>& relative) const {
+    if (relative.x != found_for.x || relative.y != found_for.y || relative.c != found_for.c ||
+        relative.s != found_for.s) {
+      found = find_contact(relative);
+      found_for = relative;
+    }
+    return found;
+  }
   /// Sets `contact`; false, leaving it as it was, where no common normal of its kind is found.
   bool find_contact(const Frame<double>& relative) const {
-    CommonNormal found = follow_normal(curve_i, curve_j, relative, contact.s_i, contact.s_j);
-    if (found.kind != contact.kind) found = search_normal(curve_i, curve_j, relative, contact.kind);
-    if (found.kind < 0) return false;
-    contact = found;
+    CommonNormal normal = follow_normal(curve_i, curve_j, relative, contact.s_i, contact.s_j);
+    if (normal.kind != contact.kind) normal = search_normal(curve_i, curve_j, relative, contact.kind);
+    if (normal.kind < 0) return false;
+    contact = normal;
     return true;
   }
 };

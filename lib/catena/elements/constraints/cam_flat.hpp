@@ -12,6 +12,8 @@
 // normal force on j along N, N. Source: Haug, section 3.4 (flat-faced follower).
 #pragma once
 
+#include <type_traits>
+
 #include "catena/elements/curve_search.hpp"
 #include "catena/elements/pair_motion.hpp"
 
@@ -31,6 +33,11 @@ struct CamFlat {
   BodyCurve<S> curve{};
   double side = 1;  // 1: the contact is farthest along N, -1: against it
   mutable double parameter = std::numeric_limits<double>::quiet_NaN();  // of the contact found last
+  bool circle = false;
+  Vec2<S> centre{};
+  S radius{};                                    // signed: along N
+  mutable Vec2<double> found_for{parameter, 0};  // N at the last search, and whether it found
+  mutable bool found = false;
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &CamFlat::s_i, 0, "the body with the cam"},
@@ -41,6 +48,7 @@ struct CamFlat {
 
   void complete(const Frame<S>& i, const Frame<S>& j) {
     normalise(axis_j);
+    found_for = {std::numeric_limits<double>::quiet_NaN(), 0};
     if (!curve || curve.is_line()) return;
     const Vec2<double> n = plain(normal(i, j)), face = plain(face_point(i, j));
     const auto distance = [&] { return std::abs(dot(n, curve.plain(parameter).p - face)); };
@@ -51,6 +59,8 @@ struct CamFlat {
     find_contact(n);
     if (along <= distance()) side = 1;
     find_contact(n);
+    circle = curve.is_circle();
+    if (circle) centre = curve.centre(), radius = S(side) * curve.radius();
   }
   const char* check() const {
     if (!curve) return "has no curve";
@@ -58,23 +68,30 @@ struct CamFlat {
     return has_direction(axis_j) ? nullptr : "axis_j has no direction";
   }
   const char* trouble(const Arguments<double>& a) const {
-    return find_contact(normal(a.i, a.j)) ? nullptr : "the cam has no curvature where it should touch the face";
+    return circle || follow_contact(normal(a.i, a.j)) ? nullptr
+                                                      : "the cam has no curvature where it should touch the face";
   }
 
   template <class T>
   void phi(const Arguments<T>& a, T* out) const {
     const Vec2<T> n = normal(a.i, a.j);
-    const bool regular = find_contact(plain(n));
+    if (circle) {
+      out[0] = dot(n, convert<T>(centre) - face_point(a.i, a.j)) + T(radius);
+      return;
+    }
+    const bool regular = follow_contact(plain(n));
     T s(parameter);
-    if (regular) {
+    // The value itself is stationary in s.
+    if (regular && !std::is_same_v<T, double>) {
       const CurvePoint<T> c = curve.evaluate(s);
       s = s - dot(n, c.d1) / T(dot(plain(n), plain(c).d2));
     }
     out[0] = dot(n, curve.evaluate(s).p - face_point(a.i, a.j));
   }
   void jacobian(const Arguments<double>& a, double* entries) const {
-    find_contact(normal(a.i, a.j));
-    const Vec2<double> contact = a.i.point(curve.plain(parameter).p);
+    const Vec2<double> n = normal(a.i, a.j);
+    if (!circle) follow_contact(n);
+    const Vec2<double> contact = a.i.point(circle ? plain(centre) + value_of(radius) * n : curve.plain(parameter).p);
     contact_jacobian(a.i, a.j, contact, -perpendicular(a.j.axis(axis_j)), entries);
   }
 
@@ -87,6 +104,14 @@ struct CamFlat {
   template <class T>
   Vec2<T> face_point(const Frame<T>& i, const Frame<T>& j) const {
     return i.to_local(j.point(s_j) - i.origin());
+  }
+  /// The same as find_contact(), once a direction: rows and their derivatives are evaluated in turns.
+  bool follow_contact(const Vec2<double>& n) const {
+    if (n.x != found_for.x || n.y != found_for.y) {
+      found = find_contact(n);
+      found_for = n;
+    }
+    return found;
   }
   /// Sets `parameter`; false at the end of an open curve, or where the curvature vanishes.
   bool find_contact(const Vec2<double>& n) const {
@@ -101,9 +126,9 @@ struct CamFlat {
       return true;
     }
     parameter = s = least_sample(curve, [&](const CurvePoint<double>& c) { return dot(inward, c.p); });
-    const bool found = follow_minimum(curve, descent, s);
-    if (found) parameter = s;
-    return found;
+    const bool minimum = follow_minimum(curve, descent, s);
+    if (minimum) parameter = s;
+    return minimum;
   }
 };
 

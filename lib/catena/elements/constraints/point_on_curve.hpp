@@ -10,6 +10,8 @@
 // curve. Multiplier: minus the normal force on j, N. Source: Haug, section 3.4 (point follower).
 #pragma once
 
+#include <type_traits>
+
 #include "catena/elements/curve_search.hpp"
 #include "catena/elements/element.hpp"
 
@@ -28,6 +30,8 @@ struct PointOnCurve {
   Vec2<S> s_i{}, s_j{};  // s_i: where torques on i are reported
   BodyCurve<S> curve{};
   mutable double parameter = std::numeric_limits<double>::quiet_NaN();  // of the foot found last
+  mutable Vec2<double> found_for{parameter, 0};  // the point at the last search, and whether it found
+  mutable bool found = false;
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &PointOnCurve::s_i, 0, "the body with the curve"},
@@ -37,18 +41,20 @@ struct PointOnCurve {
 
   void complete(const Frame<S>& i, const Frame<S>& j) {
     if (curve) parameter = curve.nearest(plain(local(i, j)));
+    found_for = {std::numeric_limits<double>::quiet_NaN(), 0};
   }
   const char* check() const { return curve ? nullptr : "has no curve"; }
   const char* trouble(const Arguments<double>& a) const {
-    return find_foot(local(a.i, a.j)) ? nullptr : "the point is at a centre of curvature of the curve";
+    return follow_foot(local(a.i, a.j)) ? nullptr : "the point is at a centre of curvature of the curve";
   }
 
   template <class T>
   void phi(const Arguments<T>& a, T* out) const {
     const Vec2<T> x = local(a.i, a.j);
-    const bool regular = find_foot(plain(x));
+    const bool regular = follow_foot(plain(x));
     T s(parameter);
-    if (regular) {
+    // The value itself is stationary in s.
+    if (regular && !std::is_same_v<T, double>) {
       const CurvePoint<T> c = curve.evaluate(s);
       s = s - dot(c.p - x, c.d1) / T(descent(plain(c), plain(x)).bend);
     }
@@ -56,7 +62,7 @@ struct PointOnCurve {
     out[0] = cross(c.d1, x - c.p) / norm(c.d1);
   }
   void jacobian(const Arguments<double>& a, double* entries) const {
-    find_foot(local(a.i, a.j));
+    follow_foot(local(a.i, a.j));
     contact_jacobian(a.i, a.j, a.j.point(s_j), a.i.axis(curve.plain(parameter).normal()), entries);
   }
 
@@ -71,14 +77,22 @@ struct PointOnCurve {
     const double size = squared_norm(c.d1);
     return {dot(c.p - x, c.d1), size + dot(c.p - x, c.d2), size};
   }
+  /// The same as find_foot(), once a place: rows and their derivatives are evaluated in turns.
+  bool follow_foot(const Vec2<double>& x) const {
+    if (x.x != found_for.x || x.y != found_for.y) {
+      found = find_foot(x);
+      found_for = x;
+    }
+    return found;
+  }
   /// Sets `parameter`; false where the distance has no proper minimum.
   bool find_foot(const Vec2<double>& x) const {
     const auto towards = [&](const CurvePoint<double>& c) { return descent(c, x); };
     double s = parameter;
-    bool found = follow_minimum(curve, towards, s);
-    if (!found) found = follow_minimum(curve, towards, s = curve.nearest(x));
-    parameter = found ? s : curve.nearest(x);
-    return found;
+    bool minimum = follow_minimum(curve, towards, s);
+    if (!minimum) minimum = follow_minimum(curve, towards, s = curve.nearest(x));
+    parameter = minimum ? s : curve.nearest(x);
+    return minimum;
   }
 };
 
