@@ -327,6 +327,57 @@ TEST(KinematicsSingular, DeadPointsAgreeWithTheReference) {
   }
 }
 
+// A change-point linkage that just fails to pass its flat position locks, whatever the unit of length is.
+TEST(KinematicsSingular, LockUpIsToldInEveryUnit) {
+  for (double scale : {1e-3, 1.0, 1e3}) {
+    for (double excess : {1e-2, 1e-6}) {
+      const FourBar f{scale, (3 + excess) * scale, scale, 3 * scale};
+      Kinematics kinematics(driven_four_bar(f, ramp(0.7, 1), -1));
+      RowFunction none([](const Snapshot&) { return true; });
+      const AnalysisReport report = kinematics.run(TimeGrid::range(0, 12, 0.9), {}, none);
+      EXPECT_EQ(report.status, Status::lock_up) << scale << " " << excess << ": " << report.message;
+      // Cosine law: the distance of crank pin and rocker pivot is coupler - rocker, 2 + excess.
+      const double angle = 2 * pi - std::acos((10 - (2 + excess) * (2 + excess)) / 6);
+      EXPECT_NEAR(kinematics.singular_points().at(0).t, angle - 0.7, 1e-10);
+    }
+  }
+}
+
+// A parallelogram with a third crank: of more rows than needed some determine nothing where the cranks stand upright or
+// lie flat; others must take their place, whatever the unit of length is.
+TEST(KinematicsSingular, ARedundantParallelogramTurnsInEveryUnit) {
+  for (double scale : {1e-3, 1.0, 30.0, 1e4}) {
+    for (double every : {0.01, 0.1, 2.0}) {
+      const FourBar f{scale, 3 * scale, scale, 3 * scale};
+      auto model = driven_four_bar(f, ramp(0.7, 1));
+      const Vec2<double> foot{1.5 * scale, 0}, tip = foot + scale * Vec2<double>{std::cos(0.7), std::sin(0.7)};
+      const int middle = add_rod(*model, "middle", foot, tip);
+      pin(*model, "D", foot, middle, "from");
+      model->add("E", Revolute<>{{}, *model->find_point(middle, "to")}, model->find_body("coupler"), middle);
+      Kinematics kinematics(model);
+      double angle = 0, rate = 0;
+      RowFunction check([&](const Snapshot& s) {
+        // Within this of the flat position rows determine rates to few digits.
+        const bool flat = std::abs(std::remainder(0.7 + s.t, pi)) < 0.01;
+        for (const char* body : {"rocker", "middle"}) {
+          const std::size_t place = angle_place(s, body);
+          angle = std::max(angle, std::abs(wrapped(s.q[place] - 0.7 - s.t)));
+          if (!flat) rate = std::max({rate, std::abs(s.qd[place] - 1), std::abs(s.qdd[place])});
+        }
+        return true;
+      });
+      const AnalysisReport report = kinematics.run(TimeGrid::range(0, 8, every), everything, check);
+      ASSERT_TRUE(report.ok()) << scale << " " << every << ": " << report.message;
+      EXPECT_LT(angle, 1e-10) << scale << " " << every;
+      EXPECT_LT(rate, 1e-9) << scale << " " << every;
+      if (scale > 1) continue;
+      ASSERT_EQ(kinematics.singular_points().size(), 2u) << scale << " " << every;
+      EXPECT_NEAR(kinematics.singular_points()[0].t, pi - 0.7, 1e-10);
+      EXPECT_NEAR(kinematics.singular_points()[1].t, 2 * pi - 0.7, 1e-10);
+    }
+  }
+}
+
 // A crank whose end is driven in x and in y: neither alone determines it all the way round.
 TEST(KinematicsSingular, RowsAreChosenAnewWhereTheyBecomeDependent) {
   auto model = std::make_shared<Model>();

@@ -52,7 +52,12 @@ bool DrivenSolver::exchange_rows(std::span<const double> q) {
   for (std::size_t k = 0; k < values.size(); ++k) row_values[at(by_row.slot[k])] = values[k];
   const std::vector<int>& start = by_row.pattern.column_start;
   for (int r = 0; r < plan_.rows; ++r) {
-    for (int k = start[at(r)]; k < start[at(r) + 1]; ++k) length[at(r)] += row_values[at(k)] * row_values[at(k)];
+    for (int k = start[at(r)]; k < start[at(r) + 1]; ++k) {
+      // By length scales and radians: the choice must not depend on the unit of length.
+      const bool angle = plan_.coordinate[at(by_row.pattern.row_index[at(k)])] % 3 == 2;
+      const double value = row_values[at(k)] * (angle ? 1 : evaluator_.length_scale());
+      length[at(r)] += value * value;
+    }
     length[at(r)] = std::sqrt(length[at(r)]);
   }
   bool changed = false;

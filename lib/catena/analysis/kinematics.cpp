@@ -28,6 +28,9 @@ constexpr double reactions_determined = 1e-9;
 constexpr double start_dependence = 1e-7;
 // How far along a branch (rad, length scales) rows are chosen where it starts.
 constexpr double start_distance = 0.02;
+// Redundant rows that velocities and accelerations miss by more than the first part of them are a reason to look for
+// better rows, by more than the second a contradiction.
+constexpr double doubtful_rates = 1e-11, contradictory_rates = 1e-6;
 // After so much time (s) drivers that rest at the start are looked at again.
 constexpr double moments[] = {1e-6, 1e-4, 1e-2, 1, 100};
 
@@ -154,7 +157,7 @@ Report Kinematics::start_singular(SingularPoint point, double direction) {
     report.message = fmt::format(
         "the motion starts at t = {:.12g} s in a singular configuration {}{}; start a little before or after it", t_,
         point.kind != SingularPoint::Kind::rest ? "from which no velocity goes on" : "in which the drivers rest",
-        point.branches.empty() ? "" : ", at one of the branches, " + point.describe_ways());
+        point.branches.empty() ? "" : "; " + point.describe_ways());
     return report;
   }
   const int branch = count == 1 ? 1 : options_.branch;
@@ -298,7 +301,13 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& needs, RowObse
     if (const Report consistent = check_redundant_rows(); !consistent.ok()) return end(consistent);
     if (const Report sound = watched_.check(); !sound.ok()) return end(sound);
     if (const Report solved = solve_rates(needs); !solved.ok()) return end(solved);
-    if (const Report consistent = check_redundant_rates(); !consistent.ok()) return end(consistent);
+    if (!check_redundant_rates(doubtful_rates, false).ok() && choose_better_rows()) {
+      // The rows in use determined something badly, others do it well.
+      solver_.solve_position(q_);
+      if (const Report solved = solve_rates(needs); !solved.ok()) return end(solved);
+    }
+    if (const Report consistent = check_redundant_rates(contradictory_rates, true); !consistent.ok())
+      return end(consistent);
     predictor_.push(t_, q_, has_velocity_ ? std::span<const double>(qd_) : std::span<const double>{},
                     has_acceleration_ ? std::span<const double>(qdd_) : std::span<const double>{});
     const Snapshot snapshot{.evaluator = evaluator_,

@@ -79,7 +79,7 @@ class Kinematics {
   double largest_rate() const;
   Report stuck(double t);
   Report check_redundant_rows();
-  Report check_redundant_rates();
+  Report check_redundant_rates(double allowed, bool in_words);
   Report contradicts(int row, const std::string& how);
   void scatter_applied_forces();
   Report solve_multipliers();
@@ -115,6 +115,7 @@ class Kinematics {
   RowObserver* observer_ = nullptr;  // during run(): asked between rows too whether to go on
   double t_ = 0;
   std::vector<double> q_, qd_, qdd_, lambda_, trial_, loads_, applied_, nothing_;
+  std::vector<double> rest_, rates_;  // of redundant rows, by row; of a check, by column
   // How far from singular the blocks of Phi_q are at q_, signed; by how much the magnitudes change in unit time; and
   // the most that each of them has been.
   std::vector<BlockMargin> margins_, margin_rates_;

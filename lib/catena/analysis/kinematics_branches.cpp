@@ -227,7 +227,7 @@ std::string SingularPoint::describe_branches() const {
 }
 
 std::string SingularPoint::describe_ways() const {
-  return fmt::format("{} that meet there (for a fastest driver of 1 rad/s or m/s: {})", branches.size(),
+  return fmt::format("{} branches meet there ({}, with the fastest driver at 1 rad/s or m/s)", branches.size(),
                      describe_branches());
 }
 

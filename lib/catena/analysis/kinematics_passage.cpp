@@ -136,7 +136,7 @@ void Kinematics::announce(const SingularPoint& point, Report& report) {
     case SingularPoint::Kind::rest:
       text = fmt::format(
           "at t = {:.12g} s the drivers rest in a singular configuration; the motion goes on as smoothly as it came{}",
-          point.t, point.tangents.size() > 1 ? ", along branch 1 of " + point.describe_ways() : "");
+          point.t, point.tangents.size() > 1 ? ", along branch 1: " + point.describe_ways() : "");
       break;
     default:
       text = fmt::format("at t = {:.12g} s the mechanism passes a singular configuration; the motion goes on as before",

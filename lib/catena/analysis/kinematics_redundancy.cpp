@@ -12,9 +12,10 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// Residuals of redundant rows above which they contradict the others: of positions in length scales or rad, of
-// velocities and accelerations as a part of the largest ones.
-constexpr double contradiction = 1e-8, contradiction_of_rates = 1e-6;
+// Residual of redundant rows, in length scales or rad, above which they contradict the others.
+constexpr double contradiction = 1e-8;
+// Pivots of blocks above this part of the largest that they have been determine rates to that accuracy.
+constexpr double well_determined = 1e-3;
 constexpr std::size_t most_names = 6;  // in a message
 
 }  // namespace
@@ -57,28 +58,39 @@ Report Kinematics::check_redundant_rows() {
                                         plan_->row_is_angle[at(worst)] ? "rad" : "m"));
 }
 
-// The same of velocities and accelerations: drivers may agree in place and differ in speed.
-Report Kinematics::check_redundant_rates() {
+// The same of velocities and accelerations: drivers may agree in place and differ in speed. `allowed`: part of the
+// largest rates. Without words the status is all that is said.
+Report Kinematics::check_redundant_rates(double allowed, bool in_words) {
   if (plan_->rows == plan_->columns || on_bridge_) return {};
+  // Near a singular configuration rates are as good as the rows in use allow, and that may be no digit.
+  for (std::size_t k = 0; k < margins_.size() && k < largest_margins_.size(); ++k) {
+    if (std::abs(margins_[k].pivot) < well_determined * largest_margins_[k]) return {};
+  }
   const std::span<const double> values = solver_.jacobian().first(at(plan_->trash_slot()));
-  std::vector<double> rest(at(plan_->rows)), rates(at(plan_->columns));
+  rest_.resize(at(plan_->rows));
+  rates_.resize(at(plan_->columns));
   const double speed = solver_.distance(qd_, nothing_, nullptr);
   const auto check = [&](std::span<const double> known, double least, const char* what, const char* per) -> Report {
     const double scale = std::max(
-        {row_norm(*plan_, rest, evaluator_.length_scale()), solver_.distance(known, nothing_, nullptr), least});
-    for (std::size_t c = 0; c < rates.size(); ++c) rates[c] = -known[at(plan_->coordinate[c])];
-    multiply_add(plan_->jacobian, values, rates, rest);
+        {row_norm(*plan_, rest_, evaluator_.length_scale()), solver_.distance(known, nothing_, nullptr), least});
+    for (std::size_t c = 0; c < rates_.size(); ++c) rates_[c] = -known[at(plan_->coordinate[c])];
+    multiply_add(plan_->jacobian, values, rates_, rest_);
     int worst = -1;
-    if (!(solver_.redundant_residual(rest, &worst) > contradiction_of_rates * scale)) return {};
-    return contradicts(worst, fmt::format("its {} misses by {:.3g} {}/{}", what, std::abs(rest[at(worst)]),
+    if (!(solver_.redundant_residual(rest_, &worst) > allowed * scale)) return {};
+    if (!in_words) {
+      Report report;
+      report.status = Status::inconsistent;
+      return report;
+    }
+    return contradicts(worst, fmt::format("its {} misses by {:.3g} {}/{}", what, std::abs(rest_[at(worst)]),
                                           plan_->row_is_angle[at(worst)] ? "rad" : "m", per));
   };
   if (has_velocity_) {
-    evaluator_.nu(rest);
+    evaluator_.nu(rest_);
     if (const Report report = check(qd_, 0, "velocity", "s"); !report.ok()) return report;
   }
   if (!has_acceleration_) return {};
-  evaluator_.gamma(qd_, rest);
+  evaluator_.gamma(qd_, rest_);
   return check(qdd_, speed * speed, "acceleration", "s^2");
 }
 
