@@ -23,6 +23,7 @@ SceneFacts leg_facts();           ///< walking legs
 SceneFacts machine_facts();       ///< pantograph, excavator, wiper, lift, steering
 SceneFacts gear_and_cam_facts();  ///< planetary set, rolling pinion, belts, cams
 SceneFacts force_facts();         ///< nonlinear springs, bushings, events
+SceneFacts gap_facts();           ///< contacts, stops, cables
 
 /// Where the run's kinematics is in the list of analyses: after `check`.
 constexpr std::size_t kinematic = 1;

@@ -19,12 +19,17 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 constexpr double balanced = 1e-9;
 constexpr std::size_t most_names = 6;
 
+PlanOptions with_gaps(PlanOptions options) {
+  options.one_sided = true;
+  return options;
+}
+
 }  // namespace
 
 Equilibrium::Equilibrium(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
                          const EquilibriumOptions& options)
     : model_(std::move(model)),
-      plan_(Plan::make(*model_, plan_options)),
+      plan_(Plan::make(*model_, with_gaps(plan_options))),
       options_(options),
       evaluator_(plan_, *model_),
       system_(evaluator_) {
@@ -61,6 +66,10 @@ void Equilibrium::choose_least_reactions(Report& report) {
   evaluator_.applied_forces(std::vector<double>(loads.size(), 0.0), loads);
   // Least reactions that do not balance the loads would be none.
   if (!(least.solve(loads, multipliers) <= balanced)) return;
+  // One-sided elements only push: where the least reactions would pull, those found are kept.
+  for (int r : plan_->gap_rows) {
+    if (multipliers[at(r)] > 0) return;
+  }
   lambda_ = std::move(multipliers);
   const std::vector<int> elements = least.find_ambiguous();
   std::string names;
@@ -121,7 +130,13 @@ EquilibriumReport Equilibrium::solve() {
     if (report.redundant.empty() || report.redundant.back() != name) report.redundant.push_back(name);
   }
   if (result.report.ok()) {
-    report.rank = plan_->rows - static_cast<int>(result.dependent_rows.size());
+    const auto& closed = result.gaps.closed;
+    int open = 0;
+    for (std::size_t k = 0; k < closed.size(); ++k) {
+      if (closed[k]) report.active.push_back(model_->element_name(plan_->row_element[at(plan_->gap_rows[k])]));
+      open += !closed[k] || result.gaps.weak[k];
+    }
+    report.rank = plan_->rows - static_cast<int>(result.dependent_rows.size()) - open;
     report.dof = plan_->columns - *report.rank;
     if (!result.dependent_rows.empty()) choose_least_reactions(result.report);
   }

@@ -56,6 +56,7 @@ struct EquilibriumReport : AnalysisReport {
   double residual = 0;                ///< largest residual force, N
   std::string solver;                 ///< the one that found it
   int iterations = 0;
+  std::vector<std::string> active;      ///< one-sided elements whose gap is closed
   std::vector<FoundEquilibrium> found;  ///< with `find`: one a row, the lowest energy first
 };
 

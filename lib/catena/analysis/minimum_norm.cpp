@@ -34,7 +34,7 @@ void invert(double* a, int n) {
 MinimumNorm::MinimumNorm(Evaluator& evaluator) : evaluator_(evaluator) {
   const Plan& plan = evaluator.plan();
   for (std::size_t e = 0; e < plan.element_row.size(); ++e) {
-    if (plan.element_row[e] < 0) continue;
+    if (plan.element_row[e] < 0 || evaluator.is_left_out(plan.element_row[e])) continue;
     const Evaluator::ElementJacobian jacobian = evaluator.element_jacobian(static_cast<int>(e));
     Block block;
     block.element = static_cast<int>(e);

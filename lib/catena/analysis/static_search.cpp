@@ -19,6 +19,8 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Degrees of freedom up to which the valley of the start is followed: the work grows with them, Newton's does not.
 constexpr int few_freedoms = 30;
+// Coordinates up to which it is followed, whatever the freedoms, where nothing else got anywhere.
+constexpr int most_downhill_columns = 3000;
 constexpr int most_trials = 14;
 // Starts of Newton's that fail before Ipopt is asked.
 constexpr unsigned starts_before_ipopt = 4;
@@ -27,8 +29,12 @@ constexpr double largest_polish = 0.05;
 constexpr double rounding_tolerance = 1e-15;
 // Beyond this interior points only gather rounding: the rest is polished.
 constexpr double finest_barrier = 1e-10;
+// Of gaps and their forces, whatever was asked for: the last steps cost next to nothing.
+constexpr double gap_tolerance = 1e-12;
 constexpr double first_push = 0.05, largest_push = 0.8;
 // Stiffness contributions below this part of the scene's count as absent.
+// Gaps closed by less than this many length scales count as closed.
+constexpr double absent_overlap = 1e-6;
 constexpr double absent_stiffness = 1e-8;
 
 // A reproducible number in [-1, 1).
@@ -41,6 +47,26 @@ std::string body_of(const Evaluator& evaluator, int column) {
   const Plan& plan = evaluator.plan();
   const int body = plan.model_body[at(plan.coordinate[at(column)] / 3)];
   return std::string(evaluator.model().body_name(body));
+}
+
+}  // namespace
+
+namespace {
+
+// Names the gaps of which rounding decides whether they are closed.
+void name_weak_gaps(const Evaluator& evaluator, StaticResult& result) {
+  constexpr std::size_t most = 6;
+  std::string names;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < result.gaps.weak.size(); ++k) {
+    if (!result.gaps.weak[k] || ++count > most) continue;
+    const int element = evaluator.plan().row_element[at(evaluator.plan().gap_rows[k])];
+    names += fmt::format("{}\"{}\"", count > 1 ? ", " : "", evaluator.model().element_name(element));
+  }
+  if (count == 0) return;
+  if (count > most) names += fmt::format(" and {} more", count - most);
+  result.report.warnings.push_back(
+      fmt::format("just touching, without a force that could be told from rounding: {}", names));
 }
 
 }  // namespace
@@ -67,9 +93,56 @@ StaticOutcome StaticSearch::polish_by_newton(std::vector<double>& q, std::vector
   return outcome;
 }
 
+StaticOutcome StaticSearch::minimise_with_gaps(std::vector<double>& q, std::vector<double>& lambda, bool warm, Way way,
+                                               StaticResult& result) {
+  StaticOutcome outcome;
+  const StaticGapOptions exact{.tolerance = std::min(options_.tolerance, gap_tolerance)};
+  result.solver = way == Way::ipopt ? "ipopt" : way == Way::nlopt ? "nlopt" : "newton";
+  if (way == Way::ipopt || way == Way::nlopt) {
+    system_.use_gaps();
+    system_.move_to(q);
+    outcome = way == Way::ipopt ? solve_by_ipopt(system_, q, lambda,
+                                                 {.tolerance = std::max(options_.tolerance, finest_barrier),
+                                                  .warm = warm,
+                                                  .verbose = options_.verbose})
+                                : solve_by_nlopt(system_, q, lambda, {.tolerance = options_.tolerance});
+    result.iterations += outcome.iterations;
+    if (outcome.converged()) outcome = finish_with_gaps(system_, q, lambda, result.gaps, exact);
+    return outcome;
+  }
+  if (warm) {
+    // Where the closed gaps stay closed, a small change of parameters needs no more.
+    const std::vector<double> before = q, multipliers = lambda;
+    outcome = finish_with_gaps(system_, q, lambda, result.gaps, exact);
+    result.iterations += outcome.iterations;
+    if (outcome.converged()) return outcome;
+    q = before;
+    lambda = multipliers;
+  }
+  outcome = solve_with_gaps(system_, q, lambda, result.gaps, exact);
+  result.iterations += outcome.iterations;
+  return outcome;
+}
+
+// Gaps that are closed without force may open: the point is certified as if they were. The system is left with all
+// that are closed.
+Certificate StaticSearch::certify_with_gaps(const std::vector<double>& q, std::span<const double> lambda,
+                                            const ActiveSet& gaps) {
+  if (!system_.has_gaps()) return certify(system_, lambda);
+  std::vector<char> strong = gaps.closed;
+  for (std::size_t k = 0; k < strong.size(); ++k) strong[k] = strong[k] && !gaps.weak[k];
+  system_.close_gaps(strong);
+  system_.move_to(q);
+  const Certificate certificate = certify(system_, lambda);
+  system_.close_gaps(gaps.closed);
+  system_.move_to(q);
+  return certificate;
+}
+
 // One solver from one start.
 StaticOutcome StaticSearch::minimise(std::vector<double>& q, std::vector<double>& lambda, bool warm, Way way,
                                      StaticResult& result) {
+  if (system_.has_gaps()) return minimise_with_gaps(q, lambda, warm, way, result);
   StaticOutcome outcome;
   system_.move_to(q);
   if (way == Way::ipopt || way == Way::nlopt) {
@@ -163,6 +236,8 @@ Report StaticSearch::explain(const StaticOutcome& outcome, const std::vector<dou
                     body_of(evaluator, farthest), plan.coordinate[at(farthest)] % 3 == 2 ? "turns" : "moves");
     return report;
   }
+  const std::vector<double> gap = gap_values(system_);
+  system_.close_gaps(std::vector<char>(gap.size(), 0));
   Assembler assembler(system_.evaluator());
   std::vector<double> assembled = start;
   const AssemblyOutcome assembly = assembler.assemble(assembled);
@@ -175,6 +250,13 @@ Report StaticSearch::explain(const StaticOutcome& outcome, const std::vector<dou
       "no equilibrium found: the residual force is still {:.3g} N, of {:.3g} N, the constraints miss by {:.3g}; likely "
       "cause: a start far off, or an energy without a minimum nearby",
       outcome.residual, system_.force_size(), system_.phi_norm());
+  const auto worst = std::min_element(gap.begin(), gap.end());
+  if (worst != gap.end() && *worst < -absent_overlap * system_.length()) {
+    const int element = plan.row_element[at(plan.gap_rows[static_cast<std::size_t>(worst - gap.begin())])];
+    report.message +=
+        fmt::format("; {} \"{}\" is violated by {:.3g}: can all of them be met?",
+                    evaluator.model().element_type(element), evaluator.model().element_name(element), -*worst);
+  }
   return report;
 }
 
@@ -210,10 +292,20 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
   const Plan& plan = system_.plan();
   Evaluator& evaluator = system_.evaluator();
   if (!options_.warm) move_whole_turns(evaluator, q);
-  if (!evaluator.conservative()) return find_without_energy(q, lambda);
+  if (!evaluator.conservative()) {
+    if (!system_.has_gaps()) return find_without_energy(q, lambda);
+    const int element = plan.row_element[at(plan.gap_rows.front())];
+    result.report.status = Status::refused;
+    result.report.message = fmt::format(
+        "forces that turn with their body have no energy, and one-sided elements such as {} \"{}\" are treated by "
+        "minimising one",
+        evaluator.model().element_type(element), evaluator.model().element_name(element));
+    return result;
+  }
   const std::vector<double> start = q;
   const bool own = options_.solver == StaticSolver::automatic || options_.solver == StaticSolver::newton;
-  const bool few = !options_.warm && !options_.stationary && plan.columns - plan.rows <= few_freedoms;
+  const bool few =
+      !options_.warm && !options_.stationary && !system_.has_gaps() && plan.columns - plan.rows <= few_freedoms;
   Way way = options_.solver == StaticSolver::ipopt   ? Way::ipopt
             : options_.solver == StaticSolver::nlopt ? Way::nlopt
             : few                                    ? Way::valley
@@ -221,12 +313,13 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
   double push = first_push;
   StaticOutcome outcome;
   bool accepted = false, pushed = false, ask_ipopt = options_.solver == StaticSolver::automatic && ipopt_is_built_in();
+  bool ask_downhill = own && !few && !system_.has_gaps() && plan.columns <= most_downhill_columns;
   unsigned shaken = 0;
   for (int trial = 0; trial < most_trials && !accepted; ++trial) {
     outcome = minimise(q, lambda, options_.warm && trial == 0, way, result);
     if (outcome.end == StaticEnd::unbounded) break;
     if (outcome.converged()) {
-      result.certificate = certify(system_, lambda);
+      result.certificate = certify_with_gaps(q, lambda, result.gaps);
       accepted = result.certificate.valid && (options_.stationary || result.certificate.negative_modes == 0);
       if (accepted || !result.certificate.valid || result.certificate.mode.empty()) break;
       leave(result.certificate, q, push);
@@ -237,13 +330,16 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
     if (!own) break;
     // Where following the valley does not get anywhere Newton may, and where that does not, another start or Ipopt.
     q = start;
-    if (trial + 2 == most_trials && options_.solver == StaticSolver::automatic) {
+    if (trial + 2 == most_trials && !system_.has_gaps() && options_.solver == StaticSolver::automatic) {
       way = Way::settling;
     } else if (way != Way::newton) {
       way = Way::newton;
     } else if (ask_ipopt && shaken >= starts_before_ipopt) {
       ask_ipopt = false;
       way = Way::ipopt;
+    } else if (ask_downhill && shaken >= starts_before_ipopt) {
+      ask_downhill = false;
+      way = Way::valley;
     } else {
       ++shaken;
       shake(q, shaken, shaken == 1 ? 0.1 : 1.0);
@@ -255,6 +351,7 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
     return result;
   }
   result.dependent_rows = system_.matrix().dependent_rows();
+  name_weak_gaps(evaluator, result);
   const double scale = std::max(system_.force_scale(lambda), system_.load_size());
   const bool accurate = result.residual <= options_.tolerance * scale + system_.rounding_force() &&
                         system_.phi_norm() <= std::max(options_.tolerance, 10 * system_.rounding_change());

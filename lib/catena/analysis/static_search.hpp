@@ -8,6 +8,8 @@
 //   forces that follow their body: no energy                          damped settling, no certificate
 //   Ipopt or NLopt converged, asked for or not                        polished by Newton
 //   stationary but no minimum                                         a push along the most negative mode, and on
+//   gaps                                                              Newton on the smoothed complementarity, else
+//                                                                     Ipopt; either ends on the exact active set
 //
 // Random numbers are fixed: the same scene gives the same answer.
 #pragma once
@@ -17,6 +19,7 @@
 #include <vector>
 
 #include "catena/analysis/certificate.hpp"
+#include "catena/analysis/static_gaps.hpp"
 #include "catena/analysis/static_newton.hpp"
 #include "catena/base/status.hpp"
 
@@ -40,6 +43,7 @@ struct StaticResult {
   int iterations = 0;
   double residual = 0;              ///< largest residual force, N
   std::vector<int> dependent_rows;  ///< constraint rows that follow from others
+  ActiveSet gaps;                   ///< which are closed
 };
 
 class StaticSearch {
@@ -56,6 +60,9 @@ class StaticSearch {
  private:
   enum class Way { valley, newton, ipopt, nlopt, settling };
   StaticOutcome minimise(std::vector<double>& q, std::vector<double>& lambda, bool warm, Way way, StaticResult& result);
+  StaticOutcome minimise_with_gaps(std::vector<double>& q, std::vector<double>& lambda, bool warm, Way way,
+                                   StaticResult& result);
+  Certificate certify_with_gaps(const std::vector<double>& q, std::span<const double> lambda, const ActiveSet& gaps);
   StaticOutcome polish_by_newton(std::vector<double>& q, std::vector<double>& lambda, StaticOutcome outcome);
   void leave(const Certificate& certificate, std::vector<double>& q, double size);
   StaticResult find_without_energy(std::vector<double>& q, std::vector<double>& lambda);

@@ -6,12 +6,12 @@
 namespace catena {
 namespace {
 
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
 // Part of the largest residual force that adds to every body's convex stiffness against turning.
 constexpr double turning_floor = 0.1;
 // Stands for the force where there is none at all, N.
 constexpr double smallest_force = 1e-200;
+// Of rows that are left out, m/N: anything that is no rounding.
+constexpr double left_out_compliance = 1;
 
 }  // namespace
 
@@ -30,6 +30,41 @@ StaticSystem::StaticSystem(Evaluator& evaluator)
   jacobian_.resize(at(plan_.trash_slot()) + 1);
   evaluator_.start_jacobian(jacobian_);
   solution_.resize(at(plan_.columns + plan_.rows));
+  if (!has_gaps()) return;
+  is_gap_.assign(at(plan_.rows), 0);
+  for (int r : plan_.gap_rows) is_gap_[at(r)] = 1;
+  use_gaps();
+}
+
+void StaticSystem::use_gaps() {
+  one_sided_ = has_gaps();
+  open_.clear();
+  evaluator_.leave_out({});
+  matrix_.set_compliance({});
+}
+
+void StaticSystem::close_gaps(std::span<const char> closed) {
+  if (!has_gaps()) return;
+  one_sided_ = false;
+  open_.clear();
+  std::vector<double> compliance(at(plan_.rows), 0.0);
+  for (std::size_t k = 0; k < closed.size(); ++k) {
+    if (closed[k]) continue;
+    open_.push_back(plan_.gap_rows[k]);
+    compliance[at(plan_.gap_rows[k])] = left_out_compliance;
+  }
+  evaluator_.leave_out(open_);
+  matrix_.set_compliance(compliance);
+}
+
+void StaticSystem::all_gaps(std::vector<double>& out) {
+  out.clear();
+  if (!has_gaps()) return;
+  met_.resize(phi_.size());
+  evaluator_.leave_out({});
+  evaluator_.phi(met_);
+  evaluator_.leave_out(open_);
+  for (int r : plan_.gap_rows) out.push_back(met_[at(r)]);
 }
 
 void StaticSystem::take_over_model() {
@@ -88,7 +123,12 @@ double StaticSystem::force_norm(std::span<const double> forces) const {
 
 double StaticSystem::change_norm(std::span<const double> change) const { return scaling_.column_norm(change); }
 
-double StaticSystem::phi_norm() const { return scaling_.row_norm(phi_); }
+double StaticSystem::phi_norm() const {
+  if (!one_sided_) return scaling_.row_norm(phi_);
+  met_.assign(phi_.begin(), phi_.end());
+  for (int r : plan_.gap_rows) met_[at(r)] = std::min(met_[at(r)], 0.0);
+  return scaling_.row_norm(met_);
+}
 
 double StaticSystem::force_scale(std::span<const double> lambda) const {
   double largest = force_norm(gradient_);

@@ -2,6 +2,10 @@
 //
 //   V_q + Phi_q^T lambda = 0,   Phi = 0        V_q = -Q, Q the applied forces at rest (THEORY section 5)
 //
+// Rows of one-sided elements are gaps, Psi >= 0 with lambda <= 0. Either all of them are seen as such (use_gaps: what
+// optimisers want; phi() and jacobian() hold them all, phi_norm() what is below zero), or some hold as equations and
+// the others not at all (close_gaps: phi() and jacobian() hold zeros there, and lambda stays zero).
+//
 // Functions of time are frozen at the evaluator's time. Vectors over columns (forces, N or N m; changes, m or rad) and
 // rows (lambda, Phi); configurations are in plan order. Nothing allocates after construction.
 #pragma once
@@ -35,7 +39,15 @@ class StaticSystem {
   void move_to(std::span<const double> q);
   /// Whether the constraints have no second derivatives, as bodies held at their centroids: asked once, where it is.
   bool has_linear_constraints();
-  RowSide side(int) const { return RowSide::both; }
+  bool has_gaps() const { return !plan_.gap_rows.empty(); }
+  RowSide side(int row) const { return is_gap_.empty() || !is_gap_[at(row)] ? RowSide::both : RowSide::at_least; }
+  /// All gaps as inequalities; move_to() comes next.
+  void use_gaps();
+  /// The gaps with closed[k] != 0, k counting plan().gap_rows, as equations, the others not at all; move_to() comes
+  /// next.
+  void close_gaps(std::span<const char> closed);
+  /// Every gap at the present configuration, m or rad, closed or not, in the order of plan().gap_rows.
+  void all_gaps(std::vector<double>& out);
   double energy() const { return evaluator_.potential_energy(); }
   std::span<const double> gradient() const { return gradient_; }  ///< V_q, columns
   std::span<const double> phi() const { return phi_; }
@@ -47,7 +59,7 @@ class StaticSystem {
   double force_norm(std::span<const double> forces) const;
   /// Largest change over columns: lengths in length scales, angles in rad.
   double change_norm(std::span<const double> change) const;
-  /// Largest constraint residual in length scales or rad.
+  /// Largest constraint residual in length scales or rad, of gaps only what is below zero unless they are closed.
   double phi_norm() const;
   /// Largest force in the mechanism: of V_q and of the constraints' parts of Phi_q^T lambda, N.
   double force_scale(std::span<const double> lambda) const;
@@ -90,6 +102,7 @@ class StaticSystem {
     double largest = 0, sum = 0;
   };
   ForceSize measure(std::span<const double> forces) const;
+  static std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
   Evaluator& evaluator_;
   const Plan& plan_;
@@ -101,6 +114,10 @@ class StaticSystem {
   std::vector<double> rest_, loads_;  // zero velocities, Q; all coordinates
   std::vector<double> gradient_, jacobian_, phi_;
   std::vector<double> solution_, torque_;
+  std::vector<char> is_gap_;         // per row; empty: none is
+  std::vector<int> open_;            // rows left out
+  bool one_sided_ = false;           // gaps as inequalities
+  mutable std::vector<double> met_;  // phi without gaps that are open
 };
 
 }  // namespace catena

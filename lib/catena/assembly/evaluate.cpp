@@ -198,11 +198,23 @@ Frame<double> Evaluator::ground_frame(int plan_body) const {
   return f;
 }
 
+void Evaluator::leave_out(std::span<const int> rows) {
+  left_out_.assign(rows.begin(), rows.end());
+  left_out_slot_.clear();
+  if (rows.empty()) return;
+  std::vector<char> is_out(at(plan_->rows), 0);
+  for (int r : rows) is_out[at(r)] = 1;
+  for (int k = 0; k < plan_->jacobian.entries(); ++k) {
+    if (is_out[at(plan_->jacobian.row_index[at(k)])]) left_out_slot_.push_back(k);
+  }
+}
+
 void Evaluator::phi(std::span<double> out) {
   ++counters.phis;
   for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
     ConstraintOperations<ElementOf<decltype(list)>>::phi(block, data, frames_.data(), out.data());
   });
+  for (int r : left_out_) out[at(r)] = 0;
 }
 
 void Evaluator::start_jacobian(std::span<double> values) const {
@@ -217,6 +229,7 @@ void Evaluator::jacobian(std::span<double> values) {
   for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
     ConstraintOperations<ElementOf<decltype(list)>>::jacobian(block, data, frames_.data(), values.data());
   });
+  for (int k : left_out_slot_) values[at(k)] = 0;
 }
 
 void Evaluator::nu(std::span<double> out) {

@@ -9,6 +9,7 @@
 // Nothing here allocates after construction. One object a thread; the plan is shared.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -57,6 +58,9 @@ class Evaluator {
   /// The frame of a plan body in the ground frame.
   Frame<double> ground_frame(int plan_body) const;
 
+  /// Rows that do not hold for the time being, ascending: phi() and jacobian() give zeros there until others are named.
+  void leave_out(std::span<const int> rows);
+  bool is_left_out(int row) const { return std::binary_search(left_out_.begin(), left_out_.end(), row); }
   void phi(std::span<double> out);  ///< size rows
   /// Zeroes the values and writes the entries +1 and -1, once before jacobian(); size entries + 1, the last is scratch.
   void start_jacobian(std::span<double> values) const;
@@ -128,6 +132,7 @@ class Evaluator {
   std::vector<int> turns_;             // per moving body, as taken by take_turns(); empty: none
   std::vector<Taylor<double>> function_;
   std::vector<int> place_;
+  std::vector<int> left_out_, left_out_slot_;  // rows and the places of their entries in Phi_q
   double time_ = 0, length_scale_ = 1;
 };
 

@@ -72,6 +72,7 @@ void KktMatrix::complete(std::span<const double> jacobian, double shift) {
       value += shift;
     }
   }
+  softness_ = compliance_;
   write_jacobian(jacobian);
 }
 
@@ -124,13 +125,15 @@ FactorResult KktMatrix::factorize(double least_stiffness, Counters& counters) {
   double* const minus_eps = values_.data() + structure_.regularisation();
   for (int r = 0; r < structure_.rows; ++r) {
     const int begin = structure_.row_start[at(r)], end = structure_.row_start[at(r) + 1];
+    const double d = softness_.empty() ? 0.0 : softness_[at(r)], softening = 1 + rho_[at(r)] * d;
     for (int a = begin; a < end; ++a) {
-      const double weighted = rho_[at(r)] * values_[at(structure_.jacobian[at(structure_.row_entry[at(a)])])];
+      const double weighted =
+          rho_[at(r)] / softening * values_[at(structure_.jacobian[at(structure_.row_entry[at(a)])])];
       for (int b = begin; b <= a; ++b) {
         *product++ = weighted * values_[at(structure_.jacobian[at(structure_.row_entry[at(b)])])];
       }
     }
-    minus_eps[r] = -eps_[at(r)];
+    minus_eps[r] = -(eps_[at(r)] + d * softening);
   }
   return factorization_.factorize(std::span<const double>(values_).first(at(structure_.factored())), counters);
 }
@@ -150,6 +153,10 @@ void KktMatrix::multiply(std::span<const double> x, std::span<double> y) const {
       y[at(r)] += value * xc;
     }
     y[at(c)] += sum;
+  }
+  for (std::size_t r = 0; r < compliance_.size(); ++r) {
+    const std::size_t row = at(structure_.columns) + r;
+    y[row] += values_[at(structure_.diagonal[row])] * x[row];
   }
 }
 
@@ -203,6 +210,10 @@ Refinement KktMatrix::solve(std::span<double> x, double force, double length, do
 }
 
 void KktMatrix::solve_unrefined(std::span<double> x, Counters& counters) {
+  const auto softening = [&](std::size_t r) {
+    const double d = compliance_.empty() ? 0.0 : -values_[at(structure_.diagonal[at(structure_.columns) + r])];
+    return 1 + rho_[r] * d;
+  };
   // What was added to the first equation on the left, Phi_q^T R times the second one, is added on the right as well.
   const SparsePattern& phi_q = plan_->jacobian;
   const std::span<const double> second = x.subspan(at(structure_.columns));
@@ -211,11 +222,12 @@ void KktMatrix::solve_unrefined(std::span<double> x, Counters& counters) {
     double sum = 0;
     for (int k = phi_q.column_start[at(c)]; k < phi_q.column_start[at(c) + 1]; ++k) {
       const std::size_t row = at(phi_q.row_index[at(k)]);
-      sum += values_[at(structure_.jacobian[at(k)])] * rho_[row] * x[at(structure_.columns) + row];
+      sum += values_[at(structure_.jacobian[at(k)])] * rho_[row] / softening(row) * x[at(structure_.columns) + row];
     }
     x[at(c)] += sum;
   }
   factorization_.solve(x, counters);
+  for (std::size_t r = 0; r < compliance_.size(); ++r) x[at(structure_.columns) + r] *= softening(r);
 }
 
 int KktMatrix::negative_modes() const { return factorization_.negative_pivots() - structure_.rows; }
@@ -223,6 +235,7 @@ int KktMatrix::negative_modes() const { return factorization_.negative_pivots() 
 std::vector<int> KktMatrix::dependent_rows() const {
   std::vector<int> dependent;
   for (int r = 0; r < structure_.rows; ++r) {
+    if (!compliance_.empty() && compliance_[at(r)] > 0) continue;
     if (std::abs(factorization_.pivot(structure_.columns + r)) < 1e3 * eps_[at(r)]) dependent.push_back(r);
   }
   return dependent;

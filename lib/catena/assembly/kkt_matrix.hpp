@@ -2,8 +2,10 @@
 // factorization exist, solved and refined against the matrix itself.
 //
 //   true      [ K    Phi_q^T ]        factored   [ K + Phi_q^T R Phi_q   Phi_q^T ]
-//             [ Phi_q   0    ]                   [ Phi_q                 -E      ]
+//             [ Phi_q   -D   ]                   [ Phi_q                 -E      ]
 //
+// D = 0 where constraints hold; rows of gaps may have a compliance d > 0 (set_compliance). Their part of the second
+// matrix follows from lambda = lambda' (1 + rho d): R holds rho / (1 + rho d), E holds eps + d (1 + rho d).
 // Inertia of the factored one: n_- = m + p, p the number of negative eigenvalues of K on the null space of Phi_q,
 // whatever the rank of Phi_q (THEORY section 5). rho and eps are chosen row by row from the stiffness of the bodies the
 // row touches, since a mechanism may hold springs and links over many orders of magnitude: rho comparable with K there,
@@ -32,6 +34,9 @@ class KktMatrix {
   std::span<const double> inverse_arms() const { return inverse_arms_; }
 
   const KktStructure& structure() const { return structure_; }
+
+  /// d of every row, m/N (rad / (N m) where the row is in radians); empty: all zero. Counts from the next fill on.
+  void set_compliance(std::span<const double> compliance) { compliance_.assign(compliance.begin(), compliance.end()); }
 
   /// Compare the matrix with the one factored last, and keep its factors where nothing changed (linear problems).
   void keep_equal_factors(bool keep) {
@@ -89,6 +94,7 @@ class KktMatrix {
   std::vector<double> values_;  // see KktStructure
   std::vector<double> last_;    // the true matrix of the last factorization, if factors are to be kept
   std::vector<double> rho_, eps_, stiffness_;
+  std::vector<double> compliance_;
   std::vector<double> right_hand_side_, residual_work_, correction_work_;
   FrontalFactorization factorization_;
   bool analyzed_ = false, keep_equal_factors_ = false;

@@ -86,7 +86,8 @@ void number_rows(const Model& model, const std::vector<ElementEntry<E, double>>&
     plan.element_row[at(id)] = plan.rows;
     for (int r = 0; r < E::rows; ++r) {
       plan.row_element.push_back(id);
-      plan.row_is_angle.push_back(row_unit<E>(r) == UnitKind::angle);
+      plan.row_is_angle.push_back(row_in_angle(list[at(block.entry[at(e)])].element, r));
+      if constexpr (OneSided<E>) plan.gap_rows.push_back(plan.rows + r);
     }
     plan.rows += E::rows;
     if (model.elements[at(id)].kind == ElementKind::driver) plan.driver_rows += E::rows;
@@ -161,6 +162,11 @@ std::shared_ptr<const Plan> Plan::make(const Model& model, const PlanOptions& op
   for_each_list(model.forces, [&](const auto& list, int) {
     choose_elements(list, {}, *plan, std::get<ForceBlock<ElementOf<decltype(list)>>>(plan->forces));
   });
+  if (!options.one_sided && !plan->gap_rows.empty()) {
+    const int element = plan->row_element[at(plan->gap_rows.front())];
+    throw ModelError(std::string(model.element_type(element)) + " \"" + model.element_name(element) +
+                     "\" is one-sided: this analysis does not treat it; equilibrium does");
+  }
   make_slots(*plan);
   return plan;
 }

@@ -46,6 +46,9 @@ struct PlanOptions {
   /// Constraints that do not hold for the time being: they get no rows. Bodies are numbered as if they did, so that
   /// plans that differ in this alone number them alike.
   std::vector<int> released_elements = {};
+  /// Whether one-sided elements get rows. Where they do not, models that have some are refused unless they are
+  /// released.
+  bool one_sided = false;
 };
 
 struct Plan {
@@ -67,6 +70,7 @@ struct Plan {
   std::vector<char> released;      ///< of an element: it does not hold for the time being; empty: none
   std::vector<int> row_element;    ///< element of a row
   std::vector<char> row_is_angle;  ///< residual in radians; else in metres
+  std::vector<int> gap_rows;       ///< rows of one-sided elements
 
   SparsePattern jacobian;  ///< rows x columns
   ConstraintBlocks blocks;
@@ -79,6 +83,7 @@ struct Plan {
   int coordinates() const { return 3 * (bodies + 1); }   ///< of all bodies and, last and always zero, the ground
   int mobility() const { return columns - (rows - driver_rows); }  ///< Grübler's count
 
+  /// Throws ModelError for one-sided elements that would hold as equations.
   static std::shared_ptr<const Plan> make(const Model& model, const PlanOptions& options = {});
 };
 

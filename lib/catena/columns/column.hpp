@@ -27,12 +27,14 @@ enum class ColumnKind : unsigned char {
   reaction_y,
   reaction_torque,
   multiplier,  ///< of THEORY's form of row `detail`
+  push,        ///< of a gap: the force or torque that keeps it from closing, never negative
 
   // index = element
   value,        ///< measured quantity of a scalar constraint
   rate,         ///< its time derivative
   joint_angle,  ///< phi_j - phi_i
   joint_omega,
+  gap,    ///< of a one-sided element
   slide,  ///< of P_j seen from P_i, along axis_i
   slide_rate,
   load,   ///< lambda dPhi/dc: positive pushes the value up
@@ -45,6 +47,7 @@ enum class ColumnKind : unsigned char {
   tension,        ///< pulls P_i and P_j together
   turn,           ///< phi_j - phi_i
   spring_torque,  ///< n, on body i
+  slack,          ///< of an elastic cable: its length without tension less the present one
 
   kinetic,
   potential,

@@ -44,7 +44,7 @@ std::vector<NamedColumn> default_columns(const Model& model);
 
 /// Whether the column shows multipliers, or what is made of them.
 constexpr bool is_reaction(ColumnKind kind) {
-  return (kind >= ColumnKind::reaction_x && kind <= ColumnKind::multiplier) ||
+  return (kind >= ColumnKind::reaction_x && kind <= ColumnKind::push) ||
          (kind >= ColumnKind::load && kind <= ColumnKind::work);
 }
 

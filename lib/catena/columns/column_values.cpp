@@ -49,6 +49,12 @@ class RowValues {
         return column.detail == on_i ? reactions(column).on_i.torque : reactions(column).on_j.torque;
       case ColumnKind::multiplier:
         return reactions(column).multiplier[column.detail];
+      case ColumnKind::push:
+        return 0 - reactions(column).multiplier[0];
+      case ColumnKind::gap:
+        return evaluator_.measure(column.index, {}, {}).value;
+      case ColumnKind::slack:
+        return spring_loads(s_, column.index).slack;
       case ColumnKind::value:
         return evaluator_.measure(column.index, {}, {}).value;
       case ColumnKind::rate:

@@ -2,20 +2,20 @@
 
 #include "catena/columns/attachment.hpp"
 #include "catena/elements/all.hpp"
+#include "catena/elements/gap_element.hpp"
 
 namespace catena {
 namespace {
 
 template <class E>
-UnitKind multiplier_unit(int row) {
-  if (row_unit<E>(row) == UnitKind::angle) return UnitKind::torque;
+UnitKind multiplier_unit(const E& element, int row) {
+  if (row_in_angle(element, row)) return UnitKind::torque;
   return HasSquaredValue<E> ? UnitKind::stiffness : UnitKind::force;
 }
 
 template <class Entry>
 void add_reactions(const Entry& entry, std::vector<ElementColumn>& out) {
   using E = typename Entry::Element;
-  static_cast<void>(entry);
   const auto add = [&](const char* suffix, UnitKind unit, ColumnKind kind, ReactionSide side) {
     out.push_back({suffix, unit, kind, side, true});
   };
@@ -30,7 +30,8 @@ void add_reactions(const Entry& entry, std::vector<ElementColumn>& out) {
   add("joint.fx", UnitKind::force, ColumnKind::reaction_x, on_j_in_joint);
   add("joint.fy", UnitKind::force, ColumnKind::reaction_y, on_j_in_joint);
   for (int row = 0; row < E::rows; ++row)
-    out.push_back({"lambda" + std::to_string(row + 1), multiplier_unit<E>(row), ColumnKind::multiplier, row});
+    out.push_back(
+        {"lambda" + std::to_string(row + 1), multiplier_unit(entry.element, row), ColumnKind::multiplier, row});
 }
 
 template <class Entry>
@@ -57,6 +58,13 @@ void add_measures(const Entry& entry, bool driver, std::vector<ElementColumn>& o
 }
 
 template <class Entry>
+void add_gap(const Entry& entry, std::vector<ElementColumn>& out) {
+  const bool angle = row_in_angle(entry.element, 0);
+  out.push_back({"force", angle ? UnitKind::torque : UnitKind::force, ColumnKind::push});
+  out.push_back({"gap", angle ? UnitKind::angle : UnitKind::length, ColumnKind::gap});
+}
+
+template <class Entry>
 void add_loads(const Entry& entry, std::vector<ElementColumn>& out) {
   using E = typename Entry::Element;
   static_cast<void>(entry);
@@ -64,6 +72,11 @@ void add_loads(const Entry& entry, std::vector<ElementColumn>& out) {
     out.push_back({"length", UnitKind::length, ColumnKind::length});
     out.push_back({"rate", UnitKind::velocity, ColumnKind::length_rate});
     out.push_back({"force", UnitKind::force, ColumnKind::tension});
+  }
+  if (E::type == "cable") {
+    out.push_back({"length", UnitKind::length, ColumnKind::length});
+    out.push_back({"force", UnitKind::force, ColumnKind::tension});
+    out.push_back({"gap", UnitKind::length, ColumnKind::slack});
   }
   if (E::type == "torsion_spring") {
     out.push_back({"angle", UnitKind::angle, ColumnKind::turn});
@@ -89,7 +102,11 @@ std::vector<ElementColumn> columns_of_element(const Model& model, int element) {
   std::vector<ElementColumn> out;
   const ElementKind kind = model.elements[static_cast<std::size_t>(element)].kind;
   with_entry(model, element, [&]<class Entry>(const Entry& entry) {
-    if constexpr (requires { Entry::Element::rows; }) {
+    if constexpr (OneSided<typename Entry::Element>) {
+      add_gap(entry, out);
+      if (Entry::Element::type == "cable") out.push_back({"length", UnitKind::length, ColumnKind::length});
+      add_reactions(entry, out);
+    } else if constexpr (requires { Entry::Element::rows; }) {
       add_measures(entry, kind == ElementKind::driver, out);
       add_reactions(entry, out);
     } else {

@@ -44,6 +44,9 @@ SpringLoads spring_loads(const Snapshot& snapshot, int element) {
     const double length = norm(h);
     loads.tension = length > 0 ? dot(Vec2<double>{on_i.fx, on_i.fy}, h) / length : 0;
     loads.torque = on_i.moment;
+    if constexpr (requires { entry.element.slack(i.frame, j.frame); }) {
+      loads.slack = entry.element.slack(i.frame, j.frame);
+    }
   });
   return loads;
 }

@@ -11,7 +11,7 @@
 namespace catena {
 
 struct SpringLoads {
-  double tension = 0, torque = 0;
+  double tension = 0, torque = 0, slack = 0;
 };
 
 SpringLoads spring_loads(const Snapshot& snapshot, int element);

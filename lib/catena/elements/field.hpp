@@ -50,6 +50,22 @@ struct NumberField {
   std::string_view unless = {};
 };
 
+/// An optional number whose unit is that of the column it bounds: `unit`, or `angle_unit` where that is an angle.
+template <class Member>
+struct BoundField {
+  std::string_view key;
+  Member member;
+  UnitKind unit, angle_unit;
+  Domain domain;
+  std::string_view doc;
+};
+
+/// The name of a column: where an element without points of its own acts.
+struct ColumnField {
+  std::string_view key;
+  std::string_view doc;
+};
+
 /// true or false; the member's initial value is the default.
 template <class Member>
 struct FlagField {
@@ -126,6 +142,8 @@ template <class M>
 NumberField(std::string_view, M, UnitKind, Domain, bool, std::string_view) -> NumberField<M>;
 template <class M>
 NumberField(std::string_view, M, UnitKind, Domain, bool, std::string_view, std::string_view) -> NumberField<M>;
+template <class M>
+BoundField(std::string_view, M, UnitKind, UnitKind, Domain, std::string_view) -> BoundField<M>;
 template <class M>
 FlagField(std::string_view, M, std::string_view) -> FlagField<M>;
 template <class M>

@@ -31,9 +31,16 @@
   X(Translational)            \
   X(Weld)
 
-/// The same with those that only C++ can make; they come last.
+/// One-sided constraints (gap_element.hpp): scenes list them as forces.
+#define CATENA_GAPS(X) \
+  X(Cable)             \
+  X(Contact)           \
+  X(Stop)
+
+/// All with rows, also those that only C++ can make; they come last.
 #define CATENA_ALL_CONSTRAINTS(X) \
   CATENA_CONSTRAINTS(X)           \
+  CATENA_GAPS(X)                  \
   X(CustomConstraint)
 
 /// CATENA_FORCES(X) expands X(Type) for every force type that a scene may name.
@@ -44,9 +51,10 @@
   X(Torque)              \
   X(TorsionSpring)
 
-/// The same with those that only C++ can make; they come last.
+/// The same with those that scenes do not name: what a cable with a stiffness is, and what only C++ can make.
 #define CATENA_ALL_FORCES(X) \
   CATENA_FORCES(X)           \
+  X(ElasticCable)            \
   X(CustomForce)
 
 namespace catena {

@@ -103,6 +103,15 @@ std::string BasicModel<S>::element_name(int element) const {
 }
 
 template <class S>
+std::vector<int> BasicModel<S>::gaps() const {
+  std::vector<int> found;
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    if (elements[e].kind == ElementKind::gap) found.push_back(static_cast<int>(e));
+  }
+  return found;
+}
+
+template <class S>
 int BasicModel<S>::find_body(std::string_view name) const {
   if (name == "ground") return ground;
   const int number = names.find(name);

@@ -25,7 +25,8 @@ class ModelError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-enum class ElementKind : unsigned char { constraint, driver, force };
+/// `gap`: a one-sided constraint (gap_element.hpp), stored among the constraints.
+enum class ElementKind : unsigned char { constraint, driver, force, gap };
 
 /// Where an element is stored, in file order.
 struct ElementRecord {
@@ -96,6 +97,8 @@ class BasicModel {
   /// The element's name, `type#n` if it has none.
   std::string element_name(int element) const;
   std::string_view element_type(int element) const;
+  /// The one-sided elements, file order.
+  std::vector<int> gaps() const;
   /// Number of the body or -2; of the element or -1.
   int find_body(std::string_view name) const;
   int find_element(std::string_view name) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "catena/elements/element.hpp"
+#include "catena/elements/gap_element.hpp"
 #include "catena/model/given_frames.hpp"
 #include "catena/model/model.hpp"
 
@@ -102,10 +103,14 @@ int BasicModel<S>::append(std::string_view name, const ElementEntry<E, S>& entry
   ();
   const int id = static_cast<int>(elements.size());
   const int number = claim_name(name, -2 - id);
-  std::vector<int>& counts = is_force ? force_count_ : constraint_count_;
-  counts.resize(std::max(counts.size(), static_cast<std::size_t>(type) + 1));
-  elements.push_back({is_force ? ElementKind::force : kind, static_cast<short>(type), static_cast<int>(list.size()),
-                      number, ++counts[static_cast<std::size_t>(type)]});
+  // Cables are counted as one type, elastic or not.
+  constexpr bool elastic = std::is_same_v<E, ElasticCable<S>>;
+  constexpr int counted = elastic ? detail::constraint_type<S, Cable<S>>() : type;
+  std::vector<int>& counts = is_force && !elastic ? force_count_ : constraint_count_;
+  counts.resize(std::max(counts.size(), static_cast<std::size_t>(counted) + 1));
+  const ElementKind stored = is_force ? ElementKind::force : OneSided<E> ? ElementKind::gap : kind;
+  elements.push_back({stored, static_cast<short>(type), static_cast<int>(list.size()), number,
+                      ++counts[static_cast<std::size_t>(counted)]});
   list.push_back(entry);
   list.back().id = id;
   return id;

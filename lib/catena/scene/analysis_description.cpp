@@ -73,7 +73,7 @@ std::vector<AnalysisDescription> describe_all() {
             {"step", KeyKind::number, "fixed step, s (default: chosen by the tolerance)", UnitKind::time},
             {"events", KeyKind::events, "what to watch for, and what to do then"}}),
       make("equilibrium", "A configuration at rest, and whether it is stable.",
-           "energy, stable, negative_modes, residual, solver, iterations, equilibria", false,
+           "energy, stable, negative_modes, residual, solver, iterations, active (the closed gaps), equilibria", false,
            {outputs,
             at_time,
             tolerance,

@@ -22,6 +22,10 @@ FieldDescription describe_field(const Field& field) {
     d.omitted = field.omitted;
     d.required = field.omitted == Omitted::refused;
   }
+  if constexpr (requires { field.angle_unit; }) {
+    d.second_unit = field.angle_unit;
+    d.required = false;
+  }
   if constexpr (requires { field.second; }) {
     if constexpr (std::is_same_v<decltype(field.second), UnitKind>) {
       d.unit = field.first;
@@ -50,9 +54,16 @@ ElementDescription describe_element(int number) {
   } else {
     d.force = true;
   }
+  if constexpr (requires { E::one_sided; }) d.force = d.one_sided = true;
   if constexpr (requires { E::second_body_optional; }) d.second_body_optional = E::second_body_optional;
   if constexpr (requires { E::squared; }) d.squared = E::squared;
-  std::apply([&](const auto&... field) { (d.fields.push_back(describe_field(field)), ...); }, E::fields());
+  const auto describe = [&](const auto&... field) { (d.fields.push_back(describe_field(field)), ...); };
+  if constexpr (requires { E::keys(); }) {
+    d.bodies = 0;
+    std::apply(describe, E::keys());
+  } else {
+    std::apply(describe, E::fields());
+  }
   for (FieldDescription& field : d.fields) {
     if (field.kind == FieldKind::point && field.body == 1 && d.second_body_optional) field.required = false;
     field.slot = d.slots;
@@ -68,6 +79,8 @@ std::vector<ElementDescription> describe_all() {
   CATENA_CONSTRAINTS(CATENA_DESCRIBE)
   number = 0;
   CATENA_FORCES(CATENA_DESCRIBE)
+  number = 0;
+  CATENA_GAPS(CATENA_DESCRIBE)
 #undef CATENA_DESCRIBE
   return all;
 }

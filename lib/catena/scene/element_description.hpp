@@ -13,15 +13,30 @@
 
 namespace catena {
 
-enum class FieldKind { point, axis, place, number, flag, side, choice, curve, table, function, function_pair };
+enum class FieldKind {
+  point,
+  axis,
+  place,
+  number,
+  bound,
+  column,
+  flag,
+  side,
+  choice,
+  curve,
+  table,
+  function,
+  function_pair
+};
 
 struct FieldDescription {
   FieldKind kind = FieldKind::number;
   std::string_view key, doc;
   int slot = 0;  ///< the first of the element's slots that belong to it
   bool required = true;
-  std::string_view unless;                                       ///< a key that may stand in place of a required one
-  UnitKind unit = UnitKind::none, second_unit = UnitKind::none;  ///< the second one: of a table's second numbers
+  std::string_view unless;  ///< a key that may stand in place of a required one
+  UnitKind unit = UnitKind::none,
+           second_unit = UnitKind::none;  ///< of a table's second numbers; of a bound on an angle
   Domain domain = Domain::any;
   Omitted omitted = Omitted::refused;
   std::string_view first_word, second_word;  ///< of a choice
@@ -30,9 +45,10 @@ struct FieldDescription {
 
 struct ElementDescription {
   std::string_view type, summary, equation;
-  bool force = false;
-  int number = 0;  ///< in the list of constraint types, or of force types
-  int rows = 0, bodies = 1, functions = 0;
+  bool force = false;                       ///< listed among the forces
+  bool one_sided = false;                   ///< a gap: listed there, with equations like a constraint's
+  int number = 0;                           ///< in the list of constraint types, or of force types
+  int rows = 0, bodies = 1, functions = 0;  ///< bodies: 0 where a column says which
   bool second_body_optional = false;
   bool squared = false;  ///< its value is a distance, which may not vanish
   int slots = 0;
@@ -43,7 +59,7 @@ struct ElementDescription {
   const FieldDescription* find(std::string_view key) const;
 };
 
-/// All types: constraints in the order of their list, then forces.
+/// All types: constraints in the order of their list, then forces, then one-sided ones.
 std::span<const ElementDescription> element_descriptions();
 /// The type of this name, or nullptr.
 const ElementDescription* find_element_type(std::string_view type);
@@ -77,6 +93,11 @@ template <class M>
 constexpr FieldKind kind_of(const NumberField<M>&) {
   return FieldKind::number;
 }
+template <class M>
+constexpr FieldKind kind_of(const BoundField<M>&) {
+  return FieldKind::bound;
+}
+constexpr FieldKind kind_of(const ColumnField&) { return FieldKind::column; }
 template <class M>
 constexpr FieldKind kind_of(const FlagField<M>&) {
   return FieldKind::flag;

@@ -26,7 +26,12 @@ class Filler {
       : builder_(builder), source_(source), entry_(entry), points_(points) {}
 
   bool run() {
-    std::apply([&](const auto&... field) { (take(field), ...); }, E::fields());
+    const auto take_all = [&](const auto&... field) { (take(field), ...); };
+    if constexpr (requires { E::keys(); }) {
+      std::apply(take_all, E::keys());
+    } else {
+      std::apply(take_all, E::fields());
+    }
     return good_;
   }
   /// The text of the value c, or of the element where it was left out.
@@ -81,6 +86,15 @@ class Filler {
     }
     entry_.element.*field.member = value;
   }
+  template <class M>
+  void set(const BoundField<M>& field, std::uint32_t at, int) {
+    const S value = builder_.value(number(at));
+    if (!fits(value_of(value), field.domain)) {
+      wrong(number(at).offset(), field.key, out_of_domain(value_of(value), field.domain));
+    }
+    entry_.element.*field.member = value;
+  }
+  void set(const ColumnField&, std::uint32_t, int) {}  // resolved before
   template <class M>
   void set(const FlagField<M>& field, std::uint32_t at, int) {
     entry_.element.*field.member = number(at).number() != 0;
@@ -169,8 +183,12 @@ template <class E, class S>
 void fill(ModelBuilder<S>& builder, const ElementTemplate& source, const int* bodies, const Vec2<S>* points) {
   BasicModel<S>& model = builder.model();
   ElementEntry<E, S> entry;
-  entry.i = bodies[0];
-  entry.j = bodies[1];
+  if constexpr (requires { E::keys(); }) {
+    if (!builder.find_column(source, entry)) return;
+  } else {
+    entry.i = bodies[0];
+    entry.j = bodies[1];
+  }
   Filler<E, S> filler(builder, source, entry, points);
   bool good = filler.run();
   const auto wrong = [&](std::size_t offset, std::string_view what) {
@@ -204,6 +222,15 @@ void fill(ModelBuilder<S>& builder, const ElementTemplate& source, const int* bo
       }
     }
   }
+  if constexpr (std::is_same_v<E, Cable<S>>) {
+    // With a stiffness it is a force.
+    if (good && value_of(entry.element.k) > 0) {
+      const Cable<S>& cable = entry.element;
+      const ElasticCable<S> elastic{cable.s_i, cable.s_j, cable.length, cable.k};
+      builder.append(source, ElementEntry<ElasticCable<S>, S>{elastic, entry.i, entry.j}, ElementKind::force);
+      return;
+    }
+  }
   if (good) builder.append(source, entry, kind);
 }
 
@@ -213,7 +240,7 @@ template <class S>
 ElementFiller<S> element_filler(int type) {
 #define CATENA_FILL(Type) , &filling::fill<Type<S>, S>
   static constexpr std::array fillers{ElementFiller<S>(nullptr) CATENA_CONSTRAINTS(CATENA_FILL)
-                                          CATENA_FORCES(CATENA_FILL)};
+                                          CATENA_FORCES(CATENA_FILL) CATENA_GAPS(CATENA_FILL)};
 #undef CATENA_FILL
   return fillers[static_cast<std::size_t>(type) + 1];
 }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t most_keys = 32;
 // Types that the format has, but this version does not know.
-constexpr std::array<std::string_view, 4> announced{"friction", "contact", "stop", "cable"};
+constexpr std::array<std::string_view, 1> announced{"friction"};
 
 /// `revolute "A"`, or the type alone for an element without a name.
 std::string owner_text(std::string_view type, const JsonValue& name) {
@@ -126,7 +126,8 @@ void SceneReading::element(const JsonValue& object, std::string_view list, Block
 
   // Keys: the common ones, then those of the fields; points are read through i and j.
   std::array<std::string_view, most_keys> keys{"type", "name", "i", "at", "j"};
-  std::size_t count = type->bodies == 2 ? 5 : 4;
+  const bool attached = type->bodies > 0;
+  std::size_t count = type->bodies == 2 ? 5 : attached ? 4 : 2;
   std::array<std::size_t, most_keys> key_of_field{};
   for (std::size_t f = 0; f < type->fields.size(); ++f) {
     if (type->fields[f].kind == FieldKind::point) continue;
@@ -137,7 +138,7 @@ void SceneReading::element(const JsonValue& object, std::string_view list, Block
   const JsonValue named = object.find("name");
   const std::string owner = owner_text(type->type, named);
   read_members(object, std::span(keys).first(count), owner, v, diagnostics);
-  const JsonValue& at = v[3];
+  const JsonValue at = attached ? v[3] : JsonValue();
 
   ElementTemplate element;
   element.offset = static_cast<std::uint32_t>(object.offset());
@@ -154,7 +155,8 @@ void SceneReading::element(const JsonValue& object, std::string_view list, Block
   }
 
   std::array<NumberValue, 2 * most_keys> slots;
-  const JsonValue ends[2] = {v[2], type->bodies == 2 ? v[4] : JsonValue()};
+  const JsonValue ends[2] = {attached ? v[2] : JsonValue(), type->bodies == 2 ? v[4] : JsonValue()};
+  bool bounds_angle = false;
   for (int body = 0; body < type->bodies; ++body) {
     const std::string_view key = body == 0 ? "i" : "j";
     NumberValue* local = nullptr;
@@ -208,6 +210,19 @@ void SceneReading::element(const JsonValue& object, std::string_view list, Block
         break;
       case FieldKind::number:
         slots[slot] = numbers.read(value, field.unit, name_of_field);
+        break;
+      case FieldKind::column:
+        if (!value.is(JsonKind::string)) {
+          error(value, fmt::format("{} must be the name of a column; this is {}", name_of_field.text(),
+                                   describe(value.kind())));
+          break;
+        }
+        element.attachment[0].body = name(value);
+        element.attachment[0].form = AttachmentTemplate::Form::origin;
+        bounds_angle = value.text().ends_with(".angle");
+        break;
+      case FieldKind::bound:
+        slots[slot] = numbers.read(value, bounds_angle ? field.second_unit : field.unit, name_of_field);
         break;
       case FieldKind::flag:
         slots[slot] = NumberValue::constant(read_flag(value, name_of_field, diagnostics) ? 1 : 0, value.offset());

@@ -22,6 +22,10 @@ std::string value_of_field(const FieldDescription& field) {
     case FieldKind::number:
     case FieldKind::function:
       return quantity(field.unit);
+    case FieldKind::bound:
+      return quantity(field.second_unit);
+    case FieldKind::column:
+      return "\"crank.angle\"";
     case FieldKind::flag:
       return "true";
     case FieldKind::side:
@@ -51,10 +55,12 @@ std::string example_of(const ElementDescription& type) {
   add_member(out, "name", "\"A\"");
   // An elastic element shows its stiffnesses, be they optional one by one.
   const auto elastic = [&](const FieldDescription& field) {
-    return type.force && (field.unit == UnitKind::stiffness || field.unit == UnitKind::torsion_stiffness);
+    return type.force && field.kind == FieldKind::number &&
+           (field.unit == UnitKind::stiffness || field.unit == UnitKind::torsion_stiffness);
   };
   for (const FieldDescription& field : type.fields) {
-    if (field.required || elastic(field) || (field.kind == FieldKind::function && !type.force))
+    const bool limit = field.kind == FieldKind::bound && field.key == "max";
+    if (field.required || elastic(field) || limit || (field.kind == FieldKind::function && !type.force))
       add_member(out, field.key, value_of_field(field));
   }
   return out + "}";

@@ -54,6 +54,11 @@ std::string form(const FieldDescription& field) {
       return "[x, y], m";
     case FieldKind::number:
       return unit_text(field.unit) + (field.domain == Domain::any ? "" : fmt::format(", {}", wanted(field.domain)));
+    case FieldKind::bound:
+      return fmt::format("{}, {} for an angle{}", unit_text(field.unit), unit_text(field.second_unit),
+                         field.domain == Domain::any ? "" : fmt::format("; {}", wanted(field.domain)));
+    case FieldKind::column:
+      return "\"A.angle\", \"A.slide\", \"A.length\", \"body.x\", ...";
     case FieldKind::flag:
       return "true or false";
     case FieldKind::side:
@@ -100,8 +105,9 @@ std::string explain_element(const ElementDescription& type) {
       omitted = field.omitted == Omitted::given ? "; default: as in the given configuration" : "; optional";
     lines.push_back({std::string(field.key), fmt::format("{}: {}{}", field.doc, form(field), omitted)});
   }
-  lines.push_back(
-      {"at", "[x, y], m: the place of the points in the given configuration, where i and j name bodies alone"});
+  if (type.bodies > 0)
+    lines.push_back(
+        {"at", "[x, y], m: the place of the points in the given configuration, where i and j name bodies alone"});
   out += table(lines);
   const std::vector<Line> columns = example_columns(type);
   if (!columns.empty()) {

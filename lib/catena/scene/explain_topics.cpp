@@ -146,6 +146,14 @@ Example
 load: of a driver, load = lambda dPhi/dc, so that power = load dc/dt: positive pushes the value up
   drive.load, drive.power [W], drive.work [J]
 )"},
+      {{"gap", "one-sided"},
+       R"(gap: of a contact, stop or cable A, which push or pull one way only
+  A.gap [m, rad]     how far it is from closing; never negative at an equilibrium, but for an elastic cable's stretch
+  A.force [N, N m]   what keeps it from closing, never negative: normal force, torque of the bound, tension
+  At an equilibrium one of the two is zero. The result "active" lists those whose gap is closed. equilibrium treats
+  them; check and assemble leave them out and say which are violated; other analyses refuse a scene that has some
+  (elastic cables are springs, which every analysis knows).
+)"},
       {{"energy", "momentum", "residual", "t"},
        R"(energy, momentum, residual: columns of the whole mechanism
   energy.kinetic .potential .total .dissipated .balance [J]   zero of the potential at the ground's origin;

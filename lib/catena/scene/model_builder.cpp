@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "catena/scene/element_description.hpp"
+
 namespace catena {
 
 template <class S>
@@ -13,6 +15,7 @@ BasicModel<S> ModelBuilder<S>::build() {
   add_points(ground, scene_.ground);
   visit(scene_.root, Pass::bodies);
   visit(scene_.root, Pass::elements);
+  if (has_stops_) visit(scene_.root, Pass::stops);
   return std::move(model_);
 }
 
@@ -121,8 +124,10 @@ void ModelBuilder<S>::visit(const BlockTemplate& block, Pass pass) {
         repeat(block.blocks[k], pass);
       } else if (section.kind == Section::Kind::bodies && pass == Pass::bodies) {
         add_body(block.bodies[k]);
-      } else if (section.kind == Section::Kind::elements && pass == Pass::elements) {
-        add_element(block.elements[k]);
+      } else if (section.kind == Section::Kind::elements && pass != Pass::bodies) {
+        const bool stop = element_descriptions()[static_cast<std::size_t>(block.elements[k].type)].bodies == 0;
+        has_stops_ = has_stops_ || stop;
+        if (stop == (pass == Pass::stops)) add_element(block.elements[k]);
       }
     }
   }

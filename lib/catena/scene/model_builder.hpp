@@ -46,12 +46,14 @@ class ModelBuilder {
   /// In the author's frame of its body. Throws std::invalid_argument.
   Curve<S> curve(const CurveTemplate& source);
   std::vector<Vec2<S>> table(const TableTemplate& source);
+  /// Where a stop acts, from the name of its column; false, with a report, if there is no such column.
+  bool find_column(const ElementTemplate& source, ElementEntry<Stop<S>, S>& stop);
   /// Adds an element that is complete, under its name.
   template <class E>
   void append(const ElementTemplate& source, const ElementEntry<E, S>& entry, ElementKind kind);
 
  private:
-  enum class Pass { bodies, elements };
+  enum class Pass { bodies, elements, stops };
 
   bool count_elements();
   bool count_block(const BlockTemplate& block, std::int64_t& bodies, std::int64_t& elements);
@@ -76,6 +78,7 @@ class ModelBuilder {
   std::vector<std::uint32_t> name_offset_;  // of every name in the model's table
   std::string name_, point_name_;           // buffers
   int searches_ = 0;                        // for names like a missing one
+  bool has_stops_ = false;                  // they name elements, wherever these are: built last
 };
 
 /// Builds one element: members from slots, what is missing from the configuration, appended to the model. `points` are

@@ -83,6 +83,7 @@ void ModelBuilder<S>::add_element(const ElementTemplate& source) {
   if (source.has_at) place = pair(source.first_number + static_cast<std::uint32_t>(type.slots));
   int bodies[2] = {ground, ground};
   Vec2<S> points[2];
+  if (type.bodies == 0) return element_filler<S>(source.type)(*this, source, bodies, points);
   bool good = true, complete = true;
   for (int end = 0; end < type.bodies; ++end) {
     const bool absent = source.attachment[end].form == AttachmentTemplate::Form::absent;

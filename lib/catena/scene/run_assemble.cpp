@@ -45,6 +45,22 @@ void add_misfits(AnalysisResult& result, const AssemblyOutcome& outcome, const M
   result.fields.push_back({"misfits", std::move(records)});
 }
 
+/// One-sided elements do not take part in assembly: those that its outcome violates are named.
+void warn_of_closed_gaps(const Evaluator& evaluator, AnalysisReport& report) {
+  constexpr double overlap = 1e-9;
+  constexpr std::size_t most = 10;
+  const Model& model = evaluator.model();
+  std::size_t count = 0;
+  for (const int element : model.gaps()) {
+    const double gap = evaluator.measure(element, {}, {}).value;
+    if (gap >= -overlap * evaluator.length_scale() || ++count > most) continue;
+    report.warnings.push_back(
+        fmt::format("{} \"{}\" is violated by {:.3g} here: assembly leaves one-sided elements out",
+                    model.element_type(element), model.element_name(element), -gap));
+  }
+  if (count > most) report.warnings.push_back(fmt::format("{} more one-sided elements are violated", count - most));
+}
+
 /// What a start of dynamics would make of the velocities that bodies are given.
 void check_velocities(Kinematics& analysis, const Model& model, AnalysisReport& report) {
   const bool given = std::any_of(model.bodies.begin(), model.bodies.end(),
@@ -68,7 +84,9 @@ void check_velocities(Kinematics& analysis, const Model& model, AnalysisReport& 
 void run_assemble(AnalysisContext& context, AnalysisResult& result) {
   const ProcessTimer timer;
   const std::vector<std::string> names = context.task.output_names();
-  Kinematics analysis(context.model, plan_options(*context.model, names));
+  PlanOptions options = plan_options(*context.model, names);
+  options.released_elements = context.model->gaps();
+  Kinematics analysis(context.model, options);
   const ColumnSet columns =
       ColumnSet::resolve(*context.model, analysis.plan(), names, {.analysis = context.task.type()});
   start(analysis, context);
@@ -87,6 +105,7 @@ void run_assemble(AnalysisContext& context, AnalysisResult& result) {
                   .q = analysis.q(),
                   .residual = outcome.residual * scale});
     context.state = analysis.state();
+    warn_of_closed_gaps(analysis.evaluator(), report);
   }
   report.counters = analysis.evaluator().counters;
   report.seconds = timer.seconds();
@@ -103,6 +122,7 @@ void run_check(AnalysisContext& context, AnalysisResult& result) {
   // Every equation counts here, those of welded bodies too.
   PlanOptions options;
   for (int e = 0; e < static_cast<int>(model.elements.size()); ++e) options.keep_elements.push_back(e);
+  options.released_elements = model.gaps();
   Kinematics analysis(context.model, options);
   start(analysis, context);
   const AssemblyOutcome outcome = analysis.assemble();
@@ -124,6 +144,7 @@ void run_check(AnalysisContext& context, AnalysisResult& result) {
                                           agrees ? "" : ": the places fit, the velocities do not"));
   }
   if (outcome.ok()) {
+    warn_of_closed_gaps(analysis.evaluator(), report);
     check_velocities(analysis, model, report);
     for (std::string& doubt : gears_that_do_not_fit(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
   }

@@ -60,6 +60,7 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
     result.fields.push_back({"solver", report.solver});
     result.fields.push_back({"iterations", static_cast<std::int64_t>(report.iterations)});
   }
+  if (!analysis.plan().gap_rows.empty() && report.ok()) result.fields.push_back({"active", report.active});
   if (!report.found.empty()) {
     std::vector<FieldRecord> list;
     for (const FoundEquilibrium& f : report.found) {

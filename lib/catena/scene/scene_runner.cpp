@@ -106,7 +106,8 @@ void SceneRun::check_event(const EventRequest& event, const Model& model) {
            fmt::format("there is no constraint {} to release or engage{}", in_quotes(event.element),
                        NearMiss(event.element).consider_all(element_names(model)).hint()),
            diagnostics_);
-  } else if (model.elements[static_cast<std::size_t>(element)].kind == ElementKind::force) {
+  } else if (const ElementKind kind = model.elements[static_cast<std::size_t>(element)].kind;
+             kind == ElementKind::force || kind == ElementKind::gap) {
     report(event.element_place,
            fmt::format("{} is a force; only constraints and drivers are released or engaged", in_quotes(event.element)),
            diagnostics_);
@@ -184,6 +185,15 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& task, int number, SystemSt
   if (!function) {
     result.report.status = Status::refused;
     result.report.message = fmt::format("{} is not built yet", task.type());
+    return result;
+  }
+  // Elsewhere a gap would have to open and close in time.
+  const bool one_sided = task.type() == "equilibrium" || task.type() == "check" || task.type() == "assemble";
+  if (const std::vector<int> gaps = model_->gaps(); !gaps.empty() && !one_sided) {
+    result.report.status = Status::refused;
+    result.report.message =
+        fmt::format("{} \"{}\" is one-sided: {} does not treat such elements yet; equilibrium does",
+                    model_->element_type(gaps.front()), model_->element_name(gaps.front()), task.type());
     return result;
   }
   AnalysisContext context{.task = task,

@@ -63,6 +63,11 @@ json field_schema(const FieldDescription& field) {
                        in_unit(field.doc, field.kind == FieldKind::place ? UnitKind::length : UnitKind::none));
     case FieldKind::number:
       return number(field.doc, field.unit, field.domain);
+    case FieldKind::bound:
+      return number(fmt::format("{}; of an angle [{}]", field.doc, si_unit(dimension_of(field.second_unit))),
+                    field.unit, field.domain);
+    case FieldKind::column:
+      return {{"type", "string"}, {"description", field.doc}};
     case FieldKind::flag:
       return {{"type", "boolean"}, {"description", field.doc}};
     case FieldKind::side:
@@ -95,7 +100,8 @@ json element_schema(const ElementDescription& type, bool driver) {
     const std::string key = body == 0 ? "i" : "j";
     if (!properties.contains(key)) properties[key] = reference("attachment");
   }
-  properties["at"] = described(reference("pair"), "place of its points in the given configuration [m]");
+  if (type.bodies > 0)
+    properties["at"] = described(reference("pair"), "place of its points in the given configuration [m]");
   return object_of(std::move(properties), required);
 }
 

@@ -1,0 +1,34 @@
+// What one-sided elements (contact, stop, cable) share. They are constraint elements (element.hpp) whose row is a gap:
+//
+//   Psi(q) >= 0        p >= 0        p Psi = 0        V_q + Phi_q^T lambda - Psi_q^T p = 0
+//
+// so that the row's multiplier is -p. In addition to what a constraint has:
+//
+//   one_sided = true       phi is Psi, smooth, and p at Psi = 0 is the force (N) or torque (N m) that keeps it from
+//   closing measure<T>(i, j)       the gap that is reported, m or rad: the same zero and the same sign as Psi
+//   in_angle()             optional: whether this element's gap is in radians
+//
+// In equilibrium a gap is an inequality. Source: Nocedal and Wright, Numerical Optimization, chapter 12.
+#pragma once
+
+#include "catena/elements/element.hpp"
+
+namespace catena {
+
+template <class E>
+concept OneSided = requires {
+  requires E::one_sided;
+};
+
+/// Whether row `row` of this element is measured in radians.
+template <class E>
+bool row_in_angle(const E& element, int row) {
+  if constexpr (requires { element.in_angle(); }) {
+    return element.in_angle();
+  } else {
+    static_cast<void>(element);
+    return row_unit<E>(row) == UnitKind::angle;
+  }
+}
+
+}  // namespace catena
