@@ -26,8 +26,8 @@ TEST_P(IpoptCatenary, FindsTheHorizontalForceByItself) {
   const double tension =
       reference_values("discrete_catenary").at("N" + std::to_string(count)).at("horizontal_tension_H");
   for (const ChainStart start : {ChainStart::sag, ChainStart::zigzag, ChainStart::above, ChainStart::random_walk}) {
-    // From far off an interior point needs hundreds of iterations for a long chain: minutes of a usual run.
-    if (count == 1000 && start != ChainStart::sag) continue;
+    // From farther off a long chain takes up to minutes: ipopt_far_test.cpp.
+    if (count == 1000 && start != ChainStart::sag && start != ChainStart::zigzag) continue;
     const auto model = testing::hanging_chain(count, start);
     const auto plan = Plan::make(*model);
     Evaluator evaluator(plan, *model);

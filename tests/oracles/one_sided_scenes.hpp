@@ -11,6 +11,7 @@
 #include "catena/analysis/equilibrium.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/elements/gap_element.hpp"
+#include "catena/model/model_add.hpp"
 
 namespace catena::testing {
 

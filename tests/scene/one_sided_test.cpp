@@ -195,6 +195,33 @@ TEST(OneSided, StopsOfACoordinateAndOfALength) {
   EXPECT_NEAR(buffer.last("stop.force"), 15, 1e-10);
 }
 
+TEST(OneSided, StopsMayStandBeforeWhatTheyBoundAndInBlocks) {
+  // Three bars side by side, each on its own stop, k 10 degrees below the horizontal.
+  const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -10],
+    "replicate": [{"count": 3, "forces": [{"type": "stop", "name": "stop{k}", "column": "pin{k}.angle", "min": "=-k*pi/18"}],
+      "bodies": {"bar{k}": {"mass": 1, "inertia": 0.1, "position": ["=5*k + 1", 0]}},
+      "constraints": [{"type": "revolute", "name": "pin{k}", "i": ["ground", ["=5*k", 0]], "j": ["bar{k}", [-1, 0]]}]}],
+    "analyses": [{"type": "equilibrium"}], "outputs": ["bar1.angle", "bar3.angle", "stop1.force", "stop3.force"]})");
+  expect_ok(run);
+  EXPECT_NEAR(run.last("bar1.angle"), -std::numbers::pi / 18, 1e-12);
+  EXPECT_NEAR(run.last("bar3.angle"), -std::numbers::pi / 6, 1e-12);
+  EXPECT_NEAR(run.last("stop1.force"), 10 * std::cos(std::numbers::pi / 18), 1e-10);
+  EXPECT_NEAR(run.last("stop3.force"), 10 * std::cos(std::numbers::pi / 6), 1e-10);
+}
+
+TEST(OneSided, SlidesOfJoints) {
+  // A carriage of 2 kg on rails at 30 degrees, held by a buffer 0.4 m down.
+  const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -10],
+    "bodies": {"carriage": {"mass": 2, "inertia": 1, "angle": "30 deg"}},
+    "constraints": [{"type": "translational", "name": "rails", "i": "ground", "j": "carriage", "axis_i": ["=sqrt(3)*1", 1]}],
+    "forces": [{"type": "stop", "name": "buffer", "column": "rails.slide", "min": "-0.4 m", "max": "2 m"}],
+    "analyses": [{"type": "equilibrium"}], "outputs": ["rails.slide", "buffer.force", "buffer.gap"]})");
+  expect_ok(run);
+  EXPECT_NEAR(run.last("rails.slide"), -0.4, 1e-12);
+  EXPECT_NEAR(run.last("buffer.force"), 10, 1e-11);
+  EXPECT_NEAR(run.last("buffer.gap"), 0, 1e-12);
+}
+
 TEST(OneSided, TouchingWithoutForceIsSaid) {
   // The spring carries the bob exactly where the floor begins.
   const TextRun run =

@@ -4,8 +4,8 @@
 //
 // so that the row's multiplier is -p. In addition to what a constraint has:
 //
-//   one_sided = true       phi is Psi, smooth, and p at Psi = 0 is the force (N) or torque (N m) that keeps it from
-//   closing measure<T>(i, j)       the gap that is reported, m or rad: the same zero and the same sign as Psi
+//   one_sided = true       phi is Psi, smooth; p at Psi = 0 is the force, N, or torque, N m, that keeps it from closing
+//   measure<T>(i, j)       the gap that is reported, m or rad: the same zero and the same sign as Psi
 //   in_angle()             optional: whether this element's gap is in radians
 //
 // In equilibrium a gap is an inequality. Source: Nocedal and Wright, Numerical Optimization, chapter 12.

@@ -59,8 +59,8 @@ struct Stop {
   void complete(const Frame<S>&, const Frame<S>&) { normalise(axis_i); }
   const char* check() const {
     if (!has_low() && !has_high()) return "a stop needs \"min\" or \"max\"";
-    if (has_low() && has_high() && !(value_of(min) < value_of(max))) return "\"min\" must be below \"max\"";
-    if (quantity == StopQuantity::distance && has_high() && !(value_of(max) > 0))
+    if (has_low() && has_high() && value_of(min) >= value_of(max)) return "\"min\" must be below \"max\"";
+    if (quantity == StopQuantity::distance && has_high() && value_of(max) <= 0)
       return "a distance cannot be below zero: \"max\" must be positive";
     return has_direction(axis_i) ? nullptr : "the axis has no direction";
   }
@@ -93,8 +93,9 @@ struct Stop {
   }
 
  private:
-  bool has_low() const { return std::isfinite(value_of(min)); }
-  bool has_high() const { return std::isfinite(value_of(max)); }
+  // What could not be read is no number, and was reported: it counts as given.
+  bool has_low() const { return value_of(min) != -std::numeric_limits<double>::infinity(); }
+  bool has_high() const { return value_of(max) != std::numeric_limits<double>::infinity(); }
 };
 
 }  // namespace catena
