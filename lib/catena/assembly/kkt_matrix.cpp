@@ -210,9 +210,9 @@ Refinement KktMatrix::solve(std::span<double> x, double force, double length, do
 }
 
 void KktMatrix::solve_unrefined(std::span<double> x, Counters& counters) {
+  const bool soft = !compliance_.empty();
   const auto softening = [&](std::size_t r) {
-    const double d = compliance_.empty() ? 0.0 : -values_[at(structure_.diagonal[at(structure_.columns) + r])];
-    return 1 + rho_[r] * d;
+    return 1 - rho_[r] * values_[at(structure_.diagonal[at(structure_.columns) + r])];
   };
   // What was added to the first equation on the left, Phi_q^T R times the second one, is added on the right as well.
   const SparsePattern& phi_q = plan_->jacobian;
@@ -222,7 +222,8 @@ void KktMatrix::solve_unrefined(std::span<double> x, Counters& counters) {
     double sum = 0;
     for (int k = phi_q.column_start[at(c)]; k < phi_q.column_start[at(c) + 1]; ++k) {
       const std::size_t row = at(phi_q.row_index[at(k)]);
-      sum += values_[at(structure_.jacobian[at(k)])] * rho_[row] / softening(row) * x[at(structure_.columns) + row];
+      const double weight = soft ? rho_[row] / softening(row) : rho_[row];
+      sum += values_[at(structure_.jacobian[at(k)])] * weight * x[at(structure_.columns) + row];
     }
     x[at(c)] += sum;
   }
