@@ -117,8 +117,11 @@ FactorResult KktMatrix::factorize(double least_stiffness, Counters& counters) {
   // A quadratic energy under linear constraints has one matrix for ever: its factors are kept, with the augmentation
   // that is in them.
   if (keep_equal_factors_) {
-    if (is_factorized() && !last_.empty() && std::equal(last_.begin(), last_.end(), values_.begin())) return {};
+    if (is_factorized() && !last_.empty() && std::equal(last_.begin(), last_.end(), values_.begin()) &&
+        last_softness_ == softness_)
+      return {};
     last_.assign(values_.begin(), values_.begin() + structure_.entries());
+    last_softness_ = softness_;
   }
   choose_augmentation(least_stiffness);
   double* product = values_.data() + structure_.products();
@@ -154,10 +157,8 @@ void KktMatrix::multiply(std::span<const double> x, std::span<double> y) const {
     }
     y[at(c)] += sum;
   }
-  for (std::size_t r = 0; r < compliance_.size(); ++r) {
-    const std::size_t row = at(structure_.columns) + r;
-    y[row] += values_[at(structure_.diagonal[row])] * x[row];
-  }
+  for (std::size_t r = 0; r < softness_.size(); ++r)
+    y[at(structure_.columns) + r] -= softness_[r] * x[at(structure_.columns) + r];
 }
 
 void KktMatrix::multiply_stiffness(std::span<const double> x, std::span<double> y) const {
@@ -210,10 +211,8 @@ Refinement KktMatrix::solve(std::span<double> x, double force, double length, do
 }
 
 void KktMatrix::solve_unrefined(std::span<double> x, Counters& counters) {
-  const bool soft = !compliance_.empty();
-  const auto softening = [&](std::size_t r) {
-    return 1 - rho_[r] * values_[at(structure_.diagonal[at(structure_.columns) + r])];
-  };
+  const bool soft = !softness_.empty();
+  const auto softening = [&](std::size_t r) { return 1 + rho_[r] * softness_[r]; };
   // What was added to the first equation on the left, Phi_q^T R times the second one, is added on the right as well.
   const SparsePattern& phi_q = plan_->jacobian;
   const std::span<const double> second = x.subspan(at(structure_.columns));
@@ -228,7 +227,7 @@ void KktMatrix::solve_unrefined(std::span<double> x, Counters& counters) {
     x[at(c)] += sum;
   }
   factorization_.solve(x, counters);
-  for (std::size_t r = 0; r < compliance_.size(); ++r) x[at(structure_.columns) + r] *= softening(r);
+  for (std::size_t r = 0; r < softness_.size(); ++r) x[at(structure_.columns) + r] *= softening(r);
 }
 
 int KktMatrix::negative_modes() const { return factorization_.negative_pivots() - structure_.rows; }
@@ -236,7 +235,7 @@ int KktMatrix::negative_modes() const { return factorization_.negative_pivots() 
 std::vector<int> KktMatrix::dependent_rows() const {
   std::vector<int> dependent;
   for (int r = 0; r < structure_.rows; ++r) {
-    if (!compliance_.empty() && compliance_[at(r)] > 0) continue;
+    if (!softness_.empty() && softness_[at(r)] > 0) continue;
     if (std::abs(factorization_.pivot(structure_.columns + r)) < 1e3 * eps_[at(r)]) dependent.push_back(r);
   }
   return dependent;

@@ -94,7 +94,7 @@ class KktMatrix {
   std::vector<double> values_;  // see KktStructure
   std::vector<double> last_;    // the true matrix of the last factorization, if factors are to be kept
   std::vector<double> rho_, eps_, stiffness_;
-  std::vector<double> compliance_;
+  std::vector<double> compliance_, softness_, last_softness_;  // asked for; of the numbers filled in; of those factored
   std::vector<double> right_hand_side_, residual_work_, correction_work_;
   FrontalFactorization factorization_;
   bool analyzed_ = false, keep_equal_factors_ = false;
