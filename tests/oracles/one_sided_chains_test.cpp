@@ -31,7 +31,8 @@ Ends ends_of(Equilibrium& analysis, const Model& model) {
 std::vector<double> angles_of(Equilibrium& analysis, int count) {
   const SystemState state = analysis.state();
   std::vector<double> angles;
-  for (int k = 0; k < count; ++k) angles.push_back(state.q[at(3 * k + 2)]);
+  // Whole turns are the same place of a rod.
+  for (int k = 0; k < count; ++k) angles.push_back(std::remainder(state.q[at(3 * k + 2)], 2 * std::numbers::pi));
   return angles;
 }
 
