@@ -107,5 +107,46 @@ TEST(Adams, LeavesSingularPositionsToRungeKutta) {
   EXPECT_NE(report.warnings[0].find("Runge-Kutta took"), std::string::npos) << report.warnings[0];
 }
 
+// A pendulum that turns over and over: neither x nor y of its middle serves all the way round.
+TEST(Partitioning, ChoosesAnewWhereTheChoiceTurnsBad) {
+  const auto model = rod_chain(1);
+  BasicBody<double>& rod = model->bodies[0];
+  rod.velocity = {0, 5};
+  rod.angular_velocity = 10;
+  rod.inertia = 1e-6;  // beside m L^2 / 4
+  rod.velocity_given = rod.angular_velocity_given = true;
+  const double exact = last_angle(model, {.tolerance = 1e-12}, 5);
+  AnalysisReport report;
+  const double angle = last_angle(model, {.method = IntegrationMethod::partitioning, .tolerance = 1e-8}, 5, &report);
+  EXPECT_GT(exact, 4 * std::numbers::pi) << "it was meant to turn over";
+  EXPECT_NEAR(angle, exact, 1e-7);
+}
+
+// Redundant rows: as many dependent coordinates as the rank, not as rows.
+TEST(Partitioning, CountsFreedomsByRank) {
+  Dynamics partitioned(four_bars(3), {}, {.method = IntegrationMethod::partitioning}), projected(four_bars(3));
+  std::vector<double> a, b;
+  run_dynamics(partitioned, TimeGrid::instant(0.4), {}, [&](const Snapshot& s) { a.assign(s.q.begin(), s.q.end()); });
+  run_dynamics(projected, TimeGrid::instant(0.4), {}, [&](const Snapshot& s) { b.assign(s.q.begin(), s.q.end()); });
+  for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 1e-7) << k;
+}
+
+TEST(Partitioning, RefusesMoreFreedomsThanADenseBasisHolds) {
+  Dynamics dynamics(rod_chain(600), {}, {.method = IntegrationMethod::partitioning});
+  RowFunction none([](const Snapshot&) { return true; });
+  const AnalysisReport report = dynamics.run(TimeGrid::instant(0.01), {}, none);
+  EXPECT_EQ(report.status, Status::refused);
+  EXPECT_NE(report.message.find("600 degrees of freedom"), std::string::npos) << report.message;
+}
+
+TEST(AutomaticMethod, IsMultistepForLongOpenChainsOnly) {
+  EXPECT_EQ(Dynamics(rod_chain(40)).method(), IntegrationMethod::adams);
+  EXPECT_EQ(Dynamics(rod_chain(40), {}, {.tolerance = 1e-13}).method(), IntegrationMethod::rk8);
+  EXPECT_EQ(Dynamics(rod_chain(40), {}, {.step = 0.01}).method(), IntegrationMethod::rk8);
+  EXPECT_EQ(Dynamics(rod_chain(2)).method(), IntegrationMethod::rk8);
+  EXPECT_EQ(Dynamics(four_bars(20)).method(), IntegrationMethod::rk8);
+  EXPECT_EQ(Dynamics(rod_chain(40), {}, {.method = IntegrationMethod::rk5}).method(), IntegrationMethod::rk5);
+}
+
 }  // namespace
 }  // namespace catena

@@ -76,6 +76,7 @@ TEST(DynamicsFourBars, TwoWithStabilisedConstraints) {
   ;
 }
 TEST(DynamicsFourBars, TwoByAdams) { check_all(2, IntegrationMethod::adams, down_to_1e9); }
+TEST(DynamicsFourBars, TwoByPartitioning) { check_all(2, IntegrationMethod::partitioning, down_to_1e9); }
 TEST(DynamicsFourBars, FortyAtAllTolerancesFromTwentyStarts) { check_all(40); }
 
 }  // namespace

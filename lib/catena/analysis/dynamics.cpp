@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "catena/analysis/initial_velocities.hpp"
 #include "catena/analysis/integrators/adams.hpp"
@@ -22,12 +23,36 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // What a step may contribute to the error that was asked for; see the calibration in tests/oracles.
 constexpr double step_part = 0.002;
-constexpr double drift_part = 0.2;      // of it, where constraints drift: that adds to errors
-constexpr double multistep_part = 0.2;  // where errors of one step go on in those after it
+// The same for methods whose errors of steps add up more: those that do not project, and those with a memory; but not
+// less than rounding leaves.
+constexpr double finer_part = 0.2, least_step_tolerance = 2e-14;
+constexpr double least_multistep_tolerance = 1e-11;
+constexpr int least_multistep_bodies = 10;
 constexpr double least_tolerance = 1e-14;
 // Rows whose smallest pivot ratio is above this need no rank analysis.
 constexpr double independent_ratio = 1e-8;
 constexpr std::size_t most_names = 10;  // in a warning
+
+// Whether bodies are tied to each other, or to the ground, in more than one way.
+bool has_closed_loops(const Plan& plan) {
+  std::vector<int> leader(at(plan.moving) + 1);
+  std::iota(leader.begin(), leader.end(), 0);
+  const auto find = [&](int node) {
+    while (leader[at(node)] != node) node = leader[at(node)] = leader[at(leader[at(node)])];
+    return node;
+  };
+  bool closed = false;
+  for_each_list(plan.blocks, [&](const auto& block, int) {
+    for (int e = 0; e < block.size(); ++e) {
+      // What does not move is the ground.
+      const int i = find(std::min(block.body_i[at(e)], plan.moving)),
+                j = find(std::min(block.body_j[at(e)], plan.moving));
+      closed = closed || i == j;
+      leader[at(i)] = j;
+    }
+  });
+  return closed;
+}
 
 Report cancelled(double t) {
   Report report;
@@ -46,6 +71,7 @@ Dynamics::Dynamics(std::shared_ptr<const Model> model, const PlanOptions& plan_o
       equations_(evaluator_) {
   q_ = evaluator_.given_configuration();
   qd_.assign(q_.size(), 0.0);
+  choose_method();
 }
 
 void Dynamics::start_from(const SystemState& state) {
@@ -93,6 +119,19 @@ double Dynamics::next_breakpoint(double t) const {
   double next = std::numeric_limits<double>::infinity();
   for (const auto& function : model_->functions) next = std::min(next, function.next_breakpoint(t));
   return next;
+}
+
+Report Dynamics::check_freedoms() const {
+  Report report;
+  const int freedoms = plan_->columns - plan_->rows;
+  if (freedoms > CoordinatePartition::most_freedoms) {
+    report.status = Status::refused;
+    report.message = fmt::format(
+        "partitioning serves up to {} degrees of freedom, and this mechanism has {} degrees of freedom; other methods "
+        "have no limit",
+        CoordinatePartition::most_freedoms, freedoms);
+  }
+  return report;
 }
 
 Report Dynamics::check_functions(double last) const {
@@ -225,20 +264,40 @@ Report Dynamics::stuck() const {
   return report;
 }
 
+// Multistep methods save evaluations in smooth motions of many bodies; in closed loops, which may come to singular
+// positions, and where hardly a digit is to spare, Runge-Kutta is the safer choice.
+void Dynamics::choose_method() {
+  method_ = options_.method;
+  if (method_ != IntegrationMethod::automatic) return;
+  const bool multistep = options_.step == 0 && options_.tolerance >= least_multistep_tolerance &&
+                         plan_->moving >= least_multistep_bodies && !has_closed_loops(*plan_);
+  method_ = multistep ? IntegrationMethod::adams : IntegrationMethod::rk8;
+}
+
 std::unique_ptr<Integrator> Dynamics::make_integrator(const Motion& motion, double horizon) const {
-  const IntegrationMethod method = options_.method;
   RungeKuttaOptions options{.tolerance = step_part * options_.tolerance,
                             .fixed_step = options_.step,
                             .horizon = horizon,
-                            .may_lower_order = method != IntegrationMethod::rk8};
-  if (method == IntegrationMethod::rk5) options.order = 5;
-  if (method == IntegrationMethod::baumgarte) {
-    options.keeping = ConstraintKeeping::stabilisation;
-    options.tolerance *= drift_part;
-  }
-  if (method == IntegrationMethod::adams) {
-    options.tolerance *= multistep_part;
-    return std::make_unique<Adams>(motion, options);
+                            .may_lower_order = options_.method != IntegrationMethod::rk8};
+  const double finer = std::min(options.tolerance, std::max(finer_part * options.tolerance, least_step_tolerance));
+  switch (method_) {
+    case IntegrationMethod::automatic:
+    case IntegrationMethod::rk8:
+      break;
+    case IntegrationMethod::rk5:
+      options.order = 5;
+      break;
+    case IntegrationMethod::baumgarte:
+      options.keeping = ConstraintKeeping::stabilisation;
+      options.tolerance = finer;
+      break;
+    case IntegrationMethod::partitioning:
+      options.keeping = ConstraintKeeping::partition;
+      options.tolerance = finer;
+      break;
+    case IntegrationMethod::adams:
+      options.tolerance = finer;
+      return std::make_unique<Adams>(motion, options);
   }
   return std::make_unique<RungeKutta>(motion, options);
 }
@@ -266,6 +325,9 @@ AnalysisReport Dynamics::run(const TimeGrid& grid, const Needs& asked, RowObserv
   };
   if (grid.size() == 0) return end({});
   if (const Report functions = check_functions(grid.last()); !functions.ok()) return end(functions);
+  if (method_ == IntegrationMethod::partitioning) {
+    if (const Report freedoms = check_freedoms(); !freedoms.ok()) return end(freedoms);
+  }
   if (!prepared_) {
     if (const Report prepared = prepare(report.warnings); !prepared.ok()) return end(prepared);
   }

@@ -38,6 +38,8 @@ class Dynamics {
                     const DynamicsOptions& options = {});
 
   const Plan& plan() const { return *plan_; }
+  /// The method at work: what was asked for, or what was chosen.
+  IntegrationMethod method() const { return method_; }
   Evaluator& evaluator() { return evaluator_; }
 
   /// Starts from a state of an earlier analysis instead of the given configuration at t = 0.
@@ -61,9 +63,11 @@ class Dynamics {
   SystemState state() const;
 
  private:
+  void choose_method();
   Report prepare(std::vector<std::string>& warnings);
   std::unique_ptr<Integrator> make_integrator(const Motion& motion, double horizon) const;
   Report check_functions(double last) const;
+  Report check_freedoms() const;
   Report move(double limit, const TimeGrid& grid, std::int64_t& row, const Needs& needs, RowObserver& observer);
   Report give_row(double t, const Needs& needs, RowObserver& observer);
   std::optional<Snapshot> state_at(double t, const Needs& needs);
@@ -77,6 +81,7 @@ class Dynamics {
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const Plan> plan_;
   DynamicsOptions options_;
+  IntegrationMethod method_ = IntegrationMethod::rk8;
   Evaluator evaluator_;
   EquationsOfMotion equations_;
   std::optional<EnergyAccount> account_;

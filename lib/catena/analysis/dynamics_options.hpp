@@ -7,15 +7,17 @@
 namespace catena {
 
 enum class IntegrationMethod {
-  automatic,  ///< chooses, and says what it chose
-  rk8,        ///< Dormand-Prince, order 8, with projection
-  rk5,        ///< Dormand-Prince, order 5, with projection
-  baumgarte,  ///< Dormand-Prince, order 8, with stabilised constraints in place of projection
-  adams,      ///< Adams, orders 1 to 12, with projection
+  automatic,     ///< chooses, and says what it chose
+  rk8,           ///< Dormand-Prince, order 8, with projection
+  rk5,           ///< Dormand-Prince, order 5, with projection
+  baumgarte,     ///< Dormand-Prince, order 8, with stabilised constraints in place of projection
+  adams,         ///< Adams, orders 1 to 12, with projection
+  partitioning,  ///< Dormand-Prince, order 8, of independent coordinates
 };
 
 /// The names used in scenes and results, in the order of the enumeration.
-inline constexpr std::array<std::string_view, 5> integration_methods{"auto", "rk8", "rk5", "baumgarte", "adams"};
+inline constexpr std::array<std::string_view, 6> integration_methods{"auto",      "rk8",   "rk5",
+                                                                     "baumgarte", "adams", "partitioning"};
 
 inline std::string_view to_string(IntegrationMethod method) {
   return integration_methods[static_cast<std::size_t>(method)];

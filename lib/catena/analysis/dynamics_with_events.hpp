@@ -20,6 +20,7 @@ class DynamicsWithEvents {
                      const DynamicsOptions& options, std::vector<Event> events, const ColumnSources& sources);
 
   const Plan& plan() const { return dynamics_->plan(); }
+  IntegrationMethod method() const { return dynamics_->method(); }
   Evaluator& evaluator() { return dynamics_->evaluator(); }
   void start_from(const SystemState& state) { dynamics_->start_from(state); }
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);

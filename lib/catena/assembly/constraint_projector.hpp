@@ -35,6 +35,8 @@ class ConstraintProjector {
   double solve(std::span<const double> b, std::span<double> x, std::span<double> lambda, Counters& counters);
   /// Smallest pivot ratio of the last factorization: near zero where rows depend on each other.
   PivotRatio smallest_pivot_ratio() const { return schur_.smallest_pivot_ratio(); }
+  /// What elimination left of a row's diagonal entry.
+  double pivot(int row) const { return schur_.pivot(row); }
 
  private:
   struct Product {

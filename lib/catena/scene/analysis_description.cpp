@@ -56,7 +56,7 @@ std::vector<AnalysisDescription> describe_all() {
            "dof, mobility, singular", true, {outputs, until, every, at_times, free_motions, branch}),
       make("inverse_dynamics", "Loads of drivers and reactions in a driven mechanism over time.",
            "dof, mobility, singular", true, {outputs, until, every, at_times, free_motions, branch}),
-      make("dynamics", "Motion under forces over time.", "events", true,
+      make("dynamics", "Motion under forces over time.", "method, events", true,
            {outputs,
             until,
             every,
@@ -66,7 +66,8 @@ std::vector<AnalysisDescription> describe_all() {
              KeyKind::word,
              "integrator: rk8, rk5 (Runge-Kutta) and adams (multistep, fewest evaluations in smooth motions) project "
              "onto "
-             "the constraints after every step, baumgarte stabilises them and shows how they drift",
+             "the constraints after every step, baumgarte stabilises them and shows how they drift, partitioning "
+             "integrates independent coordinates; auto takes adams for open chains of ten bodies and more, else rk8",
              {},
              {},
              {integration_methods.begin(), integration_methods.end()}},

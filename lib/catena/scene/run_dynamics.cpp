@@ -28,6 +28,7 @@ void run_with_events(AnalysisContext& context, AnalysisResult& result, const Tim
   std::vector<FieldRecord> records;
   for (const EventRecord& record : analysis.records())
     records.push_back({{"name", record.name}, {"t", record.t}, {"row", record.row}});
+  result.fields.push_back({"method", std::string(to_string(analysis.method()))});
   result.fields.push_back({"events", std::move(records)});
 }
 
@@ -51,6 +52,7 @@ void run_dynamics(AnalysisContext& context, AnalysisResult& result) {
   if (!task.events.empty()) return run_with_events(context, result, *grid, options, names, sources);
   Dynamics analysis(context.model, plan_options(*context.model, names), options);
   run_over_time(context, result, analysis, *grid, names, sources);
+  result.fields.push_back({"method", std::string(to_string(analysis.method()))});
 }
 
 }  // namespace catena

@@ -32,6 +32,9 @@ RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options) : motion
   scale_.horizon = options.horizon;
   scale_.length = motion_.equations().evaluator().length_scale();
   scale_.set_masses(motion_.equations().masses().mass);
+  if (options.keeping == ConstraintKeeping::partition) {
+    partition_ = std::make_unique<CoordinatePartition>(motion_.equations());
+  }
   singular_ratio_ = std::max(singular_end, std::pow(lost_digits / std::sqrt(options.tolerance), 2.0 / 3));
 }
 
@@ -48,8 +51,14 @@ bool RungeKutta::start(double t, std::span<const double> y) {
   return follow_motion();
 }
 
-// Lets the stabilisation follow the motion; accelerations of the point where it changes are evaluated anew.
+// Lets the choice of independent coordinates, or the stabilisation, follow the motion; accelerations of the point where
+// the latter changes are evaluated anew.
 bool RungeKutta::follow_motion() {
+  if (partitions()) {
+    motion_.equations().evaluator().set_time(t_);
+    return (partition_->choices() > 0 && !partition_->has_worsened()) ||
+           partition_->choose(motion_.q(std::span<const double>(y_)));
+  }
   if (projects()) return true;
   double wanted = scale_.rate();
   if (options_.fixed_step > 0) wanted = std::min(wanted, 1 / options_.fixed_step);
@@ -79,6 +88,8 @@ std::vector<std::string> RungeKutta::remarks() const {
     all.push_back(fmt::format("order 5 took over for {} steps where order 8 did not get ahead", low_order_steps_));
   if (projected_steps_ > 0)
     all.push_back(fmt::format("{} steps across nearly singular positions were projected", projected_steps_));
+  if (partition_ && partition_->choices() > 1)
+    all.push_back(fmt::format("independent coordinates were chosen {} times", partition_->choices()));
   return all;
 }
 
@@ -95,8 +106,8 @@ bool RungeKutta::take_over(double t, std::span<const double> y, double h, const 
 
 double RungeKutta::pivot_ratio() const { return motion_.equations().smallest_pivot_ratio() / usual_ratio_; }
 
-bool RungeKutta::dips(double far) const {
-  return smallest_stage_ratio_ < std::min(far * projection_ratio, ratio_dip * largest_stage_ratio_);
+bool RungeKutta::dips() const {
+  return smallest_stage_ratio_ < std::min(projection_ratio, ratio_dip * largest_stage_ratio_);
 }
 
 void RungeKutta::observe_ratio() {
@@ -133,6 +144,7 @@ bool RungeKutta::evaluate_stages(double h) {
     const double t = at_end ? t_new_ : t_ + table.c[s] * h;
     const Side side = at_end ? Side::before : Side::after;
     if (projecting_stages_ && !project_stage(t, side)) return false;
+    if (partitions() && !solve_dependent(t, side, y_stage_)) return false;
     if (!derivative(t, side, y_stage_, stage_[s])) return false;
     smallest_stage_ratio_ = std::min(smallest_stage_ratio_, pivot_ratio());
     largest_stage_ratio_ = std::max(largest_stage_ratio_, pivot_ratio());
@@ -200,6 +212,11 @@ double RungeKutta::filtered_error(double h, double raw) {
 // Projects the new point and evaluates it; the stages stay as they are for the interpolant.
 bool RungeKutta::finish_step() {
   EquationsOfMotion& equations = motion_.equations();
+  if (partitions()) {
+    if (!solve_dependent(t_new_, Side::before, y_new_)) return false;
+    position_residual_ = partition_->position_residual();
+    return derivative(t_new_, Side::before, y_new_, slope_new_);
+  }
   if (!projects()) {
     position_residual_ = equations.position_residual(motion_.q(std::span(y_new_)));
     return position_residual_ < largest_drift && derivative(t_new_, Side::before, y_new_, slope_new_);

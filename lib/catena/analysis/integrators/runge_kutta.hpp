@@ -1,5 +1,5 @@
 // Adaptive explicit Runge-Kutta integration of a constrained motion: orders 8 and 5 (tableau.hpp), kept on the
-// constraints in one of two ways.
+// constraints in one of three ways.
 //
 // Projection: positions and velocities, after every step, in the mass metric.
 // Stabilisation (J. Baumgarte, Comp. Meth. Appl. Mech. Eng. 1 (1972)): nothing is projected; the accelerations meet
@@ -9,6 +9,9 @@
 // constraints by h^2, which s^2 makes an error of order one.) The drift is of the size of the tolerance, or of the
 // error of a fixed step. Steps across singular positions are projected: stabilised, they would end on any branch.
 //
+// Partition: independent coordinates are integrated, the others solved for at every stage (coordinate_partition.hpp).
+//   Across singular positions, where no choice of independent coordinates holds, steps are projected as well.
+//
 // Passing singular positions (flat four-bars) without knowing of them takes four things, all found by experiment (see
 // NUMERICS.md): the part of an error estimate that the projection removes does not count; a step across such a position
 // is made with all its stages projected; none ends where a pivot of the Schur complement keeps less than 1e-7 of
@@ -17,9 +20,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "catena/analysis/integrators/coordinate_partition.hpp"
 #include "catena/analysis/integrators/error_scale.hpp"
 #include "catena/analysis/integrators/integrator.hpp"
 #include "catena/analysis/integrators/motion.hpp"
@@ -27,7 +32,7 @@
 
 namespace catena {
 
-enum class ConstraintKeeping { projection, stabilisation };
+enum class ConstraintKeeping { projection, stabilisation, partition };
 
 struct RungeKuttaOptions {
   int order = 8;  ///< 5 or 8
@@ -54,11 +59,10 @@ class RungeKutta final : public Integrator {
   const ErrorScale& scale() const { return scale_; }
   /// Smallest pivot ratio at the last evaluation, compared with the largest so far: very unequal masses make all small.
   double pivot_ratio() const;
-  /// Whether a singular position lies within the step whose stages were evaluated, as far as they show it; `far`: what
-  /// pivot ratios are looked at, compared with those within a step that passes it.
-  bool dips(double far = 1) const;
+  /// Whether a singular position lies within the step whose stages were evaluated, as far as they show it.
+  bool dips() const;
 
-  bool meets_constraints() const override { return options_.keeping == ConstraintKeeping::projection; }
+  bool meets_constraints() const override { return options_.keeping != ConstraintKeeping::stabilisation; }
 
  private:
   const Tableau& tableau() const {
@@ -68,12 +72,16 @@ class RungeKutta final : public Integrator {
   bool derivative(double t, Side side, std::span<const double> y, std::span<double> k) const {
     return motion_.derivative(t, side, y, k, stabilisation_);
   }
+  bool partitions() const { return partition_ && !crossing_; }
   bool follow_motion();
   bool begin_projection();
   /// out = from + h sum weight stage; `from` may be nullptr.
   void combine(const StageSum& sum, double h, const double* from, std::span<double> out) const;
   bool evaluate_stages(double h);
   bool project_stage(double t, Side side);
+  bool solve_dependent(double t, Side side, std::span<double> y) {
+    return partition_->solve(t, side, motion_.q(y), motion_.qd(y));
+  }
   bool factorize_new_point();
   double error_size(double h);
   double filtered_error(double h, double raw);
@@ -88,6 +96,7 @@ class RungeKutta final : public Integrator {
   void prepare_interpolant();
 
   Motion motion_;
+  std::unique_ptr<CoordinatePartition> partition_;  // only where it is asked for
   RungeKuttaOptions options_;
   ErrorScale scale_;
   double t_new_ = 0, h_ = 0, stabilisation_ = 0;

@@ -12,7 +12,8 @@ constexpr double largest_growth = 2.5, largest_cut = 0.2;
 // Where no step across a singular position is good enough, the best is taken if its error is below this.
 constexpr double largest_crossing_error = 300;
 constexpr double other_steps[] = {0.8, 0.6, 1.15, 0.4, 0.9, 1.3};  // what is tried instead of h
-constexpr double unprojected_distance = 10;                        // from where on stabilised constraints are projected
+// Pivot ratios below which all methods project, and above which they cease to.
+constexpr double nearly_singular = 0.1, regular = 0.2;
 constexpr int rejections_before_low_order = 8, low_order_run = 30;
 constexpr int most_rejections = 100;
 constexpr double smallest_step = 1e-13;  // part of |t| and of the time scale
@@ -90,7 +91,7 @@ bool RungeKutta::advance(double limit) {
       reject(h / 4);
       continue;
     }
-    if (!projects() && dips(unprojected_distance)) {
+    if (!projects() && smallest_stage_ratio_ < nearly_singular) {
       if (!begin_projection()) return false;
       continue;
     }
@@ -146,7 +147,8 @@ void RungeKutta::accept(double growth, double proposed) {
   }
   if (crossing_) {
     ++projected_steps_;
-    crossing_ = dips(unprojected_distance);
+    crossing_ = pivot_ratio() < regular;
+    if (partitions()) partition_->forget();
   }
   t_before_ = t_;
   t_ = t_new_;

@@ -1,0 +1,171 @@
+#include "catena/analysis/integrators/coordinate_partition.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "catena/analysis/mobility.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// Rows whose smallest pivot ratio is above this need no rank analysis.
+constexpr double independent_ratio = 1e-8;
+constexpr int most_iterations = 10;
+constexpr double good_enough = 1e-12;  // residual, in length scales or rad, where iterations gain nothing any more
+
+}  // namespace
+
+CoordinatePartition::CoordinatePartition(EquationsOfMotion& equations)
+    : equations_(equations),
+      evaluator_(equations.evaluator()),
+      plan_(equations.plan()),
+      scaling_(plan_, evaluator_.length_scale()),
+      projector_(evaluator_.shared_plan()) {
+  const double length = evaluator_.length_scale();
+  for (int c : plan_.coordinate) all_free_.push_back(c % 3 == 2 ? 1 : length * length);
+  inverse_weight_ = all_free_;
+  jacobian_.resize(at(plan_.trash_slot()) + 1);
+  evaluator_.start_jacobian(jacobian_);
+  residual_.resize(at(plan_.rows));
+  multipliers_.resize(at(plan_.rows));
+  change_.resize(at(plan_.columns));
+  row_square_.resize(at(plan_.rows));
+  superfluous_.resize(at(plan_.rows));
+}
+
+bool CoordinatePartition::factorize() {
+  evaluator_.jacobian(jacobian_);
+  if (!projector_.factorize(jacobian_, evaluator_.counters).ok()) return false;
+  std::fill(row_square_.begin(), row_square_.end(), 0.0);
+  const SparsePattern& a = plan_.jacobian;
+  for (std::size_t c = 0; c < all_free_.size(); ++c) {
+    for (int k = a.column_start[c]; k < a.column_start[c + 1]; ++k) {
+      row_square_[at(a.row_index[at(k)])] += all_free_[c] * jacobian_[at(k)] * jacobian_[at(k)];
+    }
+  }
+  ratio_ = 1;
+  for (int r = 0; r < plan_.rows; ++r) {
+    if (!superfluous_[at(r)]) ratio_ = std::min(ratio_, projector_.pivot(r) / row_square_[at(r)]);
+  }
+  return true;
+}
+
+bool CoordinatePartition::choose(std::span<const double> q) {
+  if (plan_.rows == 0) return true;
+  if (freedoms_ < 0) {
+    freedoms_ = plan_.columns - plan_.rows;
+    if (equations_.smallest_pivot_ratio() < independent_ratio) freedoms_ = analyse_mobility(evaluator_, q).dof();
+  }
+  if (freedoms_ > most_freedoms) return false;
+  ++choices_;
+  evaluator_.set_configuration(q);
+  projector_.set_inverse_weights(all_free_);
+  std::fill(superfluous_.begin(), superfluous_.end(), 0);
+  if (!factorize()) return false;
+  for (int r = 0; r < plan_.rows; ++r) {
+    superfluous_[at(r)] = projector_.pivot(r) < independent_ratio * row_square_[at(r)] ? 1 : 0;
+  }
+  inverse_weight_ = all_free_;
+  find_tangents(freedoms_);
+  pick_independent(freedoms_);
+  projector_.set_inverse_weights(inverse_weight_);
+  if (!factorize()) return false;
+  ratio_of_choice_ = ratio_;
+  return true;
+}
+
+// An orthonormal basis of the scaled tangent space.
+void CoordinatePartition::find_tangents(int freedoms) {
+  std::mt19937_64 generator(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const std::size_t columns = at(plan_.columns);
+  tangents_.resize(at(freedoms));
+  std::vector<double> motion(columns);
+  for (int j = 0; j < freedoms; ++j) {
+    for (std::size_t c = 0; c < columns; ++c) motion[c] = uniform(generator) * std::sqrt(all_free_[c]);
+    std::fill(residual_.begin(), residual_.end(), 0.0);
+    multiply_add(plan_.jacobian, std::span(jacobian_).first(plan_.jacobian.row_index.size()), motion, residual_);
+    projector_.solve(residual_, change_, multipliers_, evaluator_.counters);
+    std::vector<double>& tangent = tangents_[at(j)];
+    tangent.resize(columns);
+    for (std::size_t c = 0; c < columns; ++c) tangent[c] = (motion[c] - change_[c]) / std::sqrt(all_free_[c]);
+    // Twice is enough for orthogonality to rounding.
+    for (int round = 0; round < 2; ++round) {
+      for (int k = 0; k < j; ++k) {
+        double product = 0;
+        for (std::size_t c = 0; c < columns; ++c) product += tangents_[at(k)][c] * tangent[c];
+        for (std::size_t c = 0; c < columns; ++c) tangent[c] -= product * tangents_[at(k)][c];
+      }
+    }
+    double square = 0;
+    for (double x : tangent) square += x * x;
+    for (double& x : tangent) x /= std::sqrt(square);
+  }
+}
+
+// QR with pivoting: the coordinate of which the tangents that are left have most, then the tangents turned so that
+// only one of them has it.
+void CoordinatePartition::pick_independent(int freedoms) {
+  const std::size_t columns = at(plan_.columns);
+  for (std::size_t j = 0; j < at(freedoms); ++j) {
+    std::size_t best = 0;
+    double largest = -1;
+    for (std::size_t c = 0; c < columns; ++c) {
+      double square = 0;
+      for (std::size_t k = j; k < tangents_.size(); ++k) square += tangents_[k][c] * tangents_[k][c];
+      if (inverse_weight_[c] > 0 && square > largest) {
+        largest = square;
+        best = c;
+      }
+    }
+    inverse_weight_[best] = 0;
+    // Householder's reflection among tangents j ...: component `best` ends up in tangent j alone.
+    double square = 0;
+    for (std::size_t k = j; k < tangents_.size(); ++k) square += tangents_[k][best] * tangents_[k][best];
+    std::vector<double> mirror(tangents_.size(), 0.0);
+    for (std::size_t k = j; k < tangents_.size(); ++k) mirror[k] = tangents_[k][best];
+    mirror[j] += std::copysign(std::sqrt(square), mirror[j]);
+    double length = 0;
+    for (double x : mirror) length += x * x;
+    if (length == 0) continue;
+    for (std::size_t c = 0; c < columns; ++c) {
+      double product = 0;
+      for (std::size_t k = j; k < tangents_.size(); ++k) product += mirror[k] * tangents_[k][c];
+      product *= 2 / length;
+      for (std::size_t k = j; k < tangents_.size(); ++k) tangents_[k][c] -= product * mirror[k];
+    }
+  }
+}
+
+bool CoordinatePartition::solve(double t, Side side, std::span<double> q, std::span<double> qd) {
+  position_residual_ = 0;
+  if (plan_.rows == 0) return true;
+  evaluator_.set_time(t, side);
+  double before = 0;
+  for (int k = 0;; ++k) {
+    evaluator_.set_configuration(q);
+    evaluator_.phi(residual_);
+    position_residual_ = scaling_.row_norm(residual_);
+    if (!std::isfinite(position_residual_)) return false;
+    if (k == 0 && (!factorize() || ratio_ < unusable * ratio_of_choice_)) return false;
+    if (position_residual_ <= EquationsOfMotion::position_rounding) break;
+    if (k > 0 && position_residual_ > 0.5 * before && position_residual_ < good_enough) break;
+    if (k == most_iterations || (k > 0 && position_residual_ > before)) return false;
+    before = position_residual_;
+    projector_.solve(residual_, change_, multipliers_, evaluator_.counters);
+    for (std::size_t c = 0; c < change_.size(); ++c) q[at(plan_.coordinate[c])] -= change_[c];
+  }
+  // The factors are those of the estimate; they are refined with the Jacobian that holds.
+  evaluator_.jacobian(jacobian_);
+  evaluator_.nu(residual_);
+  for (std::size_t c = 0; c < change_.size(); ++c) change_[c] = -qd[at(plan_.coordinate[c])];
+  multiply_add(plan_.jacobian, std::span(jacobian_).first(plan_.jacobian.row_index.size()), change_, residual_);
+  projector_.solve(residual_, change_, multipliers_, evaluator_.counters);
+  for (std::size_t c = 0; c < change_.size(); ++c) qd[at(plan_.coordinate[c])] += change_[c];
+  return true;
+}
+
+}  // namespace catena
