@@ -52,6 +52,7 @@ const std::vector<Verb>& verbs() {
         tolerance,
         {"method", "integrator: auto, rk8, rk5, baumgarte, adams, partitioning"},
         {"step", "fixed step"},
+        {"max_steps", "largest number of steps"},
         outputs}},
       {"equilibrium",
        "equilibrium",

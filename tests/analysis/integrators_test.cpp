@@ -139,6 +139,51 @@ TEST(Partitioning, RefusesMoreFreedomsThanADenseBasisHolds) {
   EXPECT_NE(report.message.find("600 degrees of freedom"), std::string::npos) << report.message;
 }
 
+/// A rod that carries one that is 1 / factor times as heavy.
+std::shared_ptr<Model> light_link(double factor) {
+  auto model = rod_chain(2);
+  model->bodies[0].mass *= factor;
+  model->bodies[0].inertia *= factor;
+  return model;
+}
+
+// Accelerations are as exact as if the light link had no mass: no method needs shorter steps for it.
+TEST(Integrators, PassOverALightLinkThatCarriesAHeavyRod) {
+  for (const IntegrationMethod method : testing::all_methods) {
+    const DynamicsOptions options{.method = method, .tolerance = 1e-10};
+    AnalysisReport massless;
+    const double exact = last_angle(light_link(0), options, 1, &massless);
+    for (const double factor : {1e-6, 1e-8, 1e-9}) {
+      AnalysisReport report;
+      EXPECT_NEAR(last_angle(light_link(factor), options, 1, &report), exact, 0.2 * factor + 1e-9)
+          << to_string(method) << " " << factor;
+      EXPECT_LT(report.counters.steps, 2 * massless.counters.steps) << to_string(method) << " " << factor;
+    }
+  }
+}
+
+// A stiff spring on a light ball: the run would take some 10^8 steps, and says so after some 10^4.
+TEST(Integrators, EndWhereStepsWillNotDo) {
+  auto model = std::make_shared<Model>();
+  const int ball = model->add_body("ball", {.mass = 1e-6, .position = {1.1, 0}, .particle = true});
+  SpringDamper<> spring;
+  spring.k = 1e6;
+  spring.length = 1;
+  model->add_force("spring", spring, ground, ball);
+  RowFunction none([](const Snapshot&) { return true; });
+  for (const IntegrationMethod method : {IntegrationMethod::rk8, IntegrationMethod::adams}) {
+    Dynamics long_run(model, {}, {.method = method}), bounded(model, {}, {.method = method, .max_steps = 500});
+    const AnalysisReport hopeless = long_run.run(TimeGrid::instant(1000), {}, none);
+    EXPECT_EQ(hopeless.status, Status::step_too_small);
+    EXPECT_NE(hopeless.message.find("many more than max_steps"), std::string::npos) << hopeless.message;
+    EXPECT_NE(hopeless.message.find("\"ball\""), std::string::npos) << hopeless.message;
+    EXPECT_LT(hopeless.counters.steps, 100'000);
+    const AnalysisReport used_up = bounded.run(TimeGrid::instant(0.01), {}, none);
+    EXPECT_EQ(used_up.status, Status::step_too_small);
+    EXPECT_NEAR(static_cast<double>(used_up.counters.steps + used_up.counters.rejected), 500, 5);
+  }
+}
+
 TEST(AutomaticMethod, IsMultistepForLongOpenChainsOnly) {
   EXPECT_EQ(Dynamics(rod_chain(40)).method(), IntegrationMethod::adams);
   EXPECT_EQ(Dynamics(rod_chain(40), {}, {.tolerance = 1e-13}).method(), IntegrationMethod::rk8);

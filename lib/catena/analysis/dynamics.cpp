@@ -31,6 +31,7 @@ constexpr int least_multistep_bodies = 10;
 constexpr double least_tolerance = 1e-14;
 // Rows whose smallest pivot ratio is above this need no rank analysis.
 constexpr double independent_ratio = 1e-8;
+constexpr std::int64_t steps_of_a_pace = 20'000;
 constexpr std::size_t most_names = 10;  // in a warning
 
 // Whether bodies are tied to each other, or to the ground, in more than one way.
@@ -302,6 +303,34 @@ std::unique_ptr<Integrator> Dynamics::make_integrator(const Motion& motion, doub
   return std::make_unique<RungeKutta>(motion, options);
 }
 
+// Ends a run that would take hours, where it is rather than then.
+Report Dynamics::check_pace(double last) {
+  Report report;
+  if (options_.step > 0) return report;
+  const std::int64_t steps = evaluator_.counters.steps + evaluator_.counters.rejected;
+  const bool used_up = steps - first_step_ > options_.max_steps;
+  bool hopeless = false;
+  if (steps - pace_step_ >= steps_of_a_pace) {
+    const double pace = (t_ - pace_time_) / static_cast<double>(steps - pace_step_);
+    hopeless = last - t_ > 10 * pace * static_cast<double>(options_.max_steps);
+    pace_step_ = steps;
+    pace_time_ = t_;
+  }
+  if (!used_up && !hopeless) return report;
+  report.status = Status::step_too_small;
+  std::string culprit;
+  if (integrator_->culprit() >= 0) {
+    culprit = fmt::format(" the error of body \"{}\" asks for short ones;",
+                          model_->body_name(plan_->model_body[at(integrator_->culprit() / 3)]));
+  }
+  report.message = fmt::format(
+      "{} steps led to t = {:.12g} s, {} than max_steps = {} are needed at this pace;{} likely cause: masses, "
+      "stiffnesses "
+      "or damping of very different sizes, or a tolerance near rounding; give a larger tolerance or max_steps",
+      steps - first_step_, t_, hopeless ? "many more" : "more", options_.max_steps, culprit);
+  return report;
+}
+
 AnalysisReport Dynamics::run(const TimeGrid& grid, const Needs& asked, RowObserver& observer) {
   const ProcessTimer timer;
   const FlushDenormals flush;
@@ -353,6 +382,8 @@ AnalysisReport Dynamics::run(const TimeGrid& grid, const Needs& asked, RowObserv
       initial_energy_ = earlier_.initial_energy;
     }
   }
+  first_step_ = pace_step_ = evaluator_.counters.steps + evaluator_.counters.rejected;
+  pace_time_ = t_;
   std::int64_t& row = next_row_ = 0;
   Report outcome;
   while (outcome.ok() && row < grid.size() && grid[row] <= t_) outcome = give_row(grid[row++], needs, observer);
@@ -378,6 +409,7 @@ Report Dynamics::move(double limit, const TimeGrid& grid, std::int64_t& row, con
     const double before = t_;
     t_ = integrator_->time();
     if (!observer.proceed(t_)) return cancelled(t_);
+    if (const Report pace = check_pace(grid.last()); !pace.ok()) return pace;
     if (events_) {
       const Report found = find_events(before, grid, row, needs, observer);
       if (!found.ok() || stopped_by_ >= 0) return found;

@@ -75,6 +75,7 @@ class Dynamics {
   void find_multipliers();
   void describe_mobility(AnalysisReport& report);
   Report stuck() const;
+  Report check_pace(double last);
   double next_breakpoint(double t) const;
   Snapshot snapshot(double t, std::span<const double> y, const Needs& needs) const;
 
@@ -90,6 +91,8 @@ class Dynamics {
   std::string ambiguity_;                    // whose reactions are not, when that was found
   bool prepared_ = false;
   double t_ = 0, initial_energy_ = 0;
+  std::int64_t first_step_ = 0, pace_step_ = 0;  // counts of steps: at the run's start, and when time was ...
+  double pace_time_ = 0;                         // ... this, s
   std::vector<double> q_, qd_, given_qd_, driver_work_;
   std::vector<double> y_row_, slope_row_, lambda_row_, loads_row_;
   double row_residual_ = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string_view>
 
 namespace catena {
@@ -29,6 +30,9 @@ struct DynamicsOptions {
   double tolerance = 1e-8;
   /// Fixed step, s; 0: chosen by the integrator.
   double step = 0;
+  /// Largest number of steps of a run, rejected ones included; it ends when they are used up, or will be ten times over
+  /// at its present pace. Does not count for a fixed step.
+  std::int64_t max_steps = 10'000'000;
 };
 
 }  // namespace catena

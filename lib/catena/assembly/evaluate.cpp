@@ -176,6 +176,7 @@ void Evaluator::set_configuration(std::span<const double> q) {
 
 void Evaluator::take_turns(std::span<double> q) {
   constexpr double low_part = 2.4492935982947064e-16;  // of 2 pi, below the double
+  turns_.reserve(at(plan_->moving));                   // now, not in the middle of a run
   for (int b = 0; b < plan_->moving; ++b) {
     double& angle = q[at(3 * b + 2)];
     if (!(std::abs(angle) > 1.5 * std::numbers::pi)) continue;

@@ -11,6 +11,7 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 constexpr double regularisation = 1e-12;  // part of the diagonal that is added
 constexpr double singular_ratio = 1e-10;  // below this pivot ratio it is
 constexpr int massless_rounds = 4;
+constexpr double unequal_masses = 1e5;     // largest to least; from here on light bodies cost digits
 constexpr double refinement_ratio = 1e-5;  // below this one solutions are refined
 
 }  // namespace
@@ -32,12 +33,17 @@ SchurSystem::SchurSystem(std::shared_ptr<const Plan> plan) : plan_(std::move(pla
 void SchurSystem::set_masses(std::span<const double> masses, std::span<const double> substitutes) {
   masses_.assign(masses.begin(), masses.end());
   massless_.clear();
+  double least[2] = {}, largest[2] = {};  // of masses, of moments of inertia
   for (std::size_t c = 0; c < masses.size(); ++c) {
+    const std::size_t kind = c % 3 == 2 ? 1 : 0;
+    largest[kind] = std::max(largest[kind], masses[c]);
+    if (masses[c] > 0 && (least[kind] == 0 || masses[c] < least[kind])) least[kind] = masses[c];
     const double mass = masses[c] > 0 ? masses[c] : substitutes[c];
     inverse_masses_[c] = mass > 0 ? 1 / mass : 0;
     if (!(masses[c] > 0) && mass > 0) massless_.push_back(static_cast<int>(c));
   }
-  if (!massless_.empty()) {
+  unequal_ = largest[0] > unequal_masses * least[0] || largest[1] > unequal_masses * least[1];
+  if (!massless_.empty() || unequal_) {
     rest_Q_.resize(masses.size());
     extra_qdd_.resize(masses.size());
     rest_gamma_.resize(at(plan_->rows));
@@ -204,7 +210,7 @@ void SchurSystem::solve_refined(std::span<double> lambda, std::span<const double
 void SchurSystem::solve_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
                                std::span<double> lambda, Counters& counters) {
   solve_with_masses(Q, gamma, qdd, lambda, counters);
-  if (!massless_.empty()) refine_massless(Q, gamma, qdd, lambda, counters);
+  if (!massless_.empty() || unequal_) refine_motion(Q, gamma, qdd, lambda, counters);
 }
 
 void SchurSystem::solve_with_masses(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
@@ -225,10 +231,11 @@ void SchurSystem::solve_with_masses(std::span<const double> Q, std::span<const d
   }
 }
 
-// Adds the solution for what the true equations leave: Q - M qdd - Phi_q^T lambda and gamma - Phi_q qdd.
-void SchurSystem::refine_massless(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
-                                  std::span<double> lambda, Counters& counters) {
-  double first = 0;
+// Adds the solution for what the true equations leave: Q - M qdd - Phi_q^T lambda and gamma - Phi_q qdd. One round
+// where masses are only unequal.
+void SchurSystem::refine_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
+                                std::span<double> lambda, Counters& counters) {
+  double first = 0, first_change = 0;
   for (int round = 0;; ++round) {
     double size = 0;
     for (std::size_t c = 0; c < rest_Q_.size(); ++c) {
@@ -251,13 +258,21 @@ void SchurSystem::refine_massless(std::span<const double> Q, std::span<const dou
     }
     if (round == 0) first = size;
     massless_residual_ = first > 0 ? size / first : 0;
-    if (round == massless_rounds || !(size > 1e-15 * first)) return;
+    if (round == massless_rounds || (!massless_.empty() && !(size > 1e-15 * first))) return;
     std::copy(gamma.begin(), gamma.end(), rest_gamma_.begin());
     for (std::size_t c = 0; c < rest_Q_.size(); ++c) extra_qdd_[c] = -qdd[c];
     multiply_add(extra_qdd_, rest_gamma_);
     solve_with_masses(rest_Q_, rest_gamma_, extra_qdd_, extra_lambda_, counters);
-    for (std::size_t c = 0; c < rest_Q_.size(); ++c) qdd[c] += extra_qdd_[c];
+    double change = 0, whole = 0;
+    for (std::size_t c = 0; c < rest_Q_.size(); ++c) {
+      change = std::max(change, std::abs(extra_qdd_[c]));
+      whole = std::max(whole, std::abs(qdd[c]));
+      qdd[c] += extra_qdd_[c];
+    }
     for (std::size_t k = 0; k < extra_lambda_.size(); ++k) lambda[k] += extra_lambda_[k];
+    if (round == 0) first_change = change;
+    // Every round leaves the same part of what it changed.
+    if (massless_.empty() && !(change * first_change > 1e-15 * whole * whole)) return;
   }
 }
 

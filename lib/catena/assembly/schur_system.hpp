@@ -10,6 +10,10 @@
 // Massless coordinates (M only positive definite where the constraints leave freedom) get a small mass, and the
 // solution is refined with the true M; the small mass divided by that which really resists is what each round leaves.
 //
+// Very unequal masses: the inverse of a light one drowns the others' in S, and accelerations as M^-1 (Q - Phi_q^T
+// lambda) are differences of large numbers. One round of refinement with the residuals of both equations brings the
+// digits back, as far as the masses that matter determine them.
+//
 // Singular case: rows that depend on each other make S singular. As soon as a pivot keeps less than 1e-10 of its
 // diagonal, 1e-12 of the diagonal is added and solutions are refined with the true S: accelerations are then exact,
 // multipliers one of many. Source: NUMERICS (singular passages); Nothing allocates after the first factorization.
@@ -74,8 +78,8 @@ class SchurSystem {
   void solve_refined(std::span<double> lambda, std::span<const double> b, Counters& counters);
   void solve_with_masses(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
                          std::span<double> lambda, Counters& counters);
-  void refine_massless(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
-                       std::span<double> lambda, Counters& counters);
+  void refine_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
+                     std::span<double> lambda, Counters& counters);
 
   std::shared_ptr<const Plan> plan_;
   std::vector<double> masses_, inverse_masses_;
@@ -88,9 +92,9 @@ class SchurSystem {
   SparsePattern upper_;                            // of S permuted
   std::vector<double> constant_values_, values_, diagonal_values_;
   std::vector<double> right_hand_side_, correction_, change_;
-  std::vector<double> rest_Q_, rest_gamma_, extra_qdd_, extra_lambda_;  // for massless coordinates only
+  std::vector<double> rest_Q_, rest_gamma_, extra_qdd_, extra_lambda_;  // for massless coordinates and unequal masses
   CholmodKernel kernel_;
-  bool analyzed_ = false, constants_known_ = false, regularised_ = false;
+  bool analyzed_ = false, constants_known_ = false, regularised_ = false, unequal_ = false;
   double smallest_ratio_ = 1;
   double massless_residual_ = 0;
   int weakest_row_ = -1, worst_massless_ = -1;

@@ -72,6 +72,8 @@ std::vector<AnalysisDescription> describe_all() {
              {},
              {integration_methods.begin(), integration_methods.end()}},
             {"step", KeyKind::number, "fixed step, s (default: chosen by the tolerance)", UnitKind::time},
+            {"max_steps", KeyKind::whole,
+             "largest number of steps, rejected ones included: the analysis ends when it will not do (default 10^7)"},
             {"events", KeyKind::events, "what to watch for, and what to do then"}}),
       make("equilibrium", "A configuration at rest, and whether it is stable.",
            "energy, stable, negative_modes, residual, solver, iterations, active (the closed gaps), equilibria", false,

@@ -42,6 +42,7 @@ void run_dynamics(AnalysisContext& context, AnalysisResult& result) {
   options.method = static_cast<IntegrationMethod>(task.word("method"));  // in the order of the key's words
   options.tolerance = task.number("tolerance", options.tolerance);
   options.step = task.number("step", options.step);
+  options.max_steps = static_cast<std::int64_t>(task.number("max_steps", static_cast<double>(options.max_steps)));
   const std::vector<std::string> names = task.output_names();
   const ColumnSources sources{.analysis = task.type(),
                               .timed = true,

@@ -32,6 +32,7 @@ CoordinatePartition::CoordinatePartition(EquationsOfMotion& equations)
   residual_.resize(at(plan_.rows));
   multipliers_.resize(at(plan_.rows));
   change_.resize(at(plan_.columns));
+  motion_.resize(at(plan_.columns));
   row_square_.resize(at(plan_.rows));
   superfluous_.resize(at(plan_.rows));
 }
@@ -83,15 +84,14 @@ void CoordinatePartition::find_tangents(int freedoms) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   const std::size_t columns = at(plan_.columns);
   tangents_.resize(at(freedoms));
-  std::vector<double> motion(columns);
   for (int j = 0; j < freedoms; ++j) {
-    for (std::size_t c = 0; c < columns; ++c) motion[c] = uniform(generator) * std::sqrt(all_free_[c]);
+    for (std::size_t c = 0; c < columns; ++c) motion_[c] = uniform(generator) * std::sqrt(all_free_[c]);
     std::fill(residual_.begin(), residual_.end(), 0.0);
-    multiply_add(plan_.jacobian, std::span(jacobian_).first(plan_.jacobian.row_index.size()), motion, residual_);
+    multiply_add(plan_.jacobian, std::span(jacobian_).first(plan_.jacobian.row_index.size()), motion_, residual_);
     projector_.solve(residual_, change_, multipliers_, evaluator_.counters);
     std::vector<double>& tangent = tangents_[at(j)];
     tangent.resize(columns);
-    for (std::size_t c = 0; c < columns; ++c) tangent[c] = (motion[c] - change_[c]) / std::sqrt(all_free_[c]);
+    for (std::size_t c = 0; c < columns; ++c) tangent[c] = (motion_[c] - change_[c]) / std::sqrt(all_free_[c]);
     // Twice is enough for orthogonality to rounding.
     for (int round = 0; round < 2; ++round) {
       for (int k = 0; k < j; ++k) {
@@ -122,20 +122,20 @@ void CoordinatePartition::pick_independent(int freedoms) {
       }
     }
     inverse_weight_[best] = 0;
+    mirror_.assign(tangents_.size(), 0.0);
     // Householder's reflection among tangents j ...: component `best` ends up in tangent j alone.
     double square = 0;
     for (std::size_t k = j; k < tangents_.size(); ++k) square += tangents_[k][best] * tangents_[k][best];
-    std::vector<double> mirror(tangents_.size(), 0.0);
-    for (std::size_t k = j; k < tangents_.size(); ++k) mirror[k] = tangents_[k][best];
-    mirror[j] += std::copysign(std::sqrt(square), mirror[j]);
+    for (std::size_t k = j; k < tangents_.size(); ++k) mirror_[k] = tangents_[k][best];
+    mirror_[j] += std::copysign(std::sqrt(square), mirror_[j]);
     double length = 0;
-    for (double x : mirror) length += x * x;
+    for (double x : mirror_) length += x * x;
     if (length == 0) continue;
     for (std::size_t c = 0; c < columns; ++c) {
       double product = 0;
-      for (std::size_t k = j; k < tangents_.size(); ++k) product += mirror[k] * tangents_[k][c];
+      for (std::size_t k = j; k < tangents_.size(); ++k) product += mirror_[k] * tangents_[k][c];
       product *= 2 / length;
-      for (std::size_t k = j; k < tangents_.size(); ++k) tangents_[k][c] -= product * mirror[k];
+      for (std::size_t k = j; k < tangents_.size(); ++k) tangents_[k][c] -= product * mirror_[k];
     }
   }
 }

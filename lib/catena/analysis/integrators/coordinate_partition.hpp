@@ -55,6 +55,7 @@ class CoordinatePartition {
   std::vector<char> superfluous_;                  // rows that depend on others
   std::vector<double> jacobian_, residual_, multipliers_, change_;
   std::vector<std::vector<double>> tangents_;  // by degree of freedom; scaled
+  std::vector<double> motion_, mirror_;
   int freedoms_ = -1, choices_ = 0;
   double ratio_ = 1, ratio_of_choice_ = 1, position_residual_ = 0;
 };

@@ -26,6 +26,7 @@ RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options) : motion
   const std::size_t size = motion_.size();
   for (std::vector<double>* y : {&y_, &y_before_, &y_new_, &y_stage_, &slope_, &slope_new_}) y->assign(size, 0.0);
   stage_.assign(16, std::vector<double>(size, 0.0));
+  if (options.order == 8) interpolant_.assign(7, std::vector<double>(size, 0.0));
   error_.resize(2 * motion_.coordinates());
   error_low_.resize(2 * motion_.coordinates());
   scale_.step_tolerance = options.tolerance;

@@ -16,7 +16,7 @@
 // NUMERICS.md): the part of an error estimate that the projection removes does not count; a step across such a position
 // is made with all its stages projected; none ends where a pivot of the Schur complement keeps less than 1e-7 of
 // itself, or what the tolerance makes of it; where order 8 does not get ahead, order 5 takes over for a while. One
-// object an integration; nothing allocates after the first interpolation.
+// object an integration; nothing allocates after construction.
 #pragma once
 
 #include <cstdint>

@@ -15,8 +15,6 @@ void RungeKutta::prepare_interpolant() {
     combine(table.a[s], h, y_before_.data(), y_stage_);
     motion_.derivative(t_before_ + table.c[s] * h, Side::after, y_stage_, stage_[s]);
   }
-  interpolant_.resize(7);
-  for (auto& r : interpolant_) r.resize(y_.size());
   for (std::size_t i = 0; i < y_.size(); ++i) {
     const double difference = y_[i] - y_before_[i], bend = h * stage_[0][i] - difference;
     interpolant_[0][i] = difference;
