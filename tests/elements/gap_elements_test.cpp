@@ -93,8 +93,8 @@ TEST(GapElements, ContactOutsideAndInsideOfACircle) {
     contact.side = side;
     Pair pair(contact);
     const double apart = norm(point_of(pair, 1, local) - point_of(pair, 0, centre));
-    EXPECT_NEAR(pair.psi(pair.q), side * (0.5 - apart) - 0.05, 1e-14);
-    EXPECT_NEAR(pair.measured(), side * (0.5 - apart) - 0.05, 1e-14);
+    EXPECT_NEAR(pair.psi(pair.q), side * (apart - 0.5) - 0.05, 1e-14);
+    EXPECT_NEAR(pair.measured(), side * (apart - 0.5) - 0.05, 1e-14);
     expect_exact_derivatives(pair);
   }
 }

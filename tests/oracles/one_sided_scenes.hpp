@@ -52,7 +52,6 @@ inline Contact<double> floor_contact() {
 inline Contact<double> drum_contact(const Vec2<double>& centre, double radius) {
   Contact<double> contact;
   contact.curve = Curve<double>::circle(centre, radius);
-  contact.side = -1;
   return contact;
 }
 

@@ -73,18 +73,19 @@ TEST(OneSided, EverySolverFindsTheSame) {
 
 TEST(OneSided, InsideAndOutsideOfACircle) {
   const std::string circle = R"({"type": "contact", "name": "bowl", "i": "ground", "j": "bob",
-    "curve": {"circle": {"centre": [1, 1], "radius": 0.5}}, "side": )";
-  const TextRun inside = run_text(bob("[1.2, 1.1]", circle + "1}", R"("bob.x", "bob.y", "bowl.force", "bowl.fy")"));
+    "curve": {"circle": {"centre": [1, 1], "radius": 0.5}})";
+  const TextRun inside =
+      run_text(bob("[1.2, 1.1]", circle + ", \"side\": -1}", R"("bob.x", "bob.y", "bowl.force", "bowl.fy")"));
   expect_ok(inside);
   EXPECT_NEAR(inside.last("bob.x"), 1, 1e-12);
   EXPECT_NEAR(inside.last("bob.y"), 0.5, 1e-12);
   EXPECT_NEAR(inside.last("bowl.force"), 20, 1e-11);
   EXPECT_NEAR(inside.last("bowl.fy"), 20, 1e-11);
   // On top of the circle it does not stay: nothing holds it then.
-  const TextRun outside = run_text(bob("[1, 1.7]", circle + "-1}", R"("bob.y")"));
+  const TextRun outside = run_text(bob("[1, 1.7]", circle + "}", R"("bob.y")"));
   EXPECT_EQ(outside.outcome.exit_code, 1);
   const TextRun balanced =
-      run_text(bob("[1, 1.7]", circle + "-1}", R"("bob.y", "bowl.force")", R"(, "accept": "stationary")"));
+      run_text(bob("[1, 1.7]", circle + "}", R"("bob.y", "bowl.force")", R"(, "accept": "stationary")"));
   expect_ok(balanced);
   EXPECT_NEAR(balanced.last("bob.y"), 1.5, 1e-12);
   EXPECT_NEAR(balanced.last("bowl.force"), 20, 1e-11);

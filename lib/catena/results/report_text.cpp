@@ -105,8 +105,10 @@ std::string report_text(const AnalysisResult& result) {
   std::string text;
   if (!report.message.empty()) text += "  " + report.message + "\n";
   for (const std::string& warning : report.warnings) text += "  note: " + warning + "\n";
-  // Analyses with rows speak of the structure where it is not what one expects of them.
-  if (!result.has_rows || report.status == Status::under_driven) text += structure_text(report);
+  // Analyses with rows speak of the structure where it is not what one expects of them; those that were refused before
+  // anything was counted, not at all.
+  const bool counted = report.bodies > 0 || result.type == "check";
+  if ((!result.has_rows && counted) || report.status == Status::under_driven) text += structure_text(report);
   if (!result.has_rows && report.rank && report.redundant.empty()) text += "  no redundant constraints\n";
   text += redundancy_text(report);
   for (const NamedField& field : result.fields)

@@ -1,12 +1,12 @@
 // contact: a point of body j, or a disc around it, stays on the free side of a curve of body i.
 //
-//   x = A_i^T (r_Pj - r_i)        Psi = side n(s)^T (x - p(s)) - radius >= 0        s: foot of x, n = R p' / |p'|
+//   x = A_i^T (r_Pj - r_i)        Psi = b n(s)^T (x - p(s)) - radius >= 0        s: foot of x, n = R p' / |p'|, b = +-1
 //
-// The free side is on the left of the curve's direction (side 1: inside a circle, which runs counter-clockwise; above a
-// line along x) or on its right (side -1). Foot, derivatives and singular cases are those of point_on_curve.hpp: of
-// several feet the nearest one is taken first and then followed. p: normal force on j along side N, N; no friction.
-// k and c are those of the penalty that dynamics is to use; equilibrium takes the inequality itself. Source: as
-// point_on_curve.hpp and gap_element.hpp.
+// The free side, side = 1, is on the left of the curve's direction (above a line along x); a circle counts as running
+// clockwise, so that its free side is the outside. side = -1: the other one. Foot, derivatives and singular cases are
+// those of point_on_curve.hpp: of several feet the nearest one is taken first and then followed. p: normal force on j
+// along side N, N; no friction. k and c are those of the penalty that dynamics is to use; equilibrium takes the
+// inequality itself. Source: as point_on_curve.hpp and gap_element.hpp.
 #pragma once
 
 #include "catena/elements/constraints/point_on_curve.hpp"
@@ -21,7 +21,7 @@ struct Contact : PointOnCurve<S> {
   static constexpr std::string_view summary =
       "A point of body j, or a disc around it, stays on the free side of a curve of body i; no friction.";
   static constexpr std::string_view equation =
-      "side n(s)^T (x - p(s)) - radius >= 0,  x = A_i^T (r_Pj - r_i),  s: foot of x,  n = R p'/|p'|";
+      "+-n(s)^T (x - p(s)) - radius >= 0,  x = A_i^T (r_Pj - r_i),  s: foot of x,  n = R p'/|p'|";
   static constexpr bool one_sided = true;
 
   S radius{}, k{}, c{};
@@ -34,17 +34,22 @@ struct Contact : PointOnCurve<S> {
         CurveField{"curve", &Contact::curve, 0, "the curve, in the frame of body i"},
         NumberField{"radius", &Contact::radius, UnitKind::length, Domain::not_negative, false,
                     "of a disc around P_j (default 0: a point)"},
-        SideField{"side", &Contact::side, "the free side: 1 on the left of the curve's direction, -1 on its right"},
+        SideField{
+            "side", &Contact::side,
+            "the free side: 1 (default) outside of a circle, on the left of any other curve's direction; -1 the other"},
         NumberField{"k", &Contact::k, UnitKind::stiffness, Domain::positive, false,
                     "penalty stiffness for dynamics; equilibrium needs none"},
         NumberField{"c", &Contact::c, UnitKind::damping, Domain::not_negative, false,
                     "penalty damping for dynamics; equilibrium needs none"});
   }
 
+  // 1 where the normal points to the free side: that of a circle, counter-clockwise in its parameter, points inwards.
+  double free_side() const { return this->curve.is_circle() ? -side : side; }
+
   template <class T>
   void phi(const Arguments<T>& a, T* out) const {
     Base::phi(a, out);
-    out[0] = T(static_cast<double>(side)) * out[0] - T(radius);
+    out[0] = T(free_side()) * out[0] - T(radius);
   }
   template <class T>
   T measure(const Frame<T>& i, const Frame<T>& j) const {
@@ -54,7 +59,7 @@ struct Contact : PointOnCurve<S> {
   }
   void jacobian(const Arguments<double>& a, double* entries) const {
     Base::jacobian(a, entries);
-    for (std::size_t n = 0; n < jacobian_size<Base>; ++n) entries[n] *= side;
+    for (std::size_t n = 0; n < jacobian_size<Base>; ++n) entries[n] *= free_side();
   }
 };
 
