@@ -32,10 +32,8 @@ constexpr double finest_barrier = 1e-10;
 // Of gaps and their forces, whatever was asked for: the last steps cost next to nothing.
 constexpr double gap_tolerance = 1e-12;
 constexpr double first_push = 0.05, largest_push = 0.8;
-// Stiffness contributions below this part of the scene's count as absent.
-// Gaps closed by less than this many length scales count as closed.
-constexpr double absent_overlap = 1e-6;
-constexpr double absent_stiffness = 1e-8;
+// Overlaps below this many length scales, and stiffness contributions below this part of the scene's, count as absent.
+constexpr double absent_overlap = 1e-6, absent_stiffness = 1e-8;
 
 // A reproducible number in [-1, 1).
 double random_number(unsigned& seed) {
@@ -48,10 +46,6 @@ std::string body_of(const Evaluator& evaluator, int column) {
   const int body = plan.model_body[at(plan.coordinate[at(column)] / 3)];
   return std::string(evaluator.model().body_name(body));
 }
-
-}  // namespace
-
-namespace {
 
 // Names the gaps of which rounding decides whether they are closed.
 void name_weak_gaps(const Evaluator& evaluator, StaticResult& result) {
@@ -352,6 +346,9 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
   }
   result.dependent_rows = system_.matrix().dependent_rows();
   name_weak_gaps(evaluator, result);
+  if (way == Way::valley && !few) {
+    result.report.warnings.push_back("found by going downhill from the start, after other ways had failed");
+  }
   const double scale = std::max(system_.force_scale(lambda), system_.load_size());
   const bool accurate = result.residual <= options_.tolerance * scale + system_.rounding_force() &&
                         system_.phi_norm() <= std::max(options_.tolerance, 10 * system_.rounding_change());
