@@ -125,6 +125,26 @@ void add_common_options(CLI::App& command, Parsed& parsed) {
       ->check(whole_number);
 }
 
+/// Of `run` and `dynamics`.
+void add_dynamics_options(CLI::App& command, RunOptions& options) {
+  command.add_flag("--estimate-error", options.estimate_error,
+                   "run every dynamics analysis a second time, at a tenth of the tolerance or half the step: "
+                   "estimated_error is the largest difference of the two, and the rows are those of the finer run");
+  CLI::Option* checkpoint = command.add_option("--checkpoint", options.checkpoint,
+                                               "save where a dynamics analysis is, now and then, to this file");
+  checkpoint->type_name("FILE");
+  CLI::Option* interval =
+      command.add_option("--checkpoint-every", options.checkpoint_every,
+                         "seconds of simulated time between checkpoints: a twentieth of the analysis "
+                         "unless given");
+  interval->type_name("S")->check(CLI::PositiveNumber)->needs(checkpoint);
+  command
+      .add_option("--restart", options.restart,
+                  "go on from a checkpoint: the rows that are left, equal bit for bit to those of the run that made it")
+      ->type_name("FILE")
+      ->excludes(interval);
+}
+
 /// The entries of a list that may be written as in a scene: [0.1, 0.2] for 0.1,0.2.
 std::vector<std::string> without_brackets(std::vector<std::string> values) {
   if (values.empty() || !values.front().starts_with('[') || !values.back().ends_with(']')) return values;
@@ -157,6 +177,8 @@ void add_command(CLI::App& app, Action& chosen, const Verb& verb) {
   CLI::App* command = app.add_subcommand(verb.command, verb.description);
   const auto parsed = std::make_shared<Parsed>();
   add_common_options(*command, *parsed);
+  if (verb.analysis[0] == '\0' || std::string_view(verb.analysis) == "dynamics")
+    add_dynamics_options(*command, parsed->run.options);
   parsed->keys.reserve(verb.keys.size());  // options hold references
   for (const Key& key : verb.keys) {
     auto& values = parsed->keys.emplace_back(std::string(key.name), std::vector<std::string>()).second;

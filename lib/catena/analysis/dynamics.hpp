@@ -6,6 +6,7 @@
 // the row, only if needed. Where no step can be made any more, the report says when and why; rows so far are kept.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -16,21 +17,15 @@
 #include "catena/analysis/equations_of_motion.hpp"
 #include "catena/analysis/event_watch.hpp"
 #include "catena/analysis/integrators/integrator.hpp"
+#include "catena/analysis/integrators/motion.hpp"
 #include "catena/analysis/minimum_norm.hpp"
+#include "catena/analysis/motion_memory.hpp"
+#include "catena/analysis/process_time.hpp"
 #include "catena/analysis/row_observer.hpp"
 #include "catena/analysis/system_state.hpp"
 #include "catena/analysis/time_grid.hpp"
 
 namespace catena {
-
-/// Energies at an event, for a motion that goes on with other constraints. Units: J.
-struct WorkSoFar {
-  double supplied = 0, dissipated = 0;  ///< by loads and drivers; by damping
-  double initial_energy = 0, energy = 0;
-  std::vector<double> by_driver;  ///< by number of the element; empty: nothing was summed up
-};
-
-class Motion;
 
 class Dynamics {
  public:
@@ -46,6 +41,22 @@ class Dynamics {
   void start_from(const SystemState& state);
   /// Assembles and makes velocities consistent, if nothing did before, and goes through the grid.
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
+
+  /// run() in parts, for motions that go on side by side: begin(), go_on() as often as one likes, end().
+  void begin(const TimeGrid& grid, const Needs& needs);
+  /// Goes on until `rows` rows of the grid were given in all, counted from begin(), or the run ends. False: it ended
+  /// before, and no row will come any more.
+  bool go_on(std::int64_t rows, RowObserver& observer);
+  AnalysisReport end();
+
+  /// run() ends, and paused() says so, with the first step that reaches t (s) and does not lie across a singular
+  /// position, after its rows.
+  void pause_after(double t) { pause_after_ = t; }
+  bool paused() const { return paused_; }
+  /// What the motion goes on from where the last run paused.
+  const MotionMemory& memory() const { return memory_; }
+  /// Takes up a motion of the same model and options that paused: the next run() begins there, on the rest of its grid.
+  void resume(const MotionMemory& memory);
 
   /// Looks for events during run(): a row is given at each, and one that acts ends the run there. nullptr: none.
   void watch(EventWatch* events) { events_ = events; }
@@ -68,13 +79,19 @@ class Dynamics {
   std::unique_ptr<Integrator> make_integrator(const Motion& motion, double horizon) const;
   Report check_functions(double last) const;
   Report check_freedoms() const;
-  Report move(double limit, const TimeGrid& grid, std::int64_t& row, const Needs& needs, RowObserver& observer);
-  Report give_row(double t, const Needs& needs, RowObserver& observer);
-  std::optional<Snapshot> state_at(double t, const Needs& needs);
-  Report find_events(double from, const TimeGrid& grid, std::int64_t& row, const Needs& needs, RowObserver& observer);
+  Report start();
+  Report set_out();
+  Report next(RowObserver& observer);
+  Report step(RowObserver& observer);
+  Report start_anew();
+  void remember();
+  Report give_row(double t, RowObserver& observer);
+  std::optional<Snapshot> state_at(double t);
+  Report find_events(double from, RowObserver& observer);
   void find_multipliers();
   void describe_mobility(AnalysisReport& report);
   Report stuck() const;
+  static Report cancelled(double t);
   Report check_pace(double last);
   double next_breakpoint(double t) const;
   Snapshot snapshot(double t, std::span<const double> y, const Needs& needs) const;
@@ -89,7 +106,17 @@ class Dynamics {
   std::unique_ptr<Integrator> integrator_;
   std::optional<MinimumNorm> minimum_norm_;  // made when multipliers turn out not to be unique
   std::string ambiguity_;                    // whose reactions are not, when that was found
-  bool prepared_ = false;
+  bool prepared_ = false, resumed_ = false;
+  // Of the run under way.
+  TimeGrid grid_ = TimeGrid::list({});
+  Needs needs_;
+  std::optional<Motion> motion_;
+  ProcessTimer timer_;
+  AnalysisReport report_;
+  Report outcome_;
+  bool at_jump_ = false, paused_ = false;  // a function of time jumps at t_, and the integrator does not know yet
+  double pause_after_ = std::numeric_limits<double>::infinity();
+  MotionMemory memory_;
   double t_ = 0, initial_energy_ = 0;
   std::int64_t first_step_ = 0, pace_step_ = 0;  // counts of steps: at the run's start, and when time was ...
   double pace_time_ = 0;                         // ... this, s

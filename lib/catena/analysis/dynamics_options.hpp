@@ -25,6 +25,8 @@ inline std::string_view to_string(IntegrationMethod method) {
 }
 
 struct DynamicsOptions {
+  /// What double precision can hold.
+  static constexpr double least_tolerance = 1e-14;
   IntegrationMethod method = IntegrationMethod::automatic;
   /// Of the state: positions relative to the scene's length scale, angles to 1 rad, velocities to the fastest so far.
   double tolerance = 1e-8;

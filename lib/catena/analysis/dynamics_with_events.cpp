@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
+
+#include "catena/analysis/report_parts.hpp"
 
 namespace catena {
 namespace {
@@ -28,19 +29,6 @@ class CountingObserver final : public RowObserver {
   RowObserver& target_;
   std::int64_t rows_ = 0;
 };
-
-void add_counts(AnalysisReport& total, const AnalysisReport& part) {
-  const std::vector<std::string> warnings = total.warnings;
-  const Counters counters = total.counters;
-  const double seconds = total.seconds;
-  total = part;
-  total.counters += counters;
-  total.seconds += seconds;
-  total.warnings = warnings;
-  for (const std::string& warning : part.warnings) {
-    if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) total.warnings.push_back(warning);
-  }
-}
 
 }  // namespace
 
@@ -111,7 +99,7 @@ AnalysisReport DynamicsWithEvents::run(const TimeGrid& grid, const Needs& needs,
   int at_once = 0;
   for (;;) {
     dynamics_->watch(watch_.get());
-    add_counts(total, dynamics_->run(rest, needs, rows));
+    add_part(total, dynamics_->run(rest, needs, rows));
     const int stopped_by = dynamics_->stopped_by();
     if (!total.ok() || stopped_by < 0) return total;
     const Event& event = watch_->events()[static_cast<std::size_t>(stopped_by)];

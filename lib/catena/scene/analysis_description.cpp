@@ -56,7 +56,7 @@ std::vector<AnalysisDescription> describe_all() {
            "dof, mobility, singular", true, {outputs, until, every, at_times, free_motions, branch}),
       make("inverse_dynamics", "Loads of drivers and reactions in a driven mechanism over time.",
            "dof, mobility, singular", true, {outputs, until, every, at_times, free_motions, branch}),
-      make("dynamics", "Motion under forces over time.", "method, events", true,
+      make("dynamics", "Motion under forces over time.", "method, events, estimated_error", true,
            {outputs,
             until,
             every,
@@ -74,6 +74,9 @@ std::vector<AnalysisDescription> describe_all() {
             {"step", KeyKind::number, "fixed step, s (default: chosen by the tolerance)", UnitKind::time},
             {"max_steps", KeyKind::whole,
              "largest number of steps, rejected ones included: the analysis ends when it will not do (default 10^7)"},
+            {"estimate_error", KeyKind::flag,
+             "whether to run it a second time, at a tenth of the tolerance or half the step: estimated_error is the "
+             "largest difference of the two at its rows, which are those of the finer run"},
             {"events", KeyKind::events, "what to watch for, and what to do then"}}),
       make("equilibrium", "A configuration at rest, and whether it is stable.",
            "energy, stable, negative_modes, residual, solver, iterations, active (the closed gaps), equilibria", false,

@@ -16,6 +16,7 @@
 #include "catena/results/column_rows.hpp"
 #include "catena/scene/analysis_task.hpp"
 #include "catena/scene/gear_check.hpp"
+#include "catena/scene/scene_checkpoints.hpp"
 
 namespace catena {
 
@@ -30,7 +31,9 @@ struct AnalysisContext {
   /// The model with another value of parameter number `parameter`, all else as in `model`; nullptr if the scene does
   /// not allow it.
   std::function<std::shared_ptr<const Model>(int parameter, double value)> model_at{};
-  std::string_view parameter_name{};  ///< of the task's parameter
+  std::string_view parameter_name{};        ///< of the task's parameter
+  bool estimate_error = false;              ///< of dynamics
+  CheckpointRequest* checkpoint = nullptr;  ///< nullptr: no analysis has to pause
 };
 
 using AnalysisFunction = void (*)(AnalysisContext& context, AnalysisResult& result);

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "catena/scene/analysis_run.hpp"
 #include "catena/scene/build_model.hpp"
 #include "catena/scene/command_text.hpp"
 #include "catena/scene/near_miss.hpp"
+#include "catena/scene/scene_checkpoints.hpp"
 #include "catena/scene/scene_reader.hpp"
 #include "catena/scene/scene_reading.hpp"
 
@@ -50,6 +52,9 @@ class SceneRun {
   std::function<std::shared_ptr<const Model>(int, double)> builder_of(const AnalysisTask& task);
   AnalysisResult run_task(const AnalysisTask& task, int number, SystemState& state, RowSink& rows);
   void finish_errors();
+  /// Whether what the options say of dynamics can be done.
+  bool check_dynamics_options();
+  void refuse(int exit_code, const std::string& why);
 
   const RunOptions& options_;
   ResultSink& sink_;
@@ -60,6 +65,7 @@ class SceneRun {
   ParameterTable parameters_;
   std::shared_ptr<const Model> model_;
   std::vector<AnalysisTask> tasks_;
+  SceneCheckpoints checkpoints_{options_};
 };
 
 std::shared_ptr<const Model> SceneRun::build(std::span<const double> parameters) {
@@ -196,6 +202,7 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& task, int number, SystemSt
                     model_->element_type(gaps.front()), model_->element_name(gaps.front()), task.type());
     return result;
   }
+  CheckpointRequest checkpoint = checkpoints_.request(number);
   AnalysisContext context{.task = task,
                           .model = task.changes_parameters ? build(task.parameters) : model_,
                           .state = state,
@@ -204,7 +211,9 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& task, int number, SystemSt
                           .progress = {},
                           .verbose = options_.verbose,
                           .model_at = {},
-                          .parameter_name = {}};
+                          .parameter_name = {},
+                          .estimate_error = options_.estimate_error,
+                          .checkpoint = checkpoints_.wanted() ? &checkpoint : nullptr};
   if (task.has("parameter")) {
     context.model_at = builder_of(task);
     context.parameter_name = parameters_.names().all()[static_cast<std::size_t>(task.word("parameter"))];
@@ -232,13 +241,14 @@ void SceneRun::run_all() {
                    .gravity = {model_->gravity.x, model_->gravity.y},
                    .bodies = static_cast<int>(model_->bodies.size()),
                    .elements = static_cast<int>(model_->elements.size()),
-                   .analyses = static_cast<int>(tasks_.size())});
-  for (std::size_t k = 0; k < tasks_.size(); ++k) {
+                   .analyses = static_cast<int>(tasks_.size()) - checkpoints_.first_analysis()});
+  const auto first = static_cast<std::size_t>(checkpoints_.first_analysis());
+  for (std::size_t k = first; k < tasks_.size(); ++k) {
     const AnalysisTask& task = tasks_[k];
-    if (k > 0 && outcome_.analyses.back().report.status == Status::cancelled) break;
+    if (k > first && outcome_.analyses.back().report.status == Status::cancelled) break;
     if (task.from_initial) {
       state = {};
-    } else if (k > 0 && !outcome_.analyses.back().report.ok()) {
+    } else if (k > first && !outcome_.analyses.back().report.ok()) {
       break;  // there is no state to go on from
     }
     RowSink& rows = sink_.begin_analysis(task.type());
@@ -249,20 +259,39 @@ void SceneRun::run_all() {
   sink_.end_run();
 }
 
+void SceneRun::refuse(int exit_code, const std::string& why) {
+  outcome_.exit_code = exit_code;
+  outcome_.error_text = fmt::format("catena: {}\n", why);
+}
+
+bool SceneRun::check_dynamics_options() {
+  const bool any =
+      std::any_of(tasks_.begin(), tasks_.end(), [](const auto& task) { return task.type() == "dynamics"; });
+  if (any) return true;
+  if (options_.estimate_error) {
+    refuse(2, "--estimate-error: the scene has no dynamics analysis, and others have no error of integration");
+  } else if (!options_.checkpoint.empty()) {
+    refuse(2, "--checkpoint: the scene has no dynamics analysis, and others have nothing to be saved on the way");
+  }
+  return outcome_.exit_code == 0;
+}
+
 void SceneRun::run(const std::string& path) {
   outcome_.scene = stem(path);
   std::optional<SourceText> source;
   try {
     source.emplace(SourceText::read(path));
+    checkpoints_.prepare(source->text());
   } catch (const FileError& error) {
-    outcome_.exit_code = 4;
-    outcome_.error_text = fmt::format("catena: {}\n", error.what());
-    return;
+    return refuse(4, error.what());
+  } catch (const CheckpointError& error) {
+    return refuse(4, error.what());
   }
   if (!prepare(std::move(*source))) {
     finish_errors();
     return;
   }
+  if (!check_dynamics_options()) return;
   if (!scene_->name.empty()) outcome_.scene = scene_->name;
   run_all();
 }

@@ -40,10 +40,16 @@ struct RunOptions {
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(const Progress&)> progress;  ///< called often; may be empty
   bool verbose = false;                           ///< solvers print their own logs to standard error
+  bool estimate_error = false;                    ///< of every dynamics analysis; an error if there is none
+  /// File to which dynamics analyses save where they are, every so many seconds of their time, s; empty: none. 0 s: a
+  /// twentieth of the analysis.
+  std::string checkpoint;
+  double checkpoint_every = 0;
+  std::string restart;  ///< file from which a run is taken up again, or empty; checkpoint_every is then the file's
 };
 
 struct SceneOutcome {
-  /// 0 all solved; 1 an analysis was not; 2 `set` or `verb_options` wrong; 3 the scene's text wrong; 4 no such file
+  /// 0 all solved; 1 an analysis was not; 2 an option wrong; 3 the scene's text wrong; 4 a file missing or unusable
   int exit_code = 0;
   std::string scene;               ///< its name
   std::vector<Diagnostic> errors;  ///< the first ones, in the order of the text

@@ -221,6 +221,18 @@ void Adams::interpolate(double t, std::span<double> y) {
   }
 }
 
+IntegratorMemory Adams::memory() const {
+  IntegratorMemory memory = scale_.memory();
+  memory.step = h_;
+  memory.usual_ratio = usual_ratio_;
+  return memory;
+}
+
+void Adams::remember(const IntegratorMemory& memory) {
+  scale_.remember(memory);
+  usual_ratio_ = memory.usual_ratio;
+}
+
 std::vector<std::string> Adams::remarks() const {
   std::vector<std::string> all;
   if (crossing_steps_ > 0) {

@@ -29,6 +29,10 @@ class Adams final : public Integrator {
   /// By the polynomial of the last step, one order above the predictor's.
   void interpolate(double t, std::span<double> y) override;
   std::vector<std::string> remarks() const override;
+  /// Its differences are not part of it: one that remembers starts with a short step of order 1.
+  IntegratorMemory memory() const override;
+  void remember(const IntegratorMemory& memory) override;
+  bool may_pause() const override { return !crossing_; }
 
  private:
   static constexpr std::size_t most = 12;  // order of a predictor

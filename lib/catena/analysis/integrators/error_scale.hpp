@@ -22,6 +22,8 @@
 #include <span>
 #include <vector>
 
+#include "catena/analysis/motion_memory.hpp"
+
 namespace catena {
 
 class ErrorScale {
@@ -37,6 +39,14 @@ class ErrorScale {
     for (std::size_t c = 0; c < mass_.size(); ++c) {
       speed_[c] = mass_[c] > 0 ? std::sqrt(2 / mass_[c]) : std::numeric_limits<double>::infinity();
     }
+  }
+
+  /// Of the motion so far, but for the step.
+  IntegratorMemory memory() const { return {.rate = rate_, .root_energy = root_energy_, .radians = radians_}; }
+  void remember(const IntegratorMemory& memory) {
+    rate_ = memory.rate;
+    root_energy_ = memory.root_energy;
+    radians_ = memory.radians;
   }
 
   double rate() const { return rate_; }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "catena/analysis/motion_memory.hpp"
+
 namespace catena {
 
 class Integrator {
@@ -24,6 +26,11 @@ class Integrator {
   virtual void interpolate(double t, std::span<double> y) = 0;
   /// What a user should know of how the run went; sentences.
   virtual std::vector<std::string> remarks() const { return {}; }
+  /// What it has learnt of the motion; and, before start(), what another one had.
+  virtual IntegratorMemory memory() const = 0;
+  virtual void remember(const IntegratorMemory& memory) = 0;
+  /// Whether another one may go on from here: not across a singular position.
+  virtual bool may_pause() const = 0;
   /// Whether ends of steps lie on the constraints to rounding.
   virtual bool meets_constraints() const { return true; }
 

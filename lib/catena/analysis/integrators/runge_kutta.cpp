@@ -94,6 +94,19 @@ std::vector<std::string> RungeKutta::remarks() const {
   return all;
 }
 
+IntegratorMemory RungeKutta::memory() const {
+  IntegratorMemory memory = scale_.memory();
+  memory.step = h_;
+  memory.usual_ratio = usual_ratio_;
+  return memory;
+}
+
+void RungeKutta::remember(const IntegratorMemory& memory) {
+  scale_.remember(memory);
+  h_ = memory.step;
+  usual_ratio_ = memory.usual_ratio;
+}
+
 bool RungeKutta::take_over(double t, std::span<const double> y, double h, const ErrorScale& scale, double usual_ratio) {
   t_ = t_before_ = t;
   std::copy(y.begin(), y.end(), y_.begin());

@@ -52,6 +52,9 @@ class RungeKutta final : public Integrator {
   /// Of order 7 or 5.
   void interpolate(double t, std::span<double> y) override;
   std::vector<std::string> remarks() const override;
+  IntegratorMemory memory() const override;
+  void remember(const IntegratorMemory& memory) override;
+  bool may_pause() const override { return !crossing_ && !passing_singular_; }
   /// Goes on with steps of size h (s) where another method came to at (t, y), with what that knows of the motion: the
   /// scale of errors and the largest pivot ratio.
   bool take_over(double t, std::span<const double> y, double h, const ErrorScale& scale, double usual_ratio);

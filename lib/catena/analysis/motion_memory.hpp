@@ -1,0 +1,36 @@
+// What a motion under way goes on from: all that a fresh Dynamics of the same model, or one in another process on the
+// same machine, needs to make the very same steps and rows, bit for bit, as any other that starts from these numbers.
+//
+// It holds no history of an integrator. A run that is to be taken up again later drops its own history where it pauses,
+// and goes on from these numbers as well: see DynamicsWithCheckpoints. Units: SI.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace catena {
+
+/// Energies at an event, for a motion that goes on with other constraints. Units: J.
+struct WorkSoFar {
+  double supplied = 0, dissipated = 0;  ///< by loads and drivers; by damping
+  double initial_energy = 0, energy = 0;
+  std::vector<double> by_driver;  ///< by number of the element; empty: nothing was summed up
+};
+
+/// What an integrator has learnt about the motion.
+struct IntegratorMemory {
+  double step = 0;                                ///< proposed for the next one, s
+  double rate = 0, root_energy = 0, radians = 0;  ///< see ErrorScale
+  double usual_ratio = 1e-300;                    ///< largest pivot ratio so far
+};
+
+struct MotionMemory {
+  double t = 0;
+  std::vector<double> y;      ///< [q, qd, work] in the order of the plan, relative to its origins; see Motion
+  std::vector<double> turns;  ///< by moving body: whole turns that its angle in y lacks
+  double initial_energy = 0;
+  std::int64_t next_row = 0, steps = 0;  ///< of the grid; made so far, rejected ones included
+  IntegratorMemory integrator;
+};
+
+}  // namespace catena

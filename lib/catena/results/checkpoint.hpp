@@ -1,0 +1,40 @@
+// A file from which a motion can be taken up again, bit for bit, on the machine that wrote it.
+//
+// Text: a line with the format's version, then a line a value; floating-point numbers as the 16 hexadecimal digits of
+// their bits, so that nothing is rounded; last a sum over all that stands before (FNV-1a, 64 bits). It is written to a
+// temporary file beside it, which then takes its name: whatever happens, either the old or the new one is there.
+#pragma once
+
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "catena/analysis/motion_memory.hpp"
+
+namespace catena {
+
+struct Checkpoint {
+  std::string owner;  ///< fingerprint of what it belongs to: a scene with its parameters, say
+  int analysis = 0;   ///< number of the analysis in that scene, from 0
+  double begin = 0;   ///< s, where that analysis began
+  double every = 0;   ///< s between checkpoints, as it was asked for; 0: the default
+  MotionMemory motion;
+};
+
+/// The message is a sentence that names the file.
+class CheckpointError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Throws CheckpointError if it cannot be written.
+void write_checkpoint(const std::string& path, const Checkpoint& checkpoint);
+/// Throws CheckpointError if there is no such file, or it is damaged or none of this version.
+Checkpoint read_checkpoint(const std::string& path);
+/// Throws CheckpointError if none can be written there. Leaves what is there as it is.
+void check_checkpoint_place(const std::string& path);
+/// Of several texts: equal for equal ones only, but for accidents.
+std::string fingerprint(std::span<const std::string_view> texts);
+
+}  // namespace catena

@@ -1,0 +1,134 @@
+// A motion that is taken up where another run paused gives the very same rows: all bits of positions, velocities,
+// accelerations, multipliers and energies, by every method, through singular positions, whole turns and jumps of
+// forces.
+#include <cstring>
+
+#include "catena/analysis/dynamics_with_checkpoints.hpp"
+#include "catena/columns/energy.hpp"
+#include "oracles/dynamics_mechanisms.hpp"
+
+namespace catena {
+namespace {
+
+using testing::four_bars;
+using testing::rod_chain;
+
+constexpr Needs everything{.velocity = true, .acceleration = true, .multipliers = true, .work = true};
+
+struct Rows {
+  std::vector<double> values;
+  std::size_t size = 0;  // of a row
+
+  void add(const Snapshot& s) {
+    const std::size_t before = values.size();
+    values.push_back(s.t);
+    for (const std::span<const double> part : {s.q, s.qd, s.qdd, s.lambda, s.driver_work}) {
+      values.insert(values.end(), part.begin(), part.end());
+    }
+    for (const double value : {total_energy(s), s.initial_energy, s.work, s.dissipated, s.residual})
+      values.push_back(value);
+    size = values.size() - before;
+  }
+};
+
+struct Outcome {
+  Rows rows;
+  std::vector<MotionMemory> memories;
+  double end = 0;
+};
+
+Outcome run(const std::shared_ptr<Model>& model, const DynamicsOptions& options, const TimeGrid& grid, double every,
+            const MotionMemory* from = nullptr) {
+  Outcome result;
+  DynamicsWithCheckpoints dynamics(model, {}, options, every,
+                                   [&](const MotionMemory& memory) { result.memories.push_back(memory); });
+  if (from) dynamics.resume(*from);
+  RowFunction keep([&](const Snapshot& s) {
+    result.rows.add(s);
+    return true;
+  });
+  const AnalysisReport report = dynamics.run(grid, everything, keep);
+  EXPECT_TRUE(report.ok()) << report.message;
+  result.end = dynamics.state().t;
+  return result;
+}
+
+/// Takes the motion up at every one of its pauses.
+void check(const std::shared_ptr<Model>& model, double until, double every, IntegrationMethod method, double step = 0) {
+  const DynamicsOptions options{.method = method, .tolerance = 1e-8, .step = step};
+  const TimeGrid grid = TimeGrid::range(0, until, until / 150);
+  const Outcome whole = run(model, options, grid, every);
+  ASSERT_EQ(whole.rows.values.size(), 151 * whole.rows.size);
+  ASSERT_GE(whole.memories.size(), std::floor(until / every) - 1);
+  for (const MotionMemory& memory : whole.memories) {
+    const Outcome rest = run(model, options, grid, every, &memory);
+    const std::size_t first = static_cast<std::size_t>(memory.next_row) * whole.rows.size;
+    ASSERT_EQ(rest.rows.values.size(), whole.rows.values.size() - first) << to_string(method) << " " << memory.t;
+    EXPECT_EQ(std::memcmp(rest.rows.values.data(), whole.rows.values.data() + first,
+                          rest.rows.values.size() * sizeof(double)),
+              0)
+        << to_string(method) << " from " << memory.t;
+    EXPECT_EQ(rest.end, until);
+  }
+}
+
+class DynamicsCheckpoints : public ::testing::TestWithParam<IntegrationMethod> {};
+
+TEST_P(DynamicsCheckpoints, FourBarsThroughTheFlatPosition) { check(four_bars(2), 6, 0.37, GetParam()); }
+TEST_P(DynamicsCheckpoints, Squeezer) { check(testing::squeezer(), 0.03, 0.004, GetParam()); }
+TEST_P(DynamicsCheckpoints, ChainWithFixedSteps) { check(rod_chain(5), 1, 0.11, GetParam(), 0.004); }
+
+// A motor that jumps turns a damped rod many times.
+TEST_P(DynamicsCheckpoints, WholeTurnsAndJumps) {
+  auto model = rod_chain(2);
+  model->bodies[0].angular_velocity = 40;
+  model->bodies[0].angular_velocity_given = true;
+  model->add_force("motor", Torque<>{}, 0, ground, {TimeFunction<double>::step(0.5, 0.6, 0, 30, 3)});
+  SpringDamper<> damper;
+  damper.s_i = {3, 0};
+  damper.c = 0.1;
+  damper.k = 1;
+  damper.length = 2;
+  model->add_force("damper", damper, ground, 1);
+  check(model, 3, 0.31, GetParam());
+}
+
+std::string method_name(const ::testing::TestParamInfo<IntegrationMethod>& info) {
+  return std::string(to_string(info.param));
+}
+INSTANTIATE_TEST_SUITE_P(Methods, DynamicsCheckpoints, ::testing::ValuesIn(testing::all_methods), method_name);
+
+TEST(DynamicsPauses, MemoriesOfOtherMotionsAreRefused) {
+  const Outcome other = run(rod_chain(3), {}, TimeGrid::range(0, 1, 0.1), 0.4);
+  ASSERT_FALSE(other.memories.empty());
+  Dynamics dynamics(rod_chain(2));
+  dynamics.resume(other.memories.front());
+  RowFunction none([](const Snapshot&) { return true; });
+  EXPECT_EQ(dynamics.run(TimeGrid::range(0, 1, 0.1), everything, none).status, Status::refused);
+}
+
+// Pauses cost accuracy no more than the tolerance allows.
+TEST(DynamicsPauses, ManyPausesSpoilNothing) {
+  for (const IntegrationMethod method : testing::all_methods) {
+    const DynamicsOptions options{.method = method, .tolerance = 1e-9};
+    const TimeGrid grid = TimeGrid::range(0, 5, 0.5);
+    const Outcome few = run(four_bars(2), options, grid, 100), many = run(four_bars(2), options, grid, 0.05);
+    ASSERT_EQ(few.memories.size(), 0u);
+    ASSERT_GT(many.memories.size(), 50u);
+    ASSERT_EQ(few.rows.values.size(), many.rows.values.size());
+    double difference = 0;
+    for (std::size_t row = 0; row < few.rows.values.size(); row += few.rows.size) {
+      difference = std::max(difference, std::abs(few.rows.values[row + 3] - many.rows.values[row + 3]));
+    }
+    EXPECT_LT(difference, 1e-8) << to_string(method);
+    // Adams loses its history, Runge-Kutta has none to lose.
+    if (method == IntegrationMethod::adams) {
+      EXPECT_GT(difference, 0);
+    } else if (method == IntegrationMethod::rk8) {
+      EXPECT_EQ(difference, 0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace catena
