@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "catena/columns/column_names.hpp"
+#include "catena/elements/forces/bushing.hpp"
 #include "catena/elements/forces/spring_damper.hpp"
 #include "catena/elements/forces/torsion_spring.hpp"
 #include "catena/model/model_add.hpp"
@@ -62,6 +66,42 @@ TEST(Spring, PotentialEnergyIncludesIt) {
   const double expected = 30 * stretch * stretch / 2 + (1.0 + 2.0 * with.t) * with.value("S.length") +
                           5 * turn * turn / 2 + 1.5 * with.value("B.angle");
   EXPECT_NEAR(with.value("energy.potential") - without.value("energy.potential"), expected, 1e-12);
+}
+
+/// In the axes of the crank, whose angle is `angle`.
+Vec2<double> in_axes(double angle, double x, double y) {
+  return {std::cos(angle) * x + std::sin(angle) * y, std::cos(angle) * y - std::sin(angle) * x};
+}
+
+TEST(Bushing, ExertsItsForceOnBodyJAtItsPoint) {
+  Springs m;
+  m.model.add_force("M", Bushing<double>{{0.6, 0.1}, {0.2, 0.5}, 30, 50, 7, 2, 3, 0.5, 0.2}, 0, 2);
+  m.make_plan();
+  const double angle = m.value("crank.angle");
+  const Vec2<double> d =
+      in_axes(angle, m.value("tool.hook.x") - m.value("crank.tip.x"), m.value("tool.hook.y") - m.value("crank.tip.y"));
+  EXPECT_NEAR(m.value("M.dx"), d.x, 1e-14);
+  EXPECT_NEAR(m.value("M.dy"), d.y, 1e-14);
+  EXPECT_NEAR(m.value("M.angle"), m.value("tool.angle") - angle, 1e-14);
+  const double fx = -(30 * d.x + 2 * m.slope("M.dx")), fy = -(50 * d.y + 3 * m.slope("M.dy"));
+  EXPECT_NEAR(m.value("M.joint.fx"), fx, 1e-7);
+  EXPECT_NEAR(m.value("M.joint.fy"), fy, 1e-7);
+  const Vec2<double> ground = in_axes(-angle, fx, fy);
+  EXPECT_NEAR(m.value("M.fx"), ground.x, 1e-7);
+  EXPECT_NEAR(m.value("M.fy"), ground.y, 1e-7);
+  EXPECT_NEAR(m.value("M.torque"), -(7 * (m.value("M.angle") - 0.2) + 0.5 * m.slope("M.angle")), 1e-7);
+}
+
+TEST(Bushing, ReactionStandsForItsLoads) {
+  Springs m;
+  m.model.add_force("M", Bushing<double>{{}, {}, 30, 50, 7, 2, 3, 0.5, 0.2}, 0, 2);
+  std::vector<NamedColumn> found;
+  EXPECT_FALSE(find_columns(m.model, "M.reaction", found));
+  std::string names;
+  for (const NamedColumn& column : found) names += column.info.name + " ";
+  EXPECT_EQ(names, "M.fx M.fy M.torque M.joint.fx M.joint.fy ");
+  const std::string name[] = {"M.fx"};
+  EXPECT_TRUE(elements_with_reactions(m.model, name).empty()) << "nothing is solved for";
 }
 
 TEST(Spring, WhereTheEndsMeetTheDirectionIsLostAndNothingIsMadeUp) {

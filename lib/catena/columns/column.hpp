@@ -48,6 +48,11 @@ enum class ColumnKind : unsigned char {
   turn,           ///< phi_j - phi_i
   spring_torque,  ///< n, on body i
   slack,          ///< of an elastic cable: its length without tension less the present one
+  offset_x,       ///< of P_j seen from P_i, in the axes of body i
+  offset_y,
+  exerted_x,  ///< on body j at P_j; detail = ReactionSide
+  exerted_y,
+  exerted_torque,  ///< about P_j
 
   kinetic,
   potential,

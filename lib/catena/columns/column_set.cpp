@@ -50,7 +50,10 @@ Needs needs_of(ColumnKind kind) {
 }
 
 /// Columns that are right at rest too, but need the velocities where there are any: of damping.
-bool uses_velocity(ColumnKind kind) { return kind == ColumnKind::tension || kind == ColumnKind::spring_torque; }
+bool uses_velocity(ColumnKind kind) {
+  return kind == ColumnKind::tension || kind == ColumnKind::spring_torque ||
+         (kind >= ColumnKind::exerted_x && kind <= ColumnKind::exerted_torque);
+}
 
 bool needs_mass(ColumnKind kind, const Model& model) {
   if (kind == ColumnKind::potential) return model.gravity != Vec2<double>{};

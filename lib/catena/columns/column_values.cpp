@@ -83,6 +83,16 @@ class RowValues {
         return spring_loads(s_, column.index).tension;
       case ColumnKind::spring_torque:
         return spring_loads(s_, column.index).torque;
+      case ColumnKind::offset_x:
+        return spring_loads(s_, column.index).offset.x;
+      case ColumnKind::offset_y:
+        return spring_loads(s_, column.index).offset.y;
+      case ColumnKind::exerted_x:
+        return exerted(column).x;
+      case ColumnKind::exerted_y:
+        return exerted(column).y;
+      case ColumnKind::exerted_torque:
+        return spring_loads(s_, column.index).torque_on_j;
       case ColumnKind::kinetic:
         return kinetic();
       case ColumnKind::potential:
@@ -142,6 +152,11 @@ class RowValues {
     if (column.detail == on_i) return r.on_i.force;
     if (column.detail == on_j) return r.on_j.force;
     return {dot(r.joint_x, r.on_j.force), cross(r.joint_x, r.on_j.force)};
+  }
+
+  Vec2<double> exerted(const Column& column) const {
+    const SpringLoads loads = spring_loads(s_, column.index);
+    return column.detail == on_j_in_joint ? loads.force_on_j_in_i : loads.force_on_j;
   }
 
   /// lambda dPhi/dc: Phi contains -c, or -c^2 where distances are squared.

@@ -82,6 +82,19 @@ void add_loads(const Entry& entry, std::vector<ElementColumn>& out) {
     out.push_back({"angle", UnitKind::angle, ColumnKind::turn});
     out.push_back({"torque", UnitKind::torque, ColumnKind::spring_torque});
   }
+  if (E::type == "bushing") {
+    const auto add = [&](const char* suffix, UnitKind unit, ColumnKind kind, ReactionSide side) {
+      out.push_back({suffix, unit, kind, side, true});
+    };
+    out.push_back({"dx", UnitKind::length, ColumnKind::offset_x});
+    out.push_back({"dy", UnitKind::length, ColumnKind::offset_y});
+    out.push_back({"angle", UnitKind::angle, ColumnKind::turn});
+    add("fx", UnitKind::force, ColumnKind::exerted_x, on_j);
+    add("fy", UnitKind::force, ColumnKind::exerted_y, on_j);
+    add("torque", UnitKind::torque, ColumnKind::exerted_torque, on_j);
+    add("joint.fx", UnitKind::force, ColumnKind::exerted_x, on_j_in_joint);
+    add("joint.fy", UnitKind::force, ColumnKind::exerted_y, on_j_in_joint);
+  }
 }
 
 /// Calls f(entry) for an element of the model, be it a constraint or a force.

@@ -44,6 +44,13 @@ SpringLoads spring_loads(const Snapshot& snapshot, int element) {
     const double length = norm(h);
     loads.tension = length > 0 ? dot(Vec2<double>{on_i.fx, on_i.fy}, h) / length : 0;
     loads.torque = on_i.moment;
+    const auto in_i = [&](const Vec2<double>& v) {
+      return Vec2<double>{dot(i.frame.axis(Vec2<double>{1, 0}), v), dot(i.frame.axis(Vec2<double>{0, 1}), v)};
+    };
+    loads.force_on_j = {on_j.fx, on_j.fy};
+    loads.force_on_j_in_i = in_i(loads.force_on_j);
+    loads.torque_on_j = on_j.moment - cross(j.frame.axis(attachment.point_j), loads.force_on_j);
+    loads.offset = in_i(h);
     if constexpr (requires { entry.element.slack(i.frame, j.frame); }) {
       loads.slack = entry.element.slack(i.frame, j.frame);
     }

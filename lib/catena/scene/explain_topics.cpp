@@ -142,6 +142,8 @@ Example
   A.joint.fx A.joint.fy           on body j in the joint's axes
   A.lambda1 ...                   multipliers of the published equations
   A.reaction                      all of the first three groups
+  Of a bushing B: B.fx B.fy B.torque and B.joint.fx B.joint.fy (axes of body i) are what it exerts on body j at P_j;
+  B.dx B.dy is the offset of P_j from P_i in those axes, B.angle the angle of j measured from i.
 
 load: of a driver, load = lambda dPhi/dc, so that power = load dc/dt: positive pushes the value up
   drive.load, drive.power [W], drive.work [J]
