@@ -105,6 +105,12 @@ bool DrivenSolver::factorize() {
     factor_result_ =
         factorization_.analyze(all_rows_ ? plan_.jacobian : matrix_, Kernel::automatic, evaluator_.counters);
     if (!factor_result_.ok()) return false;
+    // Pivots, by which branches are told apart and rows chosen, must not depend on the unit of length.
+    std::vector<double> units(at(plan_.columns));
+    for (std::size_t c = 0; c < units.size(); ++c) {
+      units[c] = plan_.coordinate[c] % 3 == 2 ? 1 : evaluator_.length_scale();
+    }
+    factorization_.set_column_units(units);
     analyzed_ = true;
     values_changed_ = false;
     first_values_.assign(values.begin(), values.end());

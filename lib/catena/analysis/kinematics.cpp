@@ -253,8 +253,14 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& needs, RowObse
   report.rows = plan_->rows;
   report.islands = plan_->islands;
   observer_ = &observer;
+  if (grid.size() > 0) {
+    earliest_ = grid.earliest();
+    latest_ = grid.latest();
+  }
   const auto end = [&](const Report& outcome) {
     observer_ = nullptr;
+    earliest_ = -std::numeric_limits<double>::infinity();
+    latest_ = std::numeric_limits<double>::infinity();
     report.status = outcome.status;
     report.message = outcome.message;
     report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());

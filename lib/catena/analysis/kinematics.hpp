@@ -7,6 +7,7 @@
 // multipliers are computed at rows only and only if needed. Zero allocations a step after the first.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -112,15 +113,17 @@ class Kinematics {
   Predictor predictor_;
   std::optional<AssemblyOutcome> assembled_;
   bool prepared_ = false, has_velocity_ = false, has_acceleration_ = false;
-  RowObserver* observer_ = nullptr;  // during run(): asked between rows too whether to go on
+  RowObserver* observer_ = nullptr;                             // during run(): asked between rows too whether to go on
+  double earliest_ = -std::numeric_limits<double>::infinity();  // rows of run(): what lies beyond is not reported
+  double latest_ = std::numeric_limits<double>::infinity();
   double t_ = 0;
   std::vector<double> q_, qd_, qdd_, lambda_, trial_, loads_, applied_, nothing_;
   std::vector<double> rest_, rates_;  // of redundant rows, by row; of a check, by column
-  // How far from singular the blocks of Phi_q are at q_, signed; by how much the magnitudes change in unit time; and
-  // the most that each of them has been.
-  std::vector<BlockMargin> margins_, margin_rates_;
+  // How far from singular the blocks of Phi_q are at q_, signed; by how much the magnitudes of their determinants
+  // change in unit time; and the most that each pivot has been.
+  std::vector<BlockMargin> margins_;
+  std::vector<double> margin_rates_, largest_margins_;
   double margins_t_ = 0;
-  std::vector<double> largest_margins_;
   std::vector<double> predicted_qd_, predicted_qdd_;  // rates at `predicted_`, of the sizes that are needed
   std::optional<double> predicted_;
   std::vector<int> fixed_;  // coordinates that are no unknowns: of immobile bodies, angles of particles

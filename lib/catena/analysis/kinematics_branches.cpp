@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/jacobian_rank.hpp"
 #include "catena/analysis/quadratics.hpp"
 #include "catena/assembly/constraint_projector.hpp"
-#include "catena/linalg/rank_revealing.hpp"
 
 namespace catena {
 namespace {
@@ -26,14 +26,10 @@ struct NullSpaces {
 NullSpaces find_null_spaces(Evaluator& evaluator, std::span<const double> q, double threshold) {
   const Plan& plan = evaluator.plan();
   NullSpaces spaces;
-  spaces.values.resize(at(plan.trash_slot()) + 1);
-  evaluator.start_jacobian(spaces.values);
-  evaluator.set_configuration(q);
-  evaluator.jacobian(spaces.values);
+  spaces.values = jacobian_values(evaluator, q);
   RankOptions options;
   options.tolerance = threshold;
-  spaces.rank =
-      reveal_rank(plan.jacobian, std::span<const double>(spaces.values).first(at(plan.trash_slot())), options);
+  spaces.rank = jacobian_rank(evaluator, plan.jacobian, spaces.values, options);
   const SparseVectors& vectors = spaces.rank.right_null_vectors;
   for (int k = 0; k < vectors.count(); ++k) {
     std::vector<double> z(at(plan.coordinates()), 0.0);

@@ -25,11 +25,12 @@ constexpr double largest_contraction = 0.25;
 constexpr double longest_step = 0.5;
 // Steps below this part of the span, or of the time itself, cannot be told from none.
 constexpr double smallest_step = 1e-13;
-// A block whose smallest pivot and determinant fall below the first part of what they were a step before may be on its
-// way through a singular matrix: they do so if they vanish linearly, whichever way steps of equal length fall around
-// that instant. Where there is no determinant the pivot must fall below the second part of the most that it has been.
+// A block whose determinant falls below the first part of what it was a step before may be on its way through a
+// singular matrix: it does so if it vanishes linearly, whichever way steps of equal length fall around that instant.
+// (Its smallest pivot may be another one than that which vanishes.) Where there is no determinant the pivot is taken,
+// and must also fall below the second part of the most that it has been.
 constexpr double sudden_part = 0.6, small_part = 0.3;
-// The same from the step before: as much as this must be left of them if they go on as they did.
+// The same from the step before: as much as this must be left of it if it goes on as it did.
 constexpr double remaining_part = 0.3;
 // Passages are tried over stretches of this much motion (rad, length scales), one after the other.
 constexpr std::array<double, 6> reaches = {0.2, 0.1, 0.05, 0.015, 0.004, 0.001};
@@ -46,10 +47,9 @@ void Kinematics::remember_margins() {
   const auto margins = solver_.block_margins();
   const bool continued = margins_.size() == margins.size() && t_ != margins_t_;
   const double per_time = continued ? 1 / std::abs(t_ - margins_t_) : 0;
-  margin_rates_.assign(margins.size(), {});
+  margin_rates_.assign(margins.size(), 0.0);
   for (std::size_t k = 0; k < margins.size() && continued; ++k) {
-    margin_rates_[k] = {(std::abs(margins[k].pivot) - std::abs(margins_[k].pivot)) * per_time,
-                        (std::abs(margins[k].determinant) - std::abs(margins_[k].determinant)) * per_time};
+    margin_rates_[k] = (std::abs(margins[k].determinant) - std::abs(margins_[k].determinant)) * per_time;
   }
   margins_.assign(margins.begin(), margins.end());
   margins_t_ = t_;
@@ -66,8 +66,7 @@ bool Kinematics::heads_for_singularity(double t) const {
   for (std::size_t k = 0; k < margins_.size(); ++k) {
     const double pivot = std::abs(margins_[k].pivot), determinant = std::abs(margins_[k].determinant);
     const bool small = margins_[k].pivot != margins_[k].determinant || pivot < small_part * largest_margins_[k];
-    heads |= small && pivot + h * margin_rates_[k].pivot < remaining_part * pivot &&
-             determinant + h * margin_rates_[k].determinant < remaining_part * determinant;
+    heads |= small && determinant + h * margin_rates_[k] < remaining_part * determinant;
   }
   return heads;
 }
@@ -95,8 +94,7 @@ Kinematics::StepOutcome Kinematics::try_step(double t, bool ignore_dips) {
     crossed |= (margins[k].pivot < 0) != (margins_[k].pivot < 0);
     const double size = std::abs(margins[k].pivot);
     const bool small = margins[k].pivot != margins[k].determinant || size < small_part * largest_margins_[k];
-    dipped |= small && size < sudden_part * std::abs(margins_[k].pivot) &&
-              std::abs(margins[k].determinant) < sudden_part * std::abs(margins_[k].determinant);
+    dipped |= small && std::abs(margins[k].determinant) < sudden_part * std::abs(margins_[k].determinant);
   }
   if (crossed) return StepOutcome::crossed;
   return dipped && !ignore_dips ? StepOutcome::dipped : StepOutcome::made;
@@ -177,13 +175,16 @@ Report Kinematics::move_to(double t) {
       if (chosen_rcond_ > 0 && solver_.rcond() < drifted * chosen_rcond_) choose_better_rows();
       if (t_ != t) {
         if (observer_ && !observer_->proceed(t_)) return cancelled();
+        bool can_grow = true;
         // Between rows the velocity is worth its solve: it makes the next prediction cubic.
         if (solver_.solve_velocity(qd_, false)) {
           has_velocity_ = true;
           predictor_.push(t_, q_, qd_, {});
-          if (step * largest_rate() > reaches.front()) attempt = 0;
+          double turning = 0;
+          if (step * solver_.distance(qd_, nothing_, &turning) > reaches.front()) attempt = 0;
+          can_grow = 2 * step * turning < longest_step;
         }
-        if (made_since_failure > patience && newton_.first_turn < largest_turn / 8) step *= 2;
+        if (can_grow && made_since_failure > patience && newton_.first_turn < largest_turn / 8) step *= 2;
       }
       continue;
     }

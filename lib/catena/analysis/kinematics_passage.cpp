@@ -26,6 +26,8 @@ constexpr double bridge_tolerance = 2e-12;
 constexpr int samples = 9;
 // So much of a bridge is a moment: drivers that rest move a moment later, and the mechanism is still there.
 constexpr double moment = 2e-3;
+// Part of a bridge to which instants on it are known for certain.
+constexpr double same_instant = 1e-9;
 // Length below which rows count as dependent at a singular configuration found to rounding.
 constexpr double dependence = 1e-7;
 // The other branch is entered over this much motion; it must be found this near to its tangent, as part of its distance
@@ -208,9 +210,10 @@ Kinematics::Passage Kinematics::pass_singular(double next, double target, double
     to = first + length;
   }
   for (double instant : instants) {
+    if (instant > latest_ + same_instant * length || instant < earliest_ - same_instant * length) continue;
     // Instants closer than they are known are one.
     if (!singular_points_.empty() && instant != first &&
-        std::abs(instant - singular_points_.back().t) < 1e-9 * (to - from)) {
+        std::abs(instant - singular_points_.back().t) < same_instant * (to - from)) {
       continue;
     }
     SingularPoint point = look_at(bridge, instant, from, to);

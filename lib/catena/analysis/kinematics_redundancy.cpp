@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/jacobian_rank.hpp"
 #include "catena/analysis/kinematics.hpp"
-#include "catena/linalg/rank_revealing.hpp"
 
 namespace catena {
 namespace {
@@ -22,14 +22,10 @@ constexpr std::size_t most_names = 6;  // in a message
 
 // Of more rows than needed an independent set, then the best one.
 bool Kinematics::choose_rows(std::span<const double> q) {
-  std::vector<double> values(at(plan_->trash_slot()) + 1);
-  evaluator_.start_jacobian(values);
-  evaluator_.set_configuration(q);
-  evaluator_.jacobian(values);
+  const std::vector<double> values = jacobian_values(evaluator_, q);
   RankOptions options;
   options.most_dependencies = options.most_null_vectors = 0;
-  RankReport rank =
-      reveal_rank(plan_->jacobian, std::span<const double>(values).first(at(plan_->trash_slot())), options);
+  RankReport rank = jacobian_rank(evaluator_, plan_->jacobian, values, options);
   if (rank.rank < plan_->columns) return false;
   solver_.use_rows(std::move(rank.independent_rows));
   solver_.exchange_rows(q);

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "catena/analysis/jacobian_rank.hpp"
 #include "catena/analysis/redundancy.hpp"
-#include "catena/linalg/rank_revealing.hpp"
 
 namespace catena {
 namespace {
@@ -36,7 +36,7 @@ int rank_without_drivers(const Evaluator& evaluator, std::span<const double> val
   }
   RankOptions options;
   options.most_dependencies = options.most_null_vectors = 0;
-  return reveal_rank(kept, kept_values, options).rank;
+  return jacobian_rank(evaluator, kept, kept_values, options).rank;
 }
 
 // Bodies by their share in the free motions, the most mobile first; bodies that hardly take part are left out.
@@ -88,18 +88,14 @@ std::string MobilityReport::describe_freedom() const {
 
 MobilityReport analyse_mobility(Evaluator& evaluator, std::span<const double> q) {
   const Plan& plan = evaluator.plan();
-  std::vector<double> values(at(plan.trash_slot()) + 1);
-  evaluator.start_jacobian(values);
-  evaluator.set_configuration(q);
-  evaluator.jacobian(values);
-  const std::span<const double> entries = std::span<const double>(values).first(at(plan.trash_slot()));
-  const RankReport rank = reveal_rank(plan.jacobian, entries);
+  const std::vector<double> values = jacobian_values(evaluator, q);
+  const RankReport rank = jacobian_rank(evaluator, plan.jacobian, values);
 
   MobilityReport report;
   report.columns = plan.columns;
   report.rows = plan.rows;
   report.rank = rank.rank;
-  report.rank_without_drivers = rank_without_drivers(evaluator, entries, rank.rank);
+  report.rank_without_drivers = rank_without_drivers(evaluator, values, rank.rank);
   if (!rank.warning.empty()) report.warnings.push_back(rank.warning);
   std::vector<double> nu(at(plan.rows));
   if (!rank.dependent_rows.empty()) evaluator.nu(nu);

@@ -4,6 +4,7 @@
 // instants are listed. Units: s.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -38,6 +39,9 @@ class TimeGrid {
   std::int64_t size() const { return all() - skipped_; }
   double operator[](std::int64_t k) const { return at(k + skipped_); }
   double last() const { return at(all() - 1); }
+  /// The first and the last instant in time; lists may be in any order.
+  double earliest() const { return every_ == 0 ? *std::min_element(times_.begin(), times_.end()) : from_; }
+  double latest() const { return every_ == 0 ? *std::max_element(times_.begin(), times_.end()) : until_; }
 
  private:
   explicit TimeGrid(std::vector<double> times) : times_(std::move(times)) {}

@@ -57,6 +57,12 @@ void Factorization::read_block_form() {
   }
 }
 
+void Factorization::set_column_units(std::span<const double> units) {
+  if (units.size() != static_cast<std::size_t>(size()))
+    throw std::invalid_argument("Factorization: as many units as columns are needed");
+  klu_.set_column_units(units);
+}
+
 FactorResult Factorization::factorize(std::span<const double> values, Counters& counters) {
   if (values.size() != pattern_.row_index.size())
     throw std::invalid_argument("Factorization: as many values as the pattern has entries are needed");

@@ -36,7 +36,8 @@ struct [[nodiscard]] CheckedSolve {
   bool ok() const { return status == FactorStatus::ok; }
 };
 
-/// One pivot of the row-scaled matrix (every row's largest magnitude is 1).
+/// One pivot of the scaled matrix: columns in their units, the largest magnitude of every row 1 where pivots were last
+/// chosen.
 struct PivotInfo {
   double magnitude = 0;
   int column = -1;  ///< in the caller's numbering
@@ -47,8 +48,8 @@ struct PivotInfo {
 /// smooth.
 struct BlockMargin {
   static constexpr int largest_block = 64;
-  double pivot = 0;        ///< the smallest, of the row-scaled matrix
-  double determinant = 0;  ///< of the row-scaled block; of blocks larger than largest_block the pivot again
+  double pivot = 0;        ///< the smallest, of the scaled matrix
+  double determinant = 0;  ///< of the scaled block; of blocks larger than largest_block the pivot again
 };
 
 class Factorization {
@@ -57,6 +58,10 @@ class Factorization {
   /// singular: the pattern alone excludes a solution; structural_rank(), unmatched_rows() and unmatched_columns() tell
   /// more. unavailable: `kernel` is not in this build or serves symmetric or rectangular matrices only.
   FactorResult analyze(const SparsePattern& pattern, Kernel kernel, Counters& counters);
+
+  /// Units of the columns, positive, size() of them, from the next choice of pivots on; after `analyze`, which forgets
+  /// them. Pivots, margins and rcond() are those of A D; solutions are those of A.
+  void set_column_units(std::span<const double> units);
 
   /// Factors the matrix with these values; the pivots of the previous call are kept while they suit.
   FactorResult factorize(std::span<const double> values, Counters& counters);
@@ -79,7 +84,7 @@ class Factorization {
   /// klu or umfpack: what the next solve uses.
   Kernel kernel_in_use() const { return umfpack_in_use_ ? Kernel::umfpack : Kernel::klu; }
 
-  /// Smallest over largest pivot magnitude of the row-scaled matrix: a crude reciprocal condition number, 0 without a
+  /// Smallest over largest pivot magnitude of the scaled matrix: a crude reciprocal condition number, 0 without a
   /// valid factorization.
   double rcond() const;
 
