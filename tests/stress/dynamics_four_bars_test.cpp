@@ -36,11 +36,12 @@ class Parallelogram {
   long double k_, angle_ = std::numbers::pi_v<long double> / 2, rate_, t_ = 0;
 };
 
-constexpr int down_to_1e9 = 25, down_to_1e10 = 29;  // tolerances
+constexpr int tolerances = 29;  // 1e-3 ... 1e-10, four to a power of ten
 
-void check_all(int n, IntegrationMethod method = IntegrationMethod::automatic, int tolerances = down_to_1e10) {
+/// What the error may come to, in tolerances: ten, as calibrated; `sharp` where the tolerance is below 1e-9.
+void check_all(int n, IntegrationMethod method = IntegrationMethod::automatic, double sharp = 10, int starts = 20) {
   int passages = 0;
-  for (int start = 0; start < 20; ++start) {
+  for (int start = 0; start < starts; ++start) {
     const double speed = 0.8 + 0.05 * start;
     const auto model = four_bars(n);
     for (BasicBody<double>& body : model->bodies) {
@@ -64,19 +65,20 @@ void check_all(int n, IntegrationMethod method = IntegrationMethod::automatic, i
       });
       const AnalysisReport report = dynamics.run(TimeGrid::range(0, 20, 0.5), {}, compare);
       EXPECT_TRUE(report.ok()) << report.message << " at tolerance " << tolerance << ", speed " << speed;
-      EXPECT_LE(error, 10 * tolerance) << "tolerance " << tolerance << ", speed " << speed;
+      EXPECT_LE(error, (tolerance < 0.99e-9 ? sharp : 10) * tolerance)
+          << "tolerance " << tolerance << ", speed " << speed;
     }
   }
-  EXPECT_GT(passages, 20 * 10) << "the starts were not what this test is about";
+  EXPECT_GT(passages, starts * 10) << "the starts were not what this test is about";
 }
 
 TEST(DynamicsFourBars, TwoAtAllTolerancesFromTwentyStarts) { check_all(2); }
-TEST(DynamicsFourBars, TwoWithStabilisedConstraints) {
-  check_all(2, IntegrationMethod::baumgarte, down_to_1e9);
-  ;
-}
-TEST(DynamicsFourBars, TwoByAdams) { check_all(2, IntegrationMethod::adams, down_to_1e9); }
-TEST(DynamicsFourBars, TwoByPartitioning) { check_all(2, IntegrationMethod::partitioning, down_to_1e9); }
+TEST(DynamicsFourBars, TwoByOrderEight) { check_all(2, IntegrationMethod::rk8); }
+TEST(DynamicsFourBars, TwoByOrderFive) { check_all(2, IntegrationMethod::rk5); }
+TEST(DynamicsFourBars, TwoByAdams) { check_all(2, IntegrationMethod::adams); }
+// Neither projects its stages: where hardly a digit is to spare, more of the constraints' near dependence shows.
+TEST(DynamicsFourBars, TwoWithStabilisedConstraints) { check_all(2, IntegrationMethod::baumgarte, 20); }
+TEST(DynamicsFourBars, TwoByPartitioning) { check_all(2, IntegrationMethod::partitioning, 15); }
 TEST(DynamicsFourBars, FortyAtAllTolerancesFromTwentyStarts) { check_all(40); }
 
 }  // namespace

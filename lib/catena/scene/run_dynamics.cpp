@@ -3,9 +3,11 @@
 
 #include <algorithm>
 
+#include "catena/analysis/dynamics_of_islands.hpp"
 #include "catena/analysis/dynamics_with_checkpoints.hpp"
 #include "catena/analysis/dynamics_with_events.hpp"
 #include "catena/analysis/error_estimate.hpp"
+#include "catena/analysis/paces.hpp"
 #include "catena/scene/analysis_run.hpp"
 
 namespace catena {
@@ -83,6 +85,7 @@ class DynamicsTask {
   void run_or_estimate(Analysis& analysis, const PlanOptions& plan);
   void run_with_events();
   void run_with_checkpoints();
+  void run_apart(const std::vector<std::vector<int>>& classes);
 
   AnalysisContext& context_;
   AnalysisResult& result_;
@@ -157,6 +160,19 @@ void DynamicsTask::run_with_checkpoints() {
   result_.fields.push_back({"method", std::string(to_string(analysis.method()))});
 }
 
+/// Mechanisms that have nothing to do with each other, and differ in pace.
+void DynamicsTask::run_apart(const std::vector<std::vector<int>>& classes) {
+  DynamicsOfIslands analysis(model_, plan_options(*model_, names_), used_options_, classes);
+  run_over_time(context_, result_, analysis, *grid_, names_, sources);
+  std::string methods;
+  for (const IntegrationMethod method : analysis.methods()) {
+    const std::string_view name = to_string(method);
+    if (methods.find(name) == std::string::npos) methods += (methods.empty() ? "" : ", ") + std::string(name);
+  }
+  result_.fields.push_back({"method", methods});
+  result_.fields.push_back({"integrated_apart", static_cast<std::int64_t>(analysis.classes())});
+}
+
 void DynamicsTask::run() {
   if (const std::string why = conflict(); !why.empty()) return refuse(result_, why);
   if (context_.checkpoint && context_.checkpoint->restart)
@@ -166,6 +182,10 @@ void DynamicsTask::run() {
   if (estimates_) used_options_ = finer_options(options_);
   if (!context_.task.events.empty()) return run_with_events();
   if (context_.checkpoint) return run_with_checkpoints();
+  // A fixed step is the same for all; two runs that are compared must be divided alike.
+  if (!estimates_ && options_.step == 0) {
+    if (const auto classes = classes_of_pace(model_); classes.size() > 1) return run_apart(classes);
+  }
   const PlanOptions plan = plan_options(*model_, names_);
   Dynamics analysis(model_, plan, used_options_);
   run_or_estimate(analysis, plan);

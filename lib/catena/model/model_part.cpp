@@ -1,0 +1,102 @@
+#include "catena/model/model_part.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "catena/elements/all.hpp"
+#include "catena/model/model_add.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+/// Calls f(entry, kind) for every element in file order.
+template <class F>
+void for_each_element(const Model& model, F&& f) {
+  for (const ElementRecord& record : model.elements) {
+    const auto take = [&](const auto& list) { f(list[at(record.index)], record.kind); };
+    if (record.kind == ElementKind::force) {
+      with_list(model.forces, record.type, take);
+    } else {
+      with_list(model.constraints, record.type, take);
+    }
+  }
+}
+
+class Extraction {
+ public:
+  explicit Extraction(const Model& whole) : whole_(whole), body_(whole.bodies.size(), -1) {
+    part_.model.gravity = whole.gravity;
+  }
+
+  ModelPart make(std::span<const int> bodies) {
+    for (const int body : bodies) add(body);
+    for_each_element(whole_, [&]<class E>(const ElementEntry<E, double>& entry, ElementKind kind) {
+      const bool ours = (moves(entry.i) && body_[at(entry.i)] >= 0) || (moves(entry.j) && body_[at(entry.j)] >= 0);
+      if (ours) add(entry, kind);
+    });
+    return std::move(part_);
+  }
+
+ private:
+  bool moves(int body) const { return body >= 0 && !whole_.bodies[at(body)].fixed; }
+
+  int add(int body) {
+    if (body < 0) return ground;
+    int& number = body_[at(body)];
+    if (number >= 0) return number;
+    part_.bodies.push_back(body);
+    return number = part_.model.append_body(whole_.body_name(body), whole_.bodies[at(body)]);
+  }
+
+  template <class E>
+  void add(const ElementEntry<E, double>& entry, ElementKind kind) {
+    ElementEntry<E, double> copy = entry;
+    copy.i = add(entry.i);
+    copy.j = add(entry.j);
+    for (FunctionValue<double>& value : copy.values) {
+      if (value.function < 0) continue;
+      part_.model.functions.push_back(whole_.functions[at(value.function)]);
+      value.function = static_cast<int>(part_.model.functions.size()) - 1;
+    }
+    part_.model.append(whole_.element_name(entry.id), copy, kind);
+    part_.elements.push_back(entry.id);
+  }
+
+  const Model& whole_;
+  std::vector<int> body_;  // number in the part, -1: not there
+  ModelPart part_;
+};
+
+}  // namespace
+
+ModelPart part_of(const Model& whole, std::span<const int> bodies) { return Extraction(whole).make(bodies); }
+
+std::vector<std::vector<int>> separate_groups(const Model& model) {
+  std::vector<int> leader(model.bodies.size());
+  std::iota(leader.begin(), leader.end(), 0);
+  const auto find = [&](int body) {
+    while (leader[at(body)] != body) body = leader[at(body)] = leader[at(leader[at(body)])];
+    return body;
+  };
+  const auto fixed = [&](int body) { return body < 0 || model.bodies[at(body)].fixed; };
+  for_each_element(model, [&](const auto& entry, ElementKind) {
+    if (fixed(entry.i) || fixed(entry.j)) return;
+    leader[at(find(entry.i))] = find(entry.j);
+  });
+  std::vector<int> group(model.bodies.size(), -1);
+  std::vector<std::vector<int>> groups;
+  for (int body = 0; body < static_cast<int>(model.bodies.size()); ++body) {
+    if (fixed(body)) continue;
+    int& number = group[at(find(body))];
+    if (number < 0) {
+      number = static_cast<int>(groups.size());
+      groups.emplace_back();
+    }
+    groups[at(number)].push_back(body);
+  }
+  return groups;
+}
+
+}  // namespace catena
