@@ -1,8 +1,10 @@
 // Branches that meet at a singular configuration: which there are, and which one is taken.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "analysis/linkages.hpp"
@@ -134,12 +136,79 @@ TEST(KinematicsBranch, BranchesAreListedWhereTheMotionStartsAtRest) {
   auto model = driven_four_bar(parallelogram, TimeFunction<double>::polynomial(std::array{pi, 0.0, 0.5}));
   Kinematics kinematics(model);
   const AnalysisReport report = kinematics.run(TimeGrid::range(0, 2, 0.1), {}, none);
-  EXPECT_EQ(report.status, Status::singular);
+  EXPECT_EQ(report.status, Status::bifurcation);
   EXPECT_NE(report.message.find("the drivers rest"), std::string::npos) << report.message;
   EXPECT_NE(report.message.find("branch 2"), std::string::npos) << report.message;
   ASSERT_EQ(kinematics.singular_points().size(), 1u);
   ASSERT_EQ(kinematics.singular_points()[0].tangents.size(), 2u);
   for (const auto& tangent : kinematics.singular_points()[0].tangents) EXPECT_NEAR(tangent[2], 1, 1e-9);
+}
+
+// The driver rests at the flat position, goes on or turns back, and the other branch is asked for.
+TEST(KinematicsBranch, BranchIsTakenWhereTheDriversRest) {
+  const std::array through = {pi - 1, 3.0, -3.0, 1.0};  // pi + (t - 1)^3
+  const std::array back = {pi - 1, 2.0, -1.0, 0.0};     // pi - (t - 1)^2
+  for (bool turns_back : {false, true}) {
+    const auto angle = TimeFunction<double>::polynomial(turns_back ? back : through);
+    const int side = turns_back ? -1 : 1;  // of the antiparallelogram
+    for (double every : {0.1, 0.07, 0.5}) {
+      Kinematics kinematics(driven_four_bar(parallelogram, angle), {}, {.branch = 2});
+      double before = 0, after = 0, rate = 0;
+      RowFunction check([&](const Snapshot& s) {
+        const Taylor<double> crank = angle.evaluate(s.t);
+        const double rocker = s.q[angle_place(s, "rocker")], h = 1e-5;
+        if (s.t <= 1) {
+          before = std::max(before, std::abs(wrapped(rocker - crank.f)));
+          return true;
+        }
+        after = std::max(after, std::abs(wrapped(rocker - parallelogram.at(crank.f, side).rocker)));
+        if (s.t < 1.3) return true;
+        const double slope =
+            wrapped(parallelogram.at(crank.f + h, side).rocker - parallelogram.at(crank.f - h, side).rocker) / (2 * h);
+        rate = std::max(rate, std::abs(s.qd[angle_place(s, "rocker")] - slope * crank.d));
+        return true;
+      });
+      const AnalysisReport report = kinematics.run(TimeGrid::range(0, 2, every), everything, check);
+      ASSERT_TRUE(report.ok()) << report.message << " turns back " << turns_back << " every " << every;
+      EXPECT_LT(before, 1e-9) << turns_back << every;
+      EXPECT_LT(after, 1e-7) << turns_back << every;
+      EXPECT_LT(rate, 1e-6) << turns_back << every;
+      ASSERT_EQ(report.warnings.size(), 1u);
+      EXPECT_NE(report.warnings[0].find("takes branch 2"), std::string::npos) << report.warnings[0];
+    }
+  }
+  Kinematics third(driven_four_bar(parallelogram, TimeFunction<double>::polynomial(through)), {}, {.branch = 3});
+  RowFunction none([](const Snapshot&) { return true; });
+  EXPECT_EQ(third.run(TimeGrid::range(0, 2, 0.1), {}, none).status, Status::bifurcation);
+}
+
+// Started at rest on the flat position: accelerations are the tangents times that of the driver.
+TEST(KinematicsBranch, AMotionThatStartsAtRestWhereBranchesMeetTakesTheOneChosen) {
+  for (double acceleration : {0.5, -2.0}) {
+    const auto angle = TimeFunction<double>::polynomial(std::array{pi, 0.0, acceleration / 2});
+    auto model = driven_four_bar(parallelogram, angle);
+    for (int branch : {1, 2}) {
+      Kinematics kinematics(model, {}, {.branch = branch});
+      double first = 0, first_rate = 1, worst = 0;
+      RowFunction check([&](const Snapshot& s) {
+        const std::size_t rocker = angle_place(s, "rocker");
+        if (s.t == 0) first = s.qdd[rocker], first_rate = s.qd[rocker];
+        const double crank = angle.evaluate(s.t).f;
+        const double parallel = crank, crossed = parallelogram.at(crank, acceleration > 0 ? 1 : -1).rocker;
+        const double off =
+            std::min(std::abs(wrapped(s.q[rocker] - parallel)), std::abs(wrapped(s.q[rocker] - crossed)));
+        worst = std::max(worst, off);
+        return true;
+      });
+      const AnalysisReport report = kinematics.run(TimeGrid::range(0, 1, 0.1), everything, check);
+      ASSERT_TRUE(report.ok()) << report.message;
+      EXPECT_LT(worst, 1e-7);
+      EXPECT_NEAR(first_rate, 0, 1e-9);
+      const double tangent = rates(
+          kinematics, *model, kinematics.singular_points().at(0).tangents.at(static_cast<std::size_t>(branch - 1)))[0];
+      EXPECT_NEAR(first, std::abs(acceleration) * tangent, 1e-6) << branch;
+    }
+  }
 }
 
 }  // namespace

@@ -24,6 +24,9 @@ constexpr double nearby_contraction = 0.25;
 constexpr double clearly_regular = 1e-9;
 // Below this one reactions are rounding errors.
 constexpr double reactions_determined = 1e-9;
+// Part of the loads that least reactions may leave unbalanced.
+constexpr double balanced = 1e-10;
+constexpr std::size_t most_names = 8;  // in a warning
 // Rows closer to dependence than this, where a motion starts: configurations are given no more exactly.
 constexpr double start_dependence = 1e-7;
 // How far along a branch (rad, length scales) rows are chosen where it starts.
@@ -152,21 +155,23 @@ Report Kinematics::start_singular(SingularPoint point, double direction) {
   if (point.kind == SingularPoint::Kind::rest) find_ways(point, direction);
   singular_points_.push_back(point);
   const int count = static_cast<int>(point.tangents.size());
-  if (point.kind == SingularPoint::Kind::rest || count == 0) {
+  const bool rests = point.kind == SingularPoint::Kind::rest;
+  // Drivers that never move ask for no direction.
+  if (count == 0 || (rests && solver_.distance(point.tangents.front(), nothing_, nullptr) == 0)) {
     report.status = Status::singular;
     report.message = fmt::format(
-        "the motion starts at t = {:.12g} s in a singular configuration {}{}; start a little before or after it", t_,
-        point.kind != SingularPoint::Kind::rest ? "from which no velocity goes on" : "in which the drivers rest",
-        point.branches.empty() ? "" : "; " + point.describe_ways());
+        "the motion starts at t = {:.12g} s in a singular configuration {}; start a little before or after it", t_,
+        rests ? "in which the drivers rest" : "from which no velocity goes on");
     return report;
   }
   const int branch = count == 1 ? 1 : options_.branch;
   if (branch == 0 || branch > count) {
     report.status = Status::bifurcation;
-    report.message =
-        fmt::format("the motion starts at t = {:.12g} s where branches meet: {}; {}", t_, point.describe_branches(),
-                    branch == 0 ? std::string("choose one with \"branch\", or start a little away")
-                                : fmt::format("\"branch\" asks for number {}", branch));
+    report.message = fmt::format("the motion starts at t = {:.12g} s where {}: {}; {}", t_,
+                                 rests ? "the drivers rest in a singular configuration" : "branches meet",
+                                 rests ? point.describe_ways() : point.describe_branches(),
+                                 branch == 0 ? std::string("choose one with \"branch\", or start a little away")
+                                             : fmt::format("\"branch\" asks for number {}", branch));
     return report;
   }
   if (plan_->rows > plan_->columns) {
@@ -242,8 +247,30 @@ Report Kinematics::solve_multipliers() {
   if (!solver_.solve_multipliers(loads_, lambda_)) {
     report.status = Status::singular;
     report.message = fmt::format("reactions are not determined at t = {:.12g} s", t_);
+    return report;
   }
+  if (plan_->rows > plan_->columns) choose_least_reactions();
   return report;
+}
+
+// Of all multipliers that give these accelerations, where rows depend on each other, the least; and whose they are.
+void Kinematics::choose_least_reactions() {
+  if (!minimum_norm_) minimum_norm_.emplace(evaluator_);
+  evaluator_.set_configuration(q_);
+  if (!minimum_norm_->factorize()) return;
+  for (int c = 0; c < plan_->columns; ++c) applied_[at(plan_->coordinate[at(c)])] = loads_[at(c)];
+  least_lambda_.assign(lambda_.size(), 0.0);
+  // Those that would not balance the loads are none.
+  if (!(minimum_norm_->solve(applied_, least_lambda_) <= balanced)) return;
+  lambda_.swap(least_lambda_);
+  if (!ambiguity_.empty()) return;
+  const std::vector<int> elements = minimum_norm_->find_ambiguous();
+  for (std::size_t k = 0; k < std::min(elements.size(), most_names); ++k) {
+    ambiguity_ += fmt::format("{}\"{}\"", k > 0 ? ", " : "", model_->element_name(elements[k]));
+  }
+  if (elements.size() > most_names) ambiguity_ += fmt::format(" and {} more", elements.size() - most_names);
+  ambiguity_ = fmt::format(
+      "reactions of {} are not unique, since constraints depend on each other: the least are given", ambiguity_);
 }
 
 AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
@@ -264,6 +291,7 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& needs, RowObse
     report.status = outcome.status;
     report.message = outcome.message;
     report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
+    if (!ambiguity_.empty()) report.warnings.push_back(ambiguity_);
     report.counters = evaluator_.counters;
     report.seconds = timer.seconds();
     return report;

@@ -16,6 +16,7 @@
 #include "catena/analysis/driven_solver.hpp"
 #include "catena/analysis/kinematics_branches.hpp"
 #include "catena/analysis/kinematics_bridge.hpp"
+#include "catena/analysis/minimum_norm.hpp"
 #include "catena/analysis/mobility.hpp"
 #include "catena/analysis/predictor.hpp"
 #include "catena/analysis/row_observer.hpp"
@@ -84,8 +85,9 @@ class Kinematics {
   Report contradicts(int row, const std::string& how);
   void scatter_applied_forces();
   Report solve_multipliers();
+  void choose_least_reactions();
 
-  // Singular configurations: kinematics_passage.cpp, kinematics_instants.cpp.
+  // Singular configurations: kinematics_passage.cpp, kinematics_instants.cpp, kinematics_entry.cpp.
   enum class Passage { none, regular, passed, failed };
   bool add_node(MotionBridge& bridge, double t, double allowed);
   bool build_bridge(MotionBridge& bridge, double centre, double h, double reach);
@@ -99,6 +101,7 @@ class Kinematics {
   Passage pass_singular(double next, double target, double reach, Report& report);
   Passage follow_bridge(const MotionBridge& bridge, double t);
   Report take_branch(const SingularPoint& point, int branch, double direction);
+  double time_to_depart(double rest, double direction, double way);
   void leave_bridge(double end);
   void place_on_bridge(double t);
   bool tables_reach(double t) const;
@@ -117,7 +120,7 @@ class Kinematics {
   double earliest_ = -std::numeric_limits<double>::infinity();  // rows of run(): what lies beyond is not reported
   double latest_ = std::numeric_limits<double>::infinity();
   double t_ = 0;
-  std::vector<double> q_, qd_, qdd_, lambda_, trial_, loads_, applied_, nothing_;
+  std::vector<double> q_, qd_, qdd_, lambda_, least_lambda_, trial_, loads_, applied_, nothing_;
   std::vector<double> rest_, rates_;  // of redundant rows, by row; of a check, by column
   // How far from singular the blocks of Phi_q are at q_, signed; by how much the magnitudes of their determinants
   // change in unit time; and the most that each pivot has been.
@@ -128,7 +131,9 @@ class Kinematics {
   std::optional<double> predicted_;
   std::vector<int> fixed_;  // coordinates that are no unknowns: of immobile bodies, angles of particles
   std::vector<std::string> redundant_;
-  double chosen_rcond_ = 0;  // of the rows in use, where they were chosen
+  std::optional<MinimumNorm> minimum_norm_;  // of multipliers, where rows depend on each other
+  std::string ambiguity_;                    // in words: the elements whose reactions are not unique
+  double chosen_rcond_ = 0;                  // of the rows in use, where they were chosen
   NewtonOutcome newton_;
 
   // The stretch of time where rows are taken from the bridge, and the branch point in it that is still ahead.

@@ -30,10 +30,6 @@ constexpr double moment = 2e-3;
 constexpr double same_instant = 1e-9;
 // Length below which rows count as dependent at a singular configuration found to rounding.
 constexpr double dependence = 1e-7;
-// The other branch is entered over this much motion; it must be found this near to its tangent, as part of its distance
-// from the nearest other branch.
-constexpr double entries[] = {0.02, 0.01, 0.005, 0.002, 0.001, 3e-4};
-constexpr double entry_allowance = 0.2;
 
 }  // namespace
 
@@ -136,9 +132,13 @@ void Kinematics::announce(const SingularPoint& point, Report& report) {
       text += fmt::format("branch {}", std::max(1, options_.branch));
       break;
     case SingularPoint::Kind::rest:
-      text = fmt::format(
-          "at t = {:.12g} s the drivers rest in a singular configuration; the motion goes on as smoothly as it came{}",
-          point.t, point.tangents.size() > 1 ? ", along branch 1: " + point.describe_ways() : "");
+      text = fmt::format("at t = {:.12g} s the drivers rest in a singular configuration; ", point.t);
+      if (point.tangents.size() > 1 && options_.branch > 1) {
+        text += fmt::format("the motion takes branch {}: {}", options_.branch, point.describe_ways());
+      } else {
+        text += "the motion goes on as smoothly as it came";
+        if (point.tangents.size() > 1) text += ", along branch 1: " + point.describe_ways();
+      }
       break;
     default:
       text = fmt::format("at t = {:.12g} s the mechanism passes a singular configuration; the motion goes on as before",
@@ -219,11 +219,15 @@ Kinematics::Passage Kinematics::pass_singular(double next, double target, double
     SingularPoint point = look_at(bridge, instant, from, to);
     // Only the rows in use depend on each other, others take their place.
     if (point.nullity == 0) continue;
-    if (options_.branch > 1 && point.kind == SingularPoint::Kind::branch_point) {
+    const bool branches = point.kind == SingularPoint::Kind::branch_point ||
+                          (point.kind == SingularPoint::Kind::rest && point.tangents.size() > 1);
+    if (options_.branch > 1 && branches) {
       if (options_.branch > static_cast<int>(point.tangents.size())) {
         report.status = Status::bifurcation;
-        report.message = fmt::format("at t = {:.12g} s branch {} was asked for, but {} meet: {}", point.t,
-                                     options_.branch, point.tangents.size(), point.describe_branches());
+        report.message =
+            fmt::format("at t = {:.12g} s branch {} was asked for, but {} meet: {}", point.t, options_.branch,
+                        point.tangents.size(),
+                        point.kind == SingularPoint::Kind::rest ? point.describe_ways() : point.describe_branches());
         singular_points_.push_back(std::move(point));
         return Passage::failed;
       }
@@ -258,41 +262,6 @@ Kinematics::Passage Kinematics::follow_bridge(const MotionBridge& bridge, double
     predictor_.push(t_, q_, qd_, {});
   }
   return Passage::regular;
-}
-
-// Leaves the branch that came for the one chosen, a little beyond the branch point, and bridges the way there.
-Report Kinematics::take_branch(const SingularPoint& point, int branch, double direction) {
-  Report report;
-  choice_.reset();
-  const std::vector<double>& tangent = point.tangents[at(branch - 1)];
-  double rate = 0, apart = std::numeric_limits<double>::infinity();
-  for (const auto& other : point.tangents) {
-    rate = std::max(rate, solver_.distance(other, nothing_, nullptr));
-    if (&other != &tangent) apart = std::min(apart, solver_.distance(other, tangent, nullptr));
-  }
-  std::vector<double> q(q_.size()), qd(q_.size()), qdd(q_.size());
-  for (double entry : entries) {
-    const double h = direction * entry / rate;
-    for (std::size_t k = 0; k < q.size(); ++k) trial_[k] = point.q[k] + h * tangent[k];
-    MotionBridge bridge;
-    if (!add_node(bridge, point.t + h, entry_allowance * std::abs(h) * std::min(apart, rate))) continue;
-    const bool whole = tables_reach(point.t - 2 * h);
-    const double offsets[2][3] = {{2, -1, -2}, {2, 3, 4}};
-    bool built = true;
-    for (double offset : offsets[whole ? 0 : 1]) {
-      bridge.evaluate(point.t + offset * h, trial_, {}, {});
-      built = built && add_node(bridge, point.t + offset * h, allowance * entry);
-    }
-    if (!built || !follows_constraints(bridge, point.t, point.t + h)) continue;
-    bridge_ = std::move(bridge);
-    bridge_from_ = std::min(point.t, point.t + h);
-    bridge_to_ = std::max(point.t, point.t + h);
-    return report;
-  }
-  report.status = Status::bifurcation;
-  report.message = fmt::format("at t = {:.12g} s branch {} could not be entered: {}", point.t, branch,
-                               branch <= static_cast<int>(point.branches.size()) ? point.branches[at(branch - 1)] : "");
-  return report;
 }
 
 void Kinematics::place_on_bridge(double t) {
