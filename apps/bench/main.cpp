@@ -1,14 +1,17 @@
-// catena_bench: Google Benchmark's options, or --table [kinematics | dynamics | statics] for run time against error.
+// catena_bench: Google Benchmark's options, --table [kinematics | dynamics | statics] for run time against error, or
+// --records <scene> for lines that can be laid beside those of other engines (peer_records.hpp).
 //
 // Figures are processor time, minimum of repeats; build with the preset `native` for the machine at hand.
 #include <benchmark/benchmark.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <string_view>
 
 #include "dynamics_table.hpp"
 #include "kinematics_table.hpp"
+#include "peer_records.hpp"
 #include "static_table.hpp"
 
 int main(int argc, char** argv) {
@@ -28,6 +31,12 @@ int main(int argc, char** argv) {
       bench::print_dynamic_errors();
     }
     return 0;
+  }
+  if (argc == 3 && std::strcmp(argv[1], "--records") == 0) {
+    if (bench::print_peer_records(argv[2])) return 0;
+    std::fprintf(stderr, "catena_bench: no records of '%s' (acceleration, chain, fourbar, squeezer, equilibrium)\n",
+                 argv[2]);
+    return 2;
   }
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;

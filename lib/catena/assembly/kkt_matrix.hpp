@@ -19,7 +19,7 @@
 
 #include "catena/assembly/evaluate.hpp"
 #include "catena/assembly/kkt_structure.hpp"
-#include "catena/linalg/frontal_factorization.hpp"
+#include "catena/linalg/block_factorization.hpp"
 #include "catena/linalg/refinement.hpp"
 
 namespace catena {
@@ -96,7 +96,7 @@ class KktMatrix {
   std::vector<double> rho_, eps_, stiffness_;
   std::vector<double> compliance_, softness_, last_softness_;  // asked for; of the numbers filled in; of those factored
   std::vector<double> right_hand_side_, residual_work_, correction_work_;
-  FrontalFactorization factorization_;
+  BlockFactorization factorization_;
   bool analyzed_ = false, keep_equal_factors_ = false;
   double largest_stiffness_ = 0;
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/linalg/cholmod_kernel.hpp"
+
 namespace catena {
 namespace {
 
@@ -78,27 +80,55 @@ bool SchurSystem::analyze(Counters& counters) {
   products(varying_);
   const std::size_t first_constant = entries.size();
   products(constant_);
-  ++counters.symbolic;
-  if (!kernel_.analyze(build_pattern(plan.rows, plan.rows, entries).pattern, {.form = SymmetricForm::ldl}).ok()) {
-    return false;
-  }
-  std::vector<int> place(at(plan.rows));
-  for (int k = 0; k < plan.rows; ++k) place[at(kernel_.order()[at(k)])] = k;
   for (MatrixEntry& entry : entries) {
-    const auto [first, last] = std::minmax(place[at(entry.row)], place[at(entry.column)]);
-    entry = {first, last};
+    const auto [first, last] = std::minmax(entry.row, entry.column);
+    entry = {last, first};
   }
-  SlottedPattern built = build_pattern(plan.rows, plan.rows, entries);
-  upper_ = std::move(built.pattern);
-  diagonal_.resize(at(plan.rows));
-  for (int r = 0; r < plan.rows; ++r) diagonal_[at(place[at(r)])] = built.slot[at(r)];
-  varying_slot_.assign(built.slot.begin() + plan.rows,
-                       built.slot.begin() + static_cast<std::ptrdiff_t>(first_constant));
-  constant_slot_.assign(built.slot.begin() + static_cast<std::ptrdiff_t>(first_constant), built.slot.end());
-  values_.resize(upper_.row_index.size());
-  constant_values_.resize(values_.size());
+  const SlottedPattern built = build_pattern(plan.rows, plan.rows, entries);
+  if (!analyze_factors(built.pattern, counters)) return false;
+  const auto slots = [&](std::size_t begin, std::size_t end) {
+    std::vector<int> list;
+    for (std::size_t k = begin; k < end; ++k) list.push_back(factors_.slots()[at(built.slot[k])]);
+    return list;
+  };
+  diagonal_ = slots(0, at(plan.rows));
+  varying_slot_ = slots(at(plan.rows), first_constant);
+  constant_slot_ = slots(first_constant, entries.size());
+  constant_values_.resize(factors_.values().size());
   diagonal_values_.resize(at(plan.rows));
   analyzed_ = true;
+  return true;
+}
+
+// Rows of an element go together: they touch the same bodies. Elements by minimum degree.
+bool SchurSystem::analyze_factors(const SparsePattern& lower, Counters& counters) {
+  const Plan& plan = *plan_;
+  std::vector<int> node(at(plan.rows)), node_first;
+  for (int r = 0; r < plan.rows; ++r) {
+    if (r == 0 || plan.row_element[at(r)] != plan.row_element[at(r - 1)]) node_first.push_back(r);
+    node[at(r)] = static_cast<int>(node_first.size()) - 1;
+  }
+  const int nodes = static_cast<int>(node_first.size());
+  node_first.push_back(plan.rows);
+  std::vector<MatrixEntry> entries, pairs;
+  for (int k = 0; k < nodes; ++k) pairs.push_back({k, k});
+  for (int c = 0; c < lower.columns; ++c) {
+    for (int e = lower.column_start[at(c)]; e < lower.column_start[at(c) + 1]; ++e) {
+      const int row = lower.row_index[at(e)];
+      entries.push_back({row, c});
+      const MatrixEntry pair{node[at(row)], node[at(c)]};
+      if (pair.row != pair.column && (pair.row != pairs.back().row || pair.column != pairs.back().column))
+        pairs.push_back(pair);
+    }
+  }
+  CholmodKernel orderer;
+  if (!orderer.analyze(build_pattern(nodes, nodes, pairs).pattern, {}).ok()) return false;
+  std::vector<int> order, node_start{0};
+  for (int k : orderer.order()) {
+    for (int r = node_first[at(k)]; r < node_first[at(k) + 1]; ++r) order.push_back(r);
+    node_start.push_back(static_cast<int>(order.size()));
+  }
+  factors_.analyze(entries, order, node_start, counters);
   return true;
 }
 
@@ -113,28 +143,41 @@ void SchurSystem::assemble(std::span<const Column> columns, const int* slot, std
   }
 }
 
+void SchurSystem::fill(double regularised_part) {
+  const std::span<double> values = factors_.values();
+  std::copy(constant_values_.begin(), constant_values_.end(), values.begin());
+  assemble(varying_, varying_slot_.data(), values);
+  for (std::size_t k = 0; k < diagonal_.size(); ++k) {
+    double& value = values[at(diagonal_[k])];
+    // A row that touches nothing that can move must not stop the others.
+    if (value == 0) value = 1;
+    diagonal_values_[k] = value;
+    value *= 1 + regularised_part;
+  }
+}
+
 bool SchurSystem::factor_values(Counters& counters) {
-  ++counters.factorizations;
-  const FactorResult result = kernel_.factor(upper_, values_, 0);
+  const FactorResult result = factors_.factorize(counters);
   smallest_ratio_ = 1;
   weakest_row_ = -1;
   if (!result.ok()) {
     smallest_ratio_ = 0;
-    weakest_row_ = result.index >= 0 ? kernel_.order()[at(result.index)] : -1;
+    weakest_row_ = result.index;
     return result.status == FactorStatus::singular;
   }
-  const double* pivot = kernel_.pivots().data();
-  int weakest = 0;
+  const std::span<const double> pivot = factors_.pivots();
+  const std::span<const int> order = factors_.order();
+  std::size_t weakest = 0;
   double smallest = 2;
-  for (std::size_t k = 0; k < diagonal_values_.size(); ++k) {
-    const double ratio = pivot[k] / diagonal_values_[k];
+  for (std::size_t k = 0; k < pivot.size(); ++k) {
+    const double ratio = pivot[k] / diagonal_values_[at(order[k])];
     if (ratio < smallest) {
       smallest = ratio;
-      weakest = static_cast<int>(k);
+      weakest = k;
     }
   }
   smallest_ratio_ = std::max(smallest, 0.0);
-  weakest_row_ = kernel_.order()[at(weakest)];
+  weakest_row_ = order[weakest];
   return true;
 }
 
@@ -147,24 +190,11 @@ bool SchurSystem::factorize(std::span<const double> jacobian, Counters& counters
     assemble(constant_, constant_slot_.data(), constant_values_);
     constants_known_ = true;
   }
-  std::copy(constant_values_.begin(), constant_values_.end(), values_.begin());
-  assemble(varying_, varying_slot_.data(), values_);
-  for (std::size_t k = 0; k < diagonal_.size(); ++k) {
-    double& value = values_[at(diagonal_[k])];
-    // A row that touches nothing that can move must not stop the others.
-    if (value == 0) value = 1;
-    diagonal_values_[k] = value;
-  }
-  const auto regularise = [&] {
-    for (std::size_t k = 0; k < diagonal_.size(); ++k) {
-      values_[at(diagonal_[k])] = (1 + regularisation) * diagonal_values_[k];
-    }
-  };
   // Where rows depended on each other the last time they probably still do.
-  if (regularised_) regularise();
+  fill(regularised_ ? regularisation : 0);
   if (!factor_values(counters)) return false;
   if (smallest_ratio_ < singular_ratio && !regularised_) {
-    regularise();
+    fill(regularisation);
     regularised_ = true;
     return factor_values(counters) && smallest_ratio_ > 0;
   }
@@ -191,10 +221,7 @@ void SchurSystem::spread(std::span<const double> lambda, std::span<double> x) co
   }
 }
 
-void SchurSystem::solve(std::span<double> x, Counters& counters) {
-  ++counters.solves;
-  kernel_.solve(x);
-}
+void SchurSystem::solve(std::span<double> x, Counters& counters) { factors_.solve(x, counters); }
 
 void SchurSystem::solve_refined(std::span<double> lambda, std::span<const double> b, Counters& counters) {
   solve(lambda, counters);

@@ -4,8 +4,8 @@
 //   S lambda = Phi_q M^-1 Q - gamma        qdd = M^-1 (Q - Phi_q^T lambda)        S = Phi_q M^-1 Phi_q^T
 //
 // and the least change, in the mass metric, that constraints ask for: x = M^-1 Phi_q^T S^-1 b. M is diagonal, so that S
-// is assembled column by column of Phi_q straight into the permuted triangle that CHOLMOD reads; products of constant
-// columns are formed once. Vectors are in coordinates: three a moving body.
+// is assembled column by column of Phi_q straight into the place where it is factored; products of constant columns are
+// formed once. Vectors are in coordinates: three a moving body.
 //
 // Massless coordinates (M only positive definite where the constraints leave freedom) get a small mass, and the
 // solution is refined with the true M; the small mass divided by that which really resists is what each round leaves.
@@ -25,7 +25,7 @@
 
 #include "catena/assembly/plan.hpp"
 #include "catena/base/counters.hpp"
-#include "catena/linalg/cholmod_kernel.hpp"
+#include "catena/linalg/block_factorization.hpp"
 
 namespace catena {
 
@@ -70,7 +70,10 @@ class SchurSystem {
     int first, last;  // entries of Phi_q
   };
   bool analyze(Counters& counters);
+  bool analyze_factors(const SparsePattern& lower, Counters& counters);
   void assemble(std::span<const Column> columns, const int* slot, std::span<double> values) const;
+  /// S, its diagonal increased by a part of itself, to where it is factored.
+  void fill(double regularised_part);
   bool factor_values(Counters& counters);
   void solve(std::span<double> x, Counters& counters);
   /// x = M^-1 Phi_q^T lambda.
@@ -87,13 +90,12 @@ class SchurSystem {
   std::span<const double> jacobian_;
   std::vector<int> column_start_;  // of Phi_q, by coordinate
   std::vector<Column> varying_, constant_;
-  std::vector<int> varying_slot_, constant_slot_;  // of the products of each column, into values_
-  std::vector<int> diagonal_;                      // by place
-  SparsePattern upper_;                            // of S permuted
-  std::vector<double> constant_values_, values_, diagonal_values_;
+  std::vector<int> varying_slot_, constant_slot_;  // of the products of each column
+  std::vector<int> diagonal_;                      // by row
+  std::vector<double> constant_values_, diagonal_values_;
   std::vector<double> right_hand_side_, correction_, change_;
   std::vector<double> rest_Q_, rest_gamma_, extra_qdd_, extra_lambda_;  // for massless coordinates and unequal masses
-  CholmodKernel kernel_;
+  BlockFactorization factors_;
   bool analyzed_ = false, constants_known_ = false, regularised_ = false, unequal_ = false;
   double smallest_ratio_ = 1;
   double massless_residual_ = 0;

@@ -1,4 +1,4 @@
-#include "catena/linalg/frontal_factorization.hpp"
+#include "catena/linalg/block_factorization.hpp"
 
 #include <gtest/gtest.h>
 
@@ -68,14 +68,14 @@ NodalMatrix nodal_matrix(int nodes, int widest, double neighbours, Random& rando
   return result;
 }
 
-TEST(FrontalFactorization, SolvesAndCountsSignsOnRandomNodalMatrices) {
+TEST(BlockFactorization, SolvesAndCountsSignsOnRandomNodalMatrices) {
   Random random(71);
   for (int trial = 0; trial < 300; ++trial) {
     const int nodes = 1 + random.below(40);
     const NodalMatrix m = nodal_matrix(nodes, 1 + random.below(9), random.uniform(0, 6), random);
     const int n = static_cast<int>(m.order.size());
     Counters counters;
-    FrontalFactorization factors;
+    BlockFactorization factors;
     factors.analyze(m.entries, m.order, m.node_start, counters);
     ASSERT_TRUE(factors.factorize(m.lower.values, counters).ok());
     Eigen::VectorXd x(n), b(n);
@@ -88,12 +88,12 @@ TEST(FrontalFactorization, SolvesAndCountsSignsOnRandomNodalMatrices) {
   }
 }
 
-TEST(FrontalFactorization, HasThePivotsOfTheFactorizationRowByRow) {
+TEST(BlockFactorization, HasThePivotsOfTheFactorizationRowByRow) {
   Random random(72);
   for (int trial = 0; trial < 50; ++trial) {
     const NodalMatrix m = nodal_matrix(30, 5, 3, random);
     Counters counters;
-    FrontalFactorization factors;
+    BlockFactorization factors;
     factors.analyze(m.entries, m.order, m.node_start, counters);
     ASSERT_TRUE(factors.factorize(m.lower.values, counters).ok());
     SymmetricFactorization reference;
@@ -108,12 +108,32 @@ TEST(FrontalFactorization, HasThePivotsOfTheFactorizationRowByRow) {
   }
 }
 
-TEST(FrontalFactorization, NamesTheRowOfAVanishingPivot) {
+TEST(BlockFactorization, TakesValuesWhereTheyAreFactored) {
+  Random random(74);
+  const NodalMatrix m = nodal_matrix(40, 4, 3, random);
+  Counters counters;
+  BlockFactorization factors, in_place;
+  factors.analyze(m.entries, m.order, m.node_start, counters);
+  in_place.analyze(m.entries, m.order, m.node_start, counters);
+  for (double scale : {1.0, -2.0}) {
+    std::vector<double> values = m.lower.values;
+    for (double& value : values) value *= scale;
+    ASSERT_TRUE(factors.factorize(values, counters).ok());
+    std::fill(in_place.values().begin(), in_place.values().end(), 0.0);
+    for (std::size_t k = 0; k < values.size(); ++k) in_place.values()[in_place.slots()[k]] += values[k];
+    ASSERT_TRUE(in_place.factorize(counters).ok());
+    for (int k = 0; k < factors.size(); ++k) EXPECT_EQ(in_place.pivot(k), factors.pivot(k));
+    EXPECT_EQ(in_place.pivots().size(), m.order.size());
+    EXPECT_EQ(in_place.pivots()[3], in_place.pivot(in_place.order()[3]));
+  }
+}
+
+TEST(BlockFactorization, NamesTheRowOfAVanishingPivot) {
   // Nodes {2, 0}, {1}: row 1 is left with 4 - 2 * 2 = 0.
   const Matrix lower = assemble(3, 3, {{0, 0, 1}, {1, 1, 4}, {2, 2, 3}, {1, 0, 2}, {2, 2, 0}});
   const std::vector<int> order{2, 0, 1}, node_start{0, 2, 3};
   Counters counters;
-  FrontalFactorization factors;
+  BlockFactorization factors;
   factors.analyze(entries_of(lower.pattern), order, node_start, counters);
   const FactorResult result = factors.factorize(lower.values, counters);
   EXPECT_EQ(result.status, FactorStatus::singular);
@@ -130,11 +150,11 @@ TEST(FrontalFactorization, NamesTheRowOfAVanishingPivot) {
   EXPECT_TRUE(factors.factorize(good, counters).ok());
 }
 
-TEST(FrontalFactorization, AddsUpWhatBelongsToOnePlaceOfEitherTriangle) {
+TEST(BlockFactorization, AddsUpWhatBelongsToOnePlaceOfEitherTriangle) {
   // [4 1; 1 3] in parts.
   const std::vector<MatrixEntry> entries{{0, 0}, {0, 1}, {1, 1}, {0, 0}, {1, 0}};
   Counters counters;
-  FrontalFactorization factors;
+  BlockFactorization factors;
   factors.analyze(entries, std::vector<int>{1, 0}, std::vector<int>{0, 1, 2}, counters);
   ASSERT_TRUE(factors.factorize(std::vector<double>{1, 3, 3, 3, -2}, counters).ok());
   std::vector<double> x{6, 7};
@@ -144,9 +164,9 @@ TEST(FrontalFactorization, AddsUpWhatBelongsToOnePlaceOfEitherTriangle) {
   EXPECT_THROW((void)factors.factorize(std::vector<double>{1, 2}, counters), std::invalid_argument);
 }
 
-TEST(FrontalFactorization, RefusesWhatIsNoOrderOfTheRows) {
+TEST(BlockFactorization, RefusesWhatIsNoOrderOfTheRows) {
   Counters counters;
-  FrontalFactorization factors;
+  BlockFactorization factors;
   const auto analyze = [&](std::vector<MatrixEntry> entries, std::vector<int> order, std::vector<int> nodes) {
     factors.analyze(entries, order, nodes, counters);
   };
@@ -158,11 +178,11 @@ TEST(FrontalFactorization, RefusesWhatIsNoOrderOfTheRows) {
   EXPECT_THROW(analyze({{-1, 0}}, {0, 1}, {0, 1, 2}), std::invalid_argument);
 }
 
-TEST(FrontalFactorization, AllocatesNothingAfterTheAnalysis) {
+TEST(BlockFactorization, AllocatesNothingAfterTheAnalysis) {
   Random random(73);
   const NodalMatrix m = nodal_matrix(60, 5, 3, random);
   Counters counters;
-  FrontalFactorization factors;
+  BlockFactorization factors;
   factors.analyze(m.entries, m.order, m.node_start, counters);
   std::vector<double> x(m.order.size(), 1.0);
   HeapWatch watch;
@@ -177,9 +197,9 @@ TEST(FrontalFactorization, AllocatesNothingAfterTheAnalysis) {
   EXPECT_EQ(counters.solves, 3);
 }
 
-TEST(FrontalFactorization, FactorsAnEmptyMatrix) {
+TEST(BlockFactorization, FactorsAnEmptyMatrix) {
   Counters counters;
-  FrontalFactorization factors;
+  BlockFactorization factors;
   EXPECT_FALSE(factors.is_analyzed());
   factors.analyze({}, {}, std::vector<int>{0}, counters);
   EXPECT_TRUE(factors.is_analyzed());

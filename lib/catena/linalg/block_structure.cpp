@@ -1,4 +1,4 @@
-#include "catena/linalg/frontal_structure.hpp"
+#include "catena/linalg/block_structure.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -9,7 +9,7 @@
 namespace catena {
 namespace {
 
-[[noreturn]] void refuse(const char* what) { throw std::invalid_argument(std::string("FrontalStructure: ") + what); }
+[[noreturn]] void refuse(const char* what) { throw std::invalid_argument(std::string("BlockStructure: ") + what); }
 
 // Node of every row, after checks that every row occurs once.
 std::vector<int> nodes_of_rows(std::span<const int> order, std::span<const int> node_start) {
@@ -45,8 +45,8 @@ SparsePattern later_neighbours(std::span<const MatrixEntry> entries, int nodes, 
 
 }  // namespace
 
-FrontalStructure::FrontalStructure(std::span<const MatrixEntry> entries, std::span<const int> given_order,
-                                   std::span<const int> node_start) {
+BlockStructure::BlockStructure(std::span<const MatrixEntry> entries, std::span<const int> given_order,
+                               std::span<const int> node_start) {
   const std::vector<int> node = nodes_of_rows(given_order, node_start);
   const int nodes = static_cast<int>(node_start.size()) - 1;
   SparsePattern later = later_neighbours(entries, nodes, node);
@@ -79,15 +79,15 @@ FrontalStructure::FrontalStructure(std::span<const MatrixEntry> entries, std::sp
 
   const FactorStructure structure = factor_structure(later, parent);
   later = {};
-  make_fronts(width, parent, structure.start, structure.row);
+  make_blocks(width, parent, structure.start, structure.row);
   list_values(entries);
 }
 
-// A node joins its child's front where their columns of L have the same rows: then neither holds zeros.
-void FrontalStructure::make_fronts(const std::vector<int>& width, const std::vector<int>& parent,
-                                   const std::vector<std::size_t>& below_start, const std::vector<int>& below) {
+// A node joins its child's block where their columns of L have the same rows: then neither holds zeros.
+void BlockStructure::make_blocks(const std::vector<int>& width, const std::vector<int>& parent,
+                                 const std::vector<std::size_t>& below_start, const std::vector<int>& below) {
   const int nodes = static_cast<int>(width.size());
-  std::vector<int> first_place(width.size() + 1, 0), front_of_node(width.size()), last_node;
+  std::vector<int> first_place(width.size() + 1, 0), last_node;
   for (int k = 0; k < nodes; ++k) first_place[k + 1] = first_place[k] + width[k];
   const auto rows_below = [&](int node) {
     int count = 0;
@@ -96,100 +96,57 @@ void FrontalStructure::make_fronts(const std::vector<int>& width, const std::vec
   };
   for (int k = 0; k < nodes; ++k) {
     const int height = rows_below(k);
-    const bool joins = k > 0 && parent[k - 1] == k && fronts.back().below == width[k] + height;
+    const bool joins = k > 0 && parent[k - 1] == k && blocks.back().below == width[k] + height;
     if (!joins) {
-      fronts.push_back({});
-      fronts.back().first = first_place[k];
+      blocks.push_back({});
+      blocks.back().first = first_place[k];
       last_node.push_back(k);
     }
-    Front& front = fronts.back();
-    front.columns += width[k];
-    front.below = height;
+    Block& block = blocks.back();
+    block.columns += width[k];
+    block.below = height;
     last_node.back() = k;
-    front_of_node[k] = static_cast<int>(fronts.size()) - 1;
   }
 
-  std::vector<int> parent_of_front(fronts.size(), -1);
-  for (std::size_t s = 0; s < fronts.size(); ++s) {
+  for (std::size_t s = 0; s < blocks.size(); ++s) {
+    Block& block = blocks[s];
+    block.rows = static_cast<int>(rows.size());
+    panel_entries += static_cast<std::size_t>(block.height()) * static_cast<std::size_t>(block.columns);
     const int last = last_node[s];
-    if (parent[last] >= 0) parent_of_front[s] = front_of_node[parent[last]];
-    const Front& front = fronts[s];
-    updates.push_back({.rows = rows.size()});
-    panel_entries += static_cast<std::size_t>(front.height()) * static_cast<std::size_t>(front.columns);
     for (std::size_t k = below_start[last]; k < below_start[last + 1]; ++k) {
       for (int p = first_place[below[k]]; p < first_place[below[k] + 1]; ++p) rows.push_back(p);
     }
   }
-  // Rows below as rows of the parent's front: both lists ascend.
-  relative.reserve(rows.size());
-  for (std::size_t s = 0; s < fronts.size(); ++s) {
-    if (fronts[s].below == 0) continue;
-    const Front& above = fronts[parent_of_front[s]];
-    const int* const list = rows.data() + updates[parent_of_front[s]].rows;
-    int k = 0;
-    for (int r = 0; r < fronts[s].below; ++r) {
-      const int p = rows[updates[s].rows + r];
-      if (p < above.first + above.columns) {
-        relative.push_back(p - above.first);
-        continue;
-      }
-      while (list[k] != p) ++k;
-      relative.push_back(above.columns + k);
-    }
-  }
-  list_children(parent_of_front);
-
-  // The stack: a front's update takes the place of those of its children, of which the first lies lowest.
-  std::size_t top = 0;
-  for (std::size_t s = 0; s < fronts.size(); ++s) {
-    const std::size_t own = static_cast<std::size_t>(fronts[s].below) * static_cast<std::size_t>(fronts[s].below);
-    const bool has_children = child_start[s] < child_start[s + 1];
-    updates[s].formed = top;
-    updates[s].waiting = has_children ? updates[child[child_start[s]]].waiting : top;
-    stack_entries = std::max(stack_entries, top + own);
-    top = updates[s].waiting + own;
-  }
-  fronts.push_back({.first = size()});
-}
-
-void FrontalStructure::list_children(const std::vector<int>& parent_of_front) {
-  child_start.assign(fronts.size() + 1, 0);
-  for (int p : parent_of_front) child_start[p + 1] += p >= 0 ? 1 : 0;
-  for (std::size_t s = 0; s < fronts.size(); ++s) child_start[s + 1] += child_start[s];
-  child.resize(static_cast<std::size_t>(child_start.back()));
-  std::vector<int> next(child_start.begin(), child_start.end() - 1);
-  for (std::size_t s = 0; s < fronts.size(); ++s) {
-    if (parent_of_front[s] >= 0) child[next[parent_of_front[s]]++] = static_cast<int>(s);
-  }
+  blocks.push_back({.first = size(), .rows = static_cast<int>(rows.size())});
 }
 
 // Every entry stands in the column of its earlier place.
-void FrontalStructure::list_values(std::span<const MatrixEntry> entries) {
-  std::vector<int> front_of_place(order.size());
+void BlockStructure::list_values(std::span<const MatrixEntry> entries) {
+  std::vector<int> block_of_place(order.size());
   for (int s = 0; s < count(); ++s) {
-    for (int p = fronts[s].first; p < fronts[s + 1].first; ++p) front_of_place[p] = s;
+    for (int p = blocks[s].first; p < blocks[s + 1].first; ++p) block_of_place[p] = s;
   }
   std::vector<int> start(static_cast<std::size_t>(count()) + 1, 0);
   const auto visit = [&](auto&& f) {
     for (std::size_t e = 0; e < entries.size(); ++e) {
       const auto [column, row] = std::minmax(place[entries[e].row], place[entries[e].column]);
-      f(static_cast<int>(e), front_of_place[column], row, column);
+      f(static_cast<int>(e), block_of_place[column], row, column);
     }
   };
   visit([&](int, int s, int, int) { ++start[s + 1]; });
   for (int s = 0; s < count(); ++s) start[s + 1] += start[s];
-  for (std::size_t s = 0; s < fronts.size(); ++s) fronts[s].values = start[s];
+  for (std::size_t s = 0; s < blocks.size(); ++s) blocks[s].values = start[s];
   source.resize(entries.size());
   target.resize(source.size());
   visit([&](int e, int s, int row, int column) {
-    const Front& front = fronts[s];
-    const int* const list = rows.data() + updates[s].rows;
-    const int local = row < front.first + front.columns
-                          ? row - front.first
-                          : front.columns + static_cast<int>(std::lower_bound(list, list + front.below, row) - list);
+    const Block& block = blocks[s];
+    const int* const list = rows.data() + block.rows;
+    const int local = row < block.first + block.columns
+                          ? row - block.first
+                          : block.columns + static_cast<int>(std::lower_bound(list, list + block.below, row) - list);
     const int k = start[s]++;
     source[k] = e;
-    target[k] = local + front.height() * (column - front.first);
+    target[k] = local + block.height() * (column - block.first);
   });
 }
 

@@ -1,5 +1,5 @@
-// The dense work of a multifrontal factorization on one front: a trapezoid `panel` of `height` rows and c columns,
-// stored by columns, and the update of the rows below. For frontal_factorization.cpp.
+// The dense work on one large block of block_factorization.hpp: a trapezoid `panel` of `height` rows and c columns,
+// stored by columns, and what its elimination takes off the rest.
 //
 // Columns are worked off in groups of at most `group`, whose number the compiler knows: what they do to another column
 // is one pass over it.
@@ -48,20 +48,15 @@ void update_column(const double* l, int height, const double* pivots, double* co
   }
 }
 
-/// A group of c columns of the panel, and what it does to the columns after it and to the update.
+/// A group of c columns of the panel, and what it does to the columns after it.
 template <int c>
-int eliminate_group(double* panel, int height, int columns, int first, double* pivots, double* update) {
+int eliminate_group(double* panel, int height, int columns, int first, double* pivots) {
   const int done = factor_group<c>(panel, height, first, pivots);
   if (done < c) return done;
   const double* const l = panel + static_cast<std::size_t>(first) * static_cast<std::size_t>(height);
   for (int j = first + c; j < columns; ++j) {
     update_column<c>(l + j, height, pivots + first,
                      panel + static_cast<std::size_t>(j) * static_cast<std::size_t>(height) + j, height - j);
-  }
-  const int below = height - columns;
-  for (int j = 0; j < below; ++j) {
-    update_column<c>(l + columns + j, height, pivots + first,
-                     update + static_cast<std::size_t>(j) * static_cast<std::size_t>(below) + j, below - j);
   }
   return c;
 }
@@ -85,12 +80,12 @@ auto with_group(int count, F&& f) {
   }
 }
 
-/// The whole front. Result: `columns`, or how many came before a pivot that is zero.
-inline int eliminate_front(double* panel, int height, int columns, double* pivots, double* update) {
+/// The columns of a block. Result: `columns`, or how many came before a pivot that is zero.
+inline int eliminate_columns(double* panel, int height, int columns, double* pivots) {
   int first = 0;
   while (first < columns) {
     const auto [done, all] = with_group(columns - first, [&](auto c) {
-      return std::pair(eliminate_group<c>(panel, height, columns, first, pivots, update), int{c});
+      return std::pair(eliminate_group<c>(panel, height, columns, first, pivots), int{c});
     });
     first += done;
     if (done < all) break;
@@ -98,7 +93,20 @@ inline int eliminate_front(double* panel, int height, int columns, double* pivot
   return first;
 }
 
-/// y := L^-1 y of the front's columns, `own` being their part of y; what follows from it for the rows below, whose
+/// Column j of the update of a block whose columns are eliminated, from its diagonal on: `count` values, to which it is
+/// added.
+inline void add_update(const double* panel, int height, int columns, const double* pivots, int j, double* column,
+                       int count) {
+  for (int first = 0; first < columns;) {
+    first += with_group(columns - first, [&](auto c) {
+      const double* const l = panel + static_cast<std::size_t>(first) * static_cast<std::size_t>(height);
+      update_column<c>(l + columns + j, height, pivots + first, column, count);
+      return int{c};
+    });
+  }
+}
+
+/// y := L^-1 y of the block's columns, `own` being their part of y; what follows from it for the rows below, whose
 /// places in y are `rows`, is taken off there.
 inline void solve_forward(const double* panel, int height, int columns, const int* rows, double* own, double* y) {
   for (int first = 0; first < columns;) {
@@ -124,7 +132,7 @@ inline void solve_forward(const double* panel, int height, int columns, const in
   }
 }
 
-/// y := L^-T D^-1 y of the front's columns, the rows below being solved already.
+/// y := L^-T D^-1 y of the block's columns, the rows below being solved already.
 inline void solve_backward(const double* panel, int height, int columns, const int* rows, double* own,
                            const double* y) {
   for (int left = columns; left > 0;) {
