@@ -145,6 +145,60 @@ TEST(Path, CountsTheBucklingLoadsOfAColumnThatStaysStraight) {
   EXPECT_EQ(run.report.negative_modes.back(), count - 1);
 }
 
+/// A rod of 2 m and 3 kg upright on a torsion spring that is slack there.
+std::shared_ptr<Model> spring_held_rod(double k) {
+  auto model = std::make_shared<Model>();
+  model->gravity = {0, -9.81};
+  model->add_body("rod", {.mass = 3, .inertia = 1, .position = {0, 1}, .angle = std::numbers::pi / 2});
+  model->add("", Revolute<double>{.s_j = {-1, 0}}, ground, 0);
+  model->add_force("", torsion_spring(k, std::numbers::pi / 2), ground, 0);
+  return model;
+}
+
+TEST(Path, TellsABranchWhereTheParameterDoesNothingToThePath) {
+  // Upright the spring holds nothing: no residual depends on k, wherever the path begins.
+  const double critical = 3 * 9.81;
+  for (const double from : {29.5, 30.0, 35.0, 40.0, 50.0}) {
+    for (const int branch : {0, 2}) {
+      const Followed run = follow(spring_held_rod, {.from = from, .to = 20, .branch = branch});
+      ASSERT_TRUE(run.report.ok()) << run.report.message;
+      ASSERT_EQ(run.report.critical.size(), 1u) << from;
+      EXPECT_TRUE(run.report.critical[0].branch) << from;
+      EXPECT_NEAR(run.report.critical[0].value, critical, 1e-7) << from;
+      // k theta = m g l sin(theta) on the branch.
+      const double theta = run.rows.back().q[2] - std::numbers::pi / 2;
+      EXPECT_NEAR(20 * theta, critical * std::sin(theta), 1e-8);
+      EXPECT_EQ(std::abs(theta) > 0.5, branch == 2) << from;
+    }
+  }
+  EXPECT_TRUE(follow(spring_held_rod, {.from = 20, .to = 50}).report.critical.at(0).branch);
+}
+
+TEST(Path, FindsPitchforksOfColumnsInEveryDirection) {
+  // A strut on a torsion spring pressed along its line, P = c / l.
+  for (const double direction : {0.0, 0.3, std::numbers::pi / 2, -2.0}) {
+    const Vec2<double> along{std::cos(direction), std::sin(direction)};
+    const auto strut = [&](double load) {
+      auto model = std::make_shared<Model>();
+      model->add_body("strut", {.mass = 1, .inertia = 1, .position = 0.5 * along, .angle = direction});
+      model->add("", Revolute<double>{.s_j = {-0.5, 0}}, ground, 0);
+      model->add_force("", torsion_spring(10, direction), ground, 0);
+      model->add_force("", PointForce<double>{.s_i = {0.5, 0}}, 0, ground, {-load * along.x, -load * along.y});
+      return model;
+    };
+    for (const int branch : {0, 2, 3}) {
+      const Followed run = follow(strut, {.from = 0, .to = 12, .branch = branch});
+      ASSERT_TRUE(run.report.ok()) << run.report.message;
+      ASSERT_EQ(run.report.critical.size(), 1u) << direction;
+      EXPECT_TRUE(run.report.critical[0].branch) << direction;
+      EXPECT_NEAR(run.report.critical[0].value, 10, 1e-8) << direction;
+      const double theta = run.rows.back().q[2] - direction;
+      EXPECT_NEAR(10 * theta, 12 * std::sin(theta), 1e-8);
+      EXPECT_EQ(std::abs(theta) > 0.5, branch > 0) << direction;
+    }
+  }
+}
+
 TEST(Path, RaisesTheSideForceOfAHangingChain) {
   const auto references = reference_values("hanging_chain_side_force");
   for (const auto& [name, reference] : references.items()) {

@@ -129,6 +129,8 @@ const BadScene elements[] = {
     {"ZeroDistanceGiven", constraint(R"(§{"type": "coupler", "i": ["crank", [0.4, 0]], "j": "rod"})"),
      "a revolute joint"},
     {"NegativeDistance", constraint(R"({"type": "coupler", "i": "crank", "j": "rod", "value": §-1})"), "negative"},
+    {"ValueAndLength", constraint(R"({"type": "coupler", "i": "crank", "j": "rod", "value": 1, "length": §1})"),
+     "\"length\" is another name of \"value\""},
     {"NameTwice", constraint(R"({"type": "absolute_x", "name": "A", "i": "crank"},
                                 {"type": "absolute_y", "name": §"A", "i": "crank"})"),
      "the name \"A\" is used twice: an element in line 4 has it already"},

@@ -140,6 +140,14 @@ TEST(BuildModel, WhatIsLeftOutComesFromTheGivenConfiguration) {
   EXPECT_EQ(torque.values[0].constant, 3);
 }
 
+TEST(BuildModel, ACouplersValueMayBeCalledItsLength) {
+  const Model model = build(R"({"catena": 1, "parameters": {"l": 2}, "bodies": {"a": {}, "b": {"position": [3, 4]}},
+    "constraints": [{"type": "coupler", "i": "a", "j": "b", "length": "=2*l"}],
+    "drivers": [{"type": "coupler", "i": "ground", "j": "b", "length": {"polynomial": [5, 1]}}]})");
+  EXPECT_EQ(list<Coupler<double>>(model)[0].values[0].constant, 4);
+  EXPECT_GE(list<Coupler<double>>(model)[1].values[0].function, 0);
+}
+
 TEST(BuildModel, BlocksExpandInTheOrderOfTheTextAndMayNameWhatComesLater) {
   const Model model = build(R"({"catena": 1, "parameters": {"n": 3},
     "constraints": [{"type": "revolute", "name": "first", "i": "ground", "j": "link1"}],

@@ -113,7 +113,8 @@ TEST(Events, ReleaseAJoint) {
   for (std::size_t k = 0; k < t.size(); ++k) {
     EXPECT_NEAR(angle[k], 2 * t[k], 1e-9);
     EXPECT_NEAR(balance[k], 0, 1e-9);
-    if (t[k] <= quarter) {
+    // The row of the event itself is still held; its instant is known to rounding.
+    if (t[k] <= quarter + 1e-12) {
       EXPECT_NEAR(x[k], std::cos(2 * t[k]), 1e-9);
       EXPECT_NEAR(pull[k], -3 * 4 * std::cos(2 * t[k]), 1e-8);  // m omega^2 towards the pin
     } else {

@@ -15,8 +15,6 @@ constexpr double first_shift = 1e-8;
 constexpr double shift_window = 1e4;
 // Degrees of freedom up to which the whole spectrum is computed.
 constexpr int few_freedoms = 300;
-// v^T K v below this part of its terms cannot be told from zero.
-constexpr double zero_part = 1e-14;
 // Where modes are counted: this far below the highest one, relative to it and to the upper end.
 constexpr double count_margin = 1e-8, count_rounding = 1e-15;
 // How closely the lowest omega^2 is bracketed, as a factor.
@@ -44,7 +42,12 @@ ModeSearch::ModeSearch(StaticSystem& system, std::span<const double> lambda, std
   // What K does to a vector in which every mass takes part: the root mean square of omega^2, about.
   system_.fill(lambda_, Curvature::exact, 0);
   std::vector<double> v(mass_.size()), product(mass_.size());
-  for (std::size_t c = 0; c < v.size(); ++c) v[c] = op_.typical()[c] * (c % 2 ? 1 : -1);
+  // Signs without any order: in a regular pattern neighbours may move together, and nothing is stretched.
+  unsigned random = 1;
+  for (std::size_t c = 0; c < v.size(); ++c) {
+    random = random * 1664525u + 1013904223u;
+    v[c] = (random >> 31 ? 1 : -1) * op_.typical()[c];
+  }
   system_.matrix().multiply_stiffness(v, product);
   double forces = 0, masses = 0;
   for (std::size_t c = 0; c < v.size(); ++c) {
@@ -78,57 +81,6 @@ double ModeSearch::lowest_shift(double upper) {
     (below ? some : none) = middle;
   }
   return -none;
-}
-
-std::vector<Mode> ModeSearch::modes_of(Lanczos& lanczos, double sigma, int count) const {
-  const std::span<const double> theta = lanczos.theta();
-  std::vector<std::pair<double, int>> order;
-  double nearest = 1 / std::max(std::abs(theta.front()), std::abs(theta.back()));
-  for (std::size_t k = 0; k < theta.size(); ++k) order.emplace_back(sigma + 1 / theta[k], static_cast<int>(k));
-  std::sort(order.begin(), order.end());
-  order.resize(std::min(order.size(), static_cast<std::size_t>(count)));
-  double farthest = 0;
-  if (lanczos.exhausted()) {
-    lanczos.resolve_upper_end();
-    farthest = std::max(std::abs(lanczos.energy().front()), std::abs(lanczos.energy().back()));
-  }
-  std::vector<Mode> modes;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    // An error of 1e-16 in the largest theta against one of 1e-16 in the largest omega^2.
-    const double distance = std::abs(order[k].first - sigma);
-    if (lanczos.exhausted() && distance * distance > nearest * farthest) {
-      const int own = static_cast<int>(k);
-      modes.push_back({lanczos.energy()[k] + sigma, lanczos.energy_vector(own)});
-    } else {
-      modes.push_back({order[k].first, lanczos.vector(order[k].second)});
-    }
-  }
-  return modes;
-}
-
-// Values come as sigma + 1 / theta, whose rounding grows with the square of the distance from sigma. The Rayleigh
-// quotient of the true matrices is wrong by the square of the shape's error and by its own rounding alone. What cannot
-// be told from zero is zero.
-void ModeSearch::refine_values(std::vector<Mode>& modes, double sigma) {
-  if (modes.empty()) return;
-  system_.fill(lambda_, Curvature::exact, 0);
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Mode& mode : modes) nearest = std::min(nearest, std::abs(mode.omega2 - sigma));
-  std::vector<double> product(mass_.size());
-  for (Mode& mode : modes) {
-    system_.matrix().multiply_stiffness(mode.shape, product);
-    double energy = 0, inertia = 0;
-    for (std::size_t c = 0; c < product.size(); ++c) {
-      energy += product[c] * mode.shape[c];
-      inertia += mass_[c] * mode.shape[c] * mode.shape[c];
-    }
-    const double terms = system_.matrix().absolute_quadratic(mode.shape), distance = std::abs(mode.omega2 - sigma);
-    if (std::abs(energy) <= zero_part * terms) {
-      mode.omega2 = 0;
-    } else if (terms * nearest < distance * distance * inertia) {
-      mode.omega2 = energy / inertia;
-    }
-  }
 }
 
 double ModeSearch::better_shift(const std::vector<Mode>& modes, double sigma) const {

@@ -15,6 +15,8 @@ constexpr double located = 1e-11, beyond = 1e-6;
 constexpr int most_trials = 80, power_steps = 3;
 // Part of |v_i d_i| that <v, d> must have at a limit point, and part of |v| |d| below which nothing of d is in v.
 constexpr double limit_part = 1e-5, no_overlap = 1e-9;
+// Below this part of the mechanism's forces a change of the residual over the parameter's range is rounding.
+constexpr double no_change = 1e-9;
 
 // What is known at one place of the step.
 struct Trial {
@@ -72,18 +74,30 @@ class Locator {
     std::copy_n(x_.begin(), columns, mode_.begin());
   }
 
-  bool is_branch(const PathPoint& point) {
+  /// The parameter's part of the path's direction, -1 ... 1, at the place that was tried last.
+  double parameter_part(const PathPoint& point) {
+    return system_.product(system_.tangent(point, step_.tangent), system_.along_parameter(1));
+  }
+
+  /// Whether another path crosses at a critical point: certainly where the parameter goes on in the same sense behind
+  /// it. Where it turns back, as on the branches of a pitchfork too, what the derivative by p has of the null vector
+  /// decides.
+  bool is_branch(const PathPoint& point, double part_before, double part_after) {
+    if (part_before * part_after > 0) return true;
     std::vector<double> derivative;
     const std::vector<double> vector = x_;
     system_.parameter_derivative(point, derivative);
-    double sum = 0, terms = 0, v = 0, d = 0;
+    double sum = 0, terms = 0, v = 0, d = 0, travel = 0;
     for (std::size_t k = 0; k < vector.size(); ++k) {
+      travel += std::abs(vector[k]);
       sum += vector[k] * derivative[k];
       terms += std::abs(vector[k] * derivative[k]);
       v += vector[k] * vector[k];
       d += derivative[k] * derivative[k];
     }
-    return std::abs(sum) <= limit_part * terms || terms <= no_overlap * std::sqrt(v * d);
+    const double range = system_.along_parameter(1).p;
+    return std::abs(sum) <= limit_part * terms || terms <= no_overlap * std::sqrt(v * d) ||
+           terms * range <= no_change * system_.statics().force_size() * travel;
   }
 
   void forget_mode() { mode_.clear(); }
@@ -140,12 +154,15 @@ std::vector<CriticalPoint> find_critical_points(PathSystem& system, const PathSt
     critical.s = place->s;
     critical.point = place->point;
     // Beside the point the factors exist whatever rounding makes of the point itself.
+    const Trial before = locator.try_at(std::max(place->s - beyond * step.s, low.s));
+    const double part_before = before.found && !before.singular ? locator.parameter_part(before.point) : 0;
     Trial after = locator.try_at(std::min(place->s + beyond * step.s, step.s));
     if (!after.found || after.singular) break;
+    const double part_after = locator.parameter_part(after.point);
     locator.test_function();
     locator.sharpen();
     locator.sharpen();
-    critical.branch = locator.is_branch(critical.point);
+    critical.branch = locator.is_branch(critical.point, part_before, part_after);
     critical.modes = std::abs(after.modes - low.modes);
     critical.mode = locator.mode();
     const double sense = std::copysign(1.0, decisive_component(system.statics().plan(), critical.mode));

@@ -77,7 +77,8 @@ StaticOutcome StaticSearch::polish_by_newton(std::vector<double>& q, std::vector
     const std::size_t k = at(system_.plan().coordinate[c]);
     change[c] = q[k] - found[k];
   }
-  if (polished.converged() && system_.change_norm(change) <= largest_polish) {
+  const bool better = polished.converged() || polished.residual < outcome.residual;
+  if (better && system_.change_norm(change) <= largest_polish) {
     outcome.residual = polished.residual;
     return outcome;
   }

@@ -66,6 +66,9 @@ ElementDescription describe_element(int number) {
   }
   for (FieldDescription& field : d.fields) {
     if (field.kind == FieldKind::point && field.body == 1 && d.second_body_optional) field.required = false;
+    if constexpr (requires { E::value_synonym; }) {
+      if (field.key == "value") field.synonym = E::value_synonym;
+    }
     field.slot = d.slots;
     d.slots += slots_of(field.kind);
   }

@@ -32,7 +32,8 @@ enum class FieldKind {
 struct FieldDescription {
   FieldKind kind = FieldKind::number;
   std::string_view key, doc;
-  int slot = 0;  ///< the first of the element's slots that belong to it
+  int slot = 0;                   ///< the first of the element's slots that belong to it
+  std::string_view synonym = {};  ///< another name of the key
   bool required = true;
   std::string_view unless;  ///< a key that may stand in place of a required one
   UnitKind unit = UnitKind::none,

@@ -134,11 +134,25 @@ void SceneReading::element(const JsonValue& object, std::string_view list, Block
     key_of_field[f] = count;
     keys[count++] = type->fields[f].key;
   }
+  const std::size_t first_synonym = count;
+  for (const FieldDescription& field : type->fields) {
+    if (!field.synonym.empty()) keys[count++] = field.synonym;
+  }
   std::array<JsonValue, most_keys> v;
   const JsonValue named = object.find("name");
   const std::string owner = owner_text(type->type, named);
   read_members(object, std::span(keys).first(count), owner, v, diagnostics);
   const JsonValue at = attached ? v[3] : JsonValue();
+  for (std::size_t f = 0, other = first_synonym; f < type->fields.size(); ++f) {
+    const FieldDescription& field = type->fields[f];
+    if (field.synonym.empty()) continue;
+    const JsonValue& synonym = v[other++];
+    JsonValue& value = v[key_of_field[f]];
+    if (value && synonym)
+      error(synonym, fmt::format("{}: {} is another name of {}; give one of them", owner, in_quotes(field.synonym),
+                                 in_quotes(field.key)));
+    if (!value) value = synonym;
+  }
 
   ElementTemplate element;
   element.offset = static_cast<std::uint32_t>(object.offset());

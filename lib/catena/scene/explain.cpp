@@ -103,6 +103,7 @@ std::string explain_element(const ElementDescription& type) {
     if (!field.required && field.doc.find("default") == std::string_view::npos &&
         form(field).find("default") == std::string::npos)
       omitted = field.omitted == Omitted::given ? "; default: as in the given configuration" : "; optional";
+    if (!field.synonym.empty()) omitted += fmt::format("; also called {}", field.synonym);
     lines.push_back({std::string(field.key), fmt::format("{}: {}{}", field.doc, form(field), omitted)});
   }
   if (type.bodies > 0)

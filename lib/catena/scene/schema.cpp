@@ -92,6 +92,7 @@ json element_schema(const ElementDescription& type, bool driver) {
   std::vector<std::string> required{"type"};
   for (const FieldDescription& field : type.fields) {
     properties[std::string(field.key)] = field_schema(field);
+    if (!field.synonym.empty()) properties[std::string(field.synonym)] = field_schema(field);
     if ((field.required && field.unless.empty()) || (driver && field.kind == FieldKind::function))
       required.emplace_back(field.key);
   }

@@ -22,6 +22,7 @@ struct Coupler {
   static constexpr int bodies = 2;
   static constexpr int functions = 1;
   static constexpr bool squared = true;
+  static constexpr std::string_view value_synonym = "length";  ///< what a rod's value may be called too
   static constexpr UnitKind value_unit = UnitKind::length;
   static constexpr auto hessian_pattern = squared_distance_hessian_pattern;
 
