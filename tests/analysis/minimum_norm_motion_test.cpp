@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "analysis/linkages.hpp"
@@ -244,6 +245,37 @@ TEST(MinimumNormMotion, LocatesWhereAnArmIsStretchedOut) {
     EXPECT_NEAR(found, (reach - 1.5) / 0.3, 1e-9) << message;
     EXPECT_NE(message.find("\"x\""), std::string::npos) << message;
     EXPECT_EQ(rows.t.size(), 2u);
+  }
+}
+
+// A parallelogram that passes its flat positions, with a link hung from its coupler that nothing drives: it stays a
+// parallelogram, and the link ends where it ends with other rows.
+TEST(MinimumNormMotion, GoesOnAlongItsBranchWhereBranchesMeet) {
+  for (double scale : {1e-2, 1.0, 1e3}) {
+    for (double start : {0.3, 0.7, 1.3, 2.9}) {
+      std::vector<double> ends;
+      for (double every : {0.05, 0.37, 20.0}) {
+        const FourBar f{0.7 * scale, 2 * scale, 0.7 * scale, 2 * scale};
+        auto model = driven_four_bar(f, ramp(start, 1));
+        const int loose = add_rod(*model, "loose", {2 * scale, scale}, {3 * scale, scale});
+        model->add("P", Revolute<>{{0.2 * scale, 0.1 * scale}, *model->find_point(loose, "from")},
+                   model->find_body("coupler"), loose);
+        MinimumNormMotion analysis(model);
+        const Rows rows = follow(analysis, TimeGrid::range(0, 20, every));
+        ASSERT_TRUE(rows.report.ok()) << start << " " << every << ": " << rows.report.message;
+        const auto place = [&](const char* name) {
+          return static_cast<std::size_t>(
+              3 * analysis.plan().plan_body[static_cast<std::size_t>(model->find_body(name))] + 2);
+        };
+        for (std::size_t k = 0; k < rows.t.size(); ++k) {
+          const double off = std::remainder(rows.q[k][place("rocker")] - start - rows.t[k], 2 * std::numbers::pi);
+          EXPECT_NEAR(off, 0, 1e-10) << start << " " << every << " t = " << rows.t[k];
+        }
+        ends.push_back(rows.q.back()[place("loose")]);
+      }
+      EXPECT_NEAR(ends[1], ends[0], 1e-9);
+      EXPECT_NEAR(ends[2], ends[0], 1e-9);
+    }
   }
 }
 

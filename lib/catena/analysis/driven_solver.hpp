@@ -69,6 +69,8 @@ class DrivenSolver {
   /// Left null vector of the matrix near a singular configuration, by inverse iteration with the factors at the last
   /// configuration: rows of the plan, Euclidean length one. False if there are no factors.
   bool left_null_vector(std::span<double> w);
+  /// Largest entry of a vector over all rows, in units of the length scale or rad.
+  double row_norm(std::span<const double> r) const { return scaling_.row_norm(r); }
   /// Residual of the rows that are not solved with, in units of the length scale or rad; `worst`: its row.
   double redundant_residual(std::span<const double> residual_of_all, int* worst) const;
 

@@ -67,8 +67,7 @@ Report Kinematics::check_redundant_rates(double allowed, bool in_words) {
   rates_.resize(at(plan_->columns));
   const double speed = solver_.distance(qd_, nothing_, nullptr);
   const auto check = [&](std::span<const double> known, double least, const char* what, const char* per) -> Report {
-    const double scale = std::max(
-        {row_norm(*plan_, rest_, evaluator_.length_scale()), solver_.distance(known, nothing_, nullptr), least});
+    const double scale = std::max({solver_.row_norm(rest_), solver_.distance(known, nothing_, nullptr), least});
     for (std::size_t c = 0; c < rates_.size(); ++c) rates_[c] = -known[at(plan_->coordinate[c])];
     multiply_add(plan_->jacobian, values, rates_, rest_);
     int worst = -1;

@@ -25,6 +25,11 @@ constexpr double safety = 0.9, largest_growth = 4, largest_cut = 0.1;
 // Velocities this much larger than they were on average are on their way to infinity.
 constexpr double runaway = 30;
 constexpr std::size_t most_names = 4;  // in a message
+// Steps that would have to be shorter than this (rad, length scales) may be near a place where branches meet: it is
+// jumped over by one of `reaches`, with an error that is this many tolerances at most.
+constexpr double suspicious_step = 0.03;
+constexpr double reaches[] = {0.05, 0.1, 0.03, 0.2, 0.15};
+constexpr double allowance = 1e4;
 
 }  // namespace
 
@@ -128,7 +133,7 @@ Report MinimumNormMotion::stuck() {
 }
 
 // stage_[0] holds the velocities at (t_, q_); trial_ is where the step ends.
-bool MinimumNormMotion::evaluate_stages(double h, double end, bool lands_on_break) {
+bool MinimumNormMotion::evaluate_stages(double h, double end, bool lands_on_break, bool on_constraints) {
   const Tableau& table = dormand_prince_8();
   const std::size_t moving = 3 * at(plan_->moving);
   const auto combine = [&](const StageSum& sum, const double* from, std::span<double> out) {
@@ -142,7 +147,9 @@ bool MinimumNormMotion::evaluate_stages(double h, double end, bool lands_on_brea
     combine(table.a[at(s)], q_.data(), trial_);
     const bool at_end = table.c[at(s)] == 1;
     const double t = at_end ? end : t_ + table.c[at(s)] * h;
-    if (!least_.velocity(t, at_end && lands_on_break ? Side::before : Side::after, trial_, stage_[at(s)])) return false;
+    const Side side = at_end && lands_on_break ? Side::before : Side::after;
+    if (on_constraints && !(least_.project(t, side, trial_) <= largest_residual)) return false;
+    if (!least_.velocity(t, side, trial_, stage_[at(s)])) return false;
   }
   combine(table.b, q_.data(), trial_);
   combine(table.error, nullptr, error_);
@@ -155,6 +162,29 @@ double MinimumNormMotion::error_size(double h) const {
   const double high = least_.size(error_) / tolerance, low = least_.size(error_low_) / tolerance;
   const double denominator = std::sqrt(high * high + 0.01 * low * low);
   return denominator == 0 ? 0 : high * high / denominator;
+}
+
+// A step to `end`, which it leaves in trial_: its error in tolerances, infinite if there is none.
+double MinimumNormMotion::try_step(double end, bool lands_on_break, bool on_constraints) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  if (!evaluate_stages(end - t_, end, lands_on_break, on_constraints)) return none;
+  const double error = error_size(end - t_);
+  if (!(error <= (on_constraints ? allowance : 1))) return error;
+  const double residual = least_.project(end, Side::before, trial_);
+  if (!(residual <= largest_residual)) return none;
+  residual_ = residual;
+  return error;
+}
+
+// Across a place where branches meet. Off the constraints the velocities mean nothing there; those of v(t, P(t, q)), P
+// the projection onto the constraints, are the same ones on them and as smooth as the branch.
+std::optional<double> MinimumNormMotion::jump(double limit, bool breaks, double rate) {
+  for (double reach : reaches) {
+    const double h = reach / rate, remaining = std::abs(limit - t_);
+    const double end = h < remaining ? t_ + std::copysign(h, limit - t_) : limit;
+    if (try_step(end, breaks && end == limit, true) <= allowance) return end;
+  }
+  return std::nullopt;
 }
 
 Report MinimumNormMotion::move_to(double t, RowObserver& observer) {
@@ -181,31 +211,33 @@ Report MinimumNormMotion::move_to(double t, RowObserver& observer) {
       double h = std::min(step_, rate > 0 ? longest_step / rate : step_);
       const bool lands = h >= remaining * (1 - 1e-9);
       if (lands) h = remaining;
-      const double end = lands ? limit : t_ + direction * h;
+      double end = lands ? limit : t_ + direction * h;
       if (!lands && (h < smallest || end == t_)) return stuck();
       // Backwards in time a jump lies on the other side.
-      bool good = evaluate_stages(direction * h, end, direction > 0 && lands && breaks);
-      const double error = good ? error_size(h) : 0;
+      const double error = try_step(end, direction > 0 && lands && breaks, false);
       const double growth =
           std::clamp(safety * std::pow(std::max(error, 1e-10), -1.0 / 8), largest_cut, largest_growth);
-      good = good && error <= 1;
-      if (good) {
-        const double residual = least_.project(end, Side::before, trial_);
-        good = residual <= largest_residual;
-        if (good) residual_ = residual;
-      }
-      if (!good) {
+      if (!(error <= 1)) {
         ++evaluator_.counters.rejected;
-        step_ = h * (error > 1 ? std::min(growth, 0.9) : 0.25);
+        const bool first = !rejected;
         rejected = true;
-        continue;
+        const std::optional<double> across =
+            first && h * rate < suspicious_step ? jump(limit, direction > 0 && breaks, rate) : std::nullopt;
+        if (!across) {
+          step_ = h * (std::isfinite(error) ? std::min(growth, 0.9) : 0.25);
+          continue;
+        }
+        end = *across;
+        h = std::abs(end - t_);
+        step_ = h;
+      } else if (!lands || growth < 1) {
+        step_ = h * (rejected ? std::min(growth, 1.0) : growth);
       }
       ++evaluator_.counters.steps;
       travelled_ += rate * h;
       q_.swap(trial_);
       t_ = end;
       has_velocity_ = false;
-      if (!lands || growth < 1) step_ = h * (rejected ? std::min(growth, 1.0) : growth);
       break;
     }
   }
@@ -214,9 +246,9 @@ Report MinimumNormMotion::move_to(double t, RowObserver& observer) {
 
 Report MinimumNormMotion::solve_rates(const Needs& needs) {
   if (!needs.velocity && !needs.acceleration) return {};
-  if (!least_.velocity(t_, Side::after, q_, qd_)) return no_velocity();
+  if (!least_.velocity(t_, Side::after, q_, qd_)) return t_ == started_ ? no_velocity() : stuck();
   has_velocity_ = true;
-  if (needs.acceleration && !least_.acceleration(qd_, qdd_)) return no_velocity();
+  if (needs.acceleration && !least_.acceleration(qd_, qdd_)) return t_ == started_ ? no_velocity() : stuck();
   return {};
 }
 

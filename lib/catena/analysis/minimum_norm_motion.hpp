@@ -6,6 +6,8 @@
 // least change: the path does not depend on how far apart rows are. What nothing drives stays where it is. The path
 // depends on the metric, and after a closed motion of the drivers the mechanism need not be where it began. No loads:
 // free motions would need forces of their own.
+// Where branches meet the motion goes on along its own: steps that would have to be short there are replaced by one
+// across the place, its stages put on the constraints. Such places are passed, not located.
 // Singular where the drivers ask for a motion that no velocity can make (lock-up: an arm stretched out), reported with
 // its instant; where rows become dependent without that, steps shrink and the report says `singular`.
 #pragma once
@@ -38,8 +40,10 @@ class MinimumNormMotion {
  private:
   Report prepare(AnalysisReport& report);
   Report move_to(double t, RowObserver& observer);
-  bool evaluate_stages(double h, double end, bool lands_on_break);
+  bool evaluate_stages(double h, double end, bool lands_on_break, bool on_constraints);
   double error_size(double h) const;
+  double try_step(double end, bool lands_on_break, bool on_constraints);
+  std::optional<double> jump(double limit, bool breaks, double rate);
   Report solve_rates(const Needs& needs);
   Report no_velocity() const;
   Report cancelled() const;
