@@ -11,8 +11,13 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double largest_turn = 0.7;
 constexpr double smallest_factor = 1e-4;
-// Shifts of K, relative to the largest stiffness.
-constexpr double least_shift = 1e-6, largest_shift = 1e6;
+// Shifts of K: the first is beside rounding of the largest stiffness or beside force / extent, the last beside the
+// largest stiffness. Between them what softly holds a stiff part must be told from no stiffness at all.
+constexpr double first_of_rounding = 1e-15, first_of_force = 1e-6, largest_shift = 1e6;
+// How a shift grows where the inertia is not that of a minimum, and where the energy did not fall.
+constexpr double stiffening = 32, shortening = 8;
+// A short step ends the search if it is exact, or leaves no more than this part of the forces.
+constexpr double stationary_part = 1e-7;
 constexpr double sufficient_decrease = 1e-4;
 constexpr double polishing_change = 1e-6;
 // Constraints are met to this, in length scales or rad, between steps.
@@ -99,20 +104,21 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
     outcome.end = StaticEnd::singular;
     return outcome;
   }
-  const double extent = system.extent();
+  const double extent = system.extent(), load = system.force_norm(system.gradient());
   double reach = 1, last_shift = 0;
   double energy = system.energy(), energy_size = std::abs(energy);
   for (outcome.iterations = 1; outcome.iterations <= options.max_iterations; ++outcome.iterations) {
     ++system.evaluator().counters.iterations;
     // The exact K, stiffened until its inertia is that of a minimum and a step can be made.
     bool accepted = false;
-    for (double shift = 0; !accepted && shift < largest_shift;) {
-      const double stiffness = shift * std::max(system.matrix().largest_stiffness(), system.force_size() / extent);
-      system.fill(lambda, Curvature::exact, stiffness);
+    for (double shift = 0; !accepted;) {
+      system.fill(lambda, Curvature::exact, shift);
       const bool minimum = system.factorize().ok() && system.matrix().negative_modes() == 0;
       outcome.exact = minimum && shift == 0;
-      const double used = shift;
-      shift = shift == 0 ? std::max(least_shift, last_shift / 16) : 8 * shift;
+      const double used = shift, stiffest = system.matrix().largest_stiffness(), loads = system.force_size() / extent;
+      if (shift > largest_shift * std::max(stiffest, loads)) break;
+      const double first = std::max({first_of_rounding * stiffest, first_of_force * loads, last_shift / 16});
+      shift = shift == 0 ? first : (minimum ? shortening : stiffening) * shift;
       if (!minimum) continue;
       const StaticStep step = system.newton_step(1e-12);
       outcome.step = system.change_norm(step.change);
@@ -124,7 +130,10 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
         std::copy(next_lambda.begin(), next_lambda.end(), lambda.begin());
         system.move_to(q);
         polish(system, q, lambda, outcome);
-        outcome.end = outcome.exact ? StaticEnd::minimum : StaticEnd::stationary;
+        const double force = std::max(system.force_scale(lambda), load);
+        outcome.end = outcome.exact                                 ? StaticEnd::minimum
+                      : outcome.residual <= stationary_part * force ? StaticEnd::stationary
+                                                                    : StaticEnd::slow;
         return outcome;
       }
       std::copy(system.gradient().begin(), system.gradient().end(), gradient.begin());

@@ -23,8 +23,8 @@ constexpr double last_smoothing = 1e-8;
 constexpr double first_cooling = 0.2, least_cooling = 0.97;
 // A point has arrived at a t with a change below this, length scales or rad, and this part of t left of the equations.
 constexpr double arrived_change = 0.02, arrived_part = 0.1;
-// Newton steps for it: at the first t; at the others; so few that t may fall faster.
-constexpr int first_steps = 80, most_steps = 8, quick_steps = 3;
+// Newton steps for it at all but the first t; so few that t may fall faster.
+constexpr int most_steps = 8, quick_steps = 3;
 
 // The smoothed complementarity of all gaps, in units.
 class SmoothedGaps {
@@ -170,7 +170,7 @@ StaticOutcome follow_smoothing(StaticSystem& system, std::span<double> q, std::s
       q_before.assign(q.begin(), q.end());
       lambda_before.assign(lambda.begin(), lambda.end());
       t_before = t;
-    } else if (factor > 0 && steps < (first ? first_steps : most_steps)) {
+    } else if (factor > 0 && steps < (first ? options.first_steps : most_steps)) {
       continue;
     } else {
       // Too far at once.

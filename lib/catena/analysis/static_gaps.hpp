@@ -31,6 +31,7 @@ struct ActiveSet {
 
 struct StaticGapOptions {
   int max_iterations = 200;  ///< of the smoothed equations
+  int first_steps = 80;      ///< of them, until the first smoothing has arrived
   double tolerance = 1e-12;  ///< of gaps in length scales or rad, of their forces relative to the largest one
 };
 

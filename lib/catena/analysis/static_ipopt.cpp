@@ -250,6 +250,8 @@ bool ipopt_is_built_in() { return true; }
 StaticOutcome solve_by_ipopt(StaticSystem& system, std::span<double> q, std::span<double> lambda,
                              const StaticIpoptOptions& options) {
   const std::lock_guard lock(only_one());
+  system.move_to(q);
+  const double load = system.force_norm(system.gradient());
   const Ipopt::SmartPtr<Problem> problem = new Problem(system, q, lambda, options.warm);
   const Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
   if (options.verbose) application->Jnlst()->AddFileJournal("log", "stderr", Ipopt::J_ITERSUMMARY);
@@ -281,7 +283,9 @@ StaticOutcome solve_by_ipopt(StaticSystem& system, std::span<double> q, std::spa
   std::vector<double> residual(system.gradient().size());
   system.residual(lambda, residual);
   outcome.residual = system.force_norm(residual);
-  const bool balanced = outcome.residual <= rough * system.force_scale(lambda) && system.phi_norm() <= rough;
+  // Springs that balance each other leave no net force: what they held at the start counts as well.
+  const double force = std::max(system.force_scale(lambda), load);
+  const bool balanced = outcome.residual <= rough * force && system.phi_norm() <= rough;
   if (outcome.converged() && !balanced) outcome.end = StaticEnd::diverged;
   return outcome;
 }

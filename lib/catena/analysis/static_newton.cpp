@@ -135,8 +135,10 @@ StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::sp
       outcome.end = StaticEnd::diverged;
       return outcome;
     }
+    // What looks like rounding beside the stiffest spring may be all that a soft one holds: the step tells.
     const auto is_small = [&] {
-      return outcome.residual <= options.tolerance * system.force_scale(lambda) + system.rounding_force() &&
+      const double rounding = outcome.step <= last_change ? system.rounding_force() : 0;
+      return outcome.residual <= options.tolerance * system.force_scale(lambda) + rounding &&
              system.phi_norm() <= std::max(options.tolerance, 10 * system.rounding_change());
     };
     // One step ends a linear problem, whatever its length.

@@ -22,15 +22,21 @@ constexpr int few_freedoms = 30;
 // Coordinates up to which it is followed, whatever the freedoms, where nothing else got anywhere.
 constexpr int most_downhill_columns = 3000;
 constexpr int most_trials = 14;
+// Steps downhill from where Newton's full steps do not settle: more where there is more to move, until that takes some
+// ten seconds.
+constexpr int least_downhill = 200, most_downhill_work = 20'000'000;
 // Starts of Newton's that fail before Ipopt is asked.
 constexpr unsigned starts_before_ipopt = 4;
 // Newton may move what another solver found by this much, length scales or rad: more is another place.
 constexpr double largest_polish = 0.05;
 constexpr double rounding_tolerance = 1e-15;
+// What remains to be done where forces are known to rounding of stiff springs only, length scales or rad.
+constexpr double rounded_change = 1e-9;
 // Beyond this interior points only gather rounding: the rest is polished.
 constexpr double finest_barrier = 1e-10;
 // Of gaps and their forces, whatever was asked for: the last steps cost next to nothing.
 constexpr double gap_tolerance = 1e-12;
+constexpr int few_first_steps = 40, most_first_steps = 80;
 constexpr double first_push = 0.05, largest_push = 0.8;
 // Overlaps below this many length scales, and stiffness contributions below this part of the scene's, count as absent.
 constexpr double absent_overlap = 1e-6, absent_stiffness = 1e-8;
@@ -80,6 +86,7 @@ StaticOutcome StaticSearch::polish_by_newton(std::vector<double>& q, std::vector
   const bool better = polished.converged() || polished.residual < outcome.residual;
   if (better && system_.change_norm(change) <= largest_polish) {
     outcome.residual = polished.residual;
+    outcome.step = polished.step;
     return outcome;
   }
   q = found;
@@ -91,7 +98,9 @@ StaticOutcome StaticSearch::polish_by_newton(std::vector<double>& q, std::vector
 StaticOutcome StaticSearch::minimise_with_gaps(std::vector<double>& q, std::vector<double>& lambda, bool warm, Way way,
                                                StaticResult& result) {
   StaticOutcome outcome;
-  const StaticGapOptions exact{.tolerance = std::min(options_.tolerance, gap_tolerance)};
+  // Steps that do not settle soon rarely do: patience is for when nothing else got anywhere.
+  const StaticGapOptions exact{.first_steps = result.iterations == 0 ? few_first_steps : most_first_steps,
+                               .tolerance = std::min(options_.tolerance, gap_tolerance)};
   result.solver = way == Way::ipopt ? "ipopt" : way == Way::nlopt ? "nlopt" : "newton";
   if (way == Way::ipopt || way == Way::nlopt) {
     system_.use_gaps();
@@ -170,7 +179,26 @@ StaticOutcome StaticSearch::minimise(std::vector<double>& q, std::vector<double>
   outcome = solve_by_newton(system_, q, lambda,
                             {.tolerance = options_.tolerance, .warm = warm, .stationary = options_.stationary});
   result.iterations += outcome.iterations;
+  if (outcome.end != StaticEnd::slow) return outcome;
+  // Full steps that go back and forth have come far down all the same: the energy decides about the rest of the way.
+  const int columns = std::max(system_.plan().columns, 1);
+  const int most = std::max(least_downhill, std::min(least_downhill + 2 * columns, most_downhill_work / columns));
+  outcome = solve_by_descent(system_, q, lambda, {.max_iterations = most, .tolerance = options_.tolerance});
+  result.iterations += outcome.iterations;
   return outcome;
+}
+
+// Whether forces balance and constraints hold to the tolerance. What may be rounding beside the stiffest spring passes
+// only if a Newton step, by the factors of the certificate, would move nothing: it may be all that a soft spring holds.
+bool StaticSearch::is_accurate(const StaticOutcome& outcome, std::span<const double> lambda) {
+  const double scale = std::max(system_.force_scale(lambda), first_load_);
+  if (!(system_.phi_norm() <= std::max(options_.tolerance, 10 * system_.rounding_change()))) return false;
+  if (outcome.residual <= options_.tolerance * scale) return true;
+  if (!(outcome.residual <= options_.tolerance * scale + system_.rounding_force())) return false;
+  std::vector<double> force(at(system_.plan().columns)), gap(at(system_.plan().rows), 0.0);
+  system_.residual(lambda, force);
+  for (double& f : force) f = -f;
+  return system_.change_norm(system_.solve(force, gap, rounding_tolerance).change) <= rounded_change;
 }
 
 // A push along the mode, its largest component `size` rad or length scales, to the side where the energy is lower.
@@ -298,6 +326,8 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
     return result;
   }
   const std::vector<double> start = q;
+  system_.move_to(q);
+  first_load_ = system_.force_norm(system_.gradient());
   const bool own = options_.solver == StaticSolver::automatic || options_.solver == StaticSolver::newton;
   const bool few =
       !options_.warm && !options_.stationary && !system_.has_gaps() && plan.columns - plan.rows <= few_freedoms;
@@ -315,12 +345,16 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
     if (outcome.end == StaticEnd::unbounded) break;
     if (outcome.converged()) {
       result.certificate = certify_with_gaps(q, lambda, result.gaps);
-      accepted = result.certificate.valid && (options_.stationary || result.certificate.negative_modes == 0);
-      if (accepted || !result.certificate.valid || result.certificate.mode.empty()) break;
-      leave(result.certificate, q, push);
-      push = std::min(2 * push, largest_push);
-      pushed = true;
-      continue;
+      const bool wanted = options_.stationary || result.certificate.negative_modes == 0;
+      accepted = result.certificate.valid && wanted && is_accurate(outcome, lambda);
+      if (accepted || !result.certificate.valid) break;
+      if (!wanted) {
+        if (result.certificate.mode.empty()) break;
+        leave(result.certificate, q, push);
+        push = std::min(2 * push, largest_push);
+        pushed = true;
+        continue;
+      }
     }
     if (!own) break;
     // Where following the valley does not get anywhere Newton may, and where that does not, another start or Ipopt.
@@ -329,12 +363,12 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
       way = Way::settling;
     } else if (way != Way::newton) {
       way = Way::newton;
+    } else if (ask_downhill && shaken > 0) {
+      ask_downhill = false;
+      way = Way::valley;
     } else if (ask_ipopt && shaken >= starts_before_ipopt) {
       ask_ipopt = false;
       way = Way::ipopt;
-    } else if (ask_downhill && shaken >= starts_before_ipopt) {
-      ask_downhill = false;
-      way = Way::valley;
     } else {
       ++shaken;
       shake(q, shaken, shaken == 1 ? 0.1 : 1.0);
@@ -349,13 +383,6 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
   name_weak_gaps(evaluator, result);
   if (way == Way::valley && !few) {
     result.report.warnings.push_back("found by going downhill from the start, after other ways had failed");
-  }
-  const double scale = std::max(system_.force_scale(lambda), system_.load_size());
-  const bool accurate = result.residual <= options_.tolerance * scale + system_.rounding_force() &&
-                        system_.phi_norm() <= std::max(options_.tolerance, 10 * system_.rounding_change());
-  if (!accurate) {
-    result.report = explain(outcome, start);
-    return result;
   }
   const Certificate& c = result.certificate;
   const std::string motion = c.mode.empty() ? "" : describe_mode(evaluator, c.mode, system_.radius());

@@ -2,7 +2,9 @@
 // minimum.
 //
 //   few degrees of freedom and a start that can be assembled nearby   downhill from there, else Newton
-//   otherwise                                                         Newton, restarted from shaken angles
+//   otherwise                                                         Newton; where its full steps do not settle on
+//                                                                     downhill; else restarted from shaken angles
+//   two of them did not converge                                      downhill from the start
 //   automatic and several of them did not converge                    Ipopt; then Newton from other angles again
 //   automatic and nothing converged                                   damped settling (StaticSettling)
 //   forces that follow their body: no energy                          damped settling, no certificate
@@ -64,6 +66,7 @@ class StaticSearch {
                                    StaticResult& result);
   Certificate certify_with_gaps(const std::vector<double>& q, std::span<const double> lambda, const ActiveSet& gaps);
   StaticOutcome polish_by_newton(std::vector<double>& q, std::vector<double>& lambda, StaticOutcome outcome);
+  bool is_accurate(const StaticOutcome& outcome, std::span<const double> lambda);
   void leave(const Certificate& certificate, std::vector<double>& q, double size);
   StaticResult find_without_energy(std::vector<double>& q, std::vector<double>& lambda);
   Report explain(const StaticOutcome& outcome, const std::vector<double>& start);
@@ -71,6 +74,7 @@ class StaticSearch {
 
   StaticSystem& system_;
   StaticSearchOptions options_;
+  double first_load_ = 0;  // largest applied force at the start, N
 };
 
 }  // namespace catena

@@ -17,6 +17,8 @@ constexpr double regularisation = 1e-11;
 constexpr double tolerated_growth = 3, fastest_fading = 0.05, stiffening = 8;
 constexpr double largest_damping = 1e12, least_damping = 1e-14;
 constexpr double lost_extents = 1e5;
+// Without damping nothing more is to be had below this, length scales or rad.
+constexpr double last_change = 1e-10;
 
 // The unsymmetric matrix, its pattern from the plan.
 class Tangent {
@@ -166,8 +168,10 @@ StaticOutcome solve_by_settling(StaticSystem& system, std::span<double> q, std::
         return outcome;
       }
     }
-    const double scale = system.force_scale(lambda);
-    if (outcome.residual <= options.tolerance * scale + system.rounding_force() &&
+    // Beside the stiffest spring rounding may be all that a soft one holds: then the step decides.
+    const double scale = std::max(system.force_scale(lambda), force);
+    const double rounding = damping == 0 && outcome.step <= last_change ? system.rounding_force() : 0;
+    if (outcome.residual <= options.tolerance * scale + rounding &&
         system.phi_norm() <= std::max(options.tolerance, 10 * system.rounding_change())) {
       outcome.end = StaticEnd::stationary;
       return outcome;
