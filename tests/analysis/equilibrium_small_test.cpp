@@ -9,6 +9,7 @@
 #include "catena/elements/constraints/absolute_y.hpp"
 #include "catena/elements/constraints/revolute.hpp"
 #include "catena/elements/constraints/translational.hpp"
+#include "catena/elements/constraints/weld.hpp"
 #include "catena/elements/forces/torque.hpp"
 #include "catena/model/model_add.hpp"
 #include "oracles/static_reference.hpp"
@@ -166,6 +167,40 @@ TEST(Equilibrium, NamesMotionsThatMeetNoResistance) {
   report = Equilibrium(std::make_shared<Model>(wheel), {}, {.accept = Accept::stationary}).solve();
   EXPECT_TRUE(report.ok()) << report.message;
   EXPECT_TRUE(report.neutral);
+  EXPECT_FALSE(report.stable);
+}
+
+TEST(Equilibrium, FindsMotionsFreeWhereNothingPulls) {
+  // Neither load nor spring: every place of the bar is as good; where it is welded it stands.
+  Model bar;
+  bar.add_body("bar", {.mass = 1, .inertia = 1, .position = {0.5, 0}});
+  Model welded = bar;
+  bar.add("pin", Revolute<double>{{0, 0}, {-0.5, 0}}, ground, 0);
+  EquilibriumReport report = Equilibrium(std::make_shared<Model>(bar)).solve();
+  EXPECT_EQ(report.status, Status::refused);
+  EXPECT_NE(report.message.find("a motion is free: body \"bar\""), std::string::npos) << report.message;
+  report = Equilibrium(std::make_shared<Model>(bar), {}, {.accept = Accept::stationary}).solve();
+  EXPECT_TRUE(report.ok()) << report.message;
+  EXPECT_TRUE(report.neutral);
+  EXPECT_FALSE(report.stable);
+  welded.add("weld", Weld<double>{.s_i = {0, 0}, .s_j = {-0.5, 0}}, ground, 0);
+  report = Equilibrium(std::make_shared<Model>(welded)).solve();
+  EXPECT_TRUE(report.ok()) << report.message;
+  EXPECT_TRUE(report.stable);
+}
+
+TEST(Equilibrium, GivesUpWhereOnlyInfiniteForcesWouldDo) {
+  // Two bars exactly as long as their span: nothing finite carries their weight.
+  Model bars;
+  bars.gravity = {0, -testing::earth};
+  for (int k = 0; k < 2; ++k) {
+    bars.add_body("bar" + std::to_string(k), {.mass = 1, .inertia = 1.0 / 12, .position = {k + 0.5, 0}});
+    bars.add("", Revolute<double>{{k == 0 ? 0 : 0.5, 0}, {-0.5, 0}}, k == 0 ? ground : 0, k);
+  }
+  bars.add("", Revolute<double>{{2, 0}, {0.5, 0}}, ground, 1);
+  const EquilibriumReport report = Equilibrium(std::make_shared<Model>(bars)).solve();
+  EXPECT_EQ(report.status, Status::not_converged);
+  EXPECT_FALSE(report.certified);
   EXPECT_FALSE(report.stable);
 }
 

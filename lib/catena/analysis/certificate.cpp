@@ -12,6 +12,8 @@ namespace {
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double neutral_part = 1e-10;
+// Stiffnesses below this are none, N/m.
+constexpr double no_stiffness = 1e-100;
 constexpr double rigid_part = 1e6;
 constexpr int usual_steps = 8, most_steps = 40;
 
@@ -129,8 +131,10 @@ Certificate certify(StaticSystem& system, std::span<const double> lambda) {
   system.fill(lambda, Curvature::exact, 0);
   bool factored = system.factorize().ok();
   const double stiffest = std::max(matrix.largest_stiffness(), system.force_size() / system.length());
-  const double floor = neutral_part * stiffest;
-  const bool shifted = !factored;
+  // Where nothing resists and nothing pulls, any motion is free: found with a stiffness of 1 N/m in the place of none.
+  const bool nothing = !(stiffest > no_stiffness);
+  const double floor = nothing ? 1 : neutral_part * stiffest;
+  const bool shifted = !factored || nothing;
   if (shifted) {
     // A pivot vanished exactly: something is neutral. Beside it the factors exist.
     system.fill(lambda, Curvature::exact, floor);
@@ -143,7 +147,7 @@ Certificate certify(StaticSystem& system, std::span<const double> lambda) {
   Lanczos lanczos(system, weights);
   const double lowest = lanczos.lowest(unstable ? most_steps : usual_steps, unstable, result.mode);
   // Where the constraints leave no freedom the inverse is what eps made it: far stiffer than anything in K.
-  if (lowest == 0 || std::abs(lowest) > rigid_part * stiffest) {
+  if (lowest == 0 || std::abs(lowest) > rigid_part * (nothing ? floor : stiffest)) {
     result.mode.clear();
     result.stable = result.negative_modes == 0;
     return result;
@@ -160,6 +164,8 @@ Certificate certify(StaticSystem& system, std::span<const double> lambda) {
     result.neutral = true;
     system.fill(lambda, Curvature::exact, floor);
     if (system.factorize().ok()) result.negative_modes = matrix.negative_modes();
+    // Whoever asks what resists the mode is to see the true matrix.
+    if (nothing) system.fill(lambda, Curvature::exact, 0);
   }
   result.stable = result.negative_modes == 0 && !result.neutral;
   return result;

@@ -112,7 +112,7 @@ EquilibriumReport Equilibrium::solve() {
   report.residual = result.residual;
   report.energy = system_.energy();
   const Certificate& c = result.certificate;
-  report.certified = c.valid && result.has_energy;
+  report.certified = c.valid && result.has_energy && result.report.status != Status::not_converged;
   report.stable = report.certified && c.stable;
   report.neutral = report.certified && c.neutral;
   report.negative_modes = report.certified ? c.negative_modes : 0;

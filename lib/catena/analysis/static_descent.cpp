@@ -111,14 +111,19 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
     ++system.evaluator().counters.iterations;
     // The exact K, stiffened until its inertia is that of a minimum and a step can be made.
     bool accepted = false;
-    for (double shift = 0; !accepted;) {
+    double stiffest = 0, loads = 0;
+    for (double shift = 0; !accepted && shift <= largest_shift * std::max(stiffest, loads);) {
       system.fill(lambda, Curvature::exact, shift);
       const bool minimum = system.factorize().ok() && system.matrix().negative_modes() == 0;
       outcome.exact = minimum && shift == 0;
-      const double used = shift, stiffest = system.matrix().largest_stiffness(), loads = system.force_size() / extent;
-      if (shift > largest_shift * std::max(stiffest, loads)) break;
-      const double first = std::max({first_of_rounding * stiffest, first_of_force * loads, last_shift / 16});
-      shift = shift == 0 ? first : (minimum ? shortening : stiffening) * shift;
+      const double used = shift;
+      if (shift == 0) {
+        stiffest = system.matrix().largest_stiffness();
+        loads = system.force_size() / extent;
+        shift = std::max({first_of_rounding * stiffest, first_of_force * loads, last_shift / 16});
+      } else {
+        shift *= minimum ? shortening : stiffening;
+      }
       if (!minimum) continue;
       const StaticStep step = system.newton_step(1e-12);
       outcome.step = system.change_norm(step.change);
