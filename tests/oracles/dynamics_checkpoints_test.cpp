@@ -3,7 +3,7 @@
 // forces.
 #include <cstring>
 
-#include "catena/analysis/dynamics_with_checkpoints.hpp"
+#include "catena/analysis/dynamics_with_events.hpp"
 #include "catena/columns/energy.hpp"
 #include "oracles/dynamics_mechanisms.hpp"
 
@@ -40,8 +40,8 @@ struct Outcome {
 Outcome run(const std::shared_ptr<Model>& model, const DynamicsOptions& options, const TimeGrid& grid, double every,
             const MotionMemory* from = nullptr) {
   Outcome result;
-  DynamicsWithCheckpoints dynamics(model, {}, options, every,
-                                   [&](const MotionMemory& memory) { result.memories.push_back(memory); });
+  DynamicsWithEvents dynamics(model, {}, options, {}, {.analysis = "dynamics"});
+  dynamics.pause({every, [&](const MotionMemory& memory) { result.memories.push_back(memory); }});
   if (from) dynamics.resume(*from);
   RowFunction keep([&](const Snapshot& s) {
     result.rows.add(s);

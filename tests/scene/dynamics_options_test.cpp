@@ -124,6 +124,19 @@ class CheckpointInScenes : public ::testing::Test {
     options.restart = restart;
     return run_text(text, options);
   }
+  /// The file as it is when the run has come to time `cut`.
+  std::string checkpoint_before(const std::string& text, double every, double cut) {
+    const std::string copy = folder_ / "early";
+    RunOptions options;
+    options.checkpoint = file_;
+    options.checkpoint_every = every;
+    std::atomic<bool> cancel = false;
+    options.cancel = &cancel;
+    options.progress = [&](const Progress& progress) { cancel = progress.fraction * 4 >= cut; };
+    run_text(text, options);
+    std::filesystem::copy_file(file_, copy, std::filesystem::copy_options::overwrite_existing);
+    return copy;
+  }
   testing::TemporaryFolder folder_;
   std::string file_ = folder_ / "saved";
 };
@@ -138,6 +151,41 @@ TEST_F(CheckpointInScenes, GoesOnBitForBit) {
     expect_same_end(whole, rest);
     EXPECT_TRUE(warns(rest, "taken up from a checkpoint at t = 3.4"));
     EXPECT_EQ(rest.last("t"), 5);
+  }
+}
+
+// A pin breaks, a latch closes and an instant is noted, before the checkpoint and after it.
+TEST_F(CheckpointInScenes, GoesOnThroughEvents) {
+  const auto scene = [](const std::string& method) {
+    return R"({"catena": 1, "gravity": [0, -9.81],
+      "bodies": {"a": {"rod": {"from": [0, 0], "to": [1, 0]}, "mass": 1},
+                 "b": {"rod": {"from": [1, 0], "to": [2, 0]}, "mass": 1}},
+      "constraints": [{"type": "revolute", "name": "O", "i": "ground", "j": "a.from"},
+                      {"type": "revolute", "name": "A", "i": "a.to", "j": "b.from"},
+                      {"type": "absolute_angle", "name": "latch", "i": "a", "value": "-100 deg"}],
+      "forces": [{"type": "torque", "i": "b", "torque": {"harmonic": {"amplitude": 3, "omega": 5}}}],
+      "analyses": [{"type": "dynamics", "until": 4, "every": 0.125, "method": ")" +
+           method + R"(", "events": [
+        {"name": "low", "when": "b.vy", "value": -1},
+        {"name": "break", "when": "a.angle", "value": -1, "action": "release", "element": "A"},
+        {"name": "close", "when": "a.angle", "value": "-100 deg", "action": "engage", "element": "latch"}]}],
+      "outputs": ["a.angle", "b.angle", "b.y", "O.fx", "energy"]})";
+  };
+  for (const char* method : {"rk8", "rk5", "adams", "baumgarte", "partitioning"}) {
+    for (const double every : {0.13, 0.5, 1.1}) {
+      const TextRun whole = run(scene(method), every);
+      ASSERT_EQ(whole.outcome.exit_code, 0) << whole.outcome.error_text << whole.analysis().report.message;
+      const auto& events = std::get<std::vector<FieldRecord>>(*field(whole, "events"));
+      ASSERT_GE(events.size(), 3u);
+      // Taken up from the last checkpoint, and from one that a run wrote which was cut off half way.
+      for (const double cut : {4.0, 0.6}) {
+        if (every > cut) continue;
+        const TextRun rest = run(scene(method), 0, checkpoint_before(scene(method), every, cut));
+        ASSERT_EQ(rest.outcome.exit_code, 0) << rest.outcome.error_text << rest.analysis().report.message;
+        expect_same_end(whole, rest);
+        EXPECT_EQ(std::get<std::vector<FieldRecord>>(*field(rest, "events")), events) << method << " " << cut;
+      }
+    }
   }
 }
 

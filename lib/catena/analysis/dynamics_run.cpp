@@ -148,10 +148,12 @@ void Dynamics::remember() {
   memory_.next_row = next_row_;
   memory_.steps = evaluator_.counters.steps + evaluator_.counters.rejected - first_step_;
   memory_.integrator = integrator_->memory();
+  memory_.earlier = earlier_;
 }
 
 void Dynamics::resume(const MotionMemory& memory) {
   memory_ = memory;
+  earlier_ = memory.earlier;
   t_ = memory.t;
   resumed_ = prepared_ = true;
   equations_.use_masses();

@@ -17,7 +17,7 @@ constexpr double misfit = 1e-6;
 /// Passes rows on and counts them.
 class CountingObserver final : public RowObserver {
  public:
-  explicit CountingObserver(RowObserver& target) : target_(target) {}
+  CountingObserver(RowObserver& target, std::int64_t before) : target_(target), rows_(before) {}
   bool observe(const Snapshot& snapshot) override {
     ++rows_;
     return target_.observe(snapshot);
@@ -27,7 +27,7 @@ class CountingObserver final : public RowObserver {
 
  private:
   RowObserver& target_;
-  std::int64_t rows_ = 0;
+  std::int64_t rows_;
 };
 
 }  // namespace
@@ -46,6 +46,30 @@ DynamicsWithEvents::DynamicsWithEvents(std::shared_ptr<const Model> model, const
 }
 
 void DynamicsWithEvents::make_dynamics() { dynamics_ = std::make_unique<Dynamics>(model_, plan_options_, options_); }
+
+void DynamicsWithEvents::start_from(const SystemState& state) {
+  if (!resumed_) dynamics_->start_from(state);
+}
+
+void DynamicsWithEvents::resume(const MotionMemory& memory) {
+  resumed_ = true;
+  first_row_ = memory.next_row;
+  rows_before_ = memory.rows_given;
+  plan_options_.released_elements = memory.events.released;
+  watch_->remember(memory.events);
+  make_dynamics();
+  dynamics_->resume(memory);
+}
+
+void DynamicsWithEvents::save_and_resume(std::int64_t rows_given, std::int64_t next_row) {
+  MotionMemory memory = dynamics_->memory();
+  memory.next_row = next_row;
+  memory.rows_given = rows_given;
+  memory.events = watch_->memory();
+  memory.events.released = plan_options_.released_elements;
+  if (pauses_.save) pauses_.save(memory);
+  resume(memory);
+}
 
 Report DynamicsWithEvents::check_fit(int element) {
   Report report;
@@ -91,24 +115,32 @@ Report DynamicsWithEvents::act(const Event& event, bool sum_up_work) {
 }
 
 AnalysisReport DynamicsWithEvents::run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
-  CountingObserver rows(observer);
+  CountingObserver rows(observer, rows_before_);
   watch_->rows_given = [&] { return rows.rows(); };
   AnalysisReport total;
-  TimeGrid rest = grid;
+  std::int64_t next_row = first_row_;
+  TimeGrid rest = grid.from_row(next_row);
   double last_action = -1;
   int at_once = 0;
   for (;;) {
-    dynamics_->watch(watch_.get());
+    if (!watch_->events().empty()) dynamics_->watch(watch_.get());
+    // The next multiple that lies clearly ahead.
+    dynamics_->pause_after((std::floor(dynamics_->time() / pauses_.every * (1 + 1e-12)) + 1) * pauses_.every);
     add_part(total, dynamics_->run(rest, needs, rows));
     const int stopped_by = dynamics_->stopped_by();
+    next_row += dynamics_->next_row();
+    rest = grid.from_row(next_row);
+    if (total.ok() && dynamics_->paused()) {
+      save_and_resume(rows.rows(), next_row);
+      continue;
+    }
     if (!total.ok() || stopped_by < 0) return total;
     const Event& event = watch_->events()[static_cast<std::size_t>(stopped_by)];
     if (event.action == EventAction::stop) {
-      if (dynamics_->next_row() < rest.size())
+      if (rest.size() > 0)
         total.message = fmt::format("event \"{}\" ended it at t = {:.12g} s", event.name, dynamics_->time());
       return total;
     }
-    rest = rest.from_row(dynamics_->next_row());
     at_once = dynamics_->time() > last_action ? 1 : at_once + 1;
     last_action = dynamics_->time();
     Report acted = act(event, needs.work || watch_->needs().work);

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "catena/analysis/motion_memory.hpp"
 #include "catena/columns/column_set.hpp"
 
 namespace catena {
@@ -35,13 +36,6 @@ struct Event {
   EventDirection direction = EventDirection::any;
   EventAction action = EventAction::record;
   int element = -1;  ///< what is released or engaged, in the model's list
-};
-
-/// What happened: `row` is the number of the row given at that instant, from 0.
-struct EventRecord {
-  std::string name;
-  double t = 0;
-  std::int64_t row = 0;
 };
 
 struct FoundEvent {
@@ -67,6 +61,13 @@ class EventWatch {
   /// Counts rows: called with the number of those given so far.
   std::function<std::int64_t()> rows_given;
   const std::vector<EventRecord>& records() const { return records_; }
+  /// What it has seen, without `released`; and takes over what another one had.
+  EventMemory memory() const { return {{}, side_, largest_, records_}; }
+  void remember(const EventMemory& memory) {
+    side_ = memory.sides;
+    largest_ = memory.largest;
+    records_ = memory.records;
+  }
 
  private:
   bool sample(double t, const StateAt& state_at, std::span<double> g);

@@ -2,10 +2,11 @@
 // same machine, needs to make the very same steps and rows, bit for bit, as any other that starts from these numbers.
 //
 // It holds no history of an integrator. A run that is to be taken up again later drops its own history where it pauses,
-// and goes on from these numbers as well: see DynamicsWithCheckpoints. Units: SI.
+// and goes on from these numbers as well: see Pauses in dynamics_with_events.hpp. Units: SI.
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace catena {
@@ -24,13 +25,31 @@ struct IntegratorMemory {
   double usual_ratio = 1e-300;                    ///< largest pivot ratio so far
 };
 
+/// What happened at an event: `row` is the number of the row given at that instant, from 0.
+struct EventRecord {
+  std::string name;
+  double t = 0;
+  std::int64_t row = 0;
+};
+
+/// What those who watch for events have seen.
+struct EventMemory {
+  std::vector<int> released;  ///< constraints that do not hold, by number of the element
+  std::vector<int> sides;     ///< by event: see EventWatch
+  std::vector<double> largest;
+  std::vector<EventRecord> records;
+};
+
 struct MotionMemory {
   double t = 0;
   std::vector<double> y;      ///< [q, qd, work] in the order of the plan, relative to its origins; see Motion
   std::vector<double> turns;  ///< by moving body: whole turns that its angle in y lacks
   double initial_energy = 0;
   std::int64_t next_row = 0, steps = 0;  ///< of the grid; made so far, rejected ones included
+  std::int64_t rows_given = 0;           ///< those at events included
   IntegratorMemory integrator;
+  WorkSoFar earlier;  ///< what was summed up before the last event that acted
+  EventMemory events;
 };
 
 }  // namespace catena

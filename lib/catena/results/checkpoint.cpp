@@ -19,6 +19,14 @@ std::uint64_t sum_over(std::string_view text, std::uint64_t sum = 0xcbf29ce48422
   return sum;
 }
 
+/// The order of the values in the file.
+template <class Channel>
+void pass(Channel& channel, EventRecord& record) {
+  channel.value(record.name);
+  channel.value(record.t);
+  channel.value(record.row);
+}
+
 /// Writes a line a value, or reads it back; damage shows as a CheckpointError.
 class Writer {
  public:
@@ -28,9 +36,11 @@ class Writer {
   void value(double& number) { text += fmt::format("{:016x}\n", std::bit_cast<std::uint64_t>(number)); }
   void value(std::int64_t& number) { text += fmt::format("{}\n", number); }
   void value(int& number) { text += fmt::format("{}\n", number); }
-  void value(std::vector<double>& numbers) {
-    text += fmt::format("{}\n", numbers.size());
-    for (double& number : numbers) value(number);
+  void value(EventRecord& record) { pass(*this, record); }
+  template <class T>
+  void value(std::vector<T>& list) {
+    text += fmt::format("{}\n", list.size());
+    for (T& entry : list) value(entry);
   }
 };
 
@@ -42,11 +52,13 @@ class Reader {
   void value(double& number) { number = std::bit_cast<double>(whole<std::uint64_t>(16)); }
   void value(std::int64_t& number) { number = whole<std::int64_t>(10); }
   void value(int& number) { number = whole<int>(10); }
-  void value(std::vector<double>& numbers) {
+  void value(EventRecord& record) { pass(*this, record); }
+  template <class T>
+  void value(std::vector<T>& list) {
     const auto size = whole<std::size_t>(10);
     if (size > rest_.size()) damaged();
-    numbers.resize(size);
-    for (double& number : numbers) value(number);
+    list.resize(size);
+    for (T& entry : list) value(entry);
   }
   [[noreturn]] void damaged() const {
     throw CheckpointError(fmt::format("the checkpoint \"{}\" is damaged: it was cut short or changed", path_));
@@ -74,7 +86,6 @@ class Reader {
   const std::string& path_;
 };
 
-/// The order of the values in the file.
 template <class Channel>
 void pass(Channel& channel, Checkpoint& checkpoint) {
   channel.value(checkpoint.owner);
@@ -88,11 +99,21 @@ void pass(Channel& channel, Checkpoint& checkpoint) {
   channel.value(motion.initial_energy);
   channel.value(motion.next_row);
   channel.value(motion.steps);
+  channel.value(motion.rows_given);
   channel.value(motion.integrator.step);
   channel.value(motion.integrator.rate);
   channel.value(motion.integrator.root_energy);
   channel.value(motion.integrator.radians);
   channel.value(motion.integrator.usual_ratio);
+  channel.value(motion.earlier.supplied);
+  channel.value(motion.earlier.dissipated);
+  channel.value(motion.earlier.initial_energy);
+  channel.value(motion.earlier.energy);
+  channel.value(motion.earlier.by_driver);
+  channel.value(motion.events.released);
+  channel.value(motion.events.sides);
+  channel.value(motion.events.largest);
+  channel.value(motion.events.records);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "catena/analysis/dynamics_of_islands.hpp"
-#include "catena/analysis/dynamics_with_checkpoints.hpp"
 #include "catena/analysis/dynamics_with_events.hpp"
 #include "catena/analysis/error_estimate.hpp"
 #include "catena/analysis/paces.hpp"
@@ -83,8 +82,9 @@ class DynamicsTask {
   /// Runs what was made with used_options_.
   template <class Analysis>
   void run_or_estimate(Analysis& analysis, const PlanOptions& plan);
-  void run_with_events();
-  void run_with_checkpoints();
+  void run_with_events_or_pauses();
+  /// Has the motion saved now and then; where it cannot be, `failure` says why.
+  Pauses pauses(std::string& failure) const;
   void run_apart(const std::vector<std::vector<int>>& classes);
 
   AnalysisContext& context_;
@@ -107,7 +107,6 @@ std::string DynamicsTask::conflict() const {
            "instants in the second run";
   }
   if (context_.checkpoint && estimates_) return "an estimate of the error and checkpoints do not go together";
-  if (context_.checkpoint && !events.empty()) return "checkpoints do not go with events";
   return {};
 }
 
@@ -122,42 +121,44 @@ void DynamicsTask::run_or_estimate(Analysis& analysis, const PlanOptions& plan) 
   result_.fields.push_back({"estimated_error", records_of(both.error(), *model_)});
 }
 
-void DynamicsTask::run_with_events() {
-  std::vector<std::string> reactions = names_;
-  for (const EventRequest& request : context_.task.events) reactions.push_back(request.column);
-  const PlanOptions plan = plan_options(*model_, reactions);
-  DynamicsWithEvents analysis(model_, plan, used_options_, events_of(context_.task, *model_), sources);
-  run_or_estimate(analysis, plan);
-  std::vector<FieldRecord> records;
-  for (const EventRecord& record : analysis.records())
-    records.push_back({{"name", record.name}, {"t", record.t}, {"row", record.row}});
-  result_.fields.push_back({"method", std::string(to_string(analysis.method()))});
-  result_.fields.push_back({"events", std::move(records)});
-}
-
-void DynamicsTask::run_with_checkpoints() {
+Pauses DynamicsTask::pauses(std::string& failure) const {
   const CheckpointRequest& request = *context_.checkpoint;
   const double begin = context_.state.t;
-  const double every = request.every > 0 ? request.every : part_between_checkpoints * (grid_->last() - begin);
-  std::string failure;
-  const auto save = [&](const MotionMemory& memory) {
+  Pauses pauses{request.every > 0 ? request.every : part_between_checkpoints * (grid_->last() - begin)};
+  pauses.save = [&request, &failure, begin](const MotionMemory& memory) {
     try {
       request.save(begin, memory);
     } catch (const CheckpointError& error) {
       failure = error.what();  // of a run of hours the rows are worth more than its checkpoints
     }
   };
-  DynamicsWithCheckpoints analysis(model_, plan_options(*model_, names_), used_options_, every, save);
-  if (request.restart) analysis.resume(request.restart->motion);
-  run_over_time(context_, result_, analysis, *grid_, names_, sources);
+  return pauses;
+}
+
+void DynamicsTask::run_with_events_or_pauses() {
+  std::vector<std::string> reactions = names_;
+  for (const EventRequest& request : context_.task.events) reactions.push_back(request.column);
+  const PlanOptions plan = plan_options(*model_, reactions);
+  DynamicsWithEvents analysis(model_, plan, used_options_, events_of(context_.task, *model_), sources);
+  std::string failure, taken_up;
+  if (context_.checkpoint) {
+    analysis.pause(pauses(failure));
+    if (const std::optional<Checkpoint>& restart = context_.checkpoint->restart) {
+      analysis.resume(restart->motion);
+      taken_up = fmt::format("taken up from a checkpoint at t = {:.12g} s: the {} rows before are not given again",
+                             restart->motion.t, restart->motion.rows_given);
+    }
+  }
+  run_or_estimate(analysis, plan);
   std::vector<std::string>& warnings = result_.report.warnings;
   if (!failure.empty()) warnings.push_back("a checkpoint was not saved: " + failure);
-  if (request.restart) {
-    warnings.push_back(
-        fmt::format("taken up from a checkpoint at t = {:.12g} s: the {} rows before are not given again",
-                    request.restart->motion.t, request.restart->motion.next_row));
-  }
+  if (!taken_up.empty()) warnings.push_back(taken_up);
   result_.fields.push_back({"method", std::string(to_string(analysis.method()))});
+  if (context_.task.events.empty()) return;
+  std::vector<FieldRecord> records;
+  for (const EventRecord& record : analysis.records())
+    records.push_back({{"name", record.name}, {"t", record.t}, {"row", record.row}});
+  result_.fields.push_back({"events", std::move(records)});
 }
 
 /// Mechanisms that have nothing to do with each other, and differ in pace.
@@ -180,8 +181,7 @@ void DynamicsTask::run() {
   grid_ = time_grid(context_, result_.report);
   if (!grid_) return;
   if (estimates_) used_options_ = finer_options(options_);
-  if (!context_.task.events.empty()) return run_with_events();
-  if (context_.checkpoint) return run_with_checkpoints();
+  if (!context_.task.events.empty() || context_.checkpoint) return run_with_events_or_pauses();
   // A fixed step is the same for all; two runs that are compared must be divided alike.
   if (!estimates_ && options_.step == 0) {
     if (const auto classes = classes_of_pace(model_); classes.size() > 1) return run_apart(classes);
