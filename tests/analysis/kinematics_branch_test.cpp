@@ -211,5 +211,26 @@ TEST(KinematicsBranch, AMotionThatStartsAtRestWhereBranchesMeetTakesTheOneChosen
   }
 }
 
+// A smooth step away from the flat position: nothing moves before it.
+TEST(KinematicsBranch, AStepThatBeginsWhereBranchesMeetTakesTheOneChosen) {
+  for (int order : {3, 5}) {
+    const auto angle = TimeFunction<double>::step(0, 1, pi, pi + 1, order);
+    auto model = driven_four_bar(parallelogram, angle);
+    for (int branch : {1, 2}) {
+      Kinematics kinematics(model, {}, {.branch = branch});
+      double last = 0;
+      RowFunction note([&](const Snapshot& s) {
+        last = s.q[angle_place(s, "rocker")];
+        return true;
+      });
+      const AnalysisReport report = kinematics.run(TimeGrid::range(0, 1, 0.25), everything, note);
+      ASSERT_TRUE(report.ok()) << order << " " << report.message;
+      const double rate = rates(
+          kinematics, *model, kinematics.singular_points().at(0).tangents.at(static_cast<std::size_t>(branch - 1)))[0];
+      EXPECT_NEAR(wrapped(last - (rate > 0 ? pi + 1 : parallelogram.at(pi + 1, 1).rocker)), 0, 1e-9) << order;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace catena::testing

@@ -33,30 +33,43 @@ class Departure {
     for (std::size_t e = 0; e < elements.size(); ++e) {
       if (elements[e].kind == ElementKind::driver) drivers_.push_back(static_cast<int>(e));
     }
-    evaluator_.set_time(rest);
-    for (int e : drivers_) start_.push_back(evaluator_.element_value(e).f);
+    evaluator_.set_time(rest, direction > 0 ? Side::after : Side::before);
+    for (int e : drivers_) start_.push_back(evaluator_.element_value(e));
   }
 
   /// Of the driver that has come furthest after |t - rest|; negative where it lies on the other side at t.
   double at(double t) const {
-    const double later = rest_ + direction_ * std::abs(t - rest_);
-    std::size_t fastest = 0;
-    double most = 0;
-    evaluator_.set_time(later);
-    for (std::size_t k = 0; k < drivers_.size(); ++k) {
-      const double way = evaluator_.element_value(drivers_[k]).f - start_[k];
-      if (std::abs(way) > std::abs(most)) most = way, fastest = k;
-    }
-    if (t == later || most == 0) return std::abs(most);
+    const Fastest fastest = fastest_at(t);
     evaluator_.set_time(t);
-    return std::copysign(1.0, most) * (evaluator_.element_value(drivers_[fastest]).f - start_[fastest]);
+    return fastest.sign * way(fastest.driver);
+  }
+  /// Its acceleration at rest, of the same sign.
+  double acceleration(double t) const {
+    const Fastest fastest = fastest_at(t);
+    return fastest.sign * start_[fastest.driver].dd;
   }
 
  private:
+  struct Fastest {
+    std::size_t driver = 0;
+    double sign = 0;
+  };
+  double way(std::size_t k) const { return evaluator_.element_value(drivers_[k]).f - start_[k].f; }
+  Fastest fastest_at(double t) const {
+    evaluator_.set_time(rest_ + direction_ * std::abs(t - rest_));
+    Fastest fastest;
+    double most = 0;
+    for (std::size_t k = 0; k < drivers_.size(); ++k) {
+      const double w = way(k);
+      if (std::abs(w) > std::abs(most)) most = w, fastest = {k, std::copysign(1.0, w)};
+    }
+    return fastest;
+  }
+
   Evaluator& evaluator_;
   double rest_, direction_;
   std::vector<int> drivers_;
-  std::vector<double> start_;
+  std::vector<Taylor<double>> start_;
 };
 
 }  // namespace
@@ -86,6 +99,7 @@ Report Kinematics::take_branch(const SingularPoint& point, int branch, double di
     rate = std::max(rate, solver_.distance(other, nothing_, nullptr));
     if (&other != &tangent) apart = std::min(apart, solver_.distance(other, tangent, nullptr));
   }
+  std::vector<double> accelerations(q_.size());
   const Departure departure(evaluator_, point.t, direction);
   for (double entry : entries) {
     const double h = direction * (rests ? time_to_depart(point.t, direction, entry / rate) : entry / rate);
@@ -97,22 +111,33 @@ Report Kinematics::take_branch(const SingularPoint& point, int branch, double di
       for (std::size_t k = 0; k < trial_.size(); ++k) trial_[k] = point.q[k] + s * tangent[k];
       return add_node(bridge, t, entry_allowance * std::abs(s) * std::min(apart, rate));
     };
+    // Around the instant; or, where nothing moves before it or tables begin with it, from there on: that the drivers
+    // rest tells the velocity and the acceleration at the instant itself.
+    constexpr double around[] = {1, 2, -1, -2}, after[] = {1, 2, 3, 4};
     MotionBridge bridge;
-    if (!add_along_tangent(bridge, point.t + h)) continue;
-    const bool whole = tables_reach(point.t - 2 * h);
-    const double offsets[2][3] = {{2, -1, -2}, {2, 3, 4}};
-    bool built = true;
-    for (double offset : offsets[whole ? 0 : 1]) {
-      if (!built) break;
-      const double t = point.t + offset * h;
-      if (rests) {
-        built = add_along_tangent(bridge, t);
-        continue;
+    bool built = false;
+    for (const double* places : {around, after}) {
+      bridge.clear();
+      if (rests && places == after) {
+        for (std::size_t k = 0; k < tangent.size(); ++k) {
+          accelerations[k] = direction * departure.acceleration(point.t + h) * tangent[k];
+        }
+        bridge.add(point.t, point.q, nothing_, accelerations);
       }
-      bridge.evaluate(t, trial_, {}, {});
-      built = add_node(bridge, t, entry_allowance * entry);
+      built = true;
+      for (std::size_t k = 0; built && bridge.size() < MotionBridge::capacity; ++k) {
+        const double t = point.t + places[k] * h;
+        if (rests || bridge.empty()) {
+          built = tables_reach(t) && add_along_tangent(bridge, t);
+        } else {
+          bridge.evaluate(t, trial_, {}, {});
+          built = add_node(bridge, t, entry_allowance * entry);
+        }
+      }
+      built = built && follows_constraints(bridge, point.t, point.t + h);
+      if (built) break;
     }
-    if (!built || !follows_constraints(bridge, point.t, point.t + h)) continue;
+    if (!built) continue;
     bridge_ = std::move(bridge);
     bridge_from_ = std::min(point.t, point.t + h);
     bridge_to_ = std::max(point.t, point.t + h);
