@@ -30,6 +30,7 @@ TEST(Quantity, ConvertsToSi) {
       {"60 rpm", 2 * pi, UnitKind::angular_velocity},
       {"180 deg/s", pi, UnitKind::angular_velocity},
       {"1 rev/min^2", 2 * pi / 3600, UnitKind::angular_acceleration},
+      {"2 rev^2/min^2", 8 * pi * pi / 3600, UnitKind::squared_frequency},
       {"250 g", 0.25, UnitKind::mass},
       {"3 t", 3000, UnitKind::mass},
       {"2 kg m^2", 2, UnitKind::inertia},

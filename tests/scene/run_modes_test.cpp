@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "catena/base/si_unit.hpp"
 #include "scene/run_text.hpp"
 
 namespace catena {
@@ -43,6 +44,9 @@ TEST(RunModes, GivesRowsAndLists) {
   EXPECT_EQ(run.column("mode"), (std::vector<double>{1, 2}));
   EXPECT_EQ(run.column("omega2"), list(result, "omega2"));
   EXPECT_EQ(run.column("omega"), list(result, "omega"));
+  ASSERT_EQ(result.columns.size(), 3u);
+  EXPECT_EQ(si_unit(result.columns[1].unit), "rad^2/s^2");
+  EXPECT_EQ(si_unit(result.columns[2].unit), "rad/s");
 }
 
 TEST(RunModes, GivesShapesOfTheColumnsAskedFor) {

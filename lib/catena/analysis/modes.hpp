@@ -26,7 +26,7 @@ struct ModesOptions {
 };
 
 struct ModesReport : AnalysisReport {
-  std::vector<double> omega2;               ///< 1/s^2, ascending
+  std::vector<double> omega2;               ///< rad^2/s^2, ascending
   std::vector<double> omega;                ///< sqrt(|omega2|), rad/s; a growth rate, 1/s, where omega2 < 0
   std::vector<std::vector<double>> shapes;  ///< over columns, v^T M v = 1 kg m^2; the largest angle or, where none
                                             ///< turns, the largest displacement is positive

@@ -24,6 +24,8 @@ std::string_view si_unit(UnitKind kind) {
       return "m/s^2";
     case UnitKind::angular_acceleration:
       return "rad/s^2";
+    case UnitKind::squared_frequency:
+      return "rad^2/s^2";
     case UnitKind::force:
       return "N";
     case UnitKind::torque:

@@ -14,6 +14,7 @@ enum class UnitKind {
   angular_velocity,      ///< rad/s
   acceleration,          ///< m/s^2
   angular_acceleration,  ///< rad/s^2
+  squared_frequency,     ///< rad^2/s^2
   force,                 ///< N
   torque,                ///< N m
   energy,                ///< J

@@ -16,7 +16,7 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
   ModesReport report = analysis.run([&] { return !(context.cancel && context.cancel->load()); });
 
   std::vector<ColumnInfo> info{
-      {"mode", UnitKind::none}, {"omega2", UnitKind::angular_acceleration}, {"omega", UnitKind::angular_velocity}};
+      {"mode", UnitKind::none}, {"omega2", UnitKind::squared_frequency}, {"omega", UnitKind::angular_velocity}};
   std::optional<ShapeColumns> shapes;
   if (task.number("shapes", 0) != 0) {
     shapes.emplace(*context.model, analysis.plan(), task.output_names(), task.type());

@@ -26,6 +26,7 @@ constexpr Name names[] = {
     {UnitKind::angular_velocity, "an angular velocity", "\"2 rad/s\" or \"60 rpm\""},
     {UnitKind::acceleration, "an acceleration", "\"9.81 m/s^2\""},
     {UnitKind::angular_acceleration, "an angular acceleration", "\"3 rad/s^2\""},
+    {UnitKind::squared_frequency, "a squared frequency", "\"40 rad^2/s^2\""},
     {UnitKind::force, "a force", "\"20 N\""},
     {UnitKind::torque, "a torque or an energy", "\"5 N m\""},
     {UnitKind::power, "a power", "\"100 W\""},

@@ -48,6 +48,8 @@ constexpr Dimension dimension_of(UnitKind kind) {
       return length / (time * time);
     case UnitKind::angular_acceleration:
       return angle / (time * time);
+    case UnitKind::squared_frequency:
+      return angle * angle / (time * time);
     case UnitKind::force:
       return force;
     case UnitKind::torque:
