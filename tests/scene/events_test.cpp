@@ -80,6 +80,42 @@ TEST(Events, AreNotOverlookedAtATurningPoint) {
   EXPECT_EQ(count(7.200001), 0u);
 }
 
+// Free of forces nothing keeps steps short: many turns, or a whole flight, in one of them.
+TEST(Events, AreNotOverlookedInLongSteps) {
+  const TextRun spin = run_text(R"({"catena": 1,
+    "bodies": {"b": {"mass": 1, "inertia": 1, "angular_velocity": 100, "points": {"p": [1, 0]}}},
+    "analyses": [{"type": "dynamics", "until": 1, "every": 1, "outputs": ["b.angle"],
+      "events": [{"name": "up", "when": "b.p.y", "direction": "up"},
+                 {"name": "top", "when": "b.p.y", "value": 0.9999}]}]})");
+  ASSERT_EQ(spin.outcome.exit_code, 0) << spin.outcome.error_text;
+  const double turn = 2 * std::numbers::pi / 100, near_top = std::asin(0.9999) / 100;
+  std::vector<double> up, top;
+  for (const Happened& event : events_of(spin.analysis())) (event.name == "up" ? up : top).push_back(event.t);
+  ASSERT_EQ(up.size(), 15u);
+  for (std::size_t k = 0; k < up.size(); ++k) EXPECT_NEAR(up[k], turn * static_cast<double>(k + 1), 1e-12);
+  ASSERT_EQ(top.size(), 32u);
+  for (std::size_t k = 0; k < top.size(); ++k) {
+    EXPECT_NEAR(top[k], turn * static_cast<double>(k / 2) + (k % 2 ? turn / 2 - near_top : near_top), 1e-10);
+  }
+}
+
+// Wherever steps end, and be it at the highest point itself.
+TEST(Events, AreNotOverlookedWhereStepsEnd) {
+  for (double v = 8; v < 12; v += 0.125) {
+    const double height = v * v / 20 - 0.01;
+    const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -10],
+      "bodies": {"b": {"mass": 1, "inertia": 1, "velocity": [0, )" +
+                                 std::to_string(v) + R"(]}},
+      "analyses": [{"type": "dynamics", "until": 2, "every": 2,
+        "events": [{"when": "b.y", "value": )" +
+                                 std::to_string(height) + "}]}]}");
+    const std::vector<Happened> events = events_of(run.analysis());
+    ASSERT_EQ(events.size(), 2u) << v;
+    EXPECT_NEAR(events[0].t + events[1].t, v / 5, 1e-6) << v;
+    EXPECT_NEAR(events[1].t - events[0].t, 2 * std::sqrt(0.002), 1e-4) << v;
+  }
+}
+
 TEST(Events, StopAndTheNextAnalysisGoesOnFromThere) {
   const TextRun run =
       run_text(ball(R"({"name": "lands", "when": "ball.y", "value": 4, "direction": "down", "action": "stop"})",

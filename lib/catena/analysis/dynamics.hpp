@@ -78,6 +78,7 @@ class Dynamics {
   Report prepare(std::vector<std::string>& warnings);
   std::unique_ptr<Integrator> make_integrator(const Motion& motion, double horizon) const;
   Report check_functions(double last) const;
+  Report check_order() const;
   Report check_freedoms() const;
   Report start();
   Report set_out();

@@ -46,6 +46,30 @@ bool has_closed_loops(const Plan& plan) {
 
 }  // namespace
 
+// A motion is integrated forwards: rows in another order, or before its start, cannot be had.
+Report Dynamics::check_order() const {
+  Report report;
+  double before = resumed_ ? grid_[0] : t_;
+  for (std::int64_t k = 0; k < grid_.size(); ++k) {
+    if (grid_[k] >= before) {
+      before = grid_[k];
+      continue;
+    }
+    report.status = Status::refused;
+    report.message = k == 0
+                         ? fmt::format(
+                               "a row is asked for at t = {:.12g} s, but the motion starts at {:.12g} s and is not "
+                               "integrated backwards",
+                               grid_[0], t_)
+                         : fmt::format(
+                               "\"at\" must list its instants in the order of time, since a motion is not integrated "
+                               "backwards: {:.12g} s comes after {:.12g} s",
+                               grid_[k], before);
+    return report;
+  }
+  return report;
+}
+
 Report Dynamics::check_freedoms() const {
   Report report;
   const int freedoms = plan_->columns - plan_->rows;

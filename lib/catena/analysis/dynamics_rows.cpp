@@ -14,7 +14,6 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Rows whose smallest pivot ratio is above this need no rank analysis.
 constexpr double independent_ratio = 1e-8;
-constexpr std::size_t most_names = 10;  // in a warning
 
 }  // namespace
 
@@ -75,6 +74,8 @@ std::optional<Snapshot> Dynamics::state_at(double t) {
     evaluator_.set_configuration(y.first(n));
   }
   if (account_) {
+    // Drivers that are released have no part in the present run, but what they did before it.
+    std::fill(driver_work_.begin(), driver_work_.end(), 0.0);
     account_->driver_work(y.subspan(2 * n), driver_work_);
     for (std::size_t e = 0; e < earlier_.by_driver.size(); ++e) driver_work_[e] += earlier_.by_driver[e];
   }
@@ -94,14 +95,9 @@ void Dynamics::find_multipliers() {
   for (std::size_t c = 0; c < mass.size(); ++c) loads_row_[c] = Q[c] - mass[c] * qdd[c];
   minimum_norm_->solve(loads_row_, lambda_row_);
   if (!ambiguity_.empty()) return;
-  const std::vector<int> elements = minimum_norm_->find_ambiguous();
-  for (std::size_t k = 0; k < elements.size() && k < most_names; ++k) {
-    ambiguity_ += (k > 0 ? ", \"" : "\"") + model_->element_name(elements[k]) + "\"";
-  }
-  if (elements.size() > most_names) ambiguity_ += fmt::format(" and {} more", elements.size() - most_names);
-  ambiguity_ = fmt::format(
-      "reactions of {} are not unique, since constraints depend on each other: the least are given", ambiguity_);
-  minimum_norm_->solve(loads_row_, lambda_row_);
+  ambiguity_ =
+      fmt::format("reactions of {} are not unique, since constraints depend on each other: the least are given",
+                  minimum_norm_->name_ambiguous());
 }
 
 // Degrees of freedom: by count where rows are independent, else by rank.

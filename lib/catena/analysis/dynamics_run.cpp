@@ -34,6 +34,7 @@ void Dynamics::begin(const TimeGrid& grid, const Needs& needs) {
 
 // Everything up to the first row.
 Report Dynamics::start() {
+  if (const Report order = check_order(); !order.ok()) return order;
   if (const Report functions = check_functions(grid_.last()); !functions.ok()) return functions;
   if (method_ == IntegrationMethod::partitioning) {
     if (const Report freedoms = check_freedoms(); !freedoms.ok()) return freedoms;

@@ -7,8 +7,9 @@
 namespace catena {
 namespace {
 
-// Samples of a step.
-constexpr int parts = 8;
+// Samples of a step: at least so many, and one for each turn of a body by this angle, rad.
+constexpr double fewest_samples = 8, most_samples = 1e6;
+constexpr double turn_between_samples = 0.25;
 // A distance from the value below this part of the column's size, or below this number, cannot be told from none.
 constexpr double rounding = 1e-13;
 constexpr double smallest = 1e-14;
@@ -46,8 +47,9 @@ EventWatch::EventWatch(std::vector<Event> events, const Model& model, const Plan
   }
   side_.assign(events_.size(), 0);
   largest_.assign(events_.size(), 0.0);
-  g_.assign(parts + 1, std::vector<double>(events_.size()));
-  times_.resize(parts + 1);
+  found_at_.assign(events_.size(), -std::numeric_limits<double>::infinity());
+  for (std::vector<double>& g : g_) g.resize(events_.size());
+  angles_.resize(static_cast<std::size_t>(plan.moving));
 }
 
 int EventWatch::side(std::size_t k, double g) const {
@@ -60,16 +62,13 @@ bool EventWatch::counts(std::size_t k) const {
   return events_[k].direction == EventDirection::any || (events_[k].direction == EventDirection::up) == (side_[k] < 0);
 }
 
-bool EventWatch::sample(double t, const StateAt& state_at, std::span<double> g) {
-  const std::optional<Snapshot> state = state_at(t);
-  if (!state) return false;
+void EventWatch::sample(const Snapshot& state, std::span<double> g) {
   for (std::size_t k = 0; k < events_.size(); ++k) {
     double value = 0;
-    columns_[k].evaluate(*state, {&value, 1});
+    columns_[k].evaluate(state, {&value, 1});
     largest_[k] = std::max(largest_[k], std::abs(value));
     g[k] = value - events_[k].value;
   }
-  return true;
 }
 
 double EventWatch::watched(std::size_t k, double t, const StateAt& state_at) {
@@ -84,7 +83,12 @@ double EventWatch::watched(std::size_t k, double t, const StateAt& state_at) {
 // value halved when it stays (Illinois), bisection where that is slow.
 double EventWatch::locate(std::size_t k, double before, double after, const StateAt& state_at) {
   double a = before, b = after, fa = watched(k, a, state_at), fb = watched(k, b, state_at);
-  if (!(fa * side_[k] > 0)) return a;
+  // After an event at the start itself the column may have gone beyond and be on its way back.
+  for (double part = 0.5; !(fa * side_[k] > 0); part /= 2) {
+    if (part < rounding) return before;
+    a = before + (after - before) * part;
+    fa = watched(k, a, state_at);
+  }
   if (!(fb * side_[k] < 0)) return b;
   double width = b - a;
   for (int n = 0; n < most_iterations; ++n) {
@@ -107,18 +111,17 @@ double EventWatch::locate(std::size_t k, double before, double after, const Stat
   return b;
 }
 
-// An instant up to sample number `sample` at which column k is beyond its value, or nothing.
-std::optional<double> EventWatch::passage(std::size_t k, int sample, const StateAt& state_at) {
-  const auto at = [&](int n) { return g_[static_cast<std::size_t>(n)][k]; };
-  const double* t = &times_[static_cast<std::size_t>(sample)];
-  if (side(k, at(sample)) == -side_[k]) return *t;
-  if (sample < 2) return {};
-  // A dip: the middle of three samples is nearest to the value, and the parabola reaches it, or nearly so.
-  double ts[3] = {t[-2], t[-1], t[0]}, gs[3] = {at(sample - 2), at(sample - 1), at(sample)};
-  if (!(std::abs(gs[1]) <= std::abs(gs[0]) && std::abs(gs[1]) <= std::abs(gs[2]))) return {};
+// An instant up to the last sample at which column k is beyond its value, or nothing. `three`: there are three samples.
+std::optional<double> EventWatch::passage(std::size_t k, bool three, const StateAt& state_at) {
+  if (side(k, g_[2][k]) == -side_[k]) return times_[2];
+  if (!three) return {};
+  // A dip: the parabola through three samples has its vertex among them and reaches the value there, or nearly so. The
+  // vertex may lie in the first or the last part of a step, beyond the nearest sample.
+  double ts[3] = {times_[0], times_[1], times_[2]}, gs[3] = {g_[0][k], g_[1][k], g_[2][k]};
   for (int n = 0; n < 8; ++n) {
     const Vertex low = vertex(ts, gs);
-    if (!low.inside || low.value * side_[k] > 0.1 * std::abs(gs[1]) || low.t == ts[1]) return {};
+    const double nearest = std::min({std::abs(gs[0]), std::abs(gs[1]), std::abs(gs[2])});
+    if (!low.inside || low.value * side_[k] > 0.1 * nearest || low.t == ts[1]) return {};
     const double g = watched(k, low.t, state_at);
     if (side(k, g) == -side_[k]) return low.t;
     const bool first = low.t < ts[1], nearer = std::abs(g) < std::abs(gs[1]);
@@ -136,40 +139,68 @@ std::optional<double> EventWatch::passage(std::size_t k, int sample, const State
   return {};
 }
 
+// How many samples show what happens in (from, to]: bodies that turn carry columns to and fro. Leaves the first sample.
+int EventWatch::samples(double from, double to, const StateAt& state_at) {
+  double turn = 0;
+  const auto look = [&](double t, bool last) {
+    const std::optional<Snapshot> state = state_at(t);
+    if (!state) return false;
+    for (std::size_t b = 0; b < angles_.size(); ++b) {
+      turn = std::max(turn, std::abs(state->qd[3 * b + 2]) * (to - from));
+      if (last) turn = std::max(turn, std::abs(state->q[3 * b + 2] - angles_[b]));
+      angles_[b] = state->q[3 * b + 2];
+    }
+    if (!last) sample(*state, g_[2]);
+    return true;
+  };
+  if (!look(from, false) || !look(to, true)) return 0;
+  return static_cast<int>(std::clamp(std::ceil(turn / turn_between_samples), fewest_samples, most_samples));
+}
+
 std::optional<FoundEvent> EventWatch::find(double from, double to, const StateAt& state_at) {
   if (!(from < to)) return {};
-  times_[0] = from;
-  if (!sample(from, state_at, g_[0])) return {};
-  for (std::size_t k = 0; k < events_.size(); ++k) {
-    const int now = side(k, g_[0][k]);
+  const int parts = samples(from, to, state_at);
+  times_[2] = from;
+  for (std::size_t k = 0; parts > 0 && k < events_.size(); ++k) {
+    const int now = side(k, g_[2][k]);
     if (now != 0) side_[k] = now;
   }
   for (int n = 1; n <= parts; ++n) {
-    const auto s = static_cast<std::size_t>(n);
-    times_[s] = n == parts ? to : from + (to - from) * n / parts;
-    if (!sample(times_[s], state_at, g_[s])) return {};
+    // The last three samples, the newest of them last.
+    std::rotate(g_.begin(), g_.begin() + 1, g_.end());
+    std::rotate(times_.begin(), times_.begin() + 1, times_.end());
+    times_[2] = n == parts ? to : from + (to - from) * n / parts;
+    const std::optional<Snapshot> state = state_at(times_[2]);
+    if (!state) return {};
+    sample(*state, g_[2]);
     std::optional<FoundEvent> first;
     for (std::size_t k = 0; k < events_.size(); ++k) {
       if (side_[k] == 0) {
-        side_[k] = side(k, g_[s][k]);
+        side_[k] = side(k, g_[2][k]);
         continue;
       }
-      const std::optional<double> beyond = passage(k, n, state_at);
+      const std::optional<double> beyond = passage(k, n >= 2, state_at);
       if (!beyond) continue;
-      double start = *beyond > times_[s - 1] ? times_[s - 1] : times_[s - 2], end = *beyond;
+      double start = *beyond > times_[1] ? times_[1] : times_[0], end = *beyond;
       if (!counts(k)) {
         // A passage that is not watched; out of a dip the way back is.
         side_[k] = -side_[k];
-        if (*beyond == times_[s]) continue;
+        if (*beyond == times_[2]) continue;
         start = *beyond;
-        end = times_[s];
+        end = times_[2];
       }
       const double t = locate(k, start, end, state_at);
+      if (t <= found_at_[k]) {
+        // The event that was found there already, seen again within rounding.
+        side_[k] = -side_[k];
+        continue;
+      }
       if (!first || t < first->t) first = FoundEvent{static_cast<int>(k), t};
     }
     if (first) {
       int& last_seen = side_[static_cast<std::size_t>(first->event)];
       last_seen = -last_seen;
+      found_at_[static_cast<std::size_t>(first->event)] = first->t;
       return first;
     }
   }

@@ -2,12 +2,14 @@
 //
 //   g_k(t) = column_k - value_k changes its sign, in the direction that is watched
 //
-// Within a step of the integrator g is sampled on the dense output; a change of sign, or a dip towards zero that a
-// parabola through three samples takes beyond it, is enclosed and the root found to rounding in t on states that meet
-// the constraints, hence as exact as the rows of the run. A column that starts at its value has no event there. What
-// passes to and fro within an eighth of a step without a visible dip goes unnoticed. Units: those of the columns, s.
+// Within a step of the integrator g is sampled on the dense output, at eight instants or more: a quarter of a radian of
+// the fastest body's turn apart at most. A change of sign, or a dip towards zero that a parabola through three samples
+// takes beyond it, is enclosed and the root found to rounding in t on states that meet the constraints, hence as exact
+// as the rows of the run. A column that starts at its value has no event there. What passes to and fro between two
+// samples without a visible dip goes unnoticed. Units: those of the columns, s.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -70,9 +72,10 @@ class EventWatch {
   }
 
  private:
-  bool sample(double t, const StateAt& state_at, std::span<double> g);
+  int samples(double from, double to, const StateAt& state_at);
+  void sample(const Snapshot& state, std::span<double> g);
   double watched(std::size_t k, double t, const StateAt& state_at);
-  std::optional<double> passage(std::size_t k, int sample, const StateAt& state_at);
+  std::optional<double> passage(std::size_t k, bool three, const StateAt& state_at);
   double locate(std::size_t k, double before, double after, const StateAt& state_at);
   int side(std::size_t k, double g) const;
   bool counts(std::size_t k) const;
@@ -80,10 +83,12 @@ class EventWatch {
   std::vector<Event> events_;
   std::vector<ColumnSet> columns_;
   Needs needs_;
-  std::vector<int> side_;        // of its value on which each column was last seen: -1, 1; 0: not yet
-  std::vector<double> largest_;  // |column| so far: what rounding is measured against
-  std::vector<std::vector<double>> g_;
-  std::vector<double> times_;
+  std::vector<int> side_;                 // of its value on which each column was last seen: -1, 1; 0: not yet
+  std::vector<double> largest_;           // |column| so far: what rounding is measured against
+  std::vector<double> found_at_;          // when each event was last found, s
+  std::array<std::vector<double>, 3> g_;  // the last samples, of all columns
+  std::array<double, 3> times_{};
+  std::vector<double> angles_;  // of moving bodies, where a step begins
   std::vector<EventRecord> records_;
 };
 
