@@ -1,6 +1,8 @@
 // Rows of dynamics: at which instants there are any, and what is in them where something happened before.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "scene/run_text.hpp"
 
 namespace catena::testing {
@@ -50,6 +52,67 @@ TEST(DynamicsRows, TheWorkOfAReleasedDriverStaysWhatItWas) {
     EXPECT_NEAR(balance[k], 0, 1e-9) << t[k];
   }
   EXPECT_EQ(run.last("D.power"), 0);
+}
+
+/// A parallelogram with cranks of 1 m at the angle given, the second one of mass m.
+std::string parallelogram(double angle, double m, double omega, const std::string& rest) {
+  const std::string x = std::to_string(std::cos(angle)), y = std::to_string(std::sin(angle));
+  const std::string right = std::to_string(std::cos(angle) + 2);
+  return R"({"catena": 1, "gravity": [0, -9.81], "bodies": {
+      "c": {"rod": {"from": [0, 0], "to": [)" +
+         x + ", " + y + R"(]}, "mass": 1, "angular_velocity": )" + std::to_string(omega) + R"(},
+      "k": {"rod": {"from": [)" +
+         x + ", " + y + R"(], "to": [)" + right + ", " + y + R"(]}, "mass": 2},
+      "q": {"rod": {"from": [2, 0], "to": [)" +
+         right + ", " + y + R"(]}, "mass": )" + std::to_string(m) + R"(, "angular_velocity": )" +
+         std::to_string(omega) + R"(}},
+    "constraints": [{"type": "revolute", "name": "O", "i": "ground", "j": "c.from"},
+                    {"type": "revolute", "name": "A", "i": "c.to", "j": "k.from"},
+                    {"type": "revolute", "name": "B", "i": "k.to", "j": "q.to"},
+                    {"type": "revolute", "name": "C", "i": ["ground", [2, 0]], "j": "q.from"}], )" +
+         rest + "}";
+}
+
+// Driven at constant speed through its flat position at 1 s: the second crank does not accelerate, the driver carries
+// half the weight of crank 1, the coupler's, and half of crank 2: (0.5 + 2 + 0.5) g.
+TEST(DynamicsRows, AtASingularPositionAreTheLimitOfTheMotion) {
+  const TextRun run = run_text(parallelogram(1, 1, -1,
+                                             R"("drivers": [{"type": "absolute_angle", "name": "D", "i": "c",
+        "value": {"polynomial": [1, -1]}}], "outputs": ["q.alpha", "k.alpha", "D.load", "q.angle"],
+      "analyses": [{"type": "dynamics", "at": [0.9, 1, 1.1], "tolerance": 1e-10}])"));
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  ASSERT_EQ(run.column("t").size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(run.column("q.alpha")[k], 0, 1e-4) << k;
+    EXPECT_NEAR(run.column("k.alpha")[k], 0, 1e-4) << k;
+    EXPECT_NEAR(run.column("D.load")[k], 3 * 9.81 * std::cos(1 - run.column("t")[k]), 1e-4) << k;
+  }
+  EXPECT_NEAR(run.column("q.angle")[1], 0, 1e-6);
+  std::string warning;
+  for (const std::string& one : run.analysis().report.warnings) warning += one + "; ";
+  EXPECT_NE(warning.find("at t = 1 s the mechanism is in a singular position"), std::string::npos) << warning;
+  EXPECT_NE(warning.find("grow without bound"), std::string::npos) << warning;
+}
+
+// Started flat, cranks of 1 and 3 kg: alpha = -(m1/2 + m2 + m3/2) g / ((m1 + m3)/3 + m2) = -1.2 g on either crank.
+TEST(DynamicsRows, StartAtASingularPosition) {
+  const TextRun run = run_text(parallelogram(0, 3, -1,
+                                             R"("outputs": ["c.alpha", "q.alpha", "c.omega", "energy.balance"],
+      "analyses": [{"type": "dynamics", "until": 0.1, "every": 0.05, "tolerance": 1e-10}])"));
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  EXPECT_NEAR(run.first("c.alpha"), -1.2 * 9.81, 1e-6);
+  EXPECT_NEAR(run.first("q.alpha"), -1.2 * 9.81, 1e-6);
+  for (double gap : run.column("energy.balance")) EXPECT_NEAR(gap, 0, 1e-8);
+
+  const TextRun driven = run_text(parallelogram(0, 3, -1,
+                                                R"("drivers": [{"type": "absolute_angle", "name": "D", "i": "c",
+        "value": {"polynomial": [0, -1]}}], "outputs": ["D.load", "D.work", "energy.balance"],
+      "analyses": [{"type": "dynamics", "until": 0.002, "every": 0.001, "tolerance": 1e-10}])"));
+  ASSERT_EQ(driven.outcome.exit_code, 0) << driven.outcome.error_text;
+  // Work against the weights that sink: -(0.5 + 2 + 1.5) g sin(t).
+  EXPECT_NEAR(driven.first("D.load"), 4 * 9.81, 1e-6);
+  EXPECT_NEAR(driven.last("D.work"), -4 * 9.81 * std::sin(0.002), 1e-7);
+  for (double gap : driven.column("energy.balance")) EXPECT_NEAR(gap, 0, 1e-7);
 }
 
 }  // namespace

@@ -22,6 +22,7 @@
 #include "catena/analysis/motion_memory.hpp"
 #include "catena/analysis/process_time.hpp"
 #include "catena/analysis/row_observer.hpp"
+#include "catena/analysis/singular_instant.hpp"
 #include "catena/analysis/system_state.hpp"
 #include "catena/analysis/time_grid.hpp"
 
@@ -78,6 +79,9 @@ class Dynamics {
   Report prepare(std::vector<std::string>& warnings);
   std::unique_ptr<Integrator> make_integrator(const Motion& motion, double horizon) const;
   Report check_functions(double last) const;
+  void look_for_singularity(double t);
+  void start_at_singularity();
+  void remark_on_singularities(std::vector<std::string>& warnings) const;
   Report check_order() const;
   Report check_freedoms() const;
   Report start();
@@ -105,8 +109,15 @@ class Dynamics {
   EquationsOfMotion equations_;
   std::optional<EnergyAccount> account_;
   std::unique_ptr<Integrator> integrator_;
-  std::optional<MinimumNorm> minimum_norm_;  // made when multipliers turn out not to be unique
-  std::string ambiguity_;                    // whose reactions are not, when that was found
+  std::optional<MinimumNorm> minimum_norm_;            // made when multipliers turn out not to be unique
+  std::string ambiguity_;                              // whose reactions are not, when that was found
+  std::optional<SingularInstant> singular_;            // made where constraints come to depend on each other
+  bool at_singularity_ = false;                        // at the last state_at()
+  bool dependent_ = false, always_dependent_ = false;  // constraints: where the last step ended, and where it began too
+  double singular_t_ = 0, formal_t_ = 0;               // of the first such rows; how many, what is said of them
+  std::int64_t singular_rows_ = 0, formal_rows_ = 0;
+  bool unbounded_ = false;
+  std::string singular_names_;
   bool prepared_ = false, resumed_ = false;
   // Of the run under way.
   TimeGrid grid_ = TimeGrid::list({});

@@ -68,6 +68,7 @@ std::optional<Snapshot> Dynamics::state_at(double t) {
   if (needs_.acceleration || needs_.multipliers) {
     const std::span<double> slope(slope_row_);
     if (!equations_.accelerations(t, Side::after, y.first(n), y.subspan(n, n), slope.subspan(n, n))) return {};
+    look_for_singularity(t);
     if (needs_.multipliers) find_multipliers();
   } else {
     evaluator_.set_time(t);
@@ -86,9 +87,13 @@ std::optional<Snapshot> Dynamics::state_at(double t) {
 // Multipliers of the row: those of the accelerations, or the least ones where they are not unique.
 void Dynamics::find_multipliers() {
   lambda_row_.assign(equations_.multipliers().begin(), equations_.multipliers().end());
-  if (!equations_.is_dependent()) return;
+  if (!equations_.is_dependent() && !at_singularity_) return;
   if (!minimum_norm_) minimum_norm_.emplace(evaluator_);
   if (!minimum_norm_->factorize()) return;
+  if (at_singularity_) {
+    minimum_norm_->solve(singular_->loads(), lambda_row_);
+    return;
+  }
   const std::span<const double> Q = equations_.applied_forces(), qdd = std::span(slope_row_).subspan(q_.size());
   const std::vector<double>& mass = equations_.masses().mass;
   loads_row_.resize(mass.size());

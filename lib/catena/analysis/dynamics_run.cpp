@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "catena/analysis/dynamics.hpp"
 #include "catena/base/flush_denormals.hpp"
@@ -23,7 +24,8 @@ void Dynamics::begin(const TimeGrid& grid, const Needs& needs) {
   if (events_) needs_ |= events_->needs();
   stopped_by_ = -1;
   next_row_ = 0;
-  at_jump_ = paused_ = false;
+  at_jump_ = paused_ = dependent_ = always_dependent_ = unbounded_ = false;
+  singular_rows_ = formal_rows_ = 0;
   report_ = {};
   report_.bodies = static_cast<int>(model_->bodies.size());
   report_.rows = plan_->rows;
@@ -80,6 +82,7 @@ Report Dynamics::set_out() {
     std::copy(qd_.begin(), qd_.end(), y_row_.begin() + static_cast<std::ptrdiff_t>(q_.size()));
     evaluator_.take_turns(std::span(y_row_).first(q_.size()));
   }
+  if (!resumed_) start_at_singularity();
   if (!integrator_->start(t_, y_row_)) return stuck();
   if (!account_) return {};
   if (resumed_) {
@@ -116,6 +119,7 @@ Report Dynamics::step(RowObserver& observer) {
   if (!integrator_->advance(limit)) return stuck();
   const double before = t_;
   t_ = integrator_->time();
+  always_dependent_ = std::exchange(dependent_, equations_.is_dependent()) && dependent_;
   if (!observer.proceed(t_)) return cancelled(t_);
   if (const Report pace = check_pace(grid_.last()); !pace.ok()) return pace;
   if (events_) {
@@ -175,6 +179,7 @@ AnalysisReport Dynamics::end() {
     evaluator_.set_configuration(q_);
     for (std::string& remark : integrator_->remarks()) report.warnings.push_back(std::move(remark));
   }
+  remark_on_singularities(report.warnings);
   if (!ambiguity_.empty()) report.warnings.push_back(ambiguity_);
   resumed_ = false;
   report.counters = evaluator_.counters;

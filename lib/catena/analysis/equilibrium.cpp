@@ -17,7 +17,6 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Reactions balance the loads if nothing more than this part of them is left.
 constexpr double balanced = 1e-9;
-constexpr std::size_t most_names = 6;
 
 PlanOptions with_gaps(PlanOptions options) {
   options.one_sided = true;
@@ -71,12 +70,7 @@ void Equilibrium::choose_least_reactions(Report& report) {
     if (multipliers[at(r)] > 0) return;
   }
   lambda_ = std::move(multipliers);
-  const std::vector<int> elements = least.find_ambiguous();
-  std::string names;
-  for (std::size_t k = 0; k < std::min(elements.size(), most_names); ++k) {
-    names += fmt::format("{}\"{}\"", k > 0 ? ", " : "", model_->element_name(elements[k]));
-  }
-  if (elements.size() > most_names) names += fmt::format(" and {} more", elements.size() - most_names);
+  const std::string names = least.name_ambiguous();
   if (names.empty()) return;
   report.warnings.push_back(fmt::format(
       "redundant constraints: the reactions of {} are not unique; of all that balance the loads the least are given",

@@ -26,7 +26,6 @@ constexpr double clearly_regular = 1e-9;
 constexpr double reactions_determined = 1e-9;
 // Part of the loads that least reactions may leave unbalanced.
 constexpr double balanced = 1e-10;
-constexpr std::size_t most_names = 8;  // in a warning
 // Rows closer to dependence than this, where a motion starts: configurations are given no more exactly.
 constexpr double start_dependence = 1e-7;
 // How far along a branch (rad, length scales) rows are chosen where it starts.
@@ -264,22 +263,35 @@ void Kinematics::choose_least_reactions() {
   if (!(minimum_norm_->solve(applied_, least_lambda_) <= balanced)) return;
   lambda_.swap(least_lambda_);
   if (!ambiguity_.empty()) return;
-  const std::vector<int> elements = minimum_norm_->find_ambiguous();
-  for (std::size_t k = 0; k < std::min(elements.size(), most_names); ++k) {
-    ambiguity_ += fmt::format("{}\"{}\"", k > 0 ? ", " : "", model_->element_name(elements[k]));
-  }
-  if (elements.size() > most_names) ambiguity_ += fmt::format(" and {} more", elements.size() - most_names);
-  ambiguity_ = fmt::format(
-      "reactions of {} are not unique, since constraints depend on each other: the least are given", ambiguity_);
+  ambiguity_ =
+      fmt::format("reactions of {} are not unique, since constraints depend on each other: the least are given",
+                  minimum_norm_->name_ambiguous());
 }
 
-AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
+Snapshot Kinematics::snapshot() const {
+  Snapshot s{.evaluator = evaluator_, .t = t_, .q = q_};
+  if (has_velocity_) s.qd = qd_;
+  if (has_acceleration_) s.qdd = qdd_;
+  s.residual = newton_.residual * evaluator_.length_scale();
+  if (account_) {
+    s.work = EnergyAccount::supplied(work_);
+    s.dissipated = EnergyAccount::dissipated(work_);
+    s.driver_work = driver_work_;
+    s.initial_energy = initial_energy_;
+  }
+  return s;
+}
+
+AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& asked, RowObserver& observer) {
   const ProcessTimer timer;
   AnalysisReport report;
   report.bodies = static_cast<int>(model_->bodies.size());
   report.rows = plan_->rows;
   report.islands = plan_->islands;
   observer_ = &observer;
+  Needs needs = asked;
+  if (needs.work) needs.velocity = needs.acceleration = needs.multipliers = true;
+  account_.reset();
   if (grid.size() > 0) {
     earliest_ = grid.earliest();
     latest_ = grid.latest();
@@ -291,6 +303,7 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& needs, RowObse
     report.status = outcome.status;
     report.message = outcome.message;
     report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
+    if (std::string doubt = doubt_of_work(); !doubt.empty()) report.warnings.push_back(std::move(doubt));
     if (!ambiguity_.empty()) report.warnings.push_back(ambiguity_);
     report.counters = evaluator_.counters;
     report.seconds = timer.seconds();
@@ -319,9 +332,12 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& needs, RowObse
   report.rank = plan_->columns;
   report.dof = 0;
   report.mobility = plan_->driver_rows;
+  if (needs.work) {
+    if (const Report begun = start_work(); !begun.ok()) return end(begun);
+  }
   for (std::int64_t k = 0; k < grid.size(); ++k) {
     if (grid[k] != t_) {
-      const Report moved = move_to(grid[k]);
+      const Report moved = account_ ? move_and_sum_up(grid[k]) : move_to(grid[k]);
       if (!moved.ok()) return end(moved);
       report.warnings.insert(report.warnings.end(), moved.warnings.begin(), moved.warnings.end());
     } else if (on_bridge_ || (!bridge_.empty() && t_ >= bridge_from_ && t_ <= bridge_to_)) {
@@ -344,14 +360,10 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& needs, RowObse
       return end(consistent);
     predictor_.push(t_, q_, has_velocity_ ? std::span<const double>(qd_) : std::span<const double>{},
                     has_acceleration_ ? std::span<const double>(qdd_) : std::span<const double>{});
-    const Snapshot snapshot{.evaluator = evaluator_,
-                            .t = t_,
-                            .q = q_,
-                            .qd = has_velocity_ ? std::span<const double>(qd_) : std::span<const double>{},
-                            .qdd = has_acceleration_ ? std::span<const double>(qdd_) : std::span<const double>{},
-                            .lambda = needs.multipliers ? std::span<const double>(lambda_) : std::span<const double>{},
-                            .residual = newton_.residual * evaluator_.length_scale()};
-    if (!observer.observe(snapshot)) return end(cancelled());
+    if (account_) account_->driver_work(work_, driver_work_);
+    Snapshot row = snapshot();
+    if (needs.multipliers) row.lambda = lambda_;
+    if (!observer.observe(row)) return end(cancelled());
   }
   return end({});
 }

@@ -4,7 +4,8 @@
 // Newton contracted badly, is halved, so that no branch is jumped however coarse the rows are. Where branches meet the
 // instant is located, the branches are listed, and the one that continues the motion is taken, or the one chosen; where
 // no step can be made any more the mechanism is locked, and the report says when and why. Velocities, accelerations and
-// multipliers are computed at rows only and only if needed. Zero allocations a step after the first.
+// multipliers are computed at rows only and only if needed; where work is asked for also between them. Zero allocations
+// a step after the first.
 #pragma once
 
 #include <limits>
@@ -14,6 +15,7 @@
 #include "catena/analysis/analysis_report.hpp"
 #include "catena/analysis/assemble.hpp"
 #include "catena/analysis/driven_solver.hpp"
+#include "catena/analysis/energy_account.hpp"
 #include "catena/analysis/kinematics_branches.hpp"
 #include "catena/analysis/kinematics_bridge.hpp"
 #include "catena/analysis/minimum_norm.hpp"
@@ -86,6 +88,15 @@ class Kinematics {
   void scatter_applied_forces();
   Report solve_multipliers();
   void choose_least_reactions();
+  Snapshot snapshot() const;
+  // Work along the motion: kinematics_work.cpp.
+  Report start_work();
+  double energy_gap() const;
+  double energy_scale() const;
+  double stretch() const;
+  Report sum_up_stretch(double t, double& error, std::vector<std::string>& warnings);
+  Report move_and_sum_up(double t);
+  std::string doubt_of_work() const;
 
   // Singular configurations: kinematics_passage.cpp, kinematics_instants.cpp, kinematics_entry.cpp.
   enum class Passage { none, regular, passed, failed };
@@ -133,7 +144,10 @@ class Kinematics {
   std::vector<std::string> redundant_;
   std::optional<MinimumNorm> minimum_norm_;  // of multipliers, where rows depend on each other
   std::string ambiguity_;                    // in words: the elements whose reactions are not unique
-  double chosen_rcond_ = 0;                  // of the rows in use, where they were chosen
+  std::optional<EnergyAccount> account_;     // while work is summed up
+  std::vector<double> work_, power_, cubic_part_, driver_work_;
+  double initial_energy_ = 0, exchanged_ = 0, unsure_ = 0, stretch_part_ = 1;
+  double chosen_rcond_ = 0;  // of the rows in use, where they were chosen
   NewtonOutcome newton_;
 
   // The stretch of time where rows are taken from the bridge, and the branch point in it that is still ahead.

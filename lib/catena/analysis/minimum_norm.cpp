@@ -1,5 +1,7 @@
 #include "catena/analysis/minimum_norm.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,6 +15,7 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 constexpr double regularisation = 1e-12;
 // A reaction counts as ambiguous if a random set of multipliers differs from the least equivalent one by this part.
 constexpr double ambiguous_part = 1e-6;
+constexpr std::size_t most_names = 10;  // in a text
 
 /// Inverts the positive definite n x n matrix (n <= 3) in place, by pivots; rows 3 apart.
 void invert(double* a, int n) {
@@ -197,6 +200,16 @@ std::vector<int> MinimumNorm::find_ambiguous() {
     }
   }
   return elements;
+}
+
+std::string MinimumNorm::name_ambiguous() {
+  const std::vector<int> elements = find_ambiguous();
+  std::string names;
+  for (std::size_t k = 0; k < std::min(elements.size(), most_names); ++k) {
+    names += fmt::format("{}\"{}\"", k > 0 ? ", " : "", evaluator_.model().element_name(elements[k]));
+  }
+  if (elements.size() > most_names) names += fmt::format(" and {} more", elements.size() - most_names);
+  return names;
 }
 
 }  // namespace catena

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "catena/assembly/evaluate.hpp"
@@ -30,6 +31,8 @@ class MinimumNorm {
   double solve(std::span<const double> loads, std::span<double> lambda);
   /// The elements whose reactions are not unique at the configuration of the last factorize(), ascending.
   std::vector<int> find_ambiguous();
+  /// The names of find_ambiguous(), in quotes, as text; empty if there are none.
+  std::string name_ambiguous();
 
  private:
   struct Block {

@@ -41,8 +41,12 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
     options.branch = static_cast<int>(task.number("branch", 0));
     if (options.branch < 1) return refuse(result, "branches are numbered from 1");
   }
-  const ColumnSources sources{
-      .analysis = task.type(), .timed = true, .velocity = true, .acceleration = true, .multipliers = inverse_dynamics};
+  const ColumnSources sources{.analysis = task.type(),
+                              .timed = true,
+                              .velocity = true,
+                              .acceleration = true,
+                              .multipliers = inverse_dynamics,
+                              .work = inverse_dynamics};
   if (task.word("free") != 0 && !is_driven(context)) {
     if (inverse_dynamics) {
       return refuse(result,

@@ -7,7 +7,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <span>
+#include <vector>
 
 #include "catena/analysis/energy_account.hpp"
 #include "catena/analysis/equations_of_motion.hpp"
@@ -37,8 +39,20 @@ class Motion {
     std::copy(v.begin(), v.end(), k.begin());
     const std::span<double> a = k.subspan(coordinates_, coordinates_);
     if (!equations_.accelerations(t, side, q(y), v, a, stabilisation)) return false;
+    if (std::abs(t - known_t_) <= known_for_ && equations_.is_dependent()) {
+      std::copy(known_.begin(), known_.end(), a.begin());
+      return true;
+    }
     if (account_) account_->powers(v, equations_.multipliers(), k.subspan(2 * coordinates_));
     return true;
+  }
+
+  /// Says what [qdd, power] is within `moment` of t as long as constraints depend on each other, where the equations
+  /// do not: at a start in a singular position.
+  void know(double t, double moment, std::span<const double> accelerations_and_powers) {
+    known_t_ = t;
+    known_for_ = moment;
+    known_.assign(accelerations_and_powers.begin(), accelerations_and_powers.end());
   }
 
   EquationsOfMotion& equations() const { return equations_; }
@@ -49,6 +63,8 @@ class Motion {
   EquationsOfMotion& equations_;
   EnergyAccount* account_;
   std::size_t coordinates_;
+  double known_t_ = 0, known_for_ = -1;
+  std::vector<double> known_;
 };
 
 }  // namespace catena
