@@ -48,9 +48,10 @@ Report Dynamics::start() {
   if (needs_.work) account_.emplace(evaluator_);
   driver_work_.assign(account_ ? model_->elements.size() : 0, 0.0);
   motion_.emplace(equations_, account_ ? &*account_ : nullptr);
-  integrator_ = make_integrator(*motion_, grid_.last());
   y_row_.assign(motion_->size(), 0.0);
   slope_row_.assign(motion_->size(), 0.0);
+  if (!resumed_) start_at_singularity();
+  integrator_ = make_integrator(*motion_, grid_.last());  // keeps a copy of the motion
   if (const Report out = set_out(); !out.ok()) {
     evaluator_.forget_turns();
     integrator_.reset();
@@ -82,7 +83,6 @@ Report Dynamics::set_out() {
     std::copy(qd_.begin(), qd_.end(), y_row_.begin() + static_cast<std::ptrdiff_t>(q_.size()));
     evaluator_.take_turns(std::span(y_row_).first(q_.size()));
   }
-  if (!resumed_) start_at_singularity();
   if (!integrator_->start(t_, y_row_)) return stuck();
   if (!account_) return {};
   if (resumed_) {

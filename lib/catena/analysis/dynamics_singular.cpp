@@ -39,6 +39,8 @@ void Dynamics::look_for_singularity(double t) {
 // Tells the integrator what the first slope is, where the motion starts at such an instant.
 void Dynamics::start_at_singularity() {
   const std::size_t n = q_.size();
+  std::copy(q_.begin(), q_.end(), y_row_.begin());
+  std::copy(qd_.begin(), qd_.end(), y_row_.begin() + static_cast<std::ptrdiff_t>(n));
   const std::span<double> y(y_row_), slope(slope_row_);
   if (!equations_.accelerations(t_, Side::after, y.first(n), y.subspan(n, n), slope.subspan(n, n))) return;
   dependent_ = equations_.is_dependent();
