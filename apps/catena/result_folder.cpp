@@ -1,10 +1,29 @@
 #include "result_folder.hpp"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 
 #include "catena/scene/scene_runner.hpp"
 
 namespace catena::cli {
+
+std::string ResultFolder::obstacle(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  fs::path place = fs::absolute(path, ignored);
+  while (!fs::exists(place, ignored) && place.has_parent_path() && place != place.parent_path()) {
+    place = place.parent_path();
+  }
+  if (!fs::is_directory(place, ignored)) {
+    return fmt::format("cannot write results to \"{}\": \"{}\" is not a folder", path, place.string());
+  }
+  if (access(place.c_str(), W_OK | X_OK) == 0) return {};
+  return fmt::format("cannot write results to \"{}\": \"{}\": {}", path, place.string(), std::strerror(errno));
+}
 
 void ResultFolder::begin_run(const RunHeader& header) {
   csv_.begin_run(header);  // makes the folder

@@ -21,6 +21,8 @@ class ResultFolder final : public ResultSink {
   void end_analysis(const AnalysisResult& result) override { tee_.end_analysis(result); }
   void end_run() override;
 
+  /// Why nothing can be written to the folder, or to where it would be made; empty if something can. Makes nothing.
+  static std::string obstacle(const std::string& path);
   /// Paths of the files that are complete.
   const std::vector<std::string>& files() const { return files_; }
   /// What could not be written; empty if everything was.

@@ -90,6 +90,13 @@ int execute(const RunCommand& command) {
   } else if (!command.quiet) {
     sinks.add(text);
   }
+  if (!command.directory.empty()) {
+    // Hours of results are not to be lost at their end.
+    if (const std::string obstacle = ResultFolder::obstacle(command.directory); !obstacle.empty()) {
+      fmt::print(stderr, "catena: {}\n", obstacle);
+      return no_file;
+    }
+  }
   if (!command.directory.empty()) sinks.add(folder.emplace(command.directory));
 
   RunOptions options = command.options;

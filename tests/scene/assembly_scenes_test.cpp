@@ -64,5 +64,20 @@ TEST(AssemblyScene, ContradictionsAreNotAssembled) {
   EXPECT_NE(run.analysis().report.message.find("\"last\""), std::string::npos) << run.analysis().report.message;
 }
 
+TEST(AssemblyScene, WhatIsHeldIsNamedWhereItIsInTheWay) {
+  const auto scene = [](const std::string& hold) {
+    return R"({"catena": 1, "bodies": {"a": {"rod": {"from": [0, 0], "to": [1, 0]})" + hold + R"(},
+        "b": {"rod": {"from": [1, 0], "to": [2, 0.2]}}},
+      "constraints": [{"type": "revolute", "i": "ground", "j": "a.from"}, {"type": "revolute", "i": "a.to", "j": "b.from"},
+                      {"type": "revolute", "i": ["ground", [1.5, 0.5]], "j": "b.to"}],
+      "analyses": [{"type": "assemble"}]})";
+  };
+  EXPECT_EQ(run_text(scene("")).outcome.exit_code, 0);
+  const TextRun held = run_text(scene(R"(, "hold": ["angle"])"));
+  EXPECT_EQ(held.analysis().report.status, Status::not_assembled);
+  EXPECT_NE(held.analysis().report.message.find("\"hold\" does not let assembly change a.angle"), std::string::npos)
+      << held.analysis().report.message;
+}
+
 }  // namespace
 }  // namespace catena::testing

@@ -115,5 +115,68 @@ TEST(DynamicsRows, StartAtASingularPosition) {
   for (double gap : driven.column("energy.balance")) EXPECT_NEAR(gap, 0, 1e-7);
 }
 
+bool says(const AnalysisResult& result, const std::string& part) {
+  if (result.report.message.find(part) != std::string::npos) return true;
+  for (const std::string& warning : result.report.warnings) {
+    if (warning.find(part) != std::string::npos) return true;
+  }
+  return false;
+}
+
+// An arm of 1 m and a fore arm of sqrt(1.66^2 + 0.36^2) m, led away at 0.3 m/s until it is stretched out.
+TEST(DynamicsRows, EndWhereDriversLockUp) {
+  const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -9.81], "bodies": {
+      "a": {"rod": {"from": [0, 0], "to": [0.54, 0.84]}, "mass": 1},
+      "b": {"rod": {"from": [0.54, 0.84], "to": [2.2, 1.2]}, "mass": 1}},
+    "constraints": [{"type": "revolute", "i": "ground", "j": "a.from"},
+                    {"type": "revolute", "i": "a.to", "j": "b.from"}],
+    "drivers": [{"type": "absolute_x", "name": "D", "i": "b.to", "value": {"polynomial": [2.2, 0.3]}},
+                {"type": "absolute_y", "name": "E", "i": "b.to", "value": 1.2}],
+    "analyses": [{"type": "dynamics", "until": 5, "every": 0.1, "outputs": ["a.angle"]}]})");
+  EXPECT_EQ(run.outcome.exit_code, 1);
+  EXPECT_EQ(run.analysis().report.status, Status::lock_up) << run.analysis().report.message;
+  EXPECT_TRUE(says(run.analysis(), "\"D\"")) << run.analysis().report.message;
+  const double reach = std::hypot(0.54, 0.84) + std::hypot(1.66, 0.36);
+  const double stretched = (std::sqrt(reach * reach - 1.44) - 2.2) / 0.3;
+  EXPECT_TRUE(says(run.analysis(), "t = " + std::to_string(stretched).substr(0, 6))) << run.analysis().report.message;
+}
+
+TEST(DynamicsRows, EndAfterTheStepsAllowed) {
+  const auto falling = [](const std::string& steps) {
+    return run_text(
+        R"({"catena": 1, "gravity": [0, -9.81], "bodies": {"b": {"rod": {"from": [0, 0], "to": [2, 0]}, "mass": 3}},
+      "constraints": [{"type": "revolute", "i": "ground", "j": "b.from"}],
+      "analyses": [{"type": "dynamics", "until": 1, "every": 0.5, "outputs": ["b.x"], "max_steps": )" +
+        steps + "}]}");
+  };
+  const TextRun few = falling("3");
+  EXPECT_EQ(few.outcome.exit_code, 1);
+  EXPECT_EQ(few.analysis().report.status, Status::not_converged);
+  EXPECT_TRUE(says(few.analysis(), "3 steps led to t = ")) << few.analysis().report.message;
+  const TextRun enough = falling("1000");
+  ASSERT_EQ(enough.outcome.exit_code, 0);
+  const auto& counters = enough.analysis().report.counters;
+  EXPECT_EQ(falling(std::to_string(counters.steps + counters.rejected)).outcome.exit_code, 0);
+}
+
+TEST(DynamicsRows, WarningsHaveUnitsAndReasons) {
+  const TextRun run = run_text(R"({"catena": 1, "bodies": {"b": {"mass": 2, "inertia": 1}},
+    "constraints": [{"type": "absolute_y", "i": "b", "value": 0}, {"type": "absolute_angle", "i": "b", "value": 0.5}],
+    "drivers": [{"type": "absolute_x", "name": "D", "i": "b", "value": {"polynomial": [0, 0, 2]}}],
+    "analyses": [{"type": "dynamics", "until": 3, "events": [
+      {"name": "off", "when": "t", "value": 1.5, "action": "release", "element": "D"},
+      {"name": "on", "when": "b.x", "value": 100, "action": "engage", "element": "D"}]}]})");
+  EXPECT_TRUE(says(run.analysis(), "\"D\" does not hold from the start, since event \"on\" engages it"));
+  EXPECT_TRUE(says(run.analysis(), "shifted bodies by up to 0 m and turned them by up to 0.5 rad"));
+
+  const TextRun caught = run_text(R"({"catena": 1, "gravity": [0, -9.81],
+    "bodies": {"b": {"rod": {"from": [0, 0], "to": [2, 0]}, "mass": 3, "velocity": [0, 0]}},
+    "constraints": [{"type": "revolute", "name": "A", "i": ["ground", [0, -1]], "j": "b.from"}],
+    "analyses": [{"type": "dynamics", "until": 1, "every": 0.5, "events": [
+      {"when": "b.from.y", "value": -1, "direction": "down", "action": "engage", "element": "A"}]}]})");
+  EXPECT_TRUE(says(caught.analysis(), "the velocities at t = 0.451523640986 s did not meet the constraints"));
+  EXPECT_TRUE(says(caught.analysis(), " rad/s (body \"b\")"));
+}
+
 }  // namespace
 }  // namespace catena::testing

@@ -160,9 +160,10 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
     const Conflict conflict = find_conflict(evaluator_, projector_, q);
     outcome.misfits = conflict.unmet;
     outcome.status = Status::not_assembled;
-    outcome.message = fmt::format(
-        "the constraints cannot all be met from the given configuration; nearest: {}; likely cause: {}",
-        describe_misfits(evaluator_.model(), outcome.misfits), describe_cause(evaluator_.model(), conflict));
+    outcome.message =
+        fmt::format("the constraints cannot all be met from the given configuration; nearest: {}; likely cause: {}",
+                    describe_misfits(evaluator_.model(), outcome.misfits),
+                    describe_held(evaluator_.model()) + describe_cause(evaluator_.model(), conflict));
     std::copy(given.begin(), given.end(), q.begin());
     evaluator_.set_configuration(q);
     return outcome;
@@ -172,6 +173,11 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
   }
   merit(q);
   outcome.residual = scaling_.row_norm(phi_);
+  for (int c = 0; c < plan_.columns; ++c) {
+    const int i = plan_.coordinate[at(c)];
+    double& largest = i % 3 == 2 ? outcome.turned : outcome.shifted;
+    largest = std::max(largest, std::abs(q[at(i)] - estimate[at(i)]));
+  }
   outcome.moved = weighted_distance(q, estimate) / std::sqrt(std::max(1, plan_.moving));
   return outcome;
 }

@@ -24,6 +24,8 @@ struct AssemblyOutcome : Report {
   int iterations = 0;
   double residual = 0;          ///< largest, in length scales or rad
   double moved = 0;             ///< how far the estimate was off: weighted RMS over bodies, m
+  double shifted = 0;           ///< the same: largest shift of a body's centroid, m
+  double turned = 0;            ///< and largest angle, but for whole turns, rad
   std::vector<Misfit> misfits;  ///< the worst first, at most ten; filled when not assembled
 };
 

@@ -45,18 +45,19 @@ Report Dynamics::prepare(std::vector<std::string>& warnings) {
   AssemblyOutcome assembled = assembler.assemble(q_);
   if (!assembled.ok()) return assembled;
   if (assembled.moved > 1e-9 * evaluator_.length_scale()) {
-    warnings.push_back(
-        fmt::format("the given configuration did not meet the constraints: assembled first, bodies moved "
-                    "by {:.3g} m (RMS)",
-                    assembled.moved));
+    warnings.push_back(fmt::format(
+        "the given configuration did not meet the constraints: assembled first, which shifted bodies by up to {:.3g} m "
+        "and turned them by up to {:.3g} rad",
+        assembled.shifted, assembled.turned));
   }
   if (Report massless = equations_.check_massless(q_); !massless.ok()) return massless;
   const VelocityOutcome velocities = find_initial_velocities(equations_, q_, given_qd_, qd_);
   if (!velocities.ok()) return velocities;
   if (velocities.changed > 1e-9) {
-    warnings.push_back(
-        fmt::format("the given velocities did not meet the constraints: changed by up to {:.3g} (body \"{}\")",
-                    velocities.changed, model_->body_name(velocities.changed_body)));
+    warnings.push_back(fmt::format(
+        "{} did not meet the constraints: changed by up to {:.3g} {} (body \"{}\")",
+        given_qd_.empty() ? std::string("the given velocities") : fmt::format("the velocities at t = {:.12g} s", t_),
+        velocities.changed, velocities.changed_turn ? "rad/s" : "m/s", model_->body_name(velocities.changed_body)));
   }
   prepared_ = true;
   return {};

@@ -80,7 +80,8 @@ class Dynamics {
   std::unique_ptr<Integrator> make_integrator(const Motion& motion, double horizon) const;
   Report check_functions(double last) const;
   void look_for_singularity(double t);
-  void start_at_singularity();
+  int locked_driver();
+  bool know_singular_start();
   void remark_on_singularities(std::vector<std::string>& warnings) const;
   Report check_order() const;
   Report check_freedoms() const;
@@ -95,7 +96,7 @@ class Dynamics {
   Report find_events(double from, RowObserver& observer);
   void find_multipliers();
   void describe_mobility(AnalysisReport& report);
-  Report stuck() const;
+  Report stuck();
   static Report cancelled(double t);
   Report check_pace(double last);
   double next_breakpoint(double t) const;

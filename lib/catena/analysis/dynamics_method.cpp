@@ -126,7 +126,7 @@ Report Dynamics::check_pace(double last) {
   Report report;
   if (options_.step > 0) return report;
   const std::int64_t steps = evaluator_.counters.steps + evaluator_.counters.rejected;
-  const bool used_up = steps - first_step_ > options_.max_steps;
+  const bool used_up = steps - first_step_ >= options_.max_steps && t_ < last;
   bool hopeless = false;
   if (steps - pace_step_ >= steps_of_a_pace) {
     const double pace = (t_ - pace_time_) / static_cast<double>(steps - pace_step_);
@@ -135,7 +135,7 @@ Report Dynamics::check_pace(double last) {
     pace_time_ = t_;
   }
   if (!used_up && !hopeless) return report;
-  report.status = Status::step_too_small;
+  report.status = Status::not_converged;
   std::string culprit;
   if (integrator_->culprit() >= 0) {
     culprit = fmt::format(" the error of body \"{}\" asks for short ones;",

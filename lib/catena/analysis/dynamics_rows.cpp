@@ -120,8 +120,16 @@ void Dynamics::describe_mobility(AnalysisReport& report) {
   for (int element : mobility.redundant_elements) report.redundant.push_back(model_->element_name(element));
 }
 
-Report Dynamics::stuck() const {
+Report Dynamics::stuck() {
   Report report;
+  if (const int driver = locked_driver(); driver >= 0) {
+    report.status = Status::lock_up;
+    report.message = fmt::format(
+        "lock-up at t = {:.12g} s: the drivers ask for a motion that the mechanism cannot make (a dead point); most "
+        "concerned: {} \"{}\"",
+        integrator_->time(), model_->element_type(driver), model_->element_name(driver));
+    return report;
+  }
   report.status = Status::step_too_small;
   const int row = equations_.weakest_row();
   std::string where;

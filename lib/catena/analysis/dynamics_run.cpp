@@ -48,10 +48,9 @@ Report Dynamics::start() {
   if (needs_.work) account_.emplace(evaluator_);
   driver_work_.assign(account_ ? model_->elements.size() : 0, 0.0);
   motion_.emplace(equations_, account_ ? &*account_ : nullptr);
+  integrator_ = make_integrator(*motion_, grid_.last());
   y_row_.assign(motion_->size(), 0.0);
   slope_row_.assign(motion_->size(), 0.0);
-  if (!resumed_) start_at_singularity();
-  integrator_ = make_integrator(*motion_, grid_.last());  // keeps a copy of the motion
   if (const Report out = set_out(); !out.ok()) {
     evaluator_.forget_turns();
     integrator_.reset();
@@ -84,6 +83,11 @@ Report Dynamics::set_out() {
     evaluator_.take_turns(std::span(y_row_).first(q_.size()));
   }
   if (!integrator_->start(t_, y_row_)) return stuck();
+  if (!resumed_ && know_singular_start()) {
+    // An integrator keeps a copy of the motion, and the step that the first slope suggested.
+    integrator_ = make_integrator(*motion_, grid_.last());
+    if (!integrator_->start(t_, y_row_)) return stuck();
+  }
   if (!account_) return {};
   if (resumed_) {
     initial_energy_ = memory_.initial_energy;

@@ -1,7 +1,11 @@
 // Dynamics where constraints depend on each other for an instant: at rows, and at the start.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "catena/analysis/dynamics.hpp"
+#include "catena/linalg/rank_revealing.hpp"
 
 namespace catena {
 namespace {
@@ -10,6 +14,10 @@ namespace {
 constexpr double near_singular = 1e-8;
 // For so many of the moments over which derivatives are taken the slope at a start may stand for those after it.
 constexpr double known_moments = 10;
+
+// Where no step can be made: rows nearer to dependence than this (sine) count as dependent; and the part of |w| |nu|
+// from which w^T nu counts as something.
+constexpr double nearly_dependent = 1e-3, not_nothing = 1e-2;
 
 std::string rows_at(double t, std::int64_t rows) {
   return fmt::format("at t = {:.12g} s{}", t, rows > 1 ? fmt::format(" and in {} more rows", rows - 1) : "");
@@ -36,18 +44,16 @@ void Dynamics::look_for_singularity(double t) {
   if (minimum_norm_->factorize()) singular_names_ = minimum_norm_->name_ambiguous();
 }
 
-// Tells the integrator what the first slope is, where the motion starts at such an instant.
-void Dynamics::start_at_singularity() {
-  const std::size_t n = q_.size();
-  std::copy(q_.begin(), q_.end(), y_row_.begin());
-  std::copy(qd_.begin(), qd_.end(), y_row_.begin() + static_cast<std::ptrdiff_t>(n));
-  const std::span<double> y(y_row_), slope(slope_row_);
-  if (!equations_.accelerations(t_, Side::after, y.first(n), y.subspan(n, n), slope.subspan(n, n))) return;
+// Whether the motion starts at such an instant; it then knows its first slope. The integrator was started, and the
+// factors are those of the start.
+bool Dynamics::know_singular_start() {
   dependent_ = equations_.is_dependent();
-  if (!(equations_.smallest_pivot_ratio() < near_singular)) return;
+  if (!(equations_.smallest_pivot_ratio() < near_singular)) return false;
+  const std::size_t n = q_.size();
+  const std::span<double> y(y_row_), slope(slope_row_);
   if (!singular_) singular_.emplace(equations_);
   const auto outcome = singular_->solve(t_, y.first(n), y.subspan(n, n), slope.subspan(n, n));
-  if (outcome != SingularInstant::Outcome::found) return;
+  if (outcome != SingularInstant::Outcome::found) return false;
   dependent_ = false;
   if (account_) {
     lambda_row_.assign(static_cast<std::size_t>(plan_->rows), 0.0);
@@ -56,6 +62,46 @@ void Dynamics::start_at_singularity() {
     account_->powers(y.subspan(n, n), lambda_row_, slope.subspan(2 * n));
   }
   motion_->know(t_, known_moments * singular_->moment(), slope.subspan(n));
+  return true;
+}
+
+// Where no step can be made: the driver that asks most for a motion that the constraints rule out, w^T Phi_q = 0 but
+// w^T nu != 0 (THEORY section 3); -1: none does.
+int Dynamics::locked_driver() {
+  if (plan_->rows == 0 || !(equations_.smallest_pivot_ratio() < nearly_dependent)) return -1;
+  std::vector<double> values(static_cast<std::size_t>(plan_->trash_slot()) + 1),
+      nu(static_cast<std::size_t>(plan_->rows));
+  evaluator_.set_time(integrator_->time());
+  evaluator_.set_configuration(integrator_->state().first(q_.size()));
+  evaluator_.start_jacobian(values);
+  evaluator_.jacobian(values);
+  evaluator_.nu(nu);
+  RankOptions options;
+  options.tolerance = nearly_dependent;
+  options.most_null_vectors = 0;
+  const RankReport rank = reveal_rank(
+      plan_->jacobian, std::span<const double>(values).first(static_cast<std::size_t>(plan_->trash_slot())), options);
+  if (!rank.ok()) return -1;
+  const auto unit = [&](std::size_t row) { return plan_->row_is_angle[row] ? 1 : evaluator_.length_scale(); };
+  double rates = 0;
+  for (std::size_t r = 0; r < nu.size(); ++r) rates += nu[r] * nu[r] / (unit(r) * unit(r));
+  for (int k = 0; k < rank.left_null_vectors.count(); ++k) {
+    const std::span<const int> rows = rank.left_null_vectors.indices(k);
+    const std::span<const double> weights = rank.left_null_vectors.values(k);
+    double product = 0, size = 0, largest = 0;
+    int driver = -1;
+    for (std::size_t n = 0; n < rows.size(); ++n) {
+      const auto row = static_cast<std::size_t>(rows[n]);
+      product += weights[n] * nu[row];
+      size += weights[n] * weights[n] * unit(row) * unit(row);
+      if (std::abs(weights[n] * nu[row]) > largest) {
+        largest = std::abs(weights[n] * nu[row]);
+        driver = plan_->row_element[row];
+      }
+    }
+    if (std::abs(product) > not_nothing * std::sqrt(size * rates)) return driver;
+  }
+  return -1;
 }
 
 void Dynamics::remark_on_singularities(std::vector<std::string>& warnings) const {

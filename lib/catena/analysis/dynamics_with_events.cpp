@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "catena/analysis/report_parts.hpp"
@@ -40,6 +41,16 @@ DynamicsWithEvents::DynamicsWithEvents(std::shared_ptr<const Model> model, const
     if (event.action != EventAction::release && event.action != EventAction::engage) continue;
     plan_options_.keep_elements.push_back(event.element);
     if (event.action == EventAction::engage) plan_options_.released_elements.push_back(event.element);
+  }
+  for (const Event& event : events) {
+    const bool released = std::any_of(events.begin(), events.end(), [&](const Event& other) {
+      return other.action == EventAction::release && other.element == event.element;
+    });
+    if (event.action != EventAction::engage || !released) continue;
+    inactive_.push_back(
+        fmt::format("\"{}\" does not hold from the start, since event \"{}\" engages it, although another event "
+                    "releases it",
+                    model_->element_name(event.element), event.name));
   }
   make_dynamics();
   watch_ = std::make_unique<EventWatch>(std::move(events), *model_, dynamics_->plan(), sources);
@@ -118,6 +129,7 @@ AnalysisReport DynamicsWithEvents::run(const TimeGrid& grid, const Needs& needs,
   CountingObserver rows(observer, rows_before_);
   watch_->rows_given = [&] { return rows.rows(); };
   AnalysisReport total;
+  total.warnings = inactive_;
   std::int64_t next_row = first_row_;
   TimeGrid rest = grid.from_row(next_row);
   double last_action = -1;

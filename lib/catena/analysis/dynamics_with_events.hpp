@@ -58,6 +58,7 @@ class DynamicsWithEvents {
   DynamicsOptions options_;
   std::unique_ptr<Dynamics> dynamics_;
   std::unique_ptr<EventWatch> watch_;
+  std::vector<std::string> inactive_;  // what is said of elements that are released before they are engaged
   Pauses pauses_;
   bool resumed_ = false;
   std::int64_t first_row_ = 0, rows_before_ = 0;  // of the grid; rows given before the motion was taken up

@@ -125,6 +125,7 @@ VelocityOutcome find_initial_velocities(EquationsOfMotion& equations, std::span<
     const double change = std::abs(velocity[at(c)] - wanted.velocity[at(c)]);
     if (wanted.given[at(c)] && change > outcome.changed) {
       outcome.changed = change;
+      outcome.changed_turn = plan.coordinate[at(c)] % 3 == 2;
       outcome.changed_body = plan.model_body[at(coordinate / 3)];
     }
   }

@@ -18,8 +18,9 @@
 namespace catena {
 
 struct VelocityOutcome : Report {
-  double changed = 0;     ///< largest change of a given component, m/s or rad/s
-  int changed_body = -1;  ///< whose it was, in the model's numbering
+  double changed = 0;         ///< largest change of a given component, m/s or rad/s
+  bool changed_turn = false;  ///< an angular velocity
+  int changed_body = -1;      ///< whose it was, in the model's numbering
 };
 
 /// Finds qd (size plan.coordinates()) at the evaluator's time and the assembled configuration q. `given`, if not empty,

@@ -195,6 +195,22 @@ std::string describe_misfits(const Model& model, std::span<const Misfit> misfits
   return text;
 }
 
+std::string describe_held(const Model& model) {
+  std::string names;
+  std::size_t count = 0;
+  const auto add = [&](bool held, std::size_t body, const char* column) {
+    if (!held || ++count > most_names) return;
+    names += fmt::format("{}{}.{}", count > 1 ? ", " : "", model.body_name(static_cast<int>(body)), column);
+  };
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    add(model.bodies[b].hold_x, b, "x");
+    add(model.bodies[b].hold_y, b, "y");
+    add(model.bodies[b].hold_angle, b, "angle");
+  }
+  if (count > most_names) names += ", ...";
+  return count > 0 ? fmt::format("\"hold\" does not let assembly change {}; or ", names) : names;
+}
+
 std::string describe_cause(const Model& model, const Conflict& conflict) {
   std::vector<int> drivers, others;
   for (int element : conflict.elements) {

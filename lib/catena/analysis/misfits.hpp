@@ -37,6 +37,8 @@ Conflict find_conflict(Evaluator& evaluator, ConstraintProjector& projector, std
 /// "revolute "B" misses by 0.12 m, ..." in one line, worst first.
 std::string describe_misfits(const Model& model, std::span<const Misfit> misfits);
 /// What may be the matter, in words: drivers against each other, a loop that does not close.
+/// What bodies hold, which may be why constraints are not met, before the other causes; empty if none does.
+std::string describe_held(const Model& model);
 std::string describe_cause(const Model& model, const Conflict& conflict);
 
 }  // namespace catena

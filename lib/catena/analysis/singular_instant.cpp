@@ -106,7 +106,7 @@ SingularInstant::Outcome SingularInstant::solve(double t, std::span<const double
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> system;
   system.setThreshold(says_nothing);
   system.compute(rows);
-  if (system.rank() == rank.rank) return speed > 0 ? Outcome::always_dependent : Outcome::not_found;
+  if (system.rank() == rank.rank) return Outcome::always_dependent;
   const Eigen::VectorXd y = system.solve(right - rows * free);
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> transposed;
   transposed.setThreshold(says_nothing);

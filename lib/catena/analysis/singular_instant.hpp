@@ -11,7 +11,7 @@
 //
 //   M qdd + Phi_q^T lambda + b^T beta = Q
 //
-// Where constraints always depend on each other b says nothing new. Singular: at rest, or where w^T gamma does not
+// Where constraints always depend on each other, and at rest, b says nothing new. Singular: where w^T gamma does not
 // vanish (accelerations grow without bound): no answer. Dense algebra, for up to `most_rows` rows.
 #pragma once
 
@@ -30,7 +30,7 @@ class SingularInstant {
 
   enum class Outcome {
     found,
-    always_dependent,  ///< constraints depend on each other along the motion, too: nothing is missing
+    always_dependent,  ///< constraints depend on each other along the motion, too; or there is none, at rest
     not_found,
   };
   /// Finds the accelerations at (t, q, qd), of plan.coordinates() entries. The evaluator is left at t and q. Allocates.

@@ -73,9 +73,9 @@ void check_velocities(Kinematics& analysis, const Model& model, AnalysisReport& 
     report.warnings.push_back("initial velocities: " + outcome.message);
   } else if (outcome.changed > 1e-9) {
     report.warnings.push_back(
-        fmt::format("the given velocities do not meet the constraints: dynamics changes them by up to {:.3g} (body "
-                    "\"{}\")",
-                    outcome.changed, model.body_name(outcome.changed_body)));
+        fmt::format("the given velocities do not meet the constraints: dynamics changes them by up to {:.3g} {} "
+                    "(body \"{}\")",
+                    outcome.changed, outcome.changed_turn ? "rad/s" : "m/s", model.body_name(outcome.changed_body)));
   }
 }
 
