@@ -162,7 +162,7 @@ TEST(SceneRunner, CheckTellsOfVelocitiesThatDoNotFit) {
   };
   const TextRun wrong = run_text(pendulum(R"(, "velocity": [1, 3])"));
   ASSERT_EQ(wrong.analysis().report.warnings.size(), 1u);
-  EXPECT_NE(wrong.analysis().report.warnings[0].find("changes them by up to 1 (body \"a\")"), std::string::npos)
+  EXPECT_NE(wrong.analysis().report.warnings[0].find("changes them by up to 1 m/s (body \"a\")"), std::string::npos)
       << wrong.analysis().report.warnings[0];
   EXPECT_TRUE(run_text(pendulum(R"(, "velocity": [0, 3])")).analysis().report.warnings.empty());
   EXPECT_TRUE(run_text(pendulum("")).analysis().report.warnings.empty());

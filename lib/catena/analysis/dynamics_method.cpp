@@ -135,7 +135,8 @@ Report Dynamics::check_pace(double last) {
     pace_time_ = t_;
   }
   if (!used_up && !hopeless) return report;
-  report.status = Status::not_converged;
+  // Steps that lead nowhere are too small; a bound that is reached is another matter.
+  report.status = hopeless ? Status::step_too_small : Status::not_converged;
   std::string culprit;
   if (integrator_->culprit() >= 0) {
     culprit = fmt::format(" the error of body \"{}\" asks for short ones;",

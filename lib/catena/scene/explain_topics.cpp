@@ -147,6 +147,8 @@ Example
 
 load: of a driver, load = lambda dPhi/dc, so that power = load dc/dt: positive pushes the value up
   drive.load, drive.power [W], drive.work [J]
+work is summed up from the start of an analysis: in dynamics along with the motion, to its tolerance; in
+inverse_dynamics to about 1e-10 of the energy exchanged, however far apart rows are; energy.balance shows the error
 )"},
       {{"gap", "one-sided"},
        R"(gap: of a contact, stop or cable A, which push or pull one way only
