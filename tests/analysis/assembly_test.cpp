@@ -73,6 +73,16 @@ TEST(Assembly, NamesTheOneRodThatIsTooLong) {
   }
 }
 
+TEST(Assembly, NamesWhatIsTooLargeToBeEvaluated) {
+  Model model;
+  model.add_body("far", {.mass = 1, .inertia = 1, .position = {1e200, 0}});
+  model.add("tie", Coupler<double>{}, ground, 0, 1.0);
+  const Attempt attempt(model);
+  EXPECT_EQ(attempt.outcome.status, Status::not_assembled);
+  EXPECT_NE(attempt.outcome.message.find("coupler \"tie\" cannot be evaluated"), std::string::npos)
+      << attempt.outcome.message;
+}
+
 TEST(Assembly, NamesTwoCulprits) {
   const Attempt attempt(*tied_particles(8, {{"rod0-3", 0.1}, {"rod2-5", -0.12}}));
   EXPECT_EQ(std::set(attempt.names.begin(), attempt.names.end()), (std::set<std::string>{"rod0-3", "rod2-5"}))

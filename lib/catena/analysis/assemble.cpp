@@ -16,6 +16,8 @@ constexpr int max_iterations = 200;
 constexpr int max_approach_iterations = 60;
 // A body may turn at most this far in one step: beyond it the linearisation says nothing, and linkages flip.
 constexpr double largest_turn = 0.5;
+// Residuals from here on overflow as soon as they are squared.
+constexpr double largest_residual = 1e120;
 constexpr double smallest_factor = 1e-4;
 
 }  // namespace
@@ -149,6 +151,14 @@ void Assembler::approach_estimate(std::span<double> q, std::span<const double> e
   }
 }
 
+int Assembler::element_out_of_range(std::span<const double> q) {
+  merit(q);
+  for (std::size_t row = 0; row < phi_.size(); ++row) {
+    if (!(std::abs(phi_[row]) < largest_residual)) return plan_.row_element[row];
+  }
+  return -1;
+}
+
 AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
   AssemblyOutcome outcome;
   if (plan_.rows == 0) return outcome;
@@ -156,6 +166,15 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
   move_whole_turns(evaluator_, q);
   const std::vector<double> estimate(q.begin(), q.end());
   if (!restore(q, tolerance, outcome)) {
+    if (const int element = element_out_of_range(estimate); element >= 0) {
+      outcome.status = Status::not_assembled;
+      outcome.message = fmt::format(
+          "{} \"{}\" cannot be evaluated in the given configuration: places or lengths are too large for double "
+          "precision",
+          evaluator_.model().element_type(element), evaluator_.model().element_name(element));
+      std::copy(given.begin(), given.end(), q.begin());
+      return outcome;
+    }
     // The best configuration found may differ a lot from what was given without being any use: keep what was given.
     const Conflict conflict = find_conflict(evaluator_, projector_, q);
     outcome.misfits = conflict.unmet;

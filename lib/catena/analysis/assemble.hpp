@@ -40,6 +40,8 @@ class Assembler {
   bool restore(std::span<double> q, double tolerance, AssemblyOutcome& outcome);
   void approach_estimate(std::span<double> q, std::span<const double> estimate, double tolerance,
                          AssemblyOutcome& outcome);
+  /// An element whose residual at q overflows when it is squared, or -1.
+  int element_out_of_range(std::span<const double> q);
   double merit(std::span<const double> q);
   void advance(std::span<const double> from, double factor, std::span<double> to) const;
   double weighted_distance(std::span<const double> a, std::span<const double> b) const;

@@ -107,11 +107,10 @@ class DynamicsOfIslands::Part final : public RowObserver {
  private:
   PlanOptions options_of(const PlanOptions& all) const {
     PlanOptions own;
+    std::vector<int> wanted = all.keep_elements;
+    std::sort(wanted.begin(), wanted.end());
     for (int e = 0; e < static_cast<int>(part_.elements.size()); ++e) {
-      const int element = part_.elements[at(e)];
-      if (std::find(all.keep_elements.begin(), all.keep_elements.end(), element) != all.keep_elements.end()) {
-        own.keep_elements.push_back(e);
-      }
+      if (std::binary_search(wanted.begin(), wanted.end(), part_.elements[at(e)])) own.keep_elements.push_back(e);
     }
     return own;
   }

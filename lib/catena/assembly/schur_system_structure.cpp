@@ -1,0 +1,92 @@
+// SchurSystem: the pattern of S, its order of elimination, and the place of every product.
+#include <algorithm>
+
+#include "catena/assembly/schur_system.hpp"
+#include "catena/linalg/cholmod_kernel.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+}  // namespace
+
+bool SchurSystem::analyze(Counters& counters) {
+  const Plan& plan = *plan_;
+  const SparsePattern& a = plan.jacobian;
+  std::vector<char> varies(at(a.entries()) + 1, 0);
+  for_each_list(plan.blocks, [&](const auto& block, int) {
+    for (int slot : block.slot) varies[at(slot)] = 1;
+  });
+  for (int k = 0; k < 3 * plan.moving; ++k) {
+    const Column column{k, column_start_[at(k)], column_start_[at(k) + 1]};
+    if (column.first == column.last) continue;
+    const bool any = std::any_of(varies.begin() + column.first, varies.begin() + column.last, [](char v) { return v; });
+    (any ? varying_ : constant_).push_back(column);
+  }
+  // The pattern of S in the plan's rows, for the order; then again, permuted, with the slot of every product.
+  std::vector<MatrixEntry> entries;
+  for (int r = 0; r < plan.rows; ++r) entries.push_back({r, r});
+  const auto products = [&](const std::vector<Column>& columns) {
+    for (const Column& column : columns) {
+      for (int x = column.first; x < column.last; ++x) {
+        for (int y = column.first; y <= x; ++y) entries.push_back({a.row_index[at(x)], a.row_index[at(y)]});
+      }
+    }
+  };
+  products(varying_);
+  const std::size_t first_constant = entries.size();
+  products(constant_);
+  for (MatrixEntry& entry : entries) {
+    const auto [first, last] = std::minmax(entry.row, entry.column);
+    entry = {last, first};
+  }
+  const SlottedPattern built = build_pattern(plan.rows, plan.rows, entries);
+  if (!analyze_factors(built.pattern, counters)) return false;
+  const auto slots = [&](std::size_t begin, std::size_t end) {
+    std::vector<int> list;
+    for (std::size_t k = begin; k < end; ++k) list.push_back(factors_.slots()[at(built.slot[k])]);
+    return list;
+  };
+  diagonal_ = slots(0, at(plan.rows));
+  varying_slot_ = slots(at(plan.rows), first_constant);
+  constant_slot_ = slots(first_constant, entries.size());
+  constant_values_.resize(factors_.values().size());
+  diagonal_values_.resize(at(plan.rows));
+  analyzed_ = true;
+  return true;
+}
+
+// Rows of an element go together: they touch the same bodies. Elements by minimum degree.
+bool SchurSystem::analyze_factors(const SparsePattern& lower, Counters& counters) {
+  const Plan& plan = *plan_;
+  std::vector<int> node(at(plan.rows)), node_first;
+  for (int r = 0; r < plan.rows; ++r) {
+    if (r == 0 || plan.row_element[at(r)] != plan.row_element[at(r - 1)]) node_first.push_back(r);
+    node[at(r)] = static_cast<int>(node_first.size()) - 1;
+  }
+  const int nodes = static_cast<int>(node_first.size());
+  node_first.push_back(plan.rows);
+  std::vector<MatrixEntry> entries, pairs;
+  for (int k = 0; k < nodes; ++k) pairs.push_back({k, k});
+  for (int c = 0; c < lower.columns; ++c) {
+    for (int e = lower.column_start[at(c)]; e < lower.column_start[at(c) + 1]; ++e) {
+      const int row = lower.row_index[at(e)];
+      entries.push_back({row, c});
+      const MatrixEntry pair{node[at(row)], node[at(c)]};
+      if (pair.row != pair.column && (pair.row != pairs.back().row || pair.column != pairs.back().column))
+        pairs.push_back(pair);
+    }
+  }
+  CholmodKernel orderer;
+  if (!orderer.analyze(build_pattern(nodes, nodes, pairs).pattern, {}).ok()) return false;
+  std::vector<int> order, node_start{0};
+  for (int k : orderer.order()) {
+    for (int r = node_first[at(k)]; r < node_first[at(k) + 1]; ++r) order.push_back(r);
+    node_start.push_back(static_cast<int>(order.size()));
+  }
+  factors_.analyze(entries, order, node_start, counters);
+  return true;
+}
+
+}  // namespace catena
