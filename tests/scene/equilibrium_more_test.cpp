@@ -2,7 +2,9 @@
 // solver.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "catena/analysis/static_ipopt.hpp"
 #include "catena/analysis/static_nlopt.hpp"
@@ -57,6 +59,21 @@ TEST(SeveralEquilibria, SaysHowManyThereWere) {
   ASSERT_FALSE(run.analysis().report.warnings.empty());
   EXPECT_NE(run.analysis().report.warnings.back().find("2 different equilibria"), std::string::npos);
   EXPECT_NE(run.analysis().report.warnings.back().find("5 wanted"), std::string::npos);
+}
+
+// Two springs of 1.2 m across a gap of 2 m: the point rests at y = +-sqrt(1.2^2 - 1), and nothing in it can turn.
+TEST(SeveralEquilibria, FindsBothWellsWhereNothingTurns) {
+  const TextRun run = run_text(R"({"catena": 1, "bodies": {"a": {"mass": 1, "particle": true, "position": [0, 0.4]}},
+    "constraints": [{"type": "absolute_x", "i": "a", "value": 0}],
+    "forces": [{"type": "spring_damper", "i": ["ground", [-1, 0]], "j": "a", "k": 100, "length": 1.2},
+               {"type": "spring_damper", "i": ["ground", [1, 0]], "j": "a", "k": 100, "length": 1.2}],
+    "analyses": [{"type": "equilibrium", "find": 2, "outputs": ["a.y"]}]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  std::vector<double> y = run.column("a.y");
+  ASSERT_EQ(y.size(), 2u);
+  std::sort(y.begin(), y.end());
+  EXPECT_NEAR(y[0], -std::sqrt(0.44), 1e-12);
+  EXPECT_NEAR(y[1], std::sqrt(0.44), 1e-12);
 }
 
 TEST(FollowerForces, BalanceWithoutACertificate) {

@@ -14,6 +14,8 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Starts: some for every scene, more for every equilibrium wanted.
 constexpr int least_starts = 30, starts_each = 15;
+// Places are shaken by this part of angles times the length scale, where nothing turns: else by the usual part.
+constexpr double shaken_places = 0.5, shaken_beside_angles = 0.1;
 // Places closer than this, in extents or rad (whole turns aside), are the same, if their energies are.
 constexpr double same_place = 1e-6, same_energy = 1e-9;
 
@@ -37,6 +39,8 @@ bool are_same(const Candidate& a, const Candidate& b, double extent, double ener
 EquilibriumReport Equilibrium::find_several(const Needs& needs, RowObserver& observer) {
   const std::vector<double> start = q_;
   const StaticSearch search(system_, {});
+  const bool turns = std::any_of(plan_->coordinate.begin(), plan_->coordinate.end(), [](int k) { return k % 3 == 2; });
+  const double place = turns ? shaken_beside_angles : shaken_places;
   std::vector<Candidate> found;
   EquilibriumReport first;
   const int starts = least_starts + starts_each * options_.find;
@@ -46,7 +50,7 @@ EquilibriumReport Equilibrium::find_several(const Needs& needs, RowObserver& obs
     solved_ = false;
     // In turn: close to the start, everywhere, and between.
     constexpr double angles[] = {std::numbers::pi, 0.3, 1.0};
-    if (used > 0) search.shake(q_, static_cast<unsigned>(used), angles[at(used % 3)]);
+    if (used > 0) search.shake(q_, static_cast<unsigned>(used), angles[at(used % 3)], place);
     Candidate candidate;
     candidate.report = solve();
     if (used == 0) first = candidate.report;

@@ -219,11 +219,11 @@ void StaticSearch::leave(const Certificate& certificate, std::vector<double>& q,
   q = best;
 }
 
-void StaticSearch::shake(std::vector<double>& q, unsigned seed, double angle) const {
+void StaticSearch::shake(std::vector<double>& q, unsigned seed, double angle, double place) const {
   const Plan& plan = system_.plan();
   for (int c = 0; c < plan.columns; ++c) {
     const int coordinate = plan.coordinate[at(c)];
-    const double size = coordinate % 3 == 2 ? angle : 0.1 * angle * system_.length();
+    const double size = coordinate % 3 == 2 ? angle : place * angle * system_.length();
     q[at(coordinate)] += size * random_number(seed);
   }
 }

@@ -55,9 +55,9 @@ class StaticSearch {
   /// Finds an equilibrium from q; leaves q, lambda and the system there, or at the best that was found.
   StaticResult find(std::vector<double>& q, std::vector<double>& lambda);
 
-  /// Disturbs every coordinate by a random amount: angles by at most `angle`, rad, places by a tenth of that in length
-  /// scales. The same seed gives the same numbers.
-  void shake(std::vector<double>& q, unsigned seed, double angle) const;
+  /// Disturbs every coordinate by a random amount: angles by at most `angle`, rad, places by `place` of that in
+  /// length scales. The same seed gives the same numbers.
+  void shake(std::vector<double>& q, unsigned seed, double angle, double place = 0.1) const;
 
  private:
   enum class Way { valley, newton, ipopt, nlopt, settling };
