@@ -97,42 +97,18 @@ void print_chain_records() {
   }
 }
 
-namespace {
-
-/// Places of B0 at the samples: all cranks share the angle of one pendulum, ((n + 1) / 3 + n) angle'' =
-/// ((n + 1) / 2 + n) g sin(angle), angle from the upright, which classic Runge-Kutta follows to 1e-12.
-std::vector<Vec2<double>> parallelogram(int n, int samples, double duration) {
-  const double ratio = ((n + 1) / 2.0 + n) * gravity / ((n + 1) / 3.0 + n);
-  constexpr int substeps = 200;
-  const double h = duration / samples / substeps;
-  double angle = 0, rate = 1;
-  const auto slope = [&](double a) { return ratio * std::sin(a); };
-  std::vector<Vec2<double>> places{{0, 1}};
-  for (int k = 0; k < samples; ++k) {
-    for (int s = 0; s < substeps; ++s) {
-      const double a1 = slope(angle), v2 = rate + h / 2 * a1, a2 = slope(angle + h / 2 * rate);
-      const double v3 = rate + h / 2 * a2, a3 = slope(angle + h / 2 * v2), v4 = rate + h * a3;
-      const double a4 = slope(angle + h * v3);
-      angle += h / 6 * (rate + 2 * v2 + 2 * v3 + v4);
-      rate += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
-    }
-    places.push_back({std::sin(angle), std::cos(angle)});
-  }
-  return places;
-}
-
-}  // namespace
-
 void print_fourbar_records() {
   constexpr int samples = 400;
   constexpr double duration = 10;
   for (int n : {2, 40}) {
     const auto model = four_bars(n);
-    const std::vector<Vec2<double>> exact = parallelogram(n, samples, duration);
+    const TimeGrid grid = TimeGrid::range(0, duration, duration / samples);
+    Parallelogram parallelogram(n);
+    std::vector<Vec2<double>> exact;
+    for (std::int64_t k = 0; k < grid.size(); ++k) exact.push_back(parallelogram.crank_end(grid[k]));
     for (IntegrationMethod method : {IntegrationMethod::automatic, IntegrationMethod::rk8}) {
       for (double tolerance : tolerances) {
-        const Run run = simulate(model, TimeGrid::range(0, duration, duration / samples),
-                                 {.method = method, .tolerance = tolerance}, 3);
+        const Run run = simulate(model, grid, {.method = method, .tolerance = tolerance}, 3);
         if (!run.report.ok() || run.rows.size() != exact.size()) {
           failed("S2", to_string(method), tolerance, run.report);
           continue;

@@ -39,6 +39,7 @@ class DynamicsOfIslands::Part final : public RowObserver {
  public:
   Part(DynamicsOfIslands& owner, ModelPart part, const PlanOptions& all, const DynamicsOptions& options)
       : owner_(owner),
+        number_(owner.parts_.size()),
         part_(std::move(part)),
         model_(std::make_shared<const Model>(std::move(part_.model))),
         dynamics_(model_, options_of(all), options) {
@@ -96,9 +97,7 @@ class DynamicsOfIslands::Part final : public RowObserver {
     return true;
   }
   bool proceed(double t) override {
-    const auto number = static_cast<double>(
-        std::find_if(owner_.parts_.begin(), owner_.parts_.end(), [&](const auto& part) { return part.get() == this; }) -
-        owner_.parts_.begin());
+    const auto number = static_cast<double>(number_);
     return watcher_->proceed(from_ + (number * (to_ - from_) + (t - from_)) / static_cast<double>(owner_.classes()));
   }
 
@@ -116,6 +115,7 @@ class DynamicsOfIslands::Part final : public RowObserver {
   }
 
   DynamicsOfIslands& owner_;
+  std::size_t number_;  // among the classes
   ModelPart part_;
   std::shared_ptr<const Model> model_;
   Dynamics dynamics_;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "catena/analysis/dynamics.hpp"
-#include "catena/linalg/rank_revealing.hpp"
+#include "catena/analysis/jacobian_rank.hpp"
 
 namespace catena {
 namespace {
@@ -69,18 +69,14 @@ bool Dynamics::know_singular_start() {
 // w^T nu != 0 (THEORY section 3); -1: none does.
 int Dynamics::locked_driver() {
   if (plan_->rows == 0 || !(equations_.smallest_pivot_ratio() < nearly_dependent)) return -1;
-  std::vector<double> values(static_cast<std::size_t>(plan_->trash_slot()) + 1),
-      nu(static_cast<std::size_t>(plan_->rows));
   evaluator_.set_time(integrator_->time());
-  evaluator_.set_configuration(integrator_->state().first(q_.size()));
-  evaluator_.start_jacobian(values);
-  evaluator_.jacobian(values);
+  const std::vector<double> values = jacobian_values(evaluator_, integrator_->state().first(q_.size()));
+  std::vector<double> nu(static_cast<std::size_t>(plan_->rows));
   evaluator_.nu(nu);
   RankOptions options;
   options.tolerance = nearly_dependent;
   options.most_null_vectors = 0;
-  const RankReport rank = reveal_rank(
-      plan_->jacobian, std::span<const double>(values).first(static_cast<std::size_t>(plan_->trash_slot())), options);
+  const RankReport rank = jacobian_rank(evaluator_, plan_->jacobian, values, options);
   if (!rank.ok()) return -1;
   const auto unit = [&](std::size_t row) { return plan_->row_is_angle[row] ? 1 : evaluator_.length_scale(); };
   double rates = 0;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/linalg/rank_revealing.hpp"
+#include "catena/analysis/jacobian_rank.hpp"
 
 namespace catena {
 namespace {
@@ -57,7 +57,7 @@ SingularInstant::Outcome SingularInstant::solve(double t, std::span<const double
   options.tolerance = dependent;
   options.most_null_vectors = 0;
   const RankReport rank =
-      reveal_rank(plan.jacobian, std::span<const double>(values).first(at(plan.trash_slot())), options);
+      jacobian_rank(evaluator, plan.jacobian, std::span<const double>(values).first(at(plan.trash_slot())), options);
   const int extra = static_cast<int>(rank.dependent_rows.size());
   if (!rank.ok() || extra == 0 || rank.left_null_vectors.count() != extra) return Outcome::not_found;
 

@@ -26,6 +26,9 @@ void BlockFactorization::analyze(std::span<const MatrixEntry> entries, std::span
   pivots_.resize(order.size());
   work_.resize(order.size());
   place_updates();
+  // What the slots say now.
+  structure_.source = std::vector<int>();
+  structure_.target = std::vector<int>();
 }
 
 // Where values and updates go: every row below a block is a column of a later one, in whose panel those after it have
