@@ -13,15 +13,6 @@
 namespace catena::testing {
 namespace {
 
-template <class T>
-T field(const TextRun& run, const std::string& name) {
-  for (const NamedField& f : run.analysis().fields) {
-    if (f.name == name) return std::get<T>(f.value);
-  }
-  ADD_FAILURE() << "no field " << name << "; " << run.analysis().report.message << run.outcome.error_text;
-  return {};
-}
-
 // The inverted bar on a torsion spring of 1 N m/rad, m g l = 2 N m: upright unstable, tilted by theta stable.
 std::string inverted_bar(const std::string& keys) {
   return R"({"catena": 1, "gravity": [0, -10], "bodies": {"bar": {"mass": 0.2, "inertia": 0, "position": [0, 1]}},

@@ -18,15 +18,6 @@ TextRun settle(const std::string& rest, const std::string& keys = "", const std:
                   keys + "}]}");
 }
 
-template <class T>
-T field(const TextRun& run, const std::string& name) {
-  for (const NamedField& f : run.analysis().fields) {
-    if (f.name == name) return std::get<T>(f.value);
-  }
-  ADD_FAILURE() << "no field " << name << "; " << run.analysis().report.message << run.outcome.error_text;
-  return {};
-}
-
 void expect_stable(const TextRun& run) {
   EXPECT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
   ASSERT_EQ(run.outcome.analyses.size(), 1u);

@@ -11,15 +11,6 @@
 namespace catena::testing {
 namespace {
 
-template <class T>
-T field(const TextRun& run, const std::string& name) {
-  for (const NamedField& f : run.analysis().fields) {
-    if (f.name == name) return std::get<T>(f.value);
-  }
-  ADD_FAILURE() << "no field " << name << "; " << run.analysis().report.message << run.outcome.error_text;
-  return {};
-}
-
 void expect_ok(const TextRun& run) {
   ASSERT_TRUE(run.outcome.error_text.empty()) << run.outcome.error_text;
   ASSERT_EQ(run.outcome.exit_code, 0) << run.analysis().report.message;

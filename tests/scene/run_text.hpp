@@ -56,6 +56,16 @@ inline TextRun run_text(const std::string& text, const RunOptions& options = {})
   return run;
 }
 
+/// A field of the first analysis, beside its columns; a missing one is a failure.
+template <class T>
+T field(const TextRun& run, const std::string& name) {
+  for (const NamedField& f : run.analysis().fields) {
+    if (f.name == name) return std::get<T>(f.value);
+  }
+  ADD_FAILURE() << "no field " << name << "; " << run.analysis().report.message << run.outcome.error_text;
+  return {};
+}
+
 /// A text with its mark taken out, and where the mark was.
 struct MarkedText {
   std::string text;
