@@ -14,7 +14,8 @@ Dynamics::Dynamics(std::shared_ptr<const Model> model, const PlanOptions& plan_o
       plan_(Plan::make(*model_, plan_options)),
       options_(options),
       evaluator_(plan_, *model_),
-      equations_(evaluator_) {
+      equations_(evaluator_),
+      redundant_(equations_) {
   q_ = evaluator_.given_configuration();
   qd_.assign(q_.size(), 0.0);
   choose_method();
@@ -50,6 +51,7 @@ Report Dynamics::prepare(std::vector<std::string>& warnings) {
         "and turned them by up to {:.3g} rad",
         assembled.shifted, assembled.turned));
   }
+  redundant_.find(q_);
   if (Report massless = equations_.check_massless(q_); !massless.ok()) return massless;
   const VelocityOutcome velocities = find_initial_velocities(equations_, q_, given_qd_, qd_);
   if (!velocities.ok()) return velocities;

@@ -21,6 +21,7 @@
 #include "catena/analysis/minimum_norm.hpp"
 #include "catena/analysis/motion_memory.hpp"
 #include "catena/analysis/process_time.hpp"
+#include "catena/analysis/redundant_rows.hpp"
 #include "catena/analysis/row_observer.hpp"
 #include "catena/analysis/singular_instant.hpp"
 #include "catena/analysis/system_state.hpp"
@@ -108,6 +109,7 @@ class Dynamics {
   IntegrationMethod method_ = IntegrationMethod::rk8;
   Evaluator evaluator_;
   EquationsOfMotion equations_;
+  RedundantRows redundant_;
   std::optional<EnergyAccount> account_;
   std::unique_ptr<Integrator> integrator_;
   std::optional<MinimumNorm> minimum_norm_;            // made when multipliers turn out not to be unique

@@ -72,7 +72,7 @@ Report Dynamics::check_order() const {
 
 Report Dynamics::check_freedoms() const {
   Report report;
-  const int freedoms = plan_->columns - plan_->rows;
+  const int freedoms = plan_->columns - plan_->rows + redundant_.count();
   if (freedoms > CoordinatePartition::most_freedoms) {
     report.status = Status::refused;
     report.message = fmt::format(

@@ -107,7 +107,7 @@ void Dynamics::find_multipliers() {
 
 // Degrees of freedom: by count where rows are independent, else by rank.
 void Dynamics::describe_mobility(AnalysisReport& report) {
-  if (equations_.smallest_pivot_ratio() > independent_ratio) {
+  if (equations_.smallest_pivot_ratio() > independent_ratio && !equations_.is_dependent()) {
     report.rank = plan_->rows;
     report.dof = plan_->columns - plan_->rows;
     report.mobility = plan_->mobility();

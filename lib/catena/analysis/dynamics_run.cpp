@@ -77,6 +77,7 @@ Report Dynamics::set_out() {
     for (std::size_t b = 0; b < memory_.turns.size(); ++b) turned[3 * b + 2] = memory_.turns[b] * 2 * std::numbers::pi;
     evaluator_.take_turns(turned);
     integrator_->remember(memory_.integrator);
+    redundant_.take_up(memory_.left_out, std::span(y_row_).first(q_.size()));
   } else {
     std::copy(q_.begin(), q_.end(), y_row_.begin());
     std::copy(qd_.begin(), qd_.end(), y_row_.begin() + static_cast<std::ptrdiff_t>(q_.size()));
@@ -123,7 +124,8 @@ Report Dynamics::step(RowObserver& observer) {
   if (!integrator_->advance(limit)) return stuck();
   const double before = t_;
   t_ = integrator_->time();
-  always_dependent_ = std::exchange(dependent_, equations_.is_dependent()) && dependent_;
+  always_dependent_ = std::exchange(dependent_, equations_.is_singular()) && dependent_;
+  redundant_.follow(integrator_->state().first(q_.size()));
   if (!observer.proceed(t_)) return cancelled(t_);
   if (const Report pace = check_pace(grid_.last()); !pace.ok()) return pace;
   if (events_) {
@@ -157,6 +159,7 @@ void Dynamics::remember() {
   memory_.next_row = next_row_;
   memory_.steps = evaluator_.counters.steps + evaluator_.counters.rejected - first_step_;
   memory_.integrator = integrator_->memory();
+  memory_.left_out = equations_.left_out();
   memory_.earlier = earlier_;
 }
 

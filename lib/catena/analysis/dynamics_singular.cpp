@@ -47,7 +47,7 @@ void Dynamics::look_for_singularity(double t) {
 // Whether the motion starts at such an instant; it then knows its first slope. The integrator was started, and the
 // factors are those of the start.
 bool Dynamics::know_singular_start() {
-  dependent_ = equations_.is_dependent();
+  dependent_ = equations_.is_singular();
   if (!(equations_.smallest_pivot_ratio() < near_singular)) return false;
   const std::size_t n = q_.size();
   const std::span<double> y(y_row_), slope(slope_row_);

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "catena/analysis/mass_matrix.hpp"
@@ -50,13 +51,23 @@ class EquationsOfMotion {
   /// Changes qd to what the constraints allow at the configuration that project_position() left, until the residual is
   /// rounding compared with the velocities `rate` (1/s), at most twice. Returns the residual of qd as it was.
   double project_velocity(std::span<double> qd, double rate);
+  /// Directions among the rows that are not solved for, see SchurSystem and RedundantRows. The next use factors anew.
+  void leave_out(SparseVectors directions) {
+    system_.leave_out(std::move(directions));
+    factored_ = false;
+  }
+  const SparseVectors& left_out() const { return system_.left_out(); }
+  std::vector<double> row_sizes() const { return system_.row_sizes(); }
+  void solve_rows(std::span<double> x) { system_.solve_rows(x, evaluator_.counters); }
   /// Removes from x the part that the constraints do not allow, roughly: for estimates of errors.
   void remove_forbidden(std::span<double> x);
   /// See SchurSystem: near zero where constraints depend on each other.
   double smallest_pivot_ratio() const { return plan_.rows > 0 ? system_.smallest_pivot_ratio() : 1; }
   int weakest_row() const { return system_.weakest_row(); }
-  /// Whether constraints depend on each other so much that multipliers are not unique.
-  bool is_dependent() const { return plan_.rows > 0 && system_.is_regularised(); }
+  /// Whether constraints that are solved for depend on each other, in a singular position.
+  bool is_singular() const { return plan_.rows > 0 && system_.is_regularised(); }
+  /// Whether multipliers are not unique: there, and always where constraints are redundant.
+  bool is_dependent() const { return is_singular() || left_out().count() > 0; }
 
   Evaluator& evaluator() { return evaluator_; }
   const Plan& plan() const { return plan_; }

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "catena/linalg/sparse_vectors.hpp"
+
 namespace catena {
 
 /// Energies at an event, for a motion that goes on with other constraints. Units: J.
@@ -47,6 +49,7 @@ struct MotionMemory {
   double initial_energy = 0;
   std::int64_t next_row = 0, steps = 0;  ///< of the grid; made so far, rejected ones included
   std::int64_t rows_given = 0;           ///< those at events included
+  SparseVectors left_out;                ///< directions among the rows: see RedundantRows
   IntegratorMemory integrator;
   WorkSoFar earlier;  ///< what was summed up before the last event that acted
   EventMemory events;

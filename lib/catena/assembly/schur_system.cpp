@@ -52,6 +52,35 @@ void SchurSystem::set_masses(std::span<const double> masses, std::span<const dou
   constants_known_ = false;
 }
 
+void SchurSystem::leave_out(SparseVectors directions) {
+  left_out_ = std::move(directions);
+  place_left_out();
+}
+
+void SchurSystem::add_left_out(double factor, std::span<const double> lambda, std::span<double> out) const {
+  for (int k = 0; k < left_out_.count(); ++k) {
+    const std::span<const int> rows = left_out_.indices(k);
+    const std::span<const double> c = left_out_.values(k);
+    double sum = 0;
+    for (std::size_t a = 0; a < c.size(); ++a) sum += c[a] * lambda[at(rows[a])];
+    for (std::size_t a = 0; a < c.size(); ++a) out[at(rows[a])] += factor * sum * c[a];
+  }
+}
+
+void SchurSystem::solve_rows(std::span<double> x, Counters& counters) {
+  std::copy(x.begin(), x.end(), right_hand_side_.begin());
+  solve_refined(x, right_hand_side_, counters);
+}
+
+std::vector<double> SchurSystem::row_sizes() const {
+  std::vector<double> sizes = diagonal_values_;
+  for (std::size_t n = 0; n < left_out_.index.size(); ++n) {
+    sizes[at(left_out_.index[n])] -= left_out_.value[n] * left_out_.value[n];
+  }
+  for (double& size : sizes) size = std::sqrt(std::max(size, 0.0));
+  return sizes;
+}
+
 void SchurSystem::assemble(std::span<const Column> columns, const int* slot, std::span<double> values) const {
   const double* jacobian = jacobian_.data();
   for (const Column& column : columns) {
@@ -67,6 +96,13 @@ void SchurSystem::fill(double regularised_part) {
   const std::span<double> values = factors_.values();
   std::copy(constant_values_.begin(), constant_values_.end(), values.begin());
   assemble(varying_, varying_slot_.data(), values);
+  const int* slot = left_out_slot_.data();
+  for (int k = 0; k < left_out_.count(); ++k) {
+    const std::span<const double> c = left_out_.values(k);
+    for (std::size_t a = 0; a < c.size(); ++a) {
+      for (std::size_t b = 0; b <= a; ++b) values[at(*slot++)] += c[a] * c[b];
+    }
+  }
   for (std::size_t k = 0; k < diagonal_.size(); ++k) {
     double& value = values[at(diagonal_[k])];
     // A row that touches nothing that can move must not stop the others.
@@ -149,6 +185,7 @@ void SchurSystem::solve_refined(std::span<double> lambda, std::span<const double
   spread(lambda, change_);
   std::fill(correction_.begin(), correction_.end(), 0.0);
   multiply_add(change_, correction_);
+  add_left_out(1, lambda, correction_);
   for (std::size_t k = 0; k < correction_.size(); ++k) correction_[k] = b[k] - correction_[k];
   solve(correction_, counters);
   for (std::size_t k = 0; k < correction_.size(); ++k) lambda[k] += correction_[k];
@@ -209,6 +246,7 @@ void SchurSystem::refine_motion(std::span<const double> Q, std::span<const doubl
     std::copy(gamma.begin(), gamma.end(), rest_gamma_.begin());
     for (std::size_t c = 0; c < rest_Q_.size(); ++c) extra_qdd_[c] = -qdd[c];
     multiply_add(extra_qdd_, rest_gamma_);
+    add_left_out(1, lambda, rest_gamma_);
     solve_with_masses(rest_Q_, rest_gamma_, extra_qdd_, extra_lambda_, counters);
     double change = 0, whole = 0;
     for (std::size_t c = 0; c < rest_Q_.size(); ++c) {

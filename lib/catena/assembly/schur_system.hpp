@@ -14,9 +14,20 @@
 // lambda) are differences of large numbers. One round of refinement with the residuals of both equations brings the
 // digits back, as far as the masses that matter determine them.
 //
-// Singular case: rows that depend on each other make S singular. As soon as a pivot keeps less than 1e-10 of its
-// diagonal, 1e-12 of the diagonal is added and solutions are refined with the true S: accelerations are then exact,
-// multipliers one of many. Source: NUMERICS (singular passages); Nothing allocates after the first factorization.
+// Rows that always depend on others (redundant constraints) make S singular along the motion. For each dependence one
+// direction c among the rows of one element is left out: no multiplier acts along it, and its equation is not solved,
+//
+//   [M, Phi_q^T; Phi_q, -C] [qdd; lambda] = [Q; gamma]        C = sum c c^T,   S + C in place of S
+//
+// With as many directions as dependences, none of them orthogonal to the null space of S, the matrix is regular, and
+// on the constraints C lambda = 0 holds by itself: the solution is the exact one, with multipliers that have no part
+// along c. Off the constraints by d, where integrators evaluate their stages, the solution changes by O(d) and
+// smoothly. (Regularising the rows instead gives multipliers of O(1/d) there, and accelerations that are wrong by
+// O(1).)
+//
+// Singular case: rows that depend on each other for an instant. As soon as a pivot keeps less than 1e-10 of its
+// diagonal, 1e-12 of the diagonal is added and solutions are refined with the true S: accelerations are then exact on
+// the constraints, multipliers one of many. Nothing allocates after the first factorization.
 #pragma once
 
 #include <memory>
@@ -26,6 +37,7 @@
 #include "catena/assembly/plan.hpp"
 #include "catena/base/counters.hpp"
 #include "catena/linalg/block_factorization.hpp"
+#include "catena/linalg/sparse_vectors.hpp"
 
 namespace catena {
 
@@ -36,6 +48,15 @@ class SchurSystem {
   /// Masses by coordinate, size 3 plan.moving, and what counts for those that are zero; zero there too holds a
   /// coordinate where it is.
   void set_masses(std::span<const double> masses, std::span<const double> substitutes);
+
+  /// Directions c to leave out, each within the rows of one element and of the size of sqrt(S) there; none: all rows
+  /// are solved for. Takes effect with the next factorize().
+  void leave_out(SparseVectors directions);
+  const SparseVectors& left_out() const { return left_out_; }
+  /// x = (S + C)^-1 x. On the constraints the solutions for all c span the left null space of Phi_q.
+  void solve_rows(std::span<double> x, Counters& counters);
+  /// sqrt(S_rr) of the last factorize(), by row: what a unit of its multiplier counts in the metric of the masses.
+  std::vector<double> row_sizes() const;
 
   /// Factors S at the given values of Phi_q (size entries + 1); they must stay where they are for the solves.
   /// False if that is impossible: a value that is not finite.
@@ -72,8 +93,11 @@ class SchurSystem {
   bool analyze(Counters& counters);
   bool analyze_factors(const SparsePattern& lower, Counters& counters);
   void assemble(std::span<const Column> columns, const int* slot, std::span<double> values) const;
-  /// S, its diagonal increased by a part of itself, to where it is factored.
+  void place_left_out();
+  /// S + C, its diagonal increased by a part of itself, to where it is factored.
   void fill(double regularised_part);
+  /// out += factor C lambda.
+  void add_left_out(double factor, std::span<const double> lambda, std::span<double> out) const;
   bool factor_values(Counters& counters);
   void solve(std::span<double> x, Counters& counters);
   /// x = M^-1 Phi_q^T lambda.
@@ -92,6 +116,9 @@ class SchurSystem {
   std::vector<Column> varying_, constant_;
   std::vector<int> varying_slot_, constant_slot_;  // of the products of each column
   std::vector<int> diagonal_;                      // by row
+  std::vector<int> pair_start_, pair_slot_;        // of every row: pairs with the rows of its element up to itself
+  SparseVectors left_out_;
+  std::vector<int> left_out_slot_;  // of the products of each direction
   std::vector<double> constant_values_, diagonal_values_;
   std::vector<double> right_hand_side_, correction_, change_;
   std::vector<double> rest_Q_, rest_gamma_, extra_qdd_, extra_lambda_;  // for massless coordinates and unequal masses

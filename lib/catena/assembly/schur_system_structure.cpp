@@ -26,7 +26,13 @@ bool SchurSystem::analyze(Counters& counters) {
   }
   // The pattern of S in the plan's rows, for the order; then again, permuted, with the slot of every product.
   std::vector<MatrixEntry> entries;
-  for (int r = 0; r < plan.rows; ++r) entries.push_back({r, r});
+  pair_start_.assign(1, 0);
+  for (int r = 0, first = 0; r < plan.rows; ++r) {
+    if (plan.row_element[at(r)] != plan.row_element[at(first)]) first = r;
+    for (int other = first; other <= r; ++other) entries.push_back({r, other});
+    pair_start_.push_back(static_cast<int>(entries.size()));
+  }
+  const std::size_t pairs = entries.size();
   const auto products = [&](const std::vector<Column>& columns) {
     for (const Column& column : columns) {
       for (int x = column.first; x < column.last; ++x) {
@@ -48,13 +54,29 @@ bool SchurSystem::analyze(Counters& counters) {
     for (std::size_t k = begin; k < end; ++k) list.push_back(factors_.slots()[at(built.slot[k])]);
     return list;
   };
-  diagonal_ = slots(0, at(plan.rows));
-  varying_slot_ = slots(at(plan.rows), first_constant);
+  pair_slot_ = slots(0, pairs);
+  for (int r = 0; r < plan.rows; ++r) diagonal_.push_back(pair_slot_[at(pair_start_[at(r) + 1] - 1)]);
+  varying_slot_ = slots(pairs, first_constant);
   constant_slot_ = slots(first_constant, entries.size());
   constant_values_.resize(factors_.values().size());
   diagonal_values_.resize(at(plan.rows));
   analyzed_ = true;
+  place_left_out();
   return true;
+}
+
+// Rows of one element follow each other, so that a row and one before it are a pair.
+void SchurSystem::place_left_out() {
+  left_out_slot_.clear();
+  if (!analyzed_) return;
+  for (int k = 0; k < left_out_.count(); ++k) {
+    const std::span<const int> rows = left_out_.indices(k);
+    for (std::size_t a = 0; a < rows.size(); ++a) {
+      for (std::size_t b = 0; b <= a; ++b) {
+        left_out_slot_.push_back(pair_slot_[at(pair_start_[at(rows[a]) + 1] - 1 - (rows[a] - rows[b]))]);
+      }
+    }
+  }
 }
 
 // Rows of an element go together: they touch the same bodies. Elements by minimum degree.

@@ -12,7 +12,7 @@
 namespace catena {
 namespace {
 
-constexpr std::string_view first_line = "catena checkpoint 1\n";
+constexpr std::string_view first_line = "catena checkpoint 2\n";
 
 std::uint64_t sum_over(std::string_view text, std::uint64_t sum = 0xcbf29ce484222325u) {
   for (const char c : text) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
@@ -100,6 +100,9 @@ void pass(Channel& channel, Checkpoint& checkpoint) {
   channel.value(motion.next_row);
   channel.value(motion.steps);
   channel.value(motion.rows_given);
+  channel.value(motion.left_out.start);
+  channel.value(motion.left_out.index);
+  channel.value(motion.left_out.value);
   channel.value(motion.integrator.step);
   channel.value(motion.integrator.rate);
   channel.value(motion.integrator.root_energy);

@@ -57,7 +57,7 @@ bool CoordinatePartition::factorize() {
 bool CoordinatePartition::choose(std::span<const double> q) {
   if (plan_.rows == 0) return true;
   if (freedoms_ < 0) {
-    freedoms_ = plan_.columns - plan_.rows;
+    freedoms_ = plan_.columns - plan_.rows + equations_.left_out().count();
     if (equations_.smallest_pivot_ratio() < independent_ratio) freedoms_ = analyse_mobility(evaluator_, q).dof();
   }
   if (freedoms_ > most_freedoms) return false;

@@ -39,7 +39,7 @@ class Motion {
     std::copy(v.begin(), v.end(), k.begin());
     const std::span<double> a = k.subspan(coordinates_, coordinates_);
     if (!equations_.accelerations(t, side, q(y), v, a, stabilisation)) return false;
-    if (std::abs(t - known_t_) <= known_for_ && equations_.is_dependent()) {
+    if (std::abs(t - known_t_) <= known_for_ && equations_.is_singular()) {
       std::copy(known_.begin(), known_.end(), a.begin());
       return true;
     }

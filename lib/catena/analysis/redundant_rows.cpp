@@ -1,0 +1,252 @@
+#include "catena/analysis/redundant_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "catena/analysis/assemble.hpp"
+#include "catena/analysis/jacobian_rank.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// Rows whose smallest pivot ratio is above this need no rank analysis: rounding leaves ratios of 1e-16, and assembled
+// places that miss the constraints by 1e-12 ones of 1e-24.
+constexpr double independent_ratio = 1e-8;
+// How far a probe goes, rad or length scales: far enough that a rank found there is not that of a singular position
+// nearby (sine 0.1), near enough to be assembled.
+constexpr double probe_distance = 0.1;
+constexpr int most_probes = 4;
+// Volumes are raised until an exchange would gain less than this.
+constexpr double worthwhile = 1.1;
+// A choice is looked at when bodies have moved this far (rad, length scales), and made anew when W has grown to this:
+// directions c then meet w at less than half the sine that they could.
+constexpr double noticeable_move = 0.3, grown = 2;
+// W is dense: 160 MB. Beyond, rows of the rank analysis serve as they are.
+constexpr std::size_t most_entries = 20'000'000;
+
+/// W as p columns over the rows, in units in which S has a diagonal of ones, and the direction that belongs to each.
+class Exchange {
+ public:
+  Exchange(const Plan& plan, const std::vector<double>& sizes) : sizes_(sizes), element_(at(plan.rows)) {
+    for (int r = 0; r < plan.rows; ++r) {
+      if (r == 0 || plan.row_element[at(r)] != plan.row_element[at(r - 1)]) first_.push_back(r);
+      element_[at(r)] = static_cast<int>(first_.size()) - 1;
+    }
+    first_.push_back(plan.rows);
+  }
+
+  /// w and its direction c, c^T w = 1, as they are.
+  void add(std::vector<double> w, std::span<const int> rows, std::span<const double> c) {
+    Column column{.w = std::move(w), .direction = {}, .element = element_[at(rows.front())]};
+    column.direction.assign(at(size(column.element)), 0.0);
+    double square = 0;
+    for (std::size_t n = 0; n < rows.size(); ++n) {
+      const double x = c[n] / sizes_[at(rows[n])];
+      column.direction[at(rows[n] - first_[at(column.element)])] = x;
+      square += x * x;
+    }
+    for (double& x : column.direction) x /= std::sqrt(square);
+    for (std::size_t r = 0; r < column.w.size(); ++r) column.w[r] *= sizes_[r] * std::sqrt(square);
+    find_longest(column);
+    columns_.push_back(std::move(column));
+  }
+
+  void run() {
+    while (true) {
+      const auto best = std::max_element(columns_.begin(), columns_.end(),
+                                         [](const Column& a, const Column& b) { return a.length < b.length; });
+      // Every exchange multiplies the volume by that, so that this ends.
+      if (!(best->length > worthwhile) || !std::isfinite(best->length)) return;
+      exchange(*best);
+    }
+  }
+
+  SparseVectors directions() const {
+    SparseVectors all;
+    for (const Column& column : columns_) {
+      for (std::size_t n = 0; n < column.direction.size(); ++n) {
+        const int row = first_[at(column.element)] + static_cast<int>(n);
+        all.index.push_back(row);
+        all.value.push_back(column.direction[n] * sizes_[at(row)]);
+      }
+      all.start.push_back(static_cast<int>(all.index.size()));
+    }
+    return all;
+  }
+
+ private:
+  struct Column {
+    std::vector<double> w, direction;
+    int element;       // of the direction
+    int longest = -1;  // the element where w is longest ...
+    double length = 0;
+  };
+  int size(int element) const { return first_[at(element) + 1] - first_[at(element)]; }
+
+  void find_longest(Column& column) const {
+    column.length = 0;
+    for (int e = 0; e + 1 < static_cast<int>(first_.size()); ++e) {
+      double square = 0;
+      for (int r = first_[at(e)]; r < first_[at(e) + 1]; ++r) square += column.w[at(r)] * column.w[at(r)];
+      if (square > column.length) column.length = square, column.longest = e;
+    }
+    column.length = std::sqrt(column.length);
+  }
+
+  // The direction moves to where its w is longest, along it there; the other columns lose their part along it.
+  void exchange(Column& column) {
+    const int first = first_[at(column.element = column.longest)];
+    column.direction.assign(column.w.begin() + first, column.w.begin() + first + size(column.element));
+    for (double& x : column.direction) x /= column.length;
+    for (double& x : column.w) x /= column.length;
+    find_longest(column);
+    for (Column& other : columns_) {
+      double product = 0;
+      for (std::size_t n = 0; n < column.direction.size(); ++n) product += column.direction[n] * other.w[at(first) + n];
+      if (&other == &column || product == 0) continue;
+      for (std::size_t r = 0; r < other.w.size(); ++r) other.w[r] -= product * column.w[r];
+      find_longest(other);
+    }
+  }
+
+  const std::vector<double>& sizes_;
+  std::vector<int> first_, element_;  // rows of every element, and their end; element by row
+  std::vector<Column> columns_;
+};
+
+}  // namespace
+
+RedundantRows::RedundantRows(EquationsOfMotion& equations) : equations_(equations), plan_(equations.plan()) {}
+
+std::vector<int> RedundantRows::dependent_rows(std::span<const double> q) {
+  Evaluator& evaluator = equations_.evaluator();
+  RankOptions options;
+  options.most_null_vectors = options.most_dependencies = 0;
+  const RankReport rank = jacobian_rank(evaluator, plan_.jacobian, jacobian_values(evaluator, q), options);
+  return rank.ok() ? rank.dependent_rows : std::vector<int>{};
+}
+
+// Leaves out single rows, at the place of the equations' factors.
+void RedundantRows::leave_out(const std::vector<int>& rows) {
+  const Vector sizes = equations_.row_sizes();
+  SparseVectors directions;
+  for (int row : rows) {
+    directions.index.push_back(row);
+    directions.value.push_back(sizes[at(row)]);
+    directions.start.push_back(static_cast<int>(directions.index.size()));
+  }
+  equations_.leave_out(std::move(directions));
+}
+
+void RedundantRows::find(std::span<const double> q) {
+  Evaluator& evaluator = equations_.evaluator();
+  const double t = evaluator.time();
+  equations_.leave_out({});
+  if (plan_.rows == 0 || !equations_.factorize(t, Side::after, q)) return;
+  if (equations_.smallest_pivot_ratio() > independent_ratio) return;
+  std::vector<int> rows = dependent_rows(q);
+  Vector place(q.begin(), q.end()), other(place);
+  if (!rows.empty() && plan_.columns > plan_.rows - static_cast<int>(rows.size()) && probe(q, other)) {
+    std::vector<int> there = dependent_rows(other);
+    if (there.size() < rows.size()) {
+      rows = std::move(there);
+      place = other;
+    }
+  }
+  if (!rows.empty()) {
+    equations_.factorize(t, Side::after, place);
+    leave_out(rows);
+    if (equations_.factorize(t, Side::after, place)) choose(place);
+  }
+  chosen_at_.assign(q.begin(), q.end());
+  evaluator.set_configuration(q);
+}
+
+void RedundantRows::take_up(SparseVectors directions, std::span<const double> q) {
+  equations_.leave_out(std::move(directions));
+  chosen_at_.assign(q.begin(), q.end());
+}
+
+// A place some way along a free motion, any one: with random velocities.
+bool RedundantRows::probe(std::span<const double> q, std::span<double> place) {
+  Evaluator& evaluator = equations_.evaluator();
+  const double length = evaluator.length_scale();
+  std::mt19937_64 generator(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto unit = [&](int k) { return k % 3 == 2 ? 1 : length; };
+  Assembler assembler(evaluator);
+  Vector move(at(3 * plan_.moving));
+  chosen_at_.assign(q.begin(), q.end());
+  double distance = probe_distance;
+  for (int trial = 0; trial < most_probes; ++trial, distance /= 2) {
+    equations_.factorize(evaluator.time(), Side::after, q);
+    std::fill(move.begin(), move.end(), 0.0);
+    for (int k : plan_.coordinate) move[at(k)] = uniform(generator) * unit(k);
+    equations_.remove_forbidden(move);
+    double size = 0;
+    for (int k : plan_.coordinate) size = std::max(size, std::abs(move[at(k)]) / unit(k));
+    if (!(size > 0)) continue;
+    for (std::size_t k = 0; k < place.size(); ++k) place[k] = q[k] + (k < move.size() ? distance / size * move[k] : 0);
+    if (!assembler.assemble(place).ok()) continue;
+    const double gone = moved(place);
+    if (gone > distance / 2 && gone < 4 * distance) return true;
+  }
+  return false;
+}
+
+double RedundantRows::moved(std::span<const double> q) const {
+  const double length = equations_.evaluator().length_scale();
+  double largest = 0;
+  for (int k : plan_.coordinate) {
+    largest = std::max(largest, std::abs(q[at(k)] - chosen_at_[at(k)]) / (k % 3 == 2 ? 1 : length));
+  }
+  return largest;
+}
+
+void RedundantRows::follow(std::span<const double> q) {
+  if (count() == 0 || moved(q) < noticeable_move || equations_.is_singular()) return;
+  chosen_at_.assign(q.begin(), q.end());
+  // All of W in one solve, with signs by which its columns hardly cancel.
+  const SparseVectors& directions = equations_.left_out();
+  Vector sum(at(plan_.rows), 0.0);
+  for (int k = 0; k < count(); ++k) add(k, (static_cast<unsigned>(k) * 2654435761u >> 16 & 1u) != 0 ? 1 : -1, sum);
+  equations_.solve_rows(sum);
+  const Vector sizes = equations_.row_sizes();
+  double largest = 0;
+  for (std::size_t r = 0; r < sum.size(); ++r) largest = std::max(largest, std::abs(sum[r]) * sizes[r]);
+  if (directions.count() > 0 && largest > grown) choose(q);
+}
+
+// out += factor c_k.
+void RedundantRows::add(int k, double factor, Vector& out) const {
+  const SparseVectors& directions = equations_.left_out();
+  for (int n = directions.start[at(k)]; n < directions.start[at(k) + 1]; ++n) {
+    out[at(directions.index[at(n)])] += factor * directions.value[at(n)];
+  }
+}
+
+// Directions at q, the place of the equations' factors.
+void RedundantRows::choose(std::span<const double> q) {
+  ++choices_;
+  if (at(count()) * at(plan_.rows) > most_entries) {
+    const std::vector<int> rows = dependent_rows(q);
+    if (static_cast<int>(rows.size()) == count()) leave_out(rows);
+    return;
+  }
+  const Vector sizes = equations_.row_sizes();
+  const SparseVectors& directions = equations_.left_out();
+  Exchange exchange(plan_, sizes);
+  for (int k = 0; k < count(); ++k) {
+    Vector w(at(plan_.rows), 0.0);
+    add(k, 1, w);
+    equations_.solve_rows(w);
+    exchange.add(std::move(w), directions.indices(k), directions.values(k));
+  }
+  exchange.run();
+  equations_.leave_out(exchange.directions());
+}
+
+}  // namespace catena
