@@ -21,9 +21,11 @@ constexpr double probe_distance = 0.1;
 constexpr int most_probes = 4;
 // Volumes are raised until an exchange would gain less than this.
 constexpr double worthwhile = 1.1;
-// A choice is looked at when bodies have moved this far (rad, length scales), and made anew when W has grown to this:
-// directions c then meet w at less than half the sine that they could.
-constexpr double noticeable_move = 0.3, grown = 2;
+// A choice is made anew when bodies have moved this far, rad or length scales: directions that turned away from their w
+// by so much keep nine tenths of the pivot. As many solves as this cost less than a step; where there are more
+// directions the choice also waits until pivots have become half as large.
+constexpr double noticeable_move = 0.3, worse = 0.5;
+constexpr int few = 16;
 // W is dense: 160 MB. Beyond, rows of the rank analysis serve as they are.
 constexpr std::size_t most_entries = 20'000'000;
 
@@ -209,23 +211,11 @@ double RedundantRows::moved(std::span<const double> q) const {
 void RedundantRows::follow(std::span<const double> q) {
   if (count() == 0 || moved(q) < noticeable_move || equations_.is_singular()) return;
   chosen_at_.assign(q.begin(), q.end());
-  // All of W in one solve, with signs by which its columns hardly cancel.
-  const SparseVectors& directions = equations_.left_out();
-  Vector sum(at(plan_.rows), 0.0);
-  for (int k = 0; k < count(); ++k) add(k, (static_cast<unsigned>(k) * 2654435761u >> 16 & 1u) != 0 ? 1 : -1, sum);
-  equations_.solve_rows(sum);
-  const Vector sizes = equations_.row_sizes();
-  double largest = 0;
-  for (std::size_t r = 0; r < sum.size(); ++r) largest = std::max(largest, std::abs(sum[r]) * sizes[r]);
-  if (directions.count() > 0 && largest > grown) choose(q);
-}
-
-// out += factor c_k.
-void RedundantRows::add(int k, double factor, Vector& out) const {
-  const SparseVectors& directions = equations_.left_out();
-  for (int n = directions.start[at(k)]; n < directions.start[at(k) + 1]; ++n) {
-    out[at(directions.index[at(n)])] += factor * directions.value[at(n)];
-  }
+  const double ratio = equations_.smallest_pivot_ratio();
+  usual_ratio_ = std::max(usual_ratio_, ratio);
+  if (count() > few && ratio > worse * usual_ratio_) return;
+  usual_ratio_ = 0;
+  choose(q);
 }
 
 // Directions at q, the place of the equations' factors.
@@ -241,7 +231,9 @@ void RedundantRows::choose(std::span<const double> q) {
   Exchange exchange(plan_, sizes);
   for (int k = 0; k < count(); ++k) {
     Vector w(at(plan_.rows), 0.0);
-    add(k, 1, w);
+    for (int n = directions.start[at(k)]; n < directions.start[at(k) + 1]; ++n) {
+      w[at(directions.index[at(n)])] = directions.value[at(n)];
+    }
     equations_.solve_rows(w);
     exchange.add(std::move(w), directions.indices(k), directions.values(k));
   }

@@ -45,7 +45,6 @@ class RedundantRows {
   std::vector<int> dependent_rows(std::span<const double> q);
   void leave_out(const std::vector<int>& rows);
   bool probe(std::span<const double> q, std::span<double> place);
-  void add(int k, double factor, Vector& out) const;
   void choose(std::span<const double> q);
   double moved(std::span<const double> q) const;
 
@@ -53,6 +52,7 @@ class RedundantRows {
   const Plan& plan_;
   Vector chosen_at_;
   int choices_ = 0;
+  double usual_ratio_ = 0;  // largest pivot ratio since the last choice
 };
 
 }  // namespace catena

@@ -10,7 +10,7 @@ namespace catena {
 namespace {
 
 // The part of an error estimate that the projection will remove counts this much: stages spoil each other by it.
-constexpr double forbidden_part = 0.1;
+constexpr double forbidden_part = 0.1, forbidden_square = 10;
 // A step with a stage whose pivot ratio is below this is repeated with all stages projected ...
 constexpr double projection_ratio = 1e-2;
 // ... if the ratio of other stages is this much larger: light parts make it small without any singularity.
@@ -26,7 +26,7 @@ RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options) : motion
   const std::size_t size = motion_.size();
   for (std::vector<double>* y : {&y_, &y_before_, &y_new_, &y_stage_, &slope_, &slope_new_}) y->assign(size, 0.0);
   stage_.assign(16, std::vector<double>(size, 0.0));
-  if (options.order == 8) interpolant_.assign(7, std::vector<double>(size, 0.0));
+  interpolant_.assign(7, std::vector<double>(size, 0.0));
   error_.resize(2 * motion_.coordinates());
   error_low_.resize(2 * motion_.coordinates());
   scale_.step_tolerance = options.tolerance;
@@ -220,7 +220,9 @@ double RungeKutta::filtered_error(double h, double raw) {
     equations.remove_forbidden(std::span(*error).first(moving));
     equations.remove_forbidden(std::span(*error).subspan(offset, moving));
   }
-  return std::min(raw, std::max(error_size(h), forbidden_part * raw));
+  // Projected stages meet each other's forbidden errors only squared.
+  const double spoilt = projecting_stages_ ? forbidden_square * raw * raw * scale_.tolerance() : forbidden_part * raw;
+  return std::min(raw, std::max(error_size(h), spoilt));
 }
 
 // Projects the new point and evaluates it; the stages stay as they are for the interpolant.

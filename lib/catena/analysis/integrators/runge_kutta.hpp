@@ -69,7 +69,7 @@ class RungeKutta final : public Integrator {
 
  private:
   const Tableau& tableau() const {
-    return options_.order == 5 || low_order_left_ > 0 ? dormand_prince_5() : dormand_prince_8();
+    return (options_.order == 5 && !long_steps_) || low_order_left_ > 0 ? dormand_prince_5() : dormand_prince_8();
   }
   bool projects() const { return crossing_ || options_.keeping == ConstraintKeeping::projection; }
   bool derivative(double t, Side side, std::span<const double> y, std::span<double> k) const {
@@ -108,7 +108,7 @@ class RungeKutta final : public Integrator {
   std::vector<std::vector<double>> interpolant_;
   std::vector<double> error_, error_low_;  // [q, qd]
   bool interpolant_ready_ = false, step_was_low_order_ = false, passing_singular_ = false, projecting_stages_ = false,
-       crossing_ = false;
+       crossing_ = false, long_steps_ = false;
   int low_order_left_ = 0, rejections_ = 0, detours_ = 0;
   std::int64_t low_order_steps_ = 0, projected_steps_ = 0;
   double accepted_error_ = 1, best_error_ = 0, best_step_ = 0;

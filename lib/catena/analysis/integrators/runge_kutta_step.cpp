@@ -24,7 +24,7 @@ constexpr double smallest_step = 1e-13;  // part of |t| and of the time scale
 void RungeKutta::reject(double h) {
   ++motion_.equations().evaluator().counters.rejected;
   h_ = h;
-  if (++rejections_ % rejections_before_low_order == 0 && options_.order == 8 && options_.may_lower_order) {
+  if (++rejections_ % rejections_before_low_order == 0 && tableau().order == 8 && options_.may_lower_order) {
     low_order_left_ = low_order_run;
   }
 }
@@ -72,6 +72,8 @@ bool RungeKutta::advance(double limit) {
   projecting_stages_ = false;
   accepted_error_ = 1;
   rejections_ = 0;
+  // Short steps would end again and again beside a singular position.
+  long_steps_ = !fixed && start_ratio_ < nearly_singular;
   if (!follow_motion()) return false;
   std::copy(slope_.begin(), slope_.end(), stage_[0].begin());
   motion_.equations().evaluator().take_turns(motion_.q(std::span(y_)));
