@@ -41,6 +41,10 @@ inline Jet cos(Jet a) {
   const Real s = std::sin(a.f), c = std::cos(a.f);
   return {c, -s * a.d, -s * a.dd - c * a.d * a.d};
 }
+inline Jet sqrt(Jet a) {
+  const Real s = std::sqrt(a.f), d = a.d / (2 * s);
+  return {s, d, (a.dd / 2 - d * d) / s};
+}
 
 struct JetPoint {
   Jet x, y;
@@ -97,17 +101,59 @@ struct KnownMotion {
     return places(jets);
   }
   Coordinates acceleration(const Coordinates& at, const Coordinates& rates) const;
+  /// det H at the start.
+  Real constrained_mass() const;
+
+ private:
+  using Matrix = std::array<std::array<Real, most_freedoms + 1>, most_freedoms>;
+  std::array<std::vector<JetPlace>, most_freedoms> directions(const Coordinates& at) const;
+  Matrix mass_matrix(const std::array<std::vector<JetPlace>, most_freedoms>& along) const;
 };
 
-inline Coordinates KnownMotion::acceleration(const Coordinates& at, const Coordinates& rates) const {
-  const std::size_t n = static_cast<std::size_t>(freedoms), bodies = model->bodies.size();
-  const std::vector<JetPlace> now = places_of(at, rates);
+inline std::array<std::vector<JetPlace>, most_freedoms> KnownMotion::directions(const Coordinates& at) const {
   std::array<std::vector<JetPlace>, most_freedoms> along;
-  for (std::size_t k = 0; k < n; ++k) {
+  for (std::size_t k = 0; k < static_cast<std::size_t>(freedoms); ++k) {
     Coordinates one{};
     one[k] = 1;
     along[k] = places_of(at, one);
   }
+  return along;
+}
+
+inline KnownMotion::Matrix KnownMotion::mass_matrix(
+    const std::array<std::vector<JetPlace>, most_freedoms>& along) const {
+  const std::size_t n = static_cast<std::size_t>(freedoms);
+  Matrix h{};
+  for (std::size_t b = 0; b < model->bodies.size(); ++b) {
+    const Real mass = model->bodies[b].mass, inertia = model->bodies[b].inertia;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) {
+        const JetPlace &p = along[i][b], &o = along[j][b];
+        h[i][j] += mass * (p.r.x.d * o.r.x.d + p.r.y.d * o.r.y.d) + inertia * p.phi.d * o.phi.d;
+      }
+    }
+  }
+  return h;
+}
+
+inline Real KnownMotion::constrained_mass() const {
+  const std::size_t n = static_cast<std::size_t>(freedoms);
+  Matrix h = mass_matrix(directions(z));
+  Real determinant = 1;
+  for (std::size_t i = 0; i < n; ++i) {
+    determinant *= h[i][i];
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const Real factor = h[j][i] / h[i][i];
+      for (std::size_t k = i; k < n; ++k) h[j][k] -= factor * h[i][k];
+    }
+  }
+  return determinant;
+}
+
+inline Coordinates KnownMotion::acceleration(const Coordinates& at, const Coordinates& rates) const {
+  const std::size_t n = static_cast<std::size_t>(freedoms), bodies = model->bodies.size();
+  const std::vector<JetPlace> now = places_of(at, rates);
+  const std::array<std::vector<JetPlace>, most_freedoms> along = directions(at);
   struct Load {
     Real x = 0, y = 0, n = 0;
   };
@@ -139,15 +185,10 @@ inline Coordinates KnownMotion::acceleration(const Coordinates& at, const Coordi
     const Jet phi = now[static_cast<std::size_t>(spring.j)].phi;
     loads[static_cast<std::size_t>(spring.j)].n += spring.torque - spring.k * (phi.f - spring.angle) - spring.c * phi.d;
   }
-  std::array<std::array<Real, most_freedoms + 1>, most_freedoms> a{};
+  Matrix a = mass_matrix(along);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t b = 0; b < bodies; ++b) {
       const JetPlace& p = along[i][b];
-      const Real mass = model->bodies[b].mass, inertia = model->bodies[b].inertia;
-      for (std::size_t j = 0; j < n; ++j) {
-        const JetPlace& o = along[j][b];
-        a[i][j] += mass * (p.r.x.d * o.r.x.d + p.r.y.d * o.r.y.d) + inertia * p.phi.d * o.phi.d;
-      }
       a[i][most_freedoms] += p.r.x.d * loads[b].x + p.r.y.d * loads[b].y + p.phi.d * loads[b].n;
     }
   }

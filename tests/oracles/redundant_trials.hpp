@@ -1,5 +1,5 @@
-// What becomes of random redundant mechanisms (redundant_mechanisms.hpp) when the library moves them, against their
-// known motion.
+// What becomes of random mechanisms (redundant_mechanisms.hpp, massless_mechanisms.hpp) when the library moves them,
+// against their known motion.
 //
 //   ratio = max over rows and bodies of  |error| / (tolerance x amplification)
 //
@@ -12,9 +12,10 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "catena/analysis/dynamics.hpp"
-#include "oracles/redundant_mechanisms.hpp"
+#include "oracles/massless_mechanisms.hpp"
 
 namespace catena::testing {
 
@@ -115,24 +116,23 @@ struct TrialCount {
   std::vector<double> ratios;
 };
 
-/// Draws `cases` mechanisms of a kind, beginning with `seed`, and runs each with every method and tolerance.
-/// `report` is called with every run that is wrong or refused.
-template <class Report>
-void run_redundant_trials(int kind, unsigned seed, int cases, const std::vector<IntegrationMethod>& methods,
-                          const std::vector<double>& tolerances, std::map<IntegrationMethod, TrialCount>& counts,
-                          Report&& report) {
-  const bool lift = kind == number_of_kinds - 1;
+using TrialCounts = std::map<IntegrationMethod, TrialCount>;
+
+/// Runs `cases` mechanisms with every method and tolerance. `draw(seed)` gives a motion, or nothing for a seed that is
+/// no use; `report(seed, method, tolerance, outcome)` is called for every run that is wrong or refused.
+template <class Draw, class Report>
+void run_known_trials(Draw&& draw, unsigned seed, int cases, const std::vector<IntegrationMethod>& methods,
+                      const std::vector<double>& tolerances, TrialCounts& counts, Report&& report) {
   for (int n = 0; n < cases; ++seed) {
-    KnownMotion motion = RedundantMechanism(kind, seed).motion();
-    // A lift folded flat may go on in many ways.
-    if (!keep_clear_of_rest(motion, lift ? 0.3 : 0.15, !lift)) continue;
+    const std::optional<KnownMotion> motion = draw(seed);
+    if (!motion) continue;
     ++n;
-    const KnownRows known = known_rows(motion);
+    const KnownRows known = known_rows(*motion);
     for (const IntegrationMethod method : methods) {
       for (const double tolerance : tolerances) {
         TrialCount& count = counts[method];
         const TrialOutcome outcome =
-            run_trial_of(motion, known, {.method = method, .tolerance = tolerance, .max_steps = 100'000});
+            run_trial_of(*motion, known, {.method = method, .tolerance = tolerance, .max_steps = 100'000});
         ++count.runs;
         count.wrong += outcome.wrong;
         count.refused += !outcome.ok;
@@ -141,6 +141,23 @@ void run_redundant_trials(int kind, unsigned seed, int cases, const std::vector<
       }
     }
   }
+}
+
+/// A redundant mechanism of a kind, kept clear of a rest in a flat position.
+inline std::optional<KnownMotion> draw_redundant(int kind, unsigned seed) {
+  const bool lift = kind == number_of_kinds - 1;
+  KnownMotion motion = RedundantMechanism(kind, seed).motion();
+  // A lift folded flat may go on in many ways.
+  if (!keep_clear_of_rest(motion, lift ? 0.3 : 0.15, !lift)) return {};
+  return motion;
+}
+
+/// A mechanism with massless bodies: first the kinds of massless_mechanisms.hpp, then those with redundant equations.
+inline std::optional<KnownMotion> draw_massless(int kind, unsigned seed) {
+  if (kind < number_of_massless_kinds) return MasslessMechanism(kind, seed).motion();
+  std::optional<KnownMotion> motion = draw_redundant(kind - number_of_massless_kinds, seed);
+  if (motion && !make_some_massless(*motion, seed)) return {};
+  return motion;
 }
 
 }  // namespace catena::testing

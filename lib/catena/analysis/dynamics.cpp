@@ -51,6 +51,7 @@ Report Dynamics::prepare(std::vector<std::string>& warnings) {
         "and turned them by up to {:.3g} rad",
         assembled.shifted, assembled.turned));
   }
+  equations_.weigh_massless(q_);
   redundant_.find(q_);
   if (Report massless = equations_.check_massless(q_); !massless.ok()) return massless;
   const VelocityOutcome velocities = find_initial_velocities(equations_, q_, given_qd_, qd_);

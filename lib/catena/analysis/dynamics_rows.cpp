@@ -140,6 +140,7 @@ Report Dynamics::stuck() {
     where = "accelerations are not finite or constraints cannot be kept";
   }
   std::string cause = "forces that grow without bound, or a motion that jumps";
+  if (const std::string undetermined = equations_.undetermined(); !undetermined.empty()) cause = undetermined;
   if (plan_->rows > 0 && equations_.smallest_pivot_ratio() < 1e-6 && row >= 0) {
     const int element = plan_->row_element[at(row)];
     cause = fmt::format("a singular configuration: {} \"{}\" depends on other constraints there",

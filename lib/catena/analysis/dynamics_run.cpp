@@ -77,6 +77,7 @@ Report Dynamics::set_out() {
     for (std::size_t b = 0; b < memory_.turns.size(); ++b) turned[3 * b + 2] = memory_.turns[b] * 2 * std::numbers::pi;
     evaluator_.take_turns(turned);
     integrator_->remember(memory_.integrator);
+    equations_.weigh_massless(std::span(y_row_).first(q_.size()));
     redundant_.take_up(memory_.left_out, std::span(y_row_).first(q_.size()));
   } else {
     std::copy(q_.begin(), q_.end(), y_row_.begin());

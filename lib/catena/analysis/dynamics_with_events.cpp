@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/engaged_turns.hpp"
 #include "catena/analysis/report_parts.hpp"
+#include "catena/analysis/state_conversion.hpp"
 
 namespace catena {
 namespace {
@@ -36,7 +38,7 @@ class CountingObserver final : public RowObserver {
 DynamicsWithEvents::DynamicsWithEvents(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
                                        const DynamicsOptions& options, std::vector<Event> events,
                                        const ColumnSources& sources)
-    : model_(std::move(model)), plan_options_(plan_options), options_(options) {
+    : given_model_(std::move(model)), model_(given_model_), plan_options_(plan_options), options_(options) {
   for (const Event& event : events) {
     if (event.action != EventAction::release && event.action != EventAction::engage) continue;
     plan_options_.keep_elements.push_back(event.element);
@@ -56,7 +58,17 @@ DynamicsWithEvents::DynamicsWithEvents(std::shared_ptr<const Model> model, const
   watch_ = std::make_unique<EventWatch>(std::move(events), *model_, dynamics_->plan(), sources);
 }
 
-void DynamicsWithEvents::make_dynamics() { dynamics_ = std::make_unique<Dynamics>(model_, plan_options_, options_); }
+void DynamicsWithEvents::make_dynamics() {
+  model_ = given_model_;
+  if (!turned_.empty()) {
+    const auto turned = std::make_shared<Model>(*given_model_);
+    for (std::size_t e = 0; e < turned_.size(); ++e) {
+      if (turned_[e] != 0) turn_value(*turned, static_cast<int>(e), turned_[e]);
+    }
+    model_ = turned;
+  }
+  dynamics_ = std::make_unique<Dynamics>(model_, plan_options_, options_);
+}
 
 void DynamicsWithEvents::start_from(const SystemState& state) {
   if (!resumed_) dynamics_->start_from(state);
@@ -67,6 +79,7 @@ void DynamicsWithEvents::resume(const MotionMemory& memory) {
   first_row_ = memory.next_row;
   rows_before_ = memory.rows_given;
   plan_options_.released_elements = memory.events.released;
+  turned_ = memory.events.turned;
   watch_->remember(memory.events);
   make_dynamics();
   dynamics_->resume(memory);
@@ -78,35 +91,48 @@ void DynamicsWithEvents::save_and_resume(std::int64_t rows_given, std::int64_t n
   memory.rows_given = rows_given;
   memory.events = watch_->memory();
   memory.events.released = plan_options_.released_elements;
+  memory.events.turned = turned_;
   if (pauses_.save) pauses_.save(memory);
   resume(memory);
 }
 
-Report DynamicsWithEvents::check_fit(int element) {
-  Report report;
+// Residuals of the rows of an element in the present state.
+std::vector<double> DynamicsWithEvents::residuals_of(int element) {
   Evaluator& evaluator = dynamics_->evaluator();
-  evaluator.set_time(dynamics_->time());
-  std::vector<double> q = evaluator.given_configuration();
-  const SystemState state = dynamics_->state();
   const Plan& plan = dynamics_->plan();
-  for (std::size_t p = 0; p < static_cast<std::size_t>(plan.moving); ++p) {
-    const std::size_t source = 3 * static_cast<std::size_t>(plan.model_body[p]);
-    const Vec2<double> origin = evaluator.origin(static_cast<int>(p));
-    q[3 * p] = state.q[source] - origin.x;
-    q[3 * p + 1] = state.q[source + 1] - origin.y;
-    q[3 * p + 2] = state.q[source + 2];
-  }
-  evaluator.set_configuration(q);
-  std::vector<double> phi(static_cast<std::size_t>(plan.rows));
+  evaluator.set_time(dynamics_->time());
+  evaluator.set_configuration(configuration_of(evaluator, dynamics_->state()));
+  std::vector<double> phi(static_cast<std::size_t>(plan.rows)), own;
   evaluator.phi(phi);
   for (std::size_t row = 0; row < phi.size(); ++row) {
-    if (plan.row_element[row] != element) continue;
-    const bool angle = plan.row_is_angle[row] != 0;
-    if (std::abs(phi[row]) <= misfit * (angle ? 1 : evaluator.length_scale())) continue;
+    if (plan.row_element[row] == element) own.push_back(phi[row]);
+  }
+  return own;
+}
+
+// The value of an element that was just engaged, moved by the turns that the bodies made without it.
+void DynamicsWithEvents::turn_value_to_bodies(int element) {
+  const int turns = whole_turns_of(*model_, element, residuals_of(element));
+  if (turns == 0) return;
+  turned_.resize(model_->elements.size());
+  turned_[static_cast<std::size_t>(element)] += turns;
+  const SystemState state = dynamics_->state();
+  make_dynamics();
+  dynamics_->start_from(state);
+}
+
+Report DynamicsWithEvents::check_fit(int element) {
+  Report report;
+  const Plan& plan = dynamics_->plan();
+  const double length = dynamics_->evaluator().length_scale();
+  auto row = static_cast<std::size_t>(std::max(0, plan.element_row[static_cast<std::size_t>(element)]));
+  for (const double phi : residuals_of(element)) {
+    const bool angle = plan.row_is_angle[row++] != 0;
+    if (std::abs(phi) <= misfit * (angle ? 1 : length)) continue;
     report.status = Status::inconsistent;
     report.message = fmt::format(
         "\"{}\" cannot be engaged at t = {:.12g} s: it misses by {:.3g} {}; an event must happen where it holds",
-        model_->element_name(element), dynamics_->time(), std::abs(phi[row]), angle ? "rad" : "m");
+        model_->element_name(element), dynamics_->time(), std::abs(phi), angle ? "rad" : "m");
     return report;
   }
   return report;
@@ -121,6 +147,7 @@ Report DynamicsWithEvents::act(const Event& event, bool sum_up_work) {
   WorkSoFar work = dynamics_->work_so_far();
   make_dynamics();
   dynamics_->start_from(state);
+  if (engage) turn_value_to_bodies(event.element);
   if (sum_up_work) dynamics_->carry_on(std::move(work));
   return engage ? check_fit(event.element) : Report{};
 }

@@ -3,7 +3,8 @@
 // Between events it is Dynamics. At an event that releases or engages a constraint, the motion goes on from there with
 // a plan of the same bodies and other rows. Positions and, on a release, velocities are continuous; on engagement
 // velocities change as little as the constraint asks for in the mass metric (a plastic impact), and the energy lost
-// counts as dissipated. A constraint that an event engages does not hold before. Units as in dynamics.hpp.
+// counts as dissipated. A constraint that an event engages does not hold before. Angles are continuous everywhere: what
+// is engaged after some turns takes its value with it (engaged_turns.hpp). Units as in dynamics.hpp.
 //
 // It can also pause now and then to save what it goes on from. At the end of the first step that reaches a multiple of
 // `every` after the last pause the integrator and all it holds are given up, and a new one goes on from the numbers
@@ -47,17 +48,21 @@ class DynamicsWithEvents {
 
  private:
   void make_dynamics();
+  std::vector<double> residuals_of(int element);
   /// Saves the motion where it paused and goes on from what was saved.
   void save_and_resume(std::int64_t rows_given, std::int64_t next_row);
   /// Releases or engages what the event says; a report if that cannot be.
   Report act(const Event& event, bool sum_up_work);
+  void turn_value_to_bodies(int element);
   Report check_fit(int element);
 
-  std::shared_ptr<const Model> model_;
+  std::shared_ptr<const Model> given_model_;
+  std::shared_ptr<const Model> model_;  // with values moved by whole turns
   PlanOptions plan_options_;
   DynamicsOptions options_;
   std::unique_ptr<Dynamics> dynamics_;
   std::unique_ptr<EventWatch> watch_;
+  std::vector<int> turned_;            // see EventMemory
   std::vector<std::string> inactive_;  // what is said of elements that are released before they are engaged
   Pauses pauses_;
   bool resumed_ = false;

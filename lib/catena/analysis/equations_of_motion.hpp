@@ -10,6 +10,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -27,8 +28,14 @@ class EquationsOfMotion {
 
   /// Takes over the masses, or says which body lacks what.
   Report use_masses();
-  /// Whether accelerations at q and the evaluator's time are unique in spite of massless coordinates.
+  /// Chooses the small masses that stand for zero ones as what resists at q and the evaluator's time asks for.
+  /// Allocates; nothing without massless coordinates.
+  void weigh_massless(std::span<const double> q);
+  /// Whether accelerations at q and the evaluator's time are unique in spite of massless coordinates: whether M is
+  /// positive definite where the constraints leave freedom.
   Report check_massless(std::span<const double> q);
+  /// The body whose massless coordinate nothing determined at the last accelerations(), in words; empty: none.
+  std::string undetermined() const;
 
   /// qdd at (t, q, qd); `side` where a function of time jumps at t. False: something is not finite. `stabilisation`, s
   /// in 1/s: constraints that are not met return to zero by Phi'' + 2 s Phi' + s^2 Phi = 0.
@@ -84,7 +91,7 @@ class EquationsOfMotion {
   MassMatrix masses_;
   Scaling scaling_;
   SchurSystem system_;
-  bool factored_ = false;
+  bool factored_ = false, weighed_ = false;
   std::vector<double> jacobian_, gamma_, lambda_, loads_, residual_, multipliers_, change_;
 };
 

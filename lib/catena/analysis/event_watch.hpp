@@ -63,8 +63,8 @@ class EventWatch {
   /// Counts rows: called with the number of those given so far.
   std::function<std::int64_t()> rows_given;
   const std::vector<EventRecord>& records() const { return records_; }
-  /// What it has seen, without `released`; and takes over what another one had.
-  EventMemory memory() const { return {{}, side_, largest_, records_}; }
+  /// What it has seen, without `released` and `turned`; and takes over what another one had.
+  EventMemory memory() const { return {{}, {}, side_, largest_, records_}; }
   void remember(const EventMemory& memory) {
     side_ = memory.sides;
     largest_ = memory.largest;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "catena/analysis/scaling.hpp"
 #include "catena/assembly/constraint_projector.hpp"
@@ -15,35 +16,29 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double given_weight = 1e4;
 constexpr int most_rounds = 12;
-// A massless coordinate counts with this part of the scene's mean mass: it follows what has mass.
-constexpr double massless_part = 1e-6;
+// One that is massless counts with its small mass, 1e-4 of what resists, which the author's word raises above that.
+constexpr double given_massless_weight = 1e8;
+// Velocities are corrected until the constraints' residual no longer shrinks, so often at most.
+constexpr int most_corrections = 4;
 
 /// What the model, or an earlier analysis, says of the velocities, by column.
 struct Wanted {
   std::vector<double> velocity, weight;
-  std::vector<char> given;
+  std::vector<char> given, follows;  // massless and not given: it follows what has mass
 };
 
 Wanted wanted_velocities(const Evaluator& evaluator, const MassMatrix& masses, std::span<const double> given) {
   const Plan& plan = evaluator.plan();
   Wanted wanted{std::vector<double>(at(plan.columns), 0.0), std::vector<double>(at(plan.columns), 1.0),
-                std::vector<char>(at(plan.columns), 0)};
-  double sums[2] = {0, 0};
-  int counts[2] = {0, 0};
-  for (int c = 0; c < plan.columns; ++c) {
-    const double mass = masses.mass[at(plan.coordinate[at(c)])];
-    const int kind = plan.coordinate[at(c)] % 3 == 2;
-    if (mass > 0) sums[kind] += mass, ++counts[kind];
-  }
-  const double mean = counts[0] > 0 ? sums[0] / counts[0] : 1;
-  const double mean_inertia = counts[1] > 0 ? sums[1] / counts[1] : mean * evaluator.length_scale();
+                std::vector<char>(at(plan.columns), 0), std::vector<char>(at(plan.columns), 0)};
   for (int c = 0; c < plan.columns; ++c) {
     const int coordinate = plan.coordinate[at(c)], k = coordinate % 3;
     const auto& body = evaluator.model().bodies[at(plan.model_body[at(coordinate / 3)])];
     const double mass = masses.mass[at(coordinate)];
-    wanted.weight[at(c)] = mass > 0 ? mass : massless_part * (k == 2 ? mean_inertia : mean);
+    const bool massless = !(mass > 0);
+    wanted.weight[at(c)] = massless ? masses.substitute[at(coordinate)] : mass;
     if (!given.empty()) {
-      wanted.given[at(c)] = 1;
+      wanted.given[at(c)] = !massless;
       wanted.velocity[at(c)] = given[at(coordinate)];
     } else if (k == 2) {
       wanted.given[at(c)] = body.angular_velocity_given;
@@ -56,7 +51,9 @@ Wanted wanted_velocities(const Evaluator& evaluator, const MassMatrix& masses, s
       const Vec2<double> v = body.velocity - omega * perpendicular(arm);
       wanted.velocity[at(c)] = k == 0 ? v.x : v.y;
     }
-    if (wanted.given[at(c)]) wanted.weight[at(c)] *= given_weight;
+    wanted.follows[at(c)] = massless && !wanted.given[at(c)];
+    if (wanted.given[at(c)]) wanted.weight[at(c)] *= massless ? given_massless_weight : given_weight;
+    if (wanted.follows[at(c)] && !given.empty()) wanted.weight[at(c)] *= given_weight;
   }
   return wanted;
 }
@@ -98,14 +95,25 @@ VelocityOutcome find_initial_velocities(EquationsOfMotion& equations, std::span<
         size = std::max(size, std::abs(next));
         velocity[c] = next;
         if (wanted.given[c]) asked[c] += wanted.velocity[c] - next;
+        // So that its small mass counts for nothing in the end.
+        if (wanted.follows[c]) asked[c] = next;
       }
       if (round > 0 && change <= 1e-15 * size) break;
     }
-    rest = nu;
-    for (std::size_t c = 0; c < step.size(); ++c) step[c] = -velocity[c];
-    multiply_add(plan.jacobian, values, step, rest);
     int worst = -1;
-    const double length = evaluator.length_scale(), left = row_norm(plan, rest, length, &worst);
+    const double length = evaluator.length_scale();
+    double left = std::numeric_limits<double>::infinity();
+    for (int k = 0; k <= most_corrections; ++k) {
+      rest = nu;
+      for (std::size_t c = 0; c < step.size(); ++c) step[c] = -velocity[c];
+      multiply_add(plan.jacobian, values, step, rest);
+      const double now = row_norm(plan, rest, length, &worst);
+      const bool shrinks = now < 0.5 * left;
+      left = now;
+      if (!shrinks || k == most_corrections) break;
+      projector.solve(rest, step, lambda, evaluator.counters);
+      for (std::size_t c = 0; c < step.size(); ++c) velocity[c] += step[c];
+    }
     const double scale = std::max(
         {column_norm(plan, velocity, length), column_norm(plan, wanted.velocity, length), row_norm(plan, nu, length)});
     if (!(left <= 1e-9 * scale) && left > 0) {

@@ -1,4 +1,4 @@
-// Initial velocities that the constraints allow (SCENES, section Scene):
+// Initial velocities that the constraints allow:
 //
 //   given components are kept where the constraints allow, else changed least in the mass metric;
 //   omitted ones get the least kinetic energy
@@ -7,7 +7,8 @@
 //
 // found as a sequence of least changes in which given components weigh 10^4 times their mass and what is still missing
 // of them is added to what is asked for (Bregman iteration): exact after a few rounds, with one factorization.
-// A velocity is given for the origin of its author's frame; masses of zero count as very small ones.
+// A velocity is given for the origin of its author's frame. What is massless and not given has a small mass that is
+// taken back from round to round: it follows what has mass and resists nothing.
 #pragma once
 
 #include <span>

@@ -13,9 +13,11 @@
 namespace catena {
 
 struct MassMatrix {
-  std::vector<double> mass;        ///< by coordinate, 3 plan.moving; of a particle's angle: zero
-  std::vector<double> substitute;  ///< small masses in place of zero ones; zero for all other coordinates
-  std::vector<int> massless;       ///< coordinates that can move and have no mass
+  std::vector<double> mass;  ///< by coordinate, 3 plan.moving; of a particle's angle: zero
+  /// Small masses in place of zero ones, a first guess until EquationsOfMotion::weigh_massless(); zero for all other
+  /// coordinates.
+  std::vector<double> substitute;
+  std::vector<int> massless;  ///< coordinates that can move and have no mass
 
   /// Takes the masses from the evaluator's model, or says of which body something is missing.
   Report load(const Evaluator& evaluator);

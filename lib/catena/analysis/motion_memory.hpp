@@ -37,6 +37,7 @@ struct EventRecord {
 /// What those who watch for events have seen.
 struct EventMemory {
   std::vector<int> released;  ///< constraints that do not hold, by number of the element
+  std::vector<int> turned;    ///< by element: turns by which a value was moved when it was engaged; empty: none
   std::vector<int> sides;     ///< by event: see EventWatch
   std::vector<double> largest;
   std::vector<EventRecord> records;

@@ -66,11 +66,13 @@ void move_whole_turns(const Evaluator& evaluator, std::span<double> q) {
     tied[at(j)].push_back({i, b, a, rolls});
   };
   for (const auto& entry : std::get<std::vector<ElementEntry<AbsoluteAngle<double>, double>>>(model.constraints)) {
+    if (plan.is_released(entry.id)) continue;
     const int body = body_of(entry.i);
     const double k = turns_off(evaluator.element_value(entry.id).f - angle(body));
     if (k != 0) starts.push_back({body, k * turn});
   }
   for (const auto& entry : std::get<std::vector<ElementEntry<RelativeAngle<double>, double>>>(model.constraints)) {
+    if (plan.is_released(entry.id)) continue;
     const int i = body_of(entry.i), j = body_of(entry.j);
     const double k = turns_off(evaluator.element_value(entry.id).f - (angle(j) - angle(i)));
     if (k == 0) {
@@ -83,13 +85,15 @@ void move_whole_turns(const Evaluator& evaluator, std::span<double> q) {
   }
   if (starts.empty()) return;
   for (const auto& entry : std::get<std::vector<ElementEntry<Weld<double>, double>>>(model.constraints)) {
-    tie(body_of(entry.i), body_of(entry.j), 1, -1, false);
+    if (!plan.is_released(entry.id)) tie(body_of(entry.i), body_of(entry.j), 1, -1, false);
   }
   for (const auto& entry : std::get<std::vector<ElementEntry<Gear<double>, double>>>(model.constraints)) {
+    if (plan.is_released(entry.id)) continue;
     const Gear<double>& gear = entry.element;
     tie(body_of(entry.i), body_of(entry.j), gear.radius_i, gear.internal ? -gear.radius_j : gear.radius_j, true);
   }
   for (const auto& entry : std::get<std::vector<ElementEntry<Belt<double>, double>>>(model.constraints)) {
+    if (plan.is_released(entry.id)) continue;
     const Belt<double>& belt = entry.element;
     tie(body_of(entry.i), body_of(entry.j), belt.radius_i, belt.crossed ? belt.radius_j : -belt.radius_j, true);
   }

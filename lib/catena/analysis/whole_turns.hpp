@@ -1,11 +1,9 @@
 // Angle estimates off by whole turns.
 //
-// A driver may say 370 degrees where the estimate says 10: the same pose, a
-// turn apart. Before anything is solved the body is turned by those whole
-// turns, and with it every body whose angle is tied to its own (SCENES: initial
-// values): through angle constraints and welds by the same turns, through gears
-// and belts by the turn that their row asks for and that changes the pose
-// least, no turn at all where the row does not see it.
+// A driver may say 370 degrees where the estimate says 10: the same pose, a turn apart. Before anything is solved the
+// body is turned by those whole turns, and with it every body whose angle is tied to its own: through angle constraints
+// and welds by the same turns, through gears and belts by the turn that their row asks for and that changes the pose
+// least, no turn at all where the row does not see it. Constraints that are released ask for nothing.
 #pragma once
 
 #include <span>
@@ -14,9 +12,8 @@
 
 namespace catena {
 
-/// Moves the angles in q (plan order) by whole turns to the values that angle
-/// constraints and drivers prescribe at the evaluator's time. Linear in the
-/// number of elements.
+/// Moves the angles in q (plan order) by whole turns to the values that angle constraints and drivers prescribe at the
+/// evaluator's time. Linear in the number of elements.
 void move_whole_turns(const Evaluator& evaluator, std::span<double> q);
 
 }  // namespace catena

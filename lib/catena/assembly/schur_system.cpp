@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace catena {
 namespace {
@@ -10,7 +11,10 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double regularisation = 1e-12;  // part of the diagonal that is added
 constexpr double singular_ratio = 1e-10;  // below this pivot ratio it is
-constexpr int massless_rounds = 4;
+// Rounds in which a residual that shrinks to a half, at least, comes to rounding.
+constexpr int most_massless_rounds = 52;
+constexpr double massless_rounding = 1e-15;
+constexpr int most_probes = 4;  // random loads: a coordinate that resists all of them is rare, and only costs rounds
 constexpr double unequal_masses = 1e5;     // largest to least; from here on light bodies cost digits
 constexpr double refinement_ratio = 1e-5;  // below this one solutions are refined
 
@@ -215,13 +219,33 @@ void SchurSystem::solve_with_masses(std::span<const double> Q, std::span<const d
   }
 }
 
+// What massless coordinates lack of equilibrium, rest_Q_ there, compared with the largest force of all.
+double SchurSystem::find_massless_residual(std::span<const double> Q, std::span<const double> lambda) {
+  double largest = 0, left = 0;
+  for (std::size_t c = 0; c < rest_Q_.size(); ++c) {
+    double sum = std::abs(Q[c]);
+    for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) {
+      sum += std::abs(jacobian_[at(k)] * lambda[at(plan_->jacobian.row_index[at(k)])]);
+    }
+    largest = std::max(largest, sum * std::sqrt(inverse_masses_[c]));
+  }
+  for (int c : massless_) {
+    const double part = std::abs(rest_Q_[at(c)]) * std::sqrt(inverse_masses_[at(c)]);
+    if (part > left) {
+      left = part;
+      worst_massless_ = c;
+    }
+  }
+  return left > 0 ? left / largest : 0;
+}
+
 // Adds the solution for what the true equations leave: Q - M qdd - Phi_q^T lambda and gamma - Phi_q qdd. One round
-// where masses are only unequal.
+// where masses are only unequal; with massless coordinates until nothing is gained any more.
 void SchurSystem::refine_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
                                 std::span<double> lambda, Counters& counters) {
-  double first = 0, first_change = 0;
+  double first_change = 0;
+  massless_residual_ = 0;
   for (int round = 0;; ++round) {
-    double size = 0;
     for (std::size_t c = 0; c < rest_Q_.size(); ++c) {
       double rest = 0;
       if (inverse_masses_[c] > 0) {
@@ -232,17 +256,12 @@ void SchurSystem::refine_motion(std::span<const double> Q, std::span<const doubl
       }
       rest_Q_[c] = rest;
     }
-    for (int c : massless_) {
-      // As an acceleration, so that coordinates of all kinds compare.
-      const double part = std::abs(rest_Q_[at(c)]) * inverse_masses_[at(c)];
-      if (part > size) {
-        size = part;
-        worst_massless_ = c;
-      }
+    if (!massless_.empty()) {
+      const double before = massless_residual_;
+      massless_residual_ = find_massless_residual(Q, lambda);
+      const bool shrinks = round == 0 || massless_residual_ < 0.5 * before;
+      if (!(massless_residual_ > massless_rounding) || !shrinks || round == most_massless_rounds) return;
     }
-    if (round == 0) first = size;
-    massless_residual_ = first > 0 ? size / first : 0;
-    if (round == massless_rounds || (!massless_.empty() && !(size > 1e-15 * first))) return;
     std::copy(gamma.begin(), gamma.end(), rest_gamma_.begin());
     for (std::size_t c = 0; c < rest_Q_.size(); ++c) extra_qdd_[c] = -qdd[c];
     multiply_add(extra_qdd_, rest_gamma_);
@@ -257,8 +276,23 @@ void SchurSystem::refine_motion(std::span<const double> Q, std::span<const doubl
     for (std::size_t k = 0; k < extra_lambda_.size(); ++k) lambda[k] += extra_lambda_[k];
     if (round == 0) first_change = change;
     // Every round leaves the same part of what it changed.
-    if (massless_.empty() && !(change * first_change > 1e-15 * whole * whole)) return;
+    if (massless_.empty() && (round > 2 || !(change * first_change > 1e-15 * whole * whole))) return;
   }
+}
+
+std::vector<double> SchurSystem::massless_shares(Counters& counters) {
+  std::vector<double> shares(massless_.size(), 0.0), loads(inverse_masses_.size()), qdd(loads), lambda(at(plan_->rows));
+  const std::vector<double> gamma(lambda);
+  std::mt19937 random(1);
+  for (int probe = 0; probe < most_probes; ++probe) {
+    for (int c : massless_) loads[at(c)] = (random() & 1 ? 1 : -1) / std::sqrt(inverse_masses_[at(c)]);
+    solve_with_masses(loads, gamma, qdd, lambda, counters);
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      const std::size_t c = at(massless_[k]);
+      shares[k] = std::max(shares[k], std::abs(qdd[c]) / std::sqrt(inverse_masses_[c]));
+    }
+  }
+  return shares;
 }
 
 void SchurSystem::least_change(std::span<const double> b, std::span<double> x, std::span<double> lambda,

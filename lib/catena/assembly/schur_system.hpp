@@ -7,8 +7,10 @@
 // is assembled column by column of Phi_q straight into the place where it is factored; products of constant columns are
 // formed once. Vectors are in coordinates: three a moving body.
 //
-// Massless coordinates (M only positive definite where the constraints leave freedom) get a small mass, and the
-// solution is refined with the true M; the small mass divided by that which really resists is what each round leaves.
+// Massless coordinates (M only positive definite where the constraints leave freedom) get a small mass s, and the
+// solution is refined with the true M until what is left at them is rounding: with r the constrained mass, that which
+// really resists, each round leaves s / (s + r). s is to be small beside r and no smaller: it costs log(r / s) digits
+// of every single solve. Residuals are measured as forces over the root of s, compared with the largest such force.
 //
 // Very unequal masses: the inverse of a light one drowns the others' in S, and accelerations as M^-1 (Q - Phi_q^T
 // lambda) are differences of large numbers. One round of refinement with the residuals of both equations brings the
@@ -65,9 +67,12 @@ class SchurSystem {
   /// qdd and lambda from Q and gamma. Sizes: coordinates (Q, qdd), rows (gamma, lambda). `lambda` may be `gamma`.
   void solve_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
                     std::span<double> lambda, Counters& counters);
-  /// Part of M qdd - Q + Phi_q^T lambda that the last solve_motion() left at massless coordinates, relative to what it
-  /// began with; 0 without such coordinates. Near 1: nothing that has mass determines their motion.
+  /// Part of M qdd - Q + Phi_q^T lambda that the last solve_motion() left at massless coordinates, relative to the
+  /// forces in it; 0 without such coordinates. Near 1: nothing that has mass determines their motion.
   double massless_residual() const { return massless_residual_; }
+  /// s / (s + r) of every massless coordinate, in the order of their numbers, or somewhat more: from a few solves with
+  /// random loads. Changes what solve_motion() left.
+  std::vector<double> massless_shares(Counters& counters);
   /// The coordinate where it was largest.
   int worst_massless() const { return worst_massless_; }
 
@@ -105,6 +110,7 @@ class SchurSystem {
   void solve_refined(std::span<double> lambda, std::span<const double> b, Counters& counters);
   void solve_with_masses(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
                          std::span<double> lambda, Counters& counters);
+  double find_massless_residual(std::span<const double> Q, std::span<const double> lambda);
   void refine_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
                      std::span<double> lambda, Counters& counters);
 

@@ -114,6 +114,7 @@ void pass(Channel& channel, Checkpoint& checkpoint) {
   channel.value(motion.earlier.energy);
   channel.value(motion.earlier.by_driver);
   channel.value(motion.events.released);
+  channel.value(motion.events.turned);
   channel.value(motion.events.sides);
   channel.value(motion.events.largest);
   channel.value(motion.events.records);

@@ -67,6 +67,7 @@ void check_velocities(Kinematics& analysis, const Model& model, AnalysisReport& 
                                  [](const auto& body) { return body.velocity_given || body.angular_velocity_given; });
   EquationsOfMotion equations(analysis.evaluator());
   if (!given || !equations.use_masses().ok()) return;
+  equations.weigh_massless(analysis.q());
   std::vector<double> qd(analysis.q().size());
   const VelocityOutcome outcome = find_initial_velocities(equations, analysis.q(), {}, qd);
   if (!outcome.ok()) {

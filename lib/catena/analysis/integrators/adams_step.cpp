@@ -19,10 +19,15 @@ constexpr std::size_t fixed_order = 8;
 bool Adams::advance(double limit) {
   const bool fixed = options_.fixed_step > 0;
   const double smallest = smallest_step * std::max(std::abs(t_), scale_.rate() > 0 ? 1 / scale_.rate() : 0.0);
-  motion_.equations().evaluator().take_turns(motion_.q(std::span(y_)));
   failures_ = 0;
   if (fixed) h_ = options_.fixed_step;
-  while (!crossing_ && !(fixed && k_ < fixed_order)) {
+  const auto by_itself = [&] { return !crossing_ && !(fixed && k_ < fixed_order); };
+  // Runge-Kutta goes on from a state of its own, and takes the turns out of that: they must be taken once.
+  if (by_itself()) {
+    motion_.equations().evaluator().take_turns(motion_.q(std::span(y_)));
+    stepped_by_runge_kutta_ = false;
+  }
+  while (by_itself()) {
     const double remaining = limit - t_;
     const bool lands = h_ * (fixed ? 1 + 1e-9 : 1.01) >= remaining;
     // Two equal steps instead of a long one and a tiny one.

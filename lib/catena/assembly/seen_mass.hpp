@@ -1,0 +1,23 @@
+// The mass that a massless coordinate c moves with, seen through single rows of constraints:
+//
+//   r_c = max over rows r of  Phi_rc^2 / sum_k Phi_rk^2 / m_k        k: coordinates that have a mass, or were seen
+//   before
+//
+// It is a start for the small masses that stand for zero ones: what resists c along row r alone if nothing else moves.
+// The constrained mass itself may be less (other rows, positions near a dead centre), so that whoever uses it checks
+// what comes out. Coordinates are reached row by row, first from what has mass, then from what was reached; r_c has the
+// unit of the coordinate's mass (kg, kg m^2) and scales with the scene. 0: no row leads there. Linear time.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "catena/assembly/plan.hpp"
+
+namespace catena {
+
+/// `masses`: by coordinate, 3 plan.moving, zero where massless; `jacobian`: values of Phi_q. Zero for all coordinates
+/// that have mass. Allocates.
+std::vector<double> seen_masses(const Plan& plan, std::span<const double> masses, std::span<const double> jacobian);
+
+}  // namespace catena
