@@ -12,6 +12,7 @@
 
 #include "catena/analysis/analysis_report.hpp"
 #include "catena/analysis/assemble.hpp"
+#include "catena/analysis/balance_watch.hpp"
 #include "catena/analysis/dynamics_options.hpp"
 #include "catena/analysis/energy_account.hpp"
 #include "catena/analysis/equations_of_motion.hpp"
@@ -91,6 +92,7 @@ class Dynamics {
   Report next(RowObserver& observer);
   Report step(RowObserver& observer);
   Report start_anew();
+  Report check_balance();
   void remember();
   Report give_row(double t, RowObserver& observer);
   std::optional<Snapshot> state_at(double t);
@@ -111,6 +113,7 @@ class Dynamics {
   EquationsOfMotion equations_;
   RedundantRows redundant_;
   std::optional<EnergyAccount> account_;
+  std::optional<BalanceWatch> balance_;  // where the energy of the motion can be told, and a tolerance was asked for
   std::unique_ptr<Integrator> integrator_;
   std::optional<MinimumNorm> minimum_norm_;            // made when multipliers turn out not to be unique
   std::string ambiguity_;                              // whose reactions are not, when that was found

@@ -9,6 +9,12 @@
 #include "catena/columns/energy.hpp"
 
 namespace catena {
+namespace {
+
+// Energies cost as much as a hundredth of a step's evaluations; less often, that is not to be seen.
+constexpr std::int64_t steps_between_checks = 32;
+
+}  // namespace
 
 AnalysisReport Dynamics::run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
   begin(grid, needs);
@@ -45,7 +51,11 @@ Report Dynamics::start() {
     if (const Report prepared = prepare(report_.warnings); !prepared.ok()) return prepared;
   }
   account_.reset();
-  if (needs_.work) account_.emplace(evaluator_);
+  const bool conserves = BalanceWatch::conserves(evaluator_);
+  // Where constraints are redundant the work is summed up for the check alone.
+  if (needs_.work || (!conserves && redundant_.count() > 0)) account_.emplace(evaluator_);
+  balance_.reset();
+  if ((account_ || conserves) && options_.step == 0) balance_.emplace();
   driver_work_.assign(account_ ? model_->elements.size() : 0, 0.0);
   motion_.emplace(equations_, account_ ? &*account_ : nullptr);
   integrator_ = make_integrator(*motion_, grid_.last());
@@ -60,7 +70,19 @@ Report Dynamics::start() {
   first_step_ = pace_step_ - (resumed_ ? memory_.steps : 0);
   pace_time_ = t_;
   describe_mobility(report_);
+  if (balance_) {
+    evaluator_.set_time(t_);
+    evaluator_.set_configuration(std::span<const double>(y_row_).first(q_.size()));
+    balance_->begin(snapshot(t_, y_row_, {}), options_.tolerance, account_.has_value());
+  }
   return {};
+}
+
+// The energy now and then, and at the end: the last evaluation was at the integrator's state.
+Report Dynamics::check_balance() {
+  if (!balance_ || (evaluator_.counters.steps % steps_between_checks != 0 && t_ < grid_.last())) return {};
+  balance_->observe(snapshot(t_, integrator_->state(), {}));
+  return balance_->check(t_);
 }
 
 // Puts the integrator where the motion begins, or where it paused.
@@ -129,6 +151,7 @@ Report Dynamics::step(RowObserver& observer) {
   redundant_.follow(integrator_->state().first(q_.size()));
   if (!observer.proceed(t_)) return cancelled(t_);
   if (const Report pace = check_pace(grid_.last()); !pace.ok()) return pace;
+  if (const Report balance = check_balance(); !balance.ok()) return balance;
   if (events_) {
     const Report found = find_events(before, observer);
     if (!found.ok() || stopped_by_ >= 0) return found;

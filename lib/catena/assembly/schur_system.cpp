@@ -57,7 +57,15 @@ void SchurSystem::set_masses(std::span<const double> masses, std::span<const dou
 }
 
 void SchurSystem::leave_out(SparseVectors directions) {
+  // Until the next factorization the diagonal is that of S + C, too.
+  const auto add_squares = [&](double sign) {
+    for (std::size_t n = 0; n < left_out_.index.size() && analyzed_; ++n) {
+      diagonal_values_[at(left_out_.index[n])] += sign * left_out_.value[n] * left_out_.value[n];
+    }
+  };
+  add_squares(-1);
   left_out_ = std::move(directions);
+  add_squares(1);
   place_left_out();
 }
 

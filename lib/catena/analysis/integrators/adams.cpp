@@ -40,7 +40,8 @@ bool Adams::start(double t, std::span<const double> y) {
   std::copy(y.begin(), y.end(), y_.begin());
   if (!motion_.derivative(t_, Side::after, y_, slope_)) return false;
   const std::span<const double> state(y_), k(slope_);
-  scale_.observe(t_, 0, motion_.qd(state).first(motion_.moving()), motion_.qd(k).first(motion_.moving()));
+  scale_.observe(t_, 0, motion_.qd(state).first(motion_.moving()), motion_.qd(k).first(motion_.moving()),
+                 motion_.equations().applied_forces());
   largest_ratio_ = 0;
   stepped_by_runge_kutta_ = false;
   observe_ratio();
@@ -97,8 +98,8 @@ void Adams::predict(double h) {
 
 // What a change of the derivative by one at coordinate c counts.
 double Adams::weight(std::size_t c, double h) const {
-  const double v_unit = scale_.velocity_unit(c, y_[motion_.coordinates() + c]);
-  return h * std::max(v_unit > 0 ? 1 / v_unit : 0, h / scale_.position_unit(c));
+  const double v_unit = scale_.velocity_unit(c, h, y_[motion_.coordinates() + c]);
+  return h * std::max(v_unit > 0 ? 1 / v_unit : 0, h / scale_.position_unit(c, h));
 }
 
 // Errors at orders k, k-1 and k-2, as if steps had one length.
@@ -143,9 +144,9 @@ double Adams::error_of_step(double h) {
   const double twice = weights_.twice[k_] / weights_.value[k_] - weights_.twice[k_ + 1] / weights_.value[k_ + 1];
   double largest = 0;
   for (std::size_t c = 0; c < motion_.moving(); ++c) {
-    const double v_unit = scale_.velocity_unit(c, y_[n + c]);
+    const double v_unit = scale_.velocity_unit(c, h, y_[n + c]);
     const double v = v_unit > 0 ? h * once * change_[c] / v_unit : 0;
-    const double q = h * h * twice * change_[c] / scale_.position_unit(c);
+    const double q = h * h * twice * change_[c] / scale_.position_unit(c, h);
     const double size = v * v + q * q;
     if (!(size <= largest)) {
       largest = size;

@@ -56,6 +56,7 @@ class Adams final : public Integrator {
   bool finish(double h);
   void update(double h);
   void choose(double h, const Errors& errors, bool lower, double above);
+  double compared_with_end(double h, double error);
   void fail(double h, double error, bool lower);
   void observe_ratio();
   bool dips() const;

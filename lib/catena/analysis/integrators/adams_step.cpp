@@ -7,10 +7,10 @@
 namespace catena {
 namespace {
 
-constexpr double goal = 0.5;             // error a step is chosen for, compared with what is allowed
-constexpr double regular_ratio = 2e-2;   // of pivots, from which on a singular position lies behind
-constexpr double longer = 4;             // steps of Runge-Kutta, compared with those of an Adams method
-constexpr double smallest_step = 1e-13;  // part of |t| and of the time scale
+constexpr double goal = 0.5;            // error a step is chosen for, compared with what is allowed
+constexpr double regular_ratio = 2e-2;  // of pivots, from which on a singular position lies behind
+constexpr double near_ratio = 0.2;      // below which steps that fail are left to Runge-Kutta
+constexpr double longer = 4;            // steps of Runge-Kutta, compared with those of an Adams method
 constexpr int most_failures = 100;
 constexpr std::size_t fixed_order = 8;
 
@@ -18,7 +18,7 @@ constexpr std::size_t fixed_order = 8;
 
 bool Adams::advance(double limit) {
   const bool fixed = options_.fixed_step > 0;
-  const double smallest = smallest_step * std::max(std::abs(t_), scale_.rate() > 0 ? 1 / scale_.rate() : 0.0);
+  const double smallest = scale_.smallest_step(t_);
   failures_ = 0;
   if (fixed) h_ = options_.fixed_step;
   const auto by_itself = [&] { return !crossing_ && !(fixed && k_ < fixed_order); };
@@ -59,6 +59,7 @@ bool Adams::try_step(double h) {
   const Errors errors = estimate(h);
   const bool lower = errors.favour_lower(k_);
   double error = fixed ? 0 : error_of_step(h);
+  if (!(error <= 1) && std::isfinite(error)) error = compared_with_end(h, error);
   if (!(error <= 1) && std::isfinite(error)) error = filtered(h, error);
   if (!(error <= 1)) {
     fail(h, std::isfinite(error) ? errors.now : 1e10, lower);
@@ -79,9 +80,17 @@ bool Adams::try_step(double h) {
   ++motion_.equations().evaluator().counters.steps;
   observe_ratio();
   const std::span<const double> y(y_), k(slope_);
-  scale_.observe(t_, h, motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()));
+  scale_.observe(t_, h, motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()),
+                 motion_.equations().applied_forces());
   if (!fixed) choose(h, errors, lower, above);
   return true;
+}
+
+// The error compared with the motion at the step's end, where that is faster.
+double Adams::compared_with_end(double h, double error) {
+  const std::span<const double> y(y_new_), k(slope_);
+  return scale_.compare_with_end(motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()), error,
+                                 [&] { return error_of_step(h); });
 }
 
 void Adams::fail(double h, double error, bool lower) {
@@ -95,6 +104,8 @@ void Adams::fail(double h, double error, bool lower) {
     --k_;
   }
   h_ = cut * h;
+  // Differences of many points magnify what rounding makes of accelerations beside a singular position.
+  if (failures_ >= 3 && motion_.equations().smallest_pivot_ratio() < near_ratio * usual_ratio_) crossing_ = true;
 }
 
 // Order and size of the next step. `above`: the error at order k + 1, negative where it is not known.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "catena/analysis/mobility.hpp"
@@ -23,35 +24,41 @@ CoordinatePartition::CoordinatePartition(EquationsOfMotion& equations)
       evaluator_(equations.evaluator()),
       plan_(equations.plan()),
       scaling_(plan_, evaluator_.length_scale()),
-      projector_(evaluator_.shared_plan()) {
+      system_(evaluator_.shared_plan()) {
   const double length = evaluator_.length_scale();
-  for (int c : plan_.coordinate) all_free_.push_back(c % 3 == 2 ? 1 : length * length);
-  inverse_weight_ = all_free_;
+  all_free_.assign(at(3 * plan_.moving), 0.0);
+  none_ = all_free_;
+  for (int c : plan_.coordinate) all_free_[at(c)] = c % 3 == 2 ? 1 : 1 / (length * length);
+  weight_ = all_free_;
   jacobian_.resize(at(plan_.trash_slot()) + 1);
   evaluator_.start_jacobian(jacobian_);
   residual_.resize(at(plan_.rows));
   multipliers_.resize(at(plan_.rows));
-  change_.resize(at(plan_.columns));
-  motion_.resize(at(plan_.columns));
+  change_.resize(all_free_.size());
   row_square_.resize(at(plan_.rows));
-  superfluous_.resize(at(plan_.rows));
 }
 
 bool CoordinatePartition::factorize() {
   evaluator_.jacobian(jacobian_);
-  if (!projector_.factorize(jacobian_, evaluator_.counters).ok()) return false;
-  std::fill(row_square_.begin(), row_square_.end(), 0.0);
-  const SparsePattern& a = plan_.jacobian;
-  for (std::size_t c = 0; c < all_free_.size(); ++c) {
-    for (int k = a.column_start[c]; k < a.column_start[c + 1]; ++k) {
-      row_square_[at(a.row_index[at(k)])] += all_free_[c] * jacobian_[at(k)] * jacobian_[at(k)];
-    }
-  }
+  if (!system_.factorize(jacobian_, evaluator_.counters)) return false;
   ratio_ = 1;
-  for (int r = 0; r < plan_.rows; ++r) {
-    if (!superfluous_[at(r)]) ratio_ = std::min(ratio_, projector_.pivot(r) / row_square_[at(r)]);
-  }
+  for (int r = 0; r < plan_.rows; ++r) ratio_ = std::min(ratio_, system_.pivot(r) / row_square_[at(r)]);
   return true;
+}
+
+// The directions that the motion is integrated without, in the metric used here: rows then have the sizes row_square_.
+void CoordinatePartition::leave_out() {
+  SparseVectors directions = equations_.left_out();
+  const std::vector<double> ours = system_.row_sizes(), theirs = equations_.row_sizes();
+  for (std::size_t n = 0; n < directions.index.size(); ++n) {
+    const auto row = at(directions.index[n]);
+    directions.value[n] *= theirs[row] > 0 ? ours[row] / theirs[row] : 0;
+  }
+  for (std::size_t r = 0; r < ours.size(); ++r) row_square_[r] = ours[r] > 0 ? ours[r] * ours[r] : 1;
+  for (std::size_t n = 0; n < directions.index.size(); ++n) {
+    row_square_[at(directions.index[n])] += directions.value[n] * directions.value[n];
+  }
+  system_.leave_out(std::move(directions));
 }
 
 bool CoordinatePartition::choose(std::span<const double> q) {
@@ -63,16 +70,15 @@ bool CoordinatePartition::choose(std::span<const double> q) {
   if (freedoms_ > most_freedoms) return false;
   ++choices_;
   evaluator_.set_configuration(q);
-  projector_.set_inverse_weights(all_free_);
-  std::fill(superfluous_.begin(), superfluous_.end(), 0);
+  std::fill(row_square_.begin(), row_square_.end(), 1.0);
+  system_.set_masses(all_free_, none_);
   if (!factorize()) return false;
-  for (int r = 0; r < plan_.rows; ++r) {
-    superfluous_[at(r)] = projector_.pivot(r) < independent_ratio * row_square_[at(r)] ? 1 : 0;
-  }
-  inverse_weight_ = all_free_;
+  leave_out();
+  if (equations_.left_out().count() > 0 && !factorize()) return false;
+  weight_ = all_free_;
   find_tangents(freedoms_);
   pick_independent(freedoms_);
-  projector_.set_inverse_weights(inverse_weight_);
+  system_.set_masses(weight_, none_);
   if (!factorize()) return false;
   ratio_of_choice_ = ratio_;
   return true;
@@ -82,22 +88,22 @@ bool CoordinatePartition::choose(std::span<const double> q) {
 void CoordinatePartition::find_tangents(int freedoms) {
   std::mt19937_64 generator(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  const std::size_t columns = at(plan_.columns);
+  const std::size_t size = all_free_.size();
   tangents_.resize(at(freedoms));
   for (int j = 0; j < freedoms; ++j) {
-    for (std::size_t c = 0; c < columns; ++c) motion_[c] = uniform(generator) * std::sqrt(all_free_[c]);
-    std::fill(residual_.begin(), residual_.end(), 0.0);
-    multiply_add(plan_.jacobian, std::span(jacobian_).first(plan_.jacobian.row_index.size()), motion_, residual_);
-    projector_.solve(residual_, change_, multipliers_, evaluator_.counters);
     std::vector<double>& tangent = tangents_[at(j)];
-    tangent.resize(columns);
-    for (std::size_t c = 0; c < columns; ++c) tangent[c] = (motion_[c] - change_[c]) / std::sqrt(all_free_[c]);
+    tangent.assign(size, 0.0);
+    for (int c : plan_.coordinate) tangent[at(c)] = uniform(generator) / std::sqrt(all_free_[at(c)]);
+    std::fill(residual_.begin(), residual_.end(), 0.0);
+    system_.multiply_add(tangent, residual_);
+    system_.least_change(residual_, change_, multipliers_, evaluator_.counters);
+    for (std::size_t c = 0; c < size; ++c) tangent[c] = (tangent[c] - change_[c]) * std::sqrt(all_free_[c]);
     // Twice is enough for orthogonality to rounding.
     for (int round = 0; round < 2; ++round) {
       for (int k = 0; k < j; ++k) {
         double product = 0;
-        for (std::size_t c = 0; c < columns; ++c) product += tangents_[at(k)][c] * tangent[c];
-        for (std::size_t c = 0; c < columns; ++c) tangent[c] -= product * tangents_[at(k)][c];
+        for (std::size_t c = 0; c < size; ++c) product += tangents_[at(k)][c] * tangent[c];
+        for (std::size_t c = 0; c < size; ++c) tangent[c] -= product * tangents_[at(k)][c];
       }
     }
     double square = 0;
@@ -109,19 +115,19 @@ void CoordinatePartition::find_tangents(int freedoms) {
 // QR with pivoting: the coordinate of which the tangents that are left have most, then the tangents turned so that
 // only one of them has it.
 void CoordinatePartition::pick_independent(int freedoms) {
-  const std::size_t columns = at(plan_.columns);
+  const std::size_t columns = weight_.size();
   for (std::size_t j = 0; j < at(freedoms); ++j) {
     std::size_t best = 0;
     double largest = -1;
     for (std::size_t c = 0; c < columns; ++c) {
       double square = 0;
       for (std::size_t k = j; k < tangents_.size(); ++k) square += tangents_[k][c] * tangents_[k][c];
-      if (inverse_weight_[c] > 0 && square > largest) {
+      if (weight_[c] > 0 && square > largest) {
         largest = square;
         best = c;
       }
     }
-    inverse_weight_[best] = 0;
+    weight_[best] = 0;
     mirror_.assign(tangents_.size(), 0.0);
     // Householder's reflection among tangents j ...: component `best` ends up in tangent j alone.
     double square = 0;
@@ -155,16 +161,22 @@ bool CoordinatePartition::solve(double t, Side side, std::span<double> q, std::s
     if (k > 0 && position_residual_ > 0.5 * before && position_residual_ < good_enough) break;
     if (k == most_iterations || (k > 0 && position_residual_ > before)) return false;
     before = position_residual_;
-    projector_.solve(residual_, change_, multipliers_, evaluator_.counters);
-    for (std::size_t c = 0; c < change_.size(); ++c) q[at(plan_.coordinate[c])] -= change_[c];
+    system_.least_change(residual_, change_, multipliers_, evaluator_.counters);
+    for (std::size_t c = 0; c < change_.size(); ++c) q[c] -= change_[c];
   }
-  // The factors are those of the estimate; they are refined with the Jacobian that holds.
+  // The factors are those of the estimate, the Jacobian is the one that holds: further rounds correct for that.
   evaluator_.jacobian(jacobian_);
-  evaluator_.nu(residual_);
-  for (std::size_t c = 0; c < change_.size(); ++c) change_[c] = -qd[at(plan_.coordinate[c])];
-  multiply_add(plan_.jacobian, std::span(jacobian_).first(plan_.jacobian.row_index.size()), change_, residual_);
-  projector_.solve(residual_, change_, multipliers_, evaluator_.counters);
-  for (std::size_t c = 0; c < change_.size(); ++c) qd[at(plan_.coordinate[c])] += change_[c];
+  before = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < most_iterations; ++round) {
+    evaluator_.nu(residual_);
+    for (double& value : residual_) value = -value;
+    system_.multiply_add(qd, residual_);
+    const double size = scaling_.row_norm(residual_);
+    if (!(size < 0.5 * before) || size == 0) break;
+    before = size;
+    system_.least_change(residual_, change_, multipliers_, evaluator_.counters);
+    for (std::size_t c = 0; c < change_.size(); ++c) qd[c] -= change_[c];
+  }
   return true;
 }
 

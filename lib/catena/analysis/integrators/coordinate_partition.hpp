@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "catena/analysis/equations_of_motion.hpp"
-#include "catena/assembly/constraint_projector.hpp"
+#include "catena/assembly/schur_system.hpp"
 
 namespace catena {
 
@@ -43,19 +43,20 @@ class CoordinatePartition {
   static constexpr double worse = 0.3, unusable = 0.02;
   void find_tangents(int freedoms);
   void pick_independent(int freedoms);
+  void leave_out();
   bool factorize();
 
   EquationsOfMotion& equations_;
   Evaluator& evaluator_;
   const Plan& plan_;
   Scaling scaling_;
-  ConstraintProjector projector_;
-  std::vector<double> inverse_weight_, all_free_;  // by column; zero holds a coordinate
-  std::vector<double> row_square_;                 // of a whole row, scaled
-  std::vector<char> superfluous_;                  // rows that depend on others
+  SchurSystem system_;                     // with lengths in length scales in place of masses
+  std::vector<double> weight_, all_free_;  // by coordinate; zero holds a coordinate
+  std::vector<double> none_;               // substitutes of weights
+  std::vector<double> row_square_;         // of a whole row, scaled
   std::vector<double> jacobian_, residual_, multipliers_, change_;
-  std::vector<std::vector<double>> tangents_;  // by degree of freedom; scaled
-  std::vector<double> motion_, mirror_;
+  std::vector<std::vector<double>> tangents_;  // by degree of freedom; scaled, by coordinate
+  std::vector<double> mirror_;
   int freedoms_ = -1, choices_ = 0;
   double ratio_ = 1, ratio_of_choice_ = 1, position_residual_ = 0;
 };

@@ -10,7 +10,7 @@ namespace catena {
 namespace {
 
 // The part of an error estimate that the projection will remove counts this much: stages spoil each other by it.
-constexpr double forbidden_part = 0.1, forbidden_square = 10;
+constexpr double forbidden_part = 0.1, forbidden_square = 1000;
 // A step with a stage whose pivot ratio is below this is repeated with all stages projected ...
 constexpr double projection_ratio = 1e-2;
 // ... if the ratio of other stages is this much larger: light parts make it small without any singularity.
@@ -131,7 +131,8 @@ void RungeKutta::observe_ratio() {
 
 void RungeKutta::observe_rates() {
   const std::span<const double> y(y_), k(slope_);
-  scale_.observe(t_, t_ - t_before_, motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()));
+  scale_.observe(t_, t_ - t_before_, motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()),
+                 motion_.equations().applied_forces());
 }
 
 void RungeKutta::combine(const StageSum& sum, double h, const double* from, std::span<double> out) const {
@@ -193,9 +194,9 @@ double RungeKutta::error_size(double h) {
   const bool two = tableau().order == 8;
   double high = 0, low = 0;
   for (std::size_t c = 0; c < moving; ++c) {
-    const double v_unit = scale_.velocity_unit(c, v[c]);
+    const double v_unit = scale_.velocity_unit(c, h, v[c]);
     // Where nothing has moved yet velocities have no scale; positions then tell.
-    const double q_scale = 1 / scale_.position_unit(c), v_scale = v_unit > 0 ? 1 / v_unit : 0;
+    const double q_scale = 1 / scale_.position_unit(c, h), v_scale = v_unit > 0 ? 1 / v_unit : 0;
     const double q_error = error_[c] * q_scale, v_error = error_[offset + c] * v_scale;
     const double size = q_error * q_error + v_error * v_error;
     if (!(size <= high)) {

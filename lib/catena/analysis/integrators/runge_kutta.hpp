@@ -92,6 +92,7 @@ class RungeKutta final : public Integrator {
   bool detour(double h);
   void repeat_with_projected_stages(double h);
   bool try_crossing(double h, double error);
+  double compared_with_end(double h, double error);
   void reject(double h);
   void accept(double growth, double proposed);
   void observe_ratio();

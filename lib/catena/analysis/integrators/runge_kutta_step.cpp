@@ -16,7 +16,6 @@ constexpr double other_steps[] = {0.8, 0.6, 1.15, 0.4, 0.9, 1.3};  // what is tr
 constexpr double nearly_singular = 0.1, regular = 0.2;
 constexpr int rejections_before_low_order = 8, low_order_run = 30;
 constexpr int most_rejections = 100;
-constexpr double smallest_step = 1e-13;  // part of |t| and of the time scale
 
 }  // namespace
 
@@ -64,9 +63,17 @@ bool RungeKutta::try_crossing(double h, double error) {
   return true;
 }
 
+// The error compared with the motion at the step's end, where that is faster.
+double RungeKutta::compared_with_end(double h, double error) {
+  const std::size_t last = static_cast<std::size_t>(tableau().stages) - 1;
+  const std::span<const double> y(y_new_), k(stage_[last]);
+  return scale_.compare_with_end(motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()), error,
+                                 [&] { return error_size(h); });
+}
+
 bool RungeKutta::advance(double limit) {
   const bool fixed = options_.fixed_step > 0;
-  const double smallest = smallest_step * std::max(std::abs(t_), scale_.rate() > 0 ? 1 / scale_.rate() : 0.0);
+  const double smallest = scale_.smallest_step(t_);
   double proposed = fixed ? options_.fixed_step : h_;
   detours_ = 0;
   projecting_stages_ = false;
@@ -98,6 +105,7 @@ bool RungeKutta::advance(double limit) {
       continue;
     }
     double error = fixed ? 0 : error_size(h);
+    if (!(error <= 1) && std::isfinite(error)) error = compared_with_end(h, error);
     bool factored = false;
     if (!(error <= 1) && std::isfinite(error) && projects()) {
       factored = factorize_new_point();

@@ -1,0 +1,33 @@
+// Whether a motion keeps its energy: what an integration may be trusted for, told by the motion itself.
+//
+//   missing = T + V - (T0 + V0) - work of drivers and loads + dissipated
+//   allowed = permitted x tolerance x (largest T + range of V) + rounding of V
+//
+// Errors of positions and velocities of `tolerance` (of the scale of the motion) change energy by a few times tolerance
+// x (T + V): what is beyond that by two orders is no error of integration any more, but a wrong motion. Without the
+// work of forces that have no potential nothing can be told: `applies()`. Units: J.
+#pragma once
+
+#include "catena/base/status.hpp"
+#include "catena/columns/snapshot.hpp"
+
+namespace catena {
+
+class BalanceWatch {
+ public:
+  /// Whether forces and constraints of a model neither supply nor dissipate energy: tried with a motion of all bodies.
+  static bool conserves(Evaluator& evaluator);
+
+  /// `work_known`: snapshots carry work and dissipation. Evaluates energies at the start.
+  void begin(const Snapshot& start, double tolerance, bool work_known);
+  /// Takes note of a state of the motion; whose evaluator stands there.
+  void observe(const Snapshot& state);
+  /// not_converged, with figures, where energy was lost or gained at the last state by more than is allowed.
+  Report check(double t) const;
+
+ private:
+  double tolerance_ = 0, initial_ = 0, missing_ = 0, largest_kinetic_ = 0, least_potential_ = 0, largest_potential_ = 0;
+  bool work_known_ = false;
+};
+
+}  // namespace catena
