@@ -111,12 +111,11 @@ std::vector<double> DynamicsWithEvents::residuals_of(int element) {
 }
 
 // The value of an element that was just engaged, moved by the turns that the bodies made without it.
-void DynamicsWithEvents::turn_value_to_bodies(int element) {
+void DynamicsWithEvents::turn_value_to_bodies(int element, const SystemState& state) {
   const int turns = whole_turns_of(*model_, element, residuals_of(element));
   if (turns == 0) return;
   turned_.resize(model_->elements.size());
   turned_[static_cast<std::size_t>(element)] += turns;
-  const SystemState state = dynamics_->state();
   make_dynamics();
   dynamics_->start_from(state);
 }
@@ -147,7 +146,7 @@ Report DynamicsWithEvents::act(const Event& event, bool sum_up_work) {
   WorkSoFar work = dynamics_->work_so_far();
   make_dynamics();
   dynamics_->start_from(state);
-  if (engage) turn_value_to_bodies(event.element);
+  if (engage) turn_value_to_bodies(event.element, state);
   if (sum_up_work) dynamics_->carry_on(std::move(work));
   return engage ? check_fit(event.element) : Report{};
 }

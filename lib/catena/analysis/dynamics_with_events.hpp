@@ -53,7 +53,7 @@ class DynamicsWithEvents {
   void save_and_resume(std::int64_t rows_given, std::int64_t next_row);
   /// Releases or engages what the event says; a report if that cannot be.
   Report act(const Event& event, bool sum_up_work);
-  void turn_value_to_bodies(int element);
+  void turn_value_to_bodies(int element, const SystemState& state);
   Report check_fit(int element);
 
   std::shared_ptr<const Model> given_model_;

@@ -110,13 +110,13 @@ VelocityOutcome find_initial_velocities(EquationsOfMotion& equations, std::span<
       const double now = row_norm(plan, rest, length, &worst);
       const bool shrinks = now < 0.5 * left;
       left = now;
-      if (!shrinks || k == most_corrections) break;
+      if (!shrinks || k == most_corrections || now == 0) break;
       projector.solve(rest, step, lambda, evaluator.counters);
       for (std::size_t c = 0; c < step.size(); ++c) velocity[c] += step[c];
     }
     const double scale = std::max(
         {column_norm(plan, velocity, length), column_norm(plan, wanted.velocity, length), row_norm(plan, nu, length)});
-    if (!(left <= 1e-9 * scale) && left > 0) {
+    if (!(left <= 1e-9 * scale)) {
       const int element = worst < 0 ? 0 : plan.row_element[at(worst)];
       outcome.status = Status::inconsistent;
       outcome.message = fmt::format(

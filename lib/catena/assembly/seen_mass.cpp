@@ -44,6 +44,15 @@ std::vector<double> seen_masses(const Plan& plan, std::span<const double> masses
       }
     }
     reached.clear();
+    // A mass is that of both directions: a row across one of them sees nothing there but rounding.
+    for (std::size_t n = 0; n < columns.size(); ++n) {
+      const int coordinate = plan.coordinate[at(columns[n])], kind = coordinate % 3;
+      if (kind == 2) continue;
+      const int other = kind == 0 ? coordinate + 1 : coordinate - 1;
+      if (seen[at(other)] == 0 && plan.column[at(other)] >= 0) columns.push_back(plan.column[at(other)]);
+      seen[at(coordinate)] = std::max(seen[at(coordinate)], std::abs(seen[at(other)]));
+      if (seen[at(other)] >= 0) seen[at(other)] = seen[at(coordinate)];
+    }
     // Those of this round are settled; a negative sign marks them.
     for (const int column : columns) {
       double& mass = seen[at(plan.coordinate[at(column)])];

@@ -6,7 +6,8 @@
 // It is a start for the small masses that stand for zero ones: what resists c along row r alone if nothing else moves.
 // The constrained mass itself may be less (other rows, positions near a dead centre), so that whoever uses it checks
 // what comes out. Coordinates are reached row by row, first from what has mass, then from what was reached; r_c has the
-// unit of the coordinate's mass (kg, kg m^2) and scales with the scene. 0: no row leads there. Linear time.
+// unit of the coordinate's mass (kg, kg m^2) and scales with the scene; x and y of a body get the larger of both. 0: no
+// row leads there. Linear time.
 #pragma once
 
 #include <span>
