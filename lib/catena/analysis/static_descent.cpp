@@ -63,6 +63,8 @@ bool restore_constraints(StaticSystem& system, std::span<double> q) {
   const double enough = std::max(restored, 10 * system.rounding_change());
   // With the factors at hand as long as they serve; then, as beyond a singular position, with new ones at every step.
   for (const bool anew : {false, true}) {
+    // A trial further on may have come where nothing can be factored (centres of gears that coincide).
+    if (!anew && !system.has_factors()) continue;
     double before = system.phi_norm();
     for (int k = 0; k < 12; ++k) {
       if (before <= enough) return true;

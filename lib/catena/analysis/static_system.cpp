@@ -164,7 +164,11 @@ void StaticSystem::fill_weights() {
   matrix_.set_weights(jacobian(), force_ / length_);
 }
 
-FactorResult StaticSystem::factorize() { return matrix_.factorize(force_ / length_, evaluator_.counters); }
+FactorResult StaticSystem::factorize() {
+  const FactorResult result = matrix_.factorize(force_ / length_, evaluator_.counters);
+  has_factors_ = result.ok();
+  return result;
+}
 
 StaticStep StaticSystem::solve(std::span<const double> force, std::span<const double> gap, double tolerance) {
   std::copy(force.begin(), force.end(), solution_.begin());

@@ -82,6 +82,8 @@ class StaticSystem {
   /// Fills the matrix with force / length x (1, 1, radius^2) in the place of K.
   void fill_weights();
   FactorResult factorize();
+  /// Whether the last factorize() left factors to solve with.
+  bool has_factors() const { return has_factors_; }
   /// Solves for the Newton step with these right-hand sides: K change + Phi_q^T lambda = force, Phi_q change = gap.
   StaticStep solve(std::span<const double> force, std::span<const double> gap, double tolerance);
   /// The Newton step itself.
@@ -109,6 +111,7 @@ class StaticSystem {
   std::vector<double> radius_;
   KktMatrix matrix_;
   int linear_ = -1;  // -1: not asked yet
+  bool has_factors_ = false;
   double length_, extent_ = 1, force_ = 1, load_ = 0, total_load_ = 0;
   Scaling scaling_;
   std::vector<double> rest_, loads_;  // zero velocities, Q; all coordinates
