@@ -6,6 +6,7 @@
 #include "catena/analysis/dynamics_with_events.hpp"
 #include "catena/columns/energy.hpp"
 #include "oracles/dynamics_mechanisms.hpp"
+#include "oracles/redundant_mechanisms.hpp"
 
 namespace catena {
 namespace {
@@ -77,6 +78,12 @@ class DynamicsCheckpoints : public ::testing::TestWithParam<IntegrationMethod> {
 TEST_P(DynamicsCheckpoints, FourBarsThroughTheFlatPosition) { check(four_bars(2), 6, 0.37, GetParam()); }
 TEST_P(DynamicsCheckpoints, Squeezer) { check(testing::squeezer(), 0.03, 0.004, GetParam()); }
 TEST_P(DynamicsCheckpoints, ChainWithFixedSteps) { check(rod_chain(5), 1, 0.11, GetParam(), 0.004); }
+
+// Which directions among the rows are left out goes with the motion.
+TEST_P(DynamicsCheckpoints, RedundantCranksThatTurn) {
+  const testing::KnownMotion motion = testing::RedundantMechanism(0, 3).motion();
+  check(motion.model, motion.until, motion.until / 7.5, GetParam());
+}
 
 // A motor that jumps turns a damped rod many times.
 TEST_P(DynamicsCheckpoints, WholeTurnsAndJumps) {

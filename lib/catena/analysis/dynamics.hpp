@@ -93,6 +93,7 @@ class Dynamics {
   Report step(RowObserver& observer);
   Report start_anew();
   Report check_balance();
+  Report check_redundant_rows();
   void remember();
   Report give_row(double t, RowObserver& observer);
   std::optional<Snapshot> state_at(double t);

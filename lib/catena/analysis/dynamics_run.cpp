@@ -151,6 +151,7 @@ Report Dynamics::step(RowObserver& observer) {
   redundant_.follow(integrator_->state().first(q_.size()));
   if (!observer.proceed(t_)) return cancelled(t_);
   if (const Report pace = check_pace(grid_.last()); !pace.ok()) return pace;
+  if (const Report rows = check_redundant_rows(); !rows.ok()) return rows;
   if (const Report balance = check_balance(); !balance.ok()) return balance;
   if (events_) {
     const Report found = find_events(before, observer);

@@ -6,6 +6,7 @@
 
 #include "catena/analysis/dynamics.hpp"
 #include "catena/analysis/jacobian_rank.hpp"
+#include "catena/analysis/scaling.hpp"
 
 namespace catena {
 namespace {
@@ -18,6 +19,9 @@ constexpr double known_moments = 10;
 // Where no step can be made: rows nearer to dependence than this (sine) count as dependent; and the part of |w| |nu|
 // from which w^T nu counts as something.
 constexpr double nearly_dependent = 1e-3, not_nothing = 1e-2;
+
+// Projection meets constraints to 1e-15, and what follows from them to that divided by a sine; in length scales or rad.
+constexpr double contradiction = 1e-9;
 
 std::string rows_at(double t, std::int64_t rows) {
   return fmt::format("at t = {:.12g} s{}", t, rows > 1 ? fmt::format(" and in {} more rows", rows - 1) : "");
@@ -63,6 +67,31 @@ bool Dynamics::know_singular_start() {
   }
   motion_->know(t_, known_moments * singular_->moment(), slope.subspan(n));
   return true;
+}
+
+// Rows that were left out must follow from the others all along: drivers may agree at first and contradict each other
+// later.
+Report Dynamics::check_redundant_rows() {
+  Report report;
+  if (redundant_.count() == 0 || !integrator_->meets_constraints()) return report;
+  if (!(integrator_->position_residual() > contradiction)) return report;
+  evaluator_.set_time(t_, Side::before);
+  evaluator_.set_configuration(integrator_->state().first(q_.size()));
+  std::vector<double> phi(static_cast<std::size_t>(plan_->rows));
+  evaluator_.phi(phi);
+  int worst = 0;
+  const double length = evaluator_.length_scale(), left = row_norm(*plan_, phi, length, &worst);
+  if (!(left > contradiction)) return report;
+  const auto row = static_cast<std::size_t>(worst);
+  const int element = plan_->row_element[row];
+  report.status = Status::inconsistent;
+  report.message = fmt::format(
+      "constraints that depend on each other contradict each other at t = {:.12g} s: {} \"{}\" misses by {:.3g} {} "
+      "where "
+      "the others are met; likely cause: drivers that ask for different motions of the same parts",
+      t_, model_->element_type(element), model_->element_name(element), left * (plan_->row_is_angle[row] ? 1 : length),
+      plan_->row_is_angle[row] ? "rad" : "m");
+  return report;
 }
 
 // Where no step can be made: the driver that asks most for a motion that the constraints rule out, w^T Phi_q = 0 but

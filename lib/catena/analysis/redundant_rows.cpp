@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "catena/analysis/assemble.hpp"
 #include "catena/analysis/jacobian_rank.hpp"
@@ -26,10 +27,11 @@ constexpr double worthwhile = 1.1;
 // directions the choice also waits until pivots have become half as large.
 constexpr double noticeable_move = 0.3, worse = 0.5;
 constexpr int few = 16;
-// W is dense: 160 MB. Beyond, rows of the rank analysis serve as they are.
-constexpr std::size_t most_entries = 20'000'000;
+// Entries of W below this part of the largest are rounding. A choice that misses them is as good.
+constexpr double nothing = 1e-9;
 
 /// W as p columns over the rows, in units in which S has a diagonal of ones, and the direction that belongs to each.
+/// Loops of a mechanism are local, and so are columns: only their entries are kept.
 class Exchange {
  public:
   Exchange(const Plan& plan, const std::vector<double>& sizes) : sizes_(sizes), element_(at(plan.rows)) {
@@ -41,17 +43,21 @@ class Exchange {
   }
 
   /// w and its direction c, c^T w = 1, as they are.
-  void add(std::vector<double> w, std::span<const int> rows, std::span<const double> c) {
-    Column column{.w = std::move(w), .direction = {}, .element = element_[at(rows.front())]};
-    column.direction.assign(at(size(column.element)), 0.0);
-    double square = 0;
+  void add(std::span<const double> w, std::span<const int> rows, std::span<const double> c) {
+    Column column{.w = {}, .direction = {}, .element = element_[at(rows.front())]};
+    column.direction.assign(at(first_[at(column.element) + 1] - first_[at(column.element)]), 0.0);
+    double square = 0, largest = 0;
     for (std::size_t n = 0; n < rows.size(); ++n) {
       const double x = c[n] / sizes_[at(rows[n])];
       column.direction[at(rows[n] - first_[at(column.element)])] = x;
       square += x * x;
     }
     for (double& x : column.direction) x /= std::sqrt(square);
-    for (std::size_t r = 0; r < column.w.size(); ++r) column.w[r] *= sizes_[r] * std::sqrt(square);
+    for (std::size_t r = 0; r < w.size(); ++r) largest = std::max(largest, std::abs(w[r]) * sizes_[r]);
+    for (std::size_t r = 0; r < w.size(); ++r) {
+      const double x = w[r] * sizes_[r];
+      if (std::abs(x) > nothing * largest) column.w.push_back({static_cast<int>(r), x * std::sqrt(square)});
+    }
     find_longest(column);
     columns_.push_back(std::move(column));
   }
@@ -80,43 +86,72 @@ class Exchange {
   }
 
  private:
+  struct Entry {
+    int row;
+    double value;
+  };
   struct Column {
-    std::vector<double> w, direction;
+    std::vector<Entry> w;  // by rows, ascending
+    std::vector<double> direction;
     int element;       // of the direction
     int longest = -1;  // the element where w is longest ...
     double length = 0;
   };
-  int size(int element) const { return first_[at(element) + 1] - first_[at(element)]; }
 
   void find_longest(Column& column) const {
-    column.length = 0;
-    for (int e = 0; e + 1 < static_cast<int>(first_.size()); ++e) {
-      double square = 0;
-      for (int r = first_[at(e)]; r < first_[at(e) + 1]; ++r) square += column.w[at(r)] * column.w[at(r)];
-      if (square > column.length) column.length = square, column.longest = e;
+    double most = 0, square = 0;
+    int element = -1;
+    for (const Entry& entry : column.w) {
+      if (element_[at(entry.row)] != element) square = 0, element = element_[at(entry.row)];
+      square += entry.value * entry.value;
+      if (square > most) most = square, column.longest = element;
     }
-    column.length = std::sqrt(column.length);
+    column.length = std::sqrt(most);
+  }
+
+  // The entries of a column at an element.
+  auto at_element(const Column& column, int element) const {
+    const auto before = [](const Entry& entry, int row) { return entry.row < row; };
+    const auto begin = std::lower_bound(column.w.begin(), column.w.end(), first_[at(element)], before);
+    return std::pair(begin, std::lower_bound(begin, column.w.end(), first_[at(element) + 1], before));
   }
 
   // The direction moves to where its w is longest, along it there; the other columns lose their part along it.
   void exchange(Column& column) {
-    const int first = first_[at(column.element = column.longest)];
-    column.direction.assign(column.w.begin() + first, column.w.begin() + first + size(column.element));
+    const int first = first_[at(column.element = column.longest)], last = first_[at(column.element) + 1];
+    column.direction.assign(at(last - first), 0.0);
+    const auto [begin, end] = at_element(column, column.element);
+    for (auto entry = begin; entry != end; ++entry) column.direction[at(entry->row - first)] = entry->value;
     for (double& x : column.direction) x /= column.length;
-    for (double& x : column.w) x /= column.length;
+    for (Entry& entry : column.w) entry.value /= column.length;
     find_longest(column);
     for (Column& other : columns_) {
+      if (&other == &column) continue;
       double product = 0;
-      for (std::size_t n = 0; n < column.direction.size(); ++n) product += column.direction[n] * other.w[at(first) + n];
-      if (&other == &column || product == 0) continue;
-      for (std::size_t r = 0; r < other.w.size(); ++r) other.w[r] -= product * column.w[r];
-      find_longest(other);
+      const auto [from, to] = at_element(other, column.element);
+      for (auto entry = from; entry != to; ++entry) product += column.direction[at(entry->row - first)] * entry->value;
+      if (std::abs(product) > nothing * other.length) subtract(other, product, column);
     }
+  }
+
+  void subtract(Column& from, double factor, const Column& column) {
+    merged_.clear();
+    auto a = from.w.begin();
+    for (const Entry& entry : column.w) {
+      while (a != from.w.end() && a->row < entry.row) merged_.push_back(*a++);
+      double value = -factor * entry.value;
+      if (a != from.w.end() && a->row == entry.row) value += (a++)->value;
+      if (std::abs(value) > nothing * from.length) merged_.push_back({entry.row, value});
+    }
+    merged_.insert(merged_.end(), a, from.w.end());
+    from.w.swap(merged_);
+    find_longest(from);
   }
 
   const std::vector<double>& sizes_;
   std::vector<int> first_, element_;  // rows of every element, and their end; element by row
   std::vector<Column> columns_;
+  std::vector<Entry> merged_;
 };
 
 }  // namespace
@@ -161,7 +196,7 @@ void RedundantRows::find(std::span<const double> q) {
   if (!rows.empty()) {
     equations_.factorize(t, Side::after, place);
     leave_out(rows);
-    if (equations_.factorize(t, Side::after, place)) choose(place);
+    if (equations_.factorize(t, Side::after, place)) choose();
   }
   chosen_at_.assign(q.begin(), q.end());
   evaluator.set_configuration(q);
@@ -215,27 +250,23 @@ void RedundantRows::follow(std::span<const double> q) {
   usual_ratio_ = std::max(usual_ratio_, ratio);
   if (count() > few && ratio > worse * usual_ratio_) return;
   usual_ratio_ = 0;
-  choose(q);
+  choose();
 }
 
-// Directions at q, the place of the equations' factors.
-void RedundantRows::choose(std::span<const double> q) {
+// Directions at the place of the equations' factors.
+void RedundantRows::choose() {
   ++choices_;
-  if (at(count()) * at(plan_.rows) > most_entries) {
-    const std::vector<int> rows = dependent_rows(q);
-    if (static_cast<int>(rows.size()) == count()) leave_out(rows);
-    return;
-  }
   const Vector sizes = equations_.row_sizes();
   const SparseVectors& directions = equations_.left_out();
   Exchange exchange(plan_, sizes);
+  Vector w(at(plan_.rows));
   for (int k = 0; k < count(); ++k) {
-    Vector w(at(plan_.rows), 0.0);
+    std::fill(w.begin(), w.end(), 0.0);
     for (int n = directions.start[at(k)]; n < directions.start[at(k) + 1]; ++n) {
       w[at(directions.index[at(n)])] = directions.value[at(n)];
     }
     equations_.solve_rows(w);
-    exchange.add(std::move(w), directions.indices(k), directions.values(k));
+    exchange.add(w, directions.indices(k), directions.values(k));
   }
   exchange.run();
   equations_.leave_out(exchange.directions());

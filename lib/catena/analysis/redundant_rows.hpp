@@ -45,7 +45,7 @@ class RedundantRows {
   std::vector<int> dependent_rows(std::span<const double> q);
   void leave_out(const std::vector<int>& rows);
   bool probe(std::span<const double> q, std::span<double> place);
-  void choose(std::span<const double> q);
+  void choose();
   double moved(std::span<const double> q) const;
 
   EquationsOfMotion& equations_;

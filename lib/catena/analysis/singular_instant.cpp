@@ -64,6 +64,7 @@ SingularInstant::Outcome SingularInstant::solve(double t, std::span<const double
   // Rows of the completed system: what of each goes into it, by row of the plan.
   const int size = rank.rank + extra;
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(size, plan.columns);
+  Eigen::MatrixXd terms_of_rate = Eigen::MatrixXd::Zero(extra, plan.columns);
   Eigen::VectorXd right(size);
   std::vector<int> place(at(plan.rows), -1);
   for (int k = 0; k < rank.rank; ++k) {
@@ -92,14 +93,24 @@ SingularInstant::Outcome SingularInstant::solve(double t, std::span<const double
     for (int n = plan.jacobian.column_start[at(c)]; n < plan.jacobian.column_start[at(c) + 1]; ++n) {
       const auto row = at(plan.jacobian.row_index[at(n)]);
       if (place[row] >= 0) rows(place[row], c) = values[at(n)];
-      for (int k = 0; k < extra; ++k) rows(rank.rank + k, c) += null[at(k)][row] * jacobian_rate[at(n)];
+      for (int k = 0; k < extra; ++k) {
+        rows(rank.rank + k, c) += null[at(k)][row] * jacobian_rate[at(n)];
+        terms_of_rate(k, c) += std::abs(null[at(k)][row] * jacobian_rate[at(n)]);
+      }
     }
   }
   // In the metric of the masses, rows of length one: y = sqrt(M) (qdd - M^-1 Q), the least one that they allow.
   rows = rows * root.cwiseInverse().asDiagonal();
+  terms_of_rate = terms_of_rate * root.cwiseInverse().asDiagonal();
   for (int r = 0; r < size; ++r) {
     const double length = rows.row(r).norm();
-    if (!(length > 0)) continue;
+    // Of a dependence that lasts the terms cancel, but for what differences over a small move leave.
+    const double terms = r < rank.rank ? length : terms_of_rate.row(r - rank.rank).norm();
+    if (!(length > says_nothing * terms)) {
+      rows.row(r).setZero();
+      right[r] = 0;
+      continue;
+    }
     rows.row(r) /= length;
     right[r] /= length;
   }
