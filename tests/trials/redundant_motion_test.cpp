@@ -75,7 +75,7 @@ TEST(RedundantTrials, AHeldBodyStaysWhereItIsAndReactionsFollowItsLoad) {
   }
 }
 
-constexpr const char* parallelogram = R"({ "catena": 1, "gravity": [0, -9.81],
+constexpr const char* parallelogram = R"json({ "catena": 1, "gravity": [0, -9.81],
   "bodies": { "a": { "rod": { "from": [0, 0], "to": [0.6, 0.8] }, "mass": 1 },
               "b": { "rod": { "from": [2, 0], "to": [2.6, 0.8] }, "mass": 1 },
               "c": { "rod": { "from": [0.6, 0.8], "to": [2.6, 0.8] }, "mass": 1 } },
@@ -84,18 +84,14 @@ constexpr const char* parallelogram = R"({ "catena": 1, "gravity": [0, -9.81],
                    { "type": "revolute", "name": "C", "i": "a.to", "j": "c.from" },
                    { "type": "revolute", "name": "D", "i": "b.to", "j": "c.to" } ],
   "drivers": [ { "type": "absolute_angle", "name": "first", "i": "a",
-                 "value": { "polynomial": ["=atan2(0.8, 0.6)", 1]
-}
-},
+                 "value": { "polynomial": ["=atan2(0.8, 0.6)", 1] } },
                { "type": "absolute_angle", "name": "second", "i": "b",
                  "value": { "polynomial": ["=atan2(0.8, 0.6)", 1, 0, 0, LAST] } } ],
   "analyses": [ { "type": "dynamics", "until": 1, "every": 0.1 } ],
   "outputs": [ "a.angle", "first.load", "second.load", "first.work", "second.work", "energy" ]
-})";
+})json";
 
-std::string with(std::string text, const std::string& value) {
-  return text.replace(text.find("LAST"), 4, value);
-}
+std::string with(std::string text, const std::string& value) { return text.replace(text.find("LAST"), 4, value); }
 
 TEST(RedundantTrials, DriversThatAgreeShareTheirLoad) {
   const TextRun run = run_text(with(parallelogram, "0"));
