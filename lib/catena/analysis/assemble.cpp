@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <random>
 
 #include "catena/analysis/whole_turns.hpp"
 
@@ -14,11 +16,22 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr int max_iterations = 200;
 constexpr int max_approach_iterations = 60;
+// Back onto the constraints from a short way off: what takes longer was too long a way.
+constexpr int max_return_iterations = 12;
 // A body may turn at most this far in one step: beyond it the linearisation says nothing, and linkages flip.
 constexpr double largest_turn = 0.5;
+// Steps that turn bodies by more than this many times that are long along combinations of rows that hardly move
+// anything; scaled down as a whole they would leave the others unmet, so it is these that damping shortens.
+constexpr double far_too_long = 4;
 // Residuals from here on overflow as soon as they are squared.
 constexpr double largest_residual = 1e120;
 constexpr double smallest_factor = 1e-4;
+// By how much (rad, attachment distances) bodies are displaced where the estimate itself leads nowhere. The smallest
+// leaves a symmetric sketch and hardly changes which assembly is nearest; the others are for sketches that lead into a
+// stationary misfit from all around.
+constexpr double displacements[] = {1e-3, 0.03, 0.3, 1.0};
+// Coordinates of a body that has moved by many length scales cannot be rounder than this many of their last digits.
+constexpr double attainable_digits = 8 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -30,12 +43,14 @@ Assembler::Assembler(Evaluator& evaluator)
   const std::vector<double> radius = evaluator.attachment_radii();
   std::vector<double> inverse(at(plan_.columns));
   weights_.resize(at(plan_.columns));
+  reach_.resize(at(plan_.columns));
   for (int c = 0; c < plan_.columns; ++c) {
     const int body = plan_.coordinate[at(c)] / 3, k = plan_.coordinate[at(c)] % 3;
     weights_[at(c)] = k == 2 ? radius[at(body)] * radius[at(body)] : 1;
     const auto& values = evaluator.model().bodies[at(plan_.model_body[at(body)])];
     const bool held = k == 0 ? values.hold_x : k == 1 ? values.hold_y : values.hold_angle;
     inverse[at(c)] = held ? 0 : 1 / weights_[at(c)];
+    reach_[at(c)] = held ? 0 : k == 2 ? 1 : radius[at(body)];
   }
   projector_.set_inverse_weights(inverse);
   values_.resize(at(plan_.trash_slot()) + 1);
@@ -72,13 +87,18 @@ double Assembler::weighted_distance(std::span<const double> a, std::span<const d
   return std::sqrt(sum);
 }
 
-bool Assembler::restore(std::span<double> q, double tolerance, AssemblyOutcome& outcome) {
+double Assembler::extent(std::span<const double> q) const {
+  return scaling_.scan_columns<1>(step_.size(), [&](std::size_t c) { return std::array{q[at(plan_.coordinate[c])]}; })[0]
+      .all;
+}
+
+bool Assembler::restore(std::span<double> q, double tolerance, int most_iterations, AssemblyOutcome& outcome) {
   double now = merit(q);
   double damping = 0;
-  for (int k = 0; k < max_iterations; ++k) {
+  for (int k = 0; k < most_iterations; ++k) {
     const double residual = scaling_.row_norm(phi_);
     outcome.residual = residual;
-    if (!(residual > tolerance)) return std::isfinite(residual);
+    if (!(residual > std::max(tolerance, attainable_digits * extent(q)))) return std::isfinite(residual);
     evaluator_.jacobian(values_);
     if (!projector_.factorize(values_, evaluator_.counters, damping).ok()) {
       damping = std::max(10 * damping, 1e-8);
@@ -92,6 +112,10 @@ bool Assembler::restore(std::span<double> q, double tolerance, AssemblyOutcome& 
     for (int c = 0; c < plan_.columns; ++c) {
       step_[at(c)] = -step_[at(c)];
       if (plan_.coordinate[at(c)] % 3 == 2) turn = std::max(turn, std::abs(step_[at(c)]));
+    }
+    if (turn > far_too_long * largest_turn && damping < 1) {
+      damping = std::max(10 * damping, 1e-8);
+      continue;
     }
     double factor = turn > largest_turn ? largest_turn / turn : 1;
     double then = 0;
@@ -130,25 +154,43 @@ void Assembler::approach_estimate(std::span<double> q, std::span<const double> e
     std::fill(out.begin(), out.end(), 0.0);
     multiply_add(plan_.jacobian, std::span<const double>(values_).first(at(plan_.trash_slot())), pull, out);
     projector_.solve(out, step_, lambda_, evaluator_.counters);
-    double size = 0;
+    double size = 0, turn = 0;
     for (int c = 0; c < plan_.columns; ++c) {
       step_[at(c)] = pull[at(c)] - step_[at(c)];
       size += weights_[at(c)] * step_[at(c)] * step_[at(c)];
+      if (plan_.coordinate[at(c)] % 3 == 2) turn = std::max(turn, std::abs(step_[at(c)]));
     }
     if (std::sqrt(size) <= 1e-10 * distance) return;
     const std::vector<double> direction = step_;
     bool closer = false;
-    for (double factor = 1; factor > 1e-3 && !closer; factor /= 2) {
+    for (double factor = turn > largest_turn ? largest_turn / turn : 1; factor > 1e-3 && !closer; factor /= 2) {
       step_ = direction;
       advance(q, factor, candidate);
       AssemblyOutcome trial;
-      closer = restore(candidate, tolerance, trial) && weighted_distance(candidate, estimate) < distance * (1 - 1e-12);
+      closer = restore(candidate, tolerance, max_return_iterations, trial) && weighted_distance(candidate, estimate) < distance * (1 - 1e-12);
       outcome.iterations += trial.iterations;
     }
     if (!closer) return;
     std::copy(candidate.begin(), candidate.end(), q.begin());
     distance = weighted_distance(q, estimate);
   }
+}
+
+// The misfit of a sketch drawn in one line, or as its own mirror image, has no slope across that symmetry: steps stay
+// within it and end where the misfit is least there, a saddle. So the search sets out again from beside it, every
+// coordinate displaced by a number of its own, the same ones every time.
+bool Assembler::restore_from_beside(std::span<double> q, double tolerance, AssemblyOutcome& outcome) {
+  const std::vector<double> saddle(q.begin(), q.end());
+  std::mt19937_64 random(1);
+  for (const double displacement : displacements) {
+    std::copy(saddle.begin(), saddle.end(), q.begin());
+    for (int c = 0; c < plan_.columns; ++c) {
+      const double number = 2 * std::ldexp(static_cast<double>(random() >> 11), -53) - 1;
+      q[at(plan_.coordinate[at(c)])] += displacement * number * reach_[at(c)];
+    }
+    if (restore(q, tolerance, max_iterations, outcome)) return true;
+  }
+  return false;
 }
 
 int Assembler::element_out_of_range(std::span<const double> q) {
@@ -165,7 +207,19 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
   const std::vector<double> given(q.begin(), q.end());
   move_whole_turns(evaluator_, q);
   const std::vector<double> estimate(q.begin(), q.end());
-  if (!restore(q, tolerance, outcome)) {
+  bool met = restore(q, tolerance, max_iterations, outcome);
+  if (!met) {
+    // Where all of this fails too, what stands in the way is looked for from where the estimate led.
+    std::vector<double> beside(q.begin(), q.end());
+    const double residual = outcome.residual;
+    met = restore_from_beside(beside, tolerance, outcome);
+    if (met) {
+      std::copy(beside.begin(), beside.end(), q.begin());
+    } else {
+      outcome.residual = residual;
+    }
+  }
+  if (!met) {
     if (const int element = element_out_of_range(estimate); element >= 0) {
       outcome.status = Status::not_assembled;
       outcome.message = fmt::format(

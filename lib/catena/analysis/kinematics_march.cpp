@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "catena/analysis/kinematics.hpp"
 
@@ -134,7 +135,7 @@ Report Kinematics::cancelled() const {
   return report;
 }
 
-Report Kinematics::move_to(double t) {
+Report Kinematics::follow_to(double t) {
   Report report;
   const double span = std::abs(t - t_), direction = t > t_ ? 1 : -1;
   const double tiny = smallest_step * std::max(span, std::abs(t));
@@ -172,6 +173,7 @@ Report Kinematics::move_to(double t) {
       ++evaluator_.counters.steps;
       ++made_since_failure;
       remember_margins();
+      if (const Report consistent = check_redundant_rows(); !consistent.ok()) return consistent;
       if (chosen_rcond_ > 0 && solver_.rcond() < drifted * chosen_rcond_) choose_better_rows();
       if (t_ != t) {
         if (observer_ && !observer_->proceed(t_)) return cancelled();
@@ -212,51 +214,91 @@ Report Kinematics::move_to(double t) {
       continue;
     }
     step = std::min(step, std::abs(next - t_)) / 2;
-    if (step < tiny || t_ + direction * step == t_) return stuck(next);
+    if (step < tiny || t_ + direction * step == t_) return stuck(next, t);
   }
   return report;
 }
 
 // No step can be made: says whether the drivers ask for the impossible (w^T nu != 0) or branches meet here.
-Report Kinematics::stuck(double t) {
-  Report report;
+Report Kinematics::stuck(double next, double target) {
   evaluator_.set_time(t_);
   trial_ = q_;
-  std::vector<double> w(at(plan_->rows)), nu(at(plan_->rows));
+  std::vector<double> w(at(plan_->rows)), nu(at(plan_->rows)), z(q_.size(), 0.0);
   solver_.factor_at(q_);
-  const bool found = solver_.left_null_vector(w);
+  const bool found = solver_.null_vectors(w, z);
   evaluator_.nu(nu);
-  // Rows in metres and rows in radians compare in length scales, whatever the unit of the machine.
-  double product = 0, square = 0, weight = 0;
-  int heaviest = 0;
-  for (std::size_t r = 0; r < w.size(); ++r) {
-    const double unit = plan_->row_is_angle[r] ? 1 : evaluator_.length_scale();
-    product += w[r] * nu[r];
-    square += nu[r] * nu[r] / (unit * unit);
-    w[r] *= unit;
-    weight += w[r] * w[r];
-    if (std::abs(w[r]) > std::abs(w[at(heaviest)])) heaviest = static_cast<int>(r);
-  }
-  const std::string where =
-      found ? fmt::format("; most concerned: {} \"{}\"", model_->element_type(plan_->row_element[at(heaviest)]),
-                          model_->element_name(plan_->row_element[at(heaviest)]))
-            : "";
   SingularPoint point;
-  point.t = t_ + (t - t_) / 2;
+  point.t = t_ + (next - t_) / 2;
   point.q = q_;
-  if (found && std::abs(product) > 1e-6 * std::sqrt(square * weight)) {
-    point.kind = SingularPoint::Kind::lock_up;
-    report.status = Status::lock_up;
-    report.message = fmt::format(
-        "lock-up at t = {:.12g} s: the drivers ask for a motion that the mechanism cannot make (a dead point){}",
-        point.t, where);
-  } else {
-    report.status = found && square > 0 ? Status::bifurcation : Status::singular;
-    report.message = fmt::format("the motion cannot be continued beyond the singular configuration at t = {:.12g} s{}",
-                                 point.t, where);
+  if (found) {
+    point.name_bodies(evaluator_, std::span(&z, 1));
+    point.find_driver(evaluator_, w, nu);
   }
+  if (found && disagreement(evaluator_, w, nu) > clear_disagreement) {
+    point.kind = SingularPoint::Kind::lock_up;
+    locate_lock_up(target, point);
+    return lock_up(std::move(point));
+  }
+  std::size_t heaviest = 0;
+  const auto weight = [&](std::size_t r) {
+    return std::abs(w[r]) * (plan_->row_is_angle[r] ? 1 : evaluator_.length_scale());
+  };
+  for (std::size_t r = 0; r < w.size(); ++r) {
+    if (weight(r) > weight(heaviest)) heaviest = r;
+  }
+  const int element = plan_->row_element[heaviest];
+  const bool moving = std::any_of(nu.begin(), nu.end(), [](double rate) { return rate != 0; });
+  Report report;
+  report.status = found && moving ? Status::bifurcation : Status::singular;
+  report.message = fmt::format("the motion cannot be continued beyond the singular configuration at t = {:.12g} s{}",
+                               point.t,
+                               found ? fmt::format("; most concerned: {} \"{}\"", model_->element_type(element),
+                                                   model_->element_name(element))
+                                     : "");
   singular_points_.push_back(std::move(point));
   return report;
+}
+
+// Towards a dead point q = q* - a sqrt(t* - t), so that  t* - t = |qd|^2 / (2 qd . qdd)  and  q* = q + 2 (t* - t) qd,
+// but for terms of t* - t. False: the rates at hand do not lead to one.
+bool Kinematics::locate_lock_up(double target, SingularPoint& point) {
+  std::vector<double> qd(q_.size(), 0.0), qdd(q_.size(), 0.0);
+  if (!solver_.solve_velocity(qd, false) || !solver_.solve_acceleration(qd, qdd, false)) return false;
+  double product = 0, square = 0;
+  for (std::size_t k = 0; k < 3 * at(plan_->moving); ++k) {
+    const double unit = k % 3 == 2 ? 1 : evaluator_.length_scale();
+    product += qd[k] / unit * (qdd[k] / unit);
+    square += qd[k] / unit * (qd[k] / unit);
+  }
+  const double rest = square / (2 * product);
+  if (!(rest * (target - t_) > 0) || std::abs(rest) > std::abs(target - t_)) return false;
+  point.t = t_ + rest;
+  for (std::size_t k = 0; k < q_.size(); ++k) point.q[k] = q_[k] + 2 * rest * qd[k];
+  if (point.driver >= 0) {
+    evaluator_.set_time(point.t);
+    point.driver_value = evaluator_.element_value(point.driver).f;
+  }
+  return true;
+}
+
+// The mechanism where it locks: places and times are known, rates and loads grow without bound.
+void Kinematics::give_row_at_lock_up(const Needs& needs, RowObserver& observer) {
+  const SingularPoint& point = singular_points_.back();
+  const std::vector<double> none(std::max(q_.size(), at(plan_->rows)), std::numeric_limits<double>::quiet_NaN());
+  const std::span<const double> unknown(none);
+  evaluator_.set_time(point.t);
+  Snapshot row{.evaluator = evaluator_, .t = point.t, .q = point.q};
+  row.residual = solver_.residual_at(point.q) * evaluator_.length_scale();
+  if (needs.velocity || needs.acceleration || needs.multipliers) row.qd = unknown.first(q_.size());
+  if (needs.acceleration || needs.multipliers) row.qdd = unknown.first(q_.size());
+  if (needs.multipliers) row.lambda = unknown.first(at(plan_->rows));
+  if (needs.work) {
+    row.work = row.dissipated = none.front();
+    driver_work_.assign(model_->elements.size(), none.front());
+    row.driver_work = driver_work_;
+    row.initial_energy = initial_energy_;
+  }
+  observer.observe(row);
 }
 
 }  // namespace catena

@@ -33,7 +33,9 @@ constexpr double dependence = 1e-7;
 
 }  // namespace
 
+// Whether functions of time may be evaluated at t: within their tables, and nowhere outside the run.
 bool Kinematics::tables_reach(double t) const {
+  if (t < range_.first || t > range_.last) return false;
   return std::all_of(model_->functions.begin(), model_->functions.end(), [&](const auto& function) {
     const TimeRange range = function.domain();
     return t >= range.first && t <= range.last;

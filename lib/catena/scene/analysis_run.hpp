@@ -32,6 +32,8 @@ struct AnalysisContext {
   /// not allow it.
   std::function<std::shared_ptr<const Model>(int parameter, double value)> model_at{};
   std::string_view parameter_name{};        ///< of the task's parameter
+  /// The value of that parameter with which the analysis ended, and with which the next one begins.
+  std::optional<double> parameter_at_end{};
   bool estimate_error = false;              ///< of dynamics
   CheckpointRequest* checkpoint = nullptr;  ///< nullptr: no analysis has to pause
 };

@@ -104,7 +104,8 @@ void run_assemble(AnalysisContext& context, AnalysisResult& result) {
                   .t = analysis.time(),
                   .q = analysis.q(),
                   .residual = outcome.residual * scale});
-    context.state = analysis.state();
+    // Places alone change hands: the velocities and the time stay those of the motion so far.
+    context.state.q = analysis.state().q;
     warn_of_closed_gaps(analysis.evaluator(), report);
   }
   report.counters = analysis.evaluator().counters;
