@@ -36,12 +36,9 @@ constexpr double attainable_digits = 8 * std::numeric_limits<double>::epsilon();
 }  // namespace
 
 Assembler::Assembler(Evaluator& evaluator)
-    : evaluator_(evaluator),
-      plan_(evaluator.plan()),
-      scaling_(evaluator.plan(), evaluator.length_scale()),
-      projector_(evaluator.shared_plan()) {
+    : evaluator_(evaluator), plan_(evaluator.plan()), scaling_(evaluator.plan(), evaluator.length_scale()) {
   const std::vector<double> radius = evaluator.attachment_radii();
-  std::vector<double> inverse(at(plan_.columns));
+  inverse_weights_.resize(at(plan_.columns));
   weights_.resize(at(plan_.columns));
   reach_.resize(at(plan_.columns));
   for (int c = 0; c < plan_.columns; ++c) {
@@ -49,10 +46,9 @@ Assembler::Assembler(Evaluator& evaluator)
     weights_[at(c)] = k == 2 ? radius[at(body)] * radius[at(body)] : 1;
     const auto& values = evaluator.model().bodies[at(plan_.model_body[at(body)])];
     const bool held = k == 0 ? values.hold_x : k == 1 ? values.hold_y : values.hold_angle;
-    inverse[at(c)] = held ? 0 : 1 / weights_[at(c)];
+    inverse_weights_[at(c)] = held ? 0 : 1 / weights_[at(c)];
     reach_[at(c)] = held ? 0 : k == 2 ? 1 : radius[at(body)];
   }
-  projector_.set_inverse_weights(inverse);
   values_.resize(at(plan_.trash_slot()) + 1);
   evaluator_.start_jacobian(values_);
   phi_.resize(at(plan_.rows));
@@ -88,7 +84,8 @@ double Assembler::weighted_distance(std::span<const double> a, std::span<const d
 }
 
 double Assembler::extent(std::span<const double> q) const {
-  return scaling_.scan_columns<1>(step_.size(), [&](std::size_t c) { return std::array{q[at(plan_.coordinate[c])]}; })[0]
+  return scaling_
+      .scan_columns<1>(step_.size(), [&](std::size_t c) { return std::array{q[at(plan_.coordinate[c])]}; })[0]
       .all;
 }
 
@@ -99,13 +96,17 @@ bool Assembler::restore(std::span<double> q, double tolerance, int most_iteratio
     const double residual = scaling_.row_norm(phi_);
     outcome.residual = residual;
     if (!(residual > std::max(tolerance, attainable_digits * extent(q)))) return std::isfinite(residual);
+    if (!projector_) {
+      projector_.emplace(evaluator_.shared_plan());
+      projector_->set_inverse_weights(inverse_weights_);
+    }
     evaluator_.jacobian(values_);
-    if (!projector_.factorize(values_, evaluator_.counters, damping).ok()) {
+    if (!projector_->factorize(values_, evaluator_.counters, damping).ok()) {
       damping = std::max(10 * damping, 1e-8);
       if (damping > 1) return false;
       continue;
     }
-    projector_.solve(phi_, step_, lambda_, evaluator_.counters);
+    projector_->solve(phi_, step_, lambda_, evaluator_.counters);
     ++outcome.iterations;
     ++evaluator_.counters.iterations;
     double turn = 0;
@@ -145,7 +146,7 @@ void Assembler::approach_estimate(std::span<double> q, std::span<const double> e
   for (int k = 0; k < max_approach_iterations && distance > 0; ++k) {
     evaluator_.set_configuration(q);
     evaluator_.jacobian(values_);
-    if (!projector_.factorize(values_, evaluator_.counters).ok()) return;
+    if (!projector_->factorize(values_, evaluator_.counters).ok()) return;
     for (int c = 0; c < plan_.columns; ++c) {
       const int i = plan_.coordinate[at(c)];
       pull[at(c)] = estimate[at(i)] - q[at(i)];
@@ -153,7 +154,7 @@ void Assembler::approach_estimate(std::span<double> q, std::span<const double> e
     // The part of the pull that the constraints allow.
     std::fill(out.begin(), out.end(), 0.0);
     multiply_add(plan_.jacobian, std::span<const double>(values_).first(at(plan_.trash_slot())), pull, out);
-    projector_.solve(out, step_, lambda_, evaluator_.counters);
+    projector_->solve(out, step_, lambda_, evaluator_.counters);
     double size = 0, turn = 0;
     for (int c = 0; c < plan_.columns; ++c) {
       step_[at(c)] = pull[at(c)] - step_[at(c)];
@@ -167,7 +168,8 @@ void Assembler::approach_estimate(std::span<double> q, std::span<const double> e
       step_ = direction;
       advance(q, factor, candidate);
       AssemblyOutcome trial;
-      closer = restore(candidate, tolerance, max_return_iterations, trial) && weighted_distance(candidate, estimate) < distance * (1 - 1e-12);
+      closer = restore(candidate, tolerance, max_return_iterations, trial) &&
+               weighted_distance(candidate, estimate) < distance * (1 - 1e-12);
       outcome.iterations += trial.iterations;
     }
     if (!closer) return;
@@ -230,7 +232,7 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
       return outcome;
     }
     // The best configuration found may differ a lot from what was given without being any use: keep what was given.
-    const Conflict conflict = find_conflict(evaluator_, projector_, q);
+    const Conflict conflict = find_conflict(evaluator_, *projector_, q);
     outcome.misfits = conflict.unmet;
     outcome.status = Status::not_assembled;
     outcome.message =

@@ -4,11 +4,12 @@
 //
 // Whole turns are moved first; then damped Gauss-Newton steps of least weighted size, none of which may enlarge the
 // residual; then, where freedom is left, sliding along the constraints towards the estimate. Sketches from which steps
-// lead into a saddle of the misfit, as links drawn in one line, are displaced a little. Never returns a worse
-// configuration than it was given and never reports success above the tolerance, or the rounding of the coordinates. Where constraints cannot be met those
-// that stand in the way are named (misfits.hpp).
+// lead into a saddle of the misfit, as links drawn in one line, are displaced a little from it. Never returns a worse
+// configuration than it was given and never reports success above the tolerance, or the rounding of the coordinates.
+// Where constraints cannot be met those that stand in the way are named (misfits.hpp).
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -53,9 +54,10 @@ class Assembler {
   Evaluator& evaluator_;
   const Plan& plan_;
   Scaling scaling_;
-  ConstraintProjector projector_;
-  std::vector<double> weights_;  // per column
-  std::vector<double> reach_;    // per column: what a displacement of 1 is, m or rad; 0 of what is held
+  std::vector<double> inverse_weights_;           // per column
+  std::optional<ConstraintProjector> projector_;  // made where there is something to assemble
+  std::vector<double> weights_;                   // per column
+  std::vector<double> reach_;  // per column: what a displacement of 1 is, m or rad; 0 of what is held
   std::vector<double> values_, phi_, lambda_, step_, trial_;
 };
 

@@ -4,10 +4,10 @@
 // Newton contracted badly, is halved, so that no branch is jumped however coarse the rows are. Where branches meet the
 // instant is located, the branches are listed, and the one that continues the motion is taken, or the one chosen; where
 // no step can be made any more the mechanism is locked: the report says when and why, and a last row gives the place,
-// without the rates, which grow without bound there. Velocities, accelerations and multipliers are computed at rows only
-// and only if needed, or to check rows that repeat others; where work is asked for also between them. Multipliers at a
-// singular configuration are the limit of those on both sides, null where there is none. Zero allocations a step after
-// the first.
+// without the rates, which grow without bound there. Velocities, accelerations and multipliers are computed at rows
+// only and only if needed, or to check rows that repeat others; where work is asked for also between them. Multipliers
+// at a singular configuration are the limit of those on both sides, null where there is none. Zero allocations a step
+// after the first.
 #pragma once
 
 #include <limits>
@@ -162,7 +162,7 @@ class Kinematics {
   std::int64_t limit_rows_ = 0;
   double limit_t_ = 0;
   std::string without_limit_;
-  std::optional<EnergyAccount> account_;     // while work is summed up
+  std::optional<EnergyAccount> account_;  // while work is summed up
   std::vector<double> work_, power_, cubic_part_, driver_work_;
   double initial_energy_ = 0, exchanged_ = 0, unsure_ = 0, stretch_part_ = 1;
   double chosen_rcond_ = 0;  // of the rows in use, where they were chosen

@@ -73,7 +73,8 @@ void Kinematics::find_limit_of_multipliers() {
     for (std::size_t r = 0; r < rows; ++r) {
       lambda_[r] += stencil->weight[k] * lambda[r];
       pole[r] += stencil->weight[k] * stencil->place[k] * lambda[r];
-      scale = std::max(scale, std::abs(stencil->place[k] * lambda[r]) * (plan_->row_is_angle[r] ? 1 : evaluator_.length_scale()));
+      scale = std::max(
+          scale, std::abs(stencil->place[k] * lambda[r]) * (plan_->row_is_angle[r] ? 1 : evaluator_.length_scale()));
     }
   }
   // Back to where the motion is, with the loads there.

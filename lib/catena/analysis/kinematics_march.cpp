@@ -250,11 +250,10 @@ Report Kinematics::stuck(double next, double target) {
   const bool moving = std::any_of(nu.begin(), nu.end(), [](double rate) { return rate != 0; });
   Report report;
   report.status = found && moving ? Status::bifurcation : Status::singular;
-  report.message = fmt::format("the motion cannot be continued beyond the singular configuration at t = {:.12g} s{}",
-                               point.t,
-                               found ? fmt::format("; most concerned: {} \"{}\"", model_->element_type(element),
-                                                   model_->element_name(element))
-                                     : "");
+  report.message = fmt::format(
+      "the motion cannot be continued beyond the singular configuration at t = {:.12g} s{}", point.t,
+      found ? fmt::format("; most concerned: {} \"{}\"", model_->element_type(element), model_->element_name(element))
+            : "");
   singular_points_.push_back(std::move(point));
   return report;
 }

@@ -9,7 +9,8 @@
 // Where branches meet the motion goes on along its own: steps that would have to be short there are replaced by one
 // across the place, its stages put on the constraints. Such places are passed, not located.
 // Singular where the drivers ask for a motion that no velocity can make (lock-up: an arm stretched out), reported with
-// its instant and a last row for the place; where rows become dependent without that, steps shrink and the report says `singular`.
+// its instant and a last row for the place; where rows become dependent without that, steps shrink and the report says
+// `singular`.
 #pragma once
 
 #include <memory>
