@@ -40,7 +40,8 @@ class Assembler {
 
  private:
   bool restore(std::span<double> q, double tolerance, int most_iterations, AssemblyOutcome& outcome);
-  bool restore_from_beside(std::span<double> q, double tolerance, AssemblyOutcome& outcome);
+  bool restore_from_beside(std::span<double> q, std::span<const double> estimate, double tolerance,
+                           AssemblyOutcome& outcome);
   void approach_estimate(std::span<double> q, std::span<const double> estimate, double tolerance,
                          AssemblyOutcome& outcome);
   /// An element whose residual at q overflows when it is squared, or -1.
