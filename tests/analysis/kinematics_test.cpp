@@ -274,7 +274,9 @@ TEST(Kinematics, MovesAndRatesBeginWithAnAssembly) {
     Kinematics kinematics(model);
     const double t = moves ? 0.1 : 0;
     for (const double instant : {t / 4, t / 2, t}) {
-      if (moves) ASSERT_TRUE(kinematics.move_to(instant).ok());
+      if (moves) {
+        ASSERT_TRUE(kinematics.move_to(instant).ok());
+      }
       ASSERT_TRUE(kinematics.solve_rates(everything).ok());
     }
     const FourBar::Angles exact = f.at(0.3 + 10 * t);

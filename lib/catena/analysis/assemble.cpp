@@ -41,6 +41,17 @@ constexpr double most_work = 4e6;
 // Coordinates of a body that has moved by many length scales cannot be rounder than this many of their last digits.
 constexpr double attainable_digits = 8 * std::numeric_limits<double>::epsilon();
 
+/// What the rounding of places far from the origin leaves of lengths between them, in length scales: constraints that
+/// repeat each other there meet no better.
+double rounding_of_places(const Evaluator& evaluator) {
+  double place = 0;
+  for (int p = 0; p < evaluator.plan().bodies; ++p) {
+    const Vec2<double> origin = evaluator.origin(p);
+    place = std::max({place, std::abs(origin.x), std::abs(origin.y)});
+  }
+  return attainable_digits * place / evaluator.length_scale();
+}
+
 }  // namespace
 
 Assembler::Assembler(Evaluator& evaluator)
@@ -111,7 +122,7 @@ bool Assembler::restore(std::span<double> q, double tolerance, int most_iteratio
     evaluator_.jacobian(values_);
     if (!projector_->factorize(values_, evaluator_.counters, damping).ok()) {
       damping = std::max(10 * damping, 1e-8);
-      if (damping > 1) return false;
+      if (damping > 1) break;
       continue;
     }
     projector_->solve(phi_, step_, lambda_, evaluator_.counters);
@@ -137,14 +148,14 @@ bool Assembler::restore(std::span<double> q, double tolerance, int most_iteratio
       // The direction is no use: dependent rows made it long. Shorten it where it is long, or give up.
       merit(q);
       damping = std::max(100 * damping, 1e-6);
-      if (damping > 1e6) return false;
+      if (damping > 1e6) break;
       continue;
     }
     damping = damping > 1e-8 ? damping / 10 : 0;
     std::copy(trial_.begin(), trial_.end(), q.begin());
     now = then;
   }
-  return false;
+  return outcome.residual <= rounding_of_places(evaluator_);
 }
 
 void Assembler::approach_estimate(std::span<double> q, std::span<const double> estimate, double tolerance,

@@ -28,8 +28,9 @@ struct Stencil {
 constexpr Stencil around{{-3, -2, -1, 1, 2, 3}, {0.05, -0.3, 0.75, 0.75, -0.3, 0.05}};
 constexpr Stencil before{{-6, -5, -4, -3, -2, -1}, {-1, 6, -15, 20, -15, 6}};
 constexpr Stencil after{{1, 2, 3, 4, 5, 6}, {6, -15, 20, -15, 6, -1}};
-// A step in parts of the bridge, which is at most 0.4 rad long: around, the polynomial is off by (1/80)^6 / 20.
-constexpr double step_of_bridge = 1.0 / 32;
+// A step in parts of the bridge, which is at most 0.4 rad long: around, the polynomial is off by (1/40)^6 / 20. Shorter
+// ones lose more to the condition of the equations near t*.
+constexpr double step_of_bridge = 1.0 / 16;
 // Of the largest (t - t*) lambda: more than the errors of the polynomial and of the bridge can make.
 constexpr double unbounded = 1e-7;
 // Of the loads: what limits may leave unbalanced.

@@ -39,6 +39,8 @@ constexpr std::array<double, 6> reaches = {0.2, 0.1, 0.05, 0.015, 0.004, 0.001};
 constexpr double try_again = 1.0 / 32;
 // Rows are chosen anew where their reciprocal condition number has fallen to this part of what it was.
 constexpr double drifted = 0.01;
+// A step fails where it is more than about half of what is left of the way to a dead point.
+constexpr double most_steps_left = 4;
 // Steps made after one that failed before their length may grow again.
 constexpr int patience = 2;
 
@@ -259,7 +261,8 @@ Report Kinematics::stuck(double next, double target) {
 }
 
 // Towards a dead point q = q* - a sqrt(t* - t), so that  t* - t = |qd|^2 / (2 qd . qdd)  and  q* = q + 2 (t* - t) qd,
-// but for terms of t* - t. False: the rates at hand do not lead to one.
+// but for terms of t* - t. Whatever rounding makes of the rates, it is no further than the step that failed says:
+// point.t is in the middle of that. False: the rates do not lead to a dead point.
 bool Kinematics::locate_lock_up(double target, SingularPoint& point) {
   std::vector<double> qd(q_.size(), 0.0), qdd(q_.size(), 0.0);
   if (!solver_.solve_velocity(qd, false) || !solver_.solve_acceleration(qd, qdd, false)) return false;
@@ -269,8 +272,10 @@ bool Kinematics::locate_lock_up(double target, SingularPoint& point) {
     product += qd[k] / unit * (qdd[k] / unit);
     square += qd[k] / unit * (qd[k] / unit);
   }
-  const double rest = square / (2 * product);
-  if (!(rest * (target - t_) > 0) || std::abs(rest) > std::abs(target - t_)) return false;
+  const double furthest = std::min(2 * most_steps_left * std::abs(point.t - t_), std::abs(target - t_));
+  double rest = square / (2 * product);
+  if (!(rest * (target - t_) > 0)) return false;
+  rest = std::copysign(std::min(std::abs(rest), furthest), rest);
   point.t = t_ + rest;
   for (std::size_t k = 0; k < q_.size(); ++k) point.q[k] = q_[k] + 2 * rest * qd[k];
   if (point.driver >= 0) {
