@@ -322,7 +322,8 @@ inline void expect_dead_centre(unsigned seed) {
   EXPECT_NEAR(of_singular<double>(run, "value"), end, 1e-9 * mechanism.b) << seed;
   EXPECT_NEAR(t, mechanism.lock, mechanism.kind == Case::start ? 1e-12 * mechanism.time : 1e-9 * mechanism.lock)
       << seed;
-  EXPECT_NEAR(run.last("crank.angle"), mechanism.dead, 1e-6) << seed;
+  // At a start the crank is as sharp as assembly: its tolerance of 1e-12 is the square of an angle there.
+  EXPECT_NEAR(run.last("crank.angle"), mechanism.dead, mechanism.kind == Case::start ? 1e-5 : 1e-8) << seed;
 }
 
 }  // namespace catena::testing

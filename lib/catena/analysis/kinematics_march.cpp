@@ -262,10 +262,13 @@ Report Kinematics::stuck(double next, double target) {
 
 // Towards a dead point q = q* - a sqrt(t* - t), so that  t* - t = |qd|^2 / (2 qd . qdd)  and  q* = q + 2 (t* - t) qd,
 // but for terms of t* - t. Whatever rounding makes of the rates, it is no further than the step that failed says:
-// point.t is in the middle of that. False: the rates do not lead to a dead point.
+// point.t is in the middle of that. On this short way the determinant of the singular block vanishes linearly: its zero
+// is q*, off the constraints by the square of the way; and the instant follows from w^T Phi(q*, t*) = 0, which the last
+// bit of the way does not change. False: no velocity leads there.
 bool Kinematics::locate_lock_up(double target, SingularPoint& point) {
   std::vector<double> qd(q_.size(), 0.0), qdd(q_.size(), 0.0);
-  if (!solver_.solve_velocity(qd, false) || !solver_.solve_acceleration(qd, qdd, false)) return false;
+  if (!solver_.solve_velocity(qd, false)) return false;
+  if (!solver_.solve_acceleration(qd, qdd, false)) std::fill(qdd.begin(), qdd.end(), 0.0);
   double product = 0, square = 0;
   for (std::size_t k = 0; k < 3 * at(plan_->moving); ++k) {
     const double unit = k % 3 == 2 ? 1 : evaluator_.length_scale();
@@ -274,10 +277,30 @@ bool Kinematics::locate_lock_up(double target, SingularPoint& point) {
   }
   const double furthest = std::min(2 * most_steps_left * std::abs(point.t - t_), std::abs(target - t_));
   double rest = square / (2 * product);
-  if (!(rest * (target - t_) > 0)) return false;
-  rest = std::copysign(std::min(std::abs(rest), furthest), rest);
+  // So near that rounding decides about the sign: the way is as long as it can be.
+  if (!(rest * (target - t_) > 0)) rest = furthest;
+  rest = std::copysign(std::min(std::abs(rest), furthest), target - t_);
+  solver_.factor_at(q_);
+  std::vector<double> w(at(plan_->rows)), nu(w), z(q_.size());
+  const auto margins = solver_.block_margins();
+  const auto smaller = [](const BlockMargin& a, const BlockMargin& b) { return std::abs(a.pivot) < std::abs(b.pivot); };
+  const auto block = std::min_element(margins.begin(), margins.end(), smaller) - margins.begin();
+  const bool measured = !margins.empty() && solver_.null_vectors(w, z);
+  const auto determinant = [&](double part) {
+    for (std::size_t k = 0; k < q_.size(); ++k) point.q[k] = q_[k] + part * 2 * rest * qd[k];
+    const bool regular = measured && solver_.factor_at(point.q) > 0;
+    return regular ? solver_.block_margins()[static_cast<std::size_t>(block)].determinant : 0.0;
+  };
+  const double here = determinant(0), there = determinant(1);
+  double part = here == there ? 1 : here / (here - there);
+  if (const double left = determinant(part); left != here) part *= here / (here - left);
+  determinant(part > 0 && part < most_steps_left ? part : 1);
   point.t = t_ + rest;
-  for (std::size_t k = 0; k < q_.size(); ++k) point.q[k] = q_[k] + 2 * rest * qd[k];
+  solver_.residual_at(point.q);
+  evaluator_.nu(nu);
+  double off = 0, speed = 0;
+  for (std::size_t r = 0; r < w.size(); ++r) off += w[r] * solver_.phi()[r], speed += w[r] * nu[r];
+  if (const double time = off / speed; time * (target - t_) > 0 && std::abs(time) <= furthest) point.t = t_ + time;
   if (point.driver >= 0) {
     evaluator_.set_time(point.t);
     point.driver_value = evaluator_.element_value(point.driver).f;
