@@ -39,7 +39,8 @@ TEST(KinematicTrials, LoadsOfThreeCranksGoOnPastFlatPositions) {
   const double force = 4 * pi * pi * (0.5 + 1.0 / 3);
   for (const std::string joint : {"A.fx", "B.fx", "C.fx"}) {
     for (const double t : run.column("t", 1)) {
-      EXPECT_NEAR(at_instant(run, joint, t, 1), force * std::sin(2 * pi * t), 1e-8) << joint << " " << t;
+      // In the flat position the difference between the cranks is a limit, known to some 1e-9 of the force.
+      EXPECT_NEAR(at_instant(run, joint, t, 1), force * std::sin(2 * pi * t), 1e-9 * force) << joint << " " << t;
     }
   }
   for (const double load : run.column("drive.load", 1)) EXPECT_NEAR(load, 0, 1e-8);

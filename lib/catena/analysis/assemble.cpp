@@ -41,6 +41,10 @@ constexpr double most_work = 4e6;
 // Coordinates of a body that has moved by many length scales cannot be rounder than this many of their last digits.
 constexpr double attainable_digits = 8 * std::numeric_limits<double>::epsilon();
 
+// But no residual above this one is rounding, however far away a mechanism is: redundant rows contradict each other
+// then.
+constexpr double most_rounding = 1e-8;
+
 /// What the rounding of places far from the origin leaves of lengths between them, in length scales: constraints that
 /// repeat each other there meet no better.
 double rounding_of_places(const Evaluator& evaluator) {
@@ -49,7 +53,7 @@ double rounding_of_places(const Evaluator& evaluator) {
     const Vec2<double> origin = evaluator.origin(p);
     place = std::max({place, std::abs(origin.x), std::abs(origin.y)});
   }
-  return attainable_digits * place / evaluator.length_scale();
+  return std::min(most_rounding, attainable_digits * place / evaluator.length_scale());
 }
 
 }  // namespace
@@ -115,10 +119,6 @@ bool Assembler::restore(std::span<double> q, double tolerance, int most_iteratio
     const double residual = scaling_.row_norm(phi_);
     outcome.residual = residual;
     if (!(residual > std::max(tolerance, attainable_digits * extent(q)))) return std::isfinite(residual);
-    if (!projector_) {
-      projector_.emplace(evaluator_.shared_plan());
-      projector_->set_inverse_weights(inverse_weights_);
-    }
     evaluator_.jacobian(values_);
     if (!projector_->factorize(values_, evaluator_.counters, damping).ok()) {
       damping = std::max(10 * damping, 1e-8);
@@ -230,6 +230,11 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
   const std::vector<double> given(q.begin(), q.end());
   move_whole_turns(evaluator_, q);
   const std::vector<double> estimate(q.begin(), q.end());
+  merit(q);
+  if (!projector_ && !(scaling_.row_norm(phi_) <= tolerance)) {
+    projector_.emplace(evaluator_.shared_plan());
+    projector_->set_inverse_weights(inverse_weights_);
+  }
   bool met = restore(q, tolerance, max_iterations, outcome);
   if (!met) {
     // Where all of this fails too, what stands in the way is looked for from where the estimate led.

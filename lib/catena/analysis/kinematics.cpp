@@ -34,6 +34,9 @@ constexpr double start_distance = 0.02;
 // Redundant rows that velocities and accelerations miss by more than the first part of them are a reason to look for
 // better rows, by more than the second a contradiction.
 constexpr double doubtful_rates = 1e-11, contradictory_rates = 1e-6;
+// Rates of redundant rows are checked at the first of so many rows where nobody asks for them: they cost as much as the
+// positions, whose own residual is checked at every step.
+constexpr std::int64_t rows_between_checks = 16;
 // After so much time (s) drivers that rest at the start are looked at again.
 constexpr double moments[] = {1e-6, 1e-4, 1e-2, 1, 100};
 
@@ -341,8 +344,6 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& asked, RowObse
   report.islands = plan_->islands;
   observer_ = &observer;
   Needs needs = asked;
-  // Rows that repeat others must agree with them in velocities and accelerations, too.
-  if (plan_->rows > plan_->columns) needs.velocity = needs.acceleration = true;
   if (needs.work) needs.velocity = needs.acceleration = needs.multipliers = true;
   account_.reset();
   if (grid.size() > 0) {
@@ -408,11 +409,14 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& asked, RowObse
     }
     if (const Report consistent = check_redundant_rows(); !consistent.ok()) return end(consistent);
     if (const Report sound = watched_.check(); !sound.ok()) return end(sound);
-    if (const Report solved = find_rates(needs); !solved.ok()) return end(solved);
+    // Rows that repeat others must agree with them in velocities and accelerations, too, asked for or not.
+    Needs checked = needs;
+    if (plan_->rows > plan_->columns && k % rows_between_checks == 0) checked.velocity = checked.acceleration = true;
+    if (const Report solved = find_rates(checked); !solved.ok()) return end(solved);
     if (!check_redundant_rates(doubtful_rates, false).ok() && choose_better_rows()) {
       // The rows in use determined something badly, others do it well.
       solver_.solve_position(q_);
-      if (const Report solved = find_rates(needs); !solved.ok()) return end(solved);
+      if (const Report solved = find_rates(checked); !solved.ok()) return end(solved);
     }
     if (const Report consistent = check_redundant_rates(contradictory_rates, true); !consistent.ok())
       return end(consistent);

@@ -41,6 +41,8 @@ constexpr double try_again = 1.0 / 32;
 constexpr double drifted = 0.01;
 // A step fails where it is more than about half of what is left of the way to a dead point.
 constexpr double most_steps_left = 4;
+// A zero of a determinant further away than so many times the way that the rates show is another one.
+constexpr double longest_way = 1e3;
 // Steps made after one that failed before their length may grow again.
 constexpr int patience = 2;
 
@@ -294,13 +296,14 @@ bool Kinematics::locate_lock_up(double target, SingularPoint& point) {
   const double here = determinant(0), there = determinant(1);
   double part = here == there ? 1 : here / (here - there);
   if (const double left = determinant(part); left != here) part *= here / (here - left);
-  determinant(part > 0 && part < most_steps_left ? part : 1);
+  determinant(part > 0 && part < longest_way ? part : 1);
   point.t = t_ + rest;
   solver_.residual_at(point.q);
   evaluator_.nu(nu);
   double off = 0, speed = 0;
   for (std::size_t r = 0; r < w.size(); ++r) off += w[r] * solver_.phi()[r], speed += w[r] * nu[r];
-  if (const double time = off / speed; time * (target - t_) > 0 && std::abs(time) <= furthest) point.t = t_ + time;
+  const double time = off / speed;
+  if (time * (target - t_) >= 0 && std::abs(time) <= std::abs(target - t_)) point.t = t_ + time;
   if (point.driver >= 0) {
     evaluator_.set_time(point.t);
     point.driver_value = evaluator_.element_value(point.driver).f;

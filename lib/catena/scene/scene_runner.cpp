@@ -232,6 +232,14 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
                     model_->element_type(gaps.front()), model_->element_name(gaps.front()), task.type());
     return result;
   }
+  const auto is_path = [](const AnalysisTask& earlier) { return earlier.type() == "path"; };
+  if (number == checkpoints_.first_analysis() && !read.from_initial &&
+      std::any_of(tasks_.begin(), tasks_.begin() + number, is_path)) {
+    result.report.status = Status::refused;
+    result.report.message =
+        "a checkpoint does not keep the parameter that a path before it ended with: run the whole scene";
+    return result;
+  }
   if (!unfit.ok()) {
     result.report.status = Status::refused;
     result.report.message = fmt::format("with the parameters that the path before left behind: {}", unfit.text());
