@@ -23,6 +23,7 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 constexpr double allowance = 0.2;
 // Residual of the polynomial, in length scales or rad, beyond what rounding explains.
 constexpr double bridge_tolerance = 2e-12;
+constexpr double rounded_place = 16 * std::numeric_limits<double>::epsilon();
 constexpr int samples = 9;
 // So much of a bridge is a moment: drivers that rest move a moment later, and the mechanism is still there.
 constexpr double moment = 2e-3;
@@ -33,7 +34,9 @@ constexpr double dependence = 1e-7;
 
 }  // namespace
 
+// Whether functions of time may be evaluated at t: within their tables, and nowhere outside the run.
 bool Kinematics::tables_reach(double t) const {
+  if (t < range_.first || t > range_.last) return false;
   return std::all_of(model_->functions.begin(), model_->functions.end(), [&](const auto& function) {
     const TimeRange range = function.domain();
     return t >= range.first && t <= range.last;
@@ -84,9 +87,15 @@ bool Kinematics::build_bridge(MotionBridge& bridge, double centre, double h, dou
 
 bool Kinematics::follows_constraints(const MotionBridge& bridge, double from, double to) {
   std::vector<double> q(q_.size());
-  double extent = 0;
+  double extent = 0, place = 0;
   for (std::size_t k = 0; k < q_.size(); ++k) extent = std::max(extent, std::abs(q_[k]) / evaluator_.length_scale());
-  const double tolerance = bridge_tolerance + 1e-14 * extent;
+  for (int p = 0; p < plan_->bodies; ++p) {
+    const Vec2<double> origin = evaluator_.origin(p);
+    place = std::max({place, std::abs(origin.x), std::abs(origin.y)});
+  }
+  // Lengths of a mechanism that is described far from the origin are rounded like its places: links that repeat each
+  // other do so no better.
+  const double tolerance = bridge_tolerance + 1e-14 * extent + rounded_place * place / evaluator_.length_scale();
   for (int k = 0; k < samples; ++k) {
     const double t = from + (to - from) * k / (samples - 1);
     evaluator_.set_time(t);

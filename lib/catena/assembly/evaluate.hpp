@@ -106,8 +106,8 @@ class Evaluator {
   /// Value of the element's function of time now: c, c', c''.
   Taylor<double> element_value(int element) const;
 
-  /// Per plan body: RMS distance of its attachment points from the centroid, 1 m if none (THEORY section 3). The mean
-  /// over all attachment points goes to `mean` (THEORY's Lc).
+  /// Per plan body: RMS distance of its attachment points from the centroid, length_scale() if none. The mean over all
+  /// attachment points goes to `mean` (THEORY's Lc).
   std::vector<double> attachment_radii(double* mean = nullptr) const;
   /// What a residual in metres is compared with: the mean attachment distance, else the extent of the given positions,
   /// else 1 m.

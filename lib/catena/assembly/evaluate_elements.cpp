@@ -123,9 +123,11 @@ std::vector<double> Evaluator::attachment_radii(double* mean) const {
       });
     }
   });
+  // Bodies held at their centroids alone, or not at all, count like the others of the scene: a metre would be another
+  // part of a small machine than of a large one.
   for (std::size_t b = 0; b < squares.size(); ++b) {
     const double radius = count[b] > 0 ? std::sqrt(squares[b] / count[b]) : 0;
-    squares[b] = radius > 0 ? radius : 1;
+    squares[b] = radius > 0 ? radius : length_scale_;
   }
   if (mean) *mean = points > 0 ? sum / static_cast<double>(points) : 0;
   return squares;

@@ -13,7 +13,7 @@
 
 namespace catena {
 
-using FieldScalar = std::variant<bool, std::int64_t, double, std::string>;
+using FieldScalar = std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>>;
 
 /// One object in a list of results: {"kind": "limit", "value": 12.5, "row": 40}.
 using FieldRecord = std::vector<std::pair<std::string, FieldScalar>>;

@@ -33,12 +33,12 @@ struct ScalarText {
   std::string operator()(std::int64_t value) const { return std::to_string(value); }
   std::string operator()(double value) const { return format_number(value); }
   std::string operator()(const std::string& value) const { return value; }
+  std::string operator()(const std::vector<std::string>& list) const { return names(list); }
 };
 
 struct ValueText : ScalarText {
   using ScalarText::operator();
   std::string operator()(const std::vector<double>& list) const { return enumerate(list, ScalarText{}); }
-  std::string operator()(const std::vector<std::string>& list) const { return names(list); }
   std::string operator()(const std::vector<FieldRecord>& records) const {
     std::string text;
     for (const FieldRecord& record : records) {

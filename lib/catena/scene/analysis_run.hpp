@@ -31,7 +31,9 @@ struct AnalysisContext {
   /// The model with another value of parameter number `parameter`, all else as in `model`; nullptr if the scene does
   /// not allow it.
   std::function<std::shared_ptr<const Model>(int parameter, double value)> model_at{};
-  std::string_view parameter_name{};        ///< of the task's parameter
+  std::string_view parameter_name{};  ///< of the task's parameter
+  /// The value of that parameter with which the analysis ended, and with which the next one begins.
+  std::optional<double> parameter_at_end{};
   bool estimate_error = false;              ///< of dynamics
   CheckpointRequest* checkpoint = nullptr;  ///< nullptr: no analysis has to pause
 };

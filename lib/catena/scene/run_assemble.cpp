@@ -65,8 +65,9 @@ void warn_of_closed_gaps(const Evaluator& evaluator, AnalysisReport& report) {
 void check_velocities(Kinematics& analysis, const Model& model, AnalysisReport& report) {
   const bool given = std::any_of(model.bodies.begin(), model.bodies.end(),
                                  [](const auto& body) { return body.velocity_given || body.angular_velocity_given; });
+  if (!given) return;
   EquationsOfMotion equations(analysis.evaluator());
-  if (!given || !equations.use_masses().ok()) return;
+  if (!equations.use_masses().ok()) return;
   equations.weigh_massless(analysis.q());
   std::vector<double> qd(analysis.q().size());
   const VelocityOutcome outcome = find_initial_velocities(equations, analysis.q(), {}, qd);
@@ -105,7 +106,8 @@ void run_assemble(AnalysisContext& context, AnalysisResult& result) {
                   .t = analysis.time(),
                   .q = analysis.q(),
                   .residual = outcome.residual * scale});
-    context.state = analysis.state();
+    // Places alone change hands: the velocities and the time stay those of the motion so far.
+    context.state.q = analysis.state().q;
     warn_of_closed_gaps(analysis.evaluator(), report);
   }
   report.counters = analysis.evaluator().counters;

@@ -50,7 +50,11 @@ class SceneRun {
   void run_all();
   /// Builds models in which one parameter of the task has another value.
   std::function<std::shared_ptr<const Model>(int, double)> builder_of(const AnalysisTask& task);
-  AnalysisResult run_task(const AnalysisTask& task, int number, SystemState& state, RowSink& rows);
+  /// The task with the parameters that earlier paths left behind, unless it sets them itself.
+  AnalysisTask with_handed_on(AnalysisTask task, Diagnostics& diagnostics);
+  ParameterTable table_of(const AnalysisTask& task);
+  std::vector<ParameterSeed<double>> handed_on_to(const AnalysisTask& task) const;
+  AnalysisResult run_task(const AnalysisTask& read, int number, SystemState& state, RowSink& rows);
   void finish_errors();
   /// Whether what the options say of dynamics can be done.
   bool check_dynamics_options();
@@ -65,6 +69,7 @@ class SceneRun {
   ParameterTable parameters_;
   std::shared_ptr<const Model> model_;
   std::vector<AnalysisTask> tasks_;
+  std::vector<ParameterSeed<double>> handed_on_;  // values of parameters that paths left behind
   SceneCheckpoints checkpoints_{options_};
 };
 
@@ -171,21 +176,46 @@ void SceneRun::finish_errors() {
   }
 }
 
+ParameterTable SceneRun::table_of(const AnalysisTask& task) {
+  ParameterTable table = parameters_;
+  if (const JsonValue set = task.place.find("set")) table.set(set, scene_->expressions, diagnostics_);
+  return table;
+}
+
+std::vector<ParameterSeed<double>> SceneRun::handed_on_to(const AnalysisTask& task) const {
+  std::vector<ParameterSeed<double>> seeds;
+  const JsonValue set = task.place.find("set");
+  for (const ParameterSeed<double>& seed : handed_on_) {
+    if (!set || !set.find(parameters_.names().all()[static_cast<std::size_t>(seed.index)])) seeds.push_back(seed);
+  }
+  return seeds;
+}
+
+AnalysisTask SceneRun::with_handed_on(AnalysisTask task, Diagnostics& diagnostics) {
+  const std::vector<ParameterSeed<double>> seeds = handed_on_to(task);
+  if (seeds.empty()) return task;
+  task.parameters = table_of(task).evaluate<double>(scene_->expressions, diagnostics, seeds);
+  task.changes_parameters = true;
+  return task;
+}
+
 std::function<std::shared_ptr<const Model>(int, double)> SceneRun::builder_of(const AnalysisTask& task) {
-  auto table = std::make_shared<ParameterTable>(parameters_);
-  if (task.changes_parameters) table->set(task.place.find("set"), scene_->expressions, diagnostics_);
-  return [this, table](int parameter, double value) -> std::shared_ptr<const Model> {
+  auto table = std::make_shared<ParameterTable>(table_of(task));
+  return [this, table, handed_on = handed_on_to(task)](int parameter, double value) -> std::shared_ptr<const Model> {
     Diagnostics diagnostics(1);
-    const ParameterSeed<double> seed[] = {{parameter, value}};
-    const std::vector<double> values = table->evaluate<double>(scene_->expressions, diagnostics, seed);
+    std::vector<ParameterSeed<double>> seeds = handed_on;  // the last one of a parameter counts
+    seeds.push_back({parameter, value});
+    const std::vector<double> values = table->evaluate<double>(scene_->expressions, diagnostics, seeds);
     if (!diagnostics.ok()) return nullptr;
     auto model = std::make_shared<Model>(build_model<double>(*scene_, values, {options_.max_elements}, diagnostics));
     return diagnostics.ok() ? model : nullptr;
   };
 }
 
-AnalysisResult SceneRun::run_task(const AnalysisTask& task, int number, SystemState& state, RowSink& rows) {
+AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemState& state, RowSink& rows) {
   AnalysisResult result;
+  Diagnostics unfit(1);
+  const AnalysisTask task = with_handed_on(read, unfit);
   result.type = task.type();
   const AnalysisFunction function = analysis_function(task.type());
   if (!function) {
@@ -200,6 +230,19 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& task, int number, SystemSt
     result.report.message =
         fmt::format("{} \"{}\" is one-sided: {} does not treat such elements yet; equilibrium does",
                     model_->element_type(gaps.front()), model_->element_name(gaps.front()), task.type());
+    return result;
+  }
+  const auto is_path = [](const AnalysisTask& earlier) { return earlier.type() == "path"; };
+  if (number == checkpoints_.first_analysis() && !read.from_initial &&
+      std::any_of(tasks_.begin(), tasks_.begin() + number, is_path)) {
+    result.report.status = Status::refused;
+    result.report.message =
+        "a checkpoint does not keep the parameter that a path before it ended with: run the whole scene";
+    return result;
+  }
+  if (!unfit.ok()) {
+    result.report.status = Status::refused;
+    result.report.message = fmt::format("with the parameters that the path before left behind: {}", unfit.text());
     return result;
   }
   CheckpointRequest checkpoint = checkpoints_.request(number);
@@ -231,6 +274,11 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& task, int number, SystemSt
     result.report.status = Status::refused;
     result.report.message = error.what();
   }
+  if (context.parameter_at_end && result.report.ok()) {
+    const int parameter = task.word("parameter");
+    std::erase_if(handed_on_, [&](const auto& seed) { return seed.index == parameter; });
+    handed_on_.push_back({parameter, *context.parameter_at_end});
+  }
   return result;
 }
 
@@ -248,6 +296,7 @@ void SceneRun::run_all() {
     if (k > first && outcome_.analyses.back().report.status == Status::cancelled) break;
     if (task.from_initial) {
       state = {};
+      handed_on_.clear();
     } else if (k > first && !outcome_.analyses.back().report.ok()) {
       break;  // there is no state to go on from
     }
