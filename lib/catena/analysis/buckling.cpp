@@ -36,20 +36,19 @@ class BucklingOperator final : public SpectralOperator {
 
   int columns() const override { return static_cast<int>(weight_.size()); }
   std::span<const double> typical() const override { return typical_; }
-  void metric(std::span<const double> v, std::span<double> Gv) override { multiply(v, Gv); }
+  void metric(std::span<const double> v, std::span<double> Gv) override {
+    system_.matrix().multiply_stiffness(v, Gv);
+  }
   void invert(std::span<double> v) override {
     std::fill(given_.begin(), given_.end(), 0.0);
     const std::span<double> top{given_.data(), v.size()};
-    multiply(v, top);
+    metric(v, top);
     loaded_.multiply_stiffness(v, product_);
     for (std::size_t c = 0; c < v.size(); ++c) top[c] -= product_[c];
     solve_to_rounding(system_, weight_, given_, solution_, correction_);
     std::copy_n(solution_.begin(), v.size(), v.begin());
   }
   void project(std::span<double> v) override { project_to_null_space(system_, v, solution_); }
-  void multiply(std::span<const double> v, std::span<double> Av) override {
-    system_.matrix().multiply_stiffness(v, Av);
-  }
 
  private:
   StaticSystem& system_;
@@ -116,7 +115,7 @@ Report Buckling::find_with(double step, int count, std::vector<Load>& loads, dou
   Lanczos lanczos(op);
   const auto wanted = [&](std::span<const double> theta) { return largest_ones(theta, count); };
   const int most = std::min(plan_->columns, std::max(most_vectors, 3 * count + 60));
-  const bool settled = lanczos.run(wanted, most, plan_->columns <= most_vectors, go_on);
+  const bool settled = lanczos.run(wanted, most, go_on);
   if (go_on && !go_on()) return {Status::cancelled, "stopped while loads were looked for", {}};
   if (!settled && !lanczos.exhausted()) {
     return {Status::not_converged,
