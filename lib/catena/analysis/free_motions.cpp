@@ -57,7 +57,7 @@ std::optional<FreeMotions> find_free_motions(StaticSystem& system, std::span<con
   system.residual(lambda, residual);
   // Where forces balance only to rounding, stiffnesses are known no better.
   const double force = system.force_scale(lambda), left = system.force_norm(residual);
-  const StiffnessFloor floor(system, lambda, left <= no_work * force ? left : 0);
+  const StiffnessFloor floor(system, lambda, left <= no_work * force ? left : 0, &groups);
   const std::vector<double> arms = body_arms(system, lambda);
   std::vector<double> weight;
   for (int coordinate : system.plan().coordinate) {

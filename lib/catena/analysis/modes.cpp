@@ -61,9 +61,9 @@ Report Modes::find_modes(const MassMatrix& masses, std::span<const double> mass,
                               coordinate % 3 == 2 ? "inertia" : "mass"),
                   {}};
   };
-  const StiffnessFloor floor(system_, lambda, residual);
   system_.fill(lambda, Curvature::exact, 0);
   MotionGroups groups(system_, true);
+  const StiffnessFloor floor(system_, lambda, residual, &groups);
   // Nearly all modes of a larger mechanism cost less this way too.
   const bool most_of_all = 3 * static_cast<std::int64_t>(count) >= groups.freedoms();
   if (groups.are_small(most_of_all ? most_complete_freedoms : MotionGroups::usual_freedoms)) {

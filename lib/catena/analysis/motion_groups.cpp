@@ -194,7 +194,8 @@ std::vector<double> body_arms(StaticSystem& system, std::span<const double> lamb
   return arms;
 }
 
-StiffnessFloor::StiffnessFloor(StaticSystem& system, std::span<const double> lambda, double residual) {
+StiffnessFloor::StiffnessFloor(StaticSystem& system, std::span<const double> lambda, double residual,
+                               const MotionGroups* groups) {
   const Plan& plan = system.plan();
   const Evaluator& evaluator = system.evaluator();
   const std::vector<double> arms = body_arms(system, lambda);
@@ -224,10 +225,20 @@ StiffnessFloor::StiffnessFloor(StaticSystem& system, std::span<const double> lam
     farthest = std::max({farthest, std::abs(frame.x), std::abs(frame.y)});
   }
   const double part = stiffness_rounding + place_rounding * farthest / system.length();
+  // Shapes are wrong by rounding too: a little turning stands in every travel, and the other way round.
+  for (std::size_t b = 0; b < arms.size(); ++b) travel[b] += turning[b] / (arms[b] * arms[b]);
   for (int coordinate : plan.coordinate) {
     const std::size_t b = at(coordinate / 3);
-    floor_.push_back(coordinate % 3 == 2 ? part * turning[b] + residual * arms[b]
-                                         : part * travel[b] + residual / arms[b]);
+    floor_.push_back((coordinate % 3 == 2 ? arms[b] * arms[b] : 1) * (part * travel[b] + residual / arms[b]));
+  }
+  if (!groups) return;
+  for (const MotionGroup& group : groups->groups()) {
+    double stiffest = 0;
+    for (int c : group.columns) stiffest = std::max(stiffest, travel[at(plan.coordinate[at(c)] / 3)]);
+    for (int c : group.columns) {
+      const double arm = plan.coordinate[at(c)] % 3 == 2 ? arms[at(plan.coordinate[at(c)] / 3)] : 1;
+      floor_[at(c)] += place_rounding * stiffest * arm * arm;
+    }
   }
 }
 

@@ -54,11 +54,13 @@ void reduce_stiffness(const KktMatrix& matrix, const MotionGroup& group, std::ve
 std::vector<double> body_arms(StaticSystem& system, std::span<const double> lambda);
 
 /// What of v^T K v cannot be told from zero, N m (v over columns): rounding of all the stiffnesses that act on the bodies
-/// that move, before any of them cancel, of their places far from the origin, and the force left unbalanced there.
+/// that move, before any of them cancel, of their places far from the origin, of the stiffest body that they are tied to,
+/// and the force left unbalanced there.
 class StiffnessFloor {
  public:
-  /// `residual`, N: the unbalanced force.
-  StiffnessFloor(StaticSystem& system, std::span<const double> lambda, double residual);
+  /// `residual`, N: the unbalanced force; without `groups` nobody is tied to anybody.
+  StiffnessFloor(StaticSystem& system, std::span<const double> lambda, double residual,
+                 const MotionGroups* groups = nullptr);
   double operator()(std::span<const double> v) const;
 
  private:
