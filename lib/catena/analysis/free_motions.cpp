@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "catena/analysis/modes_dense.hpp"
+#include "catena/analysis/state_conversion.hpp"
+#include "catena/analysis/static_balance.hpp"
 
 namespace catena {
 namespace {
@@ -16,6 +18,9 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 constexpr double least_share = 1e-8;
 // Part of the forces' largest work that a motion may do and count as moved by none.
 constexpr double no_work = 1e-9;
+
+// Columns of a model beyond which a check, which is to stay quick, does not ask.
+constexpr int most_checked_columns = 20000;
 
 // Takes out of orthonormal motions (metric W) the one along which the unbalanced forces work, if they do.
 void drop_driven(const StaticSystem& system, std::span<const double> residual, double force,
@@ -76,6 +81,20 @@ std::optional<FreeMotions> find_free_motions(StaticSystem& system, std::span<con
   result.count = static_cast<int>(shapes.size());
   result.bodies = names_of_moving(system, lambda, shapes);
   return result;
+}
+
+std::optional<FreeMotions> find_free_motions(const std::shared_ptr<const Model>& model, const SystemState& state) {
+  PlanOptions options;
+  options.released_elements = model->gaps();
+  Evaluator evaluator(Plan::make(*model, options), *model);
+  if (!evaluator.conservative() || evaluator.plan().columns > most_checked_columns) return {};
+  StaticSystem system(evaluator);
+  evaluator.set_time(state.t);
+  system.move_to(configuration_of(evaluator, state));
+  std::vector<double> lambda(at(system.plan().rows));
+  balance_loads(system, lambda);
+  system.fill(lambda, Curvature::exact, 0);
+  return find_free_motions(system, lambda, 0);
 }
 
 std::vector<std::string> names_of_moving(StaticSystem& system, std::span<const double> lambda,

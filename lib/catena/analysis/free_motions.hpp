@@ -5,12 +5,14 @@
 // Found in lengths, without masses, from the same dense spectrum as small oscillations (modes_dense.hpp).
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "catena/analysis/static_system.hpp"
+#include "catena/analysis/system_state.hpp"
 
 namespace catena {
 
@@ -24,6 +26,9 @@ struct FreeMotions {
 /// which a stiffness counts as none because the place itself is known no better; 0: rounding alone. Nothing where the
 /// mechanism is too large for dense algebra.
 std::optional<FreeMotions> find_free_motions(StaticSystem& system, std::span<const double> lambda, double second_order);
+
+/// The same at a state as it is, balanced or not, with one-sided elements open. Nothing too where forces have no energy.
+std::optional<FreeMotions> find_free_motions(const std::shared_ptr<const Model>& model, const SystemState& state);
 
 /// Names, in the model's order, of the bodies that move in any of these motions.
 std::vector<std::string> names_of_moving(StaticSystem& system, std::span<const double> lambda,
