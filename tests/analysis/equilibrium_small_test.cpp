@@ -162,8 +162,7 @@ TEST(Equilibrium, NamesMotionsThatMeetNoResistance) {
   wheel.add_body("wheel", {.mass = 1, .inertia = 1});
   wheel.add("axle", Revolute<double>{}, ground, 0);
   for (const Accept accept : {Accept::stable, Accept::stationary}) {
-    const EquilibriumReport report =
-        Equilibrium(std::make_shared<Model>(wheel), {}, {.accept = accept}).solve();
+    const EquilibriumReport report = Equilibrium(std::make_shared<Model>(wheel), {}, {.accept = accept}).solve();
     EXPECT_TRUE(report.ok()) << report.message;
     EXPECT_TRUE(report.neutral);
     EXPECT_FALSE(report.stable);

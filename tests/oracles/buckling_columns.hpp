@@ -1,5 +1,5 @@
-// Columns of rods and torsion springs under loads that depend on the parameter in any way, and their buckling loads from
-// dense algebra and a scalar equation of their own.
+// Columns of rods and torsion springs under loads that depend on the parameter in any way, and their buckling loads
+// from dense algebra and a scalar equation of their own.
 //
 //   N rods standing on each other, springs c_k at the joints, weights w_k(p) on top of every rod:
 //   K(p) = C - sum over rods  diag(l_k W_k(p)),   W_k = what stands on rod k         stiffness in the rods' angles
@@ -67,8 +67,8 @@ class BucklingColumn {
       const double l = lengths_[k] * length_;
       const int b = static_cast<int>(k);
       model->add_body("rod" + std::to_string(k), {.mass = 1, .inertia = 1, .position = {0, height + l / 2}});
-      model->add("", Revolute<double>{.s_i = {0, k == 0 ? 0 : lengths_[k - 1] * length_ / 2}, .s_j = {0, -l / 2}}, b - 1,
-                 b);
+      model->add("", Revolute<double>{.s_i = {0, k == 0 ? 0 : lengths_[k - 1] * length_ / 2}, .s_j = {0, -l / 2}},
+                 b - 1, b);
       TorsionSpring<double> spring;
       spring.k = springs_[k] * stiffness_ * length_;
       spring.angle = 0;
@@ -83,13 +83,16 @@ class BucklingColumn {
   double nearest() const {
     const std::vector<double> f = critical_factors();
     // By a fine scan on both sides, then bisection: the factor passes one of the critical ones.
-    const auto count = [&](double x) { return std::count_if(f.begin(), f.end(), [&](double v) { return v < factor(x); }); };
+    const auto count = [&](double x) {
+      return std::count_if(f.begin(), f.end(), [&](double v) { return v < factor(x); });
+    };
     for (double step = 1e-3, d = step; d < 1e4; d += step, step = std::max(1e-3, 1e-3 * d)) {
       double best = std::nan("");
       for (const double side : {1.0, -1.0}) {
         double a = present_ + side * (d - step), b = present_ + side * d;
         if (count(a) == count(b)) continue;
-        for (int k = 0; k < 100; ++k) (count(0.5 * (a + b)) == count(present_ + side * (d - step)) ? a : b) = 0.5 * (a + b);
+        for (int k = 0; k < 100; ++k)
+          (count(0.5 * (a + b)) == count(present_ + side * (d - step)) ? a : b) = 0.5 * (a + b);
         if (std::isnan(best) || std::abs(b - present_) < std::abs(best - present_)) best = b;
       }
       if (!std::isnan(best)) return best * unit_;

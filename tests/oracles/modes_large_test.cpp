@@ -1,5 +1,5 @@
-// Modes of more than five hundred freedoms with equal frequencies and free motions, against closed forms: discs on fixed
-// axles with torsion springs between neighbours in a ring, a grid and a row, K the Laplacian of that graph.
+// Modes of more than five hundred freedoms with equal frequencies and free motions, against closed forms: discs on
+// fixed axles with torsion springs between neighbours in a ring, a grid and a row, K the Laplacian of that graph.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -191,7 +191,8 @@ class Oscillator {
            particles);
     start_matrices();
     for (int b = 0; b + 1 < n; ++b) {
-      const Vec2<double> out = particles || chance(0.5) ? Vec2<double>{} : Vec2<double>{uniform(-.3, .3), uniform(-.3, .3)};
+      const Vec2<double> out =
+          particles || chance(0.5) ? Vec2<double>{} : Vec2<double>{uniform(-.3, .3), uniform(-.3, .3)};
       spring(b, out, b + 1, {}, number(), 0);
       if (!particles && chance(0.7)) torsion(b, b + 1, 0.3 * number());
     }
@@ -253,8 +254,9 @@ class Oscillator {
     rail.axis_j = {1, 0};
     model->add("", rail, ground, 0);
     for (int k = 0; k < n; ++k) {
-      model->add("", Revolute<double>{.s_i = {0, k == 0 ? 0 : -length_ * lengths[at(k - 1)] / 2},
-                                      .s_j = {0, length_ * lengths[at(k)] / 2}},
+      model->add("",
+                 Revolute<double>{.s_i = {0, k == 0 ? 0 : -length_ * lengths[at(k - 1)] / 2},
+                                  .s_j = {0, length_ * lengths[at(k)] / 2}},
                  k, k + 1);
       if (chance(0.4)) torsion(k, k + 1, number());
     }
@@ -292,9 +294,10 @@ class Oscillator {
     if (pinned)
       model->add("", Revolute<double>{.s_i = length_ * foot, .s_j = {-length_ * lengths_[0] / 2, 0}}, ground, 0);
     for (int k = 1; k < n; ++k) {
-      model->add("",
-                 Revolute<double>{.s_i = {length_ * lengths_[at(k - 1)] / 2, 0}, .s_j = {-length_ * lengths_[at(k)] / 2, 0}},
-                 k - 1, k);
+      model->add(
+          "",
+          Revolute<double>{.s_i = {length_ * lengths_[at(k - 1)] / 2, 0}, .s_j = {-length_ * lengths_[at(k)] / 2, 0}},
+          k - 1, k);
       if (chance(0.7)) torsion(k - 1, k, number());
     }
     if (chance(0.3)) torsion(-1, whole(0, n - 1), number());

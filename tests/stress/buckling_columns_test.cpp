@@ -1,7 +1,7 @@
 // Ten thousand columns under loads of six laws, at all scales of length, stiffness and parameter.
-#include <gtest/gtest.h>
-
 #include "oracles/buckling_columns.hpp"
+
+#include <gtest/gtest.h>
 
 namespace catena::testing {
 namespace {

@@ -38,9 +38,7 @@ class BucklingOperator final : public SpectralOperator {
 
   int columns() const override { return static_cast<int>(weight_.size()); }
   std::span<const double> typical() const override { return typical_; }
-  void metric(std::span<const double> v, std::span<double> Gv) override {
-    system_.matrix().multiply_stiffness(v, Gv);
-  }
+  void metric(std::span<const double> v, std::span<double> Gv) override { system_.matrix().multiply_stiffness(v, Gv); }
   void invert(std::span<double> v) override {
     std::fill(given_.begin(), given_.end(), 0.0);
     const std::span<double> top{given_.data(), v.size()};

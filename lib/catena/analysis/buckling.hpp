@@ -2,8 +2,8 @@
 //
 //   K(p) v = 0 on the null space of Phi_q,   K(p) = K0 + (p - p0) K'        K0 > 0: stable at the present value p0
 //
-// Up to 500 degrees of freedom the eigenvalues of Z^T K(p) Z, taken in the metric of K0, are followed as functions of p,
-// whatever the load's dependence on it (buckling_dense.cpp). Larger ones: K0^-1 (K0 - K(p1)) v = theta v by Lanczos'
+// Up to 500 degrees of freedom the eigenvalues of Z^T K(p) Z, taken in the metric of K0, are followed as functions of
+// p, whatever the load's dependence on it (buckling_dense.cpp). Larger ones: K0^-1 (K0 - K(p1)) v = theta v by Lanczos'
 // method, p = p0 + (p1 - p0) / theta: exact for loads that enter K linearly, iterated with p1 = p for others.
 // Multipliers belong to each value of the parameter, the configuration to the present one: where the load moves the
 // equilibrium, a warning says so, and what is found is the estimate of linear buckling theory; a path finds the true

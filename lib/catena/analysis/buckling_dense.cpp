@@ -2,10 +2,10 @@
 //
 //   T^T Z^T K(p) Z T = U diag(mu) U^T,   T^T Z^T K(p0) Z T = I        mu(p0) = 1;  a load: a mu_k that passes zero
 //
-// Sorted, each mu_k is a continuous function of p whatever the load's dependence on it, so that a change of sign between
-// two values brackets a root, equal ones as often as they are there. A load that enters K linearly has them in closed
-// form; each is confirmed by its change of sign. Else both sides are searched outwards, in steps that grow from where K
-// begins to change, and between samples for a lowest mu that only dips below zero.
+// Sorted, each mu_k is a continuous function of p whatever the load's dependence on it, so that a change of sign
+// between two values brackets a root, equal ones as often as they are there. A load that enters K linearly has them in
+// closed form; each is confirmed by its change of sign. Else both sides are searched outwards, in steps that grow from
+// where K begins to change, and between samples for a lowest mu that only dips below zero.
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
@@ -25,7 +25,7 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 constexpr double least_change = 0.02, most_change = 0.5;
 // Factors by which the first step is looked for, and how often.
 constexpr double coarse = 1e3, fine = 4;
-constexpr int most_tries = 80;
+constexpr int most_tries = 100;
 // Deviation from a straight line that is rounding, and the part of the largest rate of change that is no change.
 constexpr double straight = 1e-10, no_change = 1e-11;
 // The search outwards: samples an octave, and how far, in first steps. Beyond, a load would be 1e8 times what already
@@ -92,9 +92,8 @@ class Buckling::Spectrum {
     const Eigen::Index f = group_.freedoms();
     now_ = metric_.transpose() * Eigen::Map<Eigen::MatrixXd>(reduced.data(), f, f) * metric_;
     if (now_.allFinite()) return true;
-    report_ = {Status::not_converged,
-               fmt::format("the stiffness at the value {:.6g} of the parameter is not finite", p),
-               {}};
+    report_ = {
+        Status::not_converged, fmt::format("the stiffness at the value {:.6g} of the parameter is not finite", p), {}};
     return false;
   }
   const Eigen::MatrixXd& now() const { return now_; }
@@ -226,8 +225,11 @@ Report Buckling::find_by_dense(std::vector<Load>& loads, const std::function<boo
     if (too_small > 0 && std::isfinite(too_large)) {
       if (too_large < 1.001 * too_small) break;  // it jumps there: both sides of the jump are searched
       step = std::sqrt(too_small * too_large);
+    } else if (std::isfinite(too_large)) {
+      step /= fine;
     } else {
-      step *= std::isfinite(too_large) ? 1 / (too_large < step * 1.001 ? fine : coarse) : coarse;
+      // No further than the change so far promises: a load that swings must not be stepped over.
+      step *= std::clamp(std::sqrt(least_change * most_change) / change, fine, coarse);
     }
   }
   if (!(change > no_change)) return {};
@@ -272,7 +274,7 @@ Report Buckling::find_by_dense(std::vector<Load>& loads, const std::function<boo
     struct Front {
       double sign;
       bool open = true;
-      std::vector<double> place{};           // the last three samples
+      std::vector<double> place{};  // the last three samples
       std::vector<Eigen::VectorXd> mu{};
     };
     Front sides[2] = {{1}, {-1}};

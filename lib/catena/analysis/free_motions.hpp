@@ -27,7 +27,8 @@ struct FreeMotions {
 /// mechanism is too large for dense algebra.
 std::optional<FreeMotions> find_free_motions(StaticSystem& system, std::span<const double> lambda, double second_order);
 
-/// The same at a state as it is, balanced or not, with one-sided elements open. Nothing too where forces have no energy.
+/// The same at a state as it is, balanced or not, with one-sided elements open. Nothing too where forces have no
+/// energy.
 std::optional<FreeMotions> find_free_motions(const std::shared_ptr<const Model>& model, const SystemState& state);
 
 /// Names, in the model's order, of the bodies that move in any of these motions.

@@ -54,12 +54,12 @@ SystemState Modes::state() const { return state_of(evaluator_, t_, q_); }
 Report Modes::find_modes(const MassMatrix& masses, std::span<const double> mass, std::span<const double> lambda,
                          double residual, int count, std::vector<Mode>& modes, const std::function<bool()>& go_on) {
   const auto undetermined = [&](int coordinate) {
-    return Report{Status::refused,
-                  fmt::format("the motion of body \"{}\" is not determined: its {} is zero and the constraints tie it to "
-                              "nothing that has mass",
-                              model_->body_name(plan_->model_body[at(coordinate / 3)]),
-                              coordinate % 3 == 2 ? "inertia" : "mass"),
-                  {}};
+    return Report{
+        Status::refused,
+        fmt::format("the motion of body \"{}\" is not determined: its {} is zero and the constraints tie it to "
+                    "nothing that has mass",
+                    model_->body_name(plan_->model_body[at(coordinate / 3)]), coordinate % 3 == 2 ? "inertia" : "mass"),
+        {}};
   };
   system_.fill(lambda, Curvature::exact, 0);
   MotionGroups groups(system_, true);
@@ -70,7 +70,8 @@ Report Modes::find_modes(const MassMatrix& masses, std::span<const double> mass,
     const DenseModes dense(system_, groups, mass);
     if (dense.massless_column()) return undetermined(plan_->coordinate[at(*dense.massless_column())]);
     if (!dense.ok()) {
-      return {Status::not_converged, "the eigenvalues of the stiffness did not settle: is a number in it infinite?", {}};
+      return {
+          Status::not_converged, "the eigenvalues of the stiffness did not settle: is a number in it infinite?", {}};
     }
     if (go_on && !go_on()) return {Status::cancelled, "stopped while modes were looked for", {}};
     modes = dense.lowest(count, floor);

@@ -65,8 +65,10 @@ bool DenseModes::use_masses(MotionGroup& group, std::span<const double> mass) {
     const Eigen::Index rank = geometry.rank();
     Eigen::VectorXd y = Eigen::VectorXd::Zero(z.cols());
     if (rank > 0) {
-      y.head(rank) = geometry.matrixR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>().solve(
-          -geometry.matrixR().col(rank).head(rank));
+      y.head(rank) = geometry.matrixR()
+                         .topLeftCorner(rank, rank)
+                         .triangularView<Eigen::Upper>()
+                         .solve(-geometry.matrixR().col(rank).head(rank));
     }
     y[rank] = 1;
     const Eigen::VectorXd v = z * (geometry.colsPermutation() * y);

@@ -5,7 +5,8 @@
 // The standard symmetric problem in mass-weighted coordinates: complete by construction, equal eigenvalues as often as
 // they are there, each to rounding of its group's largest. Coordinates without mass take part through a metric of their
 // own first; singular where a motion of them moves no mass at all. Values are Rayleigh quotients of the shapes with the
-// sparse K, wrong by the square of the shapes' errors only; one that cannot be told from rounding (StiffnessFloor) is 0.
+// sparse K, wrong by the square of the shapes' errors only; one that cannot be told from rounding (StiffnessFloor) is
+// 0.
 #pragma once
 
 #include <optional>

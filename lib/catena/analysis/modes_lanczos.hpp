@@ -4,9 +4,9 @@
 //
 // Small oscillations: A = K - sigma M, B = G = M; buckling: A = G = K, B = -K'. All vectors are kept orthogonal (twice
 // Gram-Schmidt), so that no eigenvalue appears twice by rounding. Where the space that the start spans is exhausted, or
-// a vector is lost in rounding, the iteration goes on with a new vector. Memory: one vector a step. A mode counts as settled when its residual is
-// below 1e-11 of its theta (1e-14 of the largest theta where that is more).
-// Sources: B. Parlett, The Symmetric Eigenvalue Problem, chapter 13; T. Ericsson, A. Ruhe, Math. Comp. 35 (1980).
+// a vector is lost in rounding, the iteration goes on with a new vector. Memory: one vector a step. A mode counts as
+// settled when its residual is below 1e-11 of its theta (1e-14 of the largest theta where that is more). Sources: B.
+// Parlett, The Symmetric Eigenvalue Problem, chapter 13; T. Ericsson, A. Ruhe, Math. Comp. 35 (1980).
 #pragma once
 
 #include <functional>

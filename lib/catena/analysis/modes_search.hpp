@@ -22,8 +22,8 @@ namespace catena {
 class ModeSearch {
  public:
   /// `lambda`: multipliers at the system's configuration; `mass`: per column; `floor`: what is no stiffness there.
-  ModeSearch(StaticSystem& system, std::span<const double> lambda, std::vector<double> mass, const StiffnessFloor& floor,
-             const std::function<bool()>& go_on);
+  ModeSearch(StaticSystem& system, std::span<const double> lambda, std::vector<double> mass,
+             const StiffnessFloor& floor, const std::function<bool()>& go_on);
 
   /// The `count` lowest modes, ascending; fewer if there are no more.
   Report find(int count, std::vector<Mode>& modes);

@@ -49,13 +49,13 @@ class MotionGroups {
 /// Z^T K Z of a group, freedoms() x freedoms(), with the K that the matrix holds.
 void reduce_stiffness(const KktMatrix& matrix, const MotionGroup& group, std::vector<double>& reduced);
 
-/// Per body of the plan, m: how far from its origin constraints and forces take hold of it, the scene's length where all
-/// do at the origin: what makes turning and travel comparable whatever the units.
+/// Per body of the plan, m: how far from its origin constraints and forces take hold of it, the scene's length where
+/// all do at the origin: what makes turning and travel comparable whatever the units.
 std::vector<double> body_arms(StaticSystem& system, std::span<const double> lambda);
 
-/// What of v^T K v cannot be told from zero, N m (v over columns): rounding of all the stiffnesses that act on the bodies
-/// that move, before any of them cancel, of their places far from the origin, of the stiffest body that they are tied to,
-/// and the force left unbalanced there.
+/// What of v^T K v cannot be told from zero, N m (v over columns): rounding of all the stiffnesses that act on the
+/// bodies that move, before any of them cancel, of their places far from the origin, of the stiffest body that they are
+/// tied to, and the force left unbalanced there.
 class StiffnessFloor {
  public:
   /// `residual`, N: the unbalanced force; without `groups` nobody is tied to anybody.

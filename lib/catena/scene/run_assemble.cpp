@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <functional>
 
+#include "catena/analysis/free_motions.hpp"
 #include "catena/analysis/initial_velocities.hpp"
 #include "catena/analysis/kinematics.hpp"
-#include "catena/analysis/free_motions.hpp"
 #include "catena/analysis/mobility.hpp"
 #include "catena/analysis/process_time.hpp"
 #include "catena/scene/analysis_run.hpp"
