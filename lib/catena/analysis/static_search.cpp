@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "catena/analysis/assemble.hpp"
+#include "catena/analysis/free_motions.hpp"
 #include "catena/analysis/static_descent.hpp"
 #include "catena/analysis/static_ipopt.hpp"
 #include "catena/analysis/static_nlopt.hpp"
@@ -38,8 +39,8 @@ constexpr double finest_barrier = 1e-10;
 constexpr double gap_tolerance = 1e-12;
 constexpr int few_first_steps = 40, most_first_steps = 80;
 constexpr double first_push = 0.05, largest_push = 0.8;
-// Overlaps below this many length scales, and stiffness contributions below this part of the scene's, count as absent.
-constexpr double absent_overlap = 1e-6, absent_stiffness = 1e-8;
+// Overlaps below this many length scales count as absent.
+constexpr double absent_overlap = 1e-6;
 
 // A reproducible number in [-1, 1).
 double random_number(unsigned& seed) {
@@ -228,12 +229,6 @@ void StaticSearch::shake(std::vector<double>& q, unsigned seed, double angle, do
   }
 }
 
-// Whether the neutral mode meets no stiffness at all, not even one that others cancel.
-bool StaticSearch::is_free_motion(const std::vector<double>&, const Certificate& certificate) {
-  const double scale = std::max(system_.matrix().largest_stiffness(), system_.force_size() / system_.length());
-  return certificate.neutral && system_.matrix().absolute_quadratic(certificate.mode) <= absent_stiffness * scale;
-}
-
 Report StaticSearch::explain(const StaticOutcome& outcome, const std::vector<double>& start) {
   Report report;
   const Evaluator& evaluator = system_.evaluator();
@@ -386,16 +381,12 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
   }
   const Certificate& c = result.certificate;
   const std::string motion = c.mode.empty() ? "" : describe_mode(evaluator, c.mode, system_.radius());
-  if (c.neutral && !options_.stationary && is_free_motion(q, c)) {
-    result.report.status = Status::refused;
-    result.report.message = fmt::format(
-        "a motion is free: {} meets no resistance, so that the equilibrium is not one place; add a joint or a spring, "
-        "or ask for any stationary point (\"accept\": \"stationary\")",
-        motion);
-  } else if (c.neutral) {
+  if (c.neutral) {
     result.report.warnings.push_back(
-        fmt::format("neutral to second order: {} changes the energy by less than rounding", motion));
-  } else if (c.negative_modes > 0) {
+        fmt::format("neutral to second order: {} change{} the energy by less than rounding; the softest: {}",
+                    describe_free_motions(c.neutral_modes, c.free_bodies), c.neutral_modes > 1 ? "" : "s", motion));
+  }
+  if (c.negative_modes > 0) {
     result.report.warnings.push_back(fmt::format("unstable: {} negative mode{}, the lowest: {}", c.negative_modes,
                                                  c.negative_modes > 1 ? "s" : "", motion));
   }

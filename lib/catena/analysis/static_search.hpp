@@ -70,7 +70,6 @@ class StaticSearch {
   void leave(const Certificate& certificate, std::vector<double>& q, double size);
   StaticResult find_without_energy(std::vector<double>& q, std::vector<double>& lambda);
   Report explain(const StaticOutcome& outcome, const std::vector<double>& start);
-  bool is_free_motion(const std::vector<double>& q, const Certificate& certificate);
 
   StaticSystem& system_;
   StaticSearchOptions options_;
