@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "catena/assembly/attachment_points.hpp"
 #include "catena/base/sincos.hpp"
 #include "catena/elements/all.hpp"
 
@@ -30,6 +31,23 @@ double extent(const Model& model) {
     high = {std::max(high.x, body.position.x), std::max(high.y, body.position.y)};
   }
   return std::max(high.x - low.x, high.y - low.y);
+}
+
+// Of the points of force elements from the centroids of their bodies, of the ground's from the other body; 0 if none.
+double mean_force_arm(const Model& model) {
+  double sum = 0;
+  std::int64_t count = 0;
+  for_each_list(model.forces, [&](const auto& list, int) {
+    for (const auto& entry : list) {
+      const int other = entry.i >= 0 ? entry.i : entry.j;
+      visit_points(entry, [&](const Vec2<double>& local, int body) {
+        if (body < 0 && other < 0) return;
+        sum += norm(body >= 0 ? local : local - model.bodies[at(other)].position);
+        ++count;
+      });
+    }
+  });
+  return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
 }  // namespace
@@ -128,6 +146,7 @@ void Evaluator::load_values() {
   });
   attachment_radii(&length_scale_);
   if (length_scale_ == 0) length_scale_ = extent(*model_);
+  if (length_scale_ == 0) length_scale_ = mean_force_arm(*model_);
   if (length_scale_ == 0) length_scale_ = 1;
   function_.resize(model_->functions.size());
   set_time(time_);

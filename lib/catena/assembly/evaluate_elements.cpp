@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/assembly/attachment_points.hpp"
 #include "catena/assembly/evaluate.hpp"
 #include "catena/elements/all.hpp"
 
@@ -9,25 +10,6 @@ namespace catena {
 namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
-// Calls f(local point, body) for every attachment point of an element.
-template <class E, class F>
-void visit_points(const ElementEntry<E, double>& entry, F&& f) {
-  std::apply(
-      [&](const auto&... field) {
-        (
-            [&] {
-              if constexpr (requires { field.body; }) {
-                if constexpr (
-                    requires { entry.element.*field.member + Vec2<double>{}; } && !requires { field.required; }) {
-                  f(entry.element.*field.member, field.body == 0 ? entry.i : entry.j);
-                }
-              }
-            }(),
-            ...);
-      },
-      E::fields());
-}
 
 }  // namespace
 
@@ -106,9 +88,18 @@ Taylor<double> Evaluator::element_value(int element) const {
   return value;
 }
 
+// Points of constraints; where all of a body's are in its centroid those of force elements, else the length scale: no
+// length may come from anywhere but the scene.
 std::vector<double> Evaluator::attachment_radii(double* mean) const {
-  std::vector<double> squares(at(plan_->bodies), 0.0);
-  std::vector<int> count(at(plan_->bodies), 0);
+  struct Points {
+    double squares = 0;
+    int count = 0;
+    void add(double square) {
+      squares += square;
+      ++count;
+    }
+  };
+  std::vector<Points> held(at(plan_->bodies)), forced(at(plan_->bodies));
   double sum = 0;
   std::int64_t points = 0;
   for_each_list(model_->constraints, [&](const auto& list, int) {
@@ -116,19 +107,26 @@ std::vector<double> Evaluator::attachment_radii(double* mean) const {
       visit_points(entry, [&](const Vec2<double>& local, int body) {
         if (body < 0) return;
         const double square = squared_norm(local);
-        squares[at(plan_->plan_body[at(body)])] += square;
-        ++count[at(plan_->plan_body[at(body)])];
+        held[at(plan_->plan_body[at(body)])].add(square);
         sum += std::sqrt(square);
         ++points;
       });
     }
   });
-  for (std::size_t b = 0; b < squares.size(); ++b) {
-    const double radius = count[b] > 0 ? std::sqrt(squares[b] / count[b]) : 0;
-    squares[b] = radius > 0 ? radius : 1;
+  for_each_list(model_->forces, [&](const auto& list, int) {
+    for (const auto& entry : list) {
+      visit_points(entry, [&](const Vec2<double>& local, int body) {
+        if (body >= 0) forced[at(plan_->plan_body[at(body)])].add(squared_norm(local));
+      });
+    }
+  });
+  std::vector<double> radius(held.size());
+  for (std::size_t b = 0; b < radius.size(); ++b) {
+    const Points& of = held[b].squares > 0 ? held[b] : forced[b];
+    radius[b] = of.squares > 0 ? std::sqrt(of.squares / of.count) : length_scale_;
   }
   if (mean) *mean = points > 0 ? sum / static_cast<double>(points) : 0;
-  return squares;
+  return radius;
 }
 
 }  // namespace catena
