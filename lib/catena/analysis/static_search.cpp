@@ -37,6 +37,8 @@ constexpr double finest_barrier = 1e-10;
 // Of gaps and their forces, whatever was asked for: the last steps cost next to nothing.
 constexpr double gap_tolerance = 1e-12;
 constexpr int few_first_steps = 40, most_first_steps = 80;
+// A residual above this part of the forces is worth a remark.
+constexpr double unsaid_rounding = 1e-9;
 // The square of this is the largest number.
 constexpr double largest_number = 1e154;
 constexpr double first_push = 0.05, largest_push = 0.8;
@@ -73,7 +75,7 @@ void name_weak_gaps(const Evaluator& evaluator, StaticResult& result) {
 
 // Where forces balance as well as rounding allows, but not to the tolerance.
 void warn_of_rounding(const StaticAccuracy& a, Report& report) {
-  if (a.balanced) return;
+  if (a.balanced || a.residual <= unsaid_rounding * a.forces) return;
   report.warnings.push_back(
       fmt::format("forces balance to {:.2g} N only, of {:.3g} N: rounding of places makes up to {:.2g} N of the "
                   "stiffest springs, whatever the tolerance",

@@ -24,7 +24,7 @@ StaticSystem::StaticSystem(Evaluator& evaluator)
       matrix_(evaluator.shared_plan(), radius_),
       length_(evaluator.length_scale()),
       scaling_(plan_, length_),
-      springs_(evaluator, matrix_.structure().hessian, matrix_.structure().trash()) {
+      springs_(evaluator, matrix_.structure().hessian) {
   rest_.assign(at(plan_.coordinates()), 0.0);
   loads_.resize(rest_.size());
   if (springs_.any()) foreseen_.assign(rest_.size(), 0.0);

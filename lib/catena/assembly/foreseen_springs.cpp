@@ -17,7 +17,7 @@ constexpr bool is_spring = std::is_same_v<E, SpringDamper<double>> || std::is_sa
 
 }  // namespace
 
-ForeseenSprings::ForeseenSprings(const Evaluator& evaluator, const HessianSlots& slots, int trash) {
+ForeseenSprings::ForeseenSprings(const Evaluator& evaluator, const HessianSlots& slots) {
   const Plan& plan = evaluator.plan();
   const auto body = [&](int b) { return b < plan.bodies ? b : -1; };
   for_each_list(plan.forces, [&](const auto& block, int type) {
@@ -38,7 +38,8 @@ ForeseenSprings::ForeseenSprings(const Evaluator& evaluator, const HessianSlots&
   own_ = others_ = slots;
   for_each_list(plan.forces, [&](const auto& block, int type) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
-    if constexpr (is_spring<E>) std::fill(others_.forces[at(type)].begin(), others_.forces[at(type)].end(), trash);
+    static_cast<void>(block);
+    if constexpr (is_spring<E>) others_.forces[at(type)].clear();
   });
   take_over_model(evaluator);
 }

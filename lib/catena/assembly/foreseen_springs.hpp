@@ -24,8 +24,8 @@ namespace catena {
 
 class ForeseenSprings {
  public:
-  /// `slots`: of all elements; `trash`: a place that nobody reads.
-  ForeseenSprings(const Evaluator& evaluator, const HessianSlots& slots, int trash);
+  /// `slots`: of all elements.
+  ForeseenSprings(const Evaluator& evaluator, const HessianSlots& slots);
 
   /// Whether there are springs at all.
   bool any() const { return !springs_.empty(); }
@@ -39,7 +39,7 @@ class ForeseenSprings {
   void forget() { active_ = false; }
   bool active() const { return active_; }
 
-  /// Slots for everything else: those of springs lead to the trash.
+  /// Slots for everything else: springs have none.
   const HessianSlots& others() const { return others_; }
   /// Adds K of all springs; convex: without what is negative in each of its parts.
   void add(const Evaluator& evaluator, Curvature curvature, std::span<double> values) const;
