@@ -110,6 +110,8 @@ EquilibriumReport Equilibrium::solve() {
   report.stable = report.certified && c.stable;
   report.neutral = report.certified && c.neutral;
   report.negative_modes = report.certified ? c.negative_modes : 0;
+  report.free_motions = report.certified ? c.neutral_modes : 0;
+  if (report.certified) report.free_bodies = c.free_bodies;
   report.softest_stiffness = c.softest_stiffness;
   if (!c.mode.empty()) {
     report.softest_mode = describe_mode(evaluator_, c.mode, system_.radius());

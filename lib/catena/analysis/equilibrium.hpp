@@ -50,6 +50,8 @@ struct EquilibriumReport : AnalysisReport {
   bool stable = false;
   bool neutral = false;  ///< to second order
   int negative_modes = 0;
+  int free_motions = 0;                  ///< that nothing resists to second order: how many
+  std::vector<std::string> free_bodies;  ///< and which bodies take part in them
   double softest_stiffness = 0;       ///< N/m, of the mode below
   std::string softest_mode;           ///< the body that moves most in it
   std::vector<double> softest_shape;  ///< model order, three a body; v^T W v = 1, W = (1, 1, radius^2)

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "catena/analysis/certificate.hpp"
+#include "catena/analysis/free_motions.hpp"
 #include "catena/analysis/process_time.hpp"
 #include "catena/analysis/state_conversion.hpp"
 #include "catena/analysis/static_balance.hpp"
@@ -72,6 +73,13 @@ class Path::March {
     StaticSearch search(statics, {.stationary = left.negligible(), .warm = left.negligible()});
     StaticResult result = search.find(path_.q_, x_.lambda);
     if (!result.report.ok()) return result.report;
+    if (result.certificate.neutral) {
+      return {Status::singular,
+              fmt::format("the path cannot start where the equilibrium is neutral: nothing resists {}; hold them, or "
+                          "start at another value of the parameter",
+                          describe_free_motions(result.certificate.neutral_modes, result.certificate.free_bodies)),
+              {}};
+    }
     x_.q = path_.q_;
     x_.p = options_.from;
     direction_ = system_.along_parameter(options_.to - options_.from);

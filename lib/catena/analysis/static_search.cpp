@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "catena/analysis/assemble.hpp"
+#include "catena/analysis/free_motions.hpp"
 #include "catena/analysis/static_descent.hpp"
 #include "catena/analysis/static_ipopt.hpp"
 #include "catena/analysis/static_nlopt.hpp"
@@ -42,8 +43,8 @@ constexpr double unsaid_rounding = 1e-9;
 // The square of this is the largest number.
 constexpr double largest_number = 1e154;
 constexpr double first_push = 0.05, largest_push = 0.8;
-// Overlaps below this many length scales, and stiffness contributions below this part of the scene's, count as absent.
-constexpr double absent_overlap = 1e-6, absent_stiffness = 1e-8;
+// Overlaps below this many length scales count as absent.
+constexpr double absent_overlap = 1e-6;
 
 // A reproducible number in [-1, 1).
 double random_number(unsigned& seed) {
@@ -252,12 +253,6 @@ void StaticSearch::shake(std::vector<double>& q, unsigned seed, double angle, do
   }
 }
 
-// Whether the neutral mode meets no stiffness at all, not even one that others cancel.
-bool StaticSearch::is_free_motion(const Certificate& certificate) {
-  const double scale = std::max(system_.matrix().largest_stiffness(), system_.force_size() / system_.length());
-  return certificate.neutral && system_.matrix().absolute_quadratic(certificate.mode) <= absent_stiffness * scale;
-}
-
 // Numbers whose products with each other cannot be represented are no numbers to compute with.
 std::optional<Report> StaticSearch::find_overflow(std::span<double> lambda) {
   system_.fill(lambda, Curvature::exact, 0);
@@ -270,10 +265,10 @@ std::optional<Report> StaticSearch::find_overflow(std::span<double> lambda) {
     Report report;
     report.status = Status::refused;
     report.message = fmt::format(
-        "what acts on body \"{}\" is too large to be computed with: {} of {:.3g} {}, and products of such numbers "
+        "what acts on body \"{}\" is too large to be computed with: {} beyond {:.0e} {}, and products of such numbers "
         "cannot be represented; likely cause: a unit or an exponent mistyped",
-        body_of(system_.evaluator(), c), forced ? (turning ? "a torque" : "a force") : "a stiffness",
-        forced ? -force : stiffness, forced ? (turning ? "N m" : "N") : (turning ? "N m/rad" : "N/m"));
+        body_of(system_.evaluator(), c), forced ? (turning ? "a torque" : "a force") : "a stiffness", largest_number,
+        forced ? (turning ? "N m" : "N") : (turning ? "N m/rad" : "N/m"));
     return report;
   }
   return {};
@@ -471,13 +466,12 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
   }
   const Certificate& c = result.certificate;
   const std::string motion = c.mode.empty() ? "" : describe_mode(evaluator, c.mode, system_.radius());
-  if (c.neutral && is_free_motion(c)) {
-    result.report.warnings.push_back(fmt::format(
-        "neutral: a motion is free: {} meets no resistance, so that every place along it is an equilibrium", motion));
-  } else if (c.neutral) {
+  if (c.neutral) {
     result.report.warnings.push_back(
-        fmt::format("neutral to second order: {} changes the energy by less than rounding", motion));
-  } else if (c.negative_modes > 0) {
+        fmt::format("neutral to second order: {} change{} the energy by less than rounding; the softest: {}",
+                    describe_free_motions(c.neutral_modes, c.free_bodies), c.neutral_modes > 1 ? "" : "s", motion));
+  }
+  if (c.negative_modes > 0) {
     result.report.warnings.push_back(fmt::format("unstable: {} negative mode{}, the lowest: {}", c.negative_modes,
                                                  c.negative_modes > 1 ? "s" : "", motion));
   }

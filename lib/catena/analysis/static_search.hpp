@@ -74,7 +74,6 @@ class StaticSearch {
   std::optional<Report> find_overflow(std::span<double> lambda);
   Report explain(const StaticOutcome& outcome, const std::vector<double>& start, const StaticResult& result);
   void describe_point(const StaticResult& result, Report& report);
-  bool is_free_motion(const Certificate& certificate);
 
   StaticSystem& system_;
   StaticSearchOptions options_;

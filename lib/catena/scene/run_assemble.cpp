@@ -6,6 +6,7 @@
 
 #include "catena/analysis/initial_velocities.hpp"
 #include "catena/analysis/kinematics.hpp"
+#include "catena/analysis/free_motions.hpp"
 #include "catena/analysis/mobility.hpp"
 #include "catena/analysis/process_time.hpp"
 #include "catena/scene/analysis_run.hpp"
@@ -143,6 +144,13 @@ void run_check(AnalysisContext& context, AnalysisResult& result) {
                                           quoted_names(model, mobility.dependent_on[k]),
                                           agrees ? "" : ": the places fit, the velocities do not"));
   }
+  std::optional<FreeMotions> free;
+  if (outcome.ok() && mobility.dof() > 0) free = find_free_motions(context.model, analysis.state());
+  const bool any_free = free && free->count > 0;
+  if (any_free) {
+    report.warnings.push_back(fmt::format("nothing resists {} to second order: no spring and no load holds them",
+                                          describe_free_motions(free->count, free->bodies)));
+  }
   if (outcome.ok()) {
     warn_of_closed_gaps(analysis.evaluator(), report);
     check_velocities(analysis, model, report);
@@ -152,6 +160,10 @@ void run_check(AnalysisContext& context, AnalysisResult& result) {
   report.seconds = timer.seconds();
   take_report(result, std::move(report), nullptr, 0);
   if (!mobility.free_bodies.empty()) result.fields.push_back({"free_bodies", mobility.free_bodies});
+  if (any_free) {
+    result.fields.push_back({"free_motions", std::int64_t{free->count}});
+    result.fields.push_back({"moving_freely", free->bodies});
+  }
   add_misfits(result, outcome, model);
 }
 

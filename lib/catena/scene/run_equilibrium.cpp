@@ -55,6 +55,10 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
                      {"stable", report.stable},
                      {"neutral", report.neutral},
                      {"negative_modes", static_cast<std::int64_t>(report.negative_modes)}};
+    if (report.free_motions > 0) {
+      result.fields.push_back({"free_motions", static_cast<std::int64_t>(report.free_motions)});
+      result.fields.push_back({"moving_freely", report.free_bodies});
+    }
   }
   if (report.certified || report.ok()) {
     result.fields.push_back({"residual", report.residual});

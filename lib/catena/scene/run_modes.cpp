@@ -38,6 +38,10 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
   if (report.ok()) context.state = analysis.state();
   result.fields = {
       {"omega2", report.omega2}, {"omega", report.omega}, {"unstable", static_cast<std::int64_t>(report.unstable)}};
+  if (report.free_motions > 0) {
+    result.fields.push_back({"free_motions", static_cast<std::int64_t>(report.free_motions)});
+    result.fields.push_back({"moving_freely", report.free_bodies});
+  }
   take_report(result, std::move(report), nullptr, 0);
   result.has_rows = true;
   result.columns = std::move(info);
