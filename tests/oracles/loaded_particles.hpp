@@ -87,7 +87,6 @@ class LoadedParticle {
            << ")";
       return what.str();
     }
-    if (!report.ok()) what << "";
     return what.str();
   }
   /// Whether the path that was checked reached its end.

@@ -127,9 +127,8 @@ class Oscillator {
     element.length = stretch == 0 ? -1.0 : rest * length_;  // -1: as it is
     model->add_force("", element, i, j);
     // d h = sum side (dr + R a dphi), d2 h = -side a dphi^2; V'' = k n n^T + f/l (1 - n n^T) + f n . d2 h.
-    const auto column = [&](int b, const Vec2<Wide>& a, int c) {
+    const auto column = [](const Vec2<Wide>& a, int c) {
       return c == 0 ? Vec2<Wide>{1, 0} : c == 1 ? Vec2<Wide>{0, 1} : Vec2<Wide>{-a.y, a.x};
-      static_cast<void>(b);
     };
     struct End {
       int b;
@@ -141,7 +140,7 @@ class Oscillator {
       for (const End& f : ends) {
         for (int c = 0; e.b >= 0 && f.b >= 0 && c < 3; ++c) {
           for (int d = 0; d < 3; ++d) {
-            const Vec2<Wide> u = column(e.b, e.a, c), v = column(f.b, f.a, d);
+            const Vec2<Wide> u = column(e.a, c), v = column(f.a, d);
             const Wide un = u.x * nx + u.y * ny, vn = v.x * nx + v.y * ny, uv = u.x * v.x + u.y * v.y;
             Wide value = e.side * f.side * (k * un * vn + (stretch == 0 ? 0 : tension / l) * (uv - un * vn));
             if (&e == &f && c == 2 && d == 2 && stretch != 0) value -= e.side * tension * (e.a.x * nx + e.a.y * ny);

@@ -70,14 +70,26 @@ std::optional<FreeMotions> find_free_motions(StaticSystem& system, std::span<con
   }
   const DenseModes dense(system, groups, weight);
   FreeMotions result;
-  std::vector<std::vector<double>> shapes;
+  // Groups move without each other: what drives one does not hold another.
+  std::vector<int> group_of(at(system.plan().columns));
+  for (std::size_t g = 0; g < groups.groups().size(); ++g) {
+    for (int c : groups.groups()[g].columns) group_of[at(c)] = static_cast<int>(g);
+  }
+  std::vector<std::vector<std::vector<double>>> neutral_in(groups.groups().size());
   for (Mode& mode : dense.lowest(0, floor)) {
     const bool neutral =
         std::abs(mode.omega2) <= second_order * system.matrix().absolute_quadratic(mode.shape) || mode.omega2 == 0;
     result.negative += !neutral && mode.omega2 < 0;
-    if (neutral) shapes.push_back(std::move(mode.shape));
+    if (!neutral) continue;
+    const auto moved = std::find_if(mode.shape.begin(), mode.shape.end(), [](double v) { return v != 0; });
+    const auto column = static_cast<std::size_t>(moved - mode.shape.begin());
+    neutral_in[at(group_of[column])].push_back(std::move(mode.shape));
   }
-  drop_driven(system, residual, force, shapes);
+  std::vector<std::vector<double>> shapes;
+  for (auto& own : neutral_in) {
+    drop_driven(system, residual, force, own);
+    for (std::vector<double>& v : own) shapes.push_back(std::move(v));
+  }
   result.count = static_cast<int>(shapes.size());
   result.bodies = names_of_moving(system, lambda, shapes);
   return result;

@@ -25,6 +25,8 @@ constexpr double unlocated_step = 1e-4;
 constexpr int many_iterations = 7, few_iterations = 4;
 // The cosine between the directions at both ends of a step, at least.
 constexpr double largest_bend = 0.9;
+// Rad: what a path may turn to one side and back between two points without being looked at more closely.
+constexpr double unseen_turn = 1e-3;
 constexpr int most_end_trials = 60;
 // How far the end may be from where the tangent meets it, in parts of the way.
 constexpr double largest_miss = 0.3;
@@ -105,6 +107,21 @@ class Path::March {
 
   bool passes_end(double before, double after) const { return (before - to_) * (after - to_) <= 0 && before != to_; }
 
+  // Whether one smooth path leads from the present point to the next one: it leaves its tangent by no more of its way
+  // than its direction turns. A path that ends, and another that begins beside it, do not meet.
+  bool is_smooth(const PathPoint& next, const PathPoint& direction) const {
+    PathPoint travel{std::vector<double>(at(path_.plan_->columns)), {}, next.p - x_.p};
+    for (int c = 0; c < path_.plan_->columns; ++c) {
+      const std::size_t k = at(path_.plan_->coordinate[at(c)]);
+      travel.q[at(c)] = next.q[k] - x_.q[k];
+    }
+    const double way = system_.product(travel, direction_);
+    for (std::size_t c = 0; c < travel.q.size(); ++c) travel.q[c] -= way * direction_.q[c];
+    travel.p -= way * direction_.p;
+    const double turn = std::acos(std::min(system_.product(direction, direction_), 1.0));
+    return std::sqrt(system_.product(travel, travel)) <= way * (turn + unseen_turn);
+  }
+
   // The end itself where the prediction reaches it; false if it is not near the prediction: the path bends before it.
   bool step_to_end(PathPoint& next, double& s) {
     const double reach = (to_ - x_.p) / direction_.p;
@@ -177,7 +194,7 @@ class Path::March {
       }
       const int modes = system_.negative_modes();
       PathPoint direction = system_.tangent(next, direction_);
-      if (system_.product(direction, direction_) < largest_bend) {
+      if (system_.product(direction, direction_) < largest_bend || !is_smooth(next, direction)) {
         length_ *= 0.5;
         continue;
       }
