@@ -11,6 +11,7 @@
 #include "catena/analysis/static_ipopt.hpp"
 #include "catena/analysis/static_nlopt.hpp"
 #include "catena/analysis/static_settling.hpp"
+#include "catena/analysis/static_turns.hpp"
 #include "catena/analysis/whole_turns.hpp"
 
 namespace catena {
@@ -378,6 +379,7 @@ StaticResult StaticSearch::find_without_energy(std::vector<double>& q, std::vect
     return result;
   }
   warn_of_rounding(accuracy_, result.report);
+  drop_whole_turns(system_, start, q);
   result.report.warnings.push_back(
       "forces that turn with their body have no energy: the forces balance here, but nothing certifies that this "
       "equilibrium is stable");
@@ -459,6 +461,7 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
     return result;
   }
   warn_of_rounding(accuracy_, result.report);
+  drop_whole_turns(system_, start, q);
   result.dependent_rows = system_.matrix().dependent_rows();
   name_weak_gaps(evaluator, result);
   if (way == Way::valley && !few) {
