@@ -154,6 +154,7 @@ bool Equilibrium::send_row(const Needs& needs, RowObserver& observer, Report& re
 EquilibriumReport Equilibrium::run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
   EquilibriumReport report;
   const ProcessTimer timer;
+  system_.watch([&] { return observer.proceed(t_); });
   for (std::int64_t k = 0; k < grid.size(); ++k) {
     t_ = grid[k];
     if (options_.find > 1) {
@@ -163,6 +164,7 @@ EquilibriumReport Equilibrium::run(const TimeGrid& grid, const Needs& needs, Row
     report = solve();
     if (!report.ok() || !send_row(needs, observer, report)) break;
   }
+  system_.watch({});
   report.seconds = timer.seconds();
   return report;
 }

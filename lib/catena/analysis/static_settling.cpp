@@ -123,6 +123,10 @@ StaticOutcome solve_by_settling(StaticSystem& system, std::span<double> q, std::
   double damping = stiffness, now = size();
   for (outcome.iterations = 1; outcome.iterations <= options.max_iterations; ++outcome.iterations) {
     ++system.evaluator().counters.iterations;
+    if (system.is_cancelled()) {
+      outcome.end = StaticEnd::cancelled;
+      return outcome;
+    }
     if (!tangent.factorize(lambda, damping, stiffness)) {
       damping = std::max(stiffening * damping, 1e-6 * stiffness);
       if (damping > largest_damping * stiffness) break;

@@ -42,8 +42,14 @@ void KktMatrix::clear() {
   std::fill(values_.begin() + structure_.turning(0), values_.end(), 0.0);
 }
 
-void KktMatrix::set_hessian(Evaluator& evaluator, std::span<const double> lambda, Curvature curvature) {
+void KktMatrix::set_hessian(Evaluator& evaluator, std::span<const double> lambda, Curvature curvature,
+                            const ForeseenSprings* springs) {
   clear();
+  if (springs && springs->active()) {
+    evaluator.add_hessians(lambda, curvature, springs->others(), values_);
+    springs->add(evaluator, curvature, values_);
+    return;
+  }
   evaluator.add_hessians(lambda, curvature, structure_.hessian, values_);
 }
 

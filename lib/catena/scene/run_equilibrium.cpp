@@ -53,6 +53,7 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   if (report.certified) {
     result.fields = {{"energy", report.energy},
                      {"stable", report.stable},
+                     {"neutral", report.neutral},
                      {"negative_modes", static_cast<std::int64_t>(report.negative_modes)}};
     if (report.free_motions > 0) {
       result.fields.push_back({"free_motions", static_cast<std::int64_t>(report.free_motions)});
