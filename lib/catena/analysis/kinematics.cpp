@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "catena/analysis/mobility.hpp"
 #include "catena/analysis/process_time.hpp"
 #include "catena/analysis/state_conversion.hpp"
+#include "catena/analysis/time_coverage.hpp"
 #include "catena/analysis/whole_turns.hpp"
 #include "catena/columns/energy.hpp"
 
@@ -41,12 +43,14 @@ constexpr double moments[] = {1e-6, 1e-4, 1e-2, 1, 100};
 Kinematics::Kinematics(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
                        const KinematicsOptions& options)
     : model_(std::move(model)),
-      plan_(Plan::make(*model_, plan_options)),
+      plan_(Plan::make(required(model_), plan_options)),
       evaluator_(plan_, *model_),
       options_(options),
       solver_(evaluator_),
       watched_(evaluator_),
       predictor_(at(plan_->coordinates())) {
+  if (!(options.tolerance > 0)) throw std::invalid_argument("kinematics: the tolerance must be above zero");
+  if (options.branch < 0) throw std::invalid_argument("kinematics: branches are numbered from 1, and 0 chooses none");
   solver_.tolerance = options.tolerance;
   q_ = evaluator_.given_configuration();
   qd_.assign(q_.size(), 0.0);
@@ -79,6 +83,10 @@ AssemblyOutcome Kinematics::assemble() {
   has_velocity_ = has_acceleration_ = false;
   AssemblyOutcome outcome;
   if (!assemble_nearby()) outcome = Assembler(evaluator_).assemble(q_, options_.tolerance);
+  if (outcome.ok() && watched_.has_ends()) {
+    evaluator_.set_configuration(q_);
+    static_cast<Report&>(outcome) = watched_.check_ends();
+  }
   assembled_ = outcome;
   return outcome;
 }
@@ -97,6 +105,7 @@ bool Kinematics::assemble_nearby() {
     return false;
   }
   q_.swap(trial_);
+  if (evaluator_.trace) (*evaluator_.trace)("assembly", newton_.iterations, newton_.residual, newton_.first_correction);
   return true;
 }
 
@@ -136,7 +145,7 @@ Report Kinematics::prepare(double direction) {
 void Kinematics::find_ways(SingularPoint& point, double direction) {
   std::vector<double> nu(at(plan_->rows));
   for (double later : moments) {
-    if (!tables_reach(t_ + direction * later)) break;
+    if (!functions_go_on(t_ + direction * later)) break;
     evaluator_.set_time(t_ + direction * later);
     evaluator_.nu(nu);
     if (std::all_of(nu.begin(), nu.end(), [](double rate) { return rate == 0; })) continue;
@@ -292,10 +301,13 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& asked, RowObse
   Needs needs = asked;
   if (needs.work) needs.velocity = needs.acceleration = needs.multipliers = true;
   account_.reset();
+  TimeRange whole{t_, t_};
   if (grid.size() > 0) {
     earliest_ = grid.earliest();
     latest_ = grid.latest();
+    whole = {std::min(t_, earliest_), std::max(t_, latest_)};
   }
+  const Evaluator::TimeLimit limit(evaluator_, whole);
   const auto end = [&](const Report& outcome) {
     observer_ = nullptr;
     earliest_ = -std::numeric_limits<double>::infinity();
@@ -318,6 +330,7 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& asked, RowObse
       return end(refused);
     }
   }
+  if (const Report functions = check_time_functions(*model_, whole); !functions.ok()) return end(functions);
   if (!assembled_) {
     const AssemblyOutcome outcome = assemble();
     if (!outcome.ok()) return end(outcome);

@@ -74,13 +74,13 @@ class Departure {
 
 }  // namespace
 
-// The time after which the drivers have come by `way`; infinite: they do not, or their tables end before.
+// The time after which the drivers have come by `way`; infinite: they do not, or nothing is known of them then.
 double Kinematics::time_to_depart(double rest, double direction, double way) {
   const Departure departure(evaluator_, rest, direction);
   const auto beyond = [&](double h) { return departure.at(rest + direction * h) >= way; };
   double low = 0, high = shortest;
-  while (high < longest && tables_reach(rest + direction * high) && !beyond(high)) low = high, high *= 2;
-  if (!(high < longest) || !tables_reach(rest + direction * high)) return std::numeric_limits<double>::infinity();
+  while (high < longest && functions_go_on(rest + direction * high) && !beyond(high)) low = high, high *= 2;
+  if (!(high < longest) || !functions_go_on(rest + direction * high)) return std::numeric_limits<double>::infinity();
   while (high - low > 1e-3 * high) {
     const double middle = low + (high - low) / 2;
     (beyond(middle) ? high : low) = middle;
@@ -111,7 +111,7 @@ Report Kinematics::take_branch(const SingularPoint& point, int branch, double di
       for (std::size_t k = 0; k < trial_.size(); ++k) trial_[k] = point.q[k] + s * tangent[k];
       return add_node(bridge, t, entry_allowance * std::abs(s) * std::min(apart, rate));
     };
-    // Around the instant; or, where nothing moves before it or tables begin with it, from there on: that the drivers
+    // Around the instant; or, where nothing moves before it or is known before it, from there on: that the drivers
     // rest tells the velocity and the acceleration at the instant itself.
     constexpr double around[] = {1, 2, -1, -2}, after[] = {1, 2, 3, 4};
     MotionBridge bridge;
@@ -128,7 +128,7 @@ Report Kinematics::take_branch(const SingularPoint& point, int branch, double di
       for (std::size_t k = 0; built && bridge.size() < MotionBridge::capacity; ++k) {
         const double t = point.t + places[k] * h;
         if (rests || bridge.empty()) {
-          built = tables_reach(t) && add_along_tangent(bridge, t);
+          built = functions_go_on(t) && add_along_tangent(bridge, t);
         } else {
           bridge.evaluate(t, trial_, {}, {});
           built = add_node(bridge, t, entry_allowance * entry);

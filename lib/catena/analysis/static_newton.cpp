@@ -129,6 +129,8 @@ StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::sp
     system.residual(lambda, residual);
     outcome.residual = system.force_norm(residual);
     outcome.step = change;
+    if (const IterationTrace* trace = system.evaluator().trace)
+      (*trace)("newton", outcome.iterations, outcome.residual, change);
     near = change <= near_change;
     if (!(system.force_scale(lambda) <=
           std::max(largest_multiplier * system.load_size(), largest_of_sum * system.total_load()))) {
