@@ -151,7 +151,7 @@ TEST(Reports, ShowNewtonsIterationsIfAsked) {
   const ProgramResult quiet = run_catena({"run", scene}), told = run_catena({"run", scene, "-v"});
   EXPECT_EQ(quiet.err, "");
   EXPECT_NE(told.err.find("assembly 1: residual"), std::string::npos) << told.err;
-  EXPECT_NE(told.err.find("newton 2: residual"), std::string::npos) << told.err;
+  EXPECT_NE(told.err.find("downhill 2: residual"), std::string::npos) << told.err;
 }
 
 }  // namespace

@@ -127,8 +127,8 @@ class SceneMutation {
 /// The smaller scenes of data/scenes.
 inline std::vector<std::string> good_scenes() {
   std::vector<std::string> paths, texts;
-  for (const auto& entry : std::filesystem::directory_iterator(std::string(CATENA_DATA_DIR) + "/scenes"))
-    paths.push_back(entry.path().string());
+  const std::filesystem::path folder = std::filesystem::path(CATENA_DATA_DIR) / "scenes";
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) paths.push_back(entry.path().string());
   std::sort(paths.begin(), paths.end());
   for (const std::string& path : paths) {
     if (path.find("100000") == std::string::npos) texts.push_back(read_file(path));

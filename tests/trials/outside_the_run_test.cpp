@@ -46,7 +46,7 @@ TEST(TableFromZero, DrivesThreeCranksFromItsStartToItsEnd) {
 TEST(BeyondSplineEnd, EndsTheRunWhereTheRailEnds) {
   const TextRun run = run_trial("beyond_spline_end");
   const Report& report = run.analysis().report;
-  EXPECT_EQ(report.status, Status::refused);
+  EXPECT_EQ(report.status, Status::singular);
   EXPECT_NEAR(instant_in(report.message), 1, 1e-8) << report.message;
   EXPECT_NE(report.message.find("(1, 1)"), std::string::npos) << report.message;
   EXPECT_EQ(run.column("t"), (std::vector<double>{0, 0.5, 1}));
@@ -90,7 +90,7 @@ TEST(CurveEnd, IsNoticedBetweenRows) {
       continue;
     }
     ++left;
-    EXPECT_EQ(report.status, Status::refused) << number;
+    EXPECT_EQ(report.status, Status::singular) << number;
     EXPECT_NEAR(instant_in(report.message), std::asin(0.5 / std::stod(number)) / (2 * pi), 1e-7) << report.message;
     EXPECT_TRUE(run_text(rail_scene(motion, "line")).analysis().report.ok());
   }
@@ -110,7 +110,7 @@ TEST(CurveEnd, IsNoticedInDynamicsByEveryMethod) {
       const TextRun run = run_text(scene);
       ASSERT_EQ(run.outcome.exit_code, 1) << run.outcome.error_text;
       const Report& report = run.analysis().report;
-      EXPECT_EQ(report.status, Status::refused) << method << report.message;
+      EXPECT_EQ(report.status, Status::singular) << method << report.message;
       EXPECT_NEAR(instant_in(report.message), std::asin(5.0 / 6) / 10, 1e-6) << method << report.message;
       for (double x : run.column("runner.x")) EXPECT_LE(x, 1 + 1e-9);
     }
@@ -133,7 +133,7 @@ TEST(TableEnd, IsNoticedInEveryAnalysis) {
   const std::string swing = R"({"type": "dynamics", "until": 2, "every": 1})";
   EXPECT_TRUE(run_text(table_scene("error", swing, "0.999")).analysis().report.ok());
   const TextRun past = run_text(table_scene("error", swing, "2"));
-  EXPECT_EQ(past.analysis().report.status, Status::refused);
+  EXPECT_EQ(past.analysis().report.status, Status::singular);
   EXPECT_NEAR(instant_in(past.analysis().report.message), pi / 60, 1e-7) << past.analysis().report.message;
   const TextRun line = run_text(table_scene("line", R"({"type": "dynamics", "until": 0.1, "every": 0.05})", "2"));
   ASSERT_TRUE(line.analysis().report.ok());
@@ -145,11 +145,11 @@ TEST(TableEnd, IsNoticedInEveryAnalysis) {
     return text.replace(text.find("LOAD"), 4, load);
   };
   EXPECT_NEAR(run_text(table_scene("error", with_load("9"), "0")).last("a.x"), 1.09, 1e-9);
-  EXPECT_EQ(run_text(table_scene("error", with_load("20"), "0")).analysis().report.status, Status::refused);
+  EXPECT_EQ(run_text(table_scene("error", with_load("20"), "0")).analysis().report.status, Status::singular);
   EXPECT_NEAR(run_text(table_scene("line", with_load("20"), "0")).last("a.x"), 1.2, 1e-9);
   EXPECT_FALSE(run_text(table_scene("hold", with_load("20"), "0")).analysis().report.ok());
   const TextRun path = run_text(table_scene("error", R"({"type": "path", "parameter": "load", "to": 20})", "0"));
-  EXPECT_EQ(path.analysis().report.status, Status::refused) << path.analysis().report.message;
+  EXPECT_EQ(path.analysis().report.status, Status::singular) << path.analysis().report.message;
   for (double x : path.column("a.x")) EXPECT_LE(x, 1.1 + 1e-6);
 }
 

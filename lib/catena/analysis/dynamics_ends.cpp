@@ -19,7 +19,7 @@ Report Dynamics::check_curve_ends(double from, RowObserver& observer) {
       integrator_->interpolate(t, y_row_);
     }
     evaluator_.set_configuration(std::span<const double>(y_row_).first(q_.size()));
-    return watched_.excess() > WatchedElements::allowed_excess;
+    return !watched_.check().ok();
   };
   double inside = from, outside = from;
   for (int k = 1; k <= samples && outside == from; ++k) {
@@ -40,7 +40,7 @@ Report Dynamics::check_curve_ends(double from, RowObserver& observer) {
   }
   left_at(outside);
   evaluator_.set_time(outside);
-  return watched_.check_ends();
+  return watched_.check();
 }
 
 }  // namespace catena

@@ -65,7 +65,7 @@ Report Dynamics::start() {
   describe_mobility(report_);
   if (!watched_.has_ends()) return {};
   evaluator_.set_configuration(std::span<const double>(y_row_).first(q_.size()));
-  return watched_.check_ends();
+  return watched_.check();
 }
 
 // Puts the integrator where the motion begins, or where it paused.

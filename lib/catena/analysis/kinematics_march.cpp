@@ -110,7 +110,7 @@ bool Kinematics::leaves_curve(double t) {
   evaluator_.set_configuration(trial_);
   excess_ = watched_.excess();
   const double allowed = WatchedElements::allowed_excess;
-  if (excess_ > allowed) return true;
+  if (excess_ > allowed || !watched_.check().ok()) return true;
   const std::size_t n = excesses_.size();
   if (n >= 2 && excesses_[n - 1].t == t_) {
     const auto [ta, a] = excesses_[n - 2];
@@ -231,7 +231,7 @@ Report Kinematics::move_to(double t) {
       step = std::abs(next - t_) / 2;
       if (!(step < tiny || t_ + direction * step == t_)) continue;
       evaluator_.set_configuration(trial_);
-      Report left = watched_.check_ends();
+      Report left = watched_.check();
       left.warnings = std::move(report.warnings);
       if (!left.ok()) return left;
       report.warnings = std::move(left.warnings);

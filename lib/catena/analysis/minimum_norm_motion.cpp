@@ -218,8 +218,8 @@ Report MinimumNormMotion::move_to(double t, RowObserver& observer) {
       const double error = try_step(end, direction > 0 && lands && breaks, false);
       if (error <= 1 && watched_.has_ends()) {
         evaluator_.set_configuration(trial_);
-        if (watched_.excess() > WatchedElements::allowed_excess) {
-          if (h < smallest) return watched_.check_ends();
+        if (Report left = watched_.check(); !left.ok()) {
+          if (h < smallest) return left;
           step_ = h / 2;
           continue;
         }

@@ -107,6 +107,10 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
   const double extent = system.extent(), load = system.force_norm(system.gradient());
   double reach = 1, last_shift = 0;
   double energy = system.energy(), energy_size = std::abs(energy);
+  const auto tell = [&] {
+    if (const IterationTrace* trace = system.evaluator().trace)
+      (*trace)("downhill", outcome.iterations, outcome.residual, outcome.step);
+  };
   for (outcome.iterations = 1; outcome.iterations <= options.max_iterations; ++outcome.iterations) {
     ++system.evaluator().counters.iterations;
     // The exact K, stiffened until its inertia is that of a minimum and a step can be made.
@@ -135,6 +139,7 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
         std::copy(next_lambda.begin(), next_lambda.end(), lambda.begin());
         system.move_to(q);
         polish(system, q, lambda, outcome);
+        tell();
         const double force = std::max(system.force_scale(lambda), load);
         outcome.end = outcome.exact                                 ? StaticEnd::minimum
                       : outcome.residual <= stationary_part * force ? StaticEnd::stationary
@@ -174,6 +179,7 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
     std::copy(next_lambda.begin(), next_lambda.end(), lambda.begin());
     system.residual(lambda, residual);
     outcome.residual = system.force_norm(residual);
+    tell();
     if (is_lost(q, start, extent)) {
       outcome.end = StaticEnd::unbounded;
       return outcome;

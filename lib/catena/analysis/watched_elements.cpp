@@ -28,7 +28,6 @@ WatchedElements::WatchedElements(const Evaluator& evaluator) : evaluator_(evalua
 }
 
 Report WatchedElements::check() const {
-  // A contact that has no place on its curve any more has mostly left it at an end.
   if (Report ends = check_ends(); !ends.ok()) return ends;
   Report report;
   for (int element : elements_) {
@@ -58,15 +57,15 @@ Report WatchedElements::check_ends() const {
     const std::optional<CurveUse> use = evaluator_.curve_use(element);
     if (!use || !(use->excess() > allowed_excess)) continue;
     const bool low = use->parameter < (use->first + use->last) / 2;
-    const std::string where =
-        use->end ? fmt::format("the curve of {} \"{}\" is left at its end at ({:.9g}, {:.9g}) m",
-                               model.element_type(element), model.element_name(element), use->end->x, use->end->y)
-                 : fmt::format("the table of {} \"{}\" ends at an elongation of {:.9g} m, which is passed",
-                               model.element_type(element), model.element_name(element), low ? use->first : use->last);
-    report.status = Status::refused;
+    const std::string why =
+        use->end
+            ? fmt::format("its curve is left at its end at ({:.9g}, {:.9g}) m", use->end->x, use->end->y)
+            : fmt::format("its table ends at an elongation of {:.9g} m, which is passed", low ? use->first : use->last);
+    report.status = Status::singular;
     report.message = fmt::format(
-        "at t = {:.9g} s {}; end the analysis before, make the {} longer, or say with \"beyond\" what lies there",
-        evaluator_.time(), where, use->end ? "curve" : "table");
+        "{} \"{}\" determines nothing at t = {:.9g} s: {}; end the analysis before, make the {} longer, or say with "
+        "\"beyond\" what lies there",
+        model.element_type(element), model.element_name(element), evaluator_.time(), why, use->end ? "curve" : "table");
     break;
   }
   return report;

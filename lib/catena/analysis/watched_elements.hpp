@@ -16,8 +16,8 @@ class WatchedElements {
  public:
   explicit WatchedElements(const Evaluator& evaluator);
 
-  /// Names the first element that means nothing at the evaluator's configuration and time, and why: `singular`, or
-  /// `refused` where one has left its curve or table.
+  /// `singular`, naming the first element that means nothing at the evaluator's configuration and time, and why; or
+  /// where one has left its curve or table, at which end.
   Report check() const;
   /// The part of it about curves and tables that end.
   Report check_ends() const;

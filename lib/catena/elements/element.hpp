@@ -60,15 +60,14 @@ struct Rates {
 };
 
 /// Where an element stands on a curve or table that ends: the parameter, m, within [first, last] where it is on it; and
-/// the nearer end of a curve, in the frame of body i (`body` 0) or j (1). `lost`: no point of the curve will do.
+/// the nearer end of a curve, in the frame of body i (`body` 0) or j (1).
 struct CurveUse {
   double parameter = 0, first = 0, last = 0;
   std::optional<Vec2<double>> end = {};
   int body = 0;
-  bool lost = false;
 
   /// How far it is beyond an end, in parts of the whole; negative inside.
-  double excess() const { return lost ? 1 : std::max(first - parameter, parameter - last) / (last - first); }
+  double excess() const { return std::max(first - parameter, parameter - last) / (last - first); }
 };
 
 /// What is known of an entry of Phi_q before any number is.

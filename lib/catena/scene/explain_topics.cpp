@@ -123,7 +123,7 @@ Example
       {{"curve", "circle", "polar", "line"},
        R"(curve: a curve fixed in a body frame
   {"circle": {"centre": [x', y'], "radius": r}}            counter-clockwise
-  {"spline": {"points": [[x', y'], ...], "end": "natural" or "periodic"}}
+  {"spline": {"points": [[x', y'], ...], "end": "natural" or "periodic", "beyond": "error", "hold" or "line"}}
   {"polar": {"angle": [...], "radius": [...]}}             periodic, about the body's origin
   {"line": {"point": [x', y'], "axis": [vx', vy']}}
 )"},

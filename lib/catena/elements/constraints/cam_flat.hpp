@@ -75,10 +75,8 @@ struct CamFlat {
   }
   bool can_leave_curve() const { return curve.ends(); }
   std::optional<CurveUse> curve_use(const Arguments<double>& a) const {
-    const bool touches = follow_contact(normal(a.i, a.j));
-    CurveUse use = curve.use_at(parameter);
-    use.lost = !touches && at_end();
-    return use;
+    follow_contact(normal(a.i, a.j));
+    return curve.use_at(parameter);
   }
 
   template <class T>
