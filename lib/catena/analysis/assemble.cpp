@@ -154,6 +154,9 @@ bool Assembler::restore(std::span<double> q, double tolerance, int most_iteratio
     damping = damping > 1e-8 ? damping / 10 : 0;
     std::copy(trial_.begin(), trial_.end(), q.begin());
     now = then;
+    if (evaluator_.trace)
+      (*evaluator_.trace)("assembly", outcome.iterations, scaling_.row_norm(phi_),
+                          factor * scaling_.column_norm(step_));
   }
   return outcome.residual <= rounding_of_places(evaluator_);
 }

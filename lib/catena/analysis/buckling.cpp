@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "catena/analysis/modes_operator.hpp"
 #include "catena/analysis/process_time.hpp"
 #include "catena/analysis/state_conversion.hpp"
 #include "catena/analysis/static_balance.hpp"
 #include "catena/analysis/static_holding.hpp"
+#include "catena/analysis/time_coverage.hpp"
+#include "catena/analysis/watched_elements.hpp"
 
 namespace catena {
 namespace {
@@ -66,15 +69,21 @@ std::vector<int> largest_ones(std::span<const double> theta, int count) {
   return order;
 }
 
+ModelAt required(ModelAt model_at) {
+  if (!model_at)
+    throw std::invalid_argument("buckling: there is nothing that makes models at other values of the parameter");
+  return model_at;
+}
+
 }  // namespace
 
 Buckling::Buckling(std::shared_ptr<const Model> model, ModelAt model_at, const BucklingOptions& options)
     : model_(std::move(model)),
-      plan_(Plan::make(*model_)),
+      plan_(Plan::make(catena::required(model_))),
       options_(options),
       evaluator_(plan_, *model_),
       system_(evaluator_),
-      path_(system_, std::move(model_at), options.present, 1) {
+      path_(system_, required(std::move(model_at)), options.present, 1) {
   point_ = {evaluator_.given_configuration(), std::vector<double>(at(plan_->rows), 0.0), options.present};
 }
 
@@ -219,14 +228,18 @@ BucklingReport Buckling::run(const std::function<bool()>& go_on) {
   report.bodies = static_cast<int>(model_->bodies.size());
   report.rows = plan_->rows;
   report.islands = plan_->islands;
-  evaluator_.set_time(t_);
-  path_.set_time(t_);
-  Report outcome{Status::refused,
-                 "follower forces have no energy, and buckling under forces without one is not built; give the forces "
-                 "in ground axes",
-                 {}};
-  if (evaluator_.conservative()) outcome = find(report, go_on);
-  path_.move_to(point_);
+  Report outcome = check_time_functions(*model_, {t_, t_});
+  if (outcome.ok()) {
+    evaluator_.set_time(t_);
+    path_.set_time(t_);
+    outcome = {Status::refused,
+               "follower forces have no energy, and buckling under forces without one is not built; give the forces in "
+               "ground axes",
+               {}};
+    if (evaluator_.conservative()) outcome = find(report, go_on);
+    path_.move_to(point_);
+    if (outcome.ok()) outcome = WatchedElements(evaluator_).check_ends();
+  }
   report.status = outcome.status;
   report.message = std::move(outcome.message);
   report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());

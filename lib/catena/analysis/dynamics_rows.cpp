@@ -127,6 +127,10 @@ Report Dynamics::stuck() {
         integrator_->time(), model_->element_type(driver), model_->element_name(driver));
     return report;
   }
+  // What means nothing in kinematics means nothing here.
+  evaluator_.set_time(integrator_->time());
+  evaluator_.set_configuration(integrator_->state().first(q_.size()));
+  if (Report sound = watched_.check(); !sound.ok()) return sound;
   report.status = Status::step_too_small;
   const int row = equations_.weakest_row();
   std::string where;

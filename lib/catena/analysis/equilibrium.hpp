@@ -18,6 +18,7 @@
 #include "catena/analysis/analysis_report.hpp"
 #include "catena/analysis/certificate.hpp"
 #include "catena/analysis/row_observer.hpp"
+#include "catena/analysis/state_conversion.hpp"
 #include "catena/analysis/static_search.hpp"
 #include "catena/analysis/system_state.hpp"
 #include "catena/analysis/time_grid.hpp"
@@ -86,6 +87,9 @@ class Equilibrium {
   std::span<const double> lambda() const { return lambda_; }
   /// The present state, absolute and in model order, at rest.
   SystemState state() const;
+  /// Where a body is: the frame in which its points and attachments were given. By its number in the model; throws
+  /// std::out_of_range for one that no body has.
+  Frame<double> frame(int body) const { return frame_of(evaluator_, q_, body); }
 
  private:
   void choose_least_reactions(Report& report);

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "catena/analysis/mobility.hpp"
 #include "catena/analysis/process_time.hpp"
 #include "catena/analysis/state_conversion.hpp"
+#include "catena/analysis/time_coverage.hpp"
 #include "catena/analysis/whole_turns.hpp"
 #include "catena/columns/energy.hpp"
 
@@ -45,12 +47,14 @@ constexpr double moments[] = {1e-6, 1e-4, 1e-2, 1, 100};
 Kinematics::Kinematics(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
                        const KinematicsOptions& options)
     : model_(std::move(model)),
-      plan_(Plan::make(*model_, plan_options)),
+      plan_(Plan::make(required(model_), plan_options)),
       evaluator_(plan_, *model_),
       options_(options),
       solver_(evaluator_),
       watched_(evaluator_),
       predictor_(at(plan_->coordinates())) {
+  if (!(options.tolerance > 0)) throw std::invalid_argument("kinematics: the tolerance must be above zero");
+  if (options.branch < 0) throw std::invalid_argument("kinematics: branches are numbered from 1, and 0 chooses none");
   solver_.tolerance = options.tolerance;
   q_ = evaluator_.given_configuration();
   qd_.assign(q_.size(), 0.0);
@@ -87,6 +91,10 @@ AssemblyOutcome Kinematics::assemble() {
   has_velocity_ = has_acceleration_ = false;
   AssemblyOutcome outcome;
   if (!assemble_nearby()) outcome = Assembler(evaluator_).assemble(q_, options_.tolerance);
+  if (outcome.ok() && watched_.has_ends()) {
+    evaluator_.set_configuration(q_);
+    static_cast<Report&>(outcome) = watched_.check_ends();
+  }
   assembled_ = outcome;
   return outcome;
 }
@@ -105,6 +113,7 @@ bool Kinematics::assemble_nearby() {
     return false;
   }
   q_.swap(trial_);
+  if (evaluator_.trace) (*evaluator_.trace)("assembly", newton_.iterations, newton_.residual, newton_.first_correction);
   return true;
 }
 
@@ -128,6 +137,7 @@ Report Kinematics::get_ready(double direction) {
 }
 
 Report Kinematics::move_to(double t) {
+  if (!std::isfinite(t)) throw std::invalid_argument("kinematics cannot move to an instant that is not finite");
   Report ready = get_ready(t < t_ ? -1 : 1);
   if (!ready.ok()) return ready;
   Report moved = follow_to(t);
@@ -179,7 +189,7 @@ Report Kinematics::prepare(double direction) {
 void Kinematics::find_ways(SingularPoint& point, double direction) {
   std::vector<double> nu(at(plan_->rows));
   for (double later : moments) {
-    if (!tables_reach(t_ + direction * later)) break;
+    if (!functions_go_on(t_ + direction * later)) break;
     evaluator_.set_time(t_ + direction * later);
     evaluator_.nu(nu);
     if (std::all_of(nu.begin(), nu.end(), [](double rate) { return rate == 0; })) continue;
@@ -346,16 +356,17 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& asked, RowObse
   Needs needs = asked;
   if (needs.work) needs.velocity = needs.acceleration = needs.multipliers = true;
   account_.reset();
+  TimeRange whole{t_, t_};
   if (grid.size() > 0) {
     earliest_ = grid.earliest();
     latest_ = grid.latest();
-    range_ = {std::min(t_, earliest_), std::max(t_, latest_)};
+    whole = {std::min(t_, earliest_), std::max(t_, latest_)};
   }
+  const Evaluator::TimeLimit limit(evaluator_, whole);
   const auto end = [&](const Report& outcome) {
     observer_ = nullptr;
     earliest_ = -std::numeric_limits<double>::infinity();
     latest_ = std::numeric_limits<double>::infinity();
-    range_ = {};
     if (outcome.status == Status::lock_up) give_row_at_lock_up(needs, observer);
     report.status = outcome.status;
     report.message = outcome.message;
@@ -376,6 +387,7 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& asked, RowObse
       return end(refused);
     }
   }
+  if (const Report functions = check_time_functions(*model_, whole); !functions.ok()) return end(functions);
   if (!assembled_ || !assembled_->ok()) {
     const AssemblyOutcome outcome = assemble();
     if (!outcome.ok()) return end(outcome);

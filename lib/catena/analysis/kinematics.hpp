@@ -24,6 +24,7 @@
 #include "catena/analysis/mobility.hpp"
 #include "catena/analysis/predictor.hpp"
 #include "catena/analysis/row_observer.hpp"
+#include "catena/analysis/state_conversion.hpp"
 #include "catena/analysis/system_state.hpp"
 #include "catena/analysis/time_grid.hpp"
 #include "catena/analysis/watched_elements.hpp"
@@ -64,6 +65,9 @@ class Kinematics {
   std::span<const double> lambda() const { return lambda_; }
   /// The present state, absolute and in model order; velocities if they are known.
   SystemState state() const;
+  /// Where a body is now: the frame in which its points and attachments were given. By its number in the model; throws
+  /// std::out_of_range for one that no body has.
+  Frame<double> frame(int body) const { return frame_of(evaluator_, q_, body); }
   const DrivenSolver& solver() const { return solver_; }
   /// The singular configurations met so far, in the order in which they were met.
   const std::vector<SingularPoint>& singular_points() const { return singular_points_; }
@@ -79,8 +83,9 @@ class Kinematics {
   Report start_singular(SingularPoint point, double direction);
   bool choose_rows(std::span<const double> q);
   bool choose_better_rows();
-  enum class StepOutcome { made, dipped, too_long, crossed };
+  enum class StepOutcome { made, dipped, too_long, crossed, left_curve };
   StepOutcome try_step(double t, bool ignore_dips);
+  bool leaves_curve(double t);
   bool heads_for_singularity(double t) const;
   void remember_margins();
   Report cancelled() const;
@@ -127,7 +132,7 @@ class Kinematics {
   double time_to_depart(double rest, double direction, double way);
   void leave_bridge(double end);
   void place_on_bridge(double t);
-  bool tables_reach(double t) const;
+  bool functions_go_on(double t) const;
   void announce(const SingularPoint& point, Report& report);
 
   std::shared_ptr<const Model> model_;
@@ -136,6 +141,11 @@ class Kinematics {
   KinematicsOptions options_;
   DrivenSolver solver_;
   WatchedElements watched_;
+  struct Excess {
+    double t, parts;
+  };
+  std::vector<Excess> excesses_;  // beyond the ends of curves, at the last two steps
+  double excess_ = 0;             // at the step that is tried
   Predictor predictor_;
   std::optional<AssemblyOutcome> assembled_;
   bool prepared_ = false, placed_ = false;  // the constraints drive it; the solver is where q_ is
@@ -143,7 +153,6 @@ class Kinematics {
   RowObserver* observer_ = nullptr;                             // during run(): asked between rows too whether to go on
   double earliest_ = -std::numeric_limits<double>::infinity();  // rows of run(): what lies beyond is not reported
   double latest_ = std::numeric_limits<double>::infinity();
-  TimeRange range_;  // of run(), its start included: no function of time is evaluated outside
   double t_ = 0;
   std::vector<double> q_, qd_, qdd_, lambda_, least_lambda_, trial_, loads_, applied_, nothing_;
   std::vector<double> rest_, rates_;  // of redundant rows, by row; of a check, by column

@@ -101,13 +101,13 @@ MotionBridge anchor(const MotionBridge& bridge, const SingularPoint& point, std:
 
 }  // namespace
 
-// The time after which the drivers have come by `way`; infinite: they do not, or their tables end before.
+// The time after which the drivers have come by `way`; infinite: they do not, or nothing is known of them then.
 double Kinematics::time_to_depart(double rest, double direction, double way) {
   const Departure departure(evaluator_, rest, direction);
   const auto beyond = [&](double h) { return departure.at(rest + direction * h) >= way; };
   double low = 0, high = shortest;
-  while (high < longest && tables_reach(rest + direction * high) && !beyond(high)) low = high, high *= 2;
-  if (!(high < longest) || !tables_reach(rest + direction * high)) return std::numeric_limits<double>::infinity();
+  while (high < longest && functions_go_on(rest + direction * high) && !beyond(high)) low = high, high *= 2;
+  if (!(high < longest) || !functions_go_on(rest + direction * high)) return std::numeric_limits<double>::infinity();
   while (high - low > 1e-3 * high) {
     const double middle = low + (high - low) / 2;
     (beyond(middle) ? high : low) = middle;
@@ -155,7 +155,7 @@ Report Kinematics::take_branch(const SingularPoint& point, int branch, double di
       for (std::size_t k = 0; built && bridge.size() < MotionBridge::capacity; ++k) {
         const double t = point.t + places[k] * h;
         if (rests || bridge.empty()) {
-          built = tables_reach(t) && add_along_tangent(bridge, t);
+          built = functions_go_on(t) && add_along_tangent(bridge, t);
         } else {
           bridge.evaluate(t, trial_, {}, {});
           built = add_node(bridge, t, entry_allowance * entry);

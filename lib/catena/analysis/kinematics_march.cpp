@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "catena/analysis/kinematics.hpp"
+#include "catena/analysis/time_coverage.hpp"
 
 namespace catena {
 namespace {
@@ -45,6 +46,8 @@ constexpr double most_steps_left = 4;
 constexpr double longest_way = 1e3;
 // Steps made after one that failed before their length may grow again.
 constexpr int patience = 2;
+// Least number of steps between rows where the ends of curves are watched.
+constexpr double steps_to_a_row = 8;
 
 }  // namespace
 
@@ -86,6 +89,7 @@ Kinematics::StepOutcome Kinematics::try_step(double t, bool ignore_dips) {
   if (!newton_.converged || newton_.first_turn > largest_turn || newton_.contraction > largest_contraction) {
     return StepOutcome::too_long;
   }
+  if (watched_.has_ends() && leaves_curve(t)) return StepOutcome::left_curve;
   if (plan_->constant_jacobian) return StepOutcome::made;
   double turn = 0;
   solver_.distance(trial_, q_, &turn);
@@ -103,6 +107,24 @@ Kinematics::StepOutcome Kinematics::try_step(double t, bool ignore_dips) {
   }
   if (crossed) return StepOutcome::crossed;
   return dipped && !ignore_dips ? StepOutcome::dipped : StepOutcome::made;
+}
+
+// Whether a curve or table is left at (t, trial_), or was between the last steps and this one: the parabola through how
+// far beyond their ends the three are tells.
+bool Kinematics::leaves_curve(double t) {
+  evaluator_.set_configuration(trial_);
+  excess_ = watched_.excess();
+  const double allowed = WatchedElements::allowed_excess;
+  if (excess_ > allowed || !watched_.check().ok()) return true;
+  const std::size_t n = excesses_.size();
+  if (n >= 2 && excesses_[n - 1].t == t_) {
+    const auto [ta, a] = excesses_[n - 2];
+    const auto [tb, b] = excesses_[n - 1];
+    const double before = (b - a) / (tb - ta), after = (excess_ - b) / (t - tb), bend = (after - before) / (t - ta);
+    const double top = (ta + tb) / 2 - before / (2 * bend);
+    if (bend < 0 && (top - ta) * (top - t) < 0 && a + (top - ta) * (before + bend * (top - tb)) > allowed) return true;
+  }
+  return false;
 }
 
 // Extrapolation is exact for constants but for rounding, which nothing corrects where there is no unknown.
@@ -148,12 +170,21 @@ Report Kinematics::follow_to(double t) {
   int made_since_failure = patience;
   bool ignore_dips = false;
   double first_trial = 0;
+  // Within a run its own limits hold.
+  std::optional<Evaluator::TimeLimit> limit;
+  if (!observer_) {
+    const TimeRange way{std::min(t, t_), std::max(t, t_)};
+    if (report = check_time_functions(*model_, way); !report.ok()) return report;
+    limit.emplace(evaluator_, way);
+  }
   if (margins_.empty() && bridge_.empty()) {
     solver_.factor_at(q_);
     remember_margins();
   }
   on_bridge_ = false;
   while (t_ != t) {
+    // Curves that end are not to be left and come back to within a step.
+    if (watched_.has_ends()) step = std::min(step, span / steps_to_a_row);
     if (!bridge_.empty()) {
       if (choice_ && direction * (t - choice_->t) > 0) {
         const SingularPoint point = *choice_;
@@ -178,6 +209,10 @@ Report Kinematics::follow_to(double t) {
       ++made_since_failure;
       remember_margins();
       if (const Report consistent = check_redundant_rows(); !consistent.ok()) return consistent;
+      if (watched_.has_ends()) {
+        if (excesses_.size() >= 2) excesses_.erase(excesses_.begin());
+        excesses_.push_back({t_, excess_});
+      }
       if (chosen_rcond_ > 0 && solver_.rcond() < drifted * chosen_rcond_) choose_better_rows();
       if (t_ != t) {
         if (observer_ && !observer_->proceed(t_)) return cancelled();
@@ -197,6 +232,17 @@ Report Kinematics::follow_to(double t) {
     ++evaluator_.counters.rejected;
     made_since_failure = 0;
     if (!has_velocity_) find_velocity();
+    if (outcome == StepOutcome::left_curve) {
+      step = std::abs(next - t_) / 2;
+      if (!(step < tiny || t_ + direction * step == t_)) continue;
+      evaluator_.set_configuration(trial_);
+      Report left = watched_.check();
+      left.warnings = std::move(report.warnings);
+      if (!left.ok()) return left;
+      report.warnings = std::move(left.warnings);
+      excesses_.clear();  // the parabola was mistaken
+      continue;
+    }
     const double length = std::abs(next - t_);
     if (length < try_again * first_trial) attempt = 0;
     if (attempt < reaches.size() && has_velocity_ && length <= bridge_length((t_ + next) / 2, reaches[attempt]) / 2) {

@@ -12,6 +12,7 @@
 #include "catena/analysis/process_time.hpp"
 #include "catena/analysis/scaling.hpp"
 #include "catena/analysis/state_conversion.hpp"
+#include "catena/analysis/time_coverage.hpp"
 
 namespace catena {
 namespace {
@@ -36,7 +37,7 @@ constexpr double allowance = 1e4;
 
 MinimumNormMotion::MinimumNormMotion(std::shared_ptr<const Model> model, const PlanOptions& plan_options)
     : model_(std::move(model)),
-      plan_(Plan::make(*model_, plan_options)),
+      plan_(Plan::make(required(model_), plan_options)),
       evaluator_(plan_, *model_),
       least_(evaluator_),
       watched_(evaluator_) {
@@ -246,6 +247,14 @@ Report MinimumNormMotion::move_to(double t, RowObserver& observer) {
       if (!lands && (h < smallest || end == t_)) return stuck(t);
       // Backwards in time a jump lies on the other side.
       const double error = try_step(end, direction > 0 && lands && breaks, false);
+      if (error <= 1 && watched_.has_ends()) {
+        evaluator_.set_configuration(trial_);
+        if (Report left = watched_.check(); !left.ok()) {
+          if (h < smallest) return left;
+          step_ = h / 2;
+          continue;
+        }
+      }
       const double growth =
           std::clamp(safety * std::pow(std::max(error, 1e-10), -1.0 / 8), largest_cut, largest_growth);
       if (!(error <= 1)) {
@@ -297,6 +306,10 @@ AnalysisReport MinimumNormMotion::run(const TimeGrid& grid, const Needs& needs, 
     report.seconds = timer.seconds();
     return report;
   };
+  const TimeRange whole{grid.size() > 0 ? std::min(t_, grid.earliest()) : t_,
+                        grid.size() > 0 ? std::max(t_, grid.latest()) : t_};
+  if (const Report functions = check_time_functions(*model_, whole); !functions.ok()) return end(functions);
+  const Evaluator::TimeLimit limit(evaluator_, whole);
   if (const Report prepared = prepare(report); !prepared.ok()) return end(prepared);
   for (std::int64_t k = 0; k < grid.size(); ++k) {
     if (grid[k] != t_) {

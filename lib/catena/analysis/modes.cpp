@@ -14,6 +14,8 @@
 #include "catena/analysis/process_time.hpp"
 #include "catena/analysis/state_conversion.hpp"
 #include "catena/analysis/static_balance.hpp"
+#include "catena/analysis/time_coverage.hpp"
+#include "catena/analysis/watched_elements.hpp"
 
 namespace catena {
 namespace {
@@ -35,7 +37,7 @@ bool is_damped(const Evaluator& evaluator) {
 
 Modes::Modes(std::shared_ptr<const Model> model, const PlanOptions& plan_options, const ModesOptions& options)
     : model_(std::move(model)),
-      plan_(Plan::make(*model_, plan_options)),
+      plan_(Plan::make(required(model_), plan_options)),
       options_(options),
       evaluator_(plan_, *model_),
       system_(evaluator_),
@@ -109,8 +111,10 @@ ModesReport Modes::run(const std::function<bool()>& go_on) {
                 "ground axes",
                 {}});
   }
+  if (Report functions = check_time_functions(*model_, {t_, t_}); !functions.ok()) return end(std::move(functions));
   evaluator_.set_time(t_);
   if (Report assembly = assemble_for_statics(system_, q_); !assembly.ok()) return end(std::move(assembly));
+  if (Report ends = WatchedElements(evaluator_).check_ends(); !ends.ok()) return end(std::move(ends));
   MassMatrix masses;
   if (Report missing = masses.load(evaluator_); !missing.ok()) return end(std::move(missing));
   std::vector<double> mass(at(plan_->columns)), lambda(at(plan_->rows));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "catena/analysis/certificate.hpp"
 #include "catena/analysis/free_motions.hpp"
@@ -12,6 +13,8 @@
 #include "catena/analysis/static_balance.hpp"
 #include "catena/analysis/static_holding.hpp"
 #include "catena/analysis/static_search.hpp"
+#include "catena/analysis/time_coverage.hpp"
+#include "catena/analysis/watched_elements.hpp"
 
 namespace catena {
 namespace {
@@ -37,7 +40,12 @@ constexpr double largest_miss = 0.3;
 class Path::March {
  public:
   March(Path& path, const std::function<bool(double, const Snapshot&)>& observe)
-      : path_(path), system_(path.path_), options_(path.options_), observe_(observe), to_(path.options_.to) {}
+      : path_(path),
+        system_(path.path_),
+        options_(path.options_),
+        observe_(observe),
+        to_(path.options_.to),
+        watched_(path.evaluator_) {}
 
   Report run(PathReport& report) {
     report_ = &report;
@@ -46,7 +54,7 @@ class Path::March {
       const Progress progress = step();
       ++report.steps;
       if (progress == Progress::finished) return {};
-      if (progress == Progress::cancelled) return {Status::cancelled, "stopped along the path", {}};
+      if (progress == Progress::cancelled) return stopped();
       if (progress == Progress::stuck) {
         return {Status::step_too_small,
                 fmt::format("the path could not be followed beyond {:.10g}: no solution even {:.1g} further on; likely "
@@ -91,11 +99,20 @@ class Path::March {
     modes_ = system_.negative_modes();
     direction_ = system_.tangent(x_, direction_);
     length_ = options_.arc;
-    return write(x_) ? Report{} : Report{Status::cancelled, "stopped along the path", {}};
+    return write(x_) ? Report{} : stopped();
+  }
+
+  // Why no row is written any more: an element has left its curve, or the user stopped.
+  Report stopped() const {
+    return left_curve_.ok() ? Report{Status::cancelled, "stopped along the path", {}} : left_curve_;
   }
 
   bool write(const PathPoint& x) {
     system_.move_to(x);
+    if (left_curve_ = watched_.check_ends(); !left_curve_.ok()) {
+      left_curve_.message = fmt::format("at the value {:.10g} of the parameter: {}", x.p, left_curve_.message);
+      return false;
+    }
     report_->negative_modes.push_back(modes_);
     const Snapshot snapshot{.evaluator = path_.evaluator_,
                             .t = path_.t_,
@@ -274,6 +291,8 @@ class Path::March {
   PathReport* report_ = nullptr;
   PathPoint x_, direction_;
   double to_, length_ = 0;
+  WatchedElements watched_;
+  Report left_curve_;
   int modes_ = 0;
   bool switched_ = false;
 };
@@ -281,13 +300,20 @@ class Path::March {
 Path::Path(std::shared_ptr<const Model> model, ModelAt model_at, const PathOptions& options,
            const PlanOptions& plan_options)
     : model_(std::move(model)),
-      plan_(Plan::make(*model_, plan_options)),
+      plan_(Plan::make(required(model_), plan_options)),
       model_at_(std::move(model_at)),
       options_(options),
       evaluator_(plan_, *model_),
       system_(evaluator_),
       path_(system_, model_at_, options.from, std::max(std::abs(options.to - options.from), 1e-300)),
-      q_(evaluator_.given_configuration()) {}
+      q_(evaluator_.given_configuration()) {
+  if (!model_at_)
+    throw std::invalid_argument("path: there is nothing that makes models at other values of the parameter");
+  if (!std::isfinite(options.from) || !std::isfinite(options.to))
+    throw std::invalid_argument("path: the values from and to of the parameter must be finite");
+  if (!(options.arc > 0) || !std::isfinite(options.arc))
+    throw std::invalid_argument("path: arc, the length of a step, must be above zero");
+}
 
 void Path::start_from(const SystemState& state) {
   t_ = state.t;
@@ -296,30 +322,35 @@ void Path::start_from(const SystemState& state) {
 
 SystemState Path::state() const { return state_of(evaluator_, t_, q_); }
 
+Report Path::follow(PathReport& report, const std::function<bool(double, const Snapshot&)>& observe) {
+  evaluator_.set_time(t_);
+  path_.set_time(t_);
+  if (!evaluator_.conservative()) {
+    return {Status::refused,
+            "follower forces have no energy, and paths of forces without one are not built; give the forces in ground "
+            "axes",
+            {}};
+  }
+  if (options_.to == options_.from) {
+    return {Status::refused, "the path ends where it begins: \"to\" is the present value of the parameter", {}};
+  }
+  March march(*this, observe);
+  Report outcome = march.run(report);
+  if (!march.point().q.empty()) {
+    path_.move_to(march.point());
+    q_.assign(path_.q().begin(), path_.q().end());
+  }
+  return outcome;
+}
+
 PathReport Path::run(const std::function<bool(double, const Snapshot&)>& observe) {
   const ProcessTimer timer;
   PathReport report;
   report.bodies = static_cast<int>(model_->bodies.size());
   report.rows = plan_->rows;
   report.islands = plan_->islands;
-  evaluator_.set_time(t_);
-  path_.set_time(t_);
-  Report outcome;
-  if (!evaluator_.conservative()) {
-    outcome = {Status::refused,
-               "follower forces have no energy, and paths of forces without one are not built; give the forces in "
-               "ground axes",
-               {}};
-  } else if (options_.to == options_.from) {
-    outcome = {Status::refused, "the path ends where it begins: \"to\" is the present value of the parameter", {}};
-  } else {
-    March march(*this, observe);
-    outcome = march.run(report);
-    if (!march.point().q.empty()) {
-      path_.move_to(march.point());
-      q_.assign(path_.q().begin(), path_.q().end());
-    }
-  }
+  Report outcome = check_time_functions(*model_, {t_, t_});
+  if (outcome.ok()) outcome = follow(report, observe);
   report.status = outcome.status;
   report.message = std::move(outcome.message);
   report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());

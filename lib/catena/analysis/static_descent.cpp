@@ -116,6 +116,10 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
   measure();
   double reach = 1, last_shift = 0;
   double energy = system.energy(), energy_size = std::abs(energy);
+  const auto tell = [&] {
+    if (const IterationTrace* trace = system.evaluator().trace)
+      (*trace)("downhill", outcome.iterations, outcome.residual, outcome.step);
+  };
   for (outcome.iterations = 1; outcome.iterations <= options.max_iterations; ++outcome.iterations) {
     ++system.evaluator().counters.iterations;
     if (system.is_cancelled()) {
@@ -149,6 +153,7 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
         std::copy(next_lambda.begin(), next_lambda.end(), lambda.begin());
         system.move_to(q);
         polish(system, q, lambda, outcome);
+        tell();
         const double force = std::max(system.force_scale(lambda), load);
         outcome.end = outcome.exact                                 ? StaticEnd::minimum
                       : outcome.residual <= stationary_part * force ? StaticEnd::stationary
@@ -194,6 +199,7 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
     std::copy(trial.begin(), trial.end(), q.begin());
     std::copy(next_lambda.begin(), next_lambda.end(), lambda.begin());
     measure();
+    tell();
     if (is_lost(q, start, extent)) {
       outcome.end = StaticEnd::unbounded;
       return outcome;

@@ -157,6 +157,8 @@ StaticOutcome follow_smoothing(StaticSystem& system, std::span<double> q, std::s
       system.move_to(q);
     }
     outcome.step = change;
+    if (const IterationTrace* trace = system.evaluator().trace)
+      (*trace)("gaps", outcome.iterations, gaps.left_over(lambda, t), change);
     near = change <= near_change;
     ++steps;
     if (farthest(q, start) > lost_sizes * size) {

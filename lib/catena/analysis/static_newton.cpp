@@ -189,6 +189,8 @@ StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::sp
       return outcome;
     }
     outcome.step = change;
+    if (const IterationTrace* trace = system.evaluator().trace)
+      (*trace)("newton", outcome.iterations, outcome.residual, change);
     near = change <= near_change;
     if (!(force <= std::max(largest_multiplier * system.load_size(), largest_of_sum * system.total_load()))) {
       outcome.end = StaticEnd::diverged;

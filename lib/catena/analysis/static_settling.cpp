@@ -151,6 +151,8 @@ StaticOutcome solve_by_settling(StaticSystem& system, std::span<double> q, std::
       system.move_to(q);
       outcome.step = system.change_norm(change);
       then = size();
+      if (const IterationTrace* trace = system.evaluator().trace)
+        (*trace)("settling", outcome.iterations, outcome.residual, outcome.step);
     }
     const bool kept = solved && then <= tolerated_growth * now + options.tolerance;
     if (!kept) {

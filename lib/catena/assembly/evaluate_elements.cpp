@@ -17,7 +17,7 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 template <class F>
 void Evaluator::with_element(int element, F&& f) const {
   const int e = place(element);
-  if (e < 0) return;
+  if (e < 0 || model_->elements[at(element)].kind == ElementKind::force) return;
   with_list(plan_->blocks, model_->elements[at(element)].type, [&](const auto& block) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
     f(block, std::get<ConstraintData<E>>(values_), e);
@@ -78,6 +78,31 @@ const char* Evaluator::trouble(int element) const {
     phrase = ConstraintOperations<E>::trouble(block, data, frames_.data(), e);
   });
   return phrase;
+}
+
+std::optional<CurveUse> Evaluator::curve_use(int element) const {
+  std::optional<CurveUse> use;
+  int body[2] = {plan_->bodies, plan_->bodies};
+  const auto take = [&]<class E>(const auto& block, int e, std::optional<CurveUse> found, std::type_identity<E>) {
+    use = found;
+    body[0] = block.body_i[at(e)];
+    if constexpr (E::bodies == 2) body[1] = block.body_j[at(e)];
+  };
+  const int e = place(element);
+  if (e >= 0 && model_->elements[at(element)].kind == ElementKind::force) {
+    with_list(plan_->forces, model_->elements[at(element)].type, [&](const auto& block) {
+      using E = typename std::remove_cvref_t<decltype(block)>::Element;
+      const auto& data = std::get<ForceData<E>>(force_values_);
+      take(block, e, ForceOperations<E>::curve_use(block, data, frames_.data(), e), std::type_identity<E>{});
+    });
+  } else {
+    with_element(element, [&](const auto& block, const auto& data, int k) {
+      using E = typename std::remove_cvref_t<decltype(block)>::Element;
+      take(block, k, ConstraintOperations<E>::curve_use(block, data, frames_.data(), k), std::type_identity<E>{});
+    });
+  }
+  if (use && use->end) use->end = ground_frame(body[use->body]).point(*use->end);
+  return use;
 }
 
 Taylor<double> Evaluator::element_value(int element) const {

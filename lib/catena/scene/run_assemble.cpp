@@ -26,6 +26,7 @@ void start(Kinematics& analysis, const AnalysisContext& context) {
   SystemState state = context.state;
   state.t = frozen_time(context);
   analysis.start_from(state);
+  if (context.trace) analysis.evaluator().trace = &context.trace;
 }
 
 void take_outcome(AnalysisReport& report, const AssemblyOutcome& outcome, Kinematics& analysis) {

@@ -47,6 +47,7 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   SystemState start = context.state;
   start.t = frozen_time(context);
   analysis.start_from(start);
+  if (context.trace) analysis.evaluator().trace = &context.trace;
   ReportingRows rows(columns, context, start.t);
   const EquilibriumReport report = analysis.run(TimeGrid::instant(start.t), columns.needs(), rows);
   context.state = analysis.state();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "catena/scene/analysis_run.hpp"
 #include "catena/scene/build_model.hpp"
@@ -32,6 +33,11 @@ std::vector<std::string> element_names(const Model& model) {
   return names;
 }
 
+void print_iteration(std::string_view method, int iteration, double residual, double change) {
+  const std::string line = fmt::format("{} {}: residual {:.3g}, change {:.3g}\n", method, iteration, residual, change);
+  std::fputs(line.c_str(), stderr);
+}
+
 class SceneRun {
  public:
   SceneRun(const RunOptions& options, ResultSink& sink, SceneOutcome& outcome)
@@ -55,6 +61,7 @@ class SceneRun {
   ParameterTable table_of(const AnalysisTask& task);
   std::vector<ParameterSeed<double>> handed_on_to(const AnalysisTask& task) const;
   AnalysisResult run_task(const AnalysisTask& read, int number, SystemState& state, RowSink& rows);
+  std::vector<std::pair<std::string, double>> named_parameters(std::span<const double> values) const;
   void finish_errors();
   /// Whether what the options say of dynamics can be done.
   bool check_dynamics_options();
@@ -130,6 +137,12 @@ void SceneRun::read_tasks() {
   const std::vector<double> values = parameters_.evaluate<double>(scene.expressions, diagnostics_);
   if (scene.outputs) read_outputs(scene.outputs, scene, values, diagnostics_);
   if (scene.analyses) tasks_ = read_analyses(scene.analyses, scene.outputs, scene, parameters_, diagnostics_);
+  if (command_.read_outputs(options_.outputs, diagnostics_)) {
+    const std::vector<PlacedName> outputs = read_outputs(command_.outputs(), scene, values, diagnostics_);
+    for (AnalysisTask& task : tasks_) {
+      if (task.description->find("outputs")) task.outputs = outputs;
+    }
+  }
   if (options_.verb.empty()) return;
   // The scene's own analyses were checked, but one from the command line is run in their place.
   tasks_.clear();
@@ -140,7 +153,7 @@ void SceneRun::read_tasks() {
 
 bool SceneRun::prepare(SourceText source) {
   scene_ = read_scene(std::move(source), diagnostics_);
-  if (!scene_) return false;
+  if (!scene_ || scene_->may_lack_parts) return false;
   parameters_ = scene_->parameters;
   if (command_.read_set(options_.set, diagnostics_)) parameters_.set(command_.set(), scene_->expressions, diagnostics_);
   const std::vector<double> values = parameters_.evaluate<double>(scene_->expressions, diagnostics_);
@@ -160,8 +173,8 @@ void SceneRun::finish_errors() {
   bool in_scene = false;
   std::string command_errors;
   for (const Diagnostic& error : diagnostics_.items()) {
-    if (CommandText::is_command(error.file)) {
-      command_errors += fmt::format("catena: {}: {}\n", error.file, error.message);
+    if (CommandText::is_command(error)) {
+      command_errors += fmt::format("catena: {}: {}\n", command_.option_of(error), error.message);
     } else {
       in_scene = true;
     }
@@ -197,6 +210,13 @@ AnalysisTask SceneRun::with_handed_on(AnalysisTask task, Diagnostics& diagnostic
   task.parameters = table_of(task).evaluate<double>(scene_->expressions, diagnostics, seeds);
   task.changes_parameters = true;
   return task;
+}
+
+std::vector<std::pair<std::string, double>> SceneRun::named_parameters(std::span<const double> values) const {
+  std::vector<std::pair<std::string, double>> named;
+  const auto& names = parameters_.names().all();
+  for (std::size_t k = 0; k < names.size() && k < values.size(); ++k) named.emplace_back(names[k], values[k]);
+  return named;
 }
 
 std::function<std::shared_ptr<const Model>(int, double)> SceneRun::builder_of(const AnalysisTask& task) {
@@ -253,10 +273,20 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
                           .cancel = options_.cancel,
                           .progress = {},
                           .verbose = options_.verbose,
+                          .trace = options_.verbose ? IterationTrace(print_iteration) : IterationTrace(),
                           .model_at = {},
                           .parameter_name = {},
                           .estimate_error = options_.estimate_error,
                           .checkpoint = checkpoints_.wanted() ? &checkpoint : nullptr};
+  if (task.changes_parameters) {
+    // Those that follow from what was set differ too.
+    const auto before = named_parameters(parameters_.evaluate<double>(scene_->expressions, diagnostics_));
+    const auto own = named_parameters(task.parameters);
+    const JsonValue set = task.place.find("set");
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      if ((set && set.find(own[k].first)) || own[k].second != before[k].second) result.set.push_back(own[k]);
+    }
+  }
   if (task.has("parameter")) {
     context.model_at = builder_of(task);
     context.parameter_name = parameters_.names().all()[static_cast<std::size_t>(task.word("parameter"))];
@@ -289,7 +319,10 @@ void SceneRun::run_all() {
                    .gravity = {model_->gravity.x, model_->gravity.y},
                    .bodies = static_cast<int>(model_->bodies.size()),
                    .elements = static_cast<int>(model_->elements.size()),
-                   .analyses = static_cast<int>(tasks_.size()) - checkpoints_.first_analysis()});
+                   .analyses = static_cast<int>(tasks_.size()) - checkpoints_.first_analysis(),
+                   .version = CATENA_VERSION,
+                   .parameters = named_parameters(parameters_.evaluate<double>(scene_->expressions, diagnostics_)),
+                   .set = options_.set});
   const auto first = static_cast<std::size_t>(checkpoints_.first_analysis());
   for (std::size_t k = first; k < tasks_.size(); ++k) {
     const AnalysisTask& task = tasks_[k];
@@ -314,6 +347,10 @@ void SceneRun::refuse(int exit_code, const std::string& why) {
 }
 
 bool SceneRun::check_dynamics_options() {
+  if (!(options_.checkpoint_every >= 0) || !std::isfinite(options_.checkpoint_every)) {
+    refuse(2, "--checkpoint-every: wants seconds above zero");
+    return false;
+  }
   const bool any =
       std::any_of(tasks_.begin(), tasks_.end(), [](const auto& task) { return task.type() == "dynamics"; });
   if (any) return true;
