@@ -19,8 +19,8 @@ int explain_command(const std::string& name) {
     return print(text);
   }
   if (const std::optional<std::string> text = explain(name)) return print(*text);
-  fmt::print(stderr, "catena: nothing is called {}{} (catena explain lists all names)\n", in_quotes(name),
-             NearMiss(name).consider_all(known).hint());
+  complain(fmt::format("catena: nothing is called {}{} (catena explain lists all names)\n", in_quotes(name),
+                       NearMiss(name).consider_all(known).hint()));
   return usage;
 }
 

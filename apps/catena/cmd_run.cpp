@@ -101,6 +101,7 @@ std::string option_name(std::string_view key) {
 
 struct Parsed {
   RunCommand run;
+  std::vector<std::string> outputs;  // of a whole scene
   std::vector<std::string> set;
   std::vector<std::pair<std::string, std::vector<std::string>>> keys;
 };
@@ -110,12 +111,14 @@ void add_common_options(CLI::App& command, Parsed& parsed) {
   command.add_option("SCENE", run.scene, "the scene file")->required()->type_name("FILE");
   command.add_flag("--json", run.json, "print results as JSON, every digit");
   command
-      .add_option("-o,--output", run.directory, "also write one CSV file an analysis and report.json to this folder")
+      .add_option("-o,--output-dir,--output", run.directory,
+                  "also write one CSV file an analysis and report.json to this folder")
       ->type_name("DIR")
       ->check([](const std::string& folder) { return folder.empty() ? "the folder has no name" : ""; });
   command.add_flag("--stats", run.stats, "print what was computed how often");
   command.add_flag("-q,--quiet", run.quiet, "print no table, report or progress");
-  command.add_flag("-v,--verbose", run.verbose, "print all rows and columns, and the logs of solvers");
+  command.add_flag("-v,--verbose", run.verbose,
+                   "print all rows and columns, the iterations of Newton's method, and the logs of solvers");
   command.add_option("--set", parsed.set, "change a parameter: NAME=VALUE, in the syntax of scenes")
       ->allow_extra_args(false)
       ->type_name("NAME=VALUE");
@@ -161,6 +164,7 @@ std::vector<std::string> without_brackets(std::vector<std::string> values) {
 RunCommand complete(const Parsed& parsed, const std::string& analysis) {
   RunCommand run = parsed.run;
   run.options.verb = analysis;
+  run.options.outputs = without_brackets(parsed.outputs);
   for (const std::string& assignment : parsed.set) {
     const std::size_t equals = assignment.find('=');
     if (equals == 0 || equals == std::string::npos)
@@ -177,8 +181,16 @@ void add_command(CLI::App& app, Action& chosen, const Verb& verb) {
   CLI::App* command = app.add_subcommand(verb.command, verb.description);
   const auto parsed = std::make_shared<Parsed>();
   add_common_options(*command, *parsed);
-  if (verb.analysis[0] == '\0' || std::string_view(verb.analysis) == "dynamics")
-    add_dynamics_options(*command, parsed->run.options);
+  const bool whole_scene = verb.analysis[0] == '\0';
+  if (whole_scene || std::string_view(verb.analysis) == "dynamics") add_dynamics_options(*command, parsed->run.options);
+  if (whole_scene) {
+    command
+        ->add_option("--outputs", parsed->outputs,
+                     "columns, separated by commas, in place of those that the scene and its analyses name")
+        ->allow_extra_args(false)
+        ->type_name("VALUE")
+        ->delimiter(',');
+  }
   parsed->keys.reserve(verb.keys.size());  // options hold references
   for (const Key& key : verb.keys) {
     auto& values = parsed->keys.emplace_back(std::string(key.name), std::vector<std::string>()).second;

@@ -1,11 +1,12 @@
 // The commands of the program; each adds itself to the command line and leaves its exit code when it was chosen.
 //
 // Exit codes: 0 all solved, 1 an analysis was not, 2 usage, 3 anything wrong in the scene's text, 4 missing file or
-// unwritable output.
+// unwritable output. A reader that goes away ends the program by SIGPIPE, as it ends any other.
 #pragma once
 
 #include <functional>
 #include <string>
+#include <string_view>
 
 namespace CLI {
 class App;
@@ -24,5 +25,7 @@ void add_schema_command(CLI::App& app, Action& chosen);
 
 /// Prints text to the standard output; the exit code says whether that worked.
 int print(const std::string& text);
+/// Prints a message to the standard error. Where that cannot be written to nothing can be said, and nothing is thrown.
+void complain(std::string_view message);
 
 }  // namespace catena::cli

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -19,9 +20,11 @@ int print(const std::string& text) {
   TextOutput output = TextOutput::standard_output();
   output.write(text);
   if (output.flush()) return solved;
-  if (!output.reader_gone()) fmt::print(stderr, "catena: {}\n", output.error());
+  if (!output.reader_gone()) complain(fmt::format("catena: {}\n", output.error()));
   return no_file;
 }
+
+void complain(std::string_view message) { std::fwrite(message.data(), 1, message.size(), stderr); }
 
 namespace {
 
@@ -36,7 +39,7 @@ int unknown_command(const CLI::App& app, const std::string& word) {
   std::string hint = NearMiss(word).consider_all(command_names(app)).hint();
   std::error_code ignored;
   if (hint.empty() && std::filesystem::exists(word, ignored)) hint = "; did you mean \"catena run " + word + "\"?";
-  fmt::print(stderr, "catena: unknown command {}{} (catena --help lists them)\n", in_quotes(word), hint);
+  complain(fmt::format("catena: unknown command {}{} (catena --help lists them)\n", in_quotes(word), hint));
   return usage;
 }
 
@@ -51,8 +54,8 @@ bool report_unexpected(const CLI::App& app) {
   const CLI::App* command = app.get_subcommands().empty() ? &app : app.get_subcommands().front();
   const std::string name = command == &app ? "catena" : "catena " + command->get_name();
   if (options.empty()) {
-    fmt::print(stderr, "catena: unexpected argument {} ({} --help lists what it takes)\n", in_quotes(words.front()),
-               name);
+    complain(fmt::format("catena: unexpected argument {} ({} --help lists what it takes)\n", in_quotes(words.front()),
+                         name));
     return true;
   }
   std::vector<std::string> known;
@@ -61,8 +64,8 @@ bool report_unexpected(const CLI::App& app) {
   }
   for (const std::string& option : options) {
     const std::string word = option.substr(0, option.find('='));
-    fmt::print(stderr, "catena: unknown option {}{} ({} --help lists what it takes)\n", in_quotes(word),
-               NearMiss(word).consider_all(known).hint(), name);
+    complain(fmt::format("catena: unknown option {}{} ({} --help lists what it takes)\n", in_quotes(word),
+                         NearMiss(word).consider_all(known).hint(), name));
   }
   return true;
 }
@@ -87,9 +90,9 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     // What is unknown is told rather than what is missing because of it.
     if (argc == 1) {
-      fmt::print(stderr, "{}", app.help());
+      complain(app.help());
     } else if (!report_unexpected(app)) {
-      fmt::print(stderr, "catena: {} (catena --help lists what there is)\n", error.what());
+      complain(fmt::format("catena: {} (catena --help lists what there is)\n", error.what()));
     }
     return usage;
   }
@@ -100,12 +103,16 @@ int run(int argc, char** argv) {
 }  // namespace catena::cli
 
 int main(int argc, char** argv) {
+  // Whoever started the program may have had SIGPIPE ignored; results for a reader that is gone would then never end.
+  std::signal(SIGPIPE, SIG_DFL);
   try {
     return catena::cli::run(argc, argv);
   } catch (const std::bad_alloc&) {
-    std::fputs("catena: not enough memory\n", stderr);
+    catena::cli::complain("catena: not enough memory\n");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "catena: {}\n", error.what());
+    catena::cli::complain("catena: ");
+    catena::cli::complain(error.what());
+    catena::cli::complain("\n");
   }
   return catena::cli::not_solved;
 }

@@ -28,7 +28,10 @@ class BeforeResults final : public ResultSink, private RowSink {
     bar_.clear();
   }
   RowSink& begin_analysis(std::string_view) override { return *this; }
-  void end_analysis(const AnalysisResult&) override { bar_.clear(); }
+  void end_analysis(const AnalysisResult&) override {
+    interrupt_was_noticed();
+    bar_.clear();
+  }
   void end_run() override { bar_.clear(); }
 
  private:
@@ -52,19 +55,19 @@ void print_messages(const RunCommand& command, const SceneOutcome& outcome) {
   const bool told = !command.json && !command.quiet && ::isatty(STDOUT_FILENO) == 1;
   for (const AnalysisResult& result : outcome.analyses) {
     if (!told && !result.report.ok())
-      fmt::print(stderr, "{}: {}: {}: {}\n", command.scene, result.type, to_string(result.report.status),
-                 result.report.message);
+      complain(fmt::format("{}: {}: {}: {}\n", command.scene, result.type, to_string(result.report.status),
+                           result.report.message));
     if (command.stats) std::fputs(counters_text(result).c_str(), stderr);
   }
 }
 
 /// Whether everything could be written; says so if not.
 bool finish_output(const TextOutput& output, const ResultFolder* folder, bool quiet) {
-  if (!output.ok() && !output.reader_gone()) fmt::print(stderr, "catena: {}\n", output.error());
+  if (!output.ok() && !output.reader_gone()) complain(fmt::format("catena: {}\n", output.error()));
   if (folder) {
-    if (!folder->error().empty()) fmt::print(stderr, "catena: {}\n", folder->error());
+    if (!folder->error().empty()) complain(fmt::format("catena: {}\n", folder->error()));
     for (const std::string& file : folder->files()) {
-      if (!quiet) fmt::print(stderr, "wrote {}\n", file);
+      if (!quiet) complain(fmt::format("wrote {}\n", file));
     }
   }
   return output.ok() && (!folder || folder->error().empty());
@@ -73,8 +76,8 @@ bool finish_output(const TextOutput& output, const ResultFolder* folder, bool qu
 }  // namespace
 
 int execute(const RunCommand& command) {
-  // A reader that goes away ends the program, as it ends any other in a pipe, unless files have to be completed.
-  std::signal(SIGPIPE, command.directory.empty() ? SIG_DFL : SIG_IGN);
+  // A reader that goes away ends the program, as it ends any other in a pipe; files are completed before.
+  if (!command.directory.empty()) std::signal(SIGPIPE, SIG_IGN);
 
   ProgressBar bar(!command.quiet);
   BeforeResults before(bar);
@@ -93,7 +96,7 @@ int execute(const RunCommand& command) {
   if (!command.directory.empty()) {
     // Hours of results are not to be lost at their end.
     if (const std::string obstacle = ResultFolder::obstacle(command.directory); !obstacle.empty()) {
-      fmt::print(stderr, "catena: {}\n", obstacle);
+      complain(fmt::format("catena: {}\n", obstacle));
       return no_file;
     }
   }
@@ -114,6 +117,10 @@ int execute(const RunCommand& command) {
   output.flush();
   print_messages(command, outcome);
   const bool written = finish_output(output, folder ? &*folder : nullptr, command.quiet);
+  if (output.reader_gone()) {
+    std::signal(SIGPIPE, SIG_DFL);
+    std::raise(SIGPIPE);
+  }
   // Lost results weigh more than an analysis that went wrong, but a scene that was never run has none to lose.
   return written || outcome.exit_code >= usage ? outcome.exit_code : static_cast<int>(no_file);
 }

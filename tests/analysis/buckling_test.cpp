@@ -51,7 +51,8 @@ TEST(Buckling, OfADiscreteColumnPinnedAtBothEnds) {
           << count << " " << j;
     }
     EXPECT_EQ(report.counters.symbolic, 1);
-    EXPECT_LE(report.counters.factorizations, 8);
+    // Multipliers at the first steps, and at the sides of every load that is confirmed.
+    EXPECT_LE(report.counters.factorizations, count > 500 ? 8 : 80);
   }
 }
 

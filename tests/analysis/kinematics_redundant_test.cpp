@@ -10,6 +10,7 @@
 #include "analysis/linkages.hpp"
 #include "analysis/parallelogram.hpp"
 #include "catena/analysis/kinematics.hpp"
+#include "catena/elements/constraints/absolute_angle.hpp"
 #include "catena/elements/constraints/absolute_x.hpp"
 #include "catena/elements/constraints/absolute_y.hpp"
 #include "catena/elements/constraints/revolute.hpp"
@@ -123,6 +124,24 @@ TEST(KinematicsRedundant, EveryFlatPositionOfRedundantParallelogramsIsFound) {
     const auto& found = kinematics.singular_points();
     ASSERT_EQ(found.size(), instants.size()) << run << " scale " << scale << " every " << every;
     for (std::size_t k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k].t, instants[k], 1e-10 * span) << run;
+  }
+}
+
+// A second driver that has the first one's values at all rows, and other speeds there; or the same at all rows and
+// other places in between.
+TEST(KinematicsRedundant, DriversThatAgreeAtRowsAloneContradictEachOther) {
+  for (const double phase : {0.0, pi / 2}) {
+    auto model = std::make_shared<Model>();
+    const int crank = add_rod(*model, "crank", {0, 0}, {1, 0});
+    pin(*model, "O", Vec2<double>{0, 0}, crank, "from");
+    model->add_driver("d1", AbsoluteAngle<>{}, crank, ground, ramp(0, 1));
+    const TimeFunction<double> sway = TimeFunction<double>::harmonic(0.01, 20 * pi, phase, phase > 0 ? -0.01 : 0);
+    model->add_driver("d2", AbsoluteAngle<>{}, crank, ground, TimeFunction<double>::sum({ramp(0, 1), sway}));
+    Kinematics kinematics(model);
+    RowFunction nothing([](const Snapshot&) { return true; });
+    const AnalysisReport report = kinematics.run(TimeGrid::range(0, 1, 0.1), {}, nothing);
+    EXPECT_EQ(report.status, Status::inconsistent) << report.message;
+    EXPECT_NE(report.message.find("d2"), std::string::npos) << report.message;
   }
 }
 

@@ -265,5 +265,43 @@ TEST(Kinematics, DeadPointsAreLocatedAndCalledLockUp) {
   }
 }
 
+// The first thing asked for assembles, whichever it is: the rocker is sketched 0.2 rad off.
+TEST(Kinematics, MovesAndRatesBeginWithAnAssembly) {
+  const FourBar f;
+  for (const bool moves : {true, false}) {
+    auto model = std::make_shared<Model>(*driven_four_bar(f, ramp(0.3, 10)));
+    model->bodies[2].angle += 0.2;
+    Kinematics kinematics(model);
+    const double t = moves ? 0.1 : 0;
+    for (const double instant : {t / 4, t / 2, t}) {
+      if (moves) {
+        ASSERT_TRUE(kinematics.move_to(instant).ok());
+      }
+      ASSERT_TRUE(kinematics.solve_rates(everything).ok());
+    }
+    const FourBar::Angles exact = f.at(0.3 + 10 * t);
+    EXPECT_NEAR(wrapped(kinematics.q()[8] - exact.rocker), 0, 1e-12);
+    const double h = 1e-6;
+    EXPECT_NEAR(kinematics.qd()[8], (f.at(0.3 + 10 * (t + h)).rocker - f.at(0.3 + 10 * (t - h)).rocker) / (2 * h),
+                1e-7);
+  }
+}
+
+TEST(Kinematics, WithoutADriverNothingMoves) {
+  auto model = std::make_shared<Model>();
+  const int crank = add_rod(*model, "crank", {0, 0}, {1, 0});
+  pin(*model, "O", Vec2<double>{0, 0}, crank, "from");
+  const auto expect_under_driven = [](const Report& report) {
+    EXPECT_EQ(report.status, Status::under_driven) << report.message;
+    EXPECT_NE(report.message.find("crank"), std::string::npos) << report.message;
+  };
+  expect_under_driven(Kinematics(model).move_to(1));
+  expect_under_driven(Kinematics(model).solve_rates({.velocity = true}));
+  Kinematics assembled(model);
+  EXPECT_TRUE(assembled.assemble().ok());
+  expect_under_driven(assembled.solve_rates({.velocity = true}));
+  expect_under_driven(assembled.move_to(1));
+}
+
 }  // namespace
 }  // namespace catena

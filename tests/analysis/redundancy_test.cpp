@@ -113,11 +113,11 @@ TEST(Redundancy, DriversThatDifferInAccelerationContradictEachOther) {
   EXPECT_EQ(report.status, Status::inconsistent);
   EXPECT_EQ(rows, 0);
   EXPECT_NE(report.message.find("acceleration"), std::string::npos) << report.message;
-  // Without accelerations the first row stands; the second does not.
-  const AnalysisReport later = run(model, &rows, false);
-  EXPECT_EQ(later.status, Status::inconsistent);
-  EXPECT_EQ(rows, 1);
-  EXPECT_NE(later.message.find("t = 0.1 s"), std::string::npos) << later.message;
+  // The same where no accelerations are asked for.
+  const AnalysisReport unasked = run(model, &rows, false);
+  EXPECT_EQ(unasked.status, Status::inconsistent);
+  EXPECT_EQ(rows, 0);
+  EXPECT_NE(unasked.message.find("acceleration"), std::string::npos) << unasked.message;
 }
 
 // The drivers of crank and rocker as the four-bar itself moves them: more than it needs, and no contradiction.

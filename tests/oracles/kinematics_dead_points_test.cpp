@@ -48,12 +48,16 @@ void expect_dead_point(double rate, double rocker, double crank) {
   const TextRun run = rocker_driven(rate, {{"type", "kinematics"}, {"until", 2}, {"every", 0.05}});
   EXPECT_EQ(run.outcome.exit_code, 1);
   EXPECT_EQ(run.analysis().report.status, Status::lock_up);
-  // Rows before it are kept, none beyond it is made up.
+  // Rows before it are kept, one gives the dead point itself, none beyond it is made up.
   const double end = instant_of_lock_up(run);
   const std::vector<double> rows = run.column("t");
-  ASSERT_FALSE(rows.empty());
-  EXPECT_LT(rows.back(), end);
-  EXPECT_GT(rows.back(), end - 0.05);
+  ASSERT_GE(rows.size(), 2u);
+  EXPECT_EQ(rows.back(), end);
+  EXPECT_LT(rows[rows.size() - 2], end);
+  EXPECT_GT(rows[rows.size() - 2], end - 0.05);
+  EXPECT_NEAR(run.last("rocker.angle"), rocker, position_error * rocker);
+  EXPECT_NEAR(std::remainder(run.last("crank.angle") - crank, 2 * std::numbers::pi), 0, 1e-7);
+  EXPECT_TRUE(std::isnan(run.last("crank.omega")));
   EXPECT_NEAR(start + rate * end, rocker, position_error * rocker);
 
   json instants = json::array();

@@ -16,9 +16,15 @@
 
 namespace catena::testing {
 
+/// The same mechanism in other units and elsewhere.
+struct StaticScale {
+  double length = 1, force = 1;
+  Vec2<double> origin{};
+};
+
 class RandomStatics {
  public:
-  explicit RandomStatics(unsigned seed) : random_(seed) {}
+  explicit RandomStatics(unsigned seed, const StaticScale& scale = {}) : random_(seed), scale_(scale) {}
 
   /// A network of springs alone: particles and bodies.
   std::shared_ptr<Model> network() {
@@ -45,7 +51,8 @@ class RandomStatics {
         const Vec2<double> place = some_place();
         model->add("", Revolute<double>{.s_i = local(*model, carrier, place), .s_j = local(*model, k, place)}, carrier,
                    k);
-        if (pick(2) == 0) model->add_force("", torsion_spring(stiffness(), 6 * number()), carrier, k);
+        if (pick(2) == 0)
+          model->add_force("", torsion_spring(scale_.force * scale_.length * stiffness(), 6 * number()), carrier, k);
       } else if (kind < 9) {
         // A slide through both bodies, its axis the same direction seen from either.
         const double direction = 3 * number();
@@ -77,7 +84,10 @@ class RandomStatics {
   int pick(int below) { return static_cast<int>(random_() % static_cast<unsigned>(below)); }
   double number() { return static_cast<double>(random_()) / 2147483648.0 - 1; }
   double stiffness() { return std::pow(10, 2 + 2 * number()); }
-  Vec2<double> some_place() { return {2 * number(), 2 * number()}; }
+  Vec2<double> some_place() {
+    const double x = 2 * number(), y = 2 * number();
+    return scale_.origin + scale_.length * Vec2<double>{x, y};
+  }
   static Vec2<double> turned(double direction) { return {std::cos(direction), std::sin(direction)}; }
   static double angle(const Model& model, int body) {
     return body < 0 ? 0 : model.bodies[static_cast<std::size_t>(body)].angle;
@@ -101,23 +111,27 @@ class RandomStatics {
     return model;
   }
   void add_body(Model& model, int k) {
-    model.add_body("b" + std::to_string(k),
-                   {.mass = 1 + number(), .inertia = 1, .position = some_place(), .angle = 3 * number()});
+    model.add_body("b" + std::to_string(k), {.mass = scale_.force * (1 + number()),
+                                             .inertia = scale_.force * scale_.length * scale_.length,
+                                             .position = some_place(),
+                                             .angle = 3 * number()});
   }
   void add_spring(Model& model, int i, int j) {
-    model.add_force("", spring(local(model, i, some_place()), local(model, j, some_place()), stiffness(), 1 + number()),
-                    i, j);
+    const Vec2<double> at_i = local(model, i, some_place()), at_j = local(model, j, some_place());
+    const double k = scale_.force / scale_.length * stiffness(), length = scale_.length * (1 + number());
+    model.add_force("", spring(at_i, at_j, k, length), i, j);
   }
   void add_loads(Model& model, int count) {
     for (int k = 0; k < count; ++k) {
       if (pick(3) > 0) continue;
       PointForce<double> load;
-      load.s_i = {number(), number()};
-      model.add_force("", load, k, ground, {20 * number(), 20 * number()});
+      load.s_i = scale_.length * Vec2<double>{number(), number()};
+      model.add_force("", load, k, ground, {20 * scale_.force * number(), 20 * scale_.force * number()});
     }
   }
 
   std::mt19937 random_;
+  StaticScale scale_;
 };
 
 }  // namespace catena::testing

@@ -3,11 +3,13 @@
 //   min sum_b |dr_b|^2 + rho_b^2 dphi_b^2   subject to   Phi(q, t) = 0        rho: RMS attachment distance of the body
 //
 // Whole turns are moved first; then damped Gauss-Newton steps of least weighted size, none of which may enlarge the
-// residual; then, where freedom is left, sliding along the constraints towards the estimate. Never returns a worse
-// configuration than it was given and never reports success above the tolerance. Where constraints cannot be met those
-// that stand in the way are named (misfits.hpp).
+// residual; then, where freedom is left, sliding along the constraints towards the estimate. Sketches from which steps
+// lead into a saddle of the misfit, as links drawn in one line, are displaced a little from it. Never returns a worse
+// configuration than it was given and never reports success above the tolerance, or the rounding of the coordinates.
+// Where constraints cannot be met those that stand in the way are named (misfits.hpp).
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,20 +39,26 @@ class Assembler {
   AssemblyOutcome assemble(std::span<double> q, double tolerance = 1e-12);
 
  private:
-  bool restore(std::span<double> q, double tolerance, AssemblyOutcome& outcome);
+  bool restore(std::span<double> q, double tolerance, int most_iterations, AssemblyOutcome& outcome);
+  bool restore_from_beside(std::span<double> q, std::span<const double> estimate, double tolerance,
+                           AssemblyOutcome& outcome);
   void approach_estimate(std::span<double> q, std::span<const double> estimate, double tolerance,
                          AssemblyOutcome& outcome);
   /// An element whose residual at q overflows when it is squared, or -1.
   int element_out_of_range(std::span<const double> q);
   double merit(std::span<const double> q);
+  /// Largest coordinate relative to the bodies' origins, length scales; angles in rad.
+  double extent(std::span<const double> q) const;
   void advance(std::span<const double> from, double factor, std::span<double> to) const;
   double weighted_distance(std::span<const double> a, std::span<const double> b) const;
 
   Evaluator& evaluator_;
   const Plan& plan_;
   Scaling scaling_;
-  ConstraintProjector projector_;
-  std::vector<double> weights_;  // per column
+  std::vector<double> inverse_weights_;           // per column
+  std::optional<ConstraintProjector> projector_;  // made where there is something to assemble
+  std::vector<double> weights_;                   // per column
+  std::vector<double> reach_;  // per column: what a displacement of 1 is, m or rad; 0 of what is held
   std::vector<double> values_, phi_, lambda_, step_, trial_;
 };
 

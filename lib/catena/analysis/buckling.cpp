@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "catena/analysis/modes_operator.hpp"
 #include "catena/analysis/process_time.hpp"
 #include "catena/analysis/state_conversion.hpp"
 #include "catena/analysis/static_balance.hpp"
 #include "catena/analysis/static_holding.hpp"
+#include "catena/analysis/time_coverage.hpp"
+#include "catena/analysis/watched_elements.hpp"
 
 namespace catena {
 namespace {
@@ -21,6 +24,8 @@ constexpr double steps[] = {1, 1e6, 1e12};
 constexpr double visible_effect = 1e-6, smallest_effect = 1e-12;
 constexpr int most_vectors = 300, most_refinements = 20;
 constexpr double refined = 1e-12, linear_part = 1e-9;
+// Constraints met to this, in length scales or rad, where the parameter leaves them alone.
+constexpr double kept_place = 1e-9;
 
 // K0^-1 (K0 - K1) in the metric K0, K0 what the system's matrix holds and has factored.
 class BucklingOperator final : public SpectralOperator {
@@ -36,20 +41,17 @@ class BucklingOperator final : public SpectralOperator {
 
   int columns() const override { return static_cast<int>(weight_.size()); }
   std::span<const double> typical() const override { return typical_; }
-  void metric(std::span<const double> v, std::span<double> Gv) override { multiply(v, Gv); }
+  void metric(std::span<const double> v, std::span<double> Gv) override { system_.matrix().multiply_stiffness(v, Gv); }
   void invert(std::span<double> v) override {
     std::fill(given_.begin(), given_.end(), 0.0);
     const std::span<double> top{given_.data(), v.size()};
-    multiply(v, top);
+    metric(v, top);
     loaded_.multiply_stiffness(v, product_);
     for (std::size_t c = 0; c < v.size(); ++c) top[c] -= product_[c];
     solve_to_rounding(system_, weight_, given_, solution_, correction_);
     std::copy_n(solution_.begin(), v.size(), v.begin());
   }
   void project(std::span<double> v) override { project_to_null_space(system_, v, solution_); }
-  void multiply(std::span<const double> v, std::span<double> Av) override {
-    system_.matrix().multiply_stiffness(v, Av);
-  }
 
  private:
   StaticSystem& system_;
@@ -67,15 +69,21 @@ std::vector<int> largest_ones(std::span<const double> theta, int count) {
   return order;
 }
 
+ModelAt required(ModelAt model_at) {
+  if (!model_at)
+    throw std::invalid_argument("buckling: there is nothing that makes models at other values of the parameter");
+  return model_at;
+}
+
 }  // namespace
 
 Buckling::Buckling(std::shared_ptr<const Model> model, ModelAt model_at, const BucklingOptions& options)
     : model_(std::move(model)),
-      plan_(Plan::make(*model_)),
+      plan_(Plan::make(catena::required(model_))),
       options_(options),
       evaluator_(plan_, *model_),
       system_(evaluator_),
-      path_(system_, std::move(model_at), options.present, 1) {
+      path_(system_, required(std::move(model_at)), options.present, 1) {
   point_ = {evaluator_.given_configuration(), std::vector<double>(at(plan_->rows), 0.0), options.present};
 }
 
@@ -84,39 +92,46 @@ void Buckling::start_from(const SystemState& state) {
   point_.q = configuration_of(evaluator_, state);
 }
 
+Report Buckling::not_stable() const {
+  return {Status::refused,
+          fmt::format("the equilibrium is not stable at the present value {:.6g} of the parameter: nothing is left to "
+                      "lose; begin with a smaller load",
+                      options_.present),
+          {}};
+}
+
 SystemState Buckling::state() const { return state_of(evaluator_, t_, point_.q); }
 
-Report Buckling::find_with(double step, int count, std::vector<Load>& loads, double& effect,
-                           const std::function<bool()>& go_on) {
-  loads.clear();
+Report Buckling::stiffness_at(double p, KktMatrix& matrix) {
   PathPoint loaded = point_;
-  loaded.p = options_.present + step;
-  if (!path_.move_to(loaded)) {
-    return {Status::refused, fmt::format("the scene does not allow the value {:.6g} of the parameter", loaded.p), {}};
+  loaded.p = p;
+  outside_ = !path_.move_to(loaded);
+  if (outside_) {
+    return {Status::refused, fmt::format("the scene does not allow the value {:.6g} of the parameter", p), {}};
   }
-  if (system_.phi_norm() > 1e-9) {
+  if (system_.phi_norm() > kept_place) {
     return {Status::refused,
             "the parameter moves constraints, so that the configuration cannot be kept; an analysis of type path "
             "follows it",
             {}};
   }
   moves_ = moves_ || !balance_loads(system_, loaded.lambda).negligible();
+  matrix.set_hessian(evaluator_, loaded.lambda, Curvature::exact);
+  matrix.complete(system_.jacobian(), 0);
+  return {};
+}
+
+Report Buckling::find_with(double step, int count, std::vector<Load>& loads, double& effect,
+                           const std::function<bool()>& go_on) {
+  loads.clear();
   KktMatrix other(plan_, system_.radius());
-  other.set_hessian(evaluator_, loaded.lambda, Curvature::exact);
-  other.complete(system_.jacobian(), 0);
-  if (!path_.factorize(point_) || path_.negative_modes() > 0) {
-    return {
-        Status::refused,
-        fmt::format("the equilibrium is not stable at the present value {:.6g} of the parameter: nothing is left to "
-                    "lose; begin with a smaller load",
-                    options_.present),
-        {}};
-  }
+  if (Report outcome = stiffness_at(options_.present + step, other); !outcome.ok()) return outcome;
+  if (!path_.factorize(point_) || path_.negative_modes() > 0) return not_stable();
   BucklingOperator op(system_, other);
   Lanczos lanczos(op);
   const auto wanted = [&](std::span<const double> theta) { return largest_ones(theta, count); };
   const int most = std::min(plan_->columns, std::max(most_vectors, 3 * count + 60));
-  const bool settled = lanczos.run(wanted, most, plan_->columns <= most_vectors, go_on);
+  const bool settled = lanczos.run(wanted, most, go_on);
   if (go_on && !go_on()) return {Status::cancelled, "stopped while loads were looked for", {}};
   if (!settled && !lanczos.exhausted()) {
     return {Status::not_converged,
@@ -141,17 +156,41 @@ Report Buckling::find(BucklingReport& report, const std::function<bool()>& go_on
     report.warnings.emplace_back(
         "the configuration is no equilibrium; an equilibrium analysis before this one finds it");
   }
+  if (!path_.move_to(point_)) return {Status::refused, "the scene does not allow the parameter's present value", {}};
   std::vector<Load> loads;
+  groups_.emplace(system_, false);
+  const bool dense = groups_->are_small() && plan_->columns > 0;
+  Report outcome = dense ? find_by_dense(loads, go_on) : find_by_lanczos(loads, go_on);
+  if (!outcome.ok()) return outcome;
+  if (loads.empty()) {
+    report.warnings.emplace_back("no value of the parameter makes this equilibrium unstable");
+    return {};
+  }
+  for (Load& load : loads) {
+    report.loads.push_back(options_.present + load.distance);
+    const double largest = decisive_component(*plan_, load.shape);
+    for (double& x : load.shape) x /= largest;
+    report.shapes.push_back(std::move(load.shape));
+  }
+  if (moves_ && !unbalanced) {
+    report.warnings.emplace_back(
+        "the load moves the equilibrium: these are estimates of linear buckling theory; an analysis of type path finds "
+        "the critical points on the way");
+  }
+  if (static_cast<int>(report.loads.size()) < options_.count) {
+    report.warnings.push_back(fmt::format("there are only {} such values", report.loads.size()));
+  }
+  return {};
+}
+
+Report Buckling::find_by_lanczos(std::vector<Load>& loads, const std::function<bool()>& go_on) {
   double effect = 0;
   for (double step : steps) {
     step *= std::max(std::abs(options_.present), 1.0);
     if (Report pass = find_with(step, options_.count, loads, effect, go_on); !pass.ok()) return pass;
     if (effect > visible_effect) break;
   }
-  if (loads.empty()) {
-    report.warnings.emplace_back("no value of the parameter makes this equilibrium unstable");
-    return {};
-  }
+  if (loads.empty()) return {};
   // Again with the load itself as the step: rounding is least there, and a parameter that does not enter linearly is
   // iterated. Linear ones take this one pass for all loads.
   std::vector<Load> again;
@@ -180,20 +219,6 @@ Report Buckling::find(BucklingReport& report, const std::function<bool()>& go_on
     }
     if (linear) break;
   }
-  for (Load& load : loads) {
-    report.loads.push_back(options_.present + load.distance);
-    const double largest = decisive_component(*plan_, load.shape);
-    for (double& x : load.shape) x /= largest;
-    report.shapes.push_back(std::move(load.shape));
-  }
-  if (moves_ && !unbalanced) {
-    report.warnings.emplace_back(
-        "the load moves the equilibrium: these are estimates of linear buckling theory; an analysis of type path finds "
-        "the critical points on the way");
-  }
-  if (static_cast<int>(report.loads.size()) < options_.count) {
-    report.warnings.push_back(fmt::format("there are only {} such values", report.loads.size()));
-  }
   return {};
 }
 
@@ -203,14 +228,18 @@ BucklingReport Buckling::run(const std::function<bool()>& go_on) {
   report.bodies = static_cast<int>(model_->bodies.size());
   report.rows = plan_->rows;
   report.islands = plan_->islands;
-  evaluator_.set_time(t_);
-  path_.set_time(t_);
-  Report outcome{Status::refused,
-                 "follower forces have no energy, and buckling under forces without one is not built; give the forces "
-                 "in ground axes",
-                 {}};
-  if (evaluator_.conservative()) outcome = find(report, go_on);
-  path_.move_to(point_);
+  Report outcome = check_time_functions(*model_, {t_, t_});
+  if (outcome.ok()) {
+    evaluator_.set_time(t_);
+    path_.set_time(t_);
+    outcome = {Status::refused,
+               "follower forces have no energy, and buckling under forces without one is not built; give the forces in "
+               "ground axes",
+               {}};
+    if (evaluator_.conservative()) outcome = find(report, go_on);
+    path_.move_to(point_);
+    if (outcome.ok()) outcome = WatchedElements(evaluator_).check_ends();
+  }
   report.status = outcome.status;
   report.message = std::move(outcome.message);
   report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());

@@ -2,8 +2,9 @@
 //
 //   K(p) v = 0 on the null space of Phi_q,   K(p) = K0 + (p - p0) K'        K0 > 0: stable at the present value p0
 //
-// Solved as K0^-1 (K0 - K(p1)) v = theta v by Lanczos' method, p = p0 + (p1 - p0) / theta. Loads enter K linearly, so
-// that this is exact; where a parameter does not (a length, say), every value is iterated with p1 = p until it is.
+// Up to 500 degrees of freedom the eigenvalues of Z^T K(p) Z, taken in the metric of K0, are followed as functions of
+// p, whatever the load's dependence on it (buckling_dense.cpp). Larger ones: K0^-1 (K0 - K(p1)) v = theta v by Lanczos'
+// method, p = p0 + (p1 - p0) / theta: exact for loads that enter K linearly, iterated with p1 = p for others.
 // Multipliers belong to each value of the parameter, the configuration to the present one: where the load moves the
 // equilibrium, a warning says so, and what is found is the estimate of linear buckling theory; a path finds the true
 // critical points. The values nearest to the present one come first. Refused: an equilibrium that is not stable, a
@@ -12,9 +13,11 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "catena/analysis/analysis_report.hpp"
+#include "catena/analysis/motion_groups.hpp"
 #include "catena/analysis/path_system.hpp"
 #include "catena/analysis/system_state.hpp"
 
@@ -47,11 +50,19 @@ class Buckling {
   SystemState state() const;
 
  private:
+  class Spectrum;
+  class Search;
   struct Load {
     double distance = 0;  // p - p0
     std::vector<double> shape;
   };
   Report find(BucklingReport& report, const std::function<bool()>& go_on);
+  /// The `count` nearest loads by Lanczos' method, or by dense algebra.
+  Report find_by_lanczos(std::vector<Load>& loads, const std::function<bool()>& go_on);
+  Report find_by_dense(std::vector<Load>& loads, const std::function<bool()>& go_on);
+  /// K at a value of the parameter to `matrix`, with the multipliers that belong to it.
+  Report stiffness_at(double p, KktMatrix& matrix);
+  Report not_stable() const;
   /// Loads by the difference of K between p0 and p0 + step.
   Report find_with(double step, int count, std::vector<Load>& loads, double& effect,
                    const std::function<bool()>& go_on);
@@ -63,8 +74,10 @@ class Buckling {
   StaticSystem system_;
   PathSystem path_;
   PathPoint point_;
+  std::optional<MotionGroups> groups_;
   double t_ = 0;
-  bool moves_ = false;  // the load moves the equilibrium
+  bool moves_ = false;    // the load moves the equilibrium
+  bool outside_ = false;  // the value asked for last is none that the scene allows
 };
 
 }  // namespace catena

@@ -6,12 +6,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/free_motions.hpp"
+#include "catena/analysis/motion_groups.hpp"
+
 namespace catena {
 namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double neutral_part = 1e-10;
+// Modes softer than this part of the stiffest are asked whether they are rounding: far more than rounding can leave.
+constexpr double suspicious_part = 1e-6;
 // Stiffnesses below this are none, N/m.
 constexpr double no_stiffness = 1e-100;
 constexpr double rigid_part = 1e6;
@@ -160,12 +165,23 @@ Certificate certify(StaticSystem& system, std::span<const double> lambda) {
   for (std::size_t c = 0; c < product.size(); ++c) quotient += product[c] * result.mode[c];
   result.softest_stiffness = quotient;
   result.curvature_floor = neutral_part * matrix.absolute_quadratic(result.mode);
+  if (std::abs(quotient) <= suspicious_part * stiffest) {
+    const StiffnessFloor rounding(system, lambda, 0);
+    result.curvature_floor = std::max(result.curvature_floor, rounding(result.mode));
+  }
   if (std::abs(quotient) <= result.curvature_floor) {
     result.neutral = true;
-    system.fill(lambda, Curvature::exact, floor);
-    if (system.factorize().ok()) result.negative_modes = matrix.negative_modes();
-    // Whoever asks what resists the mode is to see the true matrix.
-    if (nothing) system.fill(lambda, Curvature::exact, 0);
+    result.neutral_modes = 1;
+    if (std::optional<FreeMotions> free = find_free_motions(system, lambda, neutral_part)) {
+      result.negative_modes = free->negative;
+      result.neutral_modes = std::max(free->count, 1);
+      result.free_bodies = std::move(free->bodies);
+    } else {
+      system.fill(lambda, Curvature::exact, floor);
+      if (system.factorize().ok()) result.negative_modes = matrix.negative_modes();
+      system.fill(lambda, Curvature::exact, 0);
+    }
+    if (result.free_bodies.empty()) result.free_bodies = names_of_moving(system, lambda, {result.mode});
   }
   result.stable = result.negative_modes == 0 && !result.neutral;
   return result;

@@ -3,10 +3,10 @@
 //   K v = k W v on the null space of Phi_q,   W = (1, 1, radius^2):   k, N/m, the stiffness of mode v
 //
 // The number p of negative k comes from the inertia of one factorization (THEORY section 5), whatever the size; the
-// softest mode from a few Lanczos steps with its inverse (all modes at once by a dense solver where they are few).
-// Where the softest k cannot be told from rounding, |v^T K v| <= 1e-10 sum |v_i K_ij v_j|, the point is neutral to
-// second order: then p counts the modes that are negative beyond that. Source: Nour-Omid, Parlett, Ericsson, Jensen,
-// Math. Comp. 48 (1987), for Lanczos with a singular metric.
+// softest mode from a few Lanczos steps with its inverse. Where the softest k cannot be told from rounding, |v^T K v|
+// <= 1e-10 sum |v_i K_ij v_j| or what motion_groups.hpp calls rounding, the point is neutral to second order: then all
+// motions that nothing resists are found (free_motions.hpp), and p counts the modes that are negative beside them.
+// Source: Nour-Omid, Parlett, Ericsson, Jensen, Math. Comp. 48 (1987), for Lanczos with a singular metric.
 #pragma once
 
 #include <string>
@@ -20,10 +20,11 @@ struct Certificate {
   bool valid = false;  ///< false: no factorization at all
   bool stable = false, neutral = false;
   int negative_modes = 0;
-  double softest_stiffness = 0;  ///< lowest k; where there are negative ones, the most negative that was found
-  std::vector<double> mode;      ///< its shape over columns, v^T W v = 1; empty where nothing can move
-  int neutral_modes = 0;         ///< found so far
-  double curvature_floor = 0;    ///< what |k| is lost in rounding, N/m
+  double softest_stiffness = 0;          ///< lowest k; where there are negative ones, the most negative that was found
+  std::vector<double> mode;              ///< its shape over columns, v^T W v = 1; empty where nothing can move
+  int neutral_modes = 0;                 ///< motions that nothing resists to second order
+  std::vector<std::string> free_bodies;  ///< that take part in them
+  double curvature_floor = 0;            ///< what |k| is lost in rounding, N/m
 };
 
 /// Certifies the point where the system is, with these multipliers: fills and factors the matrix, exact, unless its

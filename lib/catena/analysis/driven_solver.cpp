@@ -180,25 +180,28 @@ double DrivenSolver::distance(std::span<const double> a, std::span<const double>
   return std::max(shift * unit, turn);
 }
 
-bool DrivenSolver::left_null_vector(std::span<double> w) {
+bool DrivenSolver::null_vectors(std::span<double> w, std::span<double> z) {
   if (!is_square() || !factors_valid_) return false;
   // A start without symmetry: a null vector orthogonal to it would be missed.
   for (std::size_t k = 0; k < step_.size(); ++k) step_[k] = 1 + 0.37 * std::sin(1.0 + static_cast<double>(k));
-  for (int iteration = 0; iteration < 4; ++iteration) {
-    factorization_.solve_transposed(step_, evaluator_.counters);
+  const auto normalise = [&] {
     double square = 0;
     for (double x : step_) square += x * x;
-    if (!(square > 0) || !std::isfinite(square)) return false;
-    const double factor = 1 / std::sqrt(square);
-    for (double& x : step_) x *= factor;
-    if (iteration == 3) break;
-    factorization_.solve(step_, evaluator_.counters);
-    square = 0;
-    for (double x : step_) square += x * x;
     for (double& x : step_) x /= std::sqrt(square);
+    return square > 0 && std::isfinite(square);
+  };
+  for (int iteration = 0; iteration < 4; ++iteration) {
+    factorization_.solve_transposed(step_, evaluator_.counters);
+    if (!normalise()) return false;
+    if (iteration == 3) {
+      std::fill(w.begin(), w.end(), 0.0);
+      for (std::size_t k = 0; k < rows_.size(); ++k) w[at(rows_[k])] = step_[k];
+    }
+    factorization_.solve(step_, evaluator_.counters);
+    if (!normalise()) return false;
   }
-  std::fill(w.begin(), w.end(), 0.0);
-  for (std::size_t k = 0; k < rows_.size(); ++k) w[at(rows_[k])] = step_[k];
+  std::fill(z.begin(), z.end(), 0.0);
+  to_coordinates(step_, z);
   return true;
 }
 

@@ -66,9 +66,10 @@ class DrivenSolver {
   /// largest shift in length scales (of a structure much longer than these: in hundredths of its extent). `angle`: the
   /// angle alone.
   double distance(std::span<const double> a, std::span<const double> b, double* angle) const;
-  /// Left null vector of the matrix near a singular configuration, by inverse iteration with the factors at the last
-  /// configuration: rows of the plan, Euclidean length one. False if there are no factors.
-  bool left_null_vector(std::span<double> w);
+  /// Left and right null vector of the matrix near a singular configuration, by inverse iteration with the factors at
+  /// the last configuration: over the rows of the plan and over all coordinates, Euclidean length one. False if there
+  /// are no factors.
+  bool null_vectors(std::span<double> w, std::span<double> z);
   /// Largest entry of a vector over all rows, in units of the length scale or rad.
   double row_norm(std::span<const double> r) const { return scaling_.row_norm(r); }
   /// Residual of the rows that are not solved with, in units of the length scale or rad; `worst`: its row.

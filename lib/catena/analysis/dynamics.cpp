@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "catena/analysis/initial_velocities.hpp"
@@ -11,11 +12,12 @@
 namespace catena {
 Dynamics::Dynamics(std::shared_ptr<const Model> model, const PlanOptions& plan_options, const DynamicsOptions& options)
     : model_(std::move(model)),
-      plan_(Plan::make(*model_, plan_options)),
+      plan_(Plan::make(required(model_), plan_options)),
       options_(options),
       evaluator_(plan_, *model_),
       equations_(evaluator_),
-      redundant_(equations_) {
+      redundant_(equations_),
+      watched_(evaluator_) {
   q_ = evaluator_.given_configuration();
   qd_.assign(q_.size(), 0.0);
   choose_method();
@@ -39,6 +41,13 @@ Report Dynamics::prepare(std::vector<std::string>& warnings) {
     masses.message =
         fmt::format("tolerance {:.3g} cannot be met: double precision holds about {:.0e}; give {:.0e} ... 1",
                     options_.tolerance, least_tolerance, least_tolerance);
+    return masses;
+  }
+  if (!(options_.step >= 0) || !std::isfinite(options_.step) || options_.max_steps < 1) {
+    masses.status = Status::refused;
+    masses.message = fmt::format(
+        "a fixed step of {:.3g} s, or max_steps = {}, advances nothing: give numbers above zero, or leave them out",
+        options_.step, options_.max_steps);
     return masses;
   }
   evaluator_.set_time(t_);
@@ -70,20 +79,6 @@ double Dynamics::next_breakpoint(double t) const {
   double next = std::numeric_limits<double>::infinity();
   for (const auto& function : model_->functions) next = std::min(next, function.next_breakpoint(t));
   return next;
-}
-
-Report Dynamics::check_functions(double last) const {
-  Report report;
-  for (const auto& function : model_->functions) {
-    const TimeRange domain = function.domain();
-    if (domain.first > t_ || domain.last < last) {
-      report.status = Status::refused;
-      report.message = fmt::format(
-          "a table of a function of time covers {:.12g} s ... {:.12g} s, the analysis {:.12g} s ... {:.12g} s",
-          domain.first, domain.last, t_, last);
-    }
-  }
-  return report;
 }
 
 }  // namespace catena

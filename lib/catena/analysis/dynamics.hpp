@@ -25,8 +25,10 @@
 #include "catena/analysis/redundant_rows.hpp"
 #include "catena/analysis/row_observer.hpp"
 #include "catena/analysis/singular_instant.hpp"
+#include "catena/analysis/state_conversion.hpp"
 #include "catena/analysis/system_state.hpp"
 #include "catena/analysis/time_grid.hpp"
+#include "catena/analysis/watched_elements.hpp"
 
 namespace catena {
 
@@ -75,12 +77,14 @@ class Dynamics {
   std::span<const double> qd() const { return qd_; }
   /// The present state, absolute and in model order.
   SystemState state() const;
+  /// Where a body is where the last run ended: the frame in which its points and attachments were given. By its number
+  /// in the model; throws std::out_of_range for one that no body has.
+  Frame<double> frame(int body) const { return frame_of(evaluator_, q_, body); }
 
  private:
   void choose_method();
   Report prepare(std::vector<std::string>& warnings);
   std::unique_ptr<Integrator> make_integrator(const Motion& motion, double horizon) const;
-  Report check_functions(double last) const;
   void look_for_singularity(double t);
   int locked_driver();
   bool know_singular_start();
@@ -97,6 +101,7 @@ class Dynamics {
   void remember();
   Report give_row(double t, RowObserver& observer);
   std::optional<Snapshot> state_at(double t);
+  Report check_curve_ends(double from, RowObserver& observer);
   Report find_events(double from, RowObserver& observer);
   void find_multipliers();
   void describe_mobility(AnalysisReport& report);
@@ -129,6 +134,8 @@ class Dynamics {
   // Of the run under way.
   TimeGrid grid_ = TimeGrid::list({});
   Needs needs_;
+  std::optional<Evaluator::TimeLimit> time_limit_;  // while it lasts
+  WatchedElements watched_;
   std::optional<Motion> motion_;
   ProcessTimer timer_;
   AnalysisReport report_;

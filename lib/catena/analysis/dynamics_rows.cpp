@@ -99,10 +99,7 @@ void Dynamics::find_multipliers() {
   loads_row_.resize(mass.size());
   for (std::size_t c = 0; c < mass.size(); ++c) loads_row_[c] = Q[c] - mass[c] * qdd[c];
   minimum_norm_->solve(loads_row_, lambda_row_);
-  if (!ambiguity_.empty()) return;
-  ambiguity_ =
-      fmt::format("reactions of {} are not unique, since constraints depend on each other: the least are given",
-                  minimum_norm_->name_ambiguous());
+  ambiguity_ = minimum_norm_->ambiguity();
 }
 
 // Degrees of freedom: by count where rows are independent, else by rank.
@@ -130,6 +127,10 @@ Report Dynamics::stuck() {
         integrator_->time(), model_->element_type(driver), model_->element_name(driver));
     return report;
   }
+  // What means nothing in kinematics means nothing here.
+  evaluator_.set_time(integrator_->time());
+  evaluator_.set_configuration(integrator_->state().first(q_.size()));
+  if (Report sound = watched_.check(); !sound.ok()) return sound;
   report.status = Status::step_too_small;
   const int row = equations_.weakest_row();
   std::string where;

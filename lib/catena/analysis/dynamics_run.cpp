@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "catena/analysis/dynamics.hpp"
+#include "catena/analysis/time_coverage.hpp"
 #include "catena/base/flush_denormals.hpp"
 #include "catena/columns/energy.hpp"
 
@@ -43,7 +44,9 @@ void Dynamics::begin(const TimeGrid& grid, const Needs& needs) {
 // Everything up to the first row.
 Report Dynamics::start() {
   if (const Report order = check_order(); !order.ok()) return order;
-  if (const Report functions = check_functions(grid_.last()); !functions.ok()) return functions;
+  const TimeRange run{t_, grid_.last()};
+  if (Report functions = check_time_functions(*model_, run); !functions.ok()) return functions;
+  time_limit_.emplace(evaluator_, run);
   if (method_ == IntegrationMethod::partitioning) {
     if (const Report freedoms = check_freedoms(); !freedoms.ok()) return freedoms;
   }
@@ -75,7 +78,9 @@ Report Dynamics::start() {
     evaluator_.set_configuration(std::span<const double>(y_row_).first(q_.size()));
     balance_->begin(snapshot(t_, y_row_, {}), options_.tolerance, account_.has_value());
   }
-  return {};
+  if (!watched_.has_ends()) return {};
+  evaluator_.set_configuration(std::span<const double>(y_row_).first(q_.size()));
+  return watched_.check();
 }
 
 // The energy now and then, and at the end: the last evaluation was at the integrator's state.
@@ -153,6 +158,9 @@ Report Dynamics::step(RowObserver& observer) {
   if (const Report pace = check_pace(grid_.last()); !pace.ok()) return pace;
   if (const Report rows = check_redundant_rows(); !rows.ok()) return rows;
   if (const Report balance = check_balance(); !balance.ok()) return balance;
+  if (watched_.has_ends()) {
+    if (const Report left = check_curve_ends(before, observer); !left.ok() || stopped_by_ >= 0) return left;
+  }
   if (events_) {
     const Report found = find_events(before, observer);
     if (!found.ok() || stopped_by_ >= 0) return found;
@@ -211,6 +219,7 @@ AnalysisReport Dynamics::end() {
     evaluator_.set_configuration(q_);
     for (std::string& remark : integrator_->remarks()) report.warnings.push_back(std::move(remark));
   }
+  time_limit_.reset();
   remark_on_singularities(report.warnings);
   if (!ambiguity_.empty()) report.warnings.push_back(ambiguity_);
   resumed_ = false;

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "catena/analysis/minimum_norm.hpp"
 #include "catena/analysis/process_time.hpp"
 #include "catena/analysis/state_conversion.hpp"
 #include "catena/analysis/static_holding.hpp"
+#include "catena/analysis/time_coverage.hpp"
+#include "catena/analysis/watched_elements.hpp"
 
 namespace catena {
 namespace {
@@ -28,10 +31,12 @@ PlanOptions with_gaps(PlanOptions options) {
 Equilibrium::Equilibrium(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
                          const EquilibriumOptions& options)
     : model_(std::move(model)),
-      plan_(Plan::make(*model_, with_gaps(plan_options))),
+      plan_(Plan::make(required(model_), with_gaps(plan_options))),
       options_(options),
       evaluator_(plan_, *model_),
       system_(evaluator_) {
+  if (!(options.tolerance > 0)) throw std::invalid_argument("equilibrium: the tolerance must be above zero");
+  if (options.find < 1) throw std::invalid_argument("equilibrium: find asks for at least one equilibrium");
   q_ = evaluator_.given_configuration();
   lambda_.assign(at(plan_->rows), 0.0);
 }
@@ -43,11 +48,12 @@ void Equilibrium::start_from(const SystemState& state) {
 }
 
 void Equilibrium::set_model(std::shared_ptr<const Model> model) {
+  required(model);
   // Origins may move with the parameters: places are kept in the ground frame.
   std::vector<Vec2<double>> before(at(plan_->bodies));
   for (int p = 0; p < plan_->bodies; ++p) before[at(p)] = evaluator_.origin(p);
+  evaluator_.set_model(*model);
   model_ = std::move(model);
-  evaluator_.set_model(*model_);
   system_.take_over_model();
   for (int p = 0; p < plan_->moving; ++p) {
     q_[3 * at(p)] += before[at(p)].x - evaluator_.origin(p).x;
@@ -83,7 +89,6 @@ EquilibriumReport Equilibrium::solve() {
   report.bodies = static_cast<int>(model_->bodies.size());
   report.rows = plan_->rows;
   report.islands = plan_->islands;
-  evaluator_.set_time(t_);
   const auto end = [&](Report outcome) {
     report.status = outcome.status;
     report.message = std::move(outcome.message);
@@ -93,6 +98,8 @@ EquilibriumReport Equilibrium::solve() {
     solved_ = report.ok();
     return report;
   };
+  if (Report functions = check_time_functions(*model_, {t_, t_}); !functions.ok()) return end(std::move(functions));
+  evaluator_.set_time(t_);
   system_.move_to(q_);
   if (std::optional<Report> loose = find_loose_bodies(system_, evaluator_)) return end(*loose);
   StaticSearch search(system_, {.solver = options_.solver,
@@ -110,6 +117,8 @@ EquilibriumReport Equilibrium::solve() {
   report.stable = report.certified && c.stable;
   report.neutral = report.certified && c.neutral;
   report.negative_modes = report.certified ? c.negative_modes : 0;
+  report.free_motions = report.certified ? c.neutral_modes : 0;
+  if (report.certified) report.free_bodies = c.free_bodies;
   report.softest_stiffness = c.softest_stiffness;
   if (!c.mode.empty()) {
     report.softest_mode = describe_mode(evaluator_, c.mode, system_.radius());
@@ -122,6 +131,10 @@ EquilibriumReport Equilibrium::solve() {
   for (int r : result.dependent_rows) {
     const std::string name = model_->element_name(plan_->row_element[at(r)]);
     if (report.redundant.empty() || report.redundant.back() != name) report.redundant.push_back(name);
+  }
+  if (const WatchedElements watched(evaluator_); result.report.ok() && watched.has_ends()) {
+    evaluator_.set_configuration(q_);
+    if (Report left = watched.check_ends(); !left.ok()) result.report = std::move(left);
   }
   if (result.report.ok()) {
     const auto& closed = result.gaps.closed;
@@ -152,6 +165,7 @@ bool Equilibrium::send_row(const Needs& needs, RowObserver& observer, Report& re
 EquilibriumReport Equilibrium::run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
   EquilibriumReport report;
   const ProcessTimer timer;
+  system_.watch([&] { return observer.proceed(t_); });
   for (std::int64_t k = 0; k < grid.size(); ++k) {
     t_ = grid[k];
     if (options_.find > 1) {
@@ -161,6 +175,7 @@ EquilibriumReport Equilibrium::run(const TimeGrid& grid, const Needs& needs, Row
     report = solve();
     if (!report.ok() || !send_row(needs, observer, report)) break;
   }
+  system_.watch({});
   report.seconds = timer.seconds();
   return report;
 }

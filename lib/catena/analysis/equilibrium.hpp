@@ -18,6 +18,7 @@
 #include "catena/analysis/analysis_report.hpp"
 #include "catena/analysis/certificate.hpp"
 #include "catena/analysis/row_observer.hpp"
+#include "catena/analysis/state_conversion.hpp"
 #include "catena/analysis/static_search.hpp"
 #include "catena/analysis/system_state.hpp"
 #include "catena/analysis/time_grid.hpp"
@@ -50,11 +51,13 @@ struct EquilibriumReport : AnalysisReport {
   bool stable = false;
   bool neutral = false;  ///< to second order
   int negative_modes = 0;
-  double softest_stiffness = 0;       ///< N/m, of the mode below
-  std::string softest_mode;           ///< the body that moves most in it
-  std::vector<double> softest_shape;  ///< model order, three a body; v^T W v = 1, W = (1, 1, radius^2)
-  double residual = 0;                ///< largest residual force, N
-  std::string solver;                 ///< the one that found it
+  int free_motions = 0;                  ///< that nothing resists to second order: how many
+  std::vector<std::string> free_bodies;  ///< and which bodies take part in them
+  double softest_stiffness = 0;          ///< N/m, of the mode below
+  std::string softest_mode;              ///< the body that moves most in it
+  std::vector<double> softest_shape;     ///< model order, three a body; v^T W v = 1, W = (1, 1, radius^2)
+  double residual = 0;                   ///< largest residual force, N
+  std::string solver;                    ///< the one that found it
   int iterations = 0;
   std::vector<std::string> active;      ///< one-sided elements whose gap is closed
   std::vector<FoundEquilibrium> found;  ///< with `find`: one a row, the lowest energy first
@@ -84,6 +87,9 @@ class Equilibrium {
   std::span<const double> lambda() const { return lambda_; }
   /// The present state, absolute and in model order, at rest.
   SystemState state() const;
+  /// Where a body is: the frame in which its points and attachments were given. By its number in the model; throws
+  /// std::out_of_range for one that no body has.
+  Frame<double> frame(int body) const { return frame_of(evaluator_, q_, body); }
 
  private:
   void choose_least_reactions(Report& report);

@@ -54,6 +54,7 @@ EquilibriumReport Equilibrium::find_several(const Needs& needs, RowObserver& obs
     Candidate candidate;
     candidate.report = solve();
     if (used == 0) first = candidate.report;
+    if (candidate.report.status == Status::cancelled) return candidate.report;
     // What is loose or without a bottom is so from every start.
     if (used == 0 && !first.ok() && first.status != Status::not_converged && first.status != Status::not_assembled)
       break;

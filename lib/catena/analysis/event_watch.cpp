@@ -44,6 +44,10 @@ EventWatch::EventWatch(std::vector<Event> events, const Model& model, const Plan
       throw std::invalid_argument("event \"" + event.name + "\" watches \"" + event.column +
                                   "\", which is more than one column");
     needs_ |= set.needs();
+    if (!std::isfinite(event.value))
+      throw std::invalid_argument("event \"" + event.name + "\": its value is not finite");
+    if (event.action == EventAction::release || event.action == EventAction::engage)
+      static_cast<void>(model.element_type(event.element));  // throws for what is none
   }
   side_.assign(events_.size(), 0);
   largest_.assign(events_.size(), 0.0);

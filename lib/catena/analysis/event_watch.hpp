@@ -50,7 +50,7 @@ class EventWatch {
   using StateAt = std::function<std::optional<Snapshot>(double)>;
 
   /// Throws ColumnError for an unknown column; std::invalid_argument for one that stands for several, or that the
-  /// analysis cannot give.
+  /// analysis cannot give, and for a value that is not finite; std::out_of_range for an element that there is not.
   EventWatch(std::vector<Event> events, const Model& model, const Plan& plan, const ColumnSources& sources);
 
   const std::vector<Event>& events() const { return events_; }

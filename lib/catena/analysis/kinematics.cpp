@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "catena/analysis/mobility.hpp"
 #include "catena/analysis/process_time.hpp"
 #include "catena/analysis/state_conversion.hpp"
+#include "catena/analysis/time_coverage.hpp"
 #include "catena/analysis/whole_turns.hpp"
 #include "catena/columns/energy.hpp"
 
@@ -22,8 +24,9 @@ constexpr double nearby = 0.1;
 constexpr double nearby_contraction = 0.25;
 // A reciprocal condition number above this leaves no doubt that all rows are independent.
 constexpr double clearly_regular = 1e-9;
-// Below this one reactions are rounding errors.
-constexpr double reactions_determined = 1e-9;
+// Below this one reactions are taken from both sides of the singular configuration: there a bridge, which meets the
+// constraints to 2e-12, has them to a part of 1e-6 only.
+constexpr double reactions_determined = 1e-6;
 // Part of the loads that least reactions may leave unbalanced.
 constexpr double balanced = 1e-10;
 // Rows closer to dependence than this, where a motion starts: configurations are given no more exactly.
@@ -33,6 +36,9 @@ constexpr double start_distance = 0.02;
 // Redundant rows that velocities and accelerations miss by more than the first part of them are a reason to look for
 // better rows, by more than the second a contradiction.
 constexpr double doubtful_rates = 1e-11, contradictory_rates = 1e-6;
+// Rates of redundant rows are checked at the first of so many rows where nobody asks for them: they cost as much as the
+// positions, whose own residual is checked at every step.
+constexpr std::int64_t rows_between_checks = 16;
 // After so much time (s) drivers that rest at the start are looked at again.
 constexpr double moments[] = {1e-6, 1e-4, 1e-2, 1, 100};
 
@@ -41,12 +47,14 @@ constexpr double moments[] = {1e-6, 1e-4, 1e-2, 1, 100};
 Kinematics::Kinematics(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
                        const KinematicsOptions& options)
     : model_(std::move(model)),
-      plan_(Plan::make(*model_, plan_options)),
+      plan_(Plan::make(required(model_), plan_options)),
       evaluator_(plan_, *model_),
       options_(options),
       solver_(evaluator_),
       watched_(evaluator_),
       predictor_(at(plan_->coordinates())) {
+  if (!(options.tolerance > 0)) throw std::invalid_argument("kinematics: the tolerance must be above zero");
+  if (options.branch < 0) throw std::invalid_argument("kinematics: branches are numbered from 1, and 0 chooses none");
   solver_.tolerance = options.tolerance;
   q_ = evaluator_.given_configuration();
   qd_.assign(q_.size(), 0.0);
@@ -65,6 +73,8 @@ void Kinematics::start_from(const SystemState& state) {
   bridge_.clear();
   choice_.reset();
   margins_.clear();
+  redundant_.clear();
+  prepared_ = placed_ = on_bridge_ = false;
   has_velocity_ = has_acceleration_ = false;
   take_over_places(evaluator_, state, q_);
 }
@@ -76,9 +86,15 @@ SystemState Kinematics::state() const {
 AssemblyOutcome Kinematics::assemble() {
   evaluator_.set_time(t_);
   predictor_.clear();
+  bridge_.clear();
+  placed_ = on_bridge_ = false;
   has_velocity_ = has_acceleration_ = false;
   AssemblyOutcome outcome;
   if (!assemble_nearby()) outcome = Assembler(evaluator_).assemble(q_, options_.tolerance);
+  if (outcome.ok() && watched_.has_ends()) {
+    evaluator_.set_configuration(q_);
+    static_cast<Report&>(outcome) = watched_.check_ends();
+  }
   assembled_ = outcome;
   return outcome;
 }
@@ -97,7 +113,41 @@ bool Kinematics::assemble_nearby() {
     return false;
   }
   q_.swap(trial_);
+  if (evaluator_.trace) (*evaluator_.trace)("assembly", newton_.iterations, newton_.residual, newton_.first_correction);
   return true;
+}
+
+// Assembled and driven, and the solver where the mechanism is: what every step and every solve starts from.
+Report Kinematics::get_ready(double direction) {
+  if (!assembled_ || !assembled_->ok()) {
+    if (const AssemblyOutcome outcome = assemble(); !outcome.ok()) return outcome;
+  }
+  Report prepared = prepare(direction);
+  if (!prepared.ok() || placed_) return prepared;
+  placed_ = true;
+  if (!bridge_.empty()) {
+    place_on_bridge(t_);
+    return prepared;
+  }
+  trial_ = q_;
+  evaluator_.set_time(t_);
+  newton_ = solver_.solve_position(trial_);
+  if (newton_.converged) q_.swap(trial_);
+  return prepared;
+}
+
+Report Kinematics::move_to(double t) {
+  if (!std::isfinite(t)) throw std::invalid_argument("kinematics cannot move to an instant that is not finite");
+  Report ready = get_ready(t < t_ ? -1 : 1);
+  if (!ready.ok()) return ready;
+  Report moved = follow_to(t);
+  moved.warnings.insert(moved.warnings.begin(), ready.warnings.begin(), ready.warnings.end());
+  return moved;
+}
+
+Report Kinematics::solve_rates(const Needs& needs) {
+  Report ready = get_ready(1);
+  return ready.ok() ? find_rates(needs) : ready;
 }
 
 // Makes sure that the constraints drive every coordinate, with a working set of rows if there are more than needed.
@@ -116,8 +166,11 @@ Report Kinematics::prepare(double direction) {
   }
   const MobilityReport mobility = analyse_mobility(evaluator_, q_);
   if (mobility.rank < plan_->columns) {
-    const SingularPoint point = find_branches(evaluator_, q_, {}, start_dependence);
-    if (plan_->rows >= plan_->columns && point.held_to_second_order) return start_singular(point, direction);
+    SingularPoint point = find_branches(evaluator_, q_, {}, start_dependence);
+    if (plan_->rows >= plan_->columns && point.held_to_second_order) {
+      if (point.kind == SingularPoint::Kind::lock_up) return lock_up(std::move(point));
+      return start_singular(std::move(point), direction);
+    }
     report.status = Status::under_driven;
     report.message = mobility.describe_freedom();
     return report;
@@ -136,7 +189,7 @@ Report Kinematics::prepare(double direction) {
 void Kinematics::find_ways(SingularPoint& point, double direction) {
   std::vector<double> nu(at(plan_->rows));
   for (double later : moments) {
-    if (!tables_reach(t_ + direction * later)) break;
+    if (!functions_go_on(t_ + direction * later)) break;
     evaluator_.set_time(t_ + direction * later);
     evaluator_.nu(nu);
     if (std::all_of(nu.begin(), nu.end(), [](double rate) { return rate == 0; })) continue;
@@ -190,34 +243,48 @@ Report Kinematics::start_singular(SingularPoint point, double direction) {
   return report;
 }
 
-void Kinematics::scatter_applied_forces() {
-  // Q - M qdd by columns.
+// The drivers ask for a motion across a combination of rows that vanishes.
+Report Kinematics::lock_up(SingularPoint point) {
+  Report report;
+  report.status = Status::lock_up;
+  report.message = fmt::format(
+      "lock-up at t = {:.12g} s: the drivers ask for a motion that the mechanism cannot make (a dead point)", point.t);
+  if (point.driver >= 0) {
+    report.message += fmt::format("; most concerned: driver \"{}\" at {:.6g}", model_->element_name(point.driver),
+                                  point.driver_value);
+  }
+  singular_points_.push_back(std::move(point));
+  return report;
+}
+
+// Q - M qdd by columns, at the evaluator's configuration.
+void Kinematics::scatter_applied_forces(std::span<const double> qd, std::span<const double> qdd) {
   applied_.resize(at(plan_->coordinates()));
-  evaluator_.applied_forces(qd_, applied_);
+  evaluator_.applied_forces(qd, applied_);
   loads_.resize(at(plan_->columns));
   for (int c = 0; c < plan_->columns; ++c) {
     const int coordinate = plan_->coordinate[at(c)];
     const auto& body = model_->bodies[at(plan_->model_body[at(coordinate / 3)])];
     const double inertia = coordinate % 3 == 2 ? body.inertia : body.mass;
-    loads_[at(c)] = applied_[at(coordinate)] - inertia * qdd_[at(coordinate)];
+    loads_[at(c)] = applied_[at(coordinate)] - inertia * qdd[at(coordinate)];
   }
 }
 
-Report Kinematics::solve_rates(const Needs& needs) {
+Report Kinematics::find_rates(const Needs& needs) {
   Report report;
   const bool acceleration = needs.acceleration || needs.multipliers;
   if (!needs.velocity && !acceleration) return report;
   if (on_bridge_) {
     // The bridge has the rates; multipliers need factors of the matrix, and those tell whether it can be.
     if (needs.multipliers && !(solver_.factor_at(q_) > reactions_determined)) {
-      report.status = Status::singular;
-      report.message = fmt::format(
-          "reactions are not determined at t = {:.12g} s: the mechanism is at a singular configuration", t_);
+      find_limit_of_multipliers();
       return report;
     }
     return needs.multipliers ? solve_multipliers() : report;
   }
-  const bool start = predicted_ == t_;
+  // Predictions are as large as what run() was asked for.
+  const bool start = predicted_ == t_ && !predicted_qd_.empty();
+  const bool acceleration_start = start && !predicted_qdd_.empty();
   predicted_.reset();
   if (start) qd_.swap(predicted_qd_);
   if (!solver_.solve_velocity(qd_, start)) {
@@ -228,8 +295,8 @@ Report Kinematics::solve_rates(const Needs& needs) {
   }
   has_velocity_ = true;
   if (!acceleration) return report;
-  if (start) qdd_.swap(predicted_qdd_);
-  if (!solver_.solve_acceleration(qd_, qdd_, start)) {
+  if (acceleration_start) qdd_.swap(predicted_qdd_);
+  if (!solver_.solve_acceleration(qd_, qdd_, acceleration_start)) {
     report.status = Status::singular;
     report.message = fmt::format(
         "accelerations are not determined at t = {:.12g} s: the mechanism is at a singular configuration", t_);
@@ -242,7 +309,7 @@ Report Kinematics::solve_rates(const Needs& needs) {
 Report Kinematics::solve_multipliers() {
   Report report;
   lambda_.resize(at(plan_->rows));
-  scatter_applied_forces();
+  scatter_applied_forces(qd_, qdd_);
   if (!solver_.solve_multipliers(loads_, lambda_)) {
     report.status = Status::singular;
     report.message = fmt::format("reactions are not determined at t = {:.12g} s", t_);
@@ -262,10 +329,7 @@ void Kinematics::choose_least_reactions() {
   // Those that would not balance the loads are none.
   if (!(minimum_norm_->solve(applied_, least_lambda_) <= balanced)) return;
   lambda_.swap(least_lambda_);
-  if (!ambiguity_.empty()) return;
-  ambiguity_ =
-      fmt::format("reactions of {} are not unique, since constraints depend on each other: the least are given",
-                  minimum_norm_->name_ambiguous());
+  ambiguity_ = minimum_norm_->ambiguity();
 }
 
 Snapshot Kinematics::snapshot() const {
@@ -292,19 +356,24 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& asked, RowObse
   Needs needs = asked;
   if (needs.work) needs.velocity = needs.acceleration = needs.multipliers = true;
   account_.reset();
+  TimeRange whole{t_, t_};
   if (grid.size() > 0) {
     earliest_ = grid.earliest();
     latest_ = grid.latest();
+    whole = {std::min(t_, earliest_), std::max(t_, latest_)};
   }
+  const Evaluator::TimeLimit limit(evaluator_, whole);
   const auto end = [&](const Report& outcome) {
     observer_ = nullptr;
     earliest_ = -std::numeric_limits<double>::infinity();
     latest_ = std::numeric_limits<double>::infinity();
+    if (outcome.status == Status::lock_up) give_row_at_lock_up(needs, observer);
     report.status = outcome.status;
     report.message = outcome.message;
     report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
     if (std::string doubt = doubt_of_work(); !doubt.empty()) report.warnings.push_back(std::move(doubt));
     if (!ambiguity_.empty()) report.warnings.push_back(ambiguity_);
+    remark_on_limits(report.warnings);
     report.counters = evaluator_.counters;
     report.seconds = timer.seconds();
     return report;
@@ -318,7 +387,8 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& asked, RowObse
       return end(refused);
     }
   }
-  if (!assembled_) {
+  if (const Report functions = check_time_functions(*model_, whole); !functions.ok()) return end(functions);
+  if (!assembled_ || !assembled_->ok()) {
     const AssemblyOutcome outcome = assemble();
     if (!outcome.ok()) return end(outcome);
   }
@@ -326,6 +396,7 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& asked, RowObse
   predicted_qdd_.resize(needs.acceleration || needs.multipliers ? q_.size() : 0);
   predicted_.reset();
   const Report prepared = prepare(grid.size() > 1 && grid[1] < grid[0] ? -1 : 1);
+  placed_ = true;  // by the first row
   if (!prepared.ok()) return end(prepared);
   report.warnings = prepared.warnings;
   report.redundant = redundant_;
@@ -337,7 +408,7 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& asked, RowObse
   }
   for (std::int64_t k = 0; k < grid.size(); ++k) {
     if (grid[k] != t_) {
-      const Report moved = account_ ? move_and_sum_up(grid[k]) : move_to(grid[k]);
+      const Report moved = account_ ? move_and_sum_up(grid[k]) : follow_to(grid[k]);
       if (!moved.ok()) return end(moved);
       report.warnings.insert(report.warnings.end(), moved.warnings.begin(), moved.warnings.end());
     } else if (on_bridge_ || (!bridge_.empty() && t_ >= bridge_from_ && t_ <= bridge_to_)) {
@@ -350,11 +421,14 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& asked, RowObse
     }
     if (const Report consistent = check_redundant_rows(); !consistent.ok()) return end(consistent);
     if (const Report sound = watched_.check(); !sound.ok()) return end(sound);
-    if (const Report solved = solve_rates(needs); !solved.ok()) return end(solved);
+    // Rows that repeat others must agree with them in velocities and accelerations, too, asked for or not.
+    Needs checked = needs;
+    if (plan_->rows > plan_->columns && k % rows_between_checks == 0) checked.velocity = checked.acceleration = true;
+    if (const Report solved = find_rates(checked); !solved.ok()) return end(solved);
     if (!check_redundant_rates(doubtful_rates, false).ok() && choose_better_rows()) {
       // The rows in use determined something badly, others do it well.
       solver_.solve_position(q_);
-      if (const Report solved = solve_rates(needs); !solved.ok()) return end(solved);
+      if (const Report solved = find_rates(checked); !solved.ok()) return end(solved);
     }
     if (const Report consistent = check_redundant_rates(contradictory_rates, true); !consistent.ok())
       return end(consistent);

@@ -3,9 +3,11 @@
 // Between rows the motion is followed in steps of its own choice: a step whose prediction was far off, or on which
 // Newton contracted badly, is halved, so that no branch is jumped however coarse the rows are. Where branches meet the
 // instant is located, the branches are listed, and the one that continues the motion is taken, or the one chosen; where
-// no step can be made any more the mechanism is locked, and the report says when and why. Velocities, accelerations and
-// multipliers are computed at rows only and only if needed; where work is asked for also between them. Zero allocations
-// a step after the first.
+// no step can be made any more the mechanism is locked: the report says when and why, and a last row gives the place,
+// without the rates, which grow without bound there. Velocities, accelerations and multipliers are computed at rows
+// only and only if needed, or to check rows that repeat others; where work is asked for also between them. Multipliers
+// at a singular configuration are the limit of those on both sides, null where there is none. Zero allocations a step
+// after the first.
 #pragma once
 
 #include <limits>
@@ -22,6 +24,7 @@
 #include "catena/analysis/mobility.hpp"
 #include "catena/analysis/predictor.hpp"
 #include "catena/analysis/row_observer.hpp"
+#include "catena/analysis/state_conversion.hpp"
 #include "catena/analysis/system_state.hpp"
 #include "catena/analysis/time_grid.hpp"
 #include "catena/analysis/watched_elements.hpp"
@@ -50,7 +53,8 @@ class Kinematics {
   AssemblyOutcome assemble();
   /// Assembles at the first instant, if nothing did before, and goes through the grid.
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
-  /// Position at t, following the motion from where it is now; then the rest as needed.
+  /// Position at t, following the motion from where it is now; then the rest as needed. Where nothing was assembled yet
+  /// that is done first; `under_driven` where constraints and drivers do not determine the motion.
   Report move_to(double t);
   Report solve_rates(const Needs& needs);
 
@@ -61,19 +65,27 @@ class Kinematics {
   std::span<const double> lambda() const { return lambda_; }
   /// The present state, absolute and in model order; velocities if they are known.
   SystemState state() const;
+  /// Where a body is now: the frame in which its points and attachments were given. By its number in the model; throws
+  /// std::out_of_range for one that no body has.
+  Frame<double> frame(int body) const { return frame_of(evaluator_, q_, body); }
   const DrivenSolver& solver() const { return solver_; }
   /// The singular configurations met so far, in the order in which they were met.
   const std::vector<SingularPoint>& singular_points() const { return singular_points_; }
 
  private:
   bool assemble_nearby();
+  Report get_ready(double direction);
   Report prepare(double direction);
+  Report lock_up(SingularPoint point);
+  Report follow_to(double t);
+  Report find_rates(const Needs& needs);
   void find_ways(SingularPoint& point, double direction);
   Report start_singular(SingularPoint point, double direction);
   bool choose_rows(std::span<const double> q);
   bool choose_better_rows();
-  enum class StepOutcome { made, dipped, too_long, crossed };
+  enum class StepOutcome { made, dipped, too_long, crossed, left_curve };
   StepOutcome try_step(double t, bool ignore_dips);
+  bool leaves_curve(double t);
   bool heads_for_singularity(double t) const;
   void remember_margins();
   Report cancelled() const;
@@ -81,22 +93,27 @@ class Kinematics {
   void restore_fixed(std::span<double> q, std::span<double> qd, std::span<double> qdd) const;
   bool find_velocity();
   double largest_rate() const;
-  Report stuck(double t);
+  Report stuck(double next, double target);
+  bool locate_lock_up(double target, SingularPoint& point);
+  void give_row_at_lock_up(const Needs& needs, RowObserver& observer);
   Report check_redundant_rows();
   Report check_redundant_rates(double allowed, bool in_words);
   Report contradicts(int row, const std::string& how);
-  void scatter_applied_forces();
+  void scatter_applied_forces(std::span<const double> qd, std::span<const double> qdd);
   Report solve_multipliers();
   void choose_least_reactions();
+  bool multipliers_on_bridge(double t, std::span<double> lambda);
+  void find_limit_of_multipliers();
   Snapshot snapshot() const;
   // Work along the motion: kinematics_work.cpp.
   Report start_work();
   double energy_gap() const;
   double energy_scale() const;
-  double stretch() const;
+  double stretch(double limit) const;
   Report sum_up_stretch(double t, double& error, std::vector<std::string>& warnings);
   Report move_and_sum_up(double t);
   std::string doubt_of_work() const;
+  void remark_on_limits(std::vector<std::string>& warnings) const;
 
   // Singular configurations: kinematics_passage.cpp, kinematics_instants.cpp, kinematics_entry.cpp.
   enum class Passage { none, regular, passed, failed };
@@ -115,7 +132,7 @@ class Kinematics {
   double time_to_depart(double rest, double direction, double way);
   void leave_bridge(double end);
   void place_on_bridge(double t);
-  bool tables_reach(double t) const;
+  bool functions_go_on(double t) const;
   void announce(const SingularPoint& point, Report& report);
 
   std::shared_ptr<const Model> model_;
@@ -124,9 +141,15 @@ class Kinematics {
   KinematicsOptions options_;
   DrivenSolver solver_;
   WatchedElements watched_;
+  struct Excess {
+    double t, parts;
+  };
+  std::vector<Excess> excesses_;  // beyond the ends of curves, at the last two steps
+  double excess_ = 0;             // at the step that is tried
   Predictor predictor_;
   std::optional<AssemblyOutcome> assembled_;
-  bool prepared_ = false, has_velocity_ = false, has_acceleration_ = false;
+  bool prepared_ = false, placed_ = false;  // the constraints drive it; the solver is where q_ is
+  bool has_velocity_ = false, has_acceleration_ = false;
   RowObserver* observer_ = nullptr;                             // during run(): asked between rows too whether to go on
   double earliest_ = -std::numeric_limits<double>::infinity();  // rows of run(): what lies beyond is not reported
   double latest_ = std::numeric_limits<double>::infinity();
@@ -144,7 +167,11 @@ class Kinematics {
   std::vector<std::string> redundant_;
   std::optional<MinimumNorm> minimum_norm_;  // of multipliers, where rows depend on each other
   std::string ambiguity_;                    // in words: the elements whose reactions are not unique
-  std::optional<EnergyAccount> account_;     // while work is summed up
+  // Rows at singular configurations whose multipliers are limits: how many, the first, and what has none, in words.
+  std::int64_t limit_rows_ = 0;
+  double limit_t_ = 0;
+  std::string without_limit_;
+  std::optional<EnergyAccount> account_;  // while work is summed up
   std::vector<double> work_, power_, cubic_part_, driver_work_;
   double initial_energy_ = 0, exchanged_ = 0, unsure_ = 0, stretch_part_ = 1;
   double chosen_rcond_ = 0;  // of the rows in use, where they were chosen

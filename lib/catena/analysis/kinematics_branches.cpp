@@ -158,10 +158,11 @@ void put_into_words(const Evaluator& evaluator, SingularPoint& point) {
   const double length = evaluator.length_scale();
   std::vector<double> spread(at(plan.moving), 0.0);
   std::vector<char> turns(at(plan.moving), 0);
+  const bool alone = point.tangents.size() == 1;  // nothing to be told apart from but rest
   for (int b = 0; b < plan.moving; ++b) {
     double low[3], high[3];
     for (int c = 0; c < 3; ++c) {
-      low[c] = high[c] = point.tangents.front()[at(3 * b + c)];
+      low[c] = high[c] = alone ? 0 : point.tangents.front()[at(3 * b + c)];
       for (const auto& tangent : point.tangents) {
         low[c] = std::min(low[c], tangent[at(3 * b + c)]);
         high[c] = std::max(high[c], tangent[at(3 * b + c)]);
@@ -184,11 +185,89 @@ void put_into_words(const Evaluator& evaluator, SingularPoint& point) {
       text += turns[at(b)] ? fmt::format("\"{}\" turns at {:.4g} rad/s", name, clean(v[2]))
                            : fmt::format("\"{}\" moves at ({:.4g}, {:.4g}) m/s", name, clean(v[0]), clean(v[1]));
     }
-    point.branches.push_back(text.empty() ? "all bodies as before" : text);
+    point.branches.push_back(!text.empty() ? text : alone ? "all bodies at rest" : "all bodies as before");
   }
 }
 
+/// A combination of rows that vanishes, and its part of b: |w^T b| / (|w| |b|) as in disagreement().
+struct Opposed {
+  std::vector<double> w;
+  double part = 0;
+};
+
+/// Of the left null vectors the one that b disagrees with most.
+Opposed most_opposed(const Evaluator& evaluator, const RankReport& rank, std::span<const double> b) {
+  const Plan& plan = evaluator.plan();
+  const auto unit = [&](int r) { return plan.row_is_angle[at(r)] ? 1 : evaluator.length_scale(); };
+  double squares_b = 0;
+  for (int r = 0; r < plan.rows; ++r) squares_b += b[at(r)] / unit(r) * (b[at(r)] / unit(r));
+  Opposed most{std::vector<double>(b.size(), 0.0)};
+  int place = rank.left_null_vectors.count() > 0 ? 0 : -1;
+  for (int k = 0; k < rank.left_null_vectors.count() && squares_b > 0; ++k) {
+    const auto rows = rank.left_null_vectors.indices(k);
+    const auto weights = rank.left_null_vectors.values(k);
+    double product = 0, squares_w = 0;
+    for (std::size_t n = 0; n < rows.size(); ++n) {
+      product += weights[n] * b[at(rows[n])];
+      squares_w += weights[n] * unit(rows[n]) * weights[n] * unit(rows[n]);
+    }
+    const double part = std::abs(product) / std::sqrt(squares_w * squares_b);
+    if (part > most.part) most.part = part, place = k;
+  }
+  if (place < 0) return most;
+  const auto rows = rank.left_null_vectors.indices(place);
+  for (std::size_t n = 0; n < rows.size(); ++n) most.w[at(rows[n])] = rank.left_null_vectors.values(place)[n];
+  return most;
+}
+
+/// Whether no null vector can be followed with the drivers at rest: w^T gamma, which is quadratic in velocities, does
+/// not vanish for any of them. `own`: gamma at rest.
+bool is_held(Evaluator& evaluator, const NullSpaces& spaces, std::span<const double> own) {
+  std::vector<double> gamma(own.size());
+  return std::all_of(spaces.z.begin(), spaces.z.end(), [&](const std::vector<double>& z) {
+    evaluator.gamma(z, gamma);
+    for (std::size_t r = 0; r < gamma.size(); ++r) gamma[r] -= own[r];
+    return most_opposed(evaluator, spaces.rank, gamma).part > vanishing;
+  });
+}
+
 }  // namespace
+
+double disagreement(const Evaluator& evaluator, std::span<const double> w, std::span<const double> b) {
+  double product = 0, squares_w = 0, squares_b = 0;
+  for (std::size_t r = 0; r < w.size(); ++r) {
+    const double unit = evaluator.plan().row_is_angle[r] ? 1 : evaluator.length_scale();
+    product += w[r] * b[r];
+    squares_w += w[r] * unit * w[r] * unit;
+    squares_b += b[r] / unit * (b[r] / unit);
+  }
+  return squares_w > 0 && squares_b > 0 ? std::abs(product) / std::sqrt(squares_w * squares_b) : 0;
+}
+
+void SingularPoint::name_bodies(const Evaluator& evaluator, std::span<const std::vector<double>> motions) {
+  const Plan& plan = evaluator.plan();
+  std::vector<double> share(at(plan.moving), 0.0);
+  for (const auto& z : motions) {
+    for (int b = 0; b < plan.moving; ++b) {
+      const double shift = std::max(std::abs(z[at(3 * b)]), std::abs(z[at(3 * b + 1)])) / evaluator.length_scale();
+      share[at(b)] = std::max({share[at(b)], shift, std::abs(z[at(3 * b + 2)])});
+    }
+  }
+  bodies.clear();
+  for (int b : most_concerned(share, 10)) bodies.emplace_back(evaluator.model().body_name(plan.model_body[at(b)]));
+}
+
+void SingularPoint::find_driver(const Evaluator& evaluator, std::span<const double> w, std::span<const double> nu) {
+  const Plan& plan = evaluator.plan();
+  double most = -1;
+  for (int r = 0; r < plan.rows; ++r) {
+    const int element = plan.row_element[at(r)];
+    if (evaluator.model().elements[at(element)].kind != ElementKind::driver) continue;
+    const double share = std::abs(w[at(r)] * nu[at(r)]);
+    if (share > most) most = share, driver = element;
+  }
+  if (driver >= 0) driver_value = evaluator.element_value(driver).f;
+}
 
 void SingularPoint::put_first(std::size_t k) {
   const auto place = static_cast<std::ptrdiff_t>(k);
@@ -235,19 +314,20 @@ SingularPoint find_branches(Evaluator& evaluator, std::span<const double> q, std
   point.q.assign(q.begin(), q.end());
   const NullSpaces spaces = find_null_spaces(evaluator, q, threshold);
   point.nullity = plan.columns - spaces.rank.rank;
-  std::vector<double> share(at(plan.moving), 0.0);
-  for (const auto& z : spaces.z) {
-    for (int b = 0; b < plan.moving; ++b) {
-      const double shift = std::max(std::abs(z[at(3 * b)]), std::abs(z[at(3 * b + 1)])) / evaluator.length_scale();
-      share[at(b)] = std::max({share[at(b)], shift, std::abs(z[at(3 * b + 2)])});
-    }
-  }
-  for (int b : most_concerned(share, 10)) {
-    point.bodies.emplace_back(evaluator.model().body_name(plan.model_body[at(b)]));
-  }
+  point.name_bodies(evaluator, spaces.z);
   // A particular velocity, the least, if none is known.
   std::vector<double> nu(at(plan.rows)), qd0(at(plan.coordinates()), 0.0);
   evaluator.nu(nu);
+  const Opposed opposed = most_opposed(evaluator, spaces.rank, nu);
+  point.find_driver(evaluator, opposed.w, nu);
+  const std::vector<double> nothing(qd0.size(), 0.0);
+  std::vector<double> own(at(plan.rows));
+  evaluator.gamma(nothing, own);
+  point.held_to_second_order = !spaces.z.empty() && is_held(evaluator, spaces, own);
+  if (along.empty() && opposed.part > clear_disagreement) {
+    point.kind = SingularPoint::Kind::lock_up;
+    return point;
+  }
   if (!along.empty()) {
     qd0.assign(along.begin(), along.end());
   } else if (plan.rows > 0) {
@@ -268,20 +348,18 @@ SingularPoint find_branches(Evaluator& evaluator, std::span<const double> q, std
     if (!along.empty()) point.tangents.push_back(qd0);
     return point;
   }
-  // Whether a null vector can be followed with the drivers at rest: w^T gamma is then zero for it.
-  const std::vector<double> nothing(qd0.size(), 0.0);
-  std::vector<double> own(at(plan.rows));
-  evaluator.gamma(nothing, own);
-  const Quadratics still = make_quadratics(evaluator, spaces, nothing, 1, own);
-  point.held_to_second_order = true;
-  for (std::size_t j = 0; j < still.k; ++j) {
-    bool held = false;
-    for (const auto& quadratic : still.quadratic) held = held || std::abs(quadratic[j * still.k + j]) > vanishing;
-    point.held_to_second_order = point.held_to_second_order && held;
-  }
   double largest_nu = 0;
   for (double value : nu) largest_nu = std::max(largest_nu, std::abs(value));
-  if (!(rate > 0) || largest_nu == 0) {
+  // Drivers that rest but do not stay may leave a dead point at once: w^T gamma = 0 then asks for a velocity.
+  const bool starts = along.empty() && largest_nu == 0 && drivers == Drivers::moving &&
+                      most_opposed(evaluator, spaces.rank, own).part > clear_disagreement;
+  if (starts) {
+    double gain = 0;
+    for (int r = 0; r < plan.rows; ++r) {
+      gain = std::max(gain, std::abs(own[at(r)]) / (plan.row_is_angle[at(r)] ? 1 : evaluator.length_scale()));
+    }
+    rate = std::sqrt(gain);
+  } else if (!(rate > 0) || largest_nu == 0) {
     point.kind = SingularPoint::Kind::rest;
     point.tangents.push_back(qd0);
     return point;
@@ -306,7 +384,7 @@ SingularPoint find_branches(Evaluator& evaluator, std::span<const double> q, std
   point.kind = point.tangents.empty()       ? SingularPoint::Kind::isolated
                : point.tangents.size() == 1 ? SingularPoint::Kind::tangency
                                             : SingularPoint::Kind::branch_point;
-  if (point.tangents.size() > 1) put_into_words(evaluator, point);
+  if (!point.tangents.empty()) put_into_words(evaluator, point);
   return point;
 }
 

@@ -36,9 +36,15 @@ struct SingularPoint {
                                               ///< before. At rest: for a fastest driver of speed 1
   std::vector<std::string> branches;          ///< the same in words: which bodies move how
   std::vector<std::string> bodies;            ///< those that take part in the null vectors, the most mobile first
+  int driver = -1;                            ///< the one concerned: whose row weighs most, else the first; -1: none
+  double driver_value = 0;                    ///< its value there, m or rad
   /// Whether positions near this one are only reached by moving the drivers: a null vector that cannot be followed.
   bool held_to_second_order = false;
 
+  /// Names the bodies that take part in motions, given by coordinate.
+  void name_bodies(const Evaluator& evaluator, std::span<const std::vector<double>> motions);
+  /// Finds the driver concerned, at the evaluator's time; `w`: weights of the rows in a combination that vanishes.
+  void find_driver(const Evaluator& evaluator, std::span<const double> w, std::span<const double> nu);
   /// Makes branch k, counted from zero, the first one.
   void put_first(std::size_t k);
   /// The name used in result files.
@@ -50,6 +56,12 @@ struct SingularPoint {
 };
 
 inline constexpr int most_nullity = 6;
+
+/// |w^T b| / (|w| |b|) in length scales and rad. Where rows depend on each other, w^T Phi_q = 0, it tells whether they
+/// agree: b = nu for velocities, gamma for accelerations. 0 where b vanishes.
+double disagreement(const Evaluator& evaluator, std::span<const double> w, std::span<const double> b);
+/// Above this one it is none of rounding: configurations are given to some 1e-7, and so are their null vectors.
+inline constexpr double clear_disagreement = 1e-6;
 
 enum class Drivers {
   moving,         ///< at the evaluator's time as in the motion

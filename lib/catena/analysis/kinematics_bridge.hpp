@@ -29,11 +29,13 @@ class MotionBridge {
   double first() const;
   double last() const;
 
- private:
   struct Node {
     double t = 0;
     std::vector<double> q, qd, qdd;
   };
+  std::span<const Node> nodes() const { return nodes_; }
+
+ private:
   std::vector<Node> nodes_;
 };
 

@@ -72,15 +72,42 @@ class Departure {
   std::vector<Taylor<double>> start_;
 };
 
+/// The bridge with the singular configuration itself in place of its last instant. With the velocity v there,
+/// q = q* + s v + s^2 r(s),  and r(0) is half the acceleration; r is extrapolated from the others, in which an error of
+/// the acceleration matters little, since place and velocity are known.
+MotionBridge anchor(const MotionBridge& bridge, const SingularPoint& point, std::span<const double> v) {
+  MotionBridge rest, anchored;
+  const std::size_t n = point.q.size();
+  std::vector<double> r(n), rd(n), rdd(n);
+  for (int k = 0; k + 1 < bridge.size(); ++k) {
+    const auto& node = bridge.nodes()[static_cast<std::size_t>(k)];
+    const double s = node.t - point.t;
+    for (std::size_t i = 0; i < n; ++i) {
+      r[i] = (node.q[i] - point.q[i] - s * v[i]) / (s * s);
+      rd[i] = (node.qd[i] - v[i]) / (s * s) - 2 * r[i] / s;
+      rdd[i] = node.qdd[i] / (s * s) - 4 * rd[i] / s - 2 * r[i] / (s * s);
+    }
+    rest.add(node.t, r, rd, rdd);
+  }
+  rest.evaluate(point.t, r, {}, {});
+  for (double& value : r) value *= 2;
+  anchored.add(point.t, point.q, v, r);
+  for (int k = 0; k + 1 < bridge.size(); ++k) {
+    const auto& node = bridge.nodes()[static_cast<std::size_t>(k)];
+    anchored.add(node.t, node.q, node.qd, node.qdd);
+  }
+  return anchored;
+}
+
 }  // namespace
 
-// The time after which the drivers have come by `way`; infinite: they do not, or their tables end before.
+// The time after which the drivers have come by `way`; infinite: they do not, or nothing is known of them then.
 double Kinematics::time_to_depart(double rest, double direction, double way) {
   const Departure departure(evaluator_, rest, direction);
   const auto beyond = [&](double h) { return departure.at(rest + direction * h) >= way; };
   double low = 0, high = shortest;
-  while (high < longest && tables_reach(rest + direction * high) && !beyond(high)) low = high, high *= 2;
-  if (!(high < longest) || !tables_reach(rest + direction * high)) return std::numeric_limits<double>::infinity();
+  while (high < longest && functions_go_on(rest + direction * high) && !beyond(high)) low = high, high *= 2;
+  if (!(high < longest) || !functions_go_on(rest + direction * high)) return std::numeric_limits<double>::infinity();
   while (high - low > 1e-3 * high) {
     const double middle = low + (high - low) / 2;
     (beyond(middle) ? high : low) = middle;
@@ -111,8 +138,8 @@ Report Kinematics::take_branch(const SingularPoint& point, int branch, double di
       for (std::size_t k = 0; k < trial_.size(); ++k) trial_[k] = point.q[k] + s * tangent[k];
       return add_node(bridge, t, entry_allowance * std::abs(s) * std::min(apart, rate));
     };
-    // Around the instant; or, where nothing moves before it or tables begin with it, from there on: that the drivers
-    // rest tells the velocity and the acceleration at the instant itself.
+    // Around the instant; or, where nothing moves before it or tables or the run begin with it, from there on: that the
+    // drivers rest tells the velocity and the acceleration at the instant itself; else the tangent tells the velocity.
     constexpr double around[] = {1, 2, -1, -2}, after[] = {1, 2, 3, 4};
     MotionBridge bridge;
     bool built = false;
@@ -128,10 +155,17 @@ Report Kinematics::take_branch(const SingularPoint& point, int branch, double di
       for (std::size_t k = 0; built && bridge.size() < MotionBridge::capacity; ++k) {
         const double t = point.t + places[k] * h;
         if (rests || bridge.empty()) {
-          built = tables_reach(t) && add_along_tangent(bridge, t);
+          built = functions_go_on(t) && add_along_tangent(bridge, t);
         } else {
           bridge.evaluate(t, trial_, {}, {});
           built = add_node(bridge, t, entry_allowance * entry);
+        }
+      }
+      if (built && !rests && places == after) {
+        MotionBridge anchored = anchor(bridge, point, tangent);
+        if (follows_constraints(anchored, point.t, point.t + h)) {
+          bridge = std::move(anchored);
+          break;
         }
       }
       built = built && follows_constraints(bridge, point.t, point.t + h);

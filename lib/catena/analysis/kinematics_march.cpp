@@ -9,8 +9,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "catena/analysis/kinematics.hpp"
+#include "catena/analysis/time_coverage.hpp"
 
 namespace catena {
 namespace {
@@ -38,8 +40,14 @@ constexpr std::array<double, 6> reaches = {0.2, 0.1, 0.05, 0.015, 0.004, 0.001};
 constexpr double try_again = 1.0 / 32;
 // Rows are chosen anew where their reciprocal condition number has fallen to this part of what it was.
 constexpr double drifted = 0.01;
+// A step fails where it is more than about half of what is left of the way to a dead point.
+constexpr double most_steps_left = 4;
+// A zero of a determinant further away than so many times the way that the rates show is another one.
+constexpr double longest_way = 1e3;
 // Steps made after one that failed before their length may grow again.
 constexpr int patience = 2;
+// Least number of steps between rows where the ends of curves are watched.
+constexpr double steps_to_a_row = 8;
 
 }  // namespace
 
@@ -81,6 +89,7 @@ Kinematics::StepOutcome Kinematics::try_step(double t, bool ignore_dips) {
   if (!newton_.converged || newton_.first_turn > largest_turn || newton_.contraction > largest_contraction) {
     return StepOutcome::too_long;
   }
+  if (watched_.has_ends() && leaves_curve(t)) return StepOutcome::left_curve;
   if (plan_->constant_jacobian) return StepOutcome::made;
   double turn = 0;
   solver_.distance(trial_, q_, &turn);
@@ -98,6 +107,24 @@ Kinematics::StepOutcome Kinematics::try_step(double t, bool ignore_dips) {
   }
   if (crossed) return StepOutcome::crossed;
   return dipped && !ignore_dips ? StepOutcome::dipped : StepOutcome::made;
+}
+
+// Whether a curve or table is left at (t, trial_), or was between the last steps and this one: the parabola through how
+// far beyond their ends the three are tells.
+bool Kinematics::leaves_curve(double t) {
+  evaluator_.set_configuration(trial_);
+  excess_ = watched_.excess();
+  const double allowed = WatchedElements::allowed_excess;
+  if (excess_ > allowed || !watched_.check().ok()) return true;
+  const std::size_t n = excesses_.size();
+  if (n >= 2 && excesses_[n - 1].t == t_) {
+    const auto [ta, a] = excesses_[n - 2];
+    const auto [tb, b] = excesses_[n - 1];
+    const double before = (b - a) / (tb - ta), after = (excess_ - b) / (t - tb), bend = (after - before) / (t - ta);
+    const double top = (ta + tb) / 2 - before / (2 * bend);
+    if (bend < 0 && (top - ta) * (top - t) < 0 && a + (top - ta) * (before + bend * (top - tb)) > allowed) return true;
+  }
+  return false;
 }
 
 // Extrapolation is exact for constants but for rounding, which nothing corrects where there is no unknown.
@@ -134,7 +161,7 @@ Report Kinematics::cancelled() const {
   return report;
 }
 
-Report Kinematics::move_to(double t) {
+Report Kinematics::follow_to(double t) {
   Report report;
   const double span = std::abs(t - t_), direction = t > t_ ? 1 : -1;
   const double tiny = smallest_step * std::max(span, std::abs(t));
@@ -143,12 +170,21 @@ Report Kinematics::move_to(double t) {
   int made_since_failure = patience;
   bool ignore_dips = false;
   double first_trial = 0;
+  // Within a run its own limits hold.
+  std::optional<Evaluator::TimeLimit> limit;
+  if (!observer_) {
+    const TimeRange way{std::min(t, t_), std::max(t, t_)};
+    if (report = check_time_functions(*model_, way); !report.ok()) return report;
+    limit.emplace(evaluator_, way);
+  }
   if (margins_.empty() && bridge_.empty()) {
     solver_.factor_at(q_);
     remember_margins();
   }
   on_bridge_ = false;
   while (t_ != t) {
+    // Curves that end are not to be left and come back to within a step.
+    if (watched_.has_ends()) step = std::min(step, span / steps_to_a_row);
     if (!bridge_.empty()) {
       if (choice_ && direction * (t - choice_->t) > 0) {
         const SingularPoint point = *choice_;
@@ -172,6 +208,11 @@ Report Kinematics::move_to(double t) {
       ++evaluator_.counters.steps;
       ++made_since_failure;
       remember_margins();
+      if (const Report consistent = check_redundant_rows(); !consistent.ok()) return consistent;
+      if (watched_.has_ends()) {
+        if (excesses_.size() >= 2) excesses_.erase(excesses_.begin());
+        excesses_.push_back({t_, excess_});
+      }
       if (chosen_rcond_ > 0 && solver_.rcond() < drifted * chosen_rcond_) choose_better_rows();
       if (t_ != t) {
         if (observer_ && !observer_->proceed(t_)) return cancelled();
@@ -191,6 +232,17 @@ Report Kinematics::move_to(double t) {
     ++evaluator_.counters.rejected;
     made_since_failure = 0;
     if (!has_velocity_) find_velocity();
+    if (outcome == StepOutcome::left_curve) {
+      step = std::abs(next - t_) / 2;
+      if (!(step < tiny || t_ + direction * step == t_)) continue;
+      evaluator_.set_configuration(trial_);
+      Report left = watched_.check();
+      left.warnings = std::move(report.warnings);
+      if (!left.ok()) return left;
+      report.warnings = std::move(left.warnings);
+      excesses_.clear();  // the parabola was mistaken
+      continue;
+    }
     const double length = std::abs(next - t_);
     if (length < try_again * first_trial) attempt = 0;
     if (attempt < reaches.size() && has_velocity_ && length <= bridge_length((t_ + next) / 2, reaches[attempt]) / 2) {
@@ -212,51 +264,117 @@ Report Kinematics::move_to(double t) {
       continue;
     }
     step = std::min(step, std::abs(next - t_)) / 2;
-    if (step < tiny || t_ + direction * step == t_) return stuck(next);
+    if (step < tiny || t_ + direction * step == t_) return stuck(next, t);
   }
   return report;
 }
 
 // No step can be made: says whether the drivers ask for the impossible (w^T nu != 0) or branches meet here.
-Report Kinematics::stuck(double t) {
-  Report report;
+Report Kinematics::stuck(double next, double target) {
   evaluator_.set_time(t_);
   trial_ = q_;
-  std::vector<double> w(at(plan_->rows)), nu(at(plan_->rows));
+  std::vector<double> w(at(plan_->rows)), nu(at(plan_->rows)), z(q_.size(), 0.0);
   solver_.factor_at(q_);
-  const bool found = solver_.left_null_vector(w);
+  const bool found = solver_.null_vectors(w, z);
   evaluator_.nu(nu);
-  // Rows in metres and rows in radians compare in length scales, whatever the unit of the machine.
-  double product = 0, square = 0, weight = 0;
-  int heaviest = 0;
-  for (std::size_t r = 0; r < w.size(); ++r) {
-    const double unit = plan_->row_is_angle[r] ? 1 : evaluator_.length_scale();
-    product += w[r] * nu[r];
-    square += nu[r] * nu[r] / (unit * unit);
-    w[r] *= unit;
-    weight += w[r] * w[r];
-    if (std::abs(w[r]) > std::abs(w[at(heaviest)])) heaviest = static_cast<int>(r);
-  }
-  const std::string where =
-      found ? fmt::format("; most concerned: {} \"{}\"", model_->element_type(plan_->row_element[at(heaviest)]),
-                          model_->element_name(plan_->row_element[at(heaviest)]))
-            : "";
   SingularPoint point;
-  point.t = t_ + (t - t_) / 2;
+  point.t = t_ + (next - t_) / 2;
   point.q = q_;
-  if (found && std::abs(product) > 1e-6 * std::sqrt(square * weight)) {
-    point.kind = SingularPoint::Kind::lock_up;
-    report.status = Status::lock_up;
-    report.message = fmt::format(
-        "lock-up at t = {:.12g} s: the drivers ask for a motion that the mechanism cannot make (a dead point){}",
-        point.t, where);
-  } else {
-    report.status = found && square > 0 ? Status::bifurcation : Status::singular;
-    report.message = fmt::format("the motion cannot be continued beyond the singular configuration at t = {:.12g} s{}",
-                                 point.t, where);
+  if (found) {
+    point.name_bodies(evaluator_, std::span(&z, 1));
+    point.find_driver(evaluator_, w, nu);
   }
+  if (found && disagreement(evaluator_, w, nu) > clear_disagreement) {
+    point.kind = SingularPoint::Kind::lock_up;
+    locate_lock_up(target, point);
+    return lock_up(std::move(point));
+  }
+  std::size_t heaviest = 0;
+  const auto weight = [&](std::size_t r) {
+    return std::abs(w[r]) * (plan_->row_is_angle[r] ? 1 : evaluator_.length_scale());
+  };
+  for (std::size_t r = 0; r < w.size(); ++r) {
+    if (weight(r) > weight(heaviest)) heaviest = r;
+  }
+  const int element = plan_->row_element[heaviest];
+  const bool moving = std::any_of(nu.begin(), nu.end(), [](double rate) { return rate != 0; });
+  Report report;
+  report.status = found && moving ? Status::bifurcation : Status::singular;
+  report.message = fmt::format(
+      "the motion cannot be continued beyond the singular configuration at t = {:.12g} s{}", point.t,
+      found ? fmt::format("; most concerned: {} \"{}\"", model_->element_type(element), model_->element_name(element))
+            : "");
   singular_points_.push_back(std::move(point));
   return report;
+}
+
+// Towards a dead point q = q* - a sqrt(t* - t), so that  t* - t = |qd|^2 / (2 qd . qdd)  and  q* = q + 2 (t* - t) qd,
+// but for terms of t* - t. Whatever rounding makes of the rates, it is no further than the step that failed says:
+// point.t is in the middle of that. On this short way the determinant of the singular block vanishes linearly: its zero
+// is q*, off the constraints by the square of the way; and the instant follows from w^T Phi(q*, t*) = 0, which the last
+// bit of the way does not change. False: no velocity leads there.
+bool Kinematics::locate_lock_up(double target, SingularPoint& point) {
+  std::vector<double> qd(q_.size(), 0.0), qdd(q_.size(), 0.0);
+  if (!solver_.solve_velocity(qd, false)) return false;
+  if (!solver_.solve_acceleration(qd, qdd, false)) std::fill(qdd.begin(), qdd.end(), 0.0);
+  double product = 0, square = 0;
+  for (std::size_t k = 0; k < 3 * at(plan_->moving); ++k) {
+    const double unit = k % 3 == 2 ? 1 : evaluator_.length_scale();
+    product += qd[k] / unit * (qdd[k] / unit);
+    square += qd[k] / unit * (qd[k] / unit);
+  }
+  const double furthest = std::min(2 * most_steps_left * std::abs(point.t - t_), std::abs(target - t_));
+  double rest = square / (2 * product);
+  // So near that rounding decides about the sign: the way is as long as it can be.
+  if (!(rest * (target - t_) > 0)) rest = furthest;
+  rest = std::copysign(std::min(std::abs(rest), furthest), target - t_);
+  solver_.factor_at(q_);
+  std::vector<double> w(at(plan_->rows)), nu(w), z(q_.size());
+  const auto margins = solver_.block_margins();
+  const auto smaller = [](const BlockMargin& a, const BlockMargin& b) { return std::abs(a.pivot) < std::abs(b.pivot); };
+  const auto block = std::min_element(margins.begin(), margins.end(), smaller) - margins.begin();
+  const bool measured = !margins.empty() && solver_.null_vectors(w, z);
+  const auto determinant = [&](double part) {
+    for (std::size_t k = 0; k < q_.size(); ++k) point.q[k] = q_[k] + part * 2 * rest * qd[k];
+    const bool regular = measured && solver_.factor_at(point.q) > 0;
+    return regular ? solver_.block_margins()[static_cast<std::size_t>(block)].determinant : 0.0;
+  };
+  const double here = determinant(0), there = determinant(1);
+  double part = here == there ? 1 : here / (here - there);
+  if (const double left = determinant(part); left != here) part *= here / (here - left);
+  determinant(part > 0 && part < longest_way ? part : 1);
+  point.t = t_ + rest;
+  solver_.residual_at(point.q);
+  evaluator_.nu(nu);
+  double off = 0, speed = 0;
+  for (std::size_t r = 0; r < w.size(); ++r) off += w[r] * solver_.phi()[r], speed += w[r] * nu[r];
+  const double time = off / speed;
+  if (time * (target - t_) >= 0 && std::abs(time) <= std::abs(target - t_)) point.t = t_ + time;
+  if (point.driver >= 0) {
+    evaluator_.set_time(point.t);
+    point.driver_value = evaluator_.element_value(point.driver).f;
+  }
+  return true;
+}
+
+// The mechanism where it locks: places and times are known, rates and loads grow without bound.
+void Kinematics::give_row_at_lock_up(const Needs& needs, RowObserver& observer) {
+  const SingularPoint& point = singular_points_.back();
+  const std::vector<double> none(std::max(q_.size(), at(plan_->rows)), std::numeric_limits<double>::quiet_NaN());
+  const std::span<const double> unknown(none);
+  evaluator_.set_time(point.t);
+  Snapshot row{.evaluator = evaluator_, .t = point.t, .q = point.q};
+  row.residual = solver_.residual_at(point.q) * evaluator_.length_scale();
+  if (needs.velocity || needs.acceleration || needs.multipliers) row.qd = unknown.first(q_.size());
+  if (needs.acceleration || needs.multipliers) row.qdd = unknown.first(q_.size());
+  if (needs.multipliers) row.lambda = unknown.first(at(plan_->rows));
+  if (needs.work) {
+    row.work = row.dissipated = none.front();
+    driver_work_.assign(model_->elements.size(), none.front());
+    row.driver_work = driver_work_;
+    row.initial_energy = initial_energy_;
+  }
+  observer.observe(row);
 }
 
 }  // namespace catena

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 
@@ -23,6 +24,7 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 constexpr double allowance = 0.2;
 // Residual of the polynomial, in length scales or rad, beyond what rounding explains.
 constexpr double bridge_tolerance = 2e-12;
+constexpr double rounded_place = 16 * std::numeric_limits<double>::epsilon();
 constexpr int samples = 9;
 // So much of a bridge is a moment: drivers that rest move a moment later, and the mechanism is still there.
 constexpr double moment = 2e-3;
@@ -33,16 +35,15 @@ constexpr double dependence = 1e-7;
 
 }  // namespace
 
-bool Kinematics::tables_reach(double t) const {
-  return std::all_of(model_->functions.begin(), model_->functions.end(), [&](const auto& function) {
-    const TimeRange range = function.domain();
-    return t >= range.first && t <= range.last;
-  });
+// Whether functions of time are as smooth at t as within the run: outside of it those of the user's own end.
+bool Kinematics::functions_go_on(double t) const {
+  return evaluator_.time_limit().contains(t) || std::none_of(model_->functions.begin(), model_->functions.end(),
+                                                             std::mem_fn(&TimeFunction<double>::has_callback));
 }
 
 // Solves at t from the prediction in trial_.
 bool Kinematics::add_node(MotionBridge& bridge, double t, double allowed) {
-  if (!tables_reach(t)) return false;
+  if (!functions_go_on(t)) return false;
   evaluator_.set_time(t);
   restore_fixed(trial_, {}, {});
   newton_ = solver_.solve_position(trial_);
@@ -56,13 +57,13 @@ bool Kinematics::add_node(MotionBridge& bridge, double t, double allowed) {
 }
 
 // Nodes at centre + {-2, -1, 1, 2} h (h is negative when time runs backwards). Those behind are predicted from four
-// before, so sharply that it is the same branch even where others lie near; where a table of a driver ends too early
-// for them, the four before make the bridge.
+// before, so sharply that it is the same branch even where others lie near; where the run ends too early for them and
+// with it what is known of a driver, the four before make the bridge.
 bool Kinematics::build_bridge(MotionBridge& bridge, double centre, double h, double reach) {
   MotionBridge before;
   for (int k = 1; k <= MotionBridge::capacity; ++k) {
     const double t = centre - k * h;
-    if (!tables_reach(t)) break;
+    if (!functions_go_on(t)) break;
     if (before.empty()) {
       trial_ = q_;
       predict(t, trial_, {}, {});
@@ -73,7 +74,7 @@ bool Kinematics::build_bridge(MotionBridge& bridge, double centre, double h, dou
   }
   if (before.size() < 2) return false;
   bridge = before;
-  if (!tables_reach(centre + 2 * h)) return true;
+  if (!functions_go_on(centre + 2 * h)) return true;
   bridge.keep_first(2);
   for (int k = 1; k <= 2; ++k) {
     (k == 1 ? before : bridge).evaluate(centre + k * h, trial_, {}, {});
@@ -84,9 +85,15 @@ bool Kinematics::build_bridge(MotionBridge& bridge, double centre, double h, dou
 
 bool Kinematics::follows_constraints(const MotionBridge& bridge, double from, double to) {
   std::vector<double> q(q_.size());
-  double extent = 0;
+  double extent = 0, place = 0;
   for (std::size_t k = 0; k < q_.size(); ++k) extent = std::max(extent, std::abs(q_[k]) / evaluator_.length_scale());
-  const double tolerance = bridge_tolerance + 1e-14 * extent;
+  for (int p = 0; p < plan_->bodies; ++p) {
+    const Vec2<double> origin = evaluator_.origin(p);
+    place = std::max({place, std::abs(origin.x), std::abs(origin.y)});
+  }
+  // Lengths of a mechanism that is described far from the origin are rounded like its places: links that repeat each
+  // other do so no better.
+  const double tolerance = bridge_tolerance + 1e-14 * extent + rounded_place * place / evaluator_.length_scale();
   for (int k = 0; k < samples; ++k) {
     const double t = from + (to - from) * k / (samples - 1);
     evaluator_.set_time(t);
@@ -156,7 +163,7 @@ double Kinematics::bridge_length(double centre, double reach) {
   const double rate = largest_rate();
   std::vector<double> nu(at(plan_->rows));
   const auto speed = [&](double t) {
-    if (!tables_reach(t)) return 0.0;
+    if (!functions_go_on(t)) return 0.0;
     evaluator_.set_time(t);
     evaluator_.nu(nu);
     return std::sqrt(std::inner_product(nu.begin(), nu.end(), nu.begin(), 0.0));
@@ -185,7 +192,7 @@ Kinematics::Passage Kinematics::pass_singular(double next, double target, double
   for (double shift : {0.0, 0.5}) {
     const double centre = middle + shift * h;
     from = centre - length, to = centre + length;
-    if (!tables_reach(centre + 2 * h)) (h > 0 ? to : from) = target;
+    if (!functions_go_on(centre + 2 * h)) (h > 0 ? to : from) = target;
     built = build_bridge(bridge, centre, h, reach) && follows_constraints(bridge, from, to);
     if (built) break;
     bridge.clear();
@@ -198,7 +205,7 @@ Kinematics::Passage Kinematics::pass_singular(double next, double target, double
   // Around the singular instant itself the nodes lie where rounding is least.
   const double first = h > 0 ? instants.front() : instants.back();
   MotionBridge centred;
-  bool moved = tables_reach(first - 2 * h) && tables_reach(first + 2 * h);
+  bool moved = functions_go_on(first - 2 * h) && functions_go_on(first + 2 * h);
   for (int k : {-1, -2, 1, 2}) {
     if (!moved) break;
     bridge.evaluate(first + k * h, trial_, {}, {});

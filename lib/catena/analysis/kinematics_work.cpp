@@ -46,7 +46,7 @@ Report Kinematics::start_work() {
     evaluator_.set_time(t_);
     newton_ = solver_.solve_position(q_);
   }
-  if (Report solved = solve_rates({.velocity = true, .acceleration = true}); !solved.ok()) return solved;
+  if (Report solved = find_rates({.velocity = true, .acceleration = true}); !solved.ok()) return solved;
   account_.emplace(evaluator_);
   work_.assign(account_->size(), 0.0);
   power_.resize(account_->size());
@@ -68,11 +68,12 @@ double Kinematics::energy_scale() const {
   return kinetic_energy(snapshot()) + std::abs(evaluator_.potential_energy()) + std::abs(initial_energy_);
 }
 
-// How long no body moves further than a stretch should.
-double Kinematics::stretch() const {
+// How long no body moves further than a stretch of at most `limit` should.
+double Kinematics::stretch(double limit) const {
   const double speed = solver_.distance(qd_, nothing_, nullptr), gain = solver_.distance(qdd_, nothing_, nullptr);
-  double length = std::numeric_limits<double>::infinity();
-  if (speed > 0) length = longest_stretch / speed;
+  // From rest the rates say nothing: the whole way is tried first.
+  double length = limit;
+  if (speed > 0) length = std::min(length, longest_stretch / speed);
   if (gain > 0) length = std::min(length, std::sqrt(longest_stretch / gain));
   return stretch_part_ * length;
 }
@@ -82,11 +83,11 @@ double Kinematics::stretch() const {
 Report Kinematics::sum_up_stretch(double t, double& error, std::vector<std::string>& warnings) {
   const double from = t_, gap = energy_gap();
   const auto visit = [&](double instant, const Needs& needs) -> Report {
-    Report moved = move_to(instant);
+    Report moved = follow_to(instant);
     std::move(moved.warnings.begin(), moved.warnings.end(), std::back_inserter(warnings));
     moved.warnings.clear();
     if (!moved.ok()) return moved;
-    if (Report solved = solve_rates(needs); !solved.ok()) return solved;
+    if (Report solved = find_rates(needs); !solved.ok()) return solved;
     predictor_.push(t_, q_, qd_, qdd_);
     return {};
   };
@@ -126,7 +127,7 @@ Report Kinematics::move_and_sum_up(double t) {
   for (double end : ends) {
     while (t_ != end) {
       // Equal stretches, none of them a crumb.
-      const double from = t_, count = std::ceil(std::abs(end - from) / stretch() * (1 - 1e-9));
+      const double from = t_, count = std::ceil(std::abs(end - from) / stretch(std::abs(end - from)) * (1 - 1e-9));
       const double to = count > 1 ? from + (end - from) / count : end;
       if (to == from) break;
       work_before = work_;
@@ -136,8 +137,8 @@ Report Kinematics::move_and_sum_up(double t) {
       const double allowed = allowed_error * exchanged_ + rounding * energy_scale();
       if (error > allowed && stretch_part_ > shortest_part && bridge_.empty()) {
         // Again, in shorter ones; but not across a singular configuration, which is passed once.
-        if (Report moved = move_to(from); !moved.ok()) return moved;
-        if (Report solved = solve_rates({.velocity = true, .acceleration = true}); !solved.ok()) return solved;
+        if (Report moved = follow_to(from); !moved.ok()) return moved;
+        if (Report solved = find_rates({.velocity = true, .acceleration = true}); !solved.ok()) return solved;
         work_ = work_before;
         exchanged_ = exchanged_before;
         stretch_part_ /= 4;

@@ -41,6 +41,8 @@ class LeastVelocity {
   double size(std::span<const double> rate) const;
   /// After velocity() failed, or where velocities are about to: the row that carries most of the solution.
   int heaviest_row() const;
+  /// mu of the last velocity(), by row.
+  std::span<const double> multipliers() const { return mu_; }
   /// After velocity() or acceleration(): the elements whose rows are met worst, the worst first; some of them
   /// contradict each other, so that each gets a part of what is asked for.
   std::vector<int> worst_elements() const;

@@ -212,4 +212,14 @@ std::string MinimumNorm::name_ambiguous() {
   return names;
 }
 
+const std::string& MinimumNorm::ambiguity() {
+  if (ambiguity_) return *ambiguity_;
+  const std::string names = name_ambiguous();
+  return ambiguity_.emplace(
+      names.empty()
+          ? names
+          : fmt::format("reactions of {} are not unique, since constraints depend on each other: the least are given",
+                        names));
+}
+
 }  // namespace catena

@@ -12,6 +12,7 @@
 // factored with 1e-12 of its diagonal added and the solution refined. One symbolic analysis; nothing allocates later.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,6 +34,8 @@ class MinimumNorm {
   std::vector<int> find_ambiguous();
   /// The names of find_ambiguous(), in quotes, as text; empty if there are none.
   std::string name_ambiguous();
+  /// The same as a remark, found at the first call; empty where all reactions are unique.
+  const std::string& ambiguity();
 
  private:
   struct Block {
@@ -52,6 +55,7 @@ class MinimumNorm {
   SparsePattern pattern_;
   std::vector<double> values_, right_hand_side_, y_;
   SymmetricFactorization factorization_;
+  std::optional<std::string> ambiguity_;
   bool analyzed_ = false;
 };
 

@@ -10,7 +10,9 @@
 #include "catena/analysis/integrators/tableau.hpp"
 #include "catena/analysis/mobility.hpp"
 #include "catena/analysis/process_time.hpp"
+#include "catena/analysis/scaling.hpp"
 #include "catena/analysis/state_conversion.hpp"
+#include "catena/analysis/time_coverage.hpp"
 
 namespace catena {
 namespace {
@@ -35,7 +37,7 @@ constexpr double allowance = 1e4;
 
 MinimumNormMotion::MinimumNormMotion(std::shared_ptr<const Model> model, const PlanOptions& plan_options)
     : model_(std::move(model)),
-      plan_(Plan::make(*model_, plan_options)),
+      plan_(Plan::make(required(model_), plan_options)),
       evaluator_(plan_, *model_),
       least_(evaluator_),
       watched_(evaluator_) {
@@ -106,30 +108,60 @@ Report MinimumNormMotion::cancelled() const {
 }
 
 // No step can be made: velocities have grown beyond all bounds, or rows have become dependent.
-Report MinimumNormMotion::stuck() {
+Report MinimumNormMotion::stuck(double target) {
   Report report;
   const bool met = least_.velocity(t_, Side::after, q_, qd_);
   const int element = met ? plan_->row_element[at(least_.heaviest_row())] : least_.worst_elements().front();
   const std::string where =
       fmt::format("; most concerned: {} \"{}\"", model_->element_type(element), model_->element_name(element));
-  double t = t_;
+  SingularPoint point;
+  point.t = t_;
+  point.q = q_;
+  point.name_bodies(evaluator_, std::span(&qd_, 1));
   if (least_.size(qd_) * std::abs(t_ - started_) > runaway * travelled_) {
-    // Velocities grow with 1 / sqrt(t* - t): their relative growth is 1 / (2 (t* - t)).
-    if (met && least_.acceleration(qd_, qdd_)) {
-      if (const double growth = least_.growth(qd_, qdd_); growth != 0) t += 1 / (2 * growth);
+    point.kind = SingularPoint::Kind::lock_up;
+    // q = q* - a sqrt(t* - t): velocities grow with 1 / sqrt(t* - t), their relative growth is 1 / (2 (t* - t)).
+    const double growth = met && least_.acceleration(qd_, qdd_) ? least_.growth(qd_, qdd_) : 0;
+    if (const double rest = 1 / (2 * growth);
+        growth != 0 && rest * (target - t_) > 0 && std::abs(rest) <= std::abs(target - t_)) {
+      point.t += rest;
+      for (std::size_t k = 0; k < q_.size(); ++k) point.q[k] += 2 * rest * qd_[k];
     }
     report.status = Status::lock_up;
     report.message = fmt::format(
         "lock-up at t = {:.12g} s: the drivers ask for a motion that the mechanism cannot make, however its free "
         "motions help{}",
-        t, where);
+        point.t, where);
   } else {
+    point.kind = SingularPoint::Kind::isolated;
     report.status = Status::singular;
     report.message = fmt::format(
-        "the motion of least velocities cannot be continued beyond the singular configuration at t = {:.12g} s{}", t,
-        where);
+        "the motion of least velocities cannot be continued beyond the singular configuration at t = {:.12g} s{}",
+        point.t, where);
   }
+  std::vector<double> nu(at(plan_->rows));
+  evaluator_.set_time(point.t);
+  evaluator_.nu(nu);
+  point.find_driver(evaluator_, least_.multipliers(), nu);
+  singular_points_.push_back(std::move(point));
   return report;
+}
+
+// The mechanism where it locks: places and times are known, rates grow without bound.
+void MinimumNormMotion::give_row_at_lock_up(const Needs& needs, RowObserver& observer) {
+  const SingularPoint& point = singular_points_.back();
+  const std::vector<double> unknown(q_.size(), std::numeric_limits<double>::quiet_NaN());
+  const std::span<const double> none;
+  std::vector<double> phi(at(plan_->rows));
+  evaluator_.set_time(point.t);
+  evaluator_.set_configuration(point.q);
+  evaluator_.phi(phi);
+  observer.observe({.evaluator = evaluator_,
+                    .t = point.t,
+                    .q = point.q,
+                    .qd = needs.velocity || needs.acceleration ? std::span<const double>(unknown) : none,
+                    .qdd = needs.acceleration ? std::span<const double>(unknown) : none,
+                    .residual = row_norm(*plan_, phi, evaluator_.length_scale()) * evaluator_.length_scale()});
 }
 
 // stage_[0] holds the velocities at (t_, q_); trial_ is where the step ends.
@@ -200,7 +232,7 @@ Report MinimumNormMotion::move_to(double t, RowObserver& observer) {
       }
     }
     if (!least_.velocity(t_, direction > 0 ? Side::after : Side::before, q_, stage_[0])) {
-      return t_ == started_ ? no_velocity() : stuck();
+      return t_ == started_ ? no_velocity() : stuck(t);
     }
     const double rate = least_.size(stage_[0]);
     if (step_ == 0) step_ = rate > 0 ? 0.2 * std::pow(tolerance, 1.0 / 8) / rate : std::abs(limit - t_);
@@ -212,9 +244,17 @@ Report MinimumNormMotion::move_to(double t, RowObserver& observer) {
       const bool lands = h >= remaining * (1 - 1e-9);
       if (lands) h = remaining;
       double end = lands ? limit : t_ + direction * h;
-      if (!lands && (h < smallest || end == t_)) return stuck();
+      if (!lands && (h < smallest || end == t_)) return stuck(t);
       // Backwards in time a jump lies on the other side.
       const double error = try_step(end, direction > 0 && lands && breaks, false);
+      if (error <= 1 && watched_.has_ends()) {
+        evaluator_.set_configuration(trial_);
+        if (Report left = watched_.check(); !left.ok()) {
+          if (h < smallest) return left;
+          step_ = h / 2;
+          continue;
+        }
+      }
       const double growth =
           std::clamp(safety * std::pow(std::max(error, 1e-10), -1.0 / 8), largest_cut, largest_growth);
       if (!(error <= 1)) {
@@ -246,9 +286,9 @@ Report MinimumNormMotion::move_to(double t, RowObserver& observer) {
 
 Report MinimumNormMotion::solve_rates(const Needs& needs) {
   if (!needs.velocity && !needs.acceleration) return {};
-  if (!least_.velocity(t_, Side::after, q_, qd_)) return t_ == started_ ? no_velocity() : stuck();
+  if (!least_.velocity(t_, Side::after, q_, qd_)) return t_ == started_ ? no_velocity() : stuck(t_);
   has_velocity_ = true;
-  if (needs.acceleration && !least_.acceleration(qd_, qdd_)) return t_ == started_ ? no_velocity() : stuck();
+  if (needs.acceleration && !least_.acceleration(qd_, qdd_)) return t_ == started_ ? no_velocity() : stuck(t_);
   return {};
 }
 
@@ -261,10 +301,15 @@ AnalysisReport MinimumNormMotion::run(const TimeGrid& grid, const Needs& needs, 
   const auto end = [&](const Report& outcome) {
     report.status = outcome.status;
     report.message = outcome.message;
+    if (outcome.status == Status::lock_up) give_row_at_lock_up(needs, observer);
     report.counters = evaluator_.counters;
     report.seconds = timer.seconds();
     return report;
   };
+  const TimeRange whole{grid.size() > 0 ? std::min(t_, grid.earliest()) : t_,
+                        grid.size() > 0 ? std::max(t_, grid.latest()) : t_};
+  if (const Report functions = check_time_functions(*model_, whole); !functions.ok()) return end(functions);
+  const Evaluator::TimeLimit limit(evaluator_, whole);
   if (const Report prepared = prepare(report); !prepared.ok()) return end(prepared);
   for (std::int64_t k = 0; k < grid.size(); ++k) {
     if (grid[k] != t_) {
@@ -282,6 +327,10 @@ AnalysisReport MinimumNormMotion::run(const TimeGrid& grid, const Needs& needs, 
                             .qdd = needs.acceleration ? std::span<const double>(qdd_) : none,
                             .residual = residual_ * evaluator_.length_scale()};
     if (!observer.observe(snapshot)) return end(cancelled());
+  }
+  // What goes on from here goes on with the velocities, asked for or not: nothing drives all of them.
+  if (!has_velocity_) {
+    if (const Report solved = solve_rates({.velocity = true}); !solved.ok()) return end(solved);
   }
   return end({});
 }

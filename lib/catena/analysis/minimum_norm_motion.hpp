@@ -9,13 +9,15 @@
 // Where branches meet the motion goes on along its own: steps that would have to be short there are replaced by one
 // across the place, its stages put on the constraints. Such places are passed, not located.
 // Singular where the drivers ask for a motion that no velocity can make (lock-up: an arm stretched out), reported with
-// its instant; where rows become dependent without that, steps shrink and the report says `singular`.
+// its instant and a last row for the place; where rows become dependent without that, steps shrink and the report says
+// `singular`.
 #pragma once
 
 #include <memory>
 #include <optional>
 
 #include "catena/analysis/analysis_report.hpp"
+#include "catena/analysis/kinematics_branches.hpp"
 #include "catena/analysis/least_velocity.hpp"
 #include "catena/analysis/row_observer.hpp"
 #include "catena/analysis/system_state.hpp"
@@ -36,6 +38,8 @@ class MinimumNormMotion {
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
   /// The present state, absolute and in model order; velocities if they are known.
   SystemState state() const;
+  /// Where the motion could not go on, if so.
+  const std::vector<SingularPoint>& singular_points() const { return singular_points_; }
 
  private:
   Report prepare(AnalysisReport& report);
@@ -47,7 +51,8 @@ class MinimumNormMotion {
   Report solve_rates(const Needs& needs);
   Report no_velocity() const;
   Report cancelled() const;
-  Report stuck();
+  Report stuck(double target);
+  void give_row_at_lock_up(const Needs& needs, RowObserver& observer);
 
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const Plan> plan_;
@@ -61,6 +66,7 @@ class MinimumNormMotion {
   std::vector<double> q_, qd_, qdd_, trial_;
   std::vector<std::vector<double>> stage_;
   std::vector<double> error_, error_low_;
+  std::vector<SingularPoint> singular_points_;
 };
 
 }  // namespace catena

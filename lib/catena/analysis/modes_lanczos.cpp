@@ -105,7 +105,7 @@ bool Lanczos::update_spectrum(const Choice& choose) {
   return !chosen.empty();
 }
 
-bool Lanczos::run(const Choice& choose, int most, bool completely, const std::function<bool()>& go_on) {
+bool Lanczos::run(const Choice& choose, int most, const std::function<bool()>& go_on) {
   double scale = 0;
   int next_look = 0;
   while (true) {
@@ -134,7 +134,7 @@ bool Lanczos::run(const Choice& choose, int most, bool completely, const std::fu
     }
     beta_.push_back(beta);
     if (last) break;
-    if (!completely && static_cast<int>(alpha_.size()) >= next_look) {
+    if (static_cast<int>(alpha_.size()) >= next_look) {
       if (update_spectrum(choose)) return true;
       next_look = static_cast<int>(alpha_.size()) + steps_between_looks;
     }
@@ -152,24 +152,6 @@ std::vector<double> Lanczos::combine(std::span<const double> coefficients) const
 std::vector<double> Lanczos::vector(int k) const {
   const std::size_t n = theta_.size();
   return combine({coefficients_.data() + static_cast<std::size_t>(k) * n, n});
-}
-
-void Lanczos::resolve_upper_end() {
-  const auto n = static_cast<Eigen::Index>(alpha_.size());
-  Eigen::MatrixXd h(n, n);
-  for (Eigen::Index j = 0; j < n; ++j) {
-    op_.multiply(basis_[static_cast<std::size_t>(j)], work_);
-    for (Eigen::Index i = j; i < n; ++i) h(i, j) = dot(basis_[static_cast<std::size_t>(i)], work_);
-  }
-  // Reads the lower triangle.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(h);
-  energy_.assign(solver.eigenvalues().data(), solver.eigenvalues().data() + n);
-  energy_coefficients_.assign(solver.eigenvectors().data(), solver.eigenvectors().data() + n * n);
-}
-
-std::vector<double> Lanczos::energy_vector(int k) const {
-  const std::size_t n = energy_.size();
-  return combine({energy_coefficients_.data() + static_cast<std::size_t>(k) * n, n});
 }
 
 }  // namespace catena

@@ -4,10 +4,9 @@
 //
 // Small oscillations: A = K - sigma M, B = G = M; buckling: A = G = K, B = -K'. All vectors are kept orthogonal (twice
 // Gram-Schmidt), so that no eigenvalue appears twice by rounding. Where the space that the start spans is exhausted, or
-// a vector is lost in rounding, the iteration goes on with a new vector: equal eigenvalues are found as often as they
-// are there, and a small problem completely. Memory: one vector a step. A mode counts as settled when its residual is
-// below 1e-11 of its theta (1e-14 of the largest theta where that is more).
-// Sources: B. Parlett, The Symmetric Eigenvalue Problem, chapter 13; T. Ericsson, A. Ruhe, Math. Comp. 35 (1980).
+// a vector is lost in rounding, the iteration goes on with a new vector. Memory: one vector a step. A mode counts as
+// settled when its residual is below 1e-11 of its theta (1e-14 of the largest theta where that is more). Sources: B.
+// Parlett, The Symmetric Eigenvalue Problem, chapter 13; T. Ericsson, A. Ruhe, Math. Comp. 35 (1980).
 #pragma once
 
 #include <functional>
@@ -28,8 +27,6 @@ class SpectralOperator {
   virtual void invert(std::span<double> v) = 0;
   /// Brings v into the null space of Phi_q.
   virtual void project(std::span<double> v) = 0;
-  /// A v, for the upper end of a small spectrum.
-  virtual void multiply(std::span<const double> v, std::span<double> Av) = 0;
 };
 
 class Lanczos {
@@ -41,8 +38,8 @@ class Lanczos {
   Lanczos(SpectralOperator& op, std::vector<std::vector<double>> locked = {});
 
   /// Goes on until the chosen eigenvalues have settled, the space is exhausted or `most` vectors are reached.
-  /// `completely`: does not stop before that. True if what was chosen has settled. False from `go_on` stops.
-  bool run(const Choice& choose, int most, bool completely, const std::function<bool()>& go_on = {});
+  /// True if what was chosen has settled. False from `go_on` stops.
+  bool run(const Choice& choose, int most, const std::function<bool()>& go_on = {});
 
   /// Whether every direction of the null space was found: then the spectrum is complete.
   bool exhausted() const { return exhausted_; }
@@ -51,12 +48,6 @@ class Lanczos {
   std::span<const double> theta() const { return theta_; }
   /// Eigenvector of theta()[k], of length 1 in the metric.
   std::vector<double> vector(int k) const;
-
-  /// v^T A v of the complete spectrum, ascending, for B = G: what theta's inverse should be, accurate at the upper end,
-  /// where theta is not; and its vectors.
-  void resolve_upper_end();
-  std::span<const double> energy() const { return energy_; }
-  std::vector<double> energy_vector(int k) const;
 
  private:
   bool add_new_vector();
@@ -71,7 +62,6 @@ class Lanczos {
   std::vector<std::vector<double>> locked_, basis_;
   std::vector<double> alpha_, beta_, work_;
   std::vector<double> theta_, coefficients_;  // eigenvectors of the tridiagonal matrix, one after the other
-  std::vector<double> energy_, energy_coefficients_;
   bool exhausted_ = false;
   unsigned seed_ = 12345;
 };

@@ -111,8 +111,4 @@ void ModeOperator::invert(std::span<double> v) {
 
 void ModeOperator::project(std::span<double> v) { project_to_null_space(system_, v, solution_); }
 
-void ModeOperator::multiply(std::span<const double> v, std::span<double> Av) {
-  system_.matrix().multiply_stiffness(v, Av);
-}
-
 }  // namespace catena

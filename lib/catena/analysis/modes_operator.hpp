@@ -29,7 +29,6 @@ class ModeOperator final : public SpectralOperator {
   void metric(std::span<const double> v, std::span<double> Gv) override;
   void invert(std::span<double> v) override;
   void project(std::span<double> v) override;
-  void multiply(std::span<const double> v, std::span<double> Av) override;
 
  private:
   StaticSystem& system_;

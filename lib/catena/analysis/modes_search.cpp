@@ -13,10 +13,11 @@ namespace {
 constexpr double first_shift = 1e-8;
 // How far, as a factor, sigma may be from the lowest omega^2 that is not zero.
 constexpr double shift_window = 1e4;
-// Degrees of freedom up to which the whole spectrum is computed.
-constexpr int few_freedoms = 300;
-// Where modes are counted: this far below the highest one, relative to it and to the upper end.
-constexpr double count_margin = 1e-8, count_rounding = 1e-15;
+// Vectors that Lanczos' method may always take.
+constexpr int least_vectors = 300;
+// Where modes are counted: this far below the highest one, relative to it and to the upper end; where the highest is
+// zero, below what rounding of the stiffnesses makes of zeros.
+constexpr double count_margin = 1e-8, count_rounding = 1e-15, zero_rounding = 1e-12;
 // How closely the lowest omega^2 is bracketed, as a factor.
 constexpr double bracket = 1.05;
 
@@ -37,8 +38,8 @@ bool lower(const Mode& a, const Mode& b) { return a.omega2 < b.omega2; }
 }  // namespace
 
 ModeSearch::ModeSearch(StaticSystem& system, std::span<const double> lambda, std::vector<double> mass,
-                       const std::function<bool()>& go_on)
-    : system_(system), lambda_(lambda), mass_(std::move(mass)), go_on_(go_on), op_(system, mass_) {
+                       const StiffnessFloor& floor, const std::function<bool()>& go_on)
+    : system_(system), lambda_(lambda), mass_(std::move(mass)), floor_(floor), go_on_(go_on), op_(system, mass_) {
   // What K does to a vector in which every mass takes part: the root mean square of omega^2, about.
   system_.fill(lambda_, Curvature::exact, 0);
   std::vector<double> v(mass_.size()), product(mass_.size());
@@ -118,10 +119,8 @@ Report ModeSearch::find(int count, std::vector<Mode>& modes) {
   for (int attempt = 0; attempt < 2; ++attempt) {
     if (!factorize(sigma, 0.618 * std::abs(sigma))) return no_factors();
     const int below = op_.below();
-    const int freedoms = columns - system_.plan().rows + static_cast<int>(system_.matrix().dependent_rows().size());
-    complete = freedoms <= few_freedoms || 3 * count >= freedoms;
-    const int most = complete ? columns : std::min(columns, std::max(few_freedoms, 3 * count + 60));
-    const bool many = !complete && below > count;
+    const int most = std::min(columns, std::max(least_vectors, 3 * count + 60));
+    const bool many = below > count;
     int negative = many ? 0 : below;
     if (many) {
       sigma = lowest_shift(sigma);
@@ -129,7 +128,7 @@ Report ModeSearch::find(int count, std::vector<Mode>& modes) {
     }
     Lanczos lanczos(op_);
     const auto wanted = [&](std::span<const double> theta) { return choose(theta, negative, count - negative); };
-    bool settled = lanczos.run(wanted, most, complete, go_on_);
+    bool settled = lanczos.run(wanted, most, go_on_);
     if (is_cancelled()) return cancelled();
     Lanczos again(op_);
     Lanczos* found = &lanczos;
@@ -139,7 +138,7 @@ Report ModeSearch::find(int count, std::vector<Mode>& modes) {
       if (!factorize(sigma, 0.618 * std::abs(sigma))) return no_factors();
       negative = 0;
       found = &again;
-      settled = again.run(wanted, most, false, go_on_);
+      settled = again.run(wanted, most, go_on_);
       if (is_cancelled()) return cancelled();
     }
     if (!settled && !found->exhausted()) {
@@ -162,7 +161,7 @@ Report ModeSearch::find(int count, std::vector<Mode>& modes) {
     std::sort(modes.begin(), modes.end(), lower);
     modes.resize(std::min(modes.size(), static_cast<std::size_t>(count)));
     const double top = modes.back().omega2;
-    double mu = top - count_margin * std::abs(top) - count_rounding * size_;
+    double mu = top - count_margin * std::abs(top) - (top == 0 ? zero_rounding : count_rounding) * size_;
     const int found =
         static_cast<int>(std::count_if(modes.begin(), modes.end(), [&](const Mode& mode) { return mode.omega2 < mu; }));
     if (!factorize(mu, top - mu)) return no_factors();
@@ -179,7 +178,7 @@ Report ModeSearch::find(int count, std::vector<Mode>& modes) {
     for (const Mode& mode : modes) locked.push_back(mode.shape);
     Lanczos others(op_, std::move(locked));
     const int more = std::min(missing, count);
-    others.run([&](std::span<const double> theta) { return choose(theta, 0, more); }, few_freedoms, false, go_on_);
+    others.run([&](std::span<const double> theta) { return choose(theta, 0, more); }, least_vectors, go_on_);
     if (is_cancelled()) return cancelled();
     if (others.steps() == 0) continue;
     std::vector<Mode> extra = modes_of(others, sigma, more);
@@ -189,8 +188,8 @@ Report ModeSearch::find(int count, std::vector<Mode>& modes) {
   std::sort(modes.begin(), modes.end(), lower);
   unstable_ = static_cast<int>(std::count_if(modes.begin(), modes.end(), [](const Mode& m) { return m.omega2 < 0; }));
   if (unstable_ == count && !complete) {
-    double zero = -count_rounding * size_;
-    if (factorize(zero, count_rounding * size_)) unstable_ = std::max(unstable_, op_.below());
+    double zero = -zero_rounding * size_;
+    if (factorize(zero, zero_rounding * size_)) unstable_ = std::max(unstable_, op_.below());
   }
   return report;
 }

@@ -13,21 +13,17 @@
 #include <string>
 #include <vector>
 
+#include "catena/analysis/modes_dense.hpp"
 #include "catena/analysis/modes_operator.hpp"
 #include "catena/base/status.hpp"
 
 namespace catena {
 
-struct Mode {
-  double omega2 = 0;
-  std::vector<double> shape;  ///< over columns, v^T M v = 1
-};
-
 class ModeSearch {
  public:
-  /// `lambda`: multipliers at the system's configuration; `mass`: per column.
+  /// `lambda`: multipliers at the system's configuration; `mass`: per column; `floor`: what is no stiffness there.
   ModeSearch(StaticSystem& system, std::span<const double> lambda, std::vector<double> mass,
-             const std::function<bool()>& go_on);
+             const StiffnessFloor& floor, const std::function<bool()>& go_on);
 
   /// The `count` lowest modes, ascending; fewer if there are no more.
   Report find(int count, std::vector<Mode>& modes);
@@ -47,6 +43,7 @@ class ModeSearch {
   StaticSystem& system_;
   std::span<const double> lambda_;
   std::vector<double> mass_;
+  const StiffnessFloor& floor_;
   const std::function<bool()>& go_on_;
   ModeOperator op_;
   double size_ = 0;  // of omega^2 at the upper end, roughly

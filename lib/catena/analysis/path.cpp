@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "catena/analysis/certificate.hpp"
+#include "catena/analysis/free_motions.hpp"
 #include "catena/analysis/process_time.hpp"
 #include "catena/analysis/state_conversion.hpp"
 #include "catena/analysis/static_balance.hpp"
 #include "catena/analysis/static_holding.hpp"
 #include "catena/analysis/static_search.hpp"
+#include "catena/analysis/time_coverage.hpp"
+#include "catena/analysis/watched_elements.hpp"
 
 namespace catena {
 namespace {
@@ -24,6 +28,8 @@ constexpr double unlocated_step = 1e-4;
 constexpr int many_iterations = 7, few_iterations = 4;
 // The cosine between the directions at both ends of a step, at least.
 constexpr double largest_bend = 0.9;
+// Rad: what a path may turn to one side and back between two points without being looked at more closely.
+constexpr double unseen_turn = 1e-3;
 constexpr int most_end_trials = 60;
 // How far the end may be from where the tangent meets it, in parts of the way.
 constexpr double largest_miss = 0.3;
@@ -34,7 +40,12 @@ constexpr double largest_miss = 0.3;
 class Path::March {
  public:
   March(Path& path, const std::function<bool(double, const Snapshot&)>& observe)
-      : path_(path), system_(path.path_), options_(path.options_), observe_(observe), to_(path.options_.to) {}
+      : path_(path),
+        system_(path.path_),
+        options_(path.options_),
+        observe_(observe),
+        to_(path.options_.to),
+        watched_(path.evaluator_) {}
 
   Report run(PathReport& report) {
     report_ = &report;
@@ -43,7 +54,7 @@ class Path::March {
       const Progress progress = step();
       ++report.steps;
       if (progress == Progress::finished) return {};
-      if (progress == Progress::cancelled) return {Status::cancelled, "stopped along the path", {}};
+      if (progress == Progress::cancelled) return stopped();
       if (progress == Progress::stuck) {
         return {Status::step_too_small,
                 fmt::format("the path could not be followed beyond {:.10g}: no solution even {:.1g} further on; likely "
@@ -72,6 +83,13 @@ class Path::March {
     StaticSearch search(statics, {.stationary = left.negligible(), .warm = left.negligible()});
     StaticResult result = search.find(path_.q_, x_.lambda);
     if (!result.report.ok()) return result.report;
+    if (result.certificate.neutral) {
+      return {Status::singular,
+              fmt::format("the path cannot start where the equilibrium is neutral: nothing resists {}; hold them, or "
+                          "start at another value of the parameter",
+                          describe_free_motions(result.certificate.neutral_modes, result.certificate.free_bodies)),
+              {}};
+    }
     x_.q = path_.q_;
     x_.p = options_.from;
     direction_ = system_.along_parameter(options_.to - options_.from);
@@ -81,11 +99,20 @@ class Path::March {
     modes_ = system_.negative_modes();
     direction_ = system_.tangent(x_, direction_);
     length_ = options_.arc;
-    return write(x_) ? Report{} : Report{Status::cancelled, "stopped along the path", {}};
+    return write(x_) ? Report{} : stopped();
+  }
+
+  // Why no row is written any more: an element has left its curve, or the user stopped.
+  Report stopped() const {
+    return left_curve_.ok() ? Report{Status::cancelled, "stopped along the path", {}} : left_curve_;
   }
 
   bool write(const PathPoint& x) {
     system_.move_to(x);
+    if (left_curve_ = watched_.check_ends(); !left_curve_.ok()) {
+      left_curve_.message = fmt::format("at the value {:.10g} of the parameter: {}", x.p, left_curve_.message);
+      return false;
+    }
     report_->negative_modes.push_back(modes_);
     const Snapshot snapshot{.evaluator = path_.evaluator_,
                             .t = path_.t_,
@@ -96,6 +123,21 @@ class Path::March {
   }
 
   bool passes_end(double before, double after) const { return (before - to_) * (after - to_) <= 0 && before != to_; }
+
+  // Whether one smooth path leads from the present point to the next one: it leaves its tangent by no more of its way
+  // than its direction turns. A path that ends, and another that begins beside it, do not meet.
+  bool is_smooth(const PathPoint& next, const PathPoint& direction) const {
+    PathPoint travel{std::vector<double>(at(path_.plan_->columns)), {}, next.p - x_.p};
+    for (int c = 0; c < path_.plan_->columns; ++c) {
+      const std::size_t k = at(path_.plan_->coordinate[at(c)]);
+      travel.q[at(c)] = next.q[k] - x_.q[k];
+    }
+    const double way = system_.product(travel, direction_);
+    for (std::size_t c = 0; c < travel.q.size(); ++c) travel.q[c] -= way * direction_.q[c];
+    travel.p -= way * direction_.p;
+    const double turn = std::acos(std::min(system_.product(direction, direction_), 1.0));
+    return std::sqrt(system_.product(travel, travel)) <= way * (turn + unseen_turn);
+  }
 
   // The end itself where the prediction reaches it; false if it is not near the prediction: the path bends before it.
   bool step_to_end(PathPoint& next, double& s) {
@@ -169,7 +211,7 @@ class Path::March {
       }
       const int modes = system_.negative_modes();
       PathPoint direction = system_.tangent(next, direction_);
-      if (system_.product(direction, direction_) < largest_bend) {
+      if (system_.product(direction, direction_) < largest_bend || !is_smooth(next, direction)) {
         length_ *= 0.5;
         continue;
       }
@@ -249,6 +291,8 @@ class Path::March {
   PathReport* report_ = nullptr;
   PathPoint x_, direction_;
   double to_, length_ = 0;
+  WatchedElements watched_;
+  Report left_curve_;
   int modes_ = 0;
   bool switched_ = false;
 };
@@ -256,13 +300,20 @@ class Path::March {
 Path::Path(std::shared_ptr<const Model> model, ModelAt model_at, const PathOptions& options,
            const PlanOptions& plan_options)
     : model_(std::move(model)),
-      plan_(Plan::make(*model_, plan_options)),
+      plan_(Plan::make(required(model_), plan_options)),
       model_at_(std::move(model_at)),
       options_(options),
       evaluator_(plan_, *model_),
       system_(evaluator_),
       path_(system_, model_at_, options.from, std::max(std::abs(options.to - options.from), 1e-300)),
-      q_(evaluator_.given_configuration()) {}
+      q_(evaluator_.given_configuration()) {
+  if (!model_at_)
+    throw std::invalid_argument("path: there is nothing that makes models at other values of the parameter");
+  if (!std::isfinite(options.from) || !std::isfinite(options.to))
+    throw std::invalid_argument("path: the values from and to of the parameter must be finite");
+  if (!(options.arc > 0) || !std::isfinite(options.arc))
+    throw std::invalid_argument("path: arc, the length of a step, must be above zero");
+}
 
 void Path::start_from(const SystemState& state) {
   t_ = state.t;
@@ -271,30 +322,35 @@ void Path::start_from(const SystemState& state) {
 
 SystemState Path::state() const { return state_of(evaluator_, t_, q_); }
 
+Report Path::follow(PathReport& report, const std::function<bool(double, const Snapshot&)>& observe) {
+  evaluator_.set_time(t_);
+  path_.set_time(t_);
+  if (!evaluator_.conservative()) {
+    return {Status::refused,
+            "follower forces have no energy, and paths of forces without one are not built; give the forces in ground "
+            "axes",
+            {}};
+  }
+  if (options_.to == options_.from) {
+    return {Status::refused, "the path ends where it begins: \"to\" is the present value of the parameter", {}};
+  }
+  March march(*this, observe);
+  Report outcome = march.run(report);
+  if (!march.point().q.empty()) {
+    path_.move_to(march.point());
+    q_.assign(path_.q().begin(), path_.q().end());
+  }
+  return outcome;
+}
+
 PathReport Path::run(const std::function<bool(double, const Snapshot&)>& observe) {
   const ProcessTimer timer;
   PathReport report;
   report.bodies = static_cast<int>(model_->bodies.size());
   report.rows = plan_->rows;
   report.islands = plan_->islands;
-  evaluator_.set_time(t_);
-  path_.set_time(t_);
-  Report outcome;
-  if (!evaluator_.conservative()) {
-    outcome = {Status::refused,
-               "follower forces have no energy, and paths of forces without one are not built; give the forces in "
-               "ground axes",
-               {}};
-  } else if (options_.to == options_.from) {
-    outcome = {Status::refused, "the path ends where it begins: \"to\" is the present value of the parameter", {}};
-  } else {
-    March march(*this, observe);
-    outcome = march.run(report);
-    if (!march.point().q.empty()) {
-      path_.move_to(march.point());
-      q_.assign(path_.q().begin(), path_.q().end());
-    }
-  }
+  Report outcome = check_time_functions(*model_, {t_, t_});
+  if (outcome.ok()) outcome = follow(report, observe);
   report.status = outcome.status;
   report.message = std::move(outcome.message);
   report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());

@@ -61,6 +61,8 @@ class Path {
  private:
   class March;
 
+  Report follow(PathReport& report, const std::function<bool(double, const Snapshot&)>& observe);
+
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const Plan> plan_;
   ModelAt model_at_;

@@ -157,8 +157,9 @@ int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t,
     const double rounding = k > 0 ? system_.rounding_force() : 0, scale = system_.force_scale(x.lambda) + rounding;
     const double error =
         std::max({scale > 0 ? force / scale : 0, system_.phi_norm(), solved / place_solved * std::abs(place)});
-    const double noise = std::max(solved, 10 * system_.rounding_change()) + (scale > 0 ? rounding / scale : 0);
-    if (error <= noise || (k > 0 && error <= nearly_solved && error >= 0.5 * before)) return k;
+    const double exact = std::max(solved, 10 * system_.rounding_change());
+    const double noise = exact + (scale > 0 ? rounding / scale : 0);
+    if (error <= exact || (k > 0 && error <= nearly_solved && error >= 0.5 * before)) return k;
     if (!std::isfinite(error)) return -1;
     before = error;
     if (k == most_iterations) break;
@@ -194,6 +195,8 @@ int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t,
       const double unit = plan_.coordinate[at(c)] % 3 == 2 ? 1 : extent_;
       if (!(std::abs(newton_[at(c)]) < astray * unit)) return -1;
     }
+    // What may be rounding beside the stiffest spring is so only if nothing would move.
+    if (error <= noise && system_.change_norm({newton_.data(), at(plan_.columns)}) <= nearly_solved) return k;
     for (int c = 0; c < plan_.columns; ++c) x.q[at(plan_.coordinate[at(c)])] += newton_[at(c)];
     for (int r = 0; r < plan_.rows; ++r) x.lambda[at(r)] += newton_[at(plan_.columns + r)];
     x.p += dp;

@@ -39,7 +39,7 @@ SingularInstant::Outcome SingularInstant::solve(double t, std::span<const double
   const double e = moment_ = speed > 0 ? small_move / speed : small_move;
   const auto evaluate = [&](double steps) {
     for (std::size_t k = 0; k < moved.size(); ++k) moved[k] = q[k] + steps * e * qd[k];
-    evaluator.set_time(t + steps * e);
+    evaluator.set_time_along(t + steps * e, t);
     evaluator.set_configuration(moved);
     evaluator.jacobian(values);
     evaluator.gamma(qd, gamma);

@@ -1,15 +1,36 @@
 #include "catena/analysis/state_conversion.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
 
 namespace catena {
 namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
+/// Throws unless `values` are three finite numbers a body, or none.
+void check_values(const Model& model, std::span<const double> values, const char* what) {
+  if (values.empty()) return;
+  if (values.size() != 3 * model.bodies.size()) {
+    throw std::invalid_argument("the state is of another model: it has " + std::to_string(values.size()) + " " + what +
+                                ", and " + std::to_string(3 * model.bodies.size()) + " belong to " +
+                                std::to_string(model.bodies.size()) + " bodies");
+  }
+  const auto wrong = std::find_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); });
+  if (wrong == values.end()) return;
+  const auto body = static_cast<int>((wrong - values.begin()) / 3);
+  throw std::invalid_argument("the state's " + std::string(what) + " of body \"" + std::string(model.body_name(body)) +
+                              "\" are not finite");
+}
+
 }  // namespace
 
 void take_over_places(const Evaluator& evaluator, const SystemState& state, std::span<double> q) {
+  if (!std::isfinite(state.t)) throw std::invalid_argument("the state's time is not finite");
+  check_values(evaluator.model(), state.q, "places");
+  check_values(evaluator.model(), state.qd, "velocities");
   if (state.q.empty()) return;
   const Plan& plan = evaluator.plan();
   for (int p = 0; p < plan.moving; ++p) {
@@ -20,6 +41,19 @@ void take_over_places(const Evaluator& evaluator, const SystemState& state, std:
   }
 }
 
+Frame<double> frame_of(const Evaluator& evaluator, std::span<const double> q, int body) {
+  const Model& model = evaluator.model();
+  static_cast<void>(model.body_name(body));  // throws for what is none
+  if (body < 0) return {};
+  const int p = evaluator.plan().plan_body[at(body)];
+  const Vec2<double> centre = evaluator.origin(p) + Vec2<double>{q[3 * at(p)], q[3 * at(p) + 1]};
+  Frame<double> f = make_frame(centre.x, centre.y, q[3 * at(p) + 2]);
+  const Vec2<double> origin = f.point(model.bodies[at(body)].origin);
+  f.x = origin.x;
+  f.y = origin.y;
+  return f;
+}
+
 std::vector<double> configuration_of(const Evaluator& evaluator, const SystemState& state) {
   std::vector<double> q = evaluator.given_configuration();
   take_over_places(evaluator, state, q);
@@ -27,6 +61,7 @@ std::vector<double> configuration_of(const Evaluator& evaluator, const SystemSta
 }
 
 std::vector<double> velocities_of(const Evaluator& evaluator, const SystemState& state) {
+  check_values(evaluator.model(), state.qd, "velocities");
   if (state.qd.empty()) return {};
   const Plan& plan = evaluator.plan();
   std::vector<double> qd(at(plan.coordinates()), 0.0);

@@ -31,7 +31,7 @@ std::vector<double> faults(StaticSystem& system, std::span<const double> lambda,
 }  // namespace
 
 double typical_force(StaticSystem& system) {
-  if (system.load_size() > 0) return system.load_size();
+  if (system.dead_load() > 0) return system.dead_load();
   const double stiffest = 1e-3 * system.matrix().largest_stiffness() * system.length();
   return stiffest > 0 ? stiffest : 1;
 }
@@ -66,6 +66,10 @@ StaticOutcome finish_with_gaps(StaticSystem& system, std::span<double> q, std::s
     iterations += outcome.iterations;
     outcome.iterations = iterations;
     if (!outcome.converged()) return outcome;
+    if (system.is_cancelled()) {
+      outcome.end = StaticEnd::cancelled;
+      return outcome;
+    }
     const double force = std::max(system.force_scale(lambda), typical_force(system));
     const std::vector<double> fault = faults(system, lambda, set.closed, force);
     const double enough = std::max(options.tolerance, 100 * system.rounding_change());

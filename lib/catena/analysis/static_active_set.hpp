@@ -17,8 +17,8 @@ inline GapUnits units_of(const StaticSystem& system, int row, const GapUnits& sc
   return angle ? GapUnits{1, scale.force * scale.gap} : scale;
 }
 
-/// The largest applied force so far; where there is none, what one thousandth of a length scale makes of the stiffest
-/// spring; 1 N where there is neither.
+/// The largest dead load (springs on the way to their places may hold any force); where there is none, what one
+/// thousandth of a length scale makes of the stiffest spring; 1 N where there is neither.
 double typical_force(StaticSystem& system);
 
 }  // namespace catena

@@ -5,6 +5,7 @@
 
 #include "catena/analysis/assemble.hpp"
 #include "catena/analysis/modes_operator.hpp"
+#include "catena/analysis/motion_groups.hpp"
 
 namespace catena {
 namespace {
@@ -47,28 +48,30 @@ Imbalance balance_loads(StaticSystem& system, std::span<double> lambda) {
     }
   }
   system.residual(lambda, residual);
-  Imbalance left{.force = system.force_norm(residual)};
-  const double largest = system.force_scale(lambda);
-  left.relative = largest > 0 ? left.force / largest : 0;
+  system.fill(lambda, Curvature::exact, 0);
+  // Forces and moments over the arms at which the body is held, whatever the units.
+  const std::vector<double> arms = body_arms(system, lambda);
+  const auto arm = [&](int c) { return plan.coordinate[at(c)] % 3 == 2 ? arms[at(plan.coordinate[at(c)] / 3)] : 1.0; };
   // What K does to places that are off by one extent each, in no particular pattern.
   std::vector<double> places(columns), forces(columns);
-  for (int c = 0; c < plan.columns; ++c) {
-    const int coordinate = plan.coordinate[at(c)];
-    const double arm = coordinate % 3 == 2 ? system.radius()[at(coordinate / 3)] : 1;
-    places[at(c)] = (c % 2 ? 1.0 : -1.0) / arm;
-  }
-  system.fill(lambda, Curvature::exact, 0);
+  for (int c = 0; c < plan.columns; ++c) places[at(c)] = (c % 2 ? 1.0 : -1.0) / arm(c);
   system.matrix().multiply_stiffness(places, forces);
-  left.rounding = rounding_part * system.force_norm(forces) * system.extent();
-  double most = -1;
+  Imbalance left;
+  double largest = 0;
   for (int c = 0; c < plan.columns; ++c) {
-    const int coordinate = plan.coordinate[at(c)];
-    const double arm = coordinate % 3 == 2 ? system.radius()[at(coordinate / 3)] : 1;
-    if (std::abs(residual[at(c)]) / arm > most) {
-      most = std::abs(residual[at(c)]) / arm;
+    const double force = std::abs(residual[at(c)]) / arm(c);
+    if (force > left.force || left.column < 0) {
+      left.force = force;
       left.column = c;
     }
+    left.rounding = std::max(left.rounding, rounding_part * std::abs(forces[at(c)]) / arm(c) * system.extent());
+    double own = std::abs(system.gradient()[at(c)]);
+    for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k) {
+      own = std::max(own, std::abs(system.jacobian()[at(k)] * lambda[at(plan.jacobian.row_index[at(k)])]));
+    }
+    largest = std::max(largest, own / arm(c));
   }
+  left.relative = largest > 0 ? left.force / largest : 0;
   return left;
 }
 

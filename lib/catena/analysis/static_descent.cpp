@@ -22,6 +22,8 @@ constexpr double sufficient_decrease = 1e-4;
 constexpr double polishing_change = 1e-6;
 // Constraints are met to this, in length scales or rad, between steps.
 constexpr double restored = 1e-10;
+// Curvature along a step below this part of what its terms would add up to without their signs is rounding.
+constexpr double neutral_part = 1e-10;
 // A mechanism that travelled this many extents, or turned this many radians, downhill is held by nothing.
 constexpr double lost_extents = 1e5, lost_turns = 1e4;
 
@@ -107,14 +109,28 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
     return outcome;
   }
   const double extent = system.extent(), load = system.force_norm(system.gradient());
+  const auto measure = [&] {
+    system.residual(lambda, residual);
+    outcome.residual = system.force_norm(residual);
+  };
+  measure();
   double reach = 1, last_shift = 0;
   double energy = system.energy(), energy_size = std::abs(energy);
+  const auto tell = [&] {
+    if (const IterationTrace* trace = system.evaluator().trace)
+      (*trace)("downhill", outcome.iterations, outcome.residual, outcome.step);
+  };
   for (outcome.iterations = 1; outcome.iterations <= options.max_iterations; ++outcome.iterations) {
     ++system.evaluator().counters.iterations;
+    if (system.is_cancelled()) {
+      outcome.end = StaticEnd::cancelled;
+      return outcome;
+    }
+    const bool balanced = outcome.residual <= options.tolerance * system.force_scale(lambda);
     // The exact K, stiffened until its inertia is that of a minimum and a step can be made.
     bool accepted = false;
     double stiffest = 0, loads = 0;
-    for (double shift = 0; !accepted && shift <= largest_shift * std::max(stiffest, loads);) {
+    for (double shift = 0; !accepted && std::isfinite(shift) && shift <= largest_shift * std::max(stiffest, loads);) {
       system.fill(lambda, Curvature::exact, shift);
       const bool minimum = system.factorize().ok() && system.matrix().negative_modes() == 0;
       outcome.exact = minimum && shift == 0;
@@ -137,6 +153,7 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
         std::copy(next_lambda.begin(), next_lambda.end(), lambda.begin());
         system.move_to(q);
         polish(system, q, lambda, outcome);
+        tell();
         const double force = std::max(system.force_scale(lambda), load);
         outcome.end = outcome.exact                                 ? StaticEnd::minimum
                       : outcome.residual <= stationary_part * force ? StaticEnd::stationary
@@ -145,6 +162,13 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
       }
       std::copy(system.gradient().begin(), system.gradient().end(), gradient.begin());
       const double slope = dot(gradient, change);
+      // On the constraints the slope is minus the curvature along the step. Where both are rounding the motion is
+      // neutral and the step means nothing: forces that balance are left as they are, else the shift holds the motion.
+      if (used == 0 && -slope <= neutral_part * system.matrix().absolute_quadratic(change)) {
+        if (!balanced) continue;
+        outcome.end = StaticEnd::stationary;
+        return outcome;
+      }
       const Travel travel = travel_of(plan, change);
       double factor = std::min({1.0, reach * largest_turn / travel.turn, reach * extent / travel.length});
       const bool clipped = factor < 1;
@@ -174,8 +198,8 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
     }
     std::copy(trial.begin(), trial.end(), q.begin());
     std::copy(next_lambda.begin(), next_lambda.end(), lambda.begin());
-    system.residual(lambda, residual);
-    outcome.residual = system.force_norm(residual);
+    measure();
+    tell();
     if (is_lost(q, start, extent)) {
       outcome.end = StaticEnd::unbounded;
       return outcome;

@@ -113,7 +113,7 @@ StaticOutcome follow_smoothing(StaticSystem& system, std::span<double> q, std::s
   system.close_gaps(set.closed);
   system.move_to(q);
   std::fill(lambda.begin(), lambda.end(), 0.0);
-  if (!first_multipliers(system, lambda)) {
+  if (!(system.has_springs() ? first_tensions(system, lambda) : first_multipliers(system, lambda))) {
     outcome.end = StaticEnd::singular;
     return outcome;
   }
@@ -130,6 +130,10 @@ StaticOutcome follow_smoothing(StaticSystem& system, std::span<double> q, std::s
   int steps = 0;
   for (outcome.iterations = 1; outcome.iterations <= options.max_iterations; ++outcome.iterations) {
     ++system.evaluator().counters.iterations;
+    if (system.is_cancelled()) {
+      outcome.end = StaticEnd::cancelled;
+      return outcome;
+    }
     for (std::size_t r = 0; r < gap.size(); ++r) gap[r] = -system.phi()[r];
     gaps.linearise(lambda, t, compliance, gap);
     system.matrix().set_compliance(compliance);
@@ -147,11 +151,14 @@ StaticOutcome follow_smoothing(StaticSystem& system, std::span<double> q, std::s
     const double factor =
         std::isfinite(change) ? std::min(1.0, largest_stride * size / (system.length() * change)) : 0.0;
     if (factor > 0) {
+      system.foresee(step.change, factor, largest_turn);
       system.advance(q, step.change, factor, largest_turn);
       for (std::size_t r = 0; r < lambda.size(); ++r) lambda[r] += factor * (step.lambda[r] - lambda[r]);
       system.move_to(q);
     }
     outcome.step = change;
+    if (const IterationTrace* trace = system.evaluator().trace)
+      (*trace)("gaps", outcome.iterations, gaps.left_over(lambda, t), change);
     near = change <= near_change;
     ++steps;
     if (farthest(q, start) > lost_sizes * size) {
@@ -162,6 +169,7 @@ StaticOutcome follow_smoothing(StaticSystem& system, std::span<double> q, std::s
     if (change <= arrived_change && gaps.left_over(lambda, t) <= arrived_part * t) {
       if (t <= last_smoothing) {
         const int smoothed = outcome.iterations;
+        system.forget_lengths();
         outcome = finish_with_gaps(system, q, lambda, set, options);
         outcome.iterations += smoothed;
         return outcome;
@@ -179,6 +187,7 @@ StaticOutcome follow_smoothing(StaticSystem& system, std::span<double> q, std::s
       std::copy(q_before.begin(), q_before.end(), q.begin());
       std::copy(lambda_before.begin(), lambda_before.end(), lambda.begin());
       system.move_to(q);
+      system.forget_lengths();
     }
     t = std::max(t_before * cooling, 0.5 * last_smoothing);
     steps = 0;
@@ -200,8 +209,9 @@ StaticOutcome solve_with_gaps(StaticSystem& system, std::span<double> q, std::sp
   for (const double t : first_smoothings) {
     std::copy(start.begin(), start.end(), q.begin());
     outcome = follow_smoothing(system, q, lambda, set, t, options);
+    system.forget_lengths();
     iterations += outcome.iterations;
-    if (outcome.converged() || outcome.end == StaticEnd::unbounded) break;
+    if (outcome.converged() || outcome.end == StaticEnd::unbounded || outcome.end == StaticEnd::cancelled) break;
   }
   outcome.iterations = iterations;
   return outcome;

@@ -143,7 +143,7 @@ class Problem final : public Ipopt::TNLP {
                              Ipopt::IpoptCalculatedQuantities*) override {
     iterations_ = iteration;
     ++system_.evaluator().counters.iterations;
-    return true;
+    return !system_.is_cancelled();
   }
   void finalize_solution(Ipopt::SolverReturn, Index, const Number* x, const Number*, const Number*, Index m,
                          const Number*, const Number* lambda, Number, const Ipopt::IpoptData*,
@@ -238,6 +238,8 @@ StaticEnd ending(Ipopt::ApplicationReturnStatus status) {
       return StaticEnd::unbounded;
     case Ipopt::Maximum_Iterations_Exceeded:
       return StaticEnd::slow;
+    case Ipopt::User_Requested_Stop:
+      return StaticEnd::cancelled;
     default:
       return StaticEnd::diverged;
   }

@@ -16,6 +16,13 @@ constexpr double polishing_change = 1e-4;
 constexpr int polishing_steps = 4;
 // What a correction may leave of the residual, what rounding leaves of forces, and how many times that is rounding too.
 constexpr double polishing_part = 1e-2, rounding_part = 1e-15, few_roundings = 10;
+// What the forces at a balanced start would move under the weights of the first multipliers, length scales or rad: they
+// are known to first_tolerance, and the weights are the forces over the length.
+constexpr double still = 1e-3;
+// Stiffness that holds everything while first tensions are found, where no load tells one, beside the stiffest spring.
+constexpr double softest_part = 1e-9;
+// A step from a balanced point that leaves more than this part of the residual follows rounding.
+constexpr double no_gain = 0.5;
 // Below this nothing more is to be had.
 constexpr double last_change = 1e-10;
 // Multipliers beyond this many times the largest applied force, and the sum of all, belong to rows that depend on each
@@ -31,8 +38,24 @@ constexpr double largest_change = 1e14;
 bool first_multipliers(StaticSystem& system, std::span<double> lambda) {
   system.fill_weights();
   if (!system.factorize().ok()) return false;
-  const StaticStep step = system.newton_step(first_tolerance);
+  StaticStep step = system.newton_step(first_tolerance);
+  // Where next to nothing would move the forces may balance already, which only exact multipliers show.
+  if (system.change_norm(step.change) <= still) step = system.newton_step(0);
   std::copy(step.lambda.begin(), step.lambda.end(), lambda.begin());
+  return true;
+}
+
+bool first_tensions(StaticSystem& system, std::span<double> lambda) {
+  std::fill(lambda.begin(), lambda.end(), 0.0);
+  system.foresee();
+  system.fill(lambda, Curvature::convex, 0);
+  const double softest = softest_part * system.matrix().largest_stiffness();
+  system.fill(lambda, Curvature::convex, std::max(system.dead_load() / system.length(), softest));
+  if (!system.factorize().ok()) return false;
+  StaticStep step = system.newton_step(first_tolerance);
+  if (system.change_norm(step.change) <= still) step = system.newton_step(0);
+  std::copy(step.lambda.begin(), step.lambda.end(), lambda.begin());
+  system.foresee(step.change, 1, largest_turn);
   return true;
 }
 
@@ -80,23 +103,46 @@ void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda,
 
 StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::span<double> lambda,
                               const StaticNewtonOptions& options) {
+  struct PresentLengths {
+    StaticSystem& system;
+    ~PresentLengths() { system.forget_lengths(); }
+  };
+  const PresentLengths at_the_end{system};
   StaticOutcome outcome;
   const Plan& plan = system.plan();
-  std::vector<double> residual(at(plan.columns));
+  std::vector<double> residual(at(plan.columns)), q_before(q.size()), lambda_before(lambda.size());
   system.move_to(q);
   const bool linear = system.has_linear_constraints();
   if (!options.warm) {
     std::fill(lambda.begin(), lambda.end(), 0.0);
     // Without second derivatives of constraints the first step gives the multipliers as well.
-    if (!linear && !first_multipliers(system, lambda)) {
+    const bool found =
+        system.has_springs() ? first_tensions(system, lambda) : linear || first_multipliers(system, lambda);
+    if (!found) {
       outcome.end = StaticEnd::singular;
       return outcome;
     }
   }
   bool near = options.warm || linear;
   outcome.step = largest_change;
+  double force = 0;
+  const auto measure = [&] {
+    system.residual(lambda, residual);
+    outcome.residual = system.force_norm(residual);
+    force = system.force_scale(lambda);
+  };
+  const auto is_balanced = [&](double rounding) {
+    return outcome.residual <= options.tolerance * force + rounding &&
+           system.phi_norm() <= std::max(options.tolerance, 10 * system.rounding_change());
+  };
+  measure();
+  bool balanced = is_balanced(0);
   for (outcome.iterations = 1; outcome.iterations <= options.max_iterations; ++outcome.iterations) {
     ++system.evaluator().counters.iterations;
+    if (system.is_cancelled()) {
+      outcome.end = StaticEnd::cancelled;
+      return outcome;
+    }
     bool minimum = false, factored = false;
     outcome.exact = false;
     if (near) {
@@ -114,36 +160,49 @@ StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::sp
       }
     }
     if (!factored) {
-      outcome.end = StaticEnd::singular;
+      outcome.end = balanced ? StaticEnd::stationary : StaticEnd::singular;
       return outcome;
     }
     const StaticStep step = system.newton_step(near ? step_tolerance : first_tolerance);
     const double change = system.change_norm(step.change);
     if (!(change < largest_change)) {
-      outcome.end = StaticEnd::diverged;
+      outcome.end = balanced ? StaticEnd::stationary : StaticEnd::diverged;
       return outcome;
     }
+    const double residual_before = outcome.residual;
+    if (balanced) {
+      std::copy(q.begin(), q.end(), q_before.begin());
+      std::copy(lambda.begin(), lambda.end(), lambda_before.begin());
+    }
+    system.foresee(step.change, 1, largest_turn);
     system.advance(q, step.change, 1, largest_turn);
     std::copy(step.lambda.begin(), step.lambda.end(), lambda.begin());
     system.move_to(q);
-    system.residual(lambda, residual);
-    outcome.residual = system.force_norm(residual);
+    measure();
+    // Along motions that nothing resists a step is made of rounding.
+    if (balanced && change > polishing_change && !(outcome.residual <= no_gain * residual_before)) {
+      std::copy(q_before.begin(), q_before.end(), q.begin());
+      std::copy(lambda_before.begin(), lambda_before.end(), lambda.begin());
+      system.move_to(q);
+      outcome.residual = residual_before;
+      outcome.end = StaticEnd::stationary;
+      return outcome;
+    }
     outcome.step = change;
+    if (const IterationTrace* trace = system.evaluator().trace)
+      (*trace)("newton", outcome.iterations, outcome.residual, change);
     near = change <= near_change;
-    if (!(system.force_scale(lambda) <=
-          std::max(largest_multiplier * system.load_size(), largest_of_sum * system.total_load()))) {
+    if (!(force <= std::max(largest_multiplier * system.load_size(), largest_of_sum * system.total_load()))) {
       outcome.end = StaticEnd::diverged;
       return outcome;
     }
     // What looks like rounding beside the stiffest spring may be all that a soft one holds: the step tells.
-    const auto is_small = [&] {
-      const double rounding = outcome.step <= last_change ? system.rounding_force() : 0;
-      return outcome.residual <= options.tolerance * system.force_scale(lambda) + rounding &&
-             system.phi_norm() <= std::max(options.tolerance, 10 * system.rounding_change());
-    };
+    const auto is_small = [&] { return is_balanced(outcome.step <= last_change ? system.rounding_force() : 0); };
+    balanced = is_balanced(0);
     // One step ends a linear problem, whatever its length.
     if (change > polishing_change && !(linear && outcome.exact && is_small())) continue;
     polish(system, q, lambda, outcome);
+    force = system.force_scale(lambda);
     if (is_small() || change <= last_change) {
       outcome.end = outcome.exact && minimum ? StaticEnd::minimum : StaticEnd::stationary;
       return outcome;

@@ -27,6 +27,7 @@ enum class StaticEnd {
   slow,        ///< iterations exhausted
   singular,    ///< no factorization: a direction in which nothing resists
   unbounded,   ///< the energy falls without end
+  cancelled,   ///< stopped by the user
 };
 
 struct StaticOutcome {
@@ -53,6 +54,10 @@ StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::sp
 /// The multipliers that balance the applied forces best: least squares in the weights (1, 1, radius^2), constraints met
 /// to first order. One factorization. False if there is none.
 bool first_multipliers(StaticSystem& system, std::span<double> lambda);
+
+/// Multipliers, and the lengths that springs will have once their tensions are those that balance the loads best (see
+/// StaticSystem::foresee): springs begin without tension. One factorization. False if there is none.
+bool first_tensions(StaticSystem& system, std::span<double> lambda);
 
 /// Newton steps with the factors at hand until nothing is gained any more.
 void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda, StaticOutcome& outcome);

@@ -50,6 +50,7 @@ class Problem {
     p.system_.move_to(p.configuration(scaled));
     p.system_.evaluator().counters.iterations += 1;
     ++p.evaluations;
+    if (p.optimiser && p.system_.is_cancelled()) nlopt_force_stop(p.optimiser);
     for (unsigned c = 0; gradient && c < n; ++c) gradient[c] = p.system_.gradient()[c] * p.unit_[c] / p.energy_;
     return p.system_.energy() / p.energy_;
   }
@@ -69,6 +70,7 @@ class Problem {
   }
 
   int evaluations = 0;
+  nlopt_opt optimiser = nullptr;  // to be stopped where the user cancels
 
  private:
   void rows_at(const std::vector<int>& rows, unsigned m, double* result, unsigned n, const double* scaled,
@@ -102,6 +104,8 @@ StaticEnd ending(nlopt_result result) {
       return StaticEnd::unbounded;
     case NLOPT_MAXEVAL_REACHED:
       return StaticEnd::slow;
+    case NLOPT_FORCED_STOP:
+      return StaticEnd::cancelled;
     // Where rounding ends the progress, the point is as good as it gets.
     case NLOPT_ROUNDOFF_LIMITED:
       return StaticEnd::stationary;
@@ -129,6 +133,7 @@ StaticOutcome solve_by_nlopt(StaticSystem& system, std::span<double> q, std::spa
   const std::unique_ptr<nlopt_opt_s, Destroy> optimiser(
       nlopt_create(options.derivatives ? NLOPT_LD_SLSQP : NLOPT_LN_COBYLA, n));
   nlopt_opt o = optimiser.get();
+  problem.optimiser = o;
   nlopt_set_min_objective(o, &Problem::objective, &problem);
   const std::vector<double> close(std::max(problem.equations.size(), problem.inequalities.size()), options.tolerance);
   if (!problem.equations.empty()) {

@@ -6,10 +6,12 @@
 #include <cmath>
 
 #include "catena/analysis/assemble.hpp"
+#include "catena/analysis/free_motions.hpp"
 #include "catena/analysis/static_descent.hpp"
 #include "catena/analysis/static_ipopt.hpp"
 #include "catena/analysis/static_nlopt.hpp"
 #include "catena/analysis/static_settling.hpp"
+#include "catena/analysis/static_turns.hpp"
 #include "catena/analysis/whole_turns.hpp"
 
 namespace catena {
@@ -37,9 +39,13 @@ constexpr double finest_barrier = 1e-10;
 // Of gaps and their forces, whatever was asked for: the last steps cost next to nothing.
 constexpr double gap_tolerance = 1e-12;
 constexpr int few_first_steps = 40, most_first_steps = 80;
+// A residual above this part of the forces is worth a remark.
+constexpr double unsaid_rounding = 1e-9;
+// The square of this is the largest number.
+constexpr double largest_number = 1e154;
 constexpr double first_push = 0.05, largest_push = 0.8;
-// Overlaps below this many length scales, and stiffness contributions below this part of the scene's, count as absent.
-constexpr double absent_overlap = 1e-6, absent_stiffness = 1e-8;
+// Overlaps below this many length scales count as absent.
+constexpr double absent_overlap = 1e-6;
 
 // A reproducible number in [-1, 1).
 double random_number(unsigned& seed) {
@@ -67,6 +73,15 @@ void name_weak_gaps(const Evaluator& evaluator, StaticResult& result) {
   if (count > most) names += fmt::format(" and {} more", count - most);
   result.report.warnings.push_back(
       fmt::format("just touching, without a force that could be told from rounding: {}", names));
+}
+
+// Where forces balance as well as rounding allows, but not to the tolerance.
+void warn_of_rounding(const StaticAccuracy& a, Report& report) {
+  if (a.balanced || a.residual <= unsaid_rounding * a.forces) return;
+  report.warnings.push_back(
+      fmt::format("forces balance to {:.2g} N only, of {:.3g} N: rounding of places makes up to {:.2g} N of the "
+                  "stiffest springs, whatever the tolerance",
+                  a.residual, a.forces, a.rounding));
 }
 
 }  // namespace
@@ -190,15 +205,26 @@ StaticOutcome StaticSearch::minimise(std::vector<double>& q, std::vector<double>
 
 // Whether forces balance and constraints hold to the tolerance. What may be rounding beside the stiffest spring passes
 // only if a Newton step, by the factors of the certificate, would move nothing: it may be all that a soft spring holds.
-bool StaticSearch::is_accurate(const StaticOutcome& outcome, std::span<const double> lambda) {
-  const double scale = std::max(system_.force_scale(lambda), first_load_);
+// Along a neutral motion a step says nothing.
+bool StaticSearch::is_accurate(std::span<const double> lambda, const Certificate& certificate) {
+  accuracy_ = judge_balance(system_, lambda, options_.tolerance);
   if (!(system_.phi_norm() <= std::max(options_.tolerance, 10 * system_.rounding_change()))) return false;
-  if (outcome.residual <= options_.tolerance * scale) return true;
-  if (!(outcome.residual <= options_.tolerance * scale + system_.rounding_force())) return false;
+  if (accuracy_.balanced || !accuracy_.rounded) return accuracy_.balanced;
   std::vector<double> force(at(system_.plan().columns)), gap(at(system_.plan().rows), 0.0);
   system_.residual(lambda, force);
   for (double& f : force) f = -f;
-  return system_.change_norm(system_.solve(force, gap, rounding_tolerance).change) <= rounded_change;
+  const StaticStep step = system_.solve(force, gap, rounding_tolerance);
+  std::vector<double> change(step.change.begin(), step.change.end());
+  if (certificate.neutral && !certificate.mode.empty()) {
+    // Modes are of length 1 in the metric (1, 1, radius^2).
+    const std::span<const double> inverse_arms = system_.matrix().inverse_arms();
+    double along = 0;
+    for (std::size_t c = 0; c < change.size(); ++c) {
+      along += change[c] * certificate.mode[c] / (inverse_arms[c] * inverse_arms[c]);
+    }
+    for (std::size_t c = 0; c < change.size(); ++c) change[c] -= along * certificate.mode[c];
+  }
+  return system_.change_norm(change) <= rounded_change;
 }
 
 // A push along the mode, its largest component `size` rad or length scales, to the side where the energy is lower.
@@ -228,20 +254,40 @@ void StaticSearch::shake(std::vector<double>& q, unsigned seed, double angle, do
   }
 }
 
-// Whether the neutral mode meets no stiffness at all, not even one that others cancel.
-bool StaticSearch::is_free_motion(const std::vector<double>&, const Certificate& certificate) {
-  const double scale = std::max(system_.matrix().largest_stiffness(), system_.force_size() / system_.length());
-  return certificate.neutral && system_.matrix().absolute_quadratic(certificate.mode) <= absent_stiffness * scale;
+// Numbers whose products with each other cannot be represented are no numbers to compute with.
+std::optional<Report> StaticSearch::find_overflow(std::span<double> lambda) {
+  system_.fill(lambda, Curvature::exact, 0);
+  const Plan& plan = system_.plan();
+  const std::span<const int> diagonal = system_.matrix().structure().diagonal;
+  for (int c = 0; c < plan.columns; ++c) {
+    const double stiffness = system_.matrix().values()[at(diagonal[at(c)])], force = system_.gradient()[at(c)];
+    if (std::abs(stiffness) <= largest_number && std::abs(force) <= largest_number) continue;
+    const bool turning = plan.coordinate[at(c)] % 3 == 2, forced = !(std::abs(force) <= largest_number);
+    Report report;
+    report.status = Status::refused;
+    report.message = fmt::format(
+        "what acts on body \"{}\" is too large to be computed with: {} beyond {:.0e} {}, and products of such numbers "
+        "cannot be represented; likely cause: a unit or an exponent mistyped",
+        body_of(system_.evaluator(), c), forced ? (turning ? "a torque" : "a force") : "a stiffness", largest_number,
+        forced ? (turning ? "N m" : "N") : (turning ? "N m/rad" : "N/m"));
+    return report;
+  }
+  return {};
 }
 
-Report StaticSearch::explain(const StaticOutcome& outcome, const std::vector<double>& start) {
+Report StaticSearch::explain(const StaticOutcome& outcome, const std::vector<double>& start,
+                             const StaticResult& result) {
   Report report;
   const Evaluator& evaluator = system_.evaluator();
   const Plan& plan = system_.plan();
+  if (outcome.end == StaticEnd::cancelled) {
+    report.status = Status::cancelled;
+    report.message = fmt::format("stopped after {} iterations, before an equilibrium was found", result.iterations);
+    return report;
+  }
   if (outcome.end == StaticEnd::unbounded) {
     int farthest = 0;
     double most = -1;
-    std::vector<double> fall(at(plan.columns));
     const std::span<const Frame<double>> frames = evaluator.frames();
     for (int c = 0; c < plan.columns; ++c) {
       const int coordinate = plan.coordinate[at(c)];
@@ -269,10 +315,7 @@ Report StaticSearch::explain(const StaticOutcome& outcome, const std::vector<dou
     return report;
   }
   report.status = Status::not_converged;
-  report.message = fmt::format(
-      "no equilibrium found: the residual force is still {:.3g} N, of {:.3g} N, the constraints miss by {:.3g}; likely "
-      "cause: a start far off, or an energy without a minimum nearby",
-      outcome.residual, system_.force_size(), system_.phi_norm());
+  describe_point(result, report);
   const auto worst = std::min_element(gap.begin(), gap.end());
   if (worst != gap.end() && *worst < -absent_overlap * system_.length()) {
     const int element = plan.row_element[at(plan.gap_rows[static_cast<std::size_t>(worst - gap.begin())])];
@@ -281,6 +324,34 @@ Report StaticSearch::explain(const StaticOutcome& outcome, const std::vector<dou
                     evaluator.model().element_type(element), evaluator.model().element_name(element), -*worst);
   }
   return report;
+}
+
+// Why the last point that was looked at is no equilibrium, from its accuracy and certificate.
+void StaticSearch::describe_point(const StaticResult& result, Report& report) {
+  const Certificate& c = result.certificate;
+  const StaticAccuracy& a = accuracy_;
+  if (c.valid && c.negative_modes > 0 && a.holds()) {
+    report.message = fmt::format(
+        "every equilibrium that was found is unstable, the last one in {} mode{}, the lowest: {}; ask for it with "
+        "\"accept\": \"stationary\", or start nearer to a stable one",
+        c.negative_modes, c.negative_modes > 1 ? "s" : "",
+        c.mode.empty() ? "unknown" : describe_mode(system_.evaluator(), c.mode, system_.radius()));
+    return;
+  }
+  const std::string where = a.column >= 0 ? fmt::format(" at body \"{}\"", body_of(system_.evaluator(), a.column)) : "";
+  report.message = fmt::format("no equilibrium found: the forces{} are out of balance by {:.3g} N, beside {:.3g} N",
+                               where, a.residual, a.forces);
+  if (a.loads < a.forces) report.message += fmt::format(" and loads of {:.3g} N", a.loads);
+  if (system_.plan().rows > static_cast<int>(system_.plan().gap_rows.size())) {
+    report.message += fmt::format("; the constraints miss by {:.3g} m or rad", system_.phi_norm() * system_.length());
+  }
+  const bool stiff = a.rounding > options_.tolerance * a.forces;
+  report.message +=
+      stiff ? fmt::format(
+                  "; likely cause: stiffnesses too large for the loads, {:.3g} N/m: rounding of places alone "
+                  "makes {:.3g} N of them; take a joint or a coupler instead, or a softer spring",
+                  system_.matrix().largest_stiffness(), a.rounding)
+            : "; likely cause: a start far off, or an energy without a minimum nearby";
 }
 
 // Forces that follow their body: the residual alone, and nothing that could certify what is found.
@@ -297,13 +368,18 @@ StaticResult StaticSearch::find_without_energy(std::vector<double>& q, std::vect
     }
     outcome = solve_by_settling(system_, q, lambda, {.tolerance = options_.tolerance});
     result.iterations += outcome.iterations;
-    if (outcome.converged() || outcome.end == StaticEnd::unbounded) break;
+    if (outcome.end == StaticEnd::unbounded || outcome.end == StaticEnd::cancelled) break;
+    accuracy_ = judge_balance(system_, lambda, options_.tolerance);
+    if (outcome.converged() && accuracy_.holds()) break;
+    if (outcome.converged()) outcome.end = StaticEnd::slow;
   }
   result.residual = outcome.residual;
   if (!outcome.converged()) {
-    result.report = explain(outcome, start);
+    result.report = explain(outcome, start, result);
     return result;
   }
+  warn_of_rounding(accuracy_, result.report);
+  drop_whole_turns(system_, start, q);
   result.report.warnings.push_back(
       "forces that turn with their body have no energy: the forces balance here, but nothing certifies that this "
       "equilibrium is stable");
@@ -327,7 +403,10 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
   }
   const std::vector<double> start = q;
   system_.move_to(q);
-  first_load_ = system_.force_norm(system_.gradient());
+  if (std::optional<Report> overflow = find_overflow(lambda)) {
+    result.report = *overflow;
+    return result;
+  }
   const bool own = options_.solver == StaticSolver::automatic || options_.solver == StaticSolver::newton;
   const bool few =
       !options_.warm && !options_.stationary && !system_.has_gaps() && plan.columns - plan.rows <= few_freedoms;
@@ -342,11 +421,12 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
   unsigned shaken = 0;
   for (int trial = 0; trial < most_trials && !accepted; ++trial) {
     outcome = minimise(q, lambda, options_.warm && trial == 0, way, result);
-    if (outcome.end == StaticEnd::unbounded) break;
+    if (outcome.end == StaticEnd::unbounded || outcome.end == StaticEnd::cancelled) break;
     if (outcome.converged()) {
       result.certificate = certify_with_gaps(q, lambda, result.gaps);
       const bool wanted = options_.stationary || result.certificate.negative_modes == 0;
-      accepted = result.certificate.valid && wanted && is_accurate(outcome, lambda);
+      const bool accurate = is_accurate(lambda, result.certificate);
+      accepted = result.certificate.valid && wanted && accurate;
       if (accepted || !result.certificate.valid) break;
       if (!wanted) {
         if (result.certificate.mode.empty()) break;
@@ -374,11 +454,14 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
       shake(q, shaken, shaken == 1 ? 0.1 : 1.0);
     }
   }
-  result.residual = outcome.residual;
+  if (!outcome.converged()) accuracy_ = judge_balance(system_, lambda, options_.tolerance);
+  result.residual = accuracy_.residual;
   if (!accepted) {
-    result.report = explain(outcome, start);
+    result.report = explain(outcome, start, result);
     return result;
   }
+  warn_of_rounding(accuracy_, result.report);
+  drop_whole_turns(system_, start, q);
   result.dependent_rows = system_.matrix().dependent_rows();
   name_weak_gaps(evaluator, result);
   if (way == Way::valley && !few) {
@@ -386,16 +469,12 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
   }
   const Certificate& c = result.certificate;
   const std::string motion = c.mode.empty() ? "" : describe_mode(evaluator, c.mode, system_.radius());
-  if (c.neutral && !options_.stationary && is_free_motion(q, c)) {
-    result.report.status = Status::refused;
-    result.report.message = fmt::format(
-        "a motion is free: {} meets no resistance, so that the equilibrium is not one place; add a joint or a spring, "
-        "or ask for any stationary point (\"accept\": \"stationary\")",
-        motion);
-  } else if (c.neutral) {
+  if (c.neutral) {
     result.report.warnings.push_back(
-        fmt::format("neutral to second order: {} changes the energy by less than rounding", motion));
-  } else if (c.negative_modes > 0) {
+        fmt::format("neutral to second order: {} change{} the energy by less than rounding; the softest: {}",
+                    describe_free_motions(c.neutral_modes, c.free_bodies), c.neutral_modes > 1 ? "" : "s", motion));
+  }
+  if (c.negative_modes > 0) {
     result.report.warnings.push_back(fmt::format("unstable: {} negative mode{}, the lowest: {}", c.negative_modes,
                                                  c.negative_modes > 1 ? "s" : "", motion));
   }

@@ -16,11 +16,13 @@
 // Random numbers are fixed: the same scene gives the same answer.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "catena/analysis/certificate.hpp"
+#include "catena/analysis/static_accuracy.hpp"
 #include "catena/analysis/static_gaps.hpp"
 #include "catena/analysis/static_newton.hpp"
 #include "catena/base/status.hpp"
@@ -66,15 +68,16 @@ class StaticSearch {
                                    StaticResult& result);
   Certificate certify_with_gaps(const std::vector<double>& q, std::span<const double> lambda, const ActiveSet& gaps);
   StaticOutcome polish_by_newton(std::vector<double>& q, std::vector<double>& lambda, StaticOutcome outcome);
-  bool is_accurate(const StaticOutcome& outcome, std::span<const double> lambda);
+  bool is_accurate(std::span<const double> lambda, const Certificate& certificate);
   void leave(const Certificate& certificate, std::vector<double>& q, double size);
   StaticResult find_without_energy(std::vector<double>& q, std::vector<double>& lambda);
-  Report explain(const StaticOutcome& outcome, const std::vector<double>& start);
-  bool is_free_motion(const std::vector<double>& q, const Certificate& certificate);
+  std::optional<Report> find_overflow(std::span<double> lambda);
+  Report explain(const StaticOutcome& outcome, const std::vector<double>& start, const StaticResult& result);
+  void describe_point(const StaticResult& result, Report& report);
 
   StaticSystem& system_;
   StaticSearchOptions options_;
-  double first_load_ = 0;  // largest applied force at the start, N
+  StaticAccuracy accuracy_;  // of the last point that was judged
 };
 
 }  // namespace catena

@@ -123,6 +123,10 @@ StaticOutcome solve_by_settling(StaticSystem& system, std::span<double> q, std::
   double damping = stiffness, now = size();
   for (outcome.iterations = 1; outcome.iterations <= options.max_iterations; ++outcome.iterations) {
     ++system.evaluator().counters.iterations;
+    if (system.is_cancelled()) {
+      outcome.end = StaticEnd::cancelled;
+      return outcome;
+    }
     if (!tangent.factorize(lambda, damping, stiffness)) {
       damping = std::max(stiffening * damping, 1e-6 * stiffness);
       if (damping > largest_damping * stiffness) break;
@@ -147,6 +151,8 @@ StaticOutcome solve_by_settling(StaticSystem& system, std::span<double> q, std::
       system.move_to(q);
       outcome.step = system.change_norm(change);
       then = size();
+      if (const IterationTrace* trace = system.evaluator().trace)
+        (*trace)("settling", outcome.iterations, outcome.residual, outcome.step);
     }
     const bool kept = solved && then <= tolerated_growth * now + options.tolerance;
     if (!kept) {

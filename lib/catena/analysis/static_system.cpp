@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/force_sizes.hpp"
+
 namespace catena {
 namespace {
 
@@ -21,9 +23,11 @@ StaticSystem::StaticSystem(Evaluator& evaluator)
       radius_(evaluator.attachment_radii()),
       matrix_(evaluator.shared_plan(), radius_),
       length_(evaluator.length_scale()),
-      scaling_(plan_, length_) {
+      scaling_(plan_, length_),
+      springs_(evaluator, matrix_.structure().hessian) {
   rest_.assign(at(plan_.coordinates()), 0.0);
   loads_.resize(rest_.size());
+  if (springs_.any()) foreseen_.assign(rest_.size(), 0.0);
   gradient_.resize(at(plan_.columns));
   torque_.resize(at(plan_.columns));
   phi_.resize(at(plan_.rows));
@@ -72,7 +76,9 @@ void StaticSystem::take_over_model() {
   matrix_.set_radius(radius_);
   length_ = evaluator_.length_scale();
   scaling_ = Scaling(plan_, length_);
+  springs_.take_over_model(evaluator_);
   load_ = total_load_ = 0;
+  dead_load_at_ = std::numeric_limits<double>::quiet_NaN();
   linear_ = -1;
 }
 
@@ -143,9 +149,27 @@ double StaticSystem::force_scale(std::span<const double> lambda) const {
   return largest;
 }
 
+void StaticSystem::foresee(std::span<const double> change, double factor, double largest_turn) {
+  if (!springs_.any()) return;
+  if (!change.empty()) {
+    std::fill(foreseen_.begin(), foreseen_.end(), 0.0);
+    advance(foreseen_, change, factor, largest_turn);
+  }
+  springs_.foresee(evaluator_, change.empty() ? change : std::span<const double>(foreseen_));
+}
+
+double StaticSystem::dead_load() {
+  if (dead_load_at_ == evaluator_.time()) return dead_load_;
+  dead_load_at_ = evaluator_.time();
+  const std::vector<double> loads = force_sizes(evaluator_).loads;
+  std::vector<double> of_columns(at(plan_.columns));
+  for (int c = 0; c < plan_.columns; ++c) of_columns[at(c)] = loads[at(plan_.coordinate[at(c)])];
+  return dead_load_ = measure(of_columns).largest;
+}
+
 void StaticSystem::fill(std::span<const double> lambda, Curvature curvature, double shift) {
   force_ = std::max(force_scale(lambda), smallest_force);
-  matrix_.set_hessian(evaluator_, lambda, curvature);
+  matrix_.set_hessian(evaluator_, lambda, curvature, &springs_);
   if (curvature == Curvature::convex) {
     residual(lambda, torque_);
     const std::span<double> turning = matrix_.turning();

@@ -10,6 +10,8 @@
 // rows (lambda, Phi); configurations are in plan order. Nothing allocates after construction.
 #pragma once
 
+#include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -35,6 +37,9 @@ class StaticSystem {
 
   /// Takes over what depends on the numbers of the evaluator's model after they changed.
   void take_over_model();
+  /// Asked between steps of every search: whether to go on. Nothing: always.
+  void watch(std::function<bool()> proceed) { proceed_ = std::move(proceed); }
+  bool is_cancelled() const { return proceed_ && !proceed_(); }
   /// Evaluates forces, constraints and Phi_q at q (size coordinates()).
   void move_to(std::span<const double> q);
   /// Whether the constraints have no second derivatives, as bodies held at their centroids: asked once, where it is.
@@ -70,11 +75,24 @@ class StaticSystem {
   double load_size() const { return load_; }
   /// Largest sum of all applied forces' sizes so far, N: what may pass through one joint.
   double total_load() const { return total_load_; }
+  /// Largest sum, over one coordinate, of what gravity, forces and torques do, N: at the place and time where it was
+  /// first asked for since the model or the time changed.
+  double dead_load();
+  bool has_springs() const { return springs_.any(); }
+
   /// Changes below this cannot be told from rounding of the coordinates: length scales or rad.
   double rounding_change() const { return 1e-15 * extent_ / length_; }
 
   /// Residual forces below this may be rounding: a stiff spring's length is known to so many digits only, N.
   double rounding_force() const { return 1e-14 * matrix_.largest_stiffness() * extent_; }
+
+  /// Stiff springs on a long way, as links of a chain: a step turns them, which lengthens them to second order, and
+  /// what that does to k (l - l0) hides the forces that they will carry. fill() takes their stiffness, along the
+  /// present line, at the length that this change (columns, as advance() makes it) leads to to first order, as if
+  /// tensions were unknowns of their own; without one at the free length. To be told before the step is made.
+  void foresee(std::span<const double> change = {}, double factor = 1, double largest_turn = 0);
+  /// Back to present lengths: the exact K of the energy.
+  void forget_lengths() { springs_.forget(); }
 
   /// Fills the matrix at the present configuration: K exact, or convex with h against turning made sqrt(h^2 + r^2), r
   /// the residual torque. `shift` N/m.
@@ -115,6 +133,10 @@ class StaticSystem {
   double length_, extent_ = 1, force_ = 1, load_ = 0, total_load_ = 0;
   Scaling scaling_;
   std::vector<double> rest_, loads_;  // zero velocities, Q; all coordinates
+  double dead_load_ = 0, dead_load_at_ = std::numeric_limits<double>::quiet_NaN();  // N; s
+  ForeseenSprings springs_;
+  std::vector<double> foreseen_;  // all coordinates
+  std::function<bool()> proceed_;
   std::vector<double> gradient_, jacobian_, phi_;
   std::vector<double> solution_, torque_;
   std::vector<char> is_gap_;         // per row; empty: none is

@@ -1,12 +1,15 @@
 // The instants at which an analysis gives rows.
 //
-// Row k is at first + k every (multiplied, never accumulated), one more at `until` if that is no multiple; or the
-// instants are listed. Units: s.
+// Instants that are not finite, and steps that do not advance, throw std::invalid_argument; numbers of rows that there
+// are not, std::out_of_range. Row k is at first + k every (multiplied, never accumulated), one more at `until` if that
+// is no multiple; or the instants are listed. Units: s.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace catena {
@@ -14,10 +17,19 @@ namespace catena {
 class TimeGrid {
  public:
   /// One row at t.
-  static TimeGrid instant(double t) { return TimeGrid({t}); }
-  static TimeGrid list(std::vector<double> times) { return TimeGrid(std::move(times)); }
+  static TimeGrid instant(double t) { return list({t}); }
+  static TimeGrid list(std::vector<double> times) {
+    for (const double t : times) require_instant(t);
+    return TimeGrid(std::move(times));
+  }
   /// Rows at k every for k = 0, 1, ... within [from, until], and at `from` and `until` themselves. every > 0.
   static TimeGrid range(double from, double until, double every) {
+    require_instant(from);
+    require_instant(until);
+    if (!(every > 0) || !std::isfinite(every)) throw std::invalid_argument("rows must be a time above zero apart");
+    // More than a signed 64-bit number of rows cannot be counted, let alone computed.
+    if (std::max(std::abs(from), std::abs(until)) / every > 1e18)
+      throw std::invalid_argument("rows are too close together to be counted");
     TimeGrid grid({});
     grid.from_ = from;
     grid.until_ = until;
@@ -31,20 +43,43 @@ class TimeGrid {
 
   /// The instants from number `first` on.
   TimeGrid from_row(std::int64_t first) const {
+    if (first < 0 || first > size()) refuse_row(first);
     TimeGrid rest = *this;
     rest.skipped_ += first;
     return rest;
   }
 
   std::int64_t size() const { return all() - skipped_; }
-  double operator[](std::int64_t k) const { return at(k + skipped_); }
-  double last() const { return at(all() - 1); }
+  double operator[](std::int64_t k) const {
+    if (k < 0 || k >= size()) refuse_row(k);
+    return at(k + skipped_);
+  }
+  /// Of the rows there are; these three are for grids that have some.
+  double last() const {
+    require_rows();
+    return at(all() - 1);
+  }
   /// The first and the last instant in time; lists may be in any order.
-  double earliest() const { return every_ == 0 ? *std::min_element(times_.begin(), times_.end()) : from_; }
-  double latest() const { return every_ == 0 ? *std::max_element(times_.begin(), times_.end()) : until_; }
+  double earliest() const {
+    require_rows();
+    return every_ == 0 ? *std::min_element(times_.begin(), times_.end()) : from_;
+  }
+  double latest() const {
+    require_rows();
+    return every_ == 0 ? *std::max_element(times_.begin(), times_.end()) : until_;
+  }
 
  private:
   explicit TimeGrid(std::vector<double> times) : times_(std::move(times)) {}
+  static void require_instant(double t) {
+    if (!std::isfinite(t)) throw std::invalid_argument("an instant at which a row is wanted is not finite");
+  }
+  void require_rows() const {
+    if (all() < 1) throw std::out_of_range("there are no instants at which rows are wanted");
+  }
+  [[noreturn]] void refuse_row(std::int64_t k) const {
+    throw std::out_of_range("there is no row number " + std::to_string(k) + " among " + std::to_string(size()));
+  }
   std::int64_t all() const {
     if (every_ == 0) return static_cast<std::int64_t>(times_.size());
     if (until_ <= from_) return 1;

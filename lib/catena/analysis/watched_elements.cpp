@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "catena/elements/all.hpp"
 
 namespace catena {
@@ -14,9 +16,19 @@ WatchedElements::WatchedElements(const Evaluator& evaluator) : evaluator_(evalua
       }
     }
   });
+  const auto look = [&](const auto& list, int) {
+    if constexpr (HasCurveUse<ElementOf<decltype(list)>>) {
+      for (const auto& entry : list) {
+        if (entry.element.can_leave_curve()) ending_.push_back(entry.id);
+      }
+    }
+  };
+  for_each_list(evaluator.model().constraints, look);
+  for_each_list(evaluator.model().forces, look);
 }
 
 Report WatchedElements::check() const {
+  if (Report ends = check_ends(); !ends.ok()) return ends;
   Report report;
   for (int element : elements_) {
     const char* trouble = evaluator_.trouble(element);
@@ -25,6 +37,35 @@ Report WatchedElements::check() const {
     report.status = Status::singular;
     report.message = fmt::format("{} \"{}\" determines nothing at t = {:.12g} s: {}", model.element_type(element),
                                  model.element_name(element), evaluator_.time(), trouble);
+    break;
+  }
+  return report;
+}
+
+double WatchedElements::excess() const {
+  double most = -std::numeric_limits<double>::infinity();
+  for (int element : ending_) {
+    if (const std::optional<CurveUse> use = evaluator_.curve_use(element)) most = std::max(most, use->excess());
+  }
+  return most;
+}
+
+Report WatchedElements::check_ends() const {
+  Report report;
+  const Model& model = evaluator_.model();
+  for (int element : ending_) {
+    const std::optional<CurveUse> use = evaluator_.curve_use(element);
+    if (!use || !(use->excess() > allowed_excess)) continue;
+    const bool low = use->parameter < (use->first + use->last) / 2;
+    const std::string why =
+        use->end
+            ? fmt::format("its curve is left at its end at ({:.9g}, {:.9g}) m", use->end->x, use->end->y)
+            : fmt::format("its table ends at an elongation of {:.9g} m, which is passed", low ? use->first : use->last);
+    report.status = Status::singular;
+    report.message = fmt::format(
+        "{} \"{}\" determines nothing at t = {:.9g} s: {}; end the analysis before, make the {} longer, or say with "
+        "\"beyond\" what lies there",
+        model.element_type(element), model.element_name(element), evaluator_.time(), why, use->end ? "curve" : "table");
     break;
   }
   return report;

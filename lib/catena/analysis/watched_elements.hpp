@@ -1,4 +1,8 @@
-// Elements whose rows mean nothing at some configurations: contacts off their curve, gears whose centres coincide.
+// Elements whose rows or forces mean nothing at some configurations: contacts off their curve, gears whose centres
+// coincide, springs stretched beyond their table.
+//
+// The place on a curve is found to 1e-9 of the curve (curve_search.hpp): what is further beyond the end than that has
+// left it.
 #pragma once
 
 #include <vector>
@@ -12,12 +16,21 @@ class WatchedElements {
  public:
   explicit WatchedElements(const Evaluator& evaluator);
 
-  /// `singular`, naming the first element that means nothing at the evaluator's configuration and time, and why.
+  /// `singular`, naming the first element that means nothing at the evaluator's configuration and time, and why; or
+  /// where one has left its curve or table, at which end.
   Report check() const;
+  /// The part of it about curves and tables that end.
+  Report check_ends() const;
+  /// Whether any element could leave a curve; by how much, in parts of the whole, the one does that is furthest beyond
+  /// the end of its own, at the evaluator's configuration: negative where none is.
+  bool has_ends() const { return !ending_.empty(); }
+  double excess() const;
+  /// An excess above this one is no rounding.
+  static constexpr double allowed_excess = 2e-9;
 
  private:
   const Evaluator& evaluator_;
-  std::vector<int> elements_;
+  std::vector<int> elements_, ending_;
 };
 
 }  // namespace catena

@@ -84,6 +84,8 @@ struct ConstraintOperations {
                            const int* slot, double* values);
   /// nullptr, or why the rows of one element mean nothing at this configuration, as a phrase.
   static const char* trouble(const Block&, const Data&, const Frame<double>* frames, int e);
+  /// Where on a curve that ends one element stands.
+  static std::optional<CurveUse> curve_use(const Block&, const Data&, const Frame<double>* frames, int e);
   /// Phi_q of one element.
   static LocalJacobian<E> local_jacobian(const Block&, const Data&, const Frame<double>* frames, int e);
   /// Measured quantity of one element: exact derivatives along q(t) with the given qd and qdd (nullptr: zero).

@@ -231,6 +231,19 @@ const char* ConstraintOperations<E>::trouble(const Block& block, const Data& dat
 }
 
 template <class E>
+std::optional<CurveUse> ConstraintOperations<E>::curve_use(const Block& block, const Data& data,
+                                                           const Frame<double>* frames, int e) {
+  if constexpr (HasCurveUse<E>) {
+    const E& element = data.element[static_cast<std::size_t>(e)];
+    if (!element.can_leave_curve()) return {};
+    const detail::ElementFrames<E> f(block, data, frames, e);
+    return element.curve_use(Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground});
+  } else {
+    return {};
+  }
+}
+
+template <class E>
 LocalJacobian<E> ConstraintOperations<E>::local_jacobian(const Block& block, const Data& data,
                                                          const Frame<double>* frames, int e) {
   LocalJacobian<E> local;

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
+#include <string>
 
+#include "catena/assembly/attachment_points.hpp"
 #include "catena/base/sincos.hpp"
 #include "catena/elements/all.hpp"
 
@@ -32,6 +35,61 @@ double extent(const Model& model) {
   return std::max(high.x - low.x, high.y - low.y);
 }
 
+// Of the points of force elements from the centroids of their bodies, of the ground's from the other body; 0 if none.
+double mean_force_arm(const Model& model) {
+  double sum = 0;
+  std::int64_t count = 0;
+  for_each_list(model.forces, [&](const auto& list, int) {
+    for (const auto& entry : list) {
+      const int other = entry.i >= 0 ? entry.i : entry.j;
+      visit_points(entry, [&](const Vec2<double>& local, int body) {
+        if (body < 0 && other < 0) return;
+        sum += norm(body >= 0 ? local : local - model.bodies[at(other)].position);
+        ++count;
+      });
+    }
+  });
+  return count > 0 ? sum / static_cast<double>(count) : 0;
+void require_same(std::size_t plan, std::size_t model, const char* what) {
+  if (plan == model) return;
+  throw std::invalid_argument("the model has " + std::to_string(model) + " " + what +
+                              ", but the analysis was made for a model with " + std::to_string(plan));
+}
+
+/// Throws where elements of `model` are others, or tie other bodies, than the same ones of `known`.
+void require_same_structure(const Model& known, const Model& model) {
+  require_same(known.bodies.size(), model.bodies.size(), "bodies");
+  require_same(known.elements.size(), model.elements.size(), "elements");
+  const auto differs = [&](const std::string& who) {
+    throw std::invalid_argument("\"" + who + "\" is not what it was in the model that the analysis was made for");
+  };
+  for (std::size_t b = 0; b < known.bodies.size(); ++b) {
+    const auto &was = known.bodies[b], &is = model.bodies[b];
+    if (was.fixed != is.fixed || was.particle != is.particle)
+      differs(std::string(model.body_name(static_cast<int>(b))));
+  }
+  for (std::size_t e = 0; e < known.elements.size(); ++e) {
+    const ElementRecord &was = known.elements[e], &is = model.elements[e];
+    const bool same_list = (was.kind == ElementKind::force) == (is.kind == ElementKind::force);
+    if (!same_list || was.type != is.type || was.index != is.index) {
+      differs(model.element_name(static_cast<int>(e)));
+    }
+  }
+  const auto compare = [&](const auto& all) {
+    for_each_list(all(known), [&](const auto& list, int type) {
+      with_list(all(model), type, [&](const auto& other) {
+        if constexpr (std::is_same_v<decltype(list), decltype(other)>) {
+          for (std::size_t k = 0; k < list.size(); ++k) {
+            if (list[k].i != other[k].i || list[k].j != other[k].j) differs(model.element_name(other[k].id));
+          }
+        }
+      });
+    });
+  };
+  compare([](const Model& m) -> const auto& { return m.constraints; });
+  compare([](const Model& m) -> const auto& { return m.forces; });
+}
+
 }  // namespace
 
 Evaluator::Evaluator(const Evaluator&) = default;
@@ -41,14 +99,22 @@ Evaluator& Evaluator::operator=(Evaluator&&) noexcept = default;
 Evaluator::~Evaluator() = default;
 
 Evaluator::Evaluator(std::shared_ptr<const Plan> plan, const Model& model) : plan_(std::move(plan)), model_(&model) {
+  if (!plan_) throw std::invalid_argument("an evaluator needs a plan, and was given a null pointer");
+  require_same(plan_->plan_body.size(), model.bodies.size(), "bodies");
+  require_same(plan_->element_row.size(), model.elements.size(), "elements");
   place_.assign(model.elements.size(), -1);
   for_each_block(plan_->blocks, values_, model.constraints, [&](const auto& block, auto&, const auto& list) {
+    for (int e = 0; e < block.size(); ++e) place_[at(list[at(block.entry[at(e)])].id)] = e;
+  });
+  for_each_list(model.forces, [&](const auto& list, int) {
+    const auto& block = std::get<ForceBlock<ElementOf<decltype(list)>>>(plan_->forces);
     for (int e = 0; e < block.size(); ++e) place_[at(list[at(block.entry[at(e)])].id)] = e;
   });
   load_values();
 }
 
 void Evaluator::set_model(const Model& model) {
+  require_same_structure(*model_, model);
   model_ = &model;
   load_values();
 }
@@ -128,9 +194,15 @@ void Evaluator::load_values() {
   });
   attachment_radii(&length_scale_);
   if (length_scale_ == 0) length_scale_ = extent(*model_);
+  if (length_scale_ == 0) length_scale_ = mean_force_arm(*model_);
   if (length_scale_ == 0) length_scale_ = 1;
   function_.resize(model_->functions.size());
-  set_time(time_);
+  // Until an analysis says when it begins; tables that begin later give what they begin with.
+  for (std::size_t k = 0; k < function_.size(); ++k) {
+    const TimeRange domain = model_->functions[k].domain();
+    function_[k] = model_->functions[k].evaluate(std::clamp(time_, domain.first, domain.last));
+  }
+  spread_functions();
   // Squared forms are scaled once, by the value at the start, to rows that measure a length.
   for_each_block(plan.blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
     using E = ElementOf<decltype(list)>;
@@ -154,9 +226,25 @@ std::vector<double> Evaluator::given_configuration() const {
 }
 
 void Evaluator::set_time(double t, Side side) {
+  if (t < run_.first) return set_time_along(t, run_.first);
+  if (t > run_.last) return set_time_along(t, run_.last);
   time_ = t;
   if (model_->functions.empty()) return;
   for (std::size_t k = 0; k < function_.size(); ++k) function_[k] = model_->functions[k].evaluate(t, side);
+  spread_functions();
+}
+
+void Evaluator::set_time_along(double t, double from) {
+  time_ = t;
+  if (model_->functions.empty()) return;
+  from = std::clamp(from, run_.first, run_.last);
+  // At the end of a run the piece that holds before it, everywhere else the one that begins.
+  const Side side = from == run_.last && run_.first < run_.last ? Side::before : Side::after;
+  for (std::size_t k = 0; k < function_.size(); ++k) function_[k] = model_->functions[k].continue_from(from, side, t);
+  spread_functions();
+}
+
+void Evaluator::spread_functions() {
   for_each_list(values_, [&](auto& data, int) {
     for (const auto& timed : data.timed) data.value[at(timed.element)] = function_[at(timed.function)];
   });

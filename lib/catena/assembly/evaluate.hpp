@@ -17,11 +17,14 @@
 #include "catena/assembly/hessian_slots.hpp"
 #include "catena/assembly/plan.hpp"
 #include "catena/base/counters.hpp"
+#include "catena/base/iteration_trace.hpp"
 
 namespace catena {
 
 class Evaluator {
  public:
+  /// The plan must be that of the model, and a model that is taken over must have the same bodies and elements:
+  /// std::invalid_argument says what differs. Spans of other sizes than said below are not checked.
   Evaluator(std::shared_ptr<const Plan> plan, const Model& model);
   // Defined where the element types are complete; here they are only declared.
   Evaluator(const Evaluator&);
@@ -45,6 +48,12 @@ class Evaluator {
   /// `side`: which derivatives are meant where a function jumps at t. Throws OutsideTable (time_function.hpp) when a
   /// table does not reach t.
   void set_time(double t, Side side = Side::after);
+  /// The same by the pieces of the functions that hold at the instant `from`: for differences next to it.
+  void set_time_along(double t, double from);
+  /// Until TimeLimit ends, functions of time are asked for nothing before or after the run: beyond its ends set_time()
+  /// goes on along the pieces that hold there.
+  class TimeLimit;
+  const TimeRange& time_limit() const { return run_; }
   double time() const { return time_; }
   void set_configuration(std::span<const double> q);
   /// Takes whole turns out of the angles in q and remembers them: frames keep showing the full angle, but an angle of
@@ -103,19 +112,24 @@ class Evaluator {
   ElementJacobian element_jacobian(int element) const;
   /// nullptr, or why the rows of the element mean nothing at this configuration, as a phrase ("its centres coincide").
   const char* trouble(int element) const;
+  /// Where on a curve or table that ends the element stands now, its end in the ground frame; nothing for elements
+  /// without one, or where it asks nothing of it.
+  std::optional<CurveUse> curve_use(int element) const;
   /// Value of the element's function of time now: c, c', c''.
   Taylor<double> element_value(int element) const;
 
-  /// Per plan body: RMS distance of its attachment points from the centroid, 1 m if none (THEORY section 3). The mean
-  /// over all attachment points goes to `mean` (THEORY's Lc).
+  /// Per plan body: RMS distance of its attachment points from the centroid, length_scale() if none. The mean over all
+  /// attachment points goes to `mean` (THEORY's Lc).
   std::vector<double> attachment_radii(double* mean = nullptr) const;
   /// What a residual in metres is compared with: the mean attachment distance, else the extent of the given positions,
   /// else 1 m.
   double length_scale() const { return length_scale_; }
   Counters counters;
+  const IterationTrace* trace = nullptr;  ///< told of iterations for a configuration; may be none
 
  private:
   void load_values();
+  void spread_functions();
   Measured measure_released(int element, std::span<const double> qd) const;
   /// Place of an element in its block, -1 if it has no rows.
   template <class F>
@@ -134,6 +148,21 @@ class Evaluator {
   std::vector<int> place_;
   std::vector<int> left_out_, left_out_slot_;  // rows and the places of their entries in Phi_q
   double time_ = 0, length_scale_ = 1;
+  TimeRange run_;
+};
+
+class Evaluator::TimeLimit {
+ public:
+  TimeLimit(Evaluator& evaluator, const TimeRange& run) : evaluator_(evaluator), before_(evaluator.run_) {
+    evaluator_.run_ = run;
+  }
+  ~TimeLimit() { evaluator_.run_ = before_; }
+  TimeLimit(const TimeLimit&) = delete;
+  TimeLimit& operator=(const TimeLimit&) = delete;
+
+ private:
+  Evaluator& evaluator_;
+  TimeRange before_;
 };
 
 template <class F>

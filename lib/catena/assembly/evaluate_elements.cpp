@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/assembly/attachment_points.hpp"
 #include "catena/assembly/evaluate.hpp"
 #include "catena/elements/all.hpp"
 
@@ -10,32 +11,13 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// Calls f(local point, body) for every attachment point of an element.
-template <class E, class F>
-void visit_points(const ElementEntry<E, double>& entry, F&& f) {
-  std::apply(
-      [&](const auto&... field) {
-        (
-            [&] {
-              if constexpr (requires { field.body; }) {
-                if constexpr (
-                    requires { entry.element.*field.member + Vec2<double>{}; } && !requires { field.required; }) {
-                  f(entry.element.*field.member, field.body == 0 ? entry.i : entry.j);
-                }
-              }
-            }(),
-            ...);
-      },
-      E::fields());
-}
-
 }  // namespace
 
 // Calls f(block, data, e) where the element is the block's e-th; not at all for one that is in no block.
 template <class F>
 void Evaluator::with_element(int element, F&& f) const {
   const int e = place(element);
-  if (e < 0) return;
+  if (e < 0 || model_->elements[at(element)].kind == ElementKind::force) return;
   with_list(plan_->blocks, model_->elements[at(element)].type, [&](const auto& block) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
     f(block, std::get<ConstraintData<E>>(values_), e);
@@ -98,6 +80,31 @@ const char* Evaluator::trouble(int element) const {
   return phrase;
 }
 
+std::optional<CurveUse> Evaluator::curve_use(int element) const {
+  std::optional<CurveUse> use;
+  int body[2] = {plan_->bodies, plan_->bodies};
+  const auto take = [&]<class E>(const auto& block, int e, std::optional<CurveUse> found, std::type_identity<E>) {
+    use = found;
+    body[0] = block.body_i[at(e)];
+    if constexpr (E::bodies == 2) body[1] = block.body_j[at(e)];
+  };
+  const int e = place(element);
+  if (e >= 0 && model_->elements[at(element)].kind == ElementKind::force) {
+    with_list(plan_->forces, model_->elements[at(element)].type, [&](const auto& block) {
+      using E = typename std::remove_cvref_t<decltype(block)>::Element;
+      const auto& data = std::get<ForceData<E>>(force_values_);
+      take(block, e, ForceOperations<E>::curve_use(block, data, frames_.data(), e), std::type_identity<E>{});
+    });
+  } else {
+    with_element(element, [&](const auto& block, const auto& data, int k) {
+      using E = typename std::remove_cvref_t<decltype(block)>::Element;
+      take(block, k, ConstraintOperations<E>::curve_use(block, data, frames_.data(), k), std::type_identity<E>{});
+    });
+  }
+  if (use && use->end) use->end = ground_frame(body[use->body]).point(*use->end);
+  return use;
+}
+
 Taylor<double> Evaluator::element_value(int element) const {
   Taylor<double> value;
   with_element(element, [&](const auto&, const auto& data, int e) {
@@ -106,9 +113,18 @@ Taylor<double> Evaluator::element_value(int element) const {
   return value;
 }
 
+// Points of constraints; where all of a body's are in its centroid those of force elements, else the length scale: no
+// length may come from anywhere but the scene.
 std::vector<double> Evaluator::attachment_radii(double* mean) const {
-  std::vector<double> squares(at(plan_->bodies), 0.0);
-  std::vector<int> count(at(plan_->bodies), 0);
+  struct Points {
+    double squares = 0;
+    int count = 0;
+    void add(double square) {
+      squares += square;
+      ++count;
+    }
+  };
+  std::vector<Points> held(at(plan_->bodies)), forced(at(plan_->bodies));
   double sum = 0;
   std::int64_t points = 0;
   for_each_list(model_->constraints, [&](const auto& list, int) {
@@ -116,19 +132,26 @@ std::vector<double> Evaluator::attachment_radii(double* mean) const {
       visit_points(entry, [&](const Vec2<double>& local, int body) {
         if (body < 0) return;
         const double square = squared_norm(local);
-        squares[at(plan_->plan_body[at(body)])] += square;
-        ++count[at(plan_->plan_body[at(body)])];
+        held[at(plan_->plan_body[at(body)])].add(square);
         sum += std::sqrt(square);
         ++points;
       });
     }
   });
-  for (std::size_t b = 0; b < squares.size(); ++b) {
-    const double radius = count[b] > 0 ? std::sqrt(squares[b] / count[b]) : 0;
-    squares[b] = radius > 0 ? radius : 1;
+  for_each_list(model_->forces, [&](const auto& list, int) {
+    for (const auto& entry : list) {
+      visit_points(entry, [&](const Vec2<double>& local, int body) {
+        if (body >= 0) forced[at(plan_->plan_body[at(body)])].add(squared_norm(local));
+      });
+    }
+  });
+  std::vector<double> radius(held.size());
+  for (std::size_t b = 0; b < radius.size(); ++b) {
+    const Points& of = held[b].squares > 0 ? held[b] : forced[b];
+    radius[b] = of.squares > 0 ? std::sqrt(of.squares / of.count) : length_scale_;
   }
   if (mean) *mean = points > 0 ? sum / static_cast<double>(points) : 0;
-  return squares;
+  return radius;
 }
 
 }  // namespace catena

@@ -79,6 +79,7 @@ void Evaluator::add_hessians(std::span<const double> lambda, Curvature curvature
   });
   for_each_list(plan_->forces, [&](const auto& block, int type) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
+    if (slots.forces[at(type)].empty()) return;
     ForceOperations<E>::add_stiffness(block, std::get<ForceData<E>>(force_values_), frames_.data(), convex,
                                       slots.forces[at(type)].data(), values.data());
   });

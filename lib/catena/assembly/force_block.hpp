@@ -46,6 +46,8 @@ struct ForceOperations {
   static void add_forces(const Block&, const Data&, const Frame<double>* frames, const double* qd, double* Q);
   /// Generalized forces of one element: [Q_i, Q_j].
   static std::array<double, 6> force(const Block&, const Data&, const Frame<double>* frames, const double* qd, int e);
+  /// Where in a table that ends one element stands.
+  static std::optional<CurveUse> curve_use(const Block&, const Data&, const Frame<double>* frames, int e);
   /// Sum of the potentials of the conservative elements, J.
   static double potential(const Block&, const Data&, const Frame<double>* frames);
   /// Power lost to damping, W.

@@ -115,6 +115,19 @@ std::array<double, 6> ForceOperations<E>::force(const Block& block, const Data& 
 }
 
 template <class E>
+std::optional<CurveUse> ForceOperations<E>::curve_use(const Block& block, const Data& data, const Frame<double>* frames,
+                                                      int e) {
+  if constexpr (HasCurveUse<E>) {
+    const E& element = data.element[static_cast<std::size_t>(e)];
+    if (!element.can_leave_curve()) return {};
+    const detail::ForceState<E> s(block, data, frames, nullptr, e);
+    return element.curve_use(s.arguments());
+  } else {
+    return {};
+  }
+}
+
+template <class E>
 double ForceOperations<E>::potential(const Block& block, const Data& data, const Frame<double>* frames) {
   double sum = 0;
   if constexpr (HasPotential<E>) {

@@ -42,8 +42,14 @@ void KktMatrix::clear() {
   std::fill(values_.begin() + structure_.turning(0), values_.end(), 0.0);
 }
 
-void KktMatrix::set_hessian(Evaluator& evaluator, std::span<const double> lambda, Curvature curvature) {
+void KktMatrix::set_hessian(Evaluator& evaluator, std::span<const double> lambda, Curvature curvature,
+                            const ForeseenSprings* springs) {
   clear();
+  if (springs && springs->active()) {
+    evaluator.add_hessians(lambda, curvature, springs->others(), values_);
+    springs->add(evaluator, curvature, values_);
+    return;
+  }
   evaluator.add_hessians(lambda, curvature, structure_.hessian, values_);
 }
 
@@ -96,17 +102,20 @@ void KktMatrix::choose_augmentation(double least_stiffness) {
   for (double k : stiffness_) largest_stiffness_ = std::max(largest_stiffness_, k);
   const double least = std::max(least_stiffness, softest_part * largest_stiffness_);
   const SparsePattern& phi_q = plan_->jacobian;
-  std::fill(rho_.begin(), rho_.end(), least > 0 ? least : 1.0);
+  std::fill(rho_.begin(), rho_.end(), 0.0);
   for (int c = 0; c < structure_.columns; ++c) {
     const std::size_t body = at(plan_->coordinate[at(c)] / 3);
     for (int k = phi_q.column_start[at(c)]; k < phi_q.column_start[at(c) + 1]; ++k) {
       const std::size_t row = at(phi_q.row_index[at(k)]);
       // A row in radians holds torques: its stiffness is in N m.
       const double scale = plan_->row_is_angle[row] ? radius_[body] * radius_[body] : 1;
-      rho_[row] = std::max(rho_[row], augmentation * scale * stiffness_[body]);
+      rho_[row] = std::max(rho_[row], scale * std::max(least, augmentation * stiffness_[body]));
     }
   }
-  for (std::size_t r = 0; r < rho_.size(); ++r) eps_[r] = regularisation / rho_[r];
+  for (std::size_t r = 0; r < rho_.size(); ++r) {
+    if (!(rho_[r] > 0)) rho_[r] = least > 0 ? least : 1.0;
+    eps_[r] = regularisation / rho_[r];
+  }
 }
 
 FactorResult KktMatrix::factorize(double least_stiffness, Counters& counters) {

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "catena/assembly/evaluate.hpp"
+#include "catena/assembly/foreseen_springs.hpp"
 #include "catena/assembly/kkt_structure.hpp"
 #include "catena/linalg/block_factorization.hpp"
 #include "catena/linalg/refinement.hpp"
@@ -46,8 +47,10 @@ class KktMatrix {
   /// Whether every K written with these multipliers is the one without: constraints without second derivatives here.
   bool constraints_are_linear(Evaluator& evaluator);
 
-  /// Fills K at the evaluator's configuration, but for the stiffness against turning, which goes to turning().
-  void set_hessian(Evaluator& evaluator, std::span<const double> lambda, Curvature curvature);
+  /// Fills K at the evaluator's configuration, but for the stiffness against turning, which goes to turning(). Springs
+  /// at foreseen lengths where these are active.
+  void set_hessian(Evaluator& evaluator, std::span<const double> lambda, Curvature curvature,
+                   const ForeseenSprings* springs = nullptr);
   /// Per moving body, N m: may be changed between set_hessian and complete.
   std::span<double> turning() { return {values_.data() + structure_.turning(0), static_cast<std::size_t>(moving_)}; }
   /// Adds turning() to K and `shift` x (1, 1, radius^2) to its diagonal, N/m; writes Phi_q.

@@ -47,7 +47,7 @@ Curve<S> Curve<S>::line(const Vec2<S>& point, const Vec2<S>& axis) {
 }
 
 template <class S>
-Curve<S> Curve<S>::spline(std::span<const Vec2<S>> points, SplineEnd end) {
+Curve<S> Curve<S>::spline(std::span<const Vec2<S>> points, SplineEnd end, Beyond beyond) {
   if (end == SplineEnd::clamped) fail("a spline through points ends natural or periodic, not clamped");
   const bool closed = end == SplineEnd::periodic;
   std::vector<Vec2<S>> path(points.begin(), points.end());
@@ -68,7 +68,7 @@ Curve<S> Curve<S>::spline(std::span<const Vec2<S>> points, SplineEnd end) {
     x.push_back(path[k].x);
     y.push_back(path[k].y);
   }
-  return Curve(Points{Spline<S>(s, x, end), Spline<S>(s, y, end), s.back()}, 0, value_of(s.back()), closed);
+  return Curve(Points{Spline<S>(s, x, end), Spline<S>(s, y, end), s.back()}, 0, value_of(s.back()), closed, beyond);
 }
 
 template <class S>

@@ -8,8 +8,9 @@
 // Every curve gives p, p', p'', p''' with respect to s: tangent p' / |p'|, curvature (p' x p'') / |p'|^3 (positive
 // where the curve turns left). p''' jumps at the knots of the splines, all else is continuous. A natural spline goes on
 // as a straight line beyond its ends, so that iterations that stray there come back; the curve proper ends at first()
-// and last(). Singular where p' = 0, which chord lengths and positive radii exclude in all but absurd tables. S (double
-// or Dual) runs through the shape data; the parameter may be any scalar that S converts to, Taylor included.
+// and last(), unless that line belongs to it (Beyond::line), and ends() tells so. Singular where p' = 0, which chord
+// lengths and positive radii exclude in all but absurd tables. S (double or Dual) runs through the shape data; the
+// parameter may be any scalar that S converts to, Taylor included.
 #pragma once
 
 #include <cmath>
@@ -49,8 +50,9 @@ class Curve {
   /// Counter-clockwise; radius > 0.
   static Curve circle(const Vec2<S>& centre, const S& radius);
   /// Through the points in their order; `end` is natural (at least 2 points) or periodic (at least 3; the first need
-  /// not be repeated at the end). Neighbours may not coincide.
-  static Curve spline(std::span<const Vec2<S>> points, SplineEnd end);
+  /// not be repeated at the end). Neighbours may not coincide. `beyond` the ends of a natural one: nothing; the point
+  /// at the end with its tangent (hold); the straight line along that tangent.
+  static Curve spline(std::span<const Vec2<S>> points, SplineEnd end, Beyond beyond = Beyond::error);
   /// Radii > 0 at increasing angles that span at most one turn; a full turn repeats the first radius at its end.
   static Curve polar(std::span<const S> angles, std::span<const S> radii);
   /// Unbounded; the axis need not be a unit vector.
@@ -65,6 +67,9 @@ class Curve {
   double first() const { return first_; }
   double last() const { return last_; }
   bool periodic() const { return periodic_; }
+  Beyond beyond() const { return beyond_; }
+  /// Whether the curve ends for good, so that there are places beyond it.
+  bool ends() const { return !periodic_ && beyond_ == Beyond::error && std::isfinite(last_); }
 
   /// The parameters where p''' jumps, within [first(), last()].
   std::vector<double> knots() const;
@@ -98,8 +103,8 @@ class Curve {
   };
   using Shape = std::variant<Circle, Line, Polar, Points>;
 
-  Curve(Shape shape, double first, double last, bool periodic)
-      : shape_(std::move(shape)), first_(first), last_(last), periodic_(periodic) {}
+  Curve(Shape shape, double first, double last, bool periodic, Beyond beyond = Beyond::error)
+      : shape_(std::move(shape)), first_(first), last_(last), periodic_(periodic), beyond_(beyond) {}
 
   /// The nearest point by sampling and Newton's method, where there is no closed form.
   S search_nearest(const Vec2<S>& local) const;
@@ -107,6 +112,7 @@ class Curve {
   Shape shape_;
   double first_, last_;
   bool periodic_;
+  Beyond beyond_;
 };
 
 /// `v` in the scalar T.

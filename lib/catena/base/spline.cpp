@@ -100,8 +100,8 @@ void check(std::span<const S> knots, std::span<const S> values, SplineEnd end) {
 }  // namespace
 
 template <class S>
-Spline<S>::Spline(std::span<const S> knots, std::span<const S> values, SplineEnd end)
-    : periodic_(end == SplineEnd::periodic) {
+Spline<S>::Spline(std::span<const S> knots, std::span<const S> values, SplineEnd end, Beyond beyond)
+    : periodic_(end == SplineEnd::periodic), beyond_(beyond) {
   check(knots, values, end);
   const std::size_t n = knots.size() - 1;
   std::vector<S> h(n), chord(n);
@@ -121,8 +121,9 @@ Spline<S>::Spline(std::span<const S> knots, std::span<const S> values, SplineEnd
     area += h[k] * (values[k] + values[k + 1]) / S(2.0) - h[k] * h[k] * h[k] * (m[k] + m[k + 1]) / S(24.0);
   }
   const S end_slope = chord[n - 1] + h[n - 1] * (m[n - 1] + S(2.0) * m[n]) / S(6.0);
-  pieces_.front() = {knots[0], values[0], pieces_[1].c1, S(0.0), S(0.0), S(0.0)};
-  pieces_.back() = {knots[n], values[n], end_slope, S(0.0), S(0.0), area};
+  const bool holds = beyond == Beyond::hold;
+  pieces_.front() = {knots[0], values[0], holds ? S(0.0) : pieces_[1].c1, S(0.0), S(0.0), S(0.0)};
+  pieces_.back() = {knots[n], values[n], holds ? S(0.0) : end_slope, S(0.0), S(0.0), area};
 }
 
 template class Spline<double>;

@@ -24,6 +24,13 @@ void require_finite(std::initializer_list<std::pair<const char*, S>> numbers, co
   }
 }
 
+void require_common_instant(const TimeRange& domain, const char* what) {
+  if (domain.first <= domain.last) return;
+  throw std::invalid_argument(std::string(what) +
+                              ": there is no instant at which all parts are defined: one begins at " +
+                              number_text(domain.first) + " s, another ends at " + number_text(domain.last) + " s");
+}
+
 /// Zero whatever the design parameters are.
 bool vanishes(double a) { return a == 0; }
 template <class T, int N>
@@ -78,14 +85,15 @@ TimeFunction<S> TimeFunction<S>::step(const S& t0, const S& t1, const S& from, c
 }
 
 template <class S>
-TimeFunction<S> TimeFunction<S>::spline(std::span<const S> t, std::span<const S> value, SplineEnd end) {
-  return TimeFunction(std::make_shared<const Node>(Node{Table<S>{Spline<S>(t, value, end)}}));
+TimeFunction<S> TimeFunction<S>::spline(std::span<const S> t, std::span<const S> value, SplineEnd end, Beyond beyond) {
+  return TimeFunction(std::make_shared<const Node>(Node{Table<S>{Spline<S>(t, value, end, beyond)}}));
 }
 
 template <class S>
 TimeFunction<S> TimeFunction<S>::sum(std::vector<TimeFunction> terms) {
   if (terms.empty()) throw std::invalid_argument("sum: needs at least one term");
   Combination<S> combination{std::move(terms), false};
+  require_common_instant(combination.domain(), "sum");
   const bool constant = std::ranges::all_of(combination.parts, &TimeFunction::is_constant);
   if (constant) return TimeFunction(combination.evaluate(0, Side::after).f);
   return TimeFunction(std::make_shared<const Node>(Node{std::move(combination)}));
@@ -95,24 +103,46 @@ template <class S>
 TimeFunction<S> TimeFunction<S>::product(std::vector<TimeFunction> factors) {
   if (factors.empty()) throw std::invalid_argument("product: needs at least one factor");
   Combination<S> combination{std::move(factors), true};
+  require_common_instant(combination.domain(), "product");
   const bool constant = std::ranges::all_of(combination.parts, &TimeFunction::is_constant);
   if (constant) return TimeFunction(combination.evaluate(0, Side::after).f);
   return TimeFunction(std::make_shared<const Node>(Node{std::move(combination)}));
 }
 
 template <class S>
-TimeFunction<S> TimeFunction<S>::custom(Callback function, std::vector<double> breakpoints) {
+TimeFunction<S> TimeFunction<S>::custom(Callback function, std::vector<double> breakpoints, TimeRange domain) {
   if (!function) throw std::invalid_argument("custom function of time: the callback is empty");
+  if (std::ranges::any_of(breakpoints, [](double t) { return !std::isfinite(t); })) {
+    throw std::invalid_argument("custom function of time: a breakpoint is not finite");
+  }
+  if (!(domain.first <= domain.last)) {
+    throw std::invalid_argument("custom function of time: its domain ends before it begins");
+  }
   if (!std::ranges::is_sorted(breakpoints)) {
     throw std::invalid_argument("custom function of time: breakpoints must increase");
   }
-  return TimeFunction(std::make_shared<const Node>(Node{Custom<S>{std::move(function), std::move(breakpoints)}}));
+  return TimeFunction(
+      std::make_shared<const Node>(Node{Custom<S>{std::move(function), std::move(breakpoints), domain}}));
 }
 
 template <class S>
 Taylor<S> TimeFunction<S>::evaluate(double t, Side side) const {
   if (!node_) return Taylor<S>(constant_);
   return std::visit([&](const auto& kind) { return kind.evaluate(t, side); }, node_->kind);
+}
+
+template <class S>
+Taylor<S> TimeFunction<S>::continue_from(double from, Side side, double t) const {
+  if (!node_) return Taylor<S>(constant_);
+  return std::visit([&](const auto& kind) { return kind.continue_from(from, side, t); }, node_->kind);
+}
+
+template <class S>
+bool TimeFunction<S>::has_callback() const {
+  if (!node_) return false;
+  if (const auto* parts = std::get_if<Combination<S>>(&node_->kind))
+    return std::ranges::any_of(parts->parts, &TimeFunction::has_callback);
+  return std::holds_alternative<Custom<S>>(node_->kind);
 }
 
 template <class S>

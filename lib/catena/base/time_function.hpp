@@ -25,7 +25,7 @@ namespace catena {
 
 enum class Side { before, after };
 
-/// Thrown by TimeFunction::evaluate outside of a table that does not repeat. Analyses compare `domain()` with their
+/// Thrown by TimeFunction::evaluate outside of a table that ends. Analyses compare `domain()` with their
 /// time span beforehand, so that it never comes out of a running loop.
 struct OutsideTable : std::out_of_range {
   OutsideTable(double instant, double table_first, double table_last);
@@ -36,6 +36,8 @@ struct OutsideTable : std::out_of_range {
 struct TimeRange {
   double first = -std::numeric_limits<double>::infinity();
   double last = std::numeric_limits<double>::infinity();
+
+  bool contains(double t) const { return t >= first && t <= last; }
 };
 
 /// An immutable value: copies are cheap and may be evaluated from several threads.
@@ -56,20 +58,30 @@ class TimeFunction {
   /// From `from` at t0 to `to` at t1 > t0 and constant outside; with u = (t - t0) / (t1 - t0) along
   /// 3 u^2 - 2 u^3 (order 3: the velocity is continuous) or 10 u^3 - 15 u^4 + 6 u^5 (order 5: the acceleration too).
   static TimeFunction step(const S& t0, const S& t1, const S& from, const S& to, int order);
-  /// Cubic spline through (t[k], value[k]). An error outside the table, except that a periodic one repeats.
-  static TimeFunction spline(std::span<const S> t, std::span<const S> value, SplineEnd end);
+  /// Cubic spline through (t[k], value[k]). Outside the table `beyond` holds, except that a periodic one repeats.
+  static TimeFunction spline(std::span<const S> t, std::span<const S> value, SplineEnd end,
+                             Beyond beyond = Beyond::error);
+  /// There must be an instant at which all terms, or factors, are defined.
   static TimeFunction sum(std::vector<TimeFunction> terms);
   static TimeFunction product(std::vector<TimeFunction> factors);
-  /// Your own function, which returns value, first and second derivative; `breakpoints` increase.
-  static TimeFunction custom(Callback function, std::vector<double> breakpoints = {});
+  /// Your own function, which returns value, first and second derivative; `breakpoints` increase. It is asked for
+  /// nothing outside `domain`.
+  static TimeFunction custom(Callback function, std::vector<double> breakpoints = {}, TimeRange domain = {});
 
   /// (f, f', f'') at t. Throws OutsideTable outside `domain()`.
   Taylor<S> evaluate(double t, Side side = Side::after) const;
 
+  /// (f, f', f'') at t, wherever it is, by the piece that holds at the instant `from`, on its `side`: the polynomial of
+  /// a step or of a table goes on, and your own function by its Taylor polynomial of second degree. So differences are
+  /// taken at the ends of a run, and next to breakpoints, without a look at what is on the other side.
+  Taylor<S> continue_from(double from, Side side, double t) const;
+  /// Whether it contains a function of your own, which goes on with two derivatives alone.
+  bool has_callback() const;
+
   /// Whether f' = f'' = 0 at all times by construction: such a driver is a plain constraint.
   bool is_constant() const { return node_ == nullptr; }
 
-  /// Where the function is defined: everything but the outside of tables.
+  /// Where the function is defined: everything but the outside of tables that end.
   TimeRange domain() const;
 
   /// The first breakpoint later than t; infinity if none.

@@ -31,6 +31,7 @@ struct Polynomial {
     for (std::size_t k = coefficients.size() - 1; k-- > 0;) sum = sum * time + Taylor<S>(coefficients[k]);
     return sum;
   }
+  Taylor<S> continue_from(double, Side side, double t) const { return evaluate(t, side); }
   TimeRange domain() const { return {}; }
   double next_breakpoint(double) const { return never; }
 };
@@ -43,6 +44,7 @@ struct Harmonic {
     const Taylor<S> angle(omega * S(t) + phase, omega, S(0.0));
     return Taylor<S>(offset) + Taylor<S>(amplitude) * sin(angle);
   }
+  Taylor<S> continue_from(double, Side side, double t) const { return evaluate(t, side); }
   TimeRange domain() const { return {}; }
   double next_breakpoint(double) const { return never; }
 };
@@ -52,9 +54,10 @@ struct Step {
   S t0, t1, from, to;
   int order;
 
-  Taylor<S> evaluate(double t, Side side) const {
-    if (!is_after(t, value_of(t0), side)) return Taylor<S>(from);
-    if (is_after(t, value_of(t1), side)) return Taylor<S>(to);
+  Taylor<S> evaluate(double t, Side side) const { return continue_from(t, side, t); }
+  Taylor<S> continue_from(double place, Side side, double t) const {
+    if (!is_after(place, value_of(t0), side)) return Taylor<S>(from);
+    if (is_after(place, value_of(t1), side)) return Taylor<S>(to);
     const S width = t1 - t0;
     const Taylor<S> u((S(t) - t0) / width, S(1.0) / width, S(0.0));
     const Taylor<S> rise =
@@ -71,20 +74,36 @@ template <class S>
 struct Table {
   Spline<S> curve;
 
-  Taylor<S> evaluate(double t, Side) const {
-    if (!curve.periodic()) {
-      // Times are multiples of a step and carry its rounding: just outside the table counts as its end.
-      const double inside = std::clamp(t, curve.first(), curve.last());
-      const double slack = 1e-12 * std::max(std::abs(curve.first()), std::abs(curve.last()));
-      if (!(std::abs(t - inside) <= slack)) {
-        throw OutsideTable(t, curve.first(), curve.last());
-      }
-      t = inside;
+  bool ends() const { return !curve.periodic() && curve.beyond() == Beyond::error; }
+
+  Taylor<S> evaluate(double t, Side side) const {
+    if (!std::isfinite(t)) throw OutsideTable(t, curve.first(), curve.last());
+    if (ends()) {
+      t = inside(t);
+    } else if (!curve.periodic() && (same_instant(t, curve.first()) || same_instant(t, curve.last()))) {
+      // What holds beyond the end need not be as smooth as the spline is at its inner knots.
+      return continue_from(t, side, t);
     }
     const SplineValue<S> value = curve.evaluate(S(t));
     return {value.f, value.d1, value.d2};
   }
-  TimeRange domain() const { return curve.periodic() ? TimeRange{} : TimeRange{curve.first(), curve.last()}; }
+  Taylor<S> continue_from(double place, Side side, double t) const {
+    if (ends()) {
+      place = inside(place);
+      if (same_instant(place, curve.first())) side = Side::after;
+      if (same_instant(place, curve.last())) side = Side::before;
+    }
+    const SplineValue<S> value = curve.continue_from(place, side == Side::after, S(t));
+    return {value.f, value.d1, value.d2};
+  }
+  /// Times are multiples of a step and carry its rounding: just outside the table counts as its end.
+  double inside(double t) const {
+    const double nearest = std::clamp(t, curve.first(), curve.last());
+    const double slack = 1e-12 * std::max(std::abs(curve.first()), std::abs(curve.last()));
+    if (!(std::abs(t - nearest) <= slack)) throw OutsideTable(t, curve.first(), curve.last());
+    return nearest;
+  }
+  TimeRange domain() const { return ends() ? TimeRange{curve.first(), curve.last()} : TimeRange{}; }
   double next_breakpoint(double t) const {
     const std::span<const double> knots = curve.knots();
     if (!curve.periodic()) {
@@ -114,9 +133,16 @@ struct Combination {
   bool is_product;
 
   Taylor<S> evaluate(double t, Side side) const {
-    Taylor<S> result = parts.front().evaluate(t, side);
+    return combine([&](const TimeFunction<S>& part) { return part.evaluate(t, side); });
+  }
+  Taylor<S> continue_from(double place, Side side, double t) const {
+    return combine([&](const TimeFunction<S>& part) { return part.continue_from(place, side, t); });
+  }
+  template <class F>
+  Taylor<S> combine(const F& value) const {
+    Taylor<S> result = value(parts.front());
     for (std::size_t k = 1; k < parts.size(); ++k) {
-      const Taylor<S> part = parts[k].evaluate(t, side);
+      const Taylor<S> part = value(parts[k]);
       result = is_product ? result * part : result + part;
     }
     return result;
@@ -140,14 +166,21 @@ template <class S>
 struct Custom {
   typename TimeFunction<S>::Callback function;
   std::vector<double> breaks;
+  TimeRange range;
 
   Taylor<S> evaluate(double t, Side side) const {
+    if (!range.contains(t)) throw OutsideTable(t, range.first, range.last);
     // The callback knows of no sides: what holds before its breakpoint is what it says one rounding earlier.
-    const bool before = side == Side::before && std::binary_search(breaks.begin(), breaks.end(), t);
+    const bool before = side == Side::before && t > range.first && std::binary_search(breaks.begin(), breaks.end(), t);
     const Taylor<double> value = function(before ? std::nextafter(t, -never) : t);
     return {S(value.f), S(value.d), S(value.dd)};
   }
-  TimeRange domain() const { return {}; }
+  Taylor<S> continue_from(double place, Side side, double t) const {
+    const Taylor<S> there = evaluate(place, side);
+    const S h(t - place);
+    return {there.f + h * (there.d + S(0.5) * h * there.dd), there.d + h * there.dd, there.dd};
+  }
+  TimeRange domain() const { return range; }
   double next_breakpoint(double t) const {
     const auto next = std::upper_bound(breaks.begin(), breaks.end(), t);
     return next == breaks.end() ? never : *next;

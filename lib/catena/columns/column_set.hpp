@@ -39,7 +39,8 @@ struct ColumnSources {
 
 class ColumnSet {
  public:
-  /// Resolves `names`; none mean x, y and angle of every body. Doubled columns are kept once. Throws ColumnError.
+  /// Resolves `names`; none mean x, y and angle of every body. Doubled columns are kept once. Throws ColumnError, and
+  /// std::invalid_argument where the plan is not that of the model.
   static ColumnSet resolve(const Model& model, const Plan& plan, std::span<const std::string> names,
                            const ColumnSources& sources);
 
@@ -49,7 +50,8 @@ class ColumnSet {
   /// One sentence for each reason why columns were left out.
   std::span<const std::string> notes() const { return notes_; }
 
-  /// out[k] = value of column k; `out` has size() values. The snapshot must hold what needs() says.
+  /// out[k] = value of column k; `out` has size() values. The snapshot must hold what needs() says, and be of the same
+  /// model: else std::invalid_argument.
   void evaluate(const Snapshot& snapshot, std::span<double> out) const;
 
  private:
@@ -57,7 +59,8 @@ class ColumnSet {
   std::vector<Column> columns_;
   Needs needs_;
   std::vector<std::string> notes_;
-  bool only_angles_ = false;  // all rows of constraints are angles: so is their residual
+  std::size_t coordinates_ = 0, rows_ = 0;  // of the plan
+  bool only_angles_ = false;                // all rows of constraints are angles: so is their residual
 };
 
 }  // namespace catena

@@ -1,5 +1,7 @@
 // ColumnSet::evaluate: the value of every kind of column.
 #include <optional>
+#include <stdexcept>
+#include <string>
 
 #include "catena/columns/attachment.hpp"
 #include "catena/columns/column_set.hpp"
@@ -217,6 +219,18 @@ class RowValues {
 }  // namespace
 
 void ColumnSet::evaluate(const Snapshot& snapshot, std::span<double> out) const {
+  if (out.size() < columns_.size()) throw std::invalid_argument("columns: there is no room for all values of a row");
+  if (static_cast<std::size_t>(snapshot.evaluator.plan().coordinates()) != coordinates_)
+    throw std::invalid_argument("columns: the row is of another model than the one they were resolved for");
+  const auto require = [](bool needed, std::span<const double> values, std::size_t size, const char* what) {
+    if (needed && values.size() < size)
+      throw std::invalid_argument(std::string("columns: the row has no ") + what + "; an analysis wants needs()");
+  };
+  require(needs_.velocity, snapshot.qd, coordinates_, "velocities");
+  require(needs_.acceleration, snapshot.qdd, coordinates_, "accelerations");
+  // Rows of released constraints are missing while they are.
+  const auto rows = static_cast<std::size_t>(snapshot.evaluator.plan().rows);
+  require(needs_.multipliers, snapshot.lambda, rows, "multipliers");
   RowValues row(snapshot, only_angles_);
   for (std::size_t k = 0; k < columns_.size(); ++k) out[k] = row.value(columns_[k]);
 }

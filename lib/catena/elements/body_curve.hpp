@@ -10,6 +10,7 @@
 
 #include "catena/base/curve.hpp"
 #include "catena/base/frame.hpp"
+#include "catena/elements/element.hpp"
 
 namespace catena {
 
@@ -70,6 +71,13 @@ class BodyCurve {
     if (!shape_->periodic()) return s;
     return s - std::floor((s - shape_->first()) / range()) * range();
   }
+  /// Whether the curve has ends beyond which nothing is, and where on it a contact at s stands.
+  bool ends() const { return shape_ && shape_->ends(); }
+  CurveUse use_at(double s) const {
+    const double middle = (shape_->first() + shape_->last()) / 2;
+    return {s, shape_->first(), shape_->last(), plain(s < middle ? shape_->first() : shape_->last()).p};
+  }
+  bool holds() const { return shape_ && !shape_->periodic() && shape_->beyond() == Beyond::hold; }
   bool contains(double s) const { return shape_->periodic() || (s >= shape_->first() && s <= shape_->last()); }
   /// Parameters to begin searches from, both ends of the range included: eight a piece of a spline, 48 on a circle.
   std::vector<double> samples() const {

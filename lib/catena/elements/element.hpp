@@ -24,12 +24,16 @@
 //   complete(i, j)         takes from the given configuration what the scene left out
 //   check()                nullptr, or what is wrong with the parameters, as a phrase
 //   trouble(a)             nullptr, or why the row means nothing at this configuration, as a phrase
+//   can_leave_curve()      whether the element uses a curve or table that ends for good
+//   curve_use(a)           where on it the element stands, if it asks anything of it (CurveUse)
 //
 // Frames carry cosine and sine: no element calls trigonometry. One file an element, plus its lines in list.hpp.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string_view>
 #include <tuple>
 
@@ -53,6 +57,17 @@ struct Arguments {
 /// Velocities of a body: vx, vy in m/s, omega in rad/s.
 struct Rates {
   double vx = 0, vy = 0, omega = 0;
+};
+
+/// Where an element stands on a curve or table that ends: the parameter, m, within [first, last] where it is on it; and
+/// the nearer end of a curve, in the frame of body i (`body` 0) or j (1).
+struct CurveUse {
+  double parameter = 0, first = 0, last = 0;
+  std::optional<Vec2<double>> end = {};
+  int body = 0;
+
+  /// How far it is beyond an end, in parts of the whole; negative inside.
+  double excess() const { return std::max(first - parameter, parameter - last) / (last - first); }
 };
 
 /// What is known of an entry of Phi_q before any number is.
@@ -132,6 +147,11 @@ concept HasClosedGamma = requires(const E& e, const Arguments<double>& a, const 
 template <class E>
 concept HasTrouble = requires(const E& e, const Arguments<double>& a) {
   e.trouble(a);
+};
+
+template <class E>
+concept HasCurveUse = requires(const E& e) {
+  e.can_leave_curve();
 };
 
 template <class E>

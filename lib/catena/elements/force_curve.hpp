@@ -1,7 +1,9 @@
 // A force against an elongation, through given pairs: the law of a spring that is not linear.
 //
-//   f(e): natural cubic spline through (e_k, f_k), straight on beyond its ends        V(e) = integral of f from 0 to e
+//   f(e): natural cubic spline through (e_k, f_k)        V(e) = integral of f from 0 to e
 //
+// Beyond its ends the force holds, or goes on straight; where the table ends for good it goes on straight too, for
+// iterations to come back, and use_at() tells.
 // Two pairs make a straight line. Smooth to second order, hence integrators keep their order. e in m, f in N (tension
 // positive), V in J. Copies share the table, which never changes.
 #pragma once
@@ -12,6 +14,7 @@
 
 #include "catena/base/spline.hpp"
 #include "catena/base/vec2.hpp"
+#include "catena/elements/element.hpp"
 
 namespace catena {
 
@@ -20,18 +23,22 @@ class ForceCurve {
  public:
   ForceCurve() = default;  ///< no curve: no force
   /// Throws std::invalid_argument, naming the pair that is wrong: fewer than two, elongations that do not increase.
-  ForceCurve(std::span<const Vec2<S>> pairs) {
+  ForceCurve(std::span<const Vec2<S>> pairs, Beyond beyond = Beyond::error) {
     std::vector<S> elongations, forces;
     for (const Vec2<S>& pair : pairs) {
       elongations.push_back(pair.x);
       forces.push_back(pair.y);
     }
-    spline_ = std::make_shared<const Spline<S>>(elongations, forces, SplineEnd::natural);
+    spline_ = std::make_shared<const Spline<S>>(elongations, forces, SplineEnd::natural, beyond);
     start_ = spline_->integral(S(0.0));
   }
-  ForceCurve(const std::vector<Vec2<S>>& pairs) : ForceCurve(std::span<const Vec2<S>>(pairs)) {}
+  ForceCurve(const std::vector<Vec2<S>>& pairs, Beyond beyond = Beyond::error)
+      : ForceCurve(std::span<const Vec2<S>>(pairs), beyond) {}
 
   explicit operator bool() const { return spline_ != nullptr; }
+  /// Whether the table ends for good, and where in it an elongation lies.
+  bool ends() const { return spline_ && spline_->beyond() == Beyond::error; }
+  CurveUse use_at(double elongation) const { return {elongation, spline_->first(), spline_->last()}; }
 
   template <class T>
   T force(const T& elongation) const {

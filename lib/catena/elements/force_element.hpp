@@ -14,8 +14,8 @@
 //   stiffness(a, entries)      V_qq at those places, at rest; only asked where the element is conservative
 //   potential<T>(a)            V with Q = -V_q at rest and functions frozen; present if the element can have one
 //   conservative()             false where these parameters have no potential (a follower force); default: has
-//   potential dissipation(a)             power lost to damping, W (default 0) measure(i, j, u, v)        length and
-//   rate of a spring, angle of a torsion spring, ... complete(i, j), check()    as for constraints
+//   dissipation(a)             power lost to damping, W (default 0)
+//   complete(i, j), check(), can_leave_curve(), curve_use(a)    as for constraints
 //
 // Frames may be given relative to any common origin; `ground` is where that origin lies. Units: N, N m, J, W.
 #pragma once

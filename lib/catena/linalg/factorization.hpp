@@ -149,6 +149,9 @@ class Factorization {
   std::vector<signed char> parities_;  // of the pivoting within every block
   std::vector<BlockMargin> margins_;
   std::vector<int> place_of_row_, cycle_;
+  // Rows are scaled anew with every choice of pivots; margins stay those in the scale of the first one.
+  std::vector<double> first_scale_;      // per row
+  std::vector<double> rescaling_;        // per place: first scale / present one; empty: the same
   std::vector<double> right_hand_side_;  // these three for solve_checked only, allocated at its first call
   std::vector<double> correction_;
   std::vector<double> row_scale_;

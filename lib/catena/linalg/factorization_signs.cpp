@@ -1,4 +1,5 @@
-// Signs of the block determinants: product of the pivots' signs and the parity of the row exchanges within a block.
+// Block determinants in one scale: their sign is the product of the pivots' signs and the parity of the row exchanges
+// within a block, their size that of the pivots but for what rows were scaled by.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -29,6 +30,15 @@ void Factorization::find_parities() {
     }
     parities_[static_cast<std::size_t>(block)] = odd ? -1 : 1;
   }
+  const std::span<const double> scale = klu_.row_scale();
+  rescaling_.clear();
+  if (first_scale_.empty()) {
+    first_scale_.assign(scale.begin(), scale.end());
+  } else if (!std::equal(scale.begin(), scale.end(), first_scale_.begin())) {
+    for (const int row : after) {
+      rescaling_.push_back(first_scale_[static_cast<std::size_t>(row)] / scale[static_cast<std::size_t>(row)]);
+    }
+  }
   parities_are_current_ = true;
 }
 
@@ -44,7 +54,8 @@ std::span<const BlockMargin> Factorization::block_margins() {
     bool negative = parities_[block] < 0;
     double least = std::numeric_limits<double>::infinity(), product = 1;
     for (int k = first; k < last; ++k) {
-      const double pivot = pivots[static_cast<std::size_t>(k)], size = std::abs(pivot);
+      const double pivot = pivots[static_cast<std::size_t>(k)];
+      const double size = std::abs(pivot) * (rescaling_.empty() ? 1 : rescaling_[static_cast<std::size_t>(k)]);
       negative ^= pivot < 0;
       least = size < least ? size : least;
       product = large ? least : product * size;

@@ -260,6 +260,8 @@ std::span<const int> KluKernel::column_order() const { return {handles_->symboli
 
 std::span<const int> KluKernel::row_order() const { return {handles_->symbolic->P, handles_->size()}; }
 
+std::span<const double> KluKernel::row_scale() const { return handles_->row_scale; }
+
 std::span<const int> KluKernel::pivot_rows() const { return {handles_->numeric->Pnum, handles_->size()}; }
 
 std::span<const double> KluKernel::pivots() const { return {handles_->pivots(), handles_->size()}; }

@@ -48,6 +48,7 @@ class KluKernel {
   std::span<const int> block_starts() const;  ///< size blocks + 1: places in the permuted matrix
   std::span<const int> column_order() const;  ///< column at every place of the permuted matrix
   std::span<const int> row_order() const;     ///< row at every place; within a block before pivoting
+  std::span<const double> row_scale() const;  ///< by which rows are multiplied, chosen at the last factor()
   std::span<const int> pivot_rows() const;    ///< row at every place after pivoting
   std::span<const double> pivots() const;     ///< pivot of every place, of R^-1 A D
 

@@ -170,7 +170,20 @@ RankReport reveal_rank(const SparsePattern& pattern, std::span<const double> val
     return found;
   };
   ColumnDependencies by_rows = analyse(turned.pattern, turned_values, options.most_dependencies);
-  ColumnDependencies by_columns = analyse(pattern, scaled.values, options.most_null_vectors);
+  const Matching matching = maximum_matching(pattern);
+  const int nullity = pattern.columns - static_cast<int>(by_rows.independent.size());
+  ColumnDependencies by_columns;
+  // Where all rows are independent and there are more free columns than null vectors are wanted, the columns that a
+  // matching leaves over are free: a part of the matrix that determines its columns has as many rows, which match them.
+  if (by_qr && report.ok() && by_rows.dependent.empty() && nullity > options.most_null_vectors &&
+      static_cast<int>(matching.unmatched_columns.size()) == nullity) {
+    by_columns.dependent = matching.unmatched_columns;
+    for (int c = 0; c < pattern.columns; ++c) {
+      if (matching.row_of_column[static_cast<std::size_t>(c)] >= 0) by_columns.independent.push_back(c);
+    }
+  } else {
+    by_columns = analyse(pattern, scaled.values, options.most_null_vectors);
+  }
   if (!report.ok()) return report;
 
   report.rank = static_cast<int>(by_rows.independent.size());
@@ -183,7 +196,7 @@ RankReport reveal_rank(const SparsePattern& pattern, std::span<const double> val
   report.free_columns = std::move(by_columns.dependent);
   report.right_null_vectors = unscaled(by_columns.null_vectors, scaled.column);
   const int column_rank = static_cast<int>(by_columns.independent.size());
-  const int structural_rank = maximum_matching(pattern).structural_rank;
+  const int structural_rank = matching.structural_rank;
   report.verified = column_rank == report.rank && report.rank <= structural_rank &&
                     report.smallest_kept > margin * tolerance && report.worst_residual <= tolerance;
   report.warning = warning_for(report, column_rank, structural_rank, tolerance);

@@ -7,7 +7,8 @@
 //    one), which makes the result independent of units, of squared forms and of scaled copies of a row.
 // 2. Rows are taken in the order of the block triangular form (column_order.hpp), so that every loop of a mechanism is
 //    judged by itself. A row is dependent when its part orthogonal to those before it is at most `tolerance` long: QR
-//    of A^T with SPQR. Free columns are found in the same way from A.
+//    of A^T with SPQR. Free columns are found in the same way from A, or, where they are many and no row is dependent,
+//    by a matching.
 // 3. QR detects neither exactly nor always. `verified` says that every combination was evaluated with A itself, that
 //    rows and columns, analysed independently, gave the same rank, that the pattern allows it, and that no row was kept
 //    by less than ten times the tolerance. A matrix with lengths near the tolerance has no definite rank.

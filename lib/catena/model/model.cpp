@@ -1,5 +1,9 @@
 #include "catena/model/model.hpp"
 
+#include <cmath>
+#include <string>
+#include <utility>
+
 #include "catena/elements/all.hpp"
 
 namespace catena {
@@ -18,6 +22,17 @@ template <class S>
 BasicModel<S>::~BasicModel() = default;
 
 template <class S>
+void BasicModel<S>::refuse_number(std::string_view what, int number, std::size_t count) {
+  throw std::out_of_range("there is no " + std::string(what) + " number " + std::to_string(number) +
+                          ": the model has " + std::to_string(count));
+}
+
+const Model& required(const std::shared_ptr<const Model>& model) {
+  if (!model) throw std::invalid_argument("an analysis needs a model, and was given a null pointer");
+  return *model;
+}
+
+template <class S>
 int BasicModel<S>::claim_name(std::string_view name, int target) {
   if (name.empty()) return -1;
   if (name == "ground") throw ModelError("the name \"ground\" is taken");
@@ -30,6 +45,16 @@ int BasicModel<S>::claim_name(std::string_view name, int target) {
 
 template <class S>
 int BasicModel<S>::add_body(std::string_view name, const BodyValues& values) {
+  const std::pair<const char*, double> numbers[] = {{"mass", values.mass},
+                                                    {"inertia", values.inertia},
+                                                    {"position.x", values.position.x},
+                                                    {"position.y", values.position.y},
+                                                    {"angle", values.angle},
+                                                    {"centroid.x", values.centroid.x},
+                                                    {"centroid.y", values.centroid.y}};
+  for (const auto& [key, value] : numbers) {
+    if (!std::isfinite(value)) throw ModelError("body \"" + std::string(name) + "\": " + key + " is not finite");
+  }
   BasicBody<S> body;
   const Frame<S> f = make_frame(S(values.position.x), S(values.position.y), S(values.angle));
   body.position = f.point(values.centroid);
@@ -57,6 +82,12 @@ int BasicModel<S>::append_body(std::string_view name, const BasicBody<S>& body) 
 
 template <class S>
 void BasicModel<S>::add_point(int body, std::string_view name, const Vec2<S>& local) {
+  require_body(body);
+  if (name.empty()) throw ModelError("a point of \"" + std::string(body_name(body)) + "\" needs a name");
+  if (!std::isfinite(value_of(local.x)) || !std::isfinite(value_of(local.y))) {
+    throw ModelError("point \"" + std::string(name) + "\" of \"" + std::string(body_name(body)) +
+                     "\": a coordinate is not finite");
+  }
   const int number = point_names.intern(name);
   int& head = body < 0 ? first_ground_point : bodies[static_cast<std::size_t>(body)].first_point;
   const Vec2<S> origin = body < 0 ? Vec2<S>{} : bodies[static_cast<std::size_t>(body)].origin;
@@ -66,6 +97,7 @@ void BasicModel<S>::add_point(int body, std::string_view name, const Vec2<S>& lo
 
 template <class S>
 const Vec2<S>* BasicModel<S>::find_point(int body, std::string_view name) const {
+  require_body(body);
   const int number = point_names.find(name);
   if (number < 0) return nullptr;
   int k = body < 0 ? first_ground_point : bodies[static_cast<std::size_t>(body)].first_point;
@@ -77,6 +109,7 @@ const Vec2<S>* BasicModel<S>::find_point(int body, std::string_view name) const 
 
 template <class S>
 Frame<S> BasicModel<S>::frame(int body) const {
+  require_body(body);
   if (body < 0) return {};
   const BasicBody<S>& b = bodies[static_cast<std::size_t>(body)];
   return make_frame(b.position.x, b.position.y, b.angle);
@@ -84,6 +117,7 @@ Frame<S> BasicModel<S>::frame(int body) const {
 
 template <class S>
 std::string_view BasicModel<S>::element_type(int element) const {
+  require_element(element);
   std::string_view type;
   const ElementRecord& record = elements[static_cast<std::size_t>(element)];
   const auto read = [&](const auto& list) { type = ElementOf<decltype(list)>::type; };
@@ -97,6 +131,7 @@ std::string_view BasicModel<S>::element_type(int element) const {
 
 template <class S>
 std::string BasicModel<S>::element_name(int element) const {
+  require_element(element);
   const ElementRecord& record = elements[static_cast<std::size_t>(element)];
   if (record.name >= 0) return std::string(names[record.name]);
   return std::string(element_type(element)) + "#" + std::to_string(record.ordinal);

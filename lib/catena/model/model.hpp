@@ -7,6 +7,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -20,9 +21,9 @@
 namespace catena {
 
 /// A model that cannot be; what() names the culprit.
-class ModelError : public std::runtime_error {
+class ModelError : public std::invalid_argument {
  public:
-  using std::runtime_error::runtime_error;
+  using std::invalid_argument::invalid_argument;
 };
 
 /// `gap`: a one-sided constraint (gap_element.hpp), stored among the constraints.
@@ -89,9 +90,12 @@ class BasicModel {
   template <class E>
   int append(std::string_view name, const ElementEntry<E, S>& entry, ElementKind kind);
 
+  // A number that no body (`ground` included) or no element has: std::out_of_range, which says how many there are.
+
   /// The given pose of a body's centroid; of the ground for `ground`.
   Frame<S> frame(int body) const;
   std::string_view body_name(int body) const {
+    require_body(body);
     return body < 0 ? "ground" : names[bodies[static_cast<std::size_t>(body)].name];
   }
   /// The element's name, `type#n` if it has none.
@@ -104,6 +108,13 @@ class BasicModel {
   int find_element(std::string_view name) const;
 
  private:
+  void require_body(int body) const {
+    if (body < ground || body >= static_cast<int>(bodies.size())) refuse_number("body", body, bodies.size());
+  }
+  void require_element(int element) const {
+    if (element < 0 || element >= static_cast<int>(elements.size())) refuse_number("element", element, elements.size());
+  }
+  [[noreturn]] static void refuse_number(std::string_view what, int number, std::size_t count);
   int claim_name(std::string_view name, int target);
   template <class E>
   ElementEntry<E, S> place(const E& element, int i, int j) const;
@@ -111,6 +122,9 @@ class BasicModel {
 };
 
 using Model = BasicModel<double>;
+
+/// The model that an analysis is given; std::invalid_argument where there is none.
+const Model& required(const std::shared_ptr<const Model>& model);
 
 extern template class BasicModel<double>;
 extern template class BasicModel<Dual<double, 4>>;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "catena/elements/element.hpp"
 #include "catena/elements/gap_element.hpp"
@@ -55,9 +56,38 @@ void shift_points(E& element, const Vec2<S>& origin_i, const Vec2<S>& origin_j) 
       E::fields());
 }
 
-/// Throws for a value of a constraint that makes its row vanish.
+/// Whether a member of an element is a number, or a pair of them, that no arithmetic can be done with; bounds may be
+/// infinite.
+template <class S>
+bool is_unusable(const S& number) {
+  if constexpr (requires { value_of(number); }) {
+    return std::isnan(value_of(number));
+  } else if constexpr (requires { value_of(number.x); }) {
+    return !std::isfinite(value_of(number.x)) || !std::isfinite(value_of(number.y));
+  } else {
+    return false;
+  }
+}
+
+/// Throws for a number that is none, naming its field.
+template <class E>
+void check_numbers(const E& element) {
+  const auto look = [&](const auto& field) {
+    if constexpr (requires { element.*field.member; }) {
+      if (is_unusable(element.*field.member))
+        throw ModelError(std::string(E::type) + ": " + std::string(field.key) + " is not finite");
+    }
+  };
+  std::apply([&](const auto&... field) { (look(field), ...); }, E::fields());
+  if constexpr (requires { E::keys(); }) {
+    std::apply([&](const auto&... field) { (look(field), ...); }, E::keys());
+  }
+}
+
+/// Throws for a value of a constraint that is no number, or makes its row vanish.
 template <class E, class S>
-void check_value([[maybe_unused]] const S& value) {
+void check_value(const S& value) {
+  if (!std::isfinite(value_of(value))) throw ModelError(std::string(E::type) + ": its value is not finite");
   if constexpr (HasSquaredValue<E>) {
     if (!(value > S(0))) {
       throw ModelError(std::string(E::type) +
@@ -71,6 +101,9 @@ void check_value([[maybe_unused]] const S& value) {
 template <class S>
 template <class E>
 ElementEntry<E, S> BasicModel<S>::place(const E& element, int i, int j) const {
+  require_body(i);
+  require_body(j);
+  detail::check_numbers(element);
   if (i == j) throw ModelError(std::string(E::type) + " ties body \"" + std::string(body_name(i)) + "\" to itself");
   if (E::bodies == 1 && i == ground) throw ModelError(std::string(E::type) + " needs a body, not the ground");
   ElementEntry<E, S> entry{element, i, j};
@@ -101,6 +134,8 @@ int BasicModel<S>::append(std::string_view name, const ElementEntry<E, S>& entry
     }
   }
   ();
+  require_body(entry.i);
+  require_body(entry.j);
   const int id = static_cast<int>(elements.size());
   const int number = claim_name(name, -2 - id);
   // Cables are counted as one type, elastic or not.
@@ -161,6 +196,8 @@ int BasicModel<S>::add_force(std::string_view name, const E& element, int i, int
   for (const TimeFunction<S>& value : values) {
     if (value.is_constant()) {
       entry.values[k].constant = value.evaluate(0.0).f;
+      if (!std::isfinite(value_of(entry.values[k].constant)))
+        throw ModelError(std::string(E::type) + ": a value is not finite");
     } else {
       entry.values[k].function = static_cast<int>(functions.size());
       functions.push_back(value);

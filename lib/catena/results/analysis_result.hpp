@@ -13,7 +13,7 @@
 
 namespace catena {
 
-using FieldScalar = std::variant<bool, std::int64_t, double, std::string>;
+using FieldScalar = std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>>;
 
 /// One object in a list of results: {"kind": "limit", "value": 12.5, "row": 40}.
 using FieldRecord = std::vector<std::pair<std::string, FieldScalar>>;
@@ -32,8 +32,9 @@ struct AnalysisResult {
   AnalysisReport report;
   bool has_rows = false;  ///< a table belongs to it, be it empty
   std::vector<ColumnInfo> columns;
-  std::int64_t rows = 0;           ///< how many went to the sink
-  std::vector<NamedField> fields;  ///< in the order in which they are written
+  std::int64_t rows = 0;                              ///< how many went to the sink
+  std::vector<NamedField> fields;                     ///< in the order in which they are written
+  std::vector<std::pair<std::string, double>> set{};  ///< parameters that it had a value of its own for
 };
 
 }  // namespace catena

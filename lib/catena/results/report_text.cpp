@@ -28,17 +28,21 @@ std::string names(const std::vector<std::string>& list) {
   return enumerate(list, [](const std::string& name) { return name; });
 }
 
+std::string values(const std::vector<std::pair<std::string, double>>& list) {
+  return enumerate(list, [](const auto& entry) { return entry.first + " = " + format_number(entry.second); });
+}
+
 struct ScalarText {
   std::string operator()(bool value) const { return value ? "yes" : "no"; }
   std::string operator()(std::int64_t value) const { return std::to_string(value); }
   std::string operator()(double value) const { return format_number(value); }
   std::string operator()(const std::string& value) const { return value; }
+  std::string operator()(const std::vector<std::string>& list) const { return names(list); }
 };
 
 struct ValueText : ScalarText {
   using ScalarText::operator();
   std::string operator()(const std::vector<double>& list) const { return enumerate(list, ScalarText{}); }
-  std::string operator()(const std::vector<std::string>& list) const { return names(list); }
   std::string operator()(const std::vector<FieldRecord>& records) const {
     std::string text;
     for (const FieldRecord& record : records) {
@@ -87,7 +91,13 @@ std::string redundancy_text(const AnalysisReport& report) {
 std::string header_text(const RunHeader& header) {
   std::string text = header.scene + ": " + count(header.bodies, "body", "bodies") + ", " +
                      count(header.elements, "element", "elements") + ", gravity [" + format_number(header.gravity[0]) +
-                     ", " + format_number(header.gravity[1]) + "] m/s^2\n";
+                     ", " + format_number(header.gravity[1]) + "] m/s^2" +
+                     (header.version.empty() ? "" : " (catena " + header.version + ")") + "\n";
+  if (!header.parameters.empty()) text += "  parameters: " + values(header.parameters) + "\n";
+  if (!header.set.empty()) {
+    text +=
+        "  set: " + enumerate(header.set, [](const auto& entry) { return entry.first + " = " + entry.second; }) + "\n";
+  }
   if (!header.description.empty()) text += "  " + header.description + "\n";
   if (header.analyses == 0)
     text += "  the scene lists no \"analyses\"; catena check SCENE, catena kinematics SCENE ... run one\n";
@@ -103,6 +113,7 @@ std::string outcome_text(const AnalysisResult& result) {
 std::string report_text(const AnalysisResult& result) {
   const AnalysisReport& report = result.report;
   std::string text;
+  if (!result.set.empty()) text += "  set: " + values(result.set) + "\n";
   if (!report.message.empty()) text += "  " + report.message + "\n";
   for (const std::string& warning : report.warnings) text += "  note: " + warning + "\n";
   // Analyses with rows speak of the structure where it is not what one expects of them; those that were refused before

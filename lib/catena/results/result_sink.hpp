@@ -9,6 +9,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "catena/base/row_sink.hpp"
@@ -23,7 +24,10 @@ struct RunHeader {
   std::array<double, 2> gravity{};  ///< m/s^2
   int bodies = 0;
   int elements = 0;
-  int analyses = 0;  ///< how many will be run
+  int analyses = 0;                                          ///< how many will be run
+  std::string version;                                       ///< of the library
+  std::vector<std::pair<std::string, double>> parameters{};  ///< names and values of the run, SI
+  std::vector<std::pair<std::string, std::string>> set{};    ///< of them, what the caller set, as it was written
 };
 
 class ResultSink {

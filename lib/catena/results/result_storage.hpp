@@ -3,6 +3,8 @@
 
 #include <limits>
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 
 #include "catena/base/row_sink.hpp"
@@ -20,11 +22,18 @@ class ResultStorage final : public RowSink {
 
   std::span<const ColumnInfo> columns() const { return columns_; }
   std::size_t rows() const { return rows_; }
+  // Numbers of rows and columns that there are not throw std::out_of_range.
+
   /// Values of a row, in the order of the columns.
   std::span<const double> operator[](std::size_t row) const {
+    require(row, rows_, "row");
     return std::span(values_).subspan(row * columns_.size(), columns_.size());
   }
-  double at(std::size_t row, std::size_t column) const { return values_[row * columns_.size() + column]; }
+  double at(std::size_t row, std::size_t column) const {
+    require(row, rows_, "row");
+    require(column, columns_.size(), "column");
+    return values_[row * columns_.size() + column];
+  }
   /// All rows behind each other.
   std::span<const double> values() const { return values_; }
   std::optional<std::size_t> find(std::string_view column) const;
@@ -32,6 +41,12 @@ class ResultStorage final : public RowSink {
   std::vector<double> column(std::string_view name) const;
 
  private:
+  static void require(std::size_t number, std::size_t count, const char* what) {
+    if (number < count) return;
+    throw std::out_of_range(std::string("there is no ") + what + " number " + std::to_string(number) + " among " +
+                            std::to_string(count));
+  }
+
   std::size_t limit_;
   std::size_t rows_ = 0;
   std::vector<ColumnInfo> columns_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "catena/analysis/time_coverage.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/scene/distance_check.hpp"
 
@@ -21,42 +22,11 @@ constexpr Runner entries[] = {{"check", run_check},           {"assemble", run_a
                               {"modes", run_modes},           {"path", run_path},
                               {"buckling", run_buckling}};
 
-/// The element that reads the model's function of time number `function`.
-std::string reader_of(const Model& model, int function) {
-  std::string name;
-  const auto look = [&](const auto& list, int) {
-    for (const auto& entry : list) {
-      for (const auto& value : entry.values) {
-        if (value.function == function) name = model.element_name(entry.id);
-      }
-    }
-  };
-  for_each_list(model.constraints, look);
-  for_each_list(model.forces, look);
-  return name;
-}
-
 Report refuse(std::string message) {
   Report report;
   report.status = Status::refused;
   report.message = std::move(message);
   return report;
-}
-
-/// Whether all functions of time are defined from `first` to `last`.
-bool check_tables(const Model& model, double first, double last, Report& report) {
-  for (std::size_t k = 0; k < model.functions.size(); ++k) {
-    const TimeRange range = model.functions[k].domain();
-    // Times are multiples of a step and carry its rounding.
-    const double slack = 1e-12 * std::max(std::abs(range.first), std::abs(range.last));
-    if (first >= range.first - slack && last <= range.last + slack) continue;
-    report = refuse(fmt::format(
-        "the table of \"{}\" reaches from {} to {} s, but the analysis goes from {} to {} s; shorten the analysis, or "
-        "make the table longer or periodic",
-        reader_of(model, static_cast<int>(k)), range.first, range.last, first, last));
-    return false;
-  }
-  return true;
 }
 
 }  // namespace
@@ -97,7 +67,7 @@ std::optional<TimeGrid> time_grid(const AnalysisContext& context, Report& report
   } else {
     grid = TimeGrid::instant(context.state.t);
   }
-  if (!check_tables(*context.model, first, last, report)) return {};
+  if (report = check_time_functions(*context.model, {first, last}); !report.ok()) return {};
   if (const auto problem = vanishing_distance(*context.model, context.state.t, *grid)) {
     report = refuse(*problem);
     return {};

@@ -28,10 +28,13 @@ struct AnalysisContext {
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(double)> progress;  ///< fraction done
   bool verbose = false;                  ///< solvers print their own logs to standard error
+  IterationTrace trace{};                ///< told of iterations for a configuration; may be empty
   /// The model with another value of parameter number `parameter`, all else as in `model`; nullptr if the scene does
   /// not allow it.
   std::function<std::shared_ptr<const Model>(int parameter, double value)> model_at{};
-  std::string_view parameter_name{};        ///< of the task's parameter
+  std::string_view parameter_name{};  ///< of the task's parameter
+  /// The value of that parameter with which the analysis ended, and with which the next one begins.
+  std::optional<double> parameter_at_end{};
   bool estimate_error = false;              ///< of dynamics
   CheckpointRequest* checkpoint = nullptr;  ///< nullptr: no analysis has to pause
 };
@@ -103,6 +106,7 @@ void run_over_time(AnalysisContext& context, AnalysisResult& result, Analysis& a
                    const std::vector<std::string>& outputs, const ColumnSources& sources) {
   const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), outputs, sources);
   analysis.start_from(context.state);
+  if (context.trace) analysis.evaluator().trace = &context.trace;
   ReportingRows rows(columns, context, grid.last());
   AnalysisReport report = analysis.run(grid, columns.needs(), rows);
   for (std::string& doubt : gears_that_do_not_fit(analysis.evaluator())) report.warnings.push_back(std::move(doubt));

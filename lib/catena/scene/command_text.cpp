@@ -1,5 +1,6 @@
 #include "catena/scene/command_text.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -21,6 +22,9 @@ void append_value(std::string& out, std::string_view text) {
     append_json(out, text);
   }
 }
+
+/// The name of the text that a verb and its options make.
+constexpr std::string_view verb_source = "--verb";
 
 bool is_text(KeyKind kind) { return kind == KeyKind::word || kind == KeyKind::columns || kind == KeyKind::parameter; }
 
@@ -47,19 +51,36 @@ bool CommandText::read_set(const Pairs& pairs, Diagnostics& diagnostics) {
   return parse("--set", text + "}", set_, diagnostics);
 }
 
+bool CommandText::read_outputs(const std::vector<std::string>& names, Diagnostics& diagnostics) {
+  if (names.empty()) return false;
+  std::string text = "[";
+  for (const std::string& name : names) {
+    if (text.size() > 1) text += ", ";
+    append_json(text, std::string_view(name));
+  }
+  return parse("--outputs", text + "]", outputs_, diagnostics);
+}
+
+std::string CommandText::option_of(const Diagnostic& error) const {
+  const auto line = static_cast<std::size_t>(error.line);
+  if (error.file != verb_source) return error.file;
+  return line >= 2 && line - 2 < options_.size() ? options_[line - 2] : command_;
+}
+
 bool CommandText::read_verb(std::string_view verb, const Pairs& options, Diagnostics& diagnostics) {
   const AnalysisDescription* description = find_analysis_type(verb);
   std::string text = "{\"type\": ";
   append_json(text, verb);
-  std::string names;
+  command_ = verb;
   for (std::size_t k = 0; k < options.size(); ++k) {
     const std::string& key = options[k].first;
     if (k > 0 && key == options[k - 1].first) continue;  // written with the first of its list
-    names += (names.empty() ? "--" : " --") + key;
+    options_.push_back("--" + key);
+    std::replace(options_.back().begin(), options_.back().end(), '_', '-');
     const AnalysisKey* known = description ? description->find(key) : nullptr;
     const KeyKind kind = known ? known->kind : KeyKind::number;
     const bool list = kind == KeyKind::columns || kind == KeyKind::times;
-    text += ", ";
+    text += ",\n";
     append_json(text, key);
     text += list ? ": [" : ": ";
     for (std::size_t n = k; n < options.size() && options[n].first == key; ++n) {
@@ -75,7 +96,7 @@ bool CommandText::read_verb(std::string_view verb, const Pairs& options, Diagnos
     }
     if (list) text += ']';
   }
-  return parse(names.empty() ? "--" + std::string(verb) : names, text + "}", verb_, diagnostics);
+  return parse(std::string(verb_source), text + "}", verb_, diagnostics);
 }
 
 }  // namespace catena

@@ -53,12 +53,12 @@ int SceneReading::curve(const JsonValue& value, const FieldName& field) {
   const auto key = std::find(curve_keys.begin(), curve_keys.end(), member->name());
   result.kind = static_cast<CurveTemplate::Kind>(key - curve_keys.begin());
   const std::string owner = fmt::format("{} in {}", *key, field.text());
-  static constexpr std::array<std::array<std::string_view, 2>, 4> keys{
-      {{"centre", "radius"}, {"points", "end"}, {"angle", "radius"}, {"point", "axis"}}};
-  const auto& names = keys[static_cast<std::size_t>(result.kind)];
-  std::array<JsonValue, 2> v;
-  if (!read_members(member->value, names, owner, v, diagnostics)) return done();
+  static constexpr std::array<std::array<std::string_view, 3>, 4> keys{
+      {{"centre", "radius", ""}, {"points", "end", "beyond"}, {"angle", "radius", ""}, {"point", "axis", ""}}};
   const bool spline = result.kind == CurveTemplate::Kind::spline;
+  const auto names = std::span(keys[static_cast<std::size_t>(result.kind)]).first(spline ? 3 : 2);
+  std::array<JsonValue, 3> v;
+  if (!read_members(member->value, names, owner, v, diagnostics)) return done();
   for (std::size_t k = 0; k < 2; ++k) {
     if (!v[k] && !(spline && k == 1)) error(member->value, fmt::format("{} needs {}", owner, in_quotes(names[k])));
   }
@@ -78,6 +78,7 @@ int SceneReading::curve(const JsonValue& value, const FieldName& field) {
         static constexpr std::array<std::string_view, 2> words{"natural", "periodic"};
         if (read_word(v[1], words, {names[1], owner}, diagnostics) == 1) result.end = SplineEnd::periodic;
       }
+      result.beyond = beyond(v[2], result.end, owner);
       break;
     case CurveTemplate::Kind::polar: {
       const auto angles = numbers.read_list(v[0], dimension_of(UnitKind::angle), {names[0], owner});
@@ -101,7 +102,18 @@ int SceneReading::curve(const JsonValue& value, const FieldName& field) {
 int SceneReading::table(const JsonValue& value, UnitKind first, UnitKind second, const FieldName& field) {
   TableTemplate result;
   result.offset = static_cast<std::uint32_t>(value.offset());
-  append_pairs(value, dimension_of(first), dimension_of(second), field, numbers, result.numbers, diagnostics);
+  JsonValue pairs = value;
+  if (value.is(JsonKind::object)) {
+    static constexpr std::array<std::string_view, 2> keys{"points", "beyond"};
+    const std::string owner = field.text();
+    std::array<JsonValue, 2> v;
+    read_members(value, keys, owner, v, diagnostics);
+    if (!v[0]) error(value, fmt::format("{} needs \"points\", a list of pairs", owner));
+    result.beyond = beyond(v[1], SplineEnd::natural, owner);
+    pairs = v[0];
+  }
+  if (pairs)
+    append_pairs(pairs, dimension_of(first), dimension_of(second), field, numbers, result.numbers, diagnostics);
   scene.tables.push_back(std::move(result));
   return static_cast<int>(scene.tables.size()) - 1;
 }

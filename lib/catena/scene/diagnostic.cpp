@@ -68,14 +68,14 @@ std::string to_string(const Diagnostic& diagnostic) {
   return text;
 }
 
-void Diagnostics::error(const SourceText& source, std::size_t offset, std::string message) {
+void Diagnostics::error(const SourceText& source, std::size_t offset, std::string message, bool leading) {
   for (std::size_t k = 0; k < items_.size(); ++k) {
     if (places_[k] == std::pair(&source, offset) && items_[k].message == message) return;
   }
   ++count_;
   if (items_.size() >= limit_) return;
   const TextPlace place = source.place(offset);
-  Diagnostic diagnostic{source.name(), place.line, place.column, std::move(message), {}, 0};
+  Diagnostic diagnostic{source.name(), place.line, place.column, std::move(message), {}, 0, leading};
   std::size_t start = 0;
   const std::string_view line = source.line_at(offset, start);
   add_excerpt(diagnostic, line, std::min(offset, source.text().size()) - start);
@@ -90,6 +90,7 @@ bool Diagnostics::reported(const SourceText& source, std::size_t offset) const {
 std::vector<Diagnostic> Diagnostics::in_order() const {
   std::vector<Diagnostic> order = items_;
   std::stable_sort(order.begin(), order.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    if (a.leading != b.leading) return a.leading;
     return std::tie(a.file, a.line, a.column) < std::tie(b.file, b.line, b.column);
   });
   return order;

@@ -21,8 +21,9 @@ struct Diagnostic {
   int line = 0;    ///< from 1; 0 where no place in a text applies
   int column = 0;  ///< from 1, in characters
   std::string message;
-  std::string excerpt;  ///< the line of the text, clipped around the place, control characters made visible
-  int caret = 0;        ///< columns of a terminal before the caret in `excerpt`
+  std::string excerpt;   ///< the line of the text, clipped around the place, control characters made visible
+  int caret = 0;         ///< columns of a terminal before the caret in `excerpt`
+  bool leading = false;  ///< others may follow from it: told first
 };
 
 /// The compiler-like text of one error: two or three lines, the last one ended.
@@ -34,7 +35,7 @@ class Diagnostics {
   explicit Diagnostics(std::size_t limit = 50) : limit_(limit) {}
 
   /// What was said of this place already is not said again.
-  void error(const SourceText& source, std::size_t offset, std::string message);
+  void error(const SourceText& source, std::size_t offset, std::string message, bool leading = false);
 
   /// Whether an error at this place was kept: repeated blocks report a place once.
   bool reported(const SourceText& source, std::size_t offset) const;
@@ -44,7 +45,7 @@ class Diagnostics {
   bool full() const { return count_ >= limit_; }
   std::size_t count() const { return count_; }
   std::span<const Diagnostic> items() const { return items_; }
-  /// The same in the order of the text.
+  /// The same in the order of the text, leading ones before the others.
   std::vector<Diagnostic> in_order() const;
   /// All that were kept, in the order of the text, and how many more there are.
   std::string text() const;

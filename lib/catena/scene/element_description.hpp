@@ -42,6 +42,9 @@ struct FieldDescription {
   Omitted omitted = Omitted::refused;
   std::string_view first_word, second_word;  ///< of a choice
   int body = 0;                              ///< of a point, axis or curve: 0 on i, 1 on j
+
+  /// Accepted, but read by nothing that is built: not to be offered.
+  bool reserved() const { return doc.empty(); }
 };
 
 struct ElementDescription {

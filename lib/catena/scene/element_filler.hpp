@@ -127,7 +127,7 @@ class Filler {
     }
     if (!good_) return;
     try {
-      entry_.element.*field.member = pairs;
+      entry_.element.*field.member = {pairs, table.beyond};
     } catch (const std::invalid_argument& error) {
       wrong(table.offset, field.key, std::string("is no curve: ") + error.what());
     }

@@ -68,7 +68,9 @@ std::string form(const FieldDescription& field) {
     case FieldKind::curve:
       return "a curve (catena explain circle, polar, line, spline)";
     case FieldKind::table:
-      return fmt::format("pairs [{}, {}]", si_unit(field.unit), si_unit(field.second_unit));
+      return fmt::format(
+          "pairs [{}, {}], or {{\"points\": pairs, \"beyond\": \"error\" (default), \"hold\" or \"line\"}}",
+          si_unit(field.unit), si_unit(field.second_unit));
     case FieldKind::function:
       return unit_text(field.unit) + ", or a function of time";
     case FieldKind::function_pair:
@@ -99,6 +101,7 @@ std::string explain_element(const ElementDescription& type) {
       type.summary, type.equation);
   std::vector<Line> lines{{"type", fmt::format("\"{}\"", type.type)}, {"name", "its name (default: type#n)"}};
   for (const FieldDescription& field : type.fields) {
+    if (field.reserved()) continue;
     std::string omitted;
     if (!field.required && field.doc.find("default") == std::string_view::npos &&
         form(field).find("default") == std::string::npos)
@@ -146,7 +149,8 @@ std::string explain_analysis(const AnalysisDescription& type) {
 
 std::optional<std::string> explain(std::string_view name) {
   if (const ElementDescription* type = find_element_type(name)) return explain_element(*type);
-  if (const AnalysisDescription* type = find_analysis_type(name)) return explain_analysis(*type);
+  if (const AnalysisDescription* type = find_analysis_type(name); type && !type->announced)
+    return explain_analysis(*type);
   for (const ExplainedTopic& topic : explained_topics()) {
     for (const std::string_view known : topic.names) {
       if (known == name) return std::string(topic.text);
@@ -158,7 +162,9 @@ std::optional<std::string> explain(std::string_view name) {
 std::vector<std::string> explained_names() {
   std::vector<std::string> names;
   for (const ElementDescription& type : element_descriptions()) names.emplace_back(type.type);
-  for (const AnalysisDescription& type : analysis_descriptions()) names.emplace_back(type.type);
+  for (const AnalysisDescription& type : analysis_descriptions()) {
+    if (!type.announced) names.emplace_back(type.type);
+  }
   for (const ExplainedTopic& topic : explained_topics())
     names.insert(names.end(), topic.names.begin(), topic.names.end());
   return names;

@@ -98,7 +98,8 @@ Example
   t       times, increasing, s
   value   the values there
   end     "natural" (default), "clamped" (zero end slopes) or "periodic"
-  Outside of the table it is an error, unless periodic.
+  beyond  outside of the table, unless periodic: "error" (default), "hold" the value at the end, or go on along the
+          "line" of the slope there
 
 Example
   {"spline": {"t": [0, 0.5, 1], "value": [0, 0.2, 0], "end": "clamped"}}
@@ -106,6 +107,8 @@ Example
 spline: a curve through points of a body frame, the chord length as parameter
   points   [[x', y'], ...], m
   end      "natural" (default) or "periodic"
+  beyond   the ends, unless periodic: "error" (default); "line": the curve goes on straight; "hold": its end stays the
+           point of contact, for a follower along the tangent there (cam_cam cannot)
 
 Example
   {"spline": {"points": [[0.1, 0], [0, 0.1], [-0.1, 0], [0, -0.1]], "end": "periodic"}}
@@ -120,7 +123,7 @@ Example
       {{"curve", "circle", "polar", "line"},
        R"(curve: a curve fixed in a body frame
   {"circle": {"centre": [x', y'], "radius": r}}            counter-clockwise
-  {"spline": {"points": [[x', y'], ...], "end": "natural" or "periodic"}}
+  {"spline": {"points": [[x', y'], ...], "end": "natural" or "periodic", "beyond": "error", "hold" or "line"}}
   {"polar": {"angle": [...], "radius": [...]}}             periodic, about the body's origin
   {"line": {"point": [x', y'], "axis": [vx', vy']}}
 )"},

@@ -101,7 +101,7 @@ FunctionTemplate SceneReading::function_object(const JsonValue& value, const Exp
       break;
     }
     case Kind::spline: {
-      static constexpr std::array<std::string_view, 3> keys{"t", "value", "end"};
+      static constexpr std::array<std::string_view, 4> keys{"t", "value", "end", "beyond"};
       std::array<JsonValue, keys.size()> v;
       if (!read_members(data, keys, owner, v, diagnostics)) break;
       for (std::size_t k = 0; k < 2; ++k) {
@@ -120,6 +120,7 @@ FunctionTemplate SceneReading::function_object(const JsonValue& value, const Exp
         if (const int word = read_word(v[2], end_words, {"end", owner}, diagnostics); word >= 0)
           result.end = static_cast<SplineEnd>(word);
       }
+      result.beyond = beyond(v[3], result.end, owner);
       break;
     }
     case Kind::sum:

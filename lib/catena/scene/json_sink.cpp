@@ -28,6 +28,21 @@ void append_list(std::string& out, const Range& range, F&& append) {
   out += ']';
 }
 
+/// {"name": value, ...}
+template <class Pairs>
+void append_object(std::string& out, const Pairs& pairs) {
+  out += '{';
+  bool first = true;
+  for (const auto& [name, value] : pairs) {
+    if (!first) out += ", ";
+    first = false;
+    append_json(out, name);
+    out += ": ";
+    catena::append_json(out, value);
+  }
+  out += '}';
+}
+
 struct FieldWriter {
   std::string& out;
 
@@ -93,8 +108,14 @@ class JsonSink final : public ResultSink, private RowSink {
     text_ = "{\"catena\": 1";
     append_key(text_, "scene");
     append_json(text_, header.scene);
+    append_key(text_, "version");
+    append_json(text_, header.version);
     append_key(text_, "gravity");
     append_list(text_, header.gravity, [&](double value) { catena::append_json(text_, value); });
+    append_key(text_, "parameters");
+    append_object(text_, header.parameters);
+    append_key(text_, "set");
+    append_object(text_, header.set);
     append_key(text_, "analyses");
     text_ += '[';
     send();
@@ -112,6 +133,10 @@ class JsonSink final : public ResultSink, private RowSink {
     text_.clear();
     if (rows_ >= 0) text_ += rows_ > 0 ? "\n  ]" : "]";
     append_report(result);
+    if (!result.set.empty()) {
+      append_key(text_, "set");
+      append_object(text_, result.set);
+    }
     for (const NamedField& field : result.fields) {
       append_key(text_, field.name);
       std::visit(FieldWriter{text_}, field.value);

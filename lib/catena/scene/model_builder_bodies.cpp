@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 
 #include "catena/scene/body_composition.hpp"
 #include "catena/scene/model_builder.hpp"
@@ -78,8 +79,10 @@ void ModelBuilder<S>::add_body(const BodyTemplate& source) {
   }
   name_offset_.push_back(source.name.offset);
   if (rod) {
-    model_.add_point(number, "from", {-half, S{}});
-    model_.add_point(number, "to", {half, S{}});
+    if (std::isinf(value_of(half))) report(source.offset, "the rod is too long for double precision");
+    const S end = std::isfinite(value_of(half)) ? half : S(0.0);
+    model_.add_point(number, "from", {-end, S{}});
+    model_.add_point(number, "to", {end, S{}});
   }
   add_points(number, source);
 }
@@ -111,7 +114,7 @@ template <class S>
 void ModelBuilder<S>::add_points(int body, const BodyTemplate& source) {
   for (std::uint32_t k = source.first_point; k < source.first_point + source.points; ++k) {
     const PointTemplate& point = scene_.points[k];
-    if (!make_name(point.name, point_name_)) continue;
+    if (!make_name(point.name, point_name_) || point_name_.empty()) continue;
     if (model_.find_point(body, point_name_)) {
       if (!known_wrong(point.name.offset)) {
         report(point.name.offset, fmt::format("point {} of body {} is given twice", in_quotes(point_name_),
@@ -119,7 +122,10 @@ void ModelBuilder<S>::add_points(int body, const BodyTemplate& source) {
       }
       continue;
     }
-    model_.add_point(body, point_name_, {value(point.x), value(point.y)});
+    // What is no number was reported; the name is known all the same.
+    const Vec2<S> local{value(point.x), value(point.y)};
+    const bool good = std::isfinite(value_of(local.x)) && std::isfinite(value_of(local.y));
+    model_.add_point(body, point_name_, good ? local : Vec2<S>{});
   }
 }
 

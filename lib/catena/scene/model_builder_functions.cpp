@@ -27,7 +27,8 @@ TimeFunction<S> ModelBuilder<S>::function(const FunctionTemplate& source) {
     case Kind::step:
       return TimeFunction<S>::step(n[0], n[1], n[2], n[3], source.order);
     case Kind::spline:
-      return TimeFunction<S>::spline(std::span(n).first(n.size() / 2), std::span(n).last(n.size() / 2), source.end);
+      return TimeFunction<S>::spline(std::span(n).first(n.size() / 2), std::span(n).last(n.size() / 2), source.end,
+                                     source.beyond);
     case Kind::sum:
       return TimeFunction<S>::sum(std::move(parts));
     case Kind::product:
@@ -53,7 +54,7 @@ Curve<S> ModelBuilder<S>::curve(const CurveTemplate& source) {
     case Kind::spline: {
       std::vector<Vec2<S>> points;
       for (std::size_t k = 0; k + 1 < n.size(); k += 2) points.push_back(Vec2<S>{n[k], n[k + 1]});
-      return Curve<S>::spline(points, source.end);
+      return Curve<S>::spline(points, source.end, source.beyond);
     }
     case Kind::polar:
       return Curve<S>::polar(std::span(n).first(n.size() / 2), std::span(n).last(n.size() / 2));

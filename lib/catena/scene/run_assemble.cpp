@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "catena/analysis/free_motions.hpp"
 #include "catena/analysis/initial_velocities.hpp"
 #include "catena/analysis/kinematics.hpp"
 #include "catena/analysis/mobility.hpp"
@@ -25,6 +26,7 @@ void start(Kinematics& analysis, const AnalysisContext& context) {
   SystemState state = context.state;
   state.t = frozen_time(context);
   analysis.start_from(state);
+  if (context.trace) analysis.evaluator().trace = &context.trace;
 }
 
 void take_outcome(AnalysisReport& report, const AssemblyOutcome& outcome, Kinematics& analysis) {
@@ -65,8 +67,9 @@ void warn_of_closed_gaps(const Evaluator& evaluator, AnalysisReport& report) {
 void check_velocities(Kinematics& analysis, const Model& model, AnalysisReport& report) {
   const bool given = std::any_of(model.bodies.begin(), model.bodies.end(),
                                  [](const auto& body) { return body.velocity_given || body.angular_velocity_given; });
+  if (!given) return;
   EquationsOfMotion equations(analysis.evaluator());
-  if (!given || !equations.use_masses().ok()) return;
+  if (!equations.use_masses().ok()) return;
   equations.weigh_massless(analysis.q());
   std::vector<double> qd(analysis.q().size());
   const VelocityOutcome outcome = find_initial_velocities(equations, analysis.q(), {}, qd);
@@ -105,7 +108,8 @@ void run_assemble(AnalysisContext& context, AnalysisResult& result) {
                   .t = analysis.time(),
                   .q = analysis.q(),
                   .residual = outcome.residual * scale});
-    context.state = analysis.state();
+    // Places alone change hands: the velocities and the time stay those of the motion so far.
+    context.state.q = analysis.state().q;
     warn_of_closed_gaps(analysis.evaluator(), report);
   }
   report.counters = analysis.evaluator().counters;
@@ -144,6 +148,13 @@ void run_check(AnalysisContext& context, AnalysisResult& result) {
                                           quoted_names(model, mobility.dependent_on[k]),
                                           agrees ? "" : ": the places fit, the velocities do not"));
   }
+  std::optional<FreeMotions> free;
+  if (outcome.ok() && mobility.dof() > 0) free = find_free_motions(context.model, analysis.state());
+  const bool any_free = free && free->count > 0;
+  if (any_free) {
+    report.warnings.push_back(fmt::format("nothing resists {} to second order: no spring and no load holds them",
+                                          describe_free_motions(free->count, free->bodies)));
+  }
   if (outcome.ok()) {
     warn_of_closed_gaps(analysis.evaluator(), report);
     check_velocities(analysis, model, report);
@@ -153,6 +164,10 @@ void run_check(AnalysisContext& context, AnalysisResult& result) {
   report.seconds = timer.seconds();
   take_report(result, std::move(report), nullptr, 0);
   if (!mobility.free_bodies.empty()) result.fields.push_back({"free_bodies", mobility.free_bodies});
+  if (any_free) {
+    result.fields.push_back({"free_motions", std::int64_t{free->count}});
+    result.fields.push_back({"moving_freely", free->bodies});
+  }
   add_misfits(result, outcome, model);
 }
 

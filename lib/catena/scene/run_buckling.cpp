@@ -35,7 +35,8 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result) {
       shapes->evaluate(analysis.evaluator(), analysis.q(), report.shapes[k], std::span<double>(row).subspan(1));
     if (!context.rows.row(row)) break;
   }
-  if (report.ok()) context.state = analysis.state();
+  // Places alone change hands: velocities and time stay those of the motion so far.
+  if (report.ok()) context.state.q = analysis.state().q;
   result.fields = {{"loads", report.loads}};
   take_report(result, std::move(report), nullptr, 0);
   result.has_rows = true;

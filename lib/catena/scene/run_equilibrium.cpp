@@ -47,13 +47,19 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   SystemState start = context.state;
   start.t = frozen_time(context);
   analysis.start_from(start);
+  if (context.trace) analysis.evaluator().trace = &context.trace;
   ReportingRows rows(columns, context, start.t);
   const EquilibriumReport report = analysis.run(TimeGrid::instant(start.t), columns.needs(), rows);
   context.state = analysis.state();
   if (report.certified) {
     result.fields = {{"energy", report.energy},
                      {"stable", report.stable},
+                     {"neutral", report.neutral},
                      {"negative_modes", static_cast<std::int64_t>(report.negative_modes)}};
+    if (report.free_motions > 0) {
+      result.fields.push_back({"free_motions", static_cast<std::int64_t>(report.free_motions)});
+      result.fields.push_back({"moving_freely", report.free_bodies});
+    }
   }
   if (report.certified || report.ok()) {
     result.fields.push_back({"residual", report.residual});

@@ -6,18 +6,28 @@
 namespace catena {
 namespace {
 
-/// "singular": [{"t", "kind", "nullity", "bodies", "branches"}], one object a singular configuration met.
-void add_singular_points(AnalysisResult& result, const std::vector<SingularPoint>& points) {
+/// The branches in words; where none goes on, that.
+std::vector<std::string> branches_of(const SingularPoint& point) {
+  if (!point.branches.empty()) return point.branches;
+  if (point.kind == SingularPoint::Kind::lock_up) return {"none goes on beyond the dead point"};
+  return {point.kind == SingularPoint::Kind::isolated ? "none goes on" : "not known"};
+}
+
+/// "singular": one object a singular configuration met.
+void add_singular_points(AnalysisResult& result, const std::vector<SingularPoint>& points, const Model& model) {
   if (points.empty()) return;
   std::vector<FieldRecord> records;
   for (const SingularPoint& point : points) {
-    std::string bodies;
-    for (const std::string& body : point.bodies) bodies += (bodies.empty() ? "" : ", ") + body;
-    records.push_back({{"t", point.t},
+    FieldRecord record{{"t", point.t},
                        {"kind", std::string(point.kind_name())},
                        {"nullity", std::int64_t{point.nullity}},
-                       {"bodies", bodies},
-                       {"branches", point.describe_branches()}});
+                       {"bodies", point.bodies},
+                       {"branches", branches_of(point)}};
+    if (point.driver >= 0) {
+      record.emplace_back("driver", model.element_name(point.driver));
+      record.emplace_back("value", point.driver_value);
+    }
+    records.push_back(std::move(record));
   }
   result.fields.push_back({"singular", std::move(records)});
 }
@@ -54,11 +64,12 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
                     "own; add drivers");
     }
     MinimumNormMotion analysis(context.model, plan_options(*context.model, names));
-    return run_over_time(context, result, analysis, *grid, names, sources);
+    run_over_time(context, result, analysis, *grid, names, sources);
+    return add_singular_points(result, analysis.singular_points(), *context.model);
   }
   Kinematics analysis(context.model, plan_options(*context.model, names), options);
   run_over_time(context, result, analysis, *grid, names, sources);
-  add_singular_points(result, analysis.singular_points());
+  add_singular_points(result, analysis.singular_points(), *context.model);
 }
 
 }  // namespace

@@ -35,9 +35,14 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
       shapes->evaluate(analysis.evaluator(), analysis.q(), report.shapes[k], std::span<double>(row).subspan(3));
     if (!context.rows.row(row)) break;
   }
-  if (report.ok()) context.state = analysis.state();
+  // Places alone change hands, if they had to be assembled: velocities and time stay those of the motion so far.
+  if (report.ok()) context.state.q = analysis.state().q;
   result.fields = {
       {"omega2", report.omega2}, {"omega", report.omega}, {"unstable", static_cast<std::int64_t>(report.unstable)}};
+  if (report.free_motions > 0) {
+    result.fields.push_back({"free_motions", static_cast<std::int64_t>(report.free_motions)});
+    result.fields.push_back({"moving_freely", report.free_bodies});
+  }
   take_report(result, std::move(report), nullptr, 0);
   result.has_rows = true;
   result.columns = std::move(info);

@@ -35,6 +35,7 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
   std::int64_t rows = 0;
   PathReport report = analysis.run([&](double value, const Snapshot& snapshot) {
     row[0] = value;
+    context.parameter_at_end = value;
     columns.evaluate(snapshot, std::span<double>(row).subspan(1));
     ++rows;
     if (context.progress) context.progress(std::clamp((value - options.from) / (options.to - options.from), 0.0, 1.0));

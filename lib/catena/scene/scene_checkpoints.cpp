@@ -15,6 +15,8 @@ void SceneCheckpoints::prepare(std::string_view scene) {
       texts.push_back(value);
     }
   }
+  texts.push_back("outputs");
+  texts.insert(texts.end(), options_.outputs.begin(), options_.outputs.end());
   owner_ = fingerprint(texts);
   if (!options_.restart.empty()) {
     restart_ = read_checkpoint(options_.restart);

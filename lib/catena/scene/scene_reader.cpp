@@ -26,10 +26,8 @@ void read_version(const JsonValue& root, const JsonValue& value, Diagnostics& di
 
 }  // namespace
 
-void SceneReading::section(const JsonMember& member, BlockTemplate& block, int depth) {
+void SceneReading::section(std::string_view key, const JsonValue& value, BlockTemplate& block, int depth) {
   using Section = BlockTemplate::Section;
-  const std::string_view key = member.name();
-  const JsonValue& value = member.value;
   if (key == "bodies") {
     if (!value.is(JsonKind::object)) {
       error(value, fmt::format("\"bodies\" must be an object of names and bodies; this is {}", describe(value.kind())));
@@ -81,7 +79,7 @@ void SceneReading::block(const JsonValue& object, BlockTemplate& parent, int dep
   }
   numbers.enter_block(block.variable);
   for (const JsonMember member : object.members()) {
-    if (is_section(member.name())) section(member, block, depth);
+    if (is_section(member.name())) section(member.name(), member.value, block, depth);
   }
   numbers.leave_block();
   parent.blocks.push_back(std::move(block));
@@ -95,7 +93,9 @@ std::unique_ptr<SceneTemplate> read_scene(SourceText source, Diagnostics& diagno
   scene->document = std::make_unique<JsonDocument>(std::move(*document));
   const JsonValue root = scene->document->root();
   std::array<JsonValue, scene_keys.size()> v;
-  if (!read_members(root, scene_keys, "the scene", v, diagnostics)) return nullptr;
+  if (!read_members(root, scene_keys, "the scene", v, diagnostics, Misspelt::as_meant)) return nullptr;
+  for (const JsonMember member : root.members())
+    scene->may_lack_parts = scene->may_lack_parts || meant_key(root, member, scene_keys).empty();
   read_version(root, v[0], diagnostics);
   if (v[1]) scene->name = read_string(v[1], {"name"}, diagnostics);
   if (v[2]) scene->description = read_string(v[2], {"description"}, diagnostics);
@@ -113,7 +113,8 @@ std::unique_ptr<SceneTemplate> read_scene(SourceText source, Diagnostics& diagno
   scene->root.count = NumberValue::constant(1);
   scene->root.first = NumberValue::constant(1);
   for (const JsonMember member : root.members()) {
-    if (is_section(member.name())) reading.section(member, scene->root, 0);
+    const std::string_view key = meant_key(root, member, scene_keys);
+    if (is_section(key)) reading.section(key, member.value, scene->root, 0);
   }
   return scene;
 }

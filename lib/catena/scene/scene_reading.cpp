@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "catena/scene/near_miss.hpp"
 
@@ -12,8 +13,14 @@ void report(const JsonValue& value, std::string message, Diagnostics& diagnostic
   diagnostics.error(value.source(), value.offset(), std::move(message));
 }
 
+std::string_view meant_key(const JsonValue& object, const JsonMember& member, std::span<const std::string_view> keys) {
+  if (std::find(keys.begin(), keys.end(), member.name()) != keys.end()) return member.name();
+  const std::string_view nearest = NearMiss(member.name()).consider_all(keys).best();
+  return nearest.empty() || object.find(nearest) ? std::string_view() : nearest;
+}
+
 bool read_members(const JsonValue& object, std::span<const std::string_view> keys, std::string_view owner,
-                  std::span<JsonValue> out, Diagnostics& diagnostics) {
+                  std::span<JsonValue> out, Diagnostics& diagnostics, Misspelt misspelt) {
   if (!object.is(JsonKind::object)) {
     report(object, fmt::format("{} must be an object {{...}}; this is {}", owner, describe(object.kind())),
            diagnostics);
@@ -21,17 +28,19 @@ bool read_members(const JsonValue& object, std::span<const std::string_view> key
   }
   for (const JsonMember member : object.members()) {
     const std::string_view key = member.name();
-    const auto known = std::find(keys.begin(), keys.end(), key);
-    if (known != keys.end()) {
-      JsonValue& place = out[static_cast<std::size_t>(known - keys.begin())];
+    const bool guess = misspelt == Misspelt::as_meant;
+    const auto meant = std::find(keys.begin(), keys.end(), guess ? meant_key(object, member, keys) : key);
+    if (meant != keys.end()) {
+      JsonValue& place = out[static_cast<std::size_t>(meant - keys.begin())];
       if (!place) place = member.value;  // a key given twice was reported when the text was parsed
-      continue;
+      if (*meant == key) continue;
     }
     std::string hint = NearMiss(key).consider_all(keys).hint();
     if (hint.empty() && keys.size() <= 12) {
       for (const std::string_view k : keys) hint += fmt::format("{} {}", hint.empty() ? "; it has" : ",", k);
     }
-    report(member.key, fmt::format("unknown key {} in {}{}", in_quotes(key), owner, hint), diagnostics);
+    diagnostics.error(member.key.source(), member.key.offset(),
+                      fmt::format("unknown key {} in {}{}", in_quotes(key), owner, hint), guess);
   }
   return true;
 }
@@ -82,6 +91,15 @@ std::string_view read_string(const JsonValue& value, const FieldName& field, Dia
   if (value.is(JsonKind::string)) return value.text();
   report(value, fmt::format("{} must be a text; this is {}", field.text(), describe(value.kind())), diagnostics);
   return {};
+}
+
+Beyond SceneReading::beyond(const JsonValue& value, SplineEnd end, std::string_view owner) {
+  static constexpr std::array<std::string_view, 3> words{"error", "hold", "line"};
+  const FieldName field{"beyond", owner};
+  const int word = value ? read_word(value, words, field, diagnostics) : 0;
+  if (value && end == SplineEnd::periodic && word >= 0)
+    error(value, fmt::format("{}: what is periodic has no ends, and nothing beyond them", field.text()));
+  return word > 0 ? static_cast<Beyond>(word) : Beyond::error;
 }
 
 NameText SceneReading::name(const JsonValue& string, std::size_t from, std::size_t to) {

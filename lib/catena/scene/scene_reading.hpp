@@ -15,10 +15,17 @@ namespace catena {
 /// Reports what stands at `value`.
 void report(const JsonValue& value, std::string message, Diagnostics& diagnostics);
 
+/// What becomes of a key that is none, but near to one that is not given: it is left out, or taken to be that one and
+/// reported before all else, so that nothing is reported that only follows from the misspelling.
+enum class Misspelt { left_out, as_meant };
+
 /// Finds the members of an object by their keys: out[k] is the value of keys[k], absent if it is not given. Keys that
 /// are none of these are reported, with the nearest one. False, with a report, if `object` is no object.
 bool read_members(const JsonValue& object, std::span<const std::string_view> keys, std::string_view owner,
-                  std::span<JsonValue> out, Diagnostics& diagnostics);
+                  std::span<JsonValue> out, Diagnostics& diagnostics, Misspelt misspelt = Misspelt::left_out);
+
+/// The key that a member of the object stands for: its own, or the one of `keys` that it misspells; else empty.
+std::string_view meant_key(const JsonValue& object, const JsonMember& member, std::span<const std::string_view> keys);
 
 /// The only member of an object whose key says what it is, such as {"harmonic": ...}; nothing, with a report, if there
 /// is none or more. `what` is what the keys name: "function of time".
@@ -40,6 +47,8 @@ class SceneReading {
         diagnostics(all_diagnostics),
         numbers(the_scene.parameters.names(), the_scene.expressions, all_diagnostics) {}
 
+  /// What is beyond the ends of a table or curve, a word; a periodic one has none.
+  Beyond beyond(const JsonValue& value, SplineEnd end, std::string_view owner);
   void error(const JsonValue& value, std::string message) { report(value, std::move(message), diagnostics); }
 
   /// A name, or a part of one: text[from, to) of the string. Rules for names are not checked.
@@ -54,13 +63,13 @@ class SceneReading {
   int function(const JsonValue& value, const ExpectedDimension& unit, const FieldName& field, NumberValue& plain);
   /// A curve in a body frame: its number.
   int curve(const JsonValue& value, const FieldName& field);
-  /// A list of pairs: its number.
+  /// A list of pairs, or an object with it and what is beyond its ends: its number.
   int table(const JsonValue& value, UnitKind first, UnitKind second, const FieldName& field);
 
   void body(const JsonMember& member, BlockTemplate& block);
   void element(const JsonValue& object, std::string_view list, BlockTemplate& block);
   /// The member `key` of a scene or replicate block that holds bodies, elements or blocks.
-  void section(const JsonMember& member, BlockTemplate& block, int depth);
+  void section(std::string_view key, const JsonValue& value, BlockTemplate& block, int depth);
   void block(const JsonValue& object, BlockTemplate& parent, int depth);
 
   SceneTemplate& scene;

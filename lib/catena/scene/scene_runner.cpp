@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "catena/scene/analysis_run.hpp"
 #include "catena/scene/build_model.hpp"
@@ -32,6 +33,11 @@ std::vector<std::string> element_names(const Model& model) {
   return names;
 }
 
+void print_iteration(std::string_view method, int iteration, double residual, double change) {
+  const std::string line = fmt::format("{} {}: residual {:.3g}, change {:.3g}\n", method, iteration, residual, change);
+  std::fputs(line.c_str(), stderr);
+}
+
 class SceneRun {
  public:
   SceneRun(const RunOptions& options, ResultSink& sink, SceneOutcome& outcome)
@@ -50,7 +56,12 @@ class SceneRun {
   void run_all();
   /// Builds models in which one parameter of the task has another value.
   std::function<std::shared_ptr<const Model>(int, double)> builder_of(const AnalysisTask& task);
-  AnalysisResult run_task(const AnalysisTask& task, int number, SystemState& state, RowSink& rows);
+  /// The task with the parameters that earlier paths left behind, unless it sets them itself.
+  AnalysisTask with_handed_on(AnalysisTask task, Diagnostics& diagnostics);
+  ParameterTable table_of(const AnalysisTask& task);
+  std::vector<ParameterSeed<double>> handed_on_to(const AnalysisTask& task) const;
+  AnalysisResult run_task(const AnalysisTask& read, int number, SystemState& state, RowSink& rows);
+  std::vector<std::pair<std::string, double>> named_parameters(std::span<const double> values) const;
   void finish_errors();
   /// Whether what the options say of dynamics can be done.
   bool check_dynamics_options();
@@ -65,6 +76,7 @@ class SceneRun {
   ParameterTable parameters_;
   std::shared_ptr<const Model> model_;
   std::vector<AnalysisTask> tasks_;
+  std::vector<ParameterSeed<double>> handed_on_;  // values of parameters that paths left behind
   SceneCheckpoints checkpoints_{options_};
 };
 
@@ -125,6 +137,12 @@ void SceneRun::read_tasks() {
   const std::vector<double> values = parameters_.evaluate<double>(scene.expressions, diagnostics_);
   if (scene.outputs) read_outputs(scene.outputs, scene, values, diagnostics_);
   if (scene.analyses) tasks_ = read_analyses(scene.analyses, scene.outputs, scene, parameters_, diagnostics_);
+  if (command_.read_outputs(options_.outputs, diagnostics_)) {
+    const std::vector<PlacedName> outputs = read_outputs(command_.outputs(), scene, values, diagnostics_);
+    for (AnalysisTask& task : tasks_) {
+      if (task.description->find("outputs")) task.outputs = outputs;
+    }
+  }
   if (options_.verb.empty()) return;
   // The scene's own analyses were checked, but one from the command line is run in their place.
   tasks_.clear();
@@ -135,7 +153,7 @@ void SceneRun::read_tasks() {
 
 bool SceneRun::prepare(SourceText source) {
   scene_ = read_scene(std::move(source), diagnostics_);
-  if (!scene_) return false;
+  if (!scene_ || scene_->may_lack_parts) return false;
   parameters_ = scene_->parameters;
   if (command_.read_set(options_.set, diagnostics_)) parameters_.set(command_.set(), scene_->expressions, diagnostics_);
   const std::vector<double> values = parameters_.evaluate<double>(scene_->expressions, diagnostics_);
@@ -155,8 +173,8 @@ void SceneRun::finish_errors() {
   bool in_scene = false;
   std::string command_errors;
   for (const Diagnostic& error : diagnostics_.items()) {
-    if (CommandText::is_command(error.file)) {
-      command_errors += fmt::format("catena: {}: {}\n", error.file, error.message);
+    if (CommandText::is_command(error)) {
+      command_errors += fmt::format("catena: {}: {}\n", command_.option_of(error), error.message);
     } else {
       in_scene = true;
     }
@@ -171,21 +189,53 @@ void SceneRun::finish_errors() {
   }
 }
 
+ParameterTable SceneRun::table_of(const AnalysisTask& task) {
+  ParameterTable table = parameters_;
+  if (const JsonValue set = task.place.find("set")) table.set(set, scene_->expressions, diagnostics_);
+  return table;
+}
+
+std::vector<ParameterSeed<double>> SceneRun::handed_on_to(const AnalysisTask& task) const {
+  std::vector<ParameterSeed<double>> seeds;
+  const JsonValue set = task.place.find("set");
+  for (const ParameterSeed<double>& seed : handed_on_) {
+    if (!set || !set.find(parameters_.names().all()[static_cast<std::size_t>(seed.index)])) seeds.push_back(seed);
+  }
+  return seeds;
+}
+
+AnalysisTask SceneRun::with_handed_on(AnalysisTask task, Diagnostics& diagnostics) {
+  const std::vector<ParameterSeed<double>> seeds = handed_on_to(task);
+  if (seeds.empty()) return task;
+  task.parameters = table_of(task).evaluate<double>(scene_->expressions, diagnostics, seeds);
+  task.changes_parameters = true;
+  return task;
+}
+
+std::vector<std::pair<std::string, double>> SceneRun::named_parameters(std::span<const double> values) const {
+  std::vector<std::pair<std::string, double>> named;
+  const auto& names = parameters_.names().all();
+  for (std::size_t k = 0; k < names.size() && k < values.size(); ++k) named.emplace_back(names[k], values[k]);
+  return named;
+}
+
 std::function<std::shared_ptr<const Model>(int, double)> SceneRun::builder_of(const AnalysisTask& task) {
-  auto table = std::make_shared<ParameterTable>(parameters_);
-  if (task.changes_parameters) table->set(task.place.find("set"), scene_->expressions, diagnostics_);
-  return [this, table](int parameter, double value) -> std::shared_ptr<const Model> {
+  auto table = std::make_shared<ParameterTable>(table_of(task));
+  return [this, table, handed_on = handed_on_to(task)](int parameter, double value) -> std::shared_ptr<const Model> {
     Diagnostics diagnostics(1);
-    const ParameterSeed<double> seed[] = {{parameter, value}};
-    const std::vector<double> values = table->evaluate<double>(scene_->expressions, diagnostics, seed);
+    std::vector<ParameterSeed<double>> seeds = handed_on;  // the last one of a parameter counts
+    seeds.push_back({parameter, value});
+    const std::vector<double> values = table->evaluate<double>(scene_->expressions, diagnostics, seeds);
     if (!diagnostics.ok()) return nullptr;
     auto model = std::make_shared<Model>(build_model<double>(*scene_, values, {options_.max_elements}, diagnostics));
     return diagnostics.ok() ? model : nullptr;
   };
 }
 
-AnalysisResult SceneRun::run_task(const AnalysisTask& task, int number, SystemState& state, RowSink& rows) {
+AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemState& state, RowSink& rows) {
   AnalysisResult result;
+  Diagnostics unfit(1);
+  const AnalysisTask task = with_handed_on(read, unfit);
   result.type = task.type();
   const AnalysisFunction function = analysis_function(task.type());
   if (!function) {
@@ -202,6 +252,19 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& task, int number, SystemSt
                     model_->element_type(gaps.front()), model_->element_name(gaps.front()), task.type());
     return result;
   }
+  const auto is_path = [](const AnalysisTask& earlier) { return earlier.type() == "path"; };
+  if (number == checkpoints_.first_analysis() && !read.from_initial &&
+      std::any_of(tasks_.begin(), tasks_.begin() + number, is_path)) {
+    result.report.status = Status::refused;
+    result.report.message =
+        "a checkpoint does not keep the parameter that a path before it ended with: run the whole scene";
+    return result;
+  }
+  if (!unfit.ok()) {
+    result.report.status = Status::refused;
+    result.report.message = fmt::format("with the parameters that the path before left behind: {}", unfit.text());
+    return result;
+  }
   CheckpointRequest checkpoint = checkpoints_.request(number);
   AnalysisContext context{.task = task,
                           .model = task.changes_parameters ? build(task.parameters) : model_,
@@ -210,10 +273,20 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& task, int number, SystemSt
                           .cancel = options_.cancel,
                           .progress = {},
                           .verbose = options_.verbose,
+                          .trace = options_.verbose ? IterationTrace(print_iteration) : IterationTrace(),
                           .model_at = {},
                           .parameter_name = {},
                           .estimate_error = options_.estimate_error,
                           .checkpoint = checkpoints_.wanted() ? &checkpoint : nullptr};
+  if (task.changes_parameters) {
+    // Those that follow from what was set differ too.
+    const auto before = named_parameters(parameters_.evaluate<double>(scene_->expressions, diagnostics_));
+    const auto own = named_parameters(task.parameters);
+    const JsonValue set = task.place.find("set");
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      if ((set && set.find(own[k].first)) || own[k].second != before[k].second) result.set.push_back(own[k]);
+    }
+  }
   if (task.has("parameter")) {
     context.model_at = builder_of(task);
     context.parameter_name = parameters_.names().all()[static_cast<std::size_t>(task.word("parameter"))];
@@ -231,6 +304,11 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& task, int number, SystemSt
     result.report.status = Status::refused;
     result.report.message = error.what();
   }
+  if (context.parameter_at_end && result.report.ok()) {
+    const int parameter = task.word("parameter");
+    std::erase_if(handed_on_, [&](const auto& seed) { return seed.index == parameter; });
+    handed_on_.push_back({parameter, *context.parameter_at_end});
+  }
   return result;
 }
 
@@ -241,13 +319,17 @@ void SceneRun::run_all() {
                    .gravity = {model_->gravity.x, model_->gravity.y},
                    .bodies = static_cast<int>(model_->bodies.size()),
                    .elements = static_cast<int>(model_->elements.size()),
-                   .analyses = static_cast<int>(tasks_.size()) - checkpoints_.first_analysis()});
+                   .analyses = static_cast<int>(tasks_.size()) - checkpoints_.first_analysis(),
+                   .version = CATENA_VERSION,
+                   .parameters = named_parameters(parameters_.evaluate<double>(scene_->expressions, diagnostics_)),
+                   .set = options_.set});
   const auto first = static_cast<std::size_t>(checkpoints_.first_analysis());
   for (std::size_t k = first; k < tasks_.size(); ++k) {
     const AnalysisTask& task = tasks_[k];
     if (k > first && outcome_.analyses.back().report.status == Status::cancelled) break;
     if (task.from_initial) {
       state = {};
+      handed_on_.clear();
     } else if (k > first && !outcome_.analyses.back().report.ok()) {
       break;  // there is no state to go on from
     }
@@ -265,6 +347,10 @@ void SceneRun::refuse(int exit_code, const std::string& why) {
 }
 
 bool SceneRun::check_dynamics_options() {
+  if (!(options_.checkpoint_every >= 0) || !std::isfinite(options_.checkpoint_every)) {
+    refuse(2, "--checkpoint-every: wants seconds above zero");
+    return false;
+  }
   const bool any =
       std::any_of(tasks_.begin(), tasks_.end(), [](const auto& task) { return task.type() == "dynamics"; });
   if (any) return true;

@@ -36,11 +36,13 @@ struct RunOptions {
   std::vector<std::pair<std::string, std::string>> verb_options;
   /// Parameters to change: name, and a value in the syntax of scenes (a number, "30 deg", "=2*a").
   std::vector<std::pair<std::string, std::string>> set;
+  /// Columns in place of all outputs that the scene names; empty: the scene's.
+  std::vector<std::string> outputs;
   std::int64_t max_elements = 10'000'000;  ///< a larger scene is refused
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(const Progress&)> progress;  ///< called often; may be empty
-  bool verbose = false;                           ///< solvers print their own logs to standard error
-  bool estimate_error = false;                    ///< of every dynamics analysis; an error if there is none
+  bool verbose = false;         ///< iterations for a configuration, and solvers' own logs, to standard error
+  bool estimate_error = false;  ///< of every dynamics analysis; an error if there is none
   /// File to which dynamics analyses save where they are, every so many seconds of their time, s; empty: none. 0 s: a
   /// twentieth of the analysis.
   std::string checkpoint;

@@ -35,6 +35,7 @@ struct FunctionTemplate {
   enum class Kind : unsigned char { constant, polynomial, harmonic, step, spline, sum, product };
   Kind kind = Kind::constant;
   SplineEnd end = SplineEnd::natural;
+  Beyond beyond = Beyond::error;
   int order = 5;             // of a step
   std::uint32_t offset = 0;  // of the value in the text
   /// constant: 1; polynomial: coefficients; harmonic: amplitude, omega, phase, offset; step: t0, t1, from, to;
@@ -47,6 +48,7 @@ struct CurveTemplate {
   enum class Kind : unsigned char { circle, spline, polar, line };
   Kind kind = Kind::circle;
   SplineEnd end = SplineEnd::natural;
+  Beyond beyond = Beyond::error;
   std::uint32_t offset = 0;
   /// circle: centre, radius; spline: x', y' point after point; polar: all angles, then all radii; line: point, axis
   std::vector<NumberValue> numbers;
@@ -54,6 +56,7 @@ struct CurveTemplate {
 
 /// Pairs of numbers, one after the other.
 struct TableTemplate {
+  Beyond beyond = Beyond::error;
   std::uint32_t offset = 0;
   std::vector<NumberValue> numbers;
 };
@@ -158,6 +161,7 @@ struct SceneTemplate {
   std::vector<TableTemplate> tables;
 
   JsonValue analyses, outputs;  ///< read by analysis_reader.hpp
+  bool may_lack_parts = false;  ///< a key of the scene is none: what is in it is missing, and names in it are unknown
 };
 
 }  // namespace catena

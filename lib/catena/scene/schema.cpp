@@ -77,7 +77,7 @@ json field_schema(const FieldDescription& field) {
     case FieldKind::curve:
       return described(reference("curve"), field.doc);
     case FieldKind::table:
-      return described(list_of(reference("pair")), field.doc);
+      return described(reference("table"), field.doc);
     case FieldKind::function:
       return described(reference("function"), in_unit(field.doc, field.unit));
     case FieldKind::function_pair:
@@ -91,6 +91,7 @@ json element_schema(const ElementDescription& type, bool driver) {
                   {"name", {{"type", "string"}, {"description", "its name (default: type#n)"}}}};
   std::vector<std::string> required{"type"};
   for (const FieldDescription& field : type.fields) {
+    if (field.reserved()) continue;
     properties[std::string(field.key)] = field_schema(field);
     if (!field.synonym.empty()) properties[std::string(field.synonym)] = field_schema(field);
     if ((field.required && field.unless.empty()) || (driver && field.kind == FieldKind::function))
@@ -155,9 +156,7 @@ json analysis_schema(const AnalysisDescription& type) {
         is_type ? json{{"const", type.type}, {"description", type.summary}} : key_schema(key);
     if (key.required) required.emplace_back(key.name);
   }
-  json schema = object_of(std::move(properties), required);
-  if (type.any_key) schema.erase("additionalProperties");
-  return schema;
+  return object_of(std::move(properties), required);
 }
 
 json body_schema() {
@@ -212,7 +211,9 @@ json definitions() {
     (type.force ? forces : constraints).push_back(element_schema(type, false));
     if (type.can_be_driven()) drivers.push_back(element_schema(type, true));
   }
-  for (const AnalysisDescription& type : analysis_descriptions()) analyses.push_back(analysis_schema(type));
+  for (const AnalysisDescription& type : analysis_descriptions()) {
+    if (!type.announced) analyses.push_back(analysis_schema(type));
+  }
   json block = sections();
   block["count"] = described(reference("number"), "how often the block is repeated");
   block["first"] = described(reference("number"), "first value of k (default 1)");

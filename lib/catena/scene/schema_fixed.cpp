@@ -10,6 +10,12 @@ std::string_view fixed_definitions() {
 },
 "pair": {"type": "array", "items": {"$ref": "#/$defs/number"}, "minItems": 2, "maxItems": 2},
 "numbers": {"type": "array", "items": {"$ref": "#/$defs/number"}},
+"beyond": {"enum": ["error", "hold", "line"], "description": "what is beyond the ends (default: it is an error)"},
+"table": {"anyOf": [
+  {"type": "array", "items": {"$ref": "#/$defs/pair"}},
+  {"type": "object", "additionalProperties": false, "required": ["points"], "properties": {
+    "points": {"type": "array", "items": {"$ref": "#/$defs/pair"}}, "beyond": {"$ref": "#/$defs/beyond"}}}
+]},
 "outputs": {"type": "array", "items": {"type": "string"}},
 "parameter": {"anyOf": [
   {"$ref": "#/$defs/number"},
@@ -34,7 +40,7 @@ std::string_view fixed_definitions() {
       "from": {"$ref": "#/$defs/number"}, "to": {"$ref": "#/$defs/number"}, "order": {"enum": [3, 5]}}},
     "spline": {"type": "object", "additionalProperties": false, "required": ["t", "value"], "properties": {
       "t": {"$ref": "#/$defs/numbers"}, "value": {"$ref": "#/$defs/numbers"},
-      "end": {"enum": ["natural", "clamped", "periodic"]}}},
+      "end": {"enum": ["natural", "clamped", "periodic"]}, "beyond": {"$ref": "#/$defs/beyond"}}},
     "sum": {"type": "array", "minItems": 1, "items": {"$ref": "#/$defs/function"}},
     "product": {"type": "array", "minItems": 1, "items": {"$ref": "#/$defs/function"}}}}
 ]},
@@ -42,7 +48,8 @@ std::string_view fixed_definitions() {
   "circle": {"type": "object", "additionalProperties": false, "required": ["centre", "radius"], "properties": {
     "centre": {"$ref": "#/$defs/pair"}, "radius": {"$ref": "#/$defs/number"}}},
   "spline": {"type": "object", "additionalProperties": false, "required": ["points"], "properties": {
-    "points": {"type": "array", "items": {"$ref": "#/$defs/pair"}}, "end": {"enum": ["natural", "periodic"]}}},
+    "points": {"type": "array", "items": {"$ref": "#/$defs/pair"}}, "end": {"enum": ["natural", "periodic"]},
+    "beyond": {"$ref": "#/$defs/beyond"}}},
   "polar": {"type": "object", "additionalProperties": false, "required": ["angle", "radius"], "properties": {
     "angle": {"$ref": "#/$defs/numbers"}, "radius": {"$ref": "#/$defs/numbers"}}},
   "line": {"type": "object", "additionalProperties": false, "required": ["point", "axis"], "properties": {

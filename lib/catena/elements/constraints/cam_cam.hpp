@@ -8,7 +8,8 @@
 // alone: Newton's method from the common normal found last; one more step in the scalar of the derivatives carries
 // their derivatives exactly, and as Phi is stationary in both this makes gamma and the second derivatives exact. Of
 // several common normals the shortest in the given configuration is followed; see common_normal.hpp for what kinds
-// there are. Open curves go on as straight lines. Singular where the curvatures are equal, hollow against round.
+// there are. Open curves go on as straight lines; curve_use() tells where one ends for good. Singular where the
+// curvatures are equal, hollow against round.
 // Multiplier: minus the normal force on j along N, N. Source: Haug, section 3.4 (cam-follower).
 #pragma once
 
@@ -50,11 +51,24 @@ struct CamCam {
   const char* check() const {
     if (!curve_i || !curve_j) return "lacks a curve";
     if (curve_i.is_line() && curve_j.is_line()) return "two straight lines have no point of contact";
+    if (curve_i.holds() || curve_j.holds()) return "a cam that ends goes on as a line, or not at all: it cannot hold";
     return contact.kind < 0 ? "the cams have no common normal in the given configuration" : nullptr;
   }
   const char* trouble(const Arguments<double>& a) const {
     return follow_contact(seen_from(a.i, a.j)) ? nullptr
                                                : "the cams have no single point of contact: their curvatures are equal";
+  }
+
+  bool can_leave_curve() const { return curve_i.ends() || curve_j.ends(); }
+  /// Of the two curves the one that is further beyond its end.
+  std::optional<CurveUse> curve_use(const Arguments<double>& a) const {
+    follow_contact(seen_from(a.i, a.j));
+    if (!curve_j.ends()) return curve_i.use_at(contact.s_i);
+    CurveUse j = curve_j.use_at(contact.s_j);
+    j.body = 1;
+    if (!curve_i.ends()) return j;
+    const CurveUse i = curve_i.use_at(contact.s_i);
+    return i.excess() > j.excess() ? i : j;
   }
 
   template <class T>

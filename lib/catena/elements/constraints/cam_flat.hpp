@@ -7,7 +7,8 @@
 // of it. The contact is the point of the cam that lies farthest along N, or against it: whichever is nearer to the face
 // in the given configuration. It belongs to the element alone: Newton's method in s from the point found last, and one
 // more step in the scalar of the derivatives, as in point_on_curve. Where an open curve has no such point its end takes
-// the place, for the row to stay finite. Singular where the cam's curvature vanishes at the contact; a straight line is
+// the place: for good where the curve holds there (a corner that slides on the face), else for the row to stay finite,
+// and curve_use() tells. Singular where the cam's curvature vanishes at the contact; a straight line is
 // refused. The cam should be convex: over a hollow the followed point need not be the one that touches. Multiplier: the
 // normal force on j along N, N. Source: Haug, section 3.4 (flat-faced follower).
 #pragma once
@@ -68,8 +69,14 @@ struct CamFlat {
     return has_direction(axis_j) ? nullptr : "axis_j has no direction";
   }
   const char* trouble(const Arguments<double>& a) const {
-    return circle || follow_contact(normal(a.i, a.j)) ? nullptr
-                                                      : "the cam has no curvature where it should touch the face";
+    return circle || follow_contact(normal(a.i, a.j)) || (curve.holds() && at_end())
+               ? nullptr
+               : "the cam has no curvature where it should touch the face";
+  }
+  bool can_leave_curve() const { return curve.ends(); }
+  std::optional<CurveUse> curve_use(const Arguments<double>& a) const {
+    follow_contact(normal(a.i, a.j));
+    return curve.use_at(parameter);
   }
 
   template <class T>
@@ -96,6 +103,7 @@ struct CamFlat {
   }
 
  private:
+  bool at_end() const { return parameter == curve.shape().first() || parameter == curve.shape().last(); }
   /// N and P_j in the frame of the curve.
   template <class T>
   Vec2<T> normal(const Frame<T>& i, const Frame<T>& j) const {

@@ -24,6 +24,8 @@ struct Contact : PointOnCurve<S> {
       "+-n(s)^T (x - p(s)) - radius >= 0,  x = A_i^T (r_Pj - r_i),  s: foot of x,  n = R p'/|p'|";
   static constexpr bool one_sided = true;
 
+  static constexpr double touching = 1e-6;  // a gap of this part of the curve is none
+
   S radius{}, k{}, c{};
   int side = 1;
 
@@ -37,10 +39,16 @@ struct Contact : PointOnCurve<S> {
         SideField{
             "side", &Contact::side,
             "the free side: 1 (default) outside of a circle, on the left of any other curve's direction; -1 the other"},
-        NumberField{"k", &Contact::k, UnitKind::stiffness, Domain::positive, false,
-                    "penalty stiffness for dynamics; equilibrium needs none"},
-        NumberField{"c", &Contact::c, UnitKind::damping, Domain::not_negative, false,
-                    "penalty damping for dynamics; equilibrium needs none"});
+        NumberField{"k", &Contact::k, UnitKind::stiffness, Domain::positive, false, ""},
+        NumberField{"c", &Contact::c, UnitKind::damping, Domain::not_negative, false, ""});
+  }
+
+  /// An open contact asks nothing of the curve.
+  std::optional<CurveUse> curve_use(const Arguments<double>& a) const {
+    double gap;
+    phi(a, &gap);
+    if (gap > touching * this->curve.range()) return {};
+    return Base::curve_use(a);
   }
 
   // 1 where the normal points to the free side: that of a circle, counter-clockwise in its parameter, points inwards.

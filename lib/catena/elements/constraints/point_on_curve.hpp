@@ -6,8 +6,9 @@
 // Phi is the distance to the left of the curve, m. The parameter s belongs to the element alone: Newton's method from
 // the foot found last (the nearest point at first) keeps the branch where a curve crosses itself; one more step in the
 // scalar of the derivatives carries ds/dq exactly, and as Phi is stationary in s this makes gamma and the second
-// derivatives exact. Open curves go on as straight lines. Singular where x is a centre of curvature, never on the
-// curve. Multiplier: minus the normal force on j, N. Source: Haug, section 3.4 (point follower).
+// derivatives exact. Beyond the ends of an open curve the row is that of the straight line along the tangent at the
+// end; curve_use() tells where the curve ends for good. Singular where x is a centre of curvature, never on the curve.
+// Multiplier: minus the normal force on j, N. Source: Haug, section 3.4 (point follower).
 #pragma once
 
 #include <type_traits>
@@ -46,6 +47,12 @@ struct PointOnCurve {
   const char* check() const { return curve ? nullptr : "has no curve"; }
   const char* trouble(const Arguments<double>& a) const {
     return follow_foot(local(a.i, a.j)) ? nullptr : "the point is at a centre of curvature of the curve";
+  }
+
+  bool can_leave_curve() const { return curve.ends(); }
+  std::optional<CurveUse> curve_use(const Arguments<double>& a) const {
+    follow_foot(local(a.i, a.j));
+    return curve.use_at(parameter);
   }
 
   template <class T>

@@ -49,10 +49,8 @@ struct Stop {
                    "its least value (default: none)"},
         BoundField{"max", &Stop::max, UnitKind::length, UnitKind::angle, Domain::any,
                    "its largest value (default: none)"},
-        BoundField{"k", &Stop::k, UnitKind::stiffness, UnitKind::torsion_stiffness, Domain::positive,
-                   "penalty stiffness for dynamics; equilibrium needs none"},
-        BoundField{"c", &Stop::c, UnitKind::damping, UnitKind::torsion_damping, Domain::not_negative,
-                   "penalty damping for dynamics; equilibrium needs none"});
+        BoundField{"k", &Stop::k, UnitKind::stiffness, UnitKind::torsion_stiffness, Domain::positive, ""},
+        BoundField{"c", &Stop::c, UnitKind::damping, UnitKind::torsion_damping, Domain::not_negative, ""});
   }
 
   bool in_angle() const { return quantity == StopQuantity::angle; }

@@ -44,6 +44,11 @@ struct SpringDamper {
     if (length < S(0.0)) length = norm(j.point(s_j) - i.point(s_i));
   }
 
+  bool can_leave_curve() const { return curve.ends(); }
+  std::optional<CurveUse> curve_use(const ForceArguments<double>& a) const {
+    return curve.use_at(norm(span(a.i, a.j)) - value_of(length));
+  }
+
   /// h = r_Pj - r_Pi.
   template <class T>
   Vec2<T> span(const Frame<T>& i, const Frame<T>& j) const {

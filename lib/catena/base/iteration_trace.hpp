@@ -1,0 +1,13 @@
+// What the iterations for a configuration tell whoever wants to watch them: where Newton's method creeps or jumps.
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+namespace catena {
+
+/// One iteration: of which method, its number from 1, the residual left (length scales or rad in assembly, N at an
+/// equilibrium) and the last change of the configuration (length scales or rad).
+using IterationTrace = std::function<void(std::string_view method, int iteration, double residual, double change)>;
+
+}  // namespace catena

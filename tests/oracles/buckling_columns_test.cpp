@@ -1,0 +1,14 @@
+// Buckling under loads that depend on the parameter in any way, against dense algebra and a scan of their own.
+#include "oracles/buckling_columns.hpp"
+
+#include <gtest/gtest.h>
+
+namespace catena::testing {
+namespace {
+
+TEST(BucklingOfColumns, IsThatOfDenseAlgebraWhateverTheLaw) {
+  for (unsigned seed = 1; seed <= 60; ++seed) EXPECT_EQ(compare_buckling(seed), "");
+}
+
+}  // namespace
+}  // namespace catena::testing

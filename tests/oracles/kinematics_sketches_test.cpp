@@ -1,0 +1,16 @@
+// A share of the random sketches and dead centres of tests/stress.
+#include "oracles/sketches.hpp"
+
+namespace catena::testing {
+namespace {
+
+TEST(KinematicSketches, FlatAndStraightOnesAssembleInEveryAnalysis) {
+  for (unsigned seed = 0; seed < 60; ++seed) expect_assembled(seed);
+}
+
+TEST(KinematicSketches, DeadCentresLockOrLeaveBothWays) {
+  for (unsigned seed = 0; seed < 60; ++seed) expect_dead_centre(seed);
+}
+
+}  // namespace
+}  // namespace catena::testing

@@ -1,0 +1,20 @@
+// Paths of loaded particles on springs: every row balances, every row lies on the path of the row before.
+#include <gtest/gtest.h>
+
+#include "oracles/loaded_particles.hpp"
+
+namespace catena::testing {
+namespace {
+
+TEST(PathsOfParticles, BalanceAndStayOnTheirPath) {
+  int ended = 0;
+  for (unsigned seed = 1; seed <= 16; ++seed) {
+    const LoadedParticle particle(seed);
+    EXPECT_EQ(particle.check(), "") << seed;
+    ended += particle.ended();
+  }
+  EXPECT_GE(ended, 15);
+}
+
+}  // namespace
+}  // namespace catena::testing

@@ -1,0 +1,16 @@
+// Thousands of linkages sketched in one line, and of slider-cranks in or on their way to a dead centre.
+#include "oracles/sketches.hpp"
+
+namespace catena::testing {
+namespace {
+
+TEST(KinematicStress, FlatAndStraightSketchesAssembleInEveryAnalysis) {
+  for (unsigned seed = 1000; seed < 5000; ++seed) expect_assembled(seed);
+}
+
+TEST(KinematicStress, DeadCentresLockOrLeaveBothWays) {
+  for (unsigned seed = 1000; seed < 5000; ++seed) expect_dead_centre(seed);
+}
+
+}  // namespace
+}  // namespace catena::testing
