@@ -101,8 +101,8 @@ struct KnownMotion {
     return places(jets);
   }
   Coordinates acceleration(const Coordinates& at, const Coordinates& rates) const;
-  /// det H at the start.
-  Real constrained_mass() const;
+  /// det H at z.
+  Real constrained_mass(const Coordinates& at) const;
 
  private:
   using Matrix = std::array<std::array<Real, most_freedoms + 1>, most_freedoms>;
@@ -136,9 +136,9 @@ inline KnownMotion::Matrix KnownMotion::mass_matrix(
   return h;
 }
 
-inline Real KnownMotion::constrained_mass() const {
+inline Real KnownMotion::constrained_mass(const Coordinates& at) const {
   const std::size_t n = static_cast<std::size_t>(freedoms);
-  Matrix h = mass_matrix(directions(z));
+  Matrix h = mass_matrix(directions(at));
   Real determinant = 1;
   for (std::size_t i = 0; i < n; ++i) {
     determinant *= h[i][i];

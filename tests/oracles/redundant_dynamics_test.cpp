@@ -30,7 +30,7 @@ class MasslessMotion : public ::testing::TestWithParam<int> {};
 TEST_P(MasslessMotion, IsTheKnownOne) {
   check([](unsigned seed) { return draw_massless(GetParam(), seed); });
 }
-INSTANTIATE_TEST_SUITE_P(Kinds, MasslessMotion, ::testing::Range(0, number_of_massless_kinds + number_of_kinds));
+INSTANTIATE_TEST_SUITE_P(Kinds, MasslessMotion, ::testing::Range(0, all_massless_kinds));
 
 }  // namespace
 }  // namespace catena

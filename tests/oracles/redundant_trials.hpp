@@ -155,7 +155,7 @@ inline std::optional<KnownMotion> draw_redundant(int kind, unsigned seed) {
 /// A mechanism with massless bodies: first the kinds of massless_mechanisms.hpp, then those with redundant equations.
 inline std::optional<KnownMotion> draw_massless(int kind, unsigned seed) {
   if (kind < number_of_massless_kinds) return MasslessMechanism(kind, seed).motion();
-  std::optional<KnownMotion> motion = draw_redundant(kind - number_of_massless_kinds, seed);
+  std::optional<KnownMotion> motion = draw_redundant(massless_variants[kind - number_of_massless_kinds], seed);
   if (motion && !make_some_massless(*motion, seed)) return {};
   return motion;
 }

@@ -63,10 +63,11 @@ INSTANTIATE_TEST_SUITE_P(Kinds, RedundantDynamics, ::testing::Range(0, number_of
 class MasslessDynamics : public ::testing::TestWithParam<int> {};
 TEST_P(MasslessDynamics, FollowsTheKnownMotion) {
   const int kind = GetParam(), own = number_of_massless_kinds;
-  const std::string name = kind < own ? massless_kinds[kind] : std::string("massless: ") + redundant_kinds[kind - own];
+  const std::string name =
+      kind < own ? massless_kinds[kind] : std::string("massless: ") + redundant_kinds[massless_variants[kind - own]];
   check_kind(name, [](unsigned seed) { return draw_massless(GetParam(), seed); });
 }
-INSTANTIATE_TEST_SUITE_P(Kinds, MasslessDynamics, ::testing::Range(0, number_of_massless_kinds + number_of_kinds));
+INSTANTIATE_TEST_SUITE_P(Kinds, MasslessDynamics, ::testing::Range(0, all_massless_kinds));
 
 }  // namespace
 }  // namespace catena
