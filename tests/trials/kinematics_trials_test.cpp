@@ -105,6 +105,21 @@ TEST(KinematicTrials, AStartInADeadCentreIsLockUp) {
   EXPECT_NEAR(run.last("rod.to.x", 1), 4, 1e-12);
 }
 
+// The piston reaches its dead centre at the last row, where the crank's speed is no number.
+TEST(KinematicTrials, ADeadCentreOnARowIsLockUp) {
+  const TextRun run = run_text(R"({"catena": 1,
+    "bodies": {"crank": {"angle": 1.26, "points": {"b": [1, 0]}}, "rod": {"position": [0.3, 0.95], "angle": -0.32, "points": {"b": [3, 0]}}},
+    "constraints": [{"type": "revolute", "i": "ground", "j": "crank"}, {"type": "revolute", "i": "crank.b", "j": "rod"},
+                    {"type": "absolute_y", "i": "rod.b", "value": 0}],
+    "drivers": [{"type": "absolute_x", "i": "rod.b", "value": {"polynomial": [3.5, 0.5]}}],
+    "outputs": ["crank.angle", "crank.omega"], "analyses": [{"type": "kinematics", "until": 1, "every": 0.25}]})");
+  EXPECT_EQ(run.analysis().report.status, Status::lock_up) << run.analysis().report.message;
+  ASSERT_EQ(run.column("t").size(), 5u);
+  EXPECT_NEAR(run.last("t"), 1, 1e-9);
+  EXPECT_NEAR(run.last("crank.angle"), 0, 1e-5);
+  EXPECT_TRUE(std::isnan(run.last("crank.omega")));
+}
+
 TEST(KinematicTrials, AFlatSketchIsAssembled) {
   const TextRun run = run_trial("flat_sketch");
   expect_ok(run);

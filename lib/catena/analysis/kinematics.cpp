@@ -36,6 +36,11 @@ constexpr double start_distance = 0.02;
 // Redundant rows that velocities and accelerations miss by more than the first part of them are a reason to look for
 // better rows, by more than the second a contradiction.
 constexpr double doubtful_rates = 1e-11, contradictory_rates = 1e-6;
+// A row whose smallest pivot has fallen to this part of the most that it has been is as near to a dead point as
+// positions can tell: they meet the constraints to 1e-12, the square of the distance.
+constexpr double locked_part = 1e-5;
+// The factors at hand may be those of an iterate before: where they are no better than this the pivots are looked at.
+constexpr double suspicious_part = 1e-4;
 // Rates of redundant rows are checked at the first of so many rows where nobody asks for them: they cost as much as the
 // positions, whose own residual is checked at every step.
 constexpr std::int64_t rows_between_checks = 16;
@@ -257,6 +262,27 @@ Report Kinematics::lock_up(SingularPoint point) {
   return report;
 }
 
+// The present configuration, if it is a dead point to rounding, at which velocities are numbers without meaning.
+std::optional<SingularPoint> Kinematics::dead_point_here() {
+  if (!(solver_.factor_at(q_) > 0)) return std::nullopt;
+  const auto margins = solver_.block_margins();
+  bool near = false;
+  for (std::size_t k = 0; k < margins.size() && k < largest_margins_.size(); ++k) {
+    near = near || std::abs(margins[k].pivot) < locked_part * largest_margins_[k];
+  }
+  std::vector<double> w(at(plan_->rows)), nu(w), z(q_.size());
+  if (!near || !solver_.null_vectors(w, z)) return std::nullopt;
+  evaluator_.nu(nu);
+  if (!(disagreement(evaluator_, w, nu) > clear_disagreement)) return std::nullopt;
+  SingularPoint point;
+  point.kind = SingularPoint::Kind::lock_up;
+  point.t = t_;
+  point.q = q_;
+  point.name_bodies(evaluator_, std::span(&z, 1));
+  point.find_driver(evaluator_, w, nu);
+  return point;
+}
+
 // Q - M qdd by columns, at the evaluator's configuration.
 void Kinematics::scatter_applied_forces(std::span<const double> qd, std::span<const double> qdd) {
   applied_.resize(at(plan_->coordinates()));
@@ -425,6 +451,9 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& asked, RowObse
     Needs checked = needs;
     if (plan_->rows > plan_->columns && k % rows_between_checks == 0) checked.velocity = checked.acceleration = true;
     if (const Report solved = find_rates(checked); !solved.ok()) return end(solved);
+    if (!on_bridge_ && solver_.rcond() < suspicious_part) {
+      if (std::optional<SingularPoint> point = dead_point_here()) return end(lock_up(std::move(*point)));
+    }
     if (!check_redundant_rates(doubtful_rates, false).ok() && choose_better_rows()) {
       // The rows in use determined something badly, others do it well.
       solver_.solve_position(q_);

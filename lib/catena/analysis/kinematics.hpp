@@ -77,6 +77,7 @@ class Kinematics {
   Report get_ready(double direction);
   Report prepare(double direction);
   Report lock_up(SingularPoint point);
+  std::optional<SingularPoint> dead_point_here();
   Report follow_to(double t);
   Report find_rates(const Needs& needs);
   void find_ways(SingularPoint& point, double direction);
