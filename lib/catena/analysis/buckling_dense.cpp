@@ -34,6 +34,8 @@ constexpr int samples = 6;
 constexpr double farthest = 1e8;
 // How closely a load is found, in parts of its distance.
 constexpr double located = 1e-14;
+// Loads in closed form are known to 1e-16 of the steepest rate of change: up to here, in parts of its inverse, well.
+constexpr double well_known = 1e3;
 // Half width, in parts of the distance, of the bracket that confirms a load in closed form.
 constexpr double confirming = 1e-5;
 
@@ -136,10 +138,11 @@ class Buckling::Search {
 
   std::vector<Root> roots;
 
-  /// All roots between two distances with these mu; recursively where a dip is found.
-  void between(double a, const Eigen::VectorXd& mu_a, double b, const Eigen::VectorXd& mu_b) {
+  /// All roots between two distances with these mu; `known`: where they are, if that is known.
+  void between(double a, const Eigen::VectorXd& mu_a, double b, const Eigen::VectorXd& mu_b, double known = 0) {
     for (int k = 0; k < static_cast<int>(mu_a.size()); ++k) {
-      if ((mu_a[k] < 0) != (mu_b[k] < 0)) roots.push_back({bracketed(k, a, mu_a[k], b, mu_b[k]), k});
+      if ((mu_a[k] < 0) == (mu_b[k] < 0)) continue;
+      roots.push_back({known != 0 ? known : bracketed(k, a, mu_a[k], b, mu_b[k]), k});
     }
   }
 
@@ -261,7 +264,7 @@ Report Buckling::find_by_dense(std::vector<Load>& loads, const std::function<boo
       // Outside what the scene allows there are no loads.
       if (mu_a.size() > 0 && mu_b.size() > 0) {
         const std::size_t before = search.roots.size();
-        search.between(a, mu_a, b, mu_b);
+        search.between(a, mu_a, b, mu_b, std::abs(distances[k]) * steepest < well_known ? distances[k] : 0);
         linear = search.roots.size() - before >= end - k;
       }
       k = end;
