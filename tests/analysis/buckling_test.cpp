@@ -52,7 +52,7 @@ TEST(Buckling, OfADiscreteColumnPinnedAtBothEnds) {
     }
     EXPECT_EQ(report.counters.symbolic, 1);
     // Multipliers at the first steps, and at the sides of every load that is confirmed.
-    EXPECT_LE(report.counters.factorizations, count > 500 ? 8 : 80);
+    EXPECT_LE(report.counters.factorizations, count > 500 ? 8 : 30);
   }
 }
 
@@ -120,7 +120,9 @@ TEST(Buckling, SaysWhenTheLoadMovesTheEquilibrium) {
   const BucklingReport report = buckle(model_at, 0, 1);
   ASSERT_TRUE(report.ok()) << report.message;
   ASSERT_EQ(report.warnings.size(), 1u);
-  EXPECT_NE(report.warnings[0].find("moves the equilibrium"), std::string::npos);
+  EXPECT_NE(report.warnings[0].find("moves the equilibrium"), std::string::npos) << report.warnings[0];
+  // In place, the weight and the load take what the spring gives: 1 - 0.5 - P.
+  EXPECT_NEAR(report.loads.at(0), 0.5, 1e-9);
 }
 
 TEST(Buckling, SaysThatAParameterDoesNothing) {

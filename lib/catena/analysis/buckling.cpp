@@ -115,7 +115,9 @@ Report Buckling::stiffness_at(double p, KktMatrix& matrix) {
             "follows it",
             {}};
   }
-  moves_ = moves_ || !balance_loads(system_, loaded.lambda).negligible();
+  // The multipliers are needed whether or not it is known already that the load moves the equilibrium.
+  const bool moves = !balance_loads(system_, loaded.lambda).negligible();
+  moves_ = moves_ || moves;
   matrix.set_hessian(evaluator_, loaded.lambda, Curvature::exact);
   matrix.complete(system_.jacobian(), 0);
   return {};

@@ -26,7 +26,9 @@ constexpr double least_change = 0.02, most_change = 0.5;
 // Factors by which the first step is looked for, and how often.
 constexpr double coarse = 1e3, fine = 4;
 constexpr int most_tries = 100;
-// Deviation from a straight line that is rounding, and the part of the largest rate of change that is no change.
+// Rounding of a stiffness with its multipliers, in parts of the largest.
+constexpr double stiffness_rounding = 64 * std::numeric_limits<double>::epsilon();
+// Deviation from a straight line that is none, and the part of the largest rate of change that is no change.
 constexpr double straight = 1e-10, no_change = 1e-11;
 // The search outwards: samples an octave, and how far, in first steps. Beyond, a load would be 1e8 times what already
 // changes the stiffness visibly.
@@ -34,6 +36,8 @@ constexpr int samples = 6;
 constexpr double farthest = 1e8;
 // How closely a load is found, in parts of its distance.
 constexpr double located = 1e-14;
+// Loads in closed form are known to 1e-16 of the steepest rate of change: up to here, in parts of its inverse, well.
+constexpr double well_known = 1e3;
 // Half width, in parts of the distance, of the bracket that confirms a load in closed form.
 constexpr double confirming = 1e-5;
 
@@ -79,6 +83,7 @@ class Buckling::Spectrum {
                           describe_free_motions(static_cast<int>(free.size()), names_of_moving(system, lambda, free))),
               {}};
     }
+    rounding_ = stiffness_rounding * solver.eigenvalues()[f - 1] / solver.eigenvalues()[0];
     metric_ = solver.eigenvectors() * solver.eigenvalues().cwiseSqrt().cwiseInverse().asDiagonal();
     return {};
   }
@@ -97,6 +102,8 @@ class Buckling::Spectrum {
     return false;
   }
   const Eigen::MatrixXd& now() const { return now_; }
+  /// What rounding of the stiffest makes of it in the metric of the softest.
+  double rounding() const { return rounding_; }
   Report& report() { return report_; }
 
   /// mu, ascending; empty where there is none.
@@ -121,6 +128,7 @@ class Buckling::Spectrum {
   MotionGroup& group_;
   KktMatrix matrix_;
   Eigen::MatrixXd metric_, now_;
+  double rounding_ = 0;
   Report report_;
 };
 
@@ -136,10 +144,11 @@ class Buckling::Search {
 
   std::vector<Root> roots;
 
-  /// All roots between two distances with these mu; recursively where a dip is found.
-  void between(double a, const Eigen::VectorXd& mu_a, double b, const Eigen::VectorXd& mu_b) {
+  /// All roots between two distances with these mu; `known`: where they are, if that is known.
+  void between(double a, const Eigen::VectorXd& mu_a, double b, const Eigen::VectorXd& mu_b, double known = 0) {
     for (int k = 0; k < static_cast<int>(mu_a.size()); ++k) {
-      if ((mu_a[k] < 0) != (mu_b[k] < 0)) roots.push_back({bracketed(k, a, mu_a[k], b, mu_b[k]), k});
+      if ((mu_a[k] < 0) == (mu_b[k] < 0)) continue;
+      roots.push_back({known != 0 ? known : bracketed(k, a, mu_a[k], b, mu_b[k]), k});
     }
   }
 
@@ -238,10 +247,11 @@ Report Buckling::find_by_dense(std::vector<Load>& loads, const std::function<boo
   // Linear, going by one more place: the loads in closed form, confirmed one by one.
   Search search(spectrum, present);
   const Eigen::MatrixXd slope = (spectrum.now() - unit) / (side * step);
+  const double none = straight * change + spectrum.rounding();
   bool linear = spectrum.evaluate(present + 3 * side * step) &&
-                (spectrum.now() - unit - 3 * side * step * slope).cwiseAbs().maxCoeff() <= straight * change;
+                (spectrum.now() - unit - 3 * side * step * slope).cwiseAbs().maxCoeff() <= none;
   linear = linear && spectrum.evaluate(present - side * step) &&
-           (spectrum.now() - unit + side * step * slope).cwiseAbs().maxCoeff() <= straight * change;
+           (spectrum.now() - unit + side * step * slope).cwiseAbs().maxCoeff() <= none;
   if (linear) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(slope, Eigen::EigenvaluesOnly);
     const double steepest = solver.eigenvalues().cwiseAbs().maxCoeff();
@@ -261,7 +271,7 @@ Report Buckling::find_by_dense(std::vector<Load>& loads, const std::function<boo
       // Outside what the scene allows there are no loads.
       if (mu_a.size() > 0 && mu_b.size() > 0) {
         const std::size_t before = search.roots.size();
-        search.between(a, mu_a, b, mu_b);
+        search.between(a, mu_a, b, mu_b, std::abs(distances[k]) * steepest < well_known ? distances[k] : 0);
         linear = search.roots.size() - before >= end - k;
       }
       k = end;

@@ -81,7 +81,10 @@ std::vector<AnalysisDescription> describe_all() {
              "largest difference of the two at its rows, which are those of the finer run"},
             {"events", KeyKind::events, "what to watch for, and what to do then"}}),
       make("equilibrium", "A configuration at rest, and whether it is stable.",
-           "energy, stable, negative_modes, residual, solver, iterations, active (the closed gaps), equilibria", false,
+           "energy, stable, negative_modes, free_motions and moving_freely (what nothing resists to second order), "
+           "residual, "
+           "solver, iterations, active (the closed gaps), equilibria",
+           false,
            {outputs,
             at_time,
             tolerance,
@@ -106,7 +109,7 @@ std::vector<AnalysisDescription> describe_all() {
            "Values of a load parameter at which the current equilibrium, kept in place, loses its stability.", "loads",
            false, {outputs, at_time, parameter, {"count", KeyKind::whole, "how many loads (default 1)"}}),
       make("modes", "Small undamped oscillations about the current configuration at rest: omega^2 ascending.",
-           "omega2, omega, unstable", false,
+           "omega2, omega, unstable, free_motions and moving_freely (those with omega2 = 0)", false,
            {outputs,
             at_time,
             {"count", KeyKind::whole, "how many modes (default: all, at most ten)"},

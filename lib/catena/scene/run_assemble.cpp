@@ -151,10 +151,6 @@ void run_check(AnalysisContext& context, AnalysisResult& result) {
   std::optional<FreeMotions> free;
   if (outcome.ok() && mobility.dof() > 0) free = find_free_motions(context.model, analysis.state());
   const bool any_free = free && free->count > 0;
-  if (any_free) {
-    report.warnings.push_back(fmt::format("nothing resists {} to second order: no spring and no load holds them",
-                                          describe_free_motions(free->count, free->bodies)));
-  }
   if (outcome.ok()) {
     warn_of_closed_gaps(analysis.evaluator(), report);
     check_velocities(analysis, model, report);
