@@ -1,4 +1,6 @@
 // Dynamics where a curve or a table of an element ends: the run ends at that instant, with the rows before it.
+#include <algorithm>
+
 #include "catena/analysis/dynamics.hpp"
 
 namespace catena {

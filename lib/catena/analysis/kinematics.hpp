@@ -142,11 +142,7 @@ class Kinematics {
   KinematicsOptions options_;
   DrivenSolver solver_;
   WatchedElements watched_;
-  struct Excess {
-    double t, parts;
-  };
-  std::vector<Excess> excesses_;  // beyond the ends of curves, at the last two steps
-  double excess_ = 0;             // at the step that is tried
+  std::vector<double> places_[3], halfway_;  // on curves that end: where a step begins, halfway, where it ends
   Predictor predictor_;
   std::optional<AssemblyOutcome> assembled_;
   bool prepared_ = false, placed_ = false;  // the constraints drive it; the solver is where q_ is

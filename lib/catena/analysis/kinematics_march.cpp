@@ -10,6 +10,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <stdexcept>
 
 #include "catena/analysis/kinematics.hpp"
 #include "catena/analysis/time_coverage.hpp"
@@ -47,7 +49,9 @@ constexpr double longest_way = 1e3;
 // Steps made after one that failed before their length may grow again.
 constexpr int patience = 2;
 // Least number of steps between rows where the ends of curves are watched.
-constexpr double steps_to_a_row = 8;
+constexpr double steps_to_a_row = 32;
+// Of the place on such a curve within a step, in parts of the curve: more is too coarse, less needs no closer look.
+constexpr double largest_bend = 0.05, smallest_bend = 1e-9;
 
 }  // namespace
 
@@ -109,22 +113,35 @@ Kinematics::StepOutcome Kinematics::try_step(double t, bool ignore_dips) {
   return dipped && !ignore_dips ? StepOutcome::dipped : StepOutcome::made;
 }
 
-// Whether a curve or table is left at (t, trial_), or was between the last steps and this one: the parabola through how
-// far beyond their ends the three are tells.
+// Whether a curve or table is left at (t, trial_) or on the way there, or might be: the parabola through the places at
+// the step's ends and halfway tells, and is trusted to a part of its bend.
 bool Kinematics::leaves_curve(double t) {
   evaluator_.set_configuration(trial_);
-  excess_ = watched_.excess();
-  const double allowed = WatchedElements::allowed_excess;
-  if (excess_ > allowed || !watched_.check().ok()) return true;
-  const std::size_t n = excesses_.size();
-  if (n >= 2 && excesses_[n - 1].t == t_) {
-    const auto [ta, a] = excesses_[n - 2];
-    const auto [tb, b] = excesses_[n - 1];
-    const double before = (b - a) / (tb - ta), after = (excess_ - b) / (t - tb), bend = (after - before) / (t - ta);
-    const double top = (ta + tb) / 2 - before / (2 * bend);
-    if (bend < 0 && (top - ta) * (top - t) < 0 && a + (top - ta) * (before + bend * (top - tb)) > allowed) return true;
+  if (!watched_.check().ok()) return true;
+  watched_.find_places(places_[2]);
+  halfway_ = q_;
+  for (std::size_t k = 0; k < halfway_.size(); ++k) halfway_[k] += (trial_[k] - q_[k]) / 2;
+  evaluator_.set_time(t_ + (t - t_) / 2);
+  const bool found = solver_.solve_position(halfway_).converged;
+  watched_.find_places(places_[1]);
+  evaluator_.set_time(t_);
+  evaluator_.set_configuration(q_);
+  watched_.find_places(places_[0]);
+  evaluator_.set_time(t);
+  evaluator_.set_configuration(trial_);
+  bool leaves = !found;
+  for (std::size_t k = 0; k < places_[0].size(); ++k) {
+    const double a = places_[0][k], m = places_[1][k], b = places_[2][k], bend = a - 2 * m + b;
+    const double turn = (b - a) / (2 * bend);  // half steps before the middle
+    leaves |= std::abs(bend) > largest_bend;
+    if (!(std::abs(turn) < 1)) continue;
+    const double top = m - bend * turn * turn / 2, beyond = std::max(-top, top - 1);
+    leaves |= beyond > WatchedElements::allowed_excess;
+    leaves |= std::abs(bend) > smallest_bend && beyond > -std::abs(bend);
   }
-  return false;
+  // The factors are to be those of the step's end.
+  solver_.factor_at(trial_);
+  return leaves;
 }
 
 // Extrapolation is exact for constants but for rounding, which nothing corrects where there is no unknown.
@@ -209,10 +226,6 @@ Report Kinematics::follow_to(double t) {
       ++made_since_failure;
       remember_margins();
       if (const Report consistent = check_redundant_rows(); !consistent.ok()) return consistent;
-      if (watched_.has_ends()) {
-        if (excesses_.size() >= 2) excesses_.erase(excesses_.begin());
-        excesses_.push_back({t_, excess_});
-      }
       if (chosen_rcond_ > 0 && solver_.rcond() < drifted * chosen_rcond_) choose_better_rows();
       if (t_ != t) {
         if (observer_ && !observer_->proceed(t_)) return cancelled();
@@ -237,11 +250,9 @@ Report Kinematics::follow_to(double t) {
       if (!(step < tiny || t_ + direction * step == t_)) continue;
       evaluator_.set_configuration(trial_);
       Report left = watched_.check();
+      if (left.ok()) return stuck(next);
       left.warnings = std::move(report.warnings);
-      if (!left.ok()) return left;
-      report.warnings = std::move(left.warnings);
-      excesses_.clear();  // the parabola was mistaken
-      continue;
+      return left;
     }
     const double length = std::abs(next - t_);
     if (length < try_again * first_trial) attempt = 0;

@@ -42,12 +42,13 @@ Report WatchedElements::check() const {
   return report;
 }
 
-double WatchedElements::excess() const {
-  double most = -std::numeric_limits<double>::infinity();
+void WatchedElements::find_places(std::vector<double>& out) const {
+  out.clear();
   for (int element : ending_) {
-    if (const std::optional<CurveUse> use = evaluator_.curve_use(element)) most = std::max(most, use->excess());
+    const std::optional<CurveUse> use = evaluator_.curve_use(element);
+    out.push_back(use ? (use->parameter - use->first) / (use->last - use->first)
+                      : std::numeric_limits<double>::quiet_NaN());
   }
-  return most;
 }
 
 Report WatchedElements::check_ends() const {

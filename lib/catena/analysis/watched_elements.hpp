@@ -21,10 +21,11 @@ class WatchedElements {
   Report check() const;
   /// The part of it about curves and tables that end.
   Report check_ends() const;
-  /// Whether any element could leave a curve; by how much, in parts of the whole, the one does that is furthest beyond
-  /// the end of its own, at the evaluator's configuration: negative where none is.
+  /// Whether any element could leave a curve.
   bool has_ends() const { return !ending_.empty(); }
-  double excess() const;
+  /// Where each of these is at the evaluator's configuration: 0 and 1 are the ends of its curve; NaN where it asks
+  /// nothing of it.
+  void find_places(std::vector<double>& out) const;
   /// An excess above this one is no rounding.
   static constexpr double allowed_excess = 2e-9;
 

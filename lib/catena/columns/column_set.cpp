@@ -165,7 +165,6 @@ ColumnSet ColumnSet::resolve(const Model& model, const Plan& plan, std::span<con
     throw std::invalid_argument("columns: the plan is that of another model");
   ColumnSet set;
   set.coordinates_ = static_cast<std::size_t>(plan.coordinates());
-  set.rows_ = static_cast<std::size_t>(plan.rows);
   set.only_angles_ = plan.rows > 0 && std::all_of(plan.row_is_angle.begin(), plan.row_is_angle.end(), std::identity());
   Resolver resolver(model, plan, sources);
   std::vector<NamedColumn> named = named_columns(model, names, sources.timed);

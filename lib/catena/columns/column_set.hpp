@@ -59,8 +59,8 @@ class ColumnSet {
   std::vector<Column> columns_;
   Needs needs_;
   std::vector<std::string> notes_;
-  std::size_t coordinates_ = 0, rows_ = 0;  // of the plan
-  bool only_angles_ = false;                // all rows of constraints are angles: so is their residual
+  std::size_t coordinates_ = 0;  // of the plan
+  bool only_angles_ = false;     // all rows of constraints are angles: so is their residual
 };
 
 }  // namespace catena
