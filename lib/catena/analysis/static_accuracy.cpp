@@ -32,19 +32,17 @@ std::vector<double> sum_terms(const StaticSystem& system, std::span<const double
   return sum;
 }
 
-// Adds, by columns, what places known to one part in one make of every element's force.
-void add_stiffness_times_places(StaticSystem& system, std::span<double> sum) {
+// Adds, by columns, what places known to one part in one make of every element's force, constraints' included.
+void add_stiffness_times_places(StaticSystem& system, std::span<const double> lambda, std::span<double> sum) {
   const Plan& plan = system.plan();
   const Evaluator& evaluator = system.evaluator();
   const std::span<const Frame<double>> frames = evaluator.frames();
   const auto moves = [&](int b) { return b >= 0 && b < plan.moving; };
   const auto reach = [&](int b) { return moves(b) ? norm(frames[at(b)].origin()) + system.radius()[at(b)] : 0.0; };
-  evaluator.visit_stiffness({}, [&](int i, int j, const ElementMatrix& m) {
-    // Of two bodies: how far they are apart; of one on the ground: the length scale.
-    const double apart = moves(i) && moves(j)
-                             ? norm(evaluator.ground_frame(i).origin() - evaluator.ground_frame(j).origin())
-                             : system.length();
-    const double length = apart + reach(i) + reach(j);
+  const auto place = [&](int b) { return b >= 0 ? evaluator.ground_frame(b).origin() : Vec2<double>{}; };
+  const auto add = [&](int i, int j, const ElementMatrix& m) {
+    // How far two bodies are apart, or a body and the ground's origin, from where places in the ground are given.
+    const double length = std::max(norm(place(i) - place(j)), system.length()) + reach(i) + reach(j);
     for (int row = 0; row < 6; ++row) {
       const int body = row < 3 ? i : j;
       const int c = moves(body) ? plan.column[at(3 * body + row % 3)] : -1;
@@ -55,7 +53,9 @@ void add_stiffness_times_places(StaticSystem& system, std::span<double> sum) {
         sum[at(c)] += std::abs(m[at(6 * row + k)]) * size;
       }
     }
-  });
+  };
+  evaluator.visit_stiffness({}, add);
+  evaluator.visit_constraint_hessians(lambda, add);
 }
 
 }  // namespace
@@ -84,7 +84,7 @@ StaticAccuracy judge_balance(StaticSystem& system, std::span<const double> lambd
   result.balanced = finite && !shows && result.residual <= tolerance * result.forces;
   if (result.balanced || !finite) return result;
   std::vector<double> floor = terms;
-  add_stiffness_times_places(system, floor);
+  add_stiffness_times_places(system, lambda, floor);
   bool rounded = true;
   double worst = -1;
   for (int c = 0; c < plan.columns; ++c) {

@@ -4,12 +4,12 @@
 //   forces_c = sum of |terms of r_c|: every element's force, gravity, every constraint's part
 //   rounding_c = 4 eps (forces_c + sum over elements, j of |K_cj| s_j)
 //
-// K an element's stiffness, s_j the size of the numbers from which its places are formed (m; 1 rad and the angle):
-// a place is known to eps s, so that a spring of k N/m is known to no better than eps k s, whatever is done. Balanced:
-// max |r| <= tolerance x max forces_c. Rounded: |r_c| <= rounding_c everywhere. Neither counts where a part of the
-// loads is left that would show (`shown`): forces of springs under prestress, or rounding of very stiff ones, may be
-// larger than all that they carry. Source: Higham, Accuracy and Stability of Numerical Algorithms, section 3.1 (running
-// error).
+// K an element's stiffness, of constraints lambda Phi_qq, s_j the size of the numbers from which its places are formed
+// (m; 1 rad and the angle): a place is known to eps s, so that a spring of k N/m is known to no better than eps k s,
+// whatever is done. Balanced: max |r| <= tolerance x max forces_c. Rounded: |r_c| <= rounding_c everywhere. Neither
+// counts where a part of the loads is left that would show (`shown`): forces of springs under prestress, or rounding of
+// very stiff ones, may be larger than all that they carry. Source: Higham, Accuracy and Stability of Numerical
+// Algorithms, section 3.1 (running error).
 #pragma once
 
 #include <span>

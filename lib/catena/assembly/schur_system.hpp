@@ -88,6 +88,8 @@ class SchurSystem {
   /// Smallest part of a diagonal entry of S that elimination left: sin^2 of the angle between a row and those before.
   double smallest_pivot_ratio() const { return smallest_ratio_; }
   int weakest_row() const { return weakest_row_; }
+  /// Diagonal entry of S + C that belongs to the row; 1 where nothing that it touches can move.
+  double diagonal(int row) const { return diagonal_values_[static_cast<std::size_t>(row)]; }
   /// What elimination left of the row's diagonal entry of S + C.
   double pivot(int row) const { return factors_.pivot(row); }
   bool is_regularised() const { return regularised_; }

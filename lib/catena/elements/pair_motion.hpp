@@ -19,10 +19,7 @@ struct PairGeometry {
   Vec2<double> arm_i, arm_j, h;  // A_i s'Pi, A_j s'Pj, h
 
   PairGeometry(const Arguments<double>& a, const Vec2<double>& s_i, const Vec2<double>& s_j)
-      : arm_i(a.i.axis(s_i)),
-        arm_j(a.j.axis(s_j)),
-        // Of the ground, far off, both parts of a place are large and their sum is not: it comes first.
-        h(Vec2<double>{a.j.x + arm_j.x, a.j.y + arm_j.y} - Vec2<double>{a.i.x + arm_i.x, a.i.y + arm_i.y}) {}
+      : arm_i(a.i.axis(s_i)), arm_j(a.j.axis(s_j)), h(Vec2<double>{a.j.x - a.i.x, a.j.y - a.i.y} + (arm_j - arm_i)) {}
 };
 
 struct PairMotion : PairGeometry {

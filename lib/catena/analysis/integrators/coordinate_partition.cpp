@@ -46,17 +46,13 @@ bool CoordinatePartition::factorize() {
   return true;
 }
 
-// The directions that the motion is integrated without, in the metric used here: rows then have the sizes row_square_.
+// The directions that the motion is integrated without, in the metric used here.
 void CoordinatePartition::leave_out() {
   SparseVectors directions = equations_.left_out();
   const std::vector<double> ours = system_.row_sizes(), theirs = equations_.row_sizes();
   for (std::size_t n = 0; n < directions.index.size(); ++n) {
     const auto row = at(directions.index[n]);
     directions.value[n] *= theirs[row] > 0 ? ours[row] / theirs[row] : 0;
-  }
-  for (std::size_t r = 0; r < ours.size(); ++r) row_square_[r] = ours[r] > 0 ? ours[r] * ours[r] : 1;
-  for (std::size_t n = 0; n < directions.index.size(); ++n) {
-    row_square_[at(directions.index[n])] += directions.value[n] * directions.value[n];
   }
   system_.leave_out(std::move(directions));
 }
@@ -73,8 +69,11 @@ bool CoordinatePartition::choose(std::span<const double> q) {
   std::fill(row_square_.begin(), row_square_.end(), 1.0);
   system_.set_masses(all_free_, none_);
   if (!factorize()) return false;
-  leave_out();
-  if (equations_.left_out().count() > 0 && !factorize()) return false;
+  if (equations_.left_out().count() > 0) {
+    leave_out();
+    if (!factorize()) return false;
+  }
+  for (int r = 0; r < plan_.rows; ++r) row_square_[at(r)] = system_.diagonal(r);
   weight_ = all_free_;
   find_tangents(freedoms_);
   pick_independent(freedoms_);

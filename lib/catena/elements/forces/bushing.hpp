@@ -63,7 +63,7 @@ struct Bushing {
   template <class T>
   Vec2<T> offset_rate(const ForceArguments<T>& a) const {
     const Vec2<T> arm_j = a.j.axis(s_j);
-    const Vec2<T> from_i{a.j.x + arm_j.x - a.i.x, a.j.y + arm_j.y - a.i.y};
+    const Vec2<T> from_i{a.j.x - a.i.x + arm_j.x, a.j.y - a.i.y + arm_j.y};
     return in_axes(a.i, Vec2<T>{a.v.vx - a.v.omega * arm_j.y - a.u.vx + a.u.omega * from_i.y,
                                 a.v.vy + a.v.omega * arm_j.x - a.u.vy - a.u.omega * from_i.x});
   }
@@ -73,7 +73,7 @@ struct Bushing {
     const Vec2<T> d = offset(a), rate = offset_rate(a), arm_j = a.j.axis(s_j);
     const Vec2<T> F = a.i.axis(Vec2<T>{T(kx) * d.x + T(cx) * rate.x, T(ky) * d.y + T(cy) * rate.y});
     const T n = T(kt) * (a.j.phi - a.i.phi - T(angle)) + T(ct) * (a.v.omega - a.u.omega);
-    add_force_at(Vec2<T>{a.j.x + arm_j.x - a.i.x, a.j.y + arm_j.y - a.i.y}, F, on_i);
+    add_force_at(Vec2<T>{a.j.x - a.i.x + arm_j.x, a.j.y - a.i.y + arm_j.y}, F, on_i);
     add_force_at(arm_j, -F, on_j);
     on_i.moment += n;
     on_j.moment -= n;
