@@ -62,7 +62,8 @@ void Kinematics::find_limit_of_multipliers() {
   const Stencil* stencil = nullptr;
   for (const Stencil* s : {&around, &before, &after}) {
     const double first = t_ + s->place.front() * step, last = t_ + s->place.back() * step;
-    const bool fits = first >= bridge_.first() && last <= bridge_.last() && functions_go_on(first) && functions_go_on(last);
+    const bool fits =
+        first >= bridge_.first() && last <= bridge_.last() && functions_go_on(first) && functions_go_on(last);
     if (fits && !stencil) stencil = s;
   }
   std::vector<double> pole(rows, 0.0), lambda(rows);

@@ -250,7 +250,7 @@ Report Kinematics::follow_to(double t) {
       if (!(step < tiny || t_ + direction * step == t_)) continue;
       evaluator_.set_configuration(trial_);
       Report left = watched_.check();
-      if (left.ok()) return stuck(next);
+      if (left.ok()) return stuck(next, t);
       left.warnings = std::move(report.warnings);
       return left;
     }

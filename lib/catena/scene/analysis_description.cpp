@@ -81,16 +81,9 @@ std::vector<AnalysisDescription> describe_all() {
              "largest difference of the two at its rows, which are those of the finer run"},
             {"events", KeyKind::events, "what to watch for, and what to do then"}}),
       make("equilibrium", "A configuration at rest, and whether it is stable.",
-<<<<<<< HEAD
-           "energy, stable, negative_modes, free_motions and moving_freely (what nothing resists to second order), "
-           "residual, "
-           "solver, iterations, active (the closed gaps), equilibria",
+           "energy, stable, neutral, negative_modes, free_motions and moving_freely (what nothing resists to second "
+           "order), residual, solver, iterations, active (the closed gaps), equilibria",
            false,
-=======
-           "energy, stable, neutral, negative_modes, residual, solver, iterations, active (the closed gaps), "
-           "equilibria",
-           false,
->>>>>>> statics
            {outputs,
             at_time,
             tolerance,
