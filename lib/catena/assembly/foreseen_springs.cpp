@@ -12,8 +12,9 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr int triangle = 21;
 
+// Elastic cables switch between slack and taut, which a foreseen length would follow back and forth.
 template <class E>
-constexpr bool is_spring = std::is_same_v<E, SpringDamper<double>> || std::is_same_v<E, ElasticCable<double>>;
+constexpr bool is_spring = std::is_same_v<E, SpringDamper<double>>;
 
 }  // namespace
 
@@ -29,8 +30,7 @@ ForeseenSprings::ForeseenSprings(const Evaluator& evaluator, const HessianSlots&
                             .entry = block.entry[at(e)],
                             .i = body(block.body_i[at(e)]),
                             .j = body(block.body_j[at(e)]),
-                            .slot = triangle * e,
-                            .pulls_only = std::is_same_v<E, ElasticCable<double>>});
+                            .slot = triangle * e});
       }
     }
   });
@@ -87,7 +87,6 @@ ForeseenSprings::Geometry ForeseenSprings::geometry_of(const Evaluator& evaluato
 
 std::pair<double, double> ForeseenSprings::law(const Spring& spring, double length) {
   const double stretch = length - spring.free_length;
-  if (spring.pulls_only && !(stretch > 0)) return {0, 0};
   double f = spring.k * stretch + spring.force, slope = spring.k;
   if (spring.curve) {
     const Dual<double, 1> force = spring.curve->force(Dual<double, 1>::variable(stretch, 0));

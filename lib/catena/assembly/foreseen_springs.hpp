@@ -49,7 +49,6 @@ class ForeseenSprings {
     int type, entry;  // place in the model's lists
     int i, j;         // plan bodies, -1: the ground
     int slot;         // the first of 21 in own_: the lower triangle over [q_i, q_j]
-    bool pulls_only;
     Vec2<double> s_i{}, s_j{};
     Vec2<double> apart{};  // h without what bodies' relative frames add
     double k = 0, free_length = 0, force = 0;
