@@ -50,45 +50,47 @@ double mean_force_arm(const Model& model) {
     }
   });
   return count > 0 ? sum / static_cast<double>(count) : 0;
-  void require_same(std::size_t plan, std::size_t model, const char* what) {
-    if (plan == model) return;
-    throw std::invalid_argument("the model has " + std::to_string(model) + " " + what +
-                                ", but the analysis was made for a model with " + std::to_string(plan));
-  }
+}
 
-  /// Throws where elements of `model` are others, or tie other bodies, than the same ones of `known`.
-  void require_same_structure(const Model& known, const Model& model) {
-    require_same(known.bodies.size(), model.bodies.size(), "bodies");
-    require_same(known.elements.size(), model.elements.size(), "elements");
-    const auto differs = [&](const std::string& who) {
-      throw std::invalid_argument("\"" + who + "\" is not what it was in the model that the analysis was made for");
-    };
-    for (std::size_t b = 0; b < known.bodies.size(); ++b) {
-      const auto &was = known.bodies[b], &is = model.bodies[b];
-      if (was.fixed != is.fixed || was.particle != is.particle)
-        differs(std::string(model.body_name(static_cast<int>(b))));
-    }
-    for (std::size_t e = 0; e < known.elements.size(); ++e) {
-      const ElementRecord &was = known.elements[e], &is = model.elements[e];
-      const bool same_list = (was.kind == ElementKind::force) == (is.kind == ElementKind::force);
-      if (!same_list || was.type != is.type || was.index != is.index) {
-        differs(model.element_name(static_cast<int>(e)));
-      }
-    }
-    const auto compare = [&](const auto& all) {
-      for_each_list(all(known), [&](const auto& list, int type) {
-        with_list(all(model), type, [&](const auto& other) {
-          if constexpr (std::is_same_v<decltype(list), decltype(other)>) {
-            for (std::size_t k = 0; k < list.size(); ++k) {
-              if (list[k].i != other[k].i || list[k].j != other[k].j) differs(model.element_name(other[k].id));
-            }
-          }
-        });
-      });
-    };
-    compare([](const Model& m) -> const auto& { return m.constraints; });
-    compare([](const Model& m) -> const auto& { return m.forces; });
+void require_same(std::size_t plan, std::size_t model, const char* what) {
+  if (plan == model) return;
+  throw std::invalid_argument("the model has " + std::to_string(model) + " " + what +
+                              ", but the analysis was made for a model with " + std::to_string(plan));
+}
+
+/// Throws where elements of `model` are others, or tie other bodies, than the same ones of `known`.
+void require_same_structure(const Model& known, const Model& model) {
+  require_same(known.bodies.size(), model.bodies.size(), "bodies");
+  require_same(known.elements.size(), model.elements.size(), "elements");
+  const auto differs = [&](const std::string& who) {
+    throw std::invalid_argument("\"" + who + "\" is not what it was in the model that the analysis was made for");
+  };
+  for (std::size_t b = 0; b < known.bodies.size(); ++b) {
+    const auto &was = known.bodies[b], &is = model.bodies[b];
+    if (was.fixed != is.fixed || was.particle != is.particle)
+      differs(std::string(model.body_name(static_cast<int>(b))));
   }
+  for (std::size_t e = 0; e < known.elements.size(); ++e) {
+    const ElementRecord &was = known.elements[e], &is = model.elements[e];
+    const bool same_list = (was.kind == ElementKind::force) == (is.kind == ElementKind::force);
+    if (!same_list || was.type != is.type || was.index != is.index) {
+      differs(model.element_name(static_cast<int>(e)));
+    }
+  }
+  const auto compare = [&](const auto& all) {
+    for_each_list(all(known), [&](const auto& list, int type) {
+      with_list(all(model), type, [&](const auto& other) {
+        if constexpr (std::is_same_v<decltype(list), decltype(other)>) {
+          for (std::size_t k = 0; k < list.size(); ++k) {
+            if (list[k].i != other[k].i || list[k].j != other[k].j) differs(model.element_name(other[k].id));
+          }
+        }
+      });
+    });
+  };
+  compare([](const Model& m) -> const auto& { return m.constraints; });
+  compare([](const Model& m) -> const auto& { return m.forces; });
+}
 
 }  // namespace
 
