@@ -13,7 +13,9 @@ TEST(PathsOfParticles, FiveThousandOfThem) {
     const std::string fault = particle.check();
     wrong += !fault.empty();
     ended += particle.ended();
-    if (wrong < 20) EXPECT_EQ(fault, "") << seed;
+    if (wrong < 20) {
+      EXPECT_EQ(fault, "") << seed;
+    }
   }
   EXPECT_EQ(wrong, 0);
   EXPECT_GE(ended, 4950);

@@ -55,8 +55,9 @@ Report Dynamics::start() {
   }
   account_.reset();
   const bool conserves = BalanceWatch::conserves(evaluator_);
-  // Where constraints are redundant the work is summed up for the check alone.
-  if (needs_.work || (!conserves && redundant_.count() > 0)) account_.emplace(evaluator_);
+  // Where constraints are redundant or parts massless the work is summed up for the check alone.
+  const bool delicate = redundant_.count() > 0 || !equations_.masses().massless.empty();
+  if (needs_.work || (!conserves && delicate)) account_.emplace(evaluator_);
   balance_.reset();
   if ((account_ || conserves) && options_.step == 0) balance_.emplace();
   driver_work_.assign(account_ ? model_->elements.size() : 0, 0.0);
