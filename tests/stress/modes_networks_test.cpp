@@ -11,7 +11,9 @@ TEST(ModesOfNetworks, TenThousandOfThem) {
   for (unsigned seed = 1001; seed <= 11000; ++seed) {
     const std::string difference = compare_modes(seed);
     wrong += !difference.empty();
-    if (wrong < 20) EXPECT_EQ(difference, "");
+    if (wrong < 20) {
+      EXPECT_EQ(difference, "");
+    }
   }
   EXPECT_EQ(wrong, 0);
 }
