@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/motion_groups.hpp"
+
 namespace catena {
 namespace {
 
@@ -104,7 +106,7 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
   std::fill(lambda.begin(), lambda.end(), 0.0);
   // Where constraints have no second derivatives the first step needs no multipliers.
   const bool prepare = !system.has_linear_constraints() || system.phi_norm() > restored;
-  if (prepare && (!first_multipliers(system, lambda) || !restore_constraints(system, q))) {
+  if (prepare && (!first_multipliers(system, lambda, true) || !restore_constraints(system, q))) {
     outcome.end = StaticEnd::singular;
     return outcome;
   }
@@ -164,7 +166,11 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
       const double slope = dot(gradient, change);
       // On the constraints the slope is minus the curvature along the step. Where both are rounding the motion is
       // neutral and the step means nothing: forces that balance are left as they are, else the shift holds the motion.
-      if (used == 0 && -slope <= neutral_part * system.matrix().absolute_quadratic(change)) {
+      // Terms that cancel within K, as those of a counterweight, are counted only where forces balance: there alone can
+      // a long step be all rounding.
+      double rounding = used == 0 ? neutral_part * system.matrix().absolute_quadratic(change) : 0;
+      if (used == 0 && balanced) rounding = std::max(rounding, StiffnessFloor(system, lambda, 0)(change));
+      if (used == 0 && -slope <= rounding) {
         if (!balanced) continue;
         outcome.end = StaticEnd::stationary;
         return outcome;
