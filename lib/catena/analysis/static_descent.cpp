@@ -99,7 +99,7 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
   StaticOutcome outcome;
   const Plan& plan = system.plan();
   const std::size_t columns = at(plan.columns);
-  std::vector<double> residual(columns), gradient(columns), change(columns), trial(q.size()),
+  std::vector<double> residual(columns), gradient(columns), change(columns), product(columns), trial(q.size()),
       next_lambda(at(plan.rows));
   const std::vector<double> start(q.begin(), q.end());
   system.move_to(q);
@@ -166,11 +166,14 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
       const double slope = dot(gradient, change);
       // On the constraints the slope is minus the curvature along the step. Where both are rounding the motion is
       // neutral and the step means nothing: forces that balance are left as they are, else the shift holds the motion.
-      // Terms that cancel within K, as those of a counterweight, are counted only where forces balance: there alone can
-      // a long step be all rounding.
-      double rounding = used == 0 ? neutral_part * system.matrix().absolute_quadratic(change) : 0;
-      if (used == 0 && balanced) rounding = std::max(rounding, StiffnessFloor(system, lambda, 0)(change));
-      if (used == 0 && -slope <= rounding) {
+      bool neutral = used == 0 && -slope <= neutral_part * system.matrix().absolute_quadratic(change);
+      if (used == 0 && balanced && !neutral) {
+        // Terms that cancel within K, as those of a counterweight, are not seen there, and a balanced slope is rounding
+        // itself.
+        system.matrix().multiply_stiffness(change, product);
+        neutral = dot(change, product) <= StiffnessFloor(system, lambda, 0)(change);
+      }
+      if (neutral) {
         if (!balanced) continue;
         outcome.end = StaticEnd::stationary;
         return outcome;
