@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "catena/analysis/free_motions.hpp"
 #include "catena/analysis/modes_operator.hpp"
@@ -21,6 +22,9 @@ constexpr double suspicious_part = 1e-6;
 // Stiffnesses below this are none, N/m.
 constexpr double no_stiffness = 1e-100;
 constexpr double rigid_part = 1e6;
+// What regularised rows can make of a stiffness, beside what rounding can: they give way by 1e-10 of what the bodies
+// around them do, and StiffnessFloor counts 2e-13 of the same terms. Measured on balanced arms: up to 10.
+constexpr double most_bias = 500;
 constexpr int usual_steps = 8, most_steps = 40;
 
 // Lanczos with the inverse on the null space of Phi_q, in the metric W, all vectors kept orthogonal.
@@ -63,15 +67,27 @@ class InverseLanczos {
       for (double& x : w) x /= length;
       if (step + 1 < steps) basis_.push_back(w);
     }
-    mode.assign(n, 0.0);
-    for (std::size_t b = 0; b < basis_.size() && b < static_cast<std::size_t>(ritz.size()); ++b) {
-      for (std::size_t k = 0; k < n; ++k) mode[k] += ritz[static_cast<Eigen::Index>(b)] * basis_[b][k];
-    }
-    normalise(mode);
+    combine(ritz, mode);
     return best;
   }
 
+  // Of what was found, the smallest |k|, with its sign, and its vector.
+  double softest(std::vector<double>& mode) const {
+    const auto solver = spectrum();
+    Eigen::Index largest = 0;
+    solver.eigenvalues().cwiseAbs().maxCoeff(&largest);
+    combine(solver.eigenvectors().col(largest), mode);
+    return 1 / solver.eigenvalues()[largest];
+  }
+
  private:
+  void combine(const Eigen::VectorXd& ritz, std::vector<double>& mode) const {
+    mode.assign(weights_.size(), 0.0);
+    for (std::size_t b = 0; b < basis_.size() && b < static_cast<std::size_t>(ritz.size()); ++b) {
+      for (std::size_t k = 0; k < mode.size(); ++k) mode[k] += ritz[static_cast<Eigen::Index>(b)] * basis_[b][k];
+    }
+    normalise(mode);
+  }
   // v := top part of the inverse times [W v; 0].
   void apply(std::vector<double>& v) {
     work_.assign(v.size() + at(system_.plan().rows), 0.0);
@@ -90,19 +106,23 @@ class InverseLanczos {
     for (double& x : v) x /= length;
     return true;
   }
-  // Eigenvector of the tridiagonal matrix for the most negative k, else the smallest positive.
-  Eigen::VectorXd lowest_ritz(double& k) const {
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum() const {
     const auto n = static_cast<Eigen::Index>(alpha_.size());
     Eigen::VectorXd diagonal(n), beside(std::max<Eigen::Index>(n - 1, 0));
     for (Eigen::Index i = 0; i < n; ++i) diagonal[i] = alpha_[static_cast<std::size_t>(i)];
     for (Eigen::Index i = 0; i + 1 < n; ++i) beside[i] = beta_[static_cast<std::size_t>(i)];
     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
     solver.computeFromTridiagonal(diagonal, beside);
+    return solver;
+  }
+  // Eigenvector of the tridiagonal matrix for the most negative k, else the smallest positive.
+  Eigen::VectorXd lowest_ritz(double& k) const {
+    const auto solver = spectrum();
     // k = 1 / theta: of negative ones the smallest in size is the lowest of the spectrum that is resolved.
     const Eigen::VectorXd& theta = solver.eigenvalues();
     const double largest = theta.cwiseAbs().maxCoeff();
-    Eigen::Index chosen = n - 1;
-    for (Eigen::Index i = n - 1; i >= 0; --i) {
+    Eigen::Index chosen = theta.size() - 1;
+    for (Eigen::Index i = chosen; i >= 0; --i) {
       if (theta[i] < -1e-6 * largest) {
         chosen = i;
         break;
@@ -117,6 +137,35 @@ class InverseLanczos {
   std::vector<std::vector<double>> basis_;
   std::vector<double> alpha_, beta_, work_;
 };
+
+double stiffness_of(const KktMatrix& matrix, std::span<const double> v) {
+  std::vector<double> product(v.size());
+  matrix.multiply_stiffness(v, product);
+  double sum = 0;
+  for (std::size_t c = 0; c < v.size(); ++c) sum += product[c] * v[c];
+  return sum;
+}
+
+// Scales v so that v^T W v = 1.
+void normalise(const std::vector<double>& weights, std::vector<double>& v) {
+  double square = 0;
+  for (std::size_t c = 0; c < v.size(); ++c) square += weights[c] * v[c] * v[c];
+  if (!(square > 0)) return;
+  for (double& x : v) x /= std::sqrt(square);
+}
+
+// The factors of K project a motion that K does not resist to where rows of compliance eps let it go under the forces
+// mu, K v + Phi_q^T mu = 0: v^T K v = -eps mu^2 < 0, always. Those of W leave nothing. The matrix holds the exact K
+// afterwards, and factors with this shift.
+void keep_to_constraints(StaticSystem& system, std::span<const double> lambda, double shift, std::vector<double>& v) {
+  std::vector<double> work(v.size() + at(system.plan().rows));
+  system.fill_weights();
+  if (system.factorize().ok()) project_to_null_space(system, v, work);
+  system.fill(lambda, Curvature::exact, shift);
+  // A pivot that vanishes now would have vanished before: the same numbers had factors.
+  static_cast<void>(system.factorize());
+  if (shift != 0) system.fill(lambda, Curvature::exact, 0);
+}
 
 }  // namespace
 
@@ -158,34 +207,49 @@ Certificate certify(StaticSystem& system, std::span<const double> lambda) {
     result.stable = result.negative_modes == 0;
     return result;
   }
+  // Whether the softest of all, beside negative ones too, is more than regularised rows and rounding make it.
+  std::vector<double> softest;
+  const double biased = std::abs(lanczos.softest(softest) - (shifted ? floor : 0));
+  std::optional<StiffnessFloor> rounding;
+  if (biased <= suspicious_part * stiffest) rounding.emplace(system, lambda, 0);
+  const bool doubtful = rounding && !nothing && plan.rows > 0 && biased <= most_bias * (*rounding)(softest);
   // The Rayleigh quotient with the true matrix, and what rounding leaves of it. The vector must keep to the constraints
   // exactly: what the regularised factors let it leave them by counts with the whole stiffness.
-  std::vector<double> work(at(plan.columns + plan.rows));
-  project_to_null_space(system, result.mode, work);
-  std::vector<double> product(at(plan.columns));
-  if (shifted) system.fill(lambda, Curvature::exact, 0);
-  matrix.multiply_stiffness(result.mode, product);
-  double quotient = 0;
-  for (std::size_t c = 0; c < product.size(); ++c) quotient += product[c] * result.mode[c];
-  result.softest_stiffness = quotient;
-  result.curvature_floor = neutral_part * matrix.absolute_quadratic(result.mode);
-  if (std::abs(quotient) <= suspicious_part * stiffest) {
-    const StiffnessFloor rounding(system, lambda, 0);
-    result.curvature_floor = std::max(result.curvature_floor, rounding(result.mode));
+  if (doubtful) {
+    result.mode = std::move(softest);
+    keep_to_constraints(system, lambda, shifted ? floor : 0, result.mode);
+    normalise(weights, result.mode);
+  } else {
+    std::vector<double> work(at(plan.columns + plan.rows));
+    project_to_null_space(system, result.mode, work);
+    if (shifted) system.fill(lambda, Curvature::exact, 0);
   }
-  if (std::abs(quotient) <= result.curvature_floor) {
-    result.neutral = true;
-    result.neutral_modes = 1;
+  const double quotient = result.softest_stiffness = stiffness_of(matrix, result.mode);
+  result.curvature_floor = neutral_part * matrix.absolute_quadratic(result.mode);
+  if (rounding) result.curvature_floor = std::max(result.curvature_floor, (*rounding)(result.mode));
+  result.neutral = std::abs(quotient) <= result.curvature_floor;
+  result.neutral_modes = result.neutral ? 1 : 0;
+  // The inertia counts what regularised rows or rounding made negative: counted again without.
+  if (result.neutral || doubtful) {
     if (std::optional<FreeMotions> free = find_free_motions(system, lambda, neutral_part)) {
       result.negative_modes = free->negative;
-      result.neutral_modes = std::max(free->count, 1);
+      result.neutral_modes = std::max(free->count, result.neutral_modes);
+      result.neutral = result.neutral_modes > 0;
       result.free_bodies = std::move(free->bodies);
+      if (free->negative > 0) {
+        result.mode = std::move(free->lowest);
+        normalise(weights, result.mode);
+        result.softest_stiffness = stiffness_of(matrix, result.mode);
+      }
     } else {
-      system.fill(lambda, Curvature::exact, floor);
+      system.fill(lambda, Curvature::exact, std::max(floor, 2 * biased));
       if (system.factorize().ok()) result.negative_modes = matrix.negative_modes();
       system.fill(lambda, Curvature::exact, 0);
+      if (!result.neutral && quotient < 0) result.negative_modes = std::max(result.negative_modes, 1);
     }
-    if (result.free_bodies.empty()) result.free_bodies = names_of_moving(system, lambda, {result.mode});
+    if (result.neutral && result.free_bodies.empty()) {
+      result.free_bodies = names_of_moving(system, lambda, {result.mode});
+    }
   }
   result.stable = result.negative_modes == 0 && !result.neutral;
   return result;

@@ -79,7 +79,7 @@ std::optional<FreeMotions> find_free_motions(StaticSystem& system, std::span<con
   for (Mode& mode : dense.lowest(0, floor)) {
     const bool neutral =
         std::abs(mode.omega2) <= second_order * system.matrix().absolute_quadratic(mode.shape) || mode.omega2 == 0;
-    result.negative += !neutral && mode.omega2 < 0;
+    if (!neutral && mode.omega2 < 0 && ++result.negative == 1) result.lowest = mode.shape;
     if (!neutral) continue;
     const auto moved = std::find_if(mode.shape.begin(), mode.shape.end(), [](double v) { return v != 0; });
     const auto column = static_cast<std::size_t>(moved - mode.shape.begin());

@@ -19,7 +19,8 @@ namespace catena {
 struct FreeMotions {
   int count = 0;                    ///< how many independent ones
   int negative = 0;                 ///< modes of negative stiffness beside them
-  std::vector<std::string> bodies;  ///< names of those that take part in any of them, in the model's order
+  std::vector<double> lowest;       ///< shape of the most negative of these, over columns; empty where there is none
+  std::vector<std::string> bodies;  ///< names of those that take part in any free motion, in the model's order
 };
 
 /// At the configuration and with the K that the system's matrix holds. `second_order`: part of sum |v_i K_ij v_j| below

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/motion_groups.hpp"
+
 namespace catena {
 namespace {
 
@@ -97,14 +99,14 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
   StaticOutcome outcome;
   const Plan& plan = system.plan();
   const std::size_t columns = at(plan.columns);
-  std::vector<double> residual(columns), gradient(columns), change(columns), trial(q.size()),
+  std::vector<double> residual(columns), gradient(columns), change(columns), product(columns), trial(q.size()),
       next_lambda(at(plan.rows));
   const std::vector<double> start(q.begin(), q.end());
   system.move_to(q);
   std::fill(lambda.begin(), lambda.end(), 0.0);
   // Where constraints have no second derivatives the first step needs no multipliers.
   const bool prepare = !system.has_linear_constraints() || system.phi_norm() > restored;
-  if (prepare && (!first_multipliers(system, lambda) || !restore_constraints(system, q))) {
+  if (prepare && (!first_multipliers(system, lambda, true) || !restore_constraints(system, q))) {
     outcome.end = StaticEnd::singular;
     return outcome;
   }
@@ -164,7 +166,14 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
       const double slope = dot(gradient, change);
       // On the constraints the slope is minus the curvature along the step. Where both are rounding the motion is
       // neutral and the step means nothing: forces that balance are left as they are, else the shift holds the motion.
-      if (used == 0 && -slope <= neutral_part * system.matrix().absolute_quadratic(change)) {
+      bool neutral = used == 0 && -slope <= neutral_part * system.matrix().absolute_quadratic(change);
+      if (used == 0 && balanced && !neutral) {
+        // Terms that cancel within K, as those of a counterweight, are not seen there, and a balanced slope is rounding
+        // itself.
+        system.matrix().multiply_stiffness(change, product);
+        neutral = dot(change, product) <= StiffnessFloor(system, lambda, 0)(change);
+      }
+      if (neutral) {
         if (!balanced) continue;
         outcome.end = StaticEnd::stationary;
         return outcome;

@@ -35,12 +35,12 @@ constexpr double largest_change = 1e14;
 
 }  // namespace
 
-bool first_multipliers(StaticSystem& system, std::span<double> lambda) {
+bool first_multipliers(StaticSystem& system, std::span<double> lambda, bool exact) {
   system.fill_weights();
   if (!system.factorize().ok()) return false;
-  StaticStep step = system.newton_step(first_tolerance);
+  StaticStep step = system.newton_step(exact ? 0 : first_tolerance);
   // Where next to nothing would move the forces may balance already, which only exact multipliers show.
-  if (system.change_norm(step.change) <= still) step = system.newton_step(0);
+  if (!exact && system.change_norm(step.change) <= still) step = system.newton_step(0);
   std::copy(step.lambda.begin(), step.lambda.end(), lambda.begin());
   return true;
 }

@@ -52,8 +52,9 @@ StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::sp
                               const StaticNewtonOptions& options);
 
 /// The multipliers that balance the applied forces best: least squares in the weights (1, 1, radius^2), constraints met
-/// to first order. One factorization. False if there is none.
-bool first_multipliers(StaticSystem& system, std::span<double> lambda);
+/// to first order. One factorization. False if there is none. `exact`: to rounding, for whoever takes the exact K next:
+/// K of what balances wherever it stands is the difference of large terms with lambda in them.
+bool first_multipliers(StaticSystem& system, std::span<double> lambda, bool exact = false);
 
 /// Multipliers, and the lengths that springs will have once their tensions are those that balance the loads best (see
 /// StaticSystem::foresee): springs begin without tension. One factorization. False if there is none.
