@@ -143,7 +143,7 @@ struct ElasticChainVerdict {
   bool taut = false;  ///< few segments may reach the corner slack: then there is no pull, and more than one place
   bool ok = false, right = false;
   bool folded = false;  ///< in balance elsewhere
-  std::string said{};
+  std::string said = {};
 };
 
 inline ElasticChainVerdict judge_elastic_chain(const ElasticChain& c) {
