@@ -40,7 +40,7 @@ TEST_P(MooringLine, LiesAndHangs) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Sizes, MooringLine, ::testing::Values(50, 300, 1000));
+INSTANTIATE_TEST_SUITE_P(Sizes, MooringLine, ::testing::Values(50, 300, 1000, 3000, 5000));
 
 }  // namespace
 }  // namespace catena::testing

@@ -129,7 +129,8 @@ void ForeseenSprings::add(const Evaluator& evaluator, Curvature curvature, std::
     double turn_i = f * dot(n, geometry.arm_i), turn_j = -f * dot(n, geometry.arm_j);
     if (convex) {
       along = std::max(along, 0.0);
-      across = std::max(across, 0.0);
+      // A push on the way is mostly a tension not found yet: zero across would leave slack chains free to leap.
+      across = std::abs(across);
       turn_i = std::max(turn_i, 0.0);
       turn_j = std::max(turn_j, 0.0);
     }

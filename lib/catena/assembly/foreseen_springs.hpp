@@ -8,8 +8,10 @@
 // that it will carry: Newton's method on chains of such springs takes steps by the hundred. With f(L) in the place of
 // f(l), the step is that of the equations in which tensions are unknowns of their own, f - f(l(q)) = 0, as multipliers
 // of links are: a stiff spring converges like a link, a soft one as it always did (L = l to second order), and one
-// without free length has the same K as ever. m, N. Singular where l = 0 or L = 0: the present K then counts. Source:
-// Benzi, Golub, Liesen, Acta Numerica 14 (2005), section 1 (saddle point form of stiff terms).
+// without free length has the same K as ever. Where K is to be convex a push f(L) < 0 counts as a pull of its size:
+// without it next to nothing would hold a chain of pushed springs across, and steps would be hundreds of chains long.
+// m, N. Singular where l = 0 or L = 0: the present K then counts. Source: Benzi, Golub, Liesen, Acta Numerica 14
+// (2005), section 1 (saddle point form of stiff terms).
 #pragma once
 
 #include <span>
@@ -41,7 +43,7 @@ class ForeseenSprings {
 
   /// Slots for everything else: springs have none.
   const HessianSlots& others() const { return others_; }
-  /// Adds K of all springs; convex: without what is negative in each of its parts.
+  /// Adds K of all springs; convex: |f(L)| / L across the line, and without what is negative in the other parts.
   void add(const Evaluator& evaluator, Curvature curvature, std::span<double> values) const;
 
  private:
