@@ -1,4 +1,4 @@
-// Elastic chains on a floor against nested bisection: random ones, and long ones in seconds.
+// Elastic chains on a floor against nested bisection: random ones, and long ones in few iterations.
 #include "oracles/elastic_chains.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ TEST_P(MooringLine, LiesAndHangs) {
   const EquilibriumReport report = analysis.solve();
   ASSERT_TRUE(report.ok()) << report.message;
   EXPECT_TRUE(report.stable);
-  EXPECT_LE(report.seconds, 5);
+  EXPECT_LE(report.counters.iterations, 200);  // 36 ... 105 measured: they do not grow with the length
   const ElasticChainSolution exact = solve_elastic_chain(line);
   const SystemState state = analysis.state();
   for (std::size_t k = 0; k < exact.node.size(); ++k) {
