@@ -49,6 +49,8 @@ void BalanceWatch::observe(const Snapshot& state) {
 
 Report BalanceWatch::check(double t) const {
   Report report;
+  // Energies beyond all bounds tell nothing; the integration ends by itself.
+  if (!std::isfinite(missing_)) return report;
   const double energy = largest_kinetic_ + largest_potential_ - least_potential_;
   const double size = std::max({std::abs(least_potential_), std::abs(largest_potential_), std::abs(initial_)});
   if (std::abs(missing_) <= permitted * tolerance_ * energy + rounding * size) return report;

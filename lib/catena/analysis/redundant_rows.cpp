@@ -199,6 +199,7 @@ void RedundantRows::find(std::span<const double> q) {
     if (equations_.factorize(t, Side::after, place)) choose();
   }
   chosen_at_.assign(q.begin(), q.end());
+  evaluator.set_time(t);
   evaluator.set_configuration(q);
 }
 
@@ -207,29 +208,34 @@ void RedundantRows::take_up(SparseVectors directions, std::span<const double> q)
   chosen_at_.assign(q.begin(), q.end());
 }
 
-// A place some way along a free motion, any one: with random velocities.
+// A place some way along the motion that drivers ask for, with the evaluator at its time; else along a free motion, any
+// one: with random velocities.
 bool RedundantRows::probe(std::span<const double> q, std::span<double> place) {
   Evaluator& evaluator = equations_.evaluator();
-  const double length = evaluator.length_scale();
+  const double length = evaluator.length_scale(), t = evaluator.time();
   std::mt19937_64 generator(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
   const auto unit = [&](int k) { return k % 3 == 2 ? 1 : length; };
   Assembler assembler(evaluator);
-  Vector move(at(3 * plan_.moving));
+  Vector move(q.size());
   chosen_at_.assign(q.begin(), q.end());
   double distance = probe_distance;
   for (int trial = 0; trial < most_probes; ++trial, distance /= 2) {
-    equations_.factorize(evaluator.time(), Side::after, q);
+    equations_.factorize(t, Side::after, q);
     std::fill(move.begin(), move.end(), 0.0);
-    for (int k : plan_.coordinate) move[at(k)] = uniform(generator) * unit(k);
-    equations_.remove_forbidden(move);
+    const bool driven = equations_.project_velocity(move, 0) > 0;
+    if (!driven) {
+      for (int k : plan_.coordinate) move[at(k)] = uniform(generator) * unit(k);
+      equations_.remove_forbidden(std::span(move).first(at(3 * plan_.moving)));
+    }
     double size = 0;
     for (int k : plan_.coordinate) size = std::max(size, std::abs(move[at(k)]) / unit(k));
     if (!(size > 0)) continue;
-    for (std::size_t k = 0; k < place.size(); ++k) place[k] = q[k] + (k < move.size() ? distance / size * move[k] : 0);
-    if (!assembler.assemble(place).ok()) continue;
-    const double gone = moved(place);
-    if (gone > distance / 2 && gone < 4 * distance) return true;
+    for (std::size_t k = 0; k < place.size(); ++k) place[k] = q[k] + distance / size * move[k];
+    if (driven) evaluator.set_time(t + distance / size);
+    const bool found = assembler.assemble(place).ok() && moved(place) > distance / 2 && moved(place) < 4 * distance;
+    if (found) return true;
+    evaluator.set_time(t);
   }
   return false;
 }

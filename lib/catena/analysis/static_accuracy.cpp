@@ -79,23 +79,26 @@ StaticAccuracy judge_balance(StaticSystem& system, std::span<const double> lambd
     result.forces = std::max(result.forces, terms[at(c)] * inverse_arms[at(c)]);
     result.loads = std::max(result.loads, sizes.loads[at(plan.coordinate[at(c)])] * inverse_arms[at(c)]);
   }
-  if (result.loads == 0) result.loads = result.forces;
+  const bool loaded = result.loads > 0;
+  if (!loaded) result.loads = result.forces;
   const bool shows = result.residual > std::max(shown, tolerance) * result.loads;
   result.balanced = finite && !shows && result.residual <= tolerance * result.forces;
   if (result.balanced || !finite) return result;
   std::vector<double> floor = terms;
   add_stiffness_times_places(system, lambda, floor);
-  bool rounded = true;
+  // Without loads, springs at their lengths: all that there is are the roundings themselves.
+  bool rounded = true, nothing = !loaded;
   double worst = -1;
   for (int c = 0; c < plan.columns; ++c) {
     const double force = std::abs(residual[at(c)]), rounding = few_roundings * floor[at(c)];
     rounded = rounded && force <= rounding;
+    nothing = nothing && terms[at(c)] <= rounding;
     if (force > worst * rounding) {
       worst = rounding > 0 ? force / rounding : std::numeric_limits<double>::infinity();
       result.rounding = rounding * inverse_arms[at(c)];
     }
   }
-  result.rounded = rounded && !shows;
+  result.rounded = rounded && (nothing || !shows);
   return result;
 }
 

@@ -72,9 +72,10 @@ bool is_unusable(const S& number) {
 /// Throws for a number that is none, naming its field.
 template <class E>
 void check_numbers(const E& element) {
+  const E omitted{};  // a number that is none from the start says: not given
   const auto look = [&](const auto& field) {
     if constexpr (requires { element.*field.member; }) {
-      if (is_unusable(element.*field.member))
+      if (is_unusable(element.*field.member) && !is_unusable(omitted.*field.member))
         throw ModelError(std::string(E::type) + ": " + std::string(field.key) + " is not finite");
     }
   };
