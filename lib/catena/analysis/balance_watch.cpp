@@ -11,8 +11,8 @@
 namespace catena {
 namespace {
 
-// Of tolerance x energy. Over 31,000 runs of random redundant mechanisms at tolerances 1e-3 ... 1e-11 the median was
-// 4e-4 and no run that was right had more than 10; wrong branches and lost multipliers have 1e3 ... 1e40.
+// Of tolerance x energy. In 31,000 checks of random redundant mechanisms the median was 4e-4; the largest was 9 at
+// tolerances down to 1e-10 and 19 at 1e-11. At 1e-12 rounding beside flat positions may leave more, and is told.
 constexpr double permitted = 20;
 // Of the potential energy, whose parts may cancel; steps add up to some hundred roundings.
 constexpr double rounding = 1e-13;
@@ -57,9 +57,8 @@ Report BalanceWatch::check(double t) const {
   report.status = Status::not_converged;
   report.message = fmt::format(
       "the motion up to t = {:.12g} s is not to be trusted: {:.3g} J of energy {} without a cause, of {:.3g} J in "
-      "motion, much more than a tolerance of {:.3g} explains; likely cause: a position that is singular or nearly so, "
-      "or "
-      "very stiff forces; a smaller tolerance may do",
+      "motion, much more than a tolerance of {:.3g} explains; likely cause: a position that is singular or nearly "
+      "so, or very stiff forces; a smaller tolerance may do",
       t, std::abs(missing_), missing_ > 0 ? "came" : "went", energy, tolerance_);
   return report;
 }

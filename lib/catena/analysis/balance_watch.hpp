@@ -4,8 +4,8 @@
 //   allowed = permitted x tolerance x (largest T + range of V) + rounding of V
 //
 // Errors of positions and velocities of `tolerance` (of the scale of the motion) change energy by a few times tolerance
-// x (T + V): what is beyond that by two orders is no error of integration any more, but a wrong motion. Without the
-// work of forces that have no potential nothing can be told: `applies()`. Units: J.
+// x (T + V): what is well beyond that is no error of integration any more, but a wrong motion. Where forces without a
+// potential act and their work is not summed up nothing can be told. Units: J.
 #pragma once
 
 #include "catena/base/status.hpp"

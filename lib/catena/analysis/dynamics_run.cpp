@@ -47,11 +47,11 @@ Report Dynamics::start() {
   const TimeRange run{t_, grid_.last()};
   if (Report functions = check_time_functions(*model_, run); !functions.ok()) return functions;
   time_limit_.emplace(evaluator_, run);
-  if (method_ == IntegrationMethod::partitioning) {
-    if (const Report freedoms = check_freedoms(); !freedoms.ok()) return freedoms;
-  }
   if (!prepared_) {
     if (const Report prepared = prepare(report_.warnings); !prepared.ok()) return prepared;
+  }
+  if (method_ == IntegrationMethod::partitioning) {
+    if (const Report freedoms = check_freedoms(); !freedoms.ok()) return freedoms;
   }
   account_.reset();
   const bool conserves = BalanceWatch::conserves(evaluator_);

@@ -87,8 +87,7 @@ Report Dynamics::check_redundant_rows() {
   report.status = Status::inconsistent;
   report.message = fmt::format(
       "constraints that depend on each other contradict each other at t = {:.12g} s: {} \"{}\" misses by {:.3g} {} "
-      "where "
-      "the others are met; likely cause: drivers that ask for different motions of the same parts",
+      "where the others are met; likely cause: drivers that ask for different motions of the same parts",
       t_, model_->element_type(element), model_->element_name(element), left * (plan_->row_is_angle[row] ? 1 : length),
       plan_->row_is_angle[row] ? "rad" : "m");
   return report;
