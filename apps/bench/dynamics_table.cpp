@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "catena/analysis/dynamics.hpp"
+#include "catena/analysis/dynamics/dynamics.hpp"
 #include "mechanisms.hpp"
 #include "moving_mechanisms.hpp"
 #include "timing.hpp"

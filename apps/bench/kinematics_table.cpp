@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "catena/analysis/kinematics.hpp"
+#include "catena/analysis/kinematics/kinematics.hpp"
 #include "mechanisms.hpp"
 #include "timing.hpp"
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "catena/analysis/dynamics.hpp"
-#include "catena/analysis/equilibrium.hpp"
+#include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/statics/equilibrium.hpp"
 #include "catena/elements/constraints/revolute.hpp"
 #include "catena/model/model_add.hpp"
 #include "mechanisms.hpp"

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <vector>
 
-#include "catena/analysis/dynamics.hpp"
-#include "catena/analysis/state_conversion.hpp"
+#include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/run/state_conversion.hpp"
 #include "moving_mechanisms.hpp"
 #include "timing.hpp"
 

@@ -11,11 +11,11 @@
 #include <random>
 #include <string>
 
-#include "catena/analysis/equilibrium.hpp"
+#include "catena/analysis/statics/equilibrium.hpp"
 #include "catena/elements/constraints/revolute.hpp"
 #include "catena/model/model_add.hpp"
 #include "catena/results/result_sink.hpp"
-#include "catena/scene/scene_runner.hpp"
+#include "catena/scene/running/scene_runner.hpp"
 #include "timing.hpp"
 
 namespace bench {

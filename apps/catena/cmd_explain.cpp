@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "catena/scene/near_miss.hpp"
-#include "catena/scene/scene_runner.hpp"
+#include "catena/scene/json/near_miss.hpp"
+#include "catena/scene/running/scene_runner.hpp"
 #include "commands.hpp"
 
 namespace catena::cli {

@@ -1,6 +1,6 @@
 #include <CLI/CLI.hpp>
 
-#include "catena/scene/scene_runner.hpp"
+#include "catena/scene/running/scene_runner.hpp"
 #include "commands.hpp"
 
 namespace catena::cli {

@@ -10,8 +10,8 @@
 #include <new>
 
 #include "catena/results/text_output.hpp"
-#include "catena/scene/diagnostic.hpp"
-#include "catena/scene/near_miss.hpp"
+#include "catena/scene/json/diagnostic.hpp"
+#include "catena/scene/json/near_miss.hpp"
 #include "commands.hpp"
 
 namespace catena::cli {

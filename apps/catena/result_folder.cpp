@@ -7,7 +7,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "catena/scene/scene_runner.hpp"
+#include "catena/scene/running/scene_runner.hpp"
 
 namespace catena::cli {
 

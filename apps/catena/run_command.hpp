@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "catena/scene/scene_runner.hpp"
+#include "catena/scene/running/scene_runner.hpp"
 
 namespace catena::cli {
 

@@ -8,12 +8,12 @@
 // Units SI, radians. Numerical outcomes are values (base/status.hpp); exceptions are for misuse and bad scenes.
 #pragma once
 
-#include "catena/analysis/dynamics.hpp"
-#include "catena/analysis/kinematics.hpp"
-#include "catena/analysis/mobility.hpp"
+#include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/kinematics/kinematics.hpp"
+#include "catena/analysis/pose/mobility.hpp"
 #include "catena/columns/column_set.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/model_add.hpp"
 #include "catena/results/column_rows.hpp"
 #include "catena/results/result_storage.hpp"
-#include "catena/scene/scene_runner.hpp"
+#include "catena/scene/running/scene_runner.hpp"

@@ -12,8 +12,8 @@
 
 #include "analysis/linkages.hpp"
 #include "analysis/random_mechanisms.hpp"
-#include "catena/analysis/kinematics.hpp"
-#include "catena/analysis/minimum_norm.hpp"
+#include "catena/analysis/kinematics/kinematics.hpp"
+#include "catena/analysis/pose/minimum_norm.hpp"
 #include "catena/elements/constraints/absolute_angle.hpp"
 #include "catena/elements/constraints/revolute.hpp"
 #include "catena/elements/constraints/weld.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "analysis/random_mechanisms.hpp"
-#include "catena/analysis/assemble.hpp"
+#include "catena/analysis/pose/assemble.hpp"
 #include "catena/assembly/plan.hpp"
 
 namespace catena::testing {

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "analysis/linkages.hpp"
-#include "catena/analysis/assemble.hpp"
+#include "catena/analysis/pose/assemble.hpp"
 #include "catena/elements/constraints/absolute_angle.hpp"
 #include "catena/elements/constraints/coupler.hpp"
 #include "catena/elements/constraints/revolute.hpp"

@@ -5,11 +5,11 @@
 #include <memory>
 #include <string>
 
-#include "catena/analysis/buckling.hpp"
-#include "catena/analysis/equilibrium.hpp"
-#include "catena/analysis/minimum_norm_motion.hpp"
-#include "catena/analysis/modes.hpp"
-#include "catena/analysis/path.hpp"
+#include "catena/analysis/kinematics/minimum_norm_motion.hpp"
+#include "catena/analysis/stability/buckling.hpp"
+#include "catena/analysis/stability/modes.hpp"
+#include "catena/analysis/stability/path.hpp"
+#include "catena/analysis/statics/equilibrium.hpp"
 #include "catena/catena.hpp"
 
 namespace catena::testing {

@@ -1,5 +1,5 @@
 // Buckling loads against closed forms: columns of rods and torsion springs, the inverted pendulum, and what is refused.
-#include "catena/analysis/buckling.hpp"
+#include "catena/analysis/stability/buckling.hpp"
 
 #include <gtest/gtest.h>
 

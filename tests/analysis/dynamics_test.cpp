@@ -1,5 +1,5 @@
 // What a user meets of dynamics besides correct motion: rows, starts, breakpoints, energies, refusals.
-#include "catena/analysis/dynamics.hpp"
+#include "catena/analysis/dynamics/dynamics.hpp"
 
 #include <gtest/gtest.h>
 

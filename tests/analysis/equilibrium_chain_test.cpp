@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "catena/analysis/equilibrium.hpp"
+#include "catena/analysis/statics/equilibrium.hpp"
 #include "oracles/static_reference.hpp"
 #include "oracles/static_scenes.hpp"
 

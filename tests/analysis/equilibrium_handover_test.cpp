@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "catena/analysis/equilibrium.hpp"
-#include "catena/analysis/static_ipopt.hpp"
+#include "catena/analysis/statics/equilibrium.hpp"
+#include "catena/analysis/statics/static_ipopt.hpp"
 #include "catena/elements/all.hpp"
 #include "oracles/static_scenes.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "catena/analysis/equilibrium.hpp"
+#include "catena/analysis/statics/equilibrium.hpp"
 #include "catena/elements/constraints/absolute_x.hpp"
 #include "catena/elements/constraints/absolute_y.hpp"
 #include "catena/elements/constraints/revolute.hpp"

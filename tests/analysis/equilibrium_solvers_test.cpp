@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "catena/analysis/equilibrium.hpp"
-#include "catena/analysis/static_ipopt.hpp"
-#include "catena/analysis/static_nlopt.hpp"
+#include "catena/analysis/statics/equilibrium.hpp"
+#include "catena/analysis/statics/static_ipopt.hpp"
+#include "catena/analysis/statics/static_nlopt.hpp"
 #include "catena/elements/constraints/revolute.hpp"
 #include "catena/model/model_add.hpp"
 #include "oracles/static_reference.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analysis/random_mechanisms.hpp"
-#include "catena/analysis/kinematics.hpp"
+#include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/elements/constraints/coupler.hpp"
 #include "catena/elements/constraints/gear.hpp"
 #include "catena/elements/constraints/relative_angle.hpp"

@@ -9,7 +9,7 @@
 
 #include "analysis/linkages.hpp"
 #include "analysis/parallelogram.hpp"
-#include "catena/analysis/kinematics.hpp"
+#include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/elements/constraints/absolute_angle.hpp"
 #include "catena/elements/constraints/absolute_x.hpp"
 #include "catena/elements/constraints/absolute_y.hpp"

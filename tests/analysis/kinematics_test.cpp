@@ -1,4 +1,4 @@
-#include "catena/analysis/kinematics.hpp"
+#include "catena/analysis/kinematics/kinematics.hpp"
 
 #include <gtest/gtest.h>
 

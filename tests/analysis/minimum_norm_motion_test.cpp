@@ -1,5 +1,5 @@
 // The motion of least velocities where drivers leave freedom: closed forms, dense algebra, invariance, lock-up.
-#include "catena/analysis/minimum_norm_motion.hpp"
+#include "catena/analysis/kinematics/minimum_norm_motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <random>
 
 #include "analysis/linkages.hpp"
-#include "catena/analysis/kinematics.hpp"
+#include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/elements/constraints/absolute_x.hpp"
 #include "catena/elements/constraints/absolute_y.hpp"
 #include "catena/model/model_add.hpp"

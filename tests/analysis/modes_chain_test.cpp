@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "catena/analysis/modes.hpp"
+#include "catena/analysis/stability/modes.hpp"
 #include "catena/elements/constraints/absolute_y.hpp"
 #include "catena/elements/forces/spring_damper.hpp"
 #include "catena/model/model_add.hpp"

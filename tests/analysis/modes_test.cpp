@@ -1,6 +1,6 @@
 // Small oscillations against closed forms and reference values: hanging and standing chains, springs, shafts, equal and
 // free bodies; shapes, refusals, and what it costs.
-#include "catena/analysis/modes.hpp"
+#include "catena/analysis/stability/modes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "catena/analysis/equilibrium.hpp"
+#include "catena/analysis/statics/equilibrium.hpp"
 #include "catena/elements/constraints/absolute_angle.hpp"
 #include "catena/elements/constraints/absolute_x.hpp"
 #include "catena/elements/constraints/absolute_y.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analysis/linkages.hpp"
-#include "catena/analysis/kinematics.hpp"
+#include "catena/analysis/kinematics/kinematics.hpp"
 
 namespace catena::testing {
 

@@ -1,5 +1,5 @@
 // Paths of equilibria against closed forms: through limit points, past branch points and onto the branches.
-#include "catena/analysis/path.hpp"
+#include "catena/analysis/stability/path.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "analysis/linkages.hpp"
-#include "catena/analysis/kinematics.hpp"
+#include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/elements/constraints/absolute_angle.hpp"
 #include "catena/elements/constraints/gear.hpp"
 #include "catena/elements/constraints/revolute.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "analysis/linkages.hpp"
-#include "catena/analysis/kinematics.hpp"
+#include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/elements/constraints/absolute_angle.hpp"
 #include "catena/elements/constraints/revolute.hpp"
 #include "catena/model/model_add.hpp"

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "analysis/parallelogram.hpp"
-#include "catena/analysis/dynamics.hpp"
-#include "catena/analysis/minimum_norm_motion.hpp"
+#include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/kinematics/minimum_norm_motion.hpp"
 #include "catena/model/model_add.hpp"
 
 namespace catena::testing {

@@ -1,9 +1,9 @@
 // What static equilibrium must not do: orderings, factorizations and allocations beyond those that a solution needs.
 #include <gtest/gtest.h>
 
-#include "catena/analysis/certificate.hpp"
-#include "catena/analysis/equilibrium.hpp"
-#include "catena/analysis/static_newton.hpp"
+#include "catena/analysis/spectrum/certificate.hpp"
+#include "catena/analysis/statics/equilibrium.hpp"
+#include "catena/analysis/statics/static_newton.hpp"
 #include "economy/allocations.hpp"
 #include "oracles/static_scenes.hpp"
 

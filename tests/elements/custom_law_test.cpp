@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "catena/analysis/dynamics.hpp"
+#include "catena/analysis/dynamics/dynamics.hpp"
 #include "catena/elements/constraints/custom_constraint.hpp"
 #include "catena/elements/forces/custom_force.hpp"
 #include "catena/elements/forces/spring_damper.hpp"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <numbers>
 
-#include "catena/analysis/kinematics.hpp"
+#include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/elements/constraints/absolute_angle.hpp"
 #include "catena/elements/constraints/belt.hpp"
 #include "catena/elements/constraints/cam_cam.hpp"

@@ -3,7 +3,11 @@
 #   base <- elements <- model;  base <- linalg;  {model, linalg} <- assembly <- columns <- analysis <- results <- scene
 #
 # `may[layer]` lists what a layer may include, itself among it. apps and tests may include every layer, and so may the
-# umbrella header lib/catena/catena.hpp.
+# umbrella header lib/catena/catena.hpp. `part[folder]` lists what a folder inside of a layer may include of its own
+# layer; a folder that is not listed there is an error, and so is one of more than 30 files:
+#
+#   analysis  run <- pose <- motion <- {kinematics, dynamics};  pose <- balance <- spectrum <- statics <- stability
+#   scene     json <- numbers <- describing <- reading <- building <- running <- explaining
 
 BEGIN {
   may["base"] = " base "
@@ -16,7 +20,44 @@ BEGIN {
   may["results"] = may["analysis"] "results "
   may["scene"] = may["results"] "scene "
   every = may["scene"]
+
+  chain("analysis", "run pose motion")
+  after("analysis", "kinematics", "run pose motion")
+  after("analysis", "dynamics/integrators", "run pose motion")
+  after("analysis", "dynamics", "run pose motion dynamics/integrators")
+  after("analysis", "balance", "run pose")
+  after("analysis", "spectrum", "run pose balance")
+  after("analysis", "statics", "run pose balance spectrum")
+  after("analysis", "stability", "run pose motion balance spectrum statics")
+  chain("scene", "json numbers describing reading building running explaining")
+  chain("linalg", "patterns kernels")
+  after("linalg", "factorization", "patterns kernels")
+  after("linalg", "block", "patterns kernels")
+  after("linalg", "rank", "patterns kernels factorization")
+  after("assembly", "systems", ".")
+  after("elements", "constraints", ".")
+  after("elements", "forces", ".")
+  part["elements/."] = " . constraints forces "
   bad = 0
+}
+
+# chain: each folder may include those before it; after: a folder may include those named. "." is the layer's own folder.
+function chain(layer, folders,    name, n, i, before) {
+  n = split(folders, name, " ")
+  before = ""
+  for (i = 1; i <= n; i++) {
+    after(layer, name[i], before)
+    before = before " " name[i]
+  }
+}
+function after(layer, folder, others) { part[layer "/" folder] = " " others " " folder " " }
+
+# The folder of a path within its layer: "catena/analysis/dynamics/integrators/x.hpp" -> "dynamics/integrators".
+function folder_of(path) {
+  sub(/^(lib\/)?catena\/[^\/]+\//, "", path)
+  if (path !~ /\//) return "."
+  sub(/\/[^\/]*$/, "", path)
+  return path
 }
 
 function report(message) {
@@ -34,14 +75,16 @@ function only_one_source(library) {
     owner[library] = FILENAME
 }
 
-function check_own_include(path,    part, n) {
-  n = split(path, part, "/")
+function check_own_include(path,    piece, n) {
+  n = split(path, piece, "/")
   if (path == "catena/catena.hpp") {
     if (in_library) report("the library itself includes what it needs, not catena.hpp")
-  } else if (n < 3 || !(part[2] in may)) {
+  } else if (n < 3 || !(piece[2] in may)) {
     report("include \"" path "\" is in no known layer")
-  } else if (index(allowed, " " part[2] " ") == 0) {
-    report(layer " may not include " part[2] " (\"" path "\")")
+  } else if (index(allowed, " " piece[2] " ") == 0) {
+    report(layer " may not include " piece[2] " (\"" path "\")")
+  } else if (in_library && piece[2] == layer && index(folders, " " folder_of(path) " ") == 0) {
+    report(layer "/" folder " may not include " layer "/" folder_of(path) " (\"" path "\")")
   }
 }
 
@@ -78,14 +121,23 @@ FNR == 1 {
   allowed = every
   layer = FILENAME
   if (in_library) {
-    split(FILENAME, folder, "/")
-    layer = folder[3]
+    split(FILENAME, level, "/")
+    layer = level[3]
     if (layer in may) {
       allowed = may[layer]
     } else {
       report("lib/catena/" layer " is no known layer")
       allowed = " "
     }
+  }
+  if (in_library && layer in may) {
+    folder = folder_of(FILENAME)
+    folders = " . "
+    if ((layer "/" folder) in part)
+      folders = part[layer "/" folder]
+    else if (folder != ".")
+      report("lib/catena/" layer "/" folder " is no known folder")
+    if (++held[layer "/" folder] == 31) report("more than 30 files in lib/catena/" layer "/" folder)
   }
   if (is_header && $0 !~ /^\/\/ ?[^ ]/) report("a header opens with a // comment that says what it is")
 }

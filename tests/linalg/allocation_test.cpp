@@ -1,8 +1,8 @@
 // After the first round, factorizing and solving must leave the heap alone.
 #include <gtest/gtest.h>
 
-#include "catena/linalg/factorization.hpp"
-#include "catena/linalg/symmetric_factorization.hpp"
+#include "catena/linalg/factorization/factorization.hpp"
+#include "catena/linalg/factorization/symmetric_factorization.hpp"
 #include "linalg/counted_heap.hpp"
 #include "linalg/matrices.hpp"
 

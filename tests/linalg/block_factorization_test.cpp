@@ -1,4 +1,4 @@
-#include "catena/linalg/block_factorization.hpp"
+#include "catena/linalg/block/block_factorization.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "catena/linalg/symmetric_factorization.hpp"
+#include "catena/linalg/factorization/symmetric_factorization.hpp"
 #include "linalg/counted_heap.hpp"
 #include "linalg/matrices.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "catena/linalg/factorization.hpp"
+#include "catena/linalg/factorization/factorization.hpp"
 #include "linalg/matrices.hpp"
 
 namespace catena::testing {

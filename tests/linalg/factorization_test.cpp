@@ -1,4 +1,4 @@
-#include "catena/linalg/factorization.hpp"
+#include "catena/linalg/factorization/factorization.hpp"
 
 #include <gtest/gtest.h>
 

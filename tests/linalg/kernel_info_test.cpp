@@ -1,4 +1,4 @@
-#include "catena/linalg/kernel_info.hpp"
+#include "catena/linalg/kernels/kernel_info.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "catena/linalg/matching.hpp"
+#include "catena/linalg/patterns/matching.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "catena/linalg/sparse_pattern.hpp"
+#include "catena/linalg/patterns/sparse_pattern.hpp"
 
 namespace catena::testing {
 

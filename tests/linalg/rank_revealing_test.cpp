@@ -1,4 +1,4 @@
-#include "catena/linalg/rank_revealing.hpp"
+#include "catena/linalg/rank/rank_revealing.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "catena/linalg/sparse_pattern.hpp"
+#include "catena/linalg/patterns/sparse_pattern.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "catena/linalg/symmetric_factorization.hpp"
+#include "catena/linalg/factorization/symmetric_factorization.hpp"
 
 #include <gtest/gtest.h>
 

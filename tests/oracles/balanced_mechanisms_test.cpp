@@ -13,7 +13,7 @@
 #include <numbers>
 #include <random>
 
-#include "catena/analysis/equilibrium.hpp"
+#include "catena/analysis/statics/equilibrium.hpp"
 #include "catena/elements/constraints/revolute.hpp"
 #include "catena/model/model_add.hpp"
 #include "oracles/static_scenes.hpp"

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "catena/analysis/buckling.hpp"
+#include "catena/analysis/stability/buckling.hpp"
 #include "catena/elements/constraints/revolute.hpp"
 #include "catena/elements/forces/point_force.hpp"
 #include "catena/elements/forces/torsion_spring.hpp"

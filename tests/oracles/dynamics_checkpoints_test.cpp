@@ -3,7 +3,7 @@
 // forces.
 #include <cstring>
 
-#include "catena/analysis/dynamics_with_events.hpp"
+#include "catena/analysis/dynamics/dynamics_with_events.hpp"
 #include "catena/columns/energy.hpp"
 #include "oracles/dynamics_mechanisms.hpp"
 #include "oracles/redundant_mechanisms.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "catena/analysis/dynamics.hpp"
+#include "catena/analysis/dynamics/dynamics.hpp"
 #include "catena/elements/constraints/revolute.hpp"
 #include "catena/elements/forces/spring_damper.hpp"
 #include "catena/elements/forces/torque.hpp"

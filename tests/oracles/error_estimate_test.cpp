@@ -1,6 +1,6 @@
 // What --estimate-error promises: beside independent solutions the estimate is the error of the run that was asked for,
 // within a factor, and the rows that are given are not worse than it says.
-#include "catena/analysis/error_estimate.hpp"
+#include "catena/analysis/dynamics/error_estimate.hpp"
 
 #include <map>
 

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "catena/analysis/path.hpp"
+#include "catena/analysis/stability/path.hpp"
 #include "catena/elements/forces/point_force.hpp"
 #include "catena/elements/forces/spring_damper.hpp"
 #include "catena/model/model_add.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "catena/analysis/modes.hpp"
+#include "catena/analysis/stability/modes.hpp"
 #include "oracles/static_scenes.hpp"
 
 namespace catena {

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-#include "catena/analysis/modes.hpp"
+#include "catena/analysis/stability/modes.hpp"
 #include "oracles/oscillators.hpp"
 
 namespace catena::testing {

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "catena/analysis/equilibrium.hpp"
+#include "catena/analysis/statics/equilibrium.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/elements/gap_element.hpp"
 #include "catena/model/model_add.hpp"

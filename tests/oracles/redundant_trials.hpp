@@ -14,7 +14,7 @@
 #include <map>
 #include <optional>
 
-#include "catena/analysis/dynamics.hpp"
+#include "catena/analysis/dynamics/dynamics.hpp"
 #include "oracles/massless_mechanisms.hpp"
 
 namespace catena::testing {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "catena/analysis/equilibrium.hpp"
+#include "catena/analysis/statics/equilibrium.hpp"
 #include "oracles/random_statics.hpp"
 
 namespace catena::testing {

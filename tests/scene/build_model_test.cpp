@@ -1,5 +1,5 @@
 // From text to model: bodies, attachments, blocks, functions; the same over dual numbers.
-#include "catena/scene/build_model.hpp"
+#include "catena/scene/building/build_model.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 #include "catena/elements/constraints/weld.hpp"
 #include "catena/elements/forces/spring_damper.hpp"
 #include "catena/elements/forces/torque.hpp"
-#include "catena/scene/scene_reader.hpp"
+#include "catena/scene/reading/scene_reader.hpp"
 
 namespace catena::testing {
 namespace {

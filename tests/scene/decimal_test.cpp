@@ -1,5 +1,5 @@
 // Decimal numbers as every place of a scene reads them.
-#include "catena/scene/decimal.hpp"
+#include "catena/scene/numbers/decimal.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Diagnostics: the printed form, the caret under tabs and wide characters, long lines, the cap; sources that cannot be
 // read.
-#include "catena/scene/diagnostic.hpp"
+#include "catena/scene/json/diagnostic.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -4,9 +4,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "catena/scene/build_model.hpp"
-#include "catena/scene/example.hpp"
-#include "catena/scene/scene_reader.hpp"
+#include "catena/scene/building/build_model.hpp"
+#include "catena/scene/explaining/example.hpp"
+#include "catena/scene/reading/scene_reader.hpp"
 #include "scene/run_text.hpp"
 
 namespace catena::testing {

@@ -1,5 +1,5 @@
 // Expressions: values, ranks of operators, derivatives against differences, errors at their column.
-#include "catena/scene/expression.hpp"
+#include "catena/scene/numbers/expression.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // JSON documents: values, order and places of everything; every way a text can be wrong, with its line and column.
-#include "catena/scene/json_document.hpp"
+#include "catena/scene/json/json_document.hpp"
 
 #include <gtest/gtest.h>
 

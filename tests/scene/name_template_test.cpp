@@ -1,9 +1,9 @@
 // Names with expressions in braces, and the rules names follow.
-#include "catena/scene/name_template.hpp"
+#include "catena/scene/numbers/name_template.hpp"
 
 #include <gtest/gtest.h>
 
-#include "catena/scene/name_rules.hpp"
+#include "catena/scene/numbers/name_rules.hpp"
 
 namespace catena {
 namespace {

@@ -1,5 +1,5 @@
 // "did you mean": what is suggested, and what is not.
-#include "catena/scene/near_miss.hpp"
+#include "catena/scene/json/near_miss.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Numbers of a scene: what each way of writing one means, and the message, line and column of every mistake.
-#include "catena/scene/number_reader.hpp"
+#include "catena/scene/numbers/number_reader.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "catena/scene/evaluation.hpp"
+#include "catena/scene/numbers/evaluation.hpp"
 
 namespace catena {
 namespace {

@@ -1,5 +1,5 @@
 // Parameters: any order, circles by name, limits, replaced definitions, derivatives through dependent definitions.
-#include "catena/scene/parameter_table.hpp"
+#include "catena/scene/numbers/parameter_table.hpp"
 
 #include <gtest/gtest.h>
 

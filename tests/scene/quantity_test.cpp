@@ -1,5 +1,5 @@
 // Quantities: values in SI, dimensions, and every way of writing one wrong; names and units of dimensions.
-#include "catena/scene/quantity.hpp"
+#include "catena/scene/numbers/quantity.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "catena/results/result_storage.hpp"
-#include "catena/scene/scene_runner.hpp"
+#include "catena/scene/running/scene_runner.hpp"
 #include "results/temporary_folder.hpp"
 
 namespace catena::testing {

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <map>
 
-#include "catena/analysis/assemble.hpp"
-#include "catena/analysis/equilibrium.hpp"
+#include "catena/analysis/pose/assemble.hpp"
+#include "catena/analysis/statics/equilibrium.hpp"
 #include "oracles/random_statics.hpp"
 #include "oracles/static_reference.hpp"
 

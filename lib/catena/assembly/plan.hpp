@@ -18,7 +18,7 @@
 #include "catena/assembly/constraint_block.hpp"
 #include "catena/assembly/elimination.hpp"
 #include "catena/assembly/force_block.hpp"
-#include "catena/linalg/sparse_pattern.hpp"
+#include "catena/linalg/patterns/sparse_pattern.hpp"
 #include "catena/model/model.hpp"
 
 namespace catena {

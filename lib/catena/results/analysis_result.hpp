@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "catena/analysis/analysis_report.hpp"
+#include "catena/analysis/run/analysis_report.hpp"
 #include "catena/base/row_sink.hpp"
 
 namespace catena {

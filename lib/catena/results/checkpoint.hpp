@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "catena/analysis/motion_memory.hpp"
+#include "catena/analysis/motion/motion_memory.hpp"
 
 namespace catena {
 

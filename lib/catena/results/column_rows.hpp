@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "catena/analysis/row_observer.hpp"
+#include "catena/analysis/run/row_observer.hpp"
 #include "catena/base/row_sink.hpp"
 #include "catena/columns/column_set.hpp"
 

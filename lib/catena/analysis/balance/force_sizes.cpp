@@ -1,0 +1,62 @@
+#include "catena/analysis/balance/force_sizes.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "catena/elements/all.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+}  // namespace
+
+ForceSizes force_sizes(const Evaluator& evaluator) {
+  const Plan& plan = evaluator.plan();
+  const Model& model = evaluator.model();
+  ForceSizes sizes{std::vector<double>(at(plan.coordinates()), 0.0), {}};
+  for (int p = 0; p < plan.moving; ++p) {
+    const double mass = model.bodies[at(plan.model_body[at(p)])].mass;
+    sizes.all[at(3 * p)] = std::abs(mass * model.gravity.x);
+    sizes.all[at(3 * p + 1)] = std::abs(mass * model.gravity.y);
+  }
+  sizes.loads = sizes.all;
+  const Twist<double> rest;
+  for_each_list(model.forces, [&](const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    constexpr bool is_load = std::is_same_v<E, PointForce<double>> || std::is_same_v<E, Torque<double>>;
+    const auto add = [&](int p, const Wrench<double>& wrench) {
+      const double parts[] = {wrench.fx, wrench.fy, wrench.moment};
+      for (int k = 0; k < 3; ++k) {
+        sizes.all[at(3 * p + k)] += std::abs(parts[k]);
+        if (is_load) sizes.loads[at(3 * p + k)] += std::abs(parts[k]);
+      }
+    };
+    for (const auto& entry : list) {
+      std::array<double, static_cast<std::size_t>(E::functions) + 1> f{};
+      for (std::size_t k = 0; k < static_cast<std::size_t>(E::functions); ++k) {
+        const auto& value = entry.values[k];
+        f[k] = value.function < 0 ? value.constant : model.functions[at(value.function)].evaluate(evaluator.time()).f;
+      }
+      const auto plan_body = [&](int b) { return b < 0 ? plan.bodies : plan.plan_body[at(b)]; };
+      const int i = plan_body(entry.i), j = plan_body(entry.j);
+      // Relative to i where it moves, else to j, so that far off the origin no digits are lost.
+      const Vec2<double> common = evaluator.ground_frame(i < plan.bodies ? i : j).origin();
+      const auto near = [&](int p) {
+        Frame<double> frame = evaluator.ground_frame(p);
+        frame.x -= common.x;
+        frame.y -= common.y;
+        return frame;
+      };
+      const Frame<double> of_i = near(i), of_j = near(j);
+      Wrench<double> on_i, on_j;
+      entry.element.force(ForceArguments<double>{of_i, of_j, rest, rest, f.data(), common}, on_i, on_j);
+      add(i, on_i);
+      if (E::bodies == 2) add(j, on_j);
+    }
+  });
+  return sizes;
+}
+
+}  // namespace catena

@@ -1,0 +1,105 @@
+#include "catena/analysis/balance/static_accuracy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "catena/analysis/balance/force_sizes.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// A residual above this part of the loads shows in the third digit of some force: never an equilibrium.
+constexpr double shown = 1e-3;
+// Rounding of the few sums behind one number: a place is the sum of four products, a force of two differences.
+constexpr double few_roundings = 4 * std::numeric_limits<double>::epsilon();
+
+// Sums over the terms of the residual, by columns.
+std::vector<double> sum_terms(const StaticSystem& system, std::span<const double> sizes,
+                              std::span<const double> lambda) {
+  const Plan& plan = system.plan();
+  const SparsePattern& a = plan.jacobian;
+  std::vector<double> sum(at(plan.columns));
+  for (int c = 0; c < plan.columns; ++c) {
+    sum[at(c)] = sizes[at(plan.coordinate[at(c)])];
+    for (int k = a.column_start[at(c)]; k < a.column_start[at(c) + 1]; ++k) {
+      sum[at(c)] += std::abs(system.jacobian()[at(k)] * lambda[at(a.row_index[at(k)])]);
+    }
+  }
+  return sum;
+}
+
+// Adds, by columns, what places known to one part in one make of every element's force, constraints' included.
+void add_stiffness_times_places(StaticSystem& system, std::span<const double> lambda, std::span<double> sum) {
+  const Plan& plan = system.plan();
+  const Evaluator& evaluator = system.evaluator();
+  const std::span<const Frame<double>> frames = evaluator.frames();
+  const auto moves = [&](int b) { return b >= 0 && b < plan.moving; };
+  const auto reach = [&](int b) { return moves(b) ? norm(frames[at(b)].origin()) + system.radius()[at(b)] : 0.0; };
+  const auto place = [&](int b) { return b >= 0 ? evaluator.ground_frame(b).origin() : Vec2<double>{}; };
+  const auto add = [&](int i, int j, const ElementMatrix& m) {
+    // How far two bodies are apart, or a body and the ground's origin, from where places in the ground are given.
+    const double length = std::max(norm(place(i) - place(j)), system.length()) + reach(i) + reach(j);
+    for (int row = 0; row < 6; ++row) {
+      const int body = row < 3 ? i : j;
+      const int c = moves(body) ? plan.column[at(3 * body + row % 3)] : -1;
+      if (c < 0) continue;
+      for (int k = 0; k < 6; ++k) {
+        const int other = k < 3 ? i : j;
+        const double size = k % 3 != 2 ? length : moves(other) ? 1 + std::abs(frames[at(other)].phi) : 1;
+        sum[at(c)] += std::abs(m[at(6 * row + k)]) * size;
+      }
+    }
+  };
+  evaluator.visit_stiffness({}, add);
+  evaluator.visit_constraint_hessians(lambda, add);
+}
+
+}  // namespace
+
+StaticAccuracy judge_balance(StaticSystem& system, std::span<const double> lambda, double tolerance) {
+  const Plan& plan = system.plan();
+  const std::span<const double> inverse_arms = system.matrix().inverse_arms();
+  std::vector<double> residual(at(plan.columns));
+  system.residual(lambda, residual);
+  const ForceSizes sizes = force_sizes(system.evaluator());
+  const std::vector<double> terms = sum_terms(system, sizes.all, lambda);
+  StaticAccuracy result;
+  bool finite = true;
+  for (int c = 0; c < plan.columns; ++c) {
+    const double force = std::abs(residual[at(c)]) * inverse_arms[at(c)];
+    finite = finite && std::isfinite(force);
+    if (result.column < 0 || force > result.residual) {
+      result.residual = force;
+      result.column = c;
+    }
+    result.forces = std::max(result.forces, terms[at(c)] * inverse_arms[at(c)]);
+    result.loads = std::max(result.loads, sizes.loads[at(plan.coordinate[at(c)])] * inverse_arms[at(c)]);
+  }
+  const bool loaded = result.loads > 0;
+  if (!loaded) result.loads = result.forces;
+  const bool shows = result.residual > std::max(shown, tolerance) * result.loads;
+  result.balanced = finite && !shows && result.residual <= tolerance * result.forces;
+  if (result.balanced || !finite) return result;
+  std::vector<double> floor = terms;
+  add_stiffness_times_places(system, lambda, floor);
+  // Without loads, springs at their lengths: all that there is are the roundings themselves.
+  bool rounded = true, nothing = !loaded;
+  double worst = -1;
+  for (int c = 0; c < plan.columns; ++c) {
+    const double force = std::abs(residual[at(c)]), rounding = few_roundings * floor[at(c)];
+    rounded = rounded && force <= rounding;
+    nothing = nothing && terms[at(c)] <= rounding;
+    if (force > worst * rounding) {
+      worst = rounding > 0 ? force / rounding : std::numeric_limits<double>::infinity();
+      result.rounding = rounding * inverse_arms[at(c)];
+    }
+  }
+  result.rounded = rounded && (nothing || !shows);
+  return result;
+}
+
+}  // namespace catena

@@ -1,0 +1,35 @@
+// How well the forces balance at a point, judged by the forces themselves and by what rounding can leave of them.
+//
+//   r = V_q + Phi_q^T lambda          moments divided by the body's radius, so that all are N
+//   forces_c = sum of |terms of r_c|: every element's force, gravity, every constraint's part
+//   rounding_c = 4 eps (forces_c + sum over elements, j of |K_cj| s_j)
+//
+// K an element's stiffness, of constraints lambda Phi_qq, s_j the size of the numbers from which its places are formed
+// (m; 1 rad and the angle): a place is known to eps s, so that a spring of k N/m is known to no better than eps k s,
+// whatever is done. Balanced: max |r| <= tolerance x max forces_c. Rounded: |r_c| <= rounding_c everywhere. Neither
+// counts where a part of the loads is left that would show (`shown`): forces of springs under prestress, or rounding of
+// very stiff ones, may be larger than all that they carry. Source: Higham, Accuracy and Stability of Numerical
+// Algorithms, section 3.1 (running error).
+#pragma once
+
+#include <span>
+
+#include "catena/analysis/balance/static_system.hpp"
+
+namespace catena {
+
+struct StaticAccuracy {
+  double residual = 0;  ///< N, largest
+  double forces = 0;    ///< N, largest sum of terms at one coordinate
+  double loads = 0;     ///< N, the same of gravity, forces and torques alone; of all where there are none
+  double rounding = 0;  ///< N, where the residual is furthest beyond it; 0 where it was not needed
+  int column = -1;      ///< where the residual is largest
+  bool balanced = false, rounded = false;
+
+  bool holds() const { return balanced || rounded; }
+};
+
+/// Judges the point where the system is. The work of one evaluation; of all stiffnesses too where not balanced.
+StaticAccuracy judge_balance(StaticSystem& system, std::span<const double> lambda, double tolerance);
+
+}  // namespace catena

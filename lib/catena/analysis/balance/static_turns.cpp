@@ -1,0 +1,65 @@
+#include "catena/analysis/balance/static_turns.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <type_traits>
+#include <vector>
+
+#include "catena/elements/all.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+constexpr double turn = 2 * std::numbers::pi;
+
+// Elements that know how often one body has turned against the other.
+template <class E>
+constexpr bool counts_turns =
+    std::is_same_v<E, AbsoluteAngle<double>> || std::is_same_v<E, RelativeAngle<double>> ||
+    std::is_same_v<E, Weld<double>> || std::is_same_v<E, Gear<double>> || std::is_same_v<E, Belt<double>> ||
+    std::is_same_v<E, RackPinion<double>> || std::is_same_v<E, Stop<double>> ||
+    std::is_same_v<E, TorsionSpring<double>> || std::is_same_v<E, Bushing<double>> ||
+    std::is_same_v<E, CustomForce<double>> || std::is_same_v<E, CustomConstraint<double>>;
+
+}  // namespace
+
+void drop_whole_turns(StaticSystem& system, std::span<const double> start, std::span<double> q) {
+  const Plan& plan = system.plan();
+  const auto turns = [&](int b) { return std::round((q[at(3 * b + 2)] - start[at(3 * b + 2)]) / turn); };
+  bool any = false;
+  for (int b = 0; b < plan.moving; ++b) any = any || turns(b) != 0;
+  if (!any) return;
+  // Groups of bodies; immobile ones and the ground share the last place.
+  std::vector<int> parent(at(plan.moving) + 1);
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int b) {
+    while (parent[at(b)] != b) b = parent[at(b)] = parent[at(parent[at(b)])];
+    return b;
+  };
+  const auto tie = [&](const auto& block, int) {
+    using E = typename std::remove_cvref_t<decltype(block)>::Element;
+    if constexpr (counts_turns<E>) {
+      for (int e = 0; e < block.size(); ++e) {
+        const int i = std::min(block.body_i[at(e)], plan.moving);
+        const int j = E::bodies == 1 ? plan.moving : std::min(block.body_j[at(e)], plan.moving);
+        parent[at(root(i))] = root(j);
+      }
+    }
+  };
+  for_each_list(plan.blocks, tie);
+  for_each_list(plan.forces, tie);
+  std::vector<double> taken(at(plan.moving) + 1, std::nan(""));
+  taken[at(root(plan.moving))] = 0;
+  for (int b = 0; b < plan.moving; ++b) {
+    double& group = taken[at(root(b))];
+    if (std::isnan(group)) group = turns(b);
+    q[at(3 * b + 2)] -= turn * group;
+  }
+  system.move_to(q);
+}
+
+}  // namespace catena

@@ -1,0 +1,158 @@
+// Forward dynamics: the motion that follows from forces, constraints and drivers (THEORY section 4).
+//
+// The start is assembled, its velocities made consistent; then an integrator steps through time, stopping where a
+// function of time has a breakpoint, and rows are interpolated between its steps and projected onto the constraints, so
+// that however many there are they do not shorten steps. Accelerations and multipliers of rows come from one solve at
+// the row, only if needed. Where no step can be made any more, the report says when and why; rows so far are kept.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "catena/analysis/dynamics/balance_watch.hpp"
+#include "catena/analysis/dynamics/dynamics_options.hpp"
+#include "catena/analysis/dynamics/event_watch.hpp"
+#include "catena/analysis/dynamics/integrators/integrator.hpp"
+#include "catena/analysis/dynamics/integrators/motion.hpp"
+#include "catena/analysis/motion/energy_account.hpp"
+#include "catena/analysis/motion/equations_of_motion.hpp"
+#include "catena/analysis/motion/motion_memory.hpp"
+#include "catena/analysis/motion/redundant_rows.hpp"
+#include "catena/analysis/motion/singular_instant.hpp"
+#include "catena/analysis/pose/assemble.hpp"
+#include "catena/analysis/pose/minimum_norm.hpp"
+#include "catena/analysis/run/analysis_report.hpp"
+#include "catena/analysis/run/process_time.hpp"
+#include "catena/analysis/run/row_observer.hpp"
+#include "catena/analysis/run/state_conversion.hpp"
+#include "catena/analysis/run/system_state.hpp"
+#include "catena/analysis/run/time_grid.hpp"
+#include "catena/analysis/run/watched_elements.hpp"
+
+namespace catena {
+
+class Dynamics {
+ public:
+  explicit Dynamics(std::shared_ptr<const Model> model, const PlanOptions& plan_options = {},
+                    const DynamicsOptions& options = {});
+
+  const Plan& plan() const { return *plan_; }
+  /// The method at work: what was asked for, or what was chosen.
+  IntegrationMethod method() const { return method_; }
+  Evaluator& evaluator() { return evaluator_; }
+
+  /// Starts from a state of an earlier analysis instead of the given configuration at t = 0.
+  void start_from(const SystemState& state);
+  /// Assembles and makes velocities consistent, if nothing did before, and goes through the grid.
+  AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
+
+  /// run() in parts, for motions that go on side by side: begin(), go_on() as often as one likes, end().
+  void begin(const TimeGrid& grid, const Needs& needs);
+  /// Goes on until `rows` rows of the grid were given in all, counted from begin(), or the run ends. False: it ended
+  /// before, and no row will come any more.
+  bool go_on(std::int64_t rows, RowObserver& observer);
+  AnalysisReport end();
+
+  /// run() ends, and paused() says so, with the first step that reaches t (s) and does not lie across a singular
+  /// position, after its rows.
+  void pause_after(double t) { pause_after_ = t; }
+  bool paused() const { return paused_; }
+  /// What the motion goes on from where the last run paused.
+  const MotionMemory& memory() const { return memory_; }
+  /// Takes up a motion of the same model and options that paused: the next run() begins there, on the rest of its grid.
+  void resume(const MotionMemory& memory);
+
+  /// Looks for events during run(): a row is given at each, and one that acts ends the run there. nullptr: none.
+  void watch(EventWatch* events) { events_ = events; }
+  /// The event at which the last run ended before the end of its grid, or -1; and the row of the grid that was next.
+  int stopped_by() const { return stopped_by_; }
+  std::int64_t next_row() const { return next_row_; }
+  WorkSoFar work_so_far() const;
+  /// Counts work from an earlier start; energy that is missing against then counts as dissipated (an impact).
+  void carry_on(WorkSoFar work) { earlier_ = std::move(work); }
+
+  double time() const { return t_; }
+  std::span<const double> q() const { return q_; }
+  std::span<const double> qd() const { return qd_; }
+  /// The present state, absolute and in model order.
+  SystemState state() const;
+  /// Where a body is where the last run ended: the frame in which its points and attachments were given. By its number
+  /// in the model; throws std::out_of_range for one that no body has.
+  Frame<double> frame(int body) const { return frame_of(evaluator_, q_, body); }
+
+ private:
+  void choose_method();
+  Report prepare(std::vector<std::string>& warnings);
+  std::unique_ptr<Integrator> make_integrator(const Motion& motion, double horizon) const;
+  void look_for_singularity(double t);
+  int locked_driver();
+  bool know_singular_start();
+  void remark_on_singularities(std::vector<std::string>& warnings) const;
+  Report check_order() const;
+  Report check_freedoms() const;
+  Report start();
+  Report set_out();
+  Report next(RowObserver& observer);
+  Report step(RowObserver& observer);
+  Report start_anew();
+  Report check_balance();
+  Report check_redundant_rows();
+  void remember();
+  Report give_row(double t, RowObserver& observer);
+  std::optional<Snapshot> state_at(double t);
+  Report check_curve_ends(double from, RowObserver& observer);
+  Report find_events(double from, RowObserver& observer);
+  void find_multipliers();
+  void describe_mobility(AnalysisReport& report);
+  Report stuck();
+  static Report cancelled(double t);
+  Report check_pace(double last);
+  double next_breakpoint(double t) const;
+  Snapshot snapshot(double t, std::span<const double> y, const Needs& needs) const;
+
+  std::shared_ptr<const Model> model_;
+  std::shared_ptr<const Plan> plan_;
+  DynamicsOptions options_;
+  IntegrationMethod method_ = IntegrationMethod::rk8;
+  Evaluator evaluator_;
+  EquationsOfMotion equations_;
+  RedundantRows redundant_;
+  std::optional<EnergyAccount> account_;
+  std::optional<BalanceWatch> balance_;  // where the energy of the motion can be told, and a tolerance was asked for
+  std::unique_ptr<Integrator> integrator_;
+  std::optional<MinimumNorm> minimum_norm_;            // made when multipliers turn out not to be unique
+  std::string ambiguity_;                              // whose reactions are not, when that was found
+  std::optional<SingularInstant> singular_;            // made where constraints come to depend on each other
+  bool at_singularity_ = false;                        // at the last state_at()
+  bool dependent_ = false, always_dependent_ = false;  // constraints: where the last step ended, and where it began too
+  double singular_t_ = 0, formal_t_ = 0;               // of the first such rows; how many, what is said of them
+  std::int64_t singular_rows_ = 0, formal_rows_ = 0;
+  bool unbounded_ = false;
+  std::string singular_names_;
+  bool prepared_ = false, resumed_ = false;
+  // Of the run under way.
+  TimeGrid grid_ = TimeGrid::list({});
+  Needs needs_;
+  std::optional<Evaluator::TimeLimit> time_limit_;  // while it lasts
+  WatchedElements watched_;
+  std::optional<Motion> motion_;
+  ProcessTimer timer_;
+  AnalysisReport report_;
+  Report outcome_;
+  bool at_jump_ = false, paused_ = false;  // a function of time jumps at t_, and the integrator does not know yet
+  double pause_after_ = std::numeric_limits<double>::infinity();
+  MotionMemory memory_;
+  double t_ = 0, initial_energy_ = 0;
+  std::int64_t first_step_ = 0, pace_step_ = 0;  // counts of steps: at the run's start, and when time was ...
+  double pace_time_ = 0;                         // ... this, s
+  std::vector<double> q_, qd_, given_qd_, driver_work_;
+  std::vector<double> y_row_, slope_row_, lambda_row_, loads_row_;
+  double row_residual_ = 0;
+  EventWatch* events_ = nullptr;
+  int stopped_by_ = -1;
+  std::int64_t next_row_ = 0;
+  WorkSoFar earlier_;
+};
+
+}  // namespace catena

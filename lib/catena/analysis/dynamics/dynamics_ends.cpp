@@ -1,0 +1,48 @@
+// Dynamics where a curve or a table of an element ends: the run ends at that instant, with the rows before it.
+#include <algorithm>
+
+#include "catena/analysis/dynamics/dynamics.hpp"
+
+namespace catena {
+namespace {
+
+// Places within a step that are looked at, its end among them: what leaves a curve and comes back within less than a
+// quarter of a step has turned faster than the step's error allows.
+constexpr int samples = 4;
+
+}  // namespace
+
+// Looks along the last step, which began at `from`.
+Report Dynamics::check_curve_ends(double from, RowObserver& observer) {
+  const auto left_at = [&](double t) {
+    if (t == integrator_->time()) {
+      std::copy(integrator_->state().begin(), integrator_->state().end(), y_row_.begin());
+    } else {
+      integrator_->interpolate(t, y_row_);
+    }
+    evaluator_.set_configuration(std::span<const double>(y_row_).first(q_.size()));
+    return !watched_.check().ok();
+  };
+  double inside = from, outside = from;
+  for (int k = 1; k <= samples && outside == from; ++k) {
+    const double t = k == samples ? t_ : from + (t_ - from) * k / samples;
+    (left_at(t) ? outside : inside) = t;
+  }
+  if (outside == from) return {};
+  for (double middle = inside + (outside - inside) / 2; middle != inside && middle != outside;
+       middle = inside + (outside - inside) / 2) {
+    (left_at(middle) ? outside : inside) = middle;
+  }
+  t_ = inside;
+  if (events_) {
+    if (const Report found = find_events(from, observer); !found.ok() || stopped_by_ >= 0) return found;
+  }
+  while (next_row_ < grid_.size() && grid_[next_row_] <= inside) {
+    if (const Report given = give_row(grid_[next_row_++], observer); !given.ok()) return given;
+  }
+  left_at(outside);
+  evaluator_.set_time(outside);
+  return watched_.check();
+}
+
+}  // namespace catena

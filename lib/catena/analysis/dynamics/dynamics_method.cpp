@@ -1,0 +1,153 @@
+// Which method integrates a motion, how exact its steps are, and when a run has no prospect of ending.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/dynamics/integrators/adams.hpp"
+#include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// What a step may contribute to the error that was asked for; see the calibration in tests/oracles.
+constexpr double step_part = 0.002;
+// The same for methods whose errors of steps add up more: those that do not project, and those with a memory; but not
+// less than rounding leaves.
+constexpr double finer_part = 0.2, least_step_tolerance = 2e-14;
+constexpr double least_multistep_tolerance = 1e-11;
+constexpr int least_multistep_bodies = 10;
+// Steps over which the pace of a run is measured.
+constexpr std::int64_t steps_of_a_pace = 20'000;
+
+// Whether bodies are tied to each other, or to the ground, in more than one way.
+bool has_closed_loops(const Plan& plan) {
+  std::vector<int> leader(at(plan.moving) + 1);
+  std::iota(leader.begin(), leader.end(), 0);
+  const auto find = [&](int node) {
+    while (leader[at(node)] != node) node = leader[at(node)] = leader[at(leader[at(node)])];
+    return node;
+  };
+  bool closed = false;
+  for_each_list(plan.blocks, [&](const auto& block, int) {
+    for (int e = 0; e < block.size(); ++e) {
+      // What does not move is the ground.
+      const int i = find(std::min(block.body_i[at(e)], plan.moving)),
+                j = find(std::min(block.body_j[at(e)], plan.moving));
+      closed = closed || i == j;
+      leader[at(i)] = j;
+    }
+  });
+  return closed;
+}
+
+}  // namespace
+
+// A motion is integrated forwards: rows in another order, or before its start, cannot be had.
+Report Dynamics::check_order() const {
+  Report report;
+  double before = resumed_ ? grid_[0] : t_;
+  for (std::int64_t k = 0; k < grid_.size(); ++k) {
+    if (grid_[k] >= before) {
+      before = grid_[k];
+      continue;
+    }
+    report.status = Status::refused;
+    report.message = k == 0
+                         ? fmt::format(
+                               "a row is asked for at t = {:.12g} s, but the motion starts at {:.12g} s and is not "
+                               "integrated backwards",
+                               grid_[0], t_)
+                         : fmt::format(
+                               "\"at\" must list its instants in the order of time, since a motion is not integrated "
+                               "backwards: {:.12g} s comes after {:.12g} s",
+                               grid_[k], before);
+    return report;
+  }
+  return report;
+}
+
+Report Dynamics::check_freedoms() const {
+  Report report;
+  const int freedoms = plan_->columns - plan_->rows + redundant_.count();
+  if (freedoms > CoordinatePartition::most_freedoms) {
+    report.status = Status::refused;
+    report.message = fmt::format(
+        "partitioning serves up to {} degrees of freedom, and this mechanism has {} degrees of freedom; other methods "
+        "have no limit",
+        CoordinatePartition::most_freedoms, freedoms);
+  }
+  return report;
+}
+
+// Multistep methods save evaluations in smooth motions of many bodies; in closed loops, which may come to singular
+// positions, and where hardly a digit is to spare, Runge-Kutta is the safer choice.
+void Dynamics::choose_method() {
+  method_ = options_.method;
+  if (method_ != IntegrationMethod::automatic) return;
+  const bool multistep = options_.step == 0 && options_.tolerance >= least_multistep_tolerance &&
+                         plan_->moving >= least_multistep_bodies && !has_closed_loops(*plan_);
+  method_ = multistep ? IntegrationMethod::adams : IntegrationMethod::rk8;
+}
+
+std::unique_ptr<Integrator> Dynamics::make_integrator(const Motion& motion, double horizon) const {
+  RungeKuttaOptions options{.tolerance = step_part * options_.tolerance,
+                            .fixed_step = options_.step,
+                            .horizon = horizon,
+                            .may_lower_order = options_.method != IntegrationMethod::rk8};
+  const double finer = std::min(options.tolerance, std::max(finer_part * options.tolerance, least_step_tolerance));
+  switch (method_) {
+    case IntegrationMethod::automatic:
+    case IntegrationMethod::rk8:
+      break;
+    case IntegrationMethod::rk5:
+      options.order = 5;
+      break;
+    case IntegrationMethod::baumgarte:
+      options.keeping = ConstraintKeeping::stabilisation;
+      options.tolerance = finer;
+      break;
+    case IntegrationMethod::partitioning:
+      options.keeping = ConstraintKeeping::partition;
+      options.tolerance = finer;
+      break;
+    case IntegrationMethod::adams:
+      options.tolerance = finer;
+      return std::make_unique<Adams>(motion, options);
+  }
+  return std::make_unique<RungeKutta>(motion, options);
+}
+
+// Ends a run that would take hours, where it is rather than then.
+Report Dynamics::check_pace(double last) {
+  Report report;
+  if (options_.step > 0) return report;
+  const std::int64_t steps = evaluator_.counters.steps + evaluator_.counters.rejected;
+  const bool used_up = steps - first_step_ >= options_.max_steps && t_ < last;
+  bool hopeless = false;
+  if (steps - pace_step_ >= steps_of_a_pace) {
+    const double pace = (t_ - pace_time_) / static_cast<double>(steps - pace_step_);
+    hopeless = last - t_ > 10 * pace * static_cast<double>(options_.max_steps);
+    pace_step_ = steps;
+    pace_time_ = t_;
+  }
+  if (!used_up && !hopeless) return report;
+  // Steps that lead nowhere are too small; a bound that is reached is another matter.
+  report.status = hopeless ? Status::step_too_small : Status::not_converged;
+  std::string culprit;
+  if (integrator_->culprit() >= 0) {
+    culprit = fmt::format(" the error of body \"{}\" asks for short ones;",
+                          model_->body_name(plan_->model_body[at(integrator_->culprit() / 3)]));
+  }
+  report.message = fmt::format(
+      "{} steps led to t = {:.12g} s, {} than max_steps = {} are needed at this pace;{} likely cause: masses, "
+      "stiffnesses or damping of very different sizes, or a tolerance near rounding; give a larger tolerance or "
+      "max_steps",
+      steps - first_step_, t_, hopeless ? "many more" : "more", options_.max_steps, culprit);
+  return report;
+}
+
+}  // namespace catena

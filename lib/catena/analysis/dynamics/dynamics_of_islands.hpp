@@ -1,0 +1,48 @@
+// Dynamics of mechanisms that stand side by side in one scene, tied by no constraint and no force: those of different
+// pace (paces.hpp) are integrated apart, with steps of their own size, each class by the method that `auto` chooses for
+// it, and they meet at the rows.
+//
+// A stiff or fast one then no longer makes a slow and large one go in its steps: instead of
+//   (most steps of any) x (bodies of all)      the cost is      sum over the classes of steps x bodies.
+// Errors are compared with the sizes of each class, not with those of the whole scene: the same tolerance asks for more
+// where a small mechanism stands beside a large one.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/model/model_part.hpp"
+
+namespace catena {
+
+class DynamicsOfIslands {
+ public:
+  /// `classes`: bodies of each, as classes_of_pace() finds them.
+  DynamicsOfIslands(std::shared_ptr<const Model> model, const PlanOptions& plan_options, const DynamicsOptions& options,
+                    const std::vector<std::vector<int>>& classes);
+  ~DynamicsOfIslands();
+
+  std::size_t classes() const { return parts_.size(); }
+  const Plan& plan() const { return *plan_; }
+  Evaluator& evaluator() { return evaluator_; }
+  SystemState state() const;
+  /// Of each class.
+  std::vector<IntegrationMethod> methods() const;
+  void start_from(const SystemState& state);
+  /// Where one of them cannot go on all end, with its message.
+  AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
+
+ private:
+  class Part;
+  bool give_row(double t, const Needs& needs, RowObserver& observer);
+
+  std::shared_ptr<const Model> model_;
+  std::shared_ptr<const Plan> plan_;
+  Evaluator evaluator_;
+  std::vector<std::unique_ptr<Part>> parts_;
+  double t_ = 0;
+  std::vector<double> q_, qd_, qdd_, lambda_, driver_work_;  // of all, in the order of plan_
+};
+
+}  // namespace catena

@@ -1,0 +1,179 @@
+// Rows of Dynamics: the mechanism at an instant of the last step, events, and what is said where no step can be made.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/pose/mobility.hpp"
+#include "catena/columns/energy.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// Rows whose smallest pivot ratio is above this need no rank analysis.
+constexpr double independent_ratio = 1e-8;
+
+}  // namespace
+
+Report Dynamics::cancelled(double t) {
+  Report report;
+  report.status = Status::cancelled;
+  report.message = fmt::format("stopped at t = {:.12g} s; the rows so far are kept", t);
+  return report;
+}
+
+Snapshot Dynamics::snapshot(double t, std::span<const double> y, const Needs& needs) const {
+  const std::size_t n = q_.size();
+  Snapshot s{.evaluator = evaluator_, .t = t, .q = y.first(n), .qd = y.subspan(n, n)};
+  if (needs.acceleration || needs.multipliers) s.qdd = std::span<const double>(slope_row_).subspan(n, n);
+  if (needs.multipliers) s.lambda = lambda_row_;
+  s.residual = row_residual_ * evaluator_.length_scale();
+  if (account_) {
+    const std::span<const double> work = y.subspan(2 * n);
+    s.work = earlier_.supplied + EnergyAccount::supplied(work);
+    s.dissipated = earlier_.dissipated + EnergyAccount::dissipated(work);
+    s.driver_work = driver_work_;
+    s.initial_energy = initial_energy_;
+  }
+  return s;
+}
+
+Report Dynamics::give_row(double t, RowObserver& observer) {
+  const std::optional<Snapshot> state = state_at(t);
+  if (!state) return stuck();
+  return observer.observe(*state) ? Report{} : cancelled(t);
+}
+
+// The mechanism at an instant of the last step, on its constraints if the method keeps to them; nothing where that
+// cannot be had.
+std::optional<Snapshot> Dynamics::state_at(double t) {
+  const std::size_t n = q_.size();
+  const std::span<double> y(y_row_);
+  if (t == integrator_->time()) {
+    std::copy(integrator_->state().begin(), integrator_->state().end(), y.begin());
+    row_residual_ = integrator_->position_residual();
+  } else {
+    integrator_->interpolate(t, y);
+    if (integrator_->meets_constraints()) {
+      if (!equations_.factorize(t, Side::after, y.first(n))) return {};
+      row_residual_ = equations_.project_position(y.first(n), 4);
+      equations_.project_velocity(y.subspan(n, n), 0);
+    } else {
+      evaluator_.set_time(t);
+      row_residual_ = equations_.position_residual(y.first(n));
+    }
+  }
+  if (needs_.acceleration || needs_.multipliers) {
+    const std::span<double> slope(slope_row_);
+    if (!equations_.accelerations(t, Side::after, y.first(n), y.subspan(n, n), slope.subspan(n, n))) return {};
+    look_for_singularity(t);
+    if (needs_.multipliers) find_multipliers();
+  } else {
+    evaluator_.set_time(t);
+    evaluator_.set_configuration(y.first(n));
+  }
+  if (account_) {
+    // Drivers that are released have no part in the present run, but what they did before it.
+    std::fill(driver_work_.begin(), driver_work_.end(), 0.0);
+    account_->driver_work(y.subspan(2 * n), driver_work_);
+    for (std::size_t e = 0; e < earlier_.by_driver.size(); ++e) driver_work_[e] += earlier_.by_driver[e];
+  }
+  evaluator_.add_turns(y.first(n));
+  return snapshot(t, y, needs_);
+}
+
+// Multipliers of the row: those of the accelerations, or the least ones where they are not unique.
+void Dynamics::find_multipliers() {
+  lambda_row_.assign(equations_.multipliers().begin(), equations_.multipliers().end());
+  if (!equations_.is_dependent() && !at_singularity_) return;
+  if (!minimum_norm_) minimum_norm_.emplace(evaluator_);
+  if (!minimum_norm_->factorize()) return;
+  if (at_singularity_) {
+    minimum_norm_->solve(singular_->loads(), lambda_row_);
+    return;
+  }
+  const std::span<const double> Q = equations_.applied_forces(), qdd = std::span(slope_row_).subspan(q_.size());
+  const std::vector<double>& mass = equations_.masses().mass;
+  loads_row_.resize(mass.size());
+  for (std::size_t c = 0; c < mass.size(); ++c) loads_row_[c] = Q[c] - mass[c] * qdd[c];
+  minimum_norm_->solve(loads_row_, lambda_row_);
+  ambiguity_ = minimum_norm_->ambiguity();
+}
+
+// Degrees of freedom: by count where rows are independent, else by rank.
+void Dynamics::describe_mobility(AnalysisReport& report) {
+  if (equations_.smallest_pivot_ratio() > independent_ratio && !equations_.is_dependent()) {
+    report.rank = plan_->rows;
+    report.dof = plan_->columns - plan_->rows;
+    report.mobility = plan_->mobility();
+    return;
+  }
+  const MobilityReport mobility = analyse_mobility(evaluator_, std::span<const double>(y_row_).first(q_.size()));
+  report.rank = mobility.rank;
+  report.dof = mobility.dof();
+  report.mobility = mobility.mobility();
+  for (int element : mobility.redundant_elements) report.redundant.push_back(model_->element_name(element));
+}
+
+Report Dynamics::stuck() {
+  Report report;
+  if (const int driver = locked_driver(); driver >= 0) {
+    report.status = Status::lock_up;
+    report.message = fmt::format(
+        "lock-up at t = {:.12g} s: the drivers ask for a motion that the mechanism cannot make (a dead point); most "
+        "concerned: {} \"{}\"",
+        integrator_->time(), model_->element_type(driver), model_->element_name(driver));
+    return report;
+  }
+  // What means nothing in kinematics means nothing here.
+  evaluator_.set_time(integrator_->time());
+  evaluator_.set_configuration(integrator_->state().first(q_.size()));
+  if (Report sound = watched_.check(); !sound.ok()) return sound;
+  report.status = Status::step_too_small;
+  const int row = equations_.weakest_row();
+  std::string where;
+  if (integrator_->culprit() >= 0) {
+    where = fmt::format("the error of body \"{}\" cannot be kept small enough",
+                        model_->body_name(plan_->model_body[at(integrator_->culprit() / 3)]));
+  } else {
+    where = "accelerations are not finite or constraints cannot be kept";
+  }
+  std::string cause = "forces that grow without bound, or a motion that jumps";
+  if (const std::string undetermined = equations_.undetermined(); !undetermined.empty()) cause = undetermined;
+  if (plan_->rows > 0 && equations_.smallest_pivot_ratio() < 1e-6 && row >= 0) {
+    const int element = plan_->row_element[at(row)];
+    cause = fmt::format("a singular configuration: {} \"{}\" depends on other constraints there",
+                        model_->element_type(element), model_->element_name(element));
+  }
+  report.message =
+      fmt::format("no step can be made at t = {:.12g} s: {}; likely cause: {}", integrator_->time(), where, cause);
+  return report;
+}
+
+// Events within the last step, in order: rows before each, then its own.
+Report Dynamics::find_events(double from, RowObserver& observer) {
+  const auto state = [&](double t) { return state_at(t); };
+  while (const std::optional<FoundEvent> found = events_->find(from, t_, state)) {
+    while (next_row_ < grid_.size() && grid_[next_row_] < found->t) {
+      if (const Report given = give_row(grid_[next_row_++], observer); !given.ok()) return given;
+    }
+    if (next_row_ < grid_.size() && grid_[next_row_] == found->t) ++next_row_;
+    if (const Report given = give_row(found->t, observer); !given.ok()) return given;
+    from = found->t;
+    if (!events_->take(*found)) continue;
+    stopped_by_ = found->event;
+    t_ = found->t;
+    return {};
+  }
+  return {};
+}
+
+WorkSoFar Dynamics::work_so_far() const {
+  if (!account_) return {};
+  const Snapshot now = snapshot(t_, y_row_, {});
+  return {now.work, now.dissipated, initial_energy_, total_energy(now), driver_work_};
+}
+
+}  // namespace catena

@@ -1,0 +1,72 @@
+// Dynamics in which constraints may come and go at events: a pin breaks, a clutch engages, a part lands and stays.
+//
+// Between events it is Dynamics. At an event that releases or engages a constraint, the motion goes on from there with
+// a plan of the same bodies and other rows. Positions and, on a release, velocities are continuous; on engagement
+// velocities change as little as the constraint asks for in the mass metric (a plastic impact), and the energy lost
+// counts as dissipated. A constraint that an event engages does not hold before. Angles are continuous everywhere: what
+// is engaged after some turns takes its value with it (engaged_turns.hpp). Units as in dynamics.hpp.
+//
+// It can also pause now and then to save what it goes on from. At the end of the first step that reaches a multiple of
+// `every` after the last pause the integrator and all it holds are given up, and a new one goes on from the numbers
+// that were saved: in the run that goes on as in one that is taken up from them, which are thus equal bit for bit.
+// Pauses depend on simulated time alone. A run with pauses is as exact as one without, but may differ from it within
+// its tolerance; adams starts with short steps after each.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "catena/analysis/dynamics/dynamics.hpp"
+
+namespace catena {
+
+struct Pauses {
+  double every = std::numeric_limits<double>::infinity();  ///< s
+  std::function<void(const MotionMemory&)> save = {};      ///< called at each
+};
+
+class DynamicsWithEvents {
+ public:
+  /// Throws as EventWatch does. `sources`: what columns of dynamics can be made of. `events` may be empty.
+  DynamicsWithEvents(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
+                     const DynamicsOptions& options, std::vector<Event> events, const ColumnSources& sources);
+
+  const Plan& plan() const { return dynamics_->plan(); }
+  IntegrationMethod method() const { return dynamics_->method(); }
+  Evaluator& evaluator() { return dynamics_->evaluator(); }
+  void pause(Pauses pauses) { pauses_ = std::move(pauses); }
+  /// Nothing in a motion that is taken up.
+  void start_from(const SystemState& state);
+  /// Takes up a motion that paused; run() then wants the grid of that motion from its beginning, and gives the rows
+  /// that are left.
+  void resume(const MotionMemory& memory);
+  AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
+  SystemState state() const { return dynamics_->state(); }
+  const std::vector<EventRecord>& records() const { return watch_->records(); }
+
+ private:
+  void make_dynamics();
+  std::vector<double> residuals_of(int element);
+  /// Saves the motion where it paused and goes on from what was saved.
+  void save_and_resume(std::int64_t rows_given, std::int64_t next_row);
+  /// Releases or engages what the event says; a report if that cannot be.
+  Report act(const Event& event, bool sum_up_work);
+  void turn_value_to_bodies(int element, const SystemState& state);
+  Report check_fit(int element);
+
+  std::shared_ptr<const Model> given_model_;
+  std::shared_ptr<const Model> model_;  // with values moved by whole turns
+  PlanOptions plan_options_;
+  DynamicsOptions options_;
+  std::unique_ptr<Dynamics> dynamics_;
+  std::unique_ptr<EventWatch> watch_;
+  std::vector<int> turned_;            // see EventMemory
+  std::vector<std::string> inactive_;  // what is said of elements that are released before they are engaged
+  Pauses pauses_;
+  bool resumed_ = false;
+  std::int64_t first_row_ = 0, rows_before_ = 0;  // of the grid; rows given before the motion was taken up
+};
+
+}  // namespace catena

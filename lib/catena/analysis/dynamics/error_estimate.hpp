@@ -1,0 +1,113 @@
+// How large the error of a motion is: from two runs, side by side, of which one is finer.
+//
+//   asked    the run that was asked for: tolerance, or fixed step
+//   finer    tolerance / 10, or half the step; its rows are those that are given
+//
+// error = largest difference of the two at the instants of rows, of positions, angles, velocities and angular
+// velocities of the bodies, at their centroids. It is the error of the run that was asked for, up to that of the finer
+// one; the rows that are given are better. It holds for motions on which small errors have small effects: where they
+// have not, as after long times in chaotic ones, the difference says so by its size, but is no bound. What both runs
+// get wrong alike, such as a too coarse table of a function of time, does not show. Units: m, rad, s; nothing is stored
+// by row.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "catena/analysis/dynamics/dynamics_with_events.hpp"
+
+namespace catena {
+
+/// One kind of coordinate. `scale`: what the tolerance of this kind is relative to (see DynamicsOptions).
+struct ErrorOfMotion {
+  double error = 0;
+  double scale = 0;
+  int body = -1;  ///< of the model, where it is largest; -1: none at all
+  double t = 0;   ///< s, when
+  /// Compares with a tolerance.
+  double relative() const { return error > 0 ? error / scale : 0; }
+};
+
+struct EstimatedError {
+  ErrorOfMotion position, angle, velocity, angular_velocity;  ///< m, rad, m/s, rad/s
+  double until = 0;                                           ///< s; the last instant at which the two were compared
+  double largest() const;                                     ///< relative()
+};
+
+/// The options of the finer run. Throws std::invalid_argument where double precision leaves nothing finer.
+DynamicsOptions finer_options(const DynamicsOptions& options);
+
+/// Follows the rows of the finer run with the other one, compares, and passes them on.
+class ErrorComparison final : public RowObserver {
+ public:
+  /// `asked` has begun; `target` gets the rows.
+  ErrorComparison(Dynamics& asked, const TimeGrid& grid, RowObserver& target);
+
+  bool observe(const Snapshot& snapshot) override;
+  bool proceed(double t) override;
+  const EstimatedError& error() const { return error_; }
+
+ private:
+  /// Rows of the run that was asked for end here.
+  class Other final : public RowObserver {
+   public:
+    explicit Other(ErrorComparison& owner) : owner_(owner) {}
+    bool observe(const Snapshot& snapshot) override;
+    bool proceed(double t) override;
+
+   private:
+    ErrorComparison& owner_;
+  };
+  void compare(const Snapshot& snapshot);
+
+  Dynamics& asked_;
+  const TimeGrid& grid_;
+  RowObserver& target_;
+  Other other_{*this};
+  EstimatedError error_;
+  std::int64_t row_ = 0;
+  double t_ = 0;                // reached by the finer run
+  bool proceeding_ = true;      // nobody cancelled
+  std::vector<double> q_, qd_;  // of the run that was asked for
+};
+
+/// Says in the report of the finer run what came of the comparison, and adds what it cost.
+void add_estimate(AnalysisReport& report, const AnalysisReport& asked, const EstimatedError& error,
+                  const DynamicsOptions& options);
+
+/// Dynamics, or DynamicsWithEvents whose events do not change the mechanism, with an estimate of its error.
+template <class Analysis>
+class WithErrorEstimate {
+ public:
+  /// `finer` has finer_options(options).
+  WithErrorEstimate(Analysis& finer, std::shared_ptr<const Model> model, const PlanOptions& plan_options,
+                    const DynamicsOptions& options)
+      : finer_(finer), asked_(std::move(model), plan_options, options), options_(options) {}
+
+  const Plan& plan() const { return finer_.plan(); }
+  Evaluator& evaluator() { return finer_.evaluator(); }
+  IntegrationMethod method() const { return finer_.method(); }
+  SystemState state() const { return finer_.state(); }
+  void start_from(const SystemState& state) {
+    finer_.start_from(state);
+    asked_.start_from(state);
+  }
+  AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
+    asked_.begin(grid, {});
+    ErrorComparison comparison(asked_, grid, observer);
+    AnalysisReport report = finer_.run(grid, needs, comparison);
+    error_ = comparison.error();
+    add_estimate(report, asked_.end(), error_, options_);
+    return report;
+  }
+  const EstimatedError& error() const { return error_; }
+
+ private:
+  Analysis& finer_;
+  Dynamics asked_;
+  DynamicsOptions options_;
+  EstimatedError error_;
+};
+
+}  // namespace catena

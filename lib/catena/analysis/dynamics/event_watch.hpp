@@ -1,0 +1,95 @@
+// Watching for events: instants at which a column passes a value.
+//
+//   g_k(t) = column_k - value_k changes its sign, in the direction that is watched
+//
+// Within a step of the integrator g is sampled on the dense output, at eight instants or more: a quarter of a radian of
+// the fastest body's turn apart at most. A change of sign, or a dip towards zero that a parabola through three samples
+// takes beyond it, is enclosed and the root found to rounding in t on states that meet the constraints, hence as exact
+// as the rows of the run. A column that starts at its value has no event there. What passes to and fro between two
+// samples without a visible dip goes unnoticed. Units: those of the columns, s.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "catena/analysis/motion/motion_memory.hpp"
+#include "catena/columns/column_set.hpp"
+
+namespace catena {
+
+enum class EventDirection { any, up, down };
+
+enum class EventAction {
+  record,   ///< a row, nothing else
+  stop,     ///< the analysis ends
+  release,  ///< a constraint ceases to hold
+  engage,   ///< a constraint begins to hold; it does not before
+};
+
+struct Event {
+  std::string name;
+  std::string column;  ///< one column, by its name
+  double value = 0;
+  EventDirection direction = EventDirection::any;
+  EventAction action = EventAction::record;
+  int element = -1;  ///< what is released or engaged, in the model's list
+};
+
+struct FoundEvent {
+  int event = 0;
+  double t = 0;
+};
+
+class EventWatch {
+ public:
+  using StateAt = std::function<std::optional<Snapshot>(double)>;
+
+  /// Throws ColumnError for an unknown column; std::invalid_argument for one that stands for several, or that the
+  /// analysis cannot give, and for a value that is not finite; std::out_of_range for an element that there is not.
+  EventWatch(std::vector<Event> events, const Model& model, const Plan& plan, const ColumnSources& sources);
+
+  const std::vector<Event>& events() const { return events_; }
+  const Needs& needs() const { return needs_; }
+  /// The first event in (from, to]; `state_at` gives the mechanism at an instant of that interval.
+  std::optional<FoundEvent> find(double from, double to, const StateAt& state_at);
+  /// Keeps a record of an event that was found and whose row was given. True if it acts: the motion may not go on as
+  /// before.
+  bool take(const FoundEvent& found);
+  /// Counts rows: called with the number of those given so far.
+  std::function<std::int64_t()> rows_given;
+  const std::vector<EventRecord>& records() const { return records_; }
+  /// What it has seen, without `released` and `turned`; and takes over what another one had.
+  EventMemory memory() const { return {{}, {}, side_, largest_, records_}; }
+  void remember(const EventMemory& memory) {
+    side_ = memory.sides;
+    largest_ = memory.largest;
+    records_ = memory.records;
+  }
+
+ private:
+  int samples(double from, double to, const StateAt& state_at);
+  void sample(const Snapshot& state, std::span<double> g);
+  double watched(std::size_t k, double t, const StateAt& state_at);
+  std::optional<double> passage(std::size_t k, bool three, const StateAt& state_at);
+  double locate(std::size_t k, double before, double after, const StateAt& state_at);
+  int side(std::size_t k, double g) const;
+  bool counts(std::size_t k) const;
+
+  std::vector<Event> events_;
+  std::vector<ColumnSet> columns_;
+  Needs needs_;
+  std::vector<int> side_;                 // of its value on which each column was last seen: -1, 1; 0: not yet
+  std::vector<double> largest_;           // |column| so far: what rounding is measured against
+  std::vector<double> found_at_;          // when each event was last found, s
+  std::array<std::vector<double>, 3> g_;  // the last samples, of all columns
+  std::array<double, 3> times_{};
+  std::vector<double> angles_;  // of moving bodies, where a step begins
+  std::vector<EventRecord> records_;
+};
+
+}  // namespace catena

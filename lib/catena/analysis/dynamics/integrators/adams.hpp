@@ -1,0 +1,80 @@
+// Adams methods of variable order (1 ... 12) and step for a constrained motion: predict, evaluate, correct, project,
+// evaluate. Two evaluations a step, whatever the order.
+//
+// Only accelerations are kept as differences; positions are their double integral (a method for equations of second
+// order), velocities and the integrals that ride along the single one. The corrector is of one order more than the
+// predictor. Projection, error filter and the scale of errors are those of RungeKutta. Order and step are chosen as in
+// Shampine and Gordon's program STEP: orders k-2 ... k+1 are compared, steps are doubled, or cut when they must be, so
+// that equal steps are the rule. A start is of order 1, with steps that double while the order rises.
+//
+// A polynomial through many accelerations cannot be trusted near singular positions, where each is spoilt by its
+// distance from them: from a dip of the pivots on RungeKutta takes the steps, until the position lies behind.
+// With a fixed step RungeKutta makes the first ones, then the order is 8.
+#pragma once
+
+#include <algorithm>
+
+#include "catena/analysis/dynamics/integrators/adams_history.hpp"
+#include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
+
+namespace catena {
+
+class Adams final : public Integrator {
+ public:
+  /// `options`: the order does not count.
+  Adams(Motion motion, const RungeKuttaOptions& options);
+
+  bool start(double t, std::span<const double> y) override;
+  bool advance(double limit) override;
+  /// By the polynomial of the last step, one order above the predictor's.
+  void interpolate(double t, std::span<double> y) override;
+  std::vector<std::string> remarks() const override;
+  /// Its differences are not part of it: one that remembers starts with a short step of order 1.
+  IntegratorMemory memory() const override;
+  void remember(const IntegratorMemory& memory) override;
+  bool may_pause() const override { return !crossing_; }
+
+ private:
+  static constexpr std::size_t most = 12;  // order of a predictor
+
+  /// Estimates at orders k, k - 1 and k - 2, compared with what is allowed.
+  struct Errors {
+    double now = 0, below = 0, far_below = 0;
+    bool favour_lower(std::size_t k) const {
+      return k > 2 ? std::max(below, far_below) <= now : k == 2 && below <= 0.5 * now;
+    }
+  };
+  void forget();
+  bool advance_by_runge_kutta(double limit);
+  bool try_step(double h);
+  void predict(double h);
+  double weight(std::size_t c, double h) const;
+  Errors estimate(double h);
+  double error_of_step(double h);
+  double estimate_above(double h) const;
+  double filtered(double h, double raw);
+  bool finish(double h);
+  void update(double h);
+  void choose(double h, const Errors& errors, bool lower, double above);
+  double compared_with_end(double h, double error);
+  void fail(double h, double error, bool lower);
+  void observe_ratio();
+  bool dips() const;
+
+  Motion motion_;
+  RungeKuttaOptions options_;
+  RungeKutta runge_kutta_;
+  ErrorScale scale_;
+  AdamsHistory history_;
+  AdamsHistory::Weights weights_, inside_;
+  std::size_t k_ = 1, k_before_ = 0;  // order of the predictor; of the last step's
+  double h_ = 0, t_new_ = 0, largest_ratio_ = 0, usual_ratio_ = 1e-300;
+  bool starting_ = true, crossing_ = false, stepped_by_runge_kutta_ = false;
+  int failures_ = 0;
+  std::int64_t crossing_steps_ = 0;
+  std::vector<std::vector<double>> difference_;  // of [qdd, power], numbered from 1
+  std::vector<double> y_new_, slope_;
+  std::vector<double> predicted_, change_;  // [qdd, power]; what was evaluated less what was predicted
+};
+
+}  // namespace catena

@@ -1,0 +1,170 @@
+// Adams::advance: the choice of order and step, and when Runge-Kutta takes over.
+#include <algorithm>
+#include <cmath>
+
+#include "catena/analysis/dynamics/integrators/adams.hpp"
+
+namespace catena {
+namespace {
+
+constexpr double goal = 0.5;            // error a step is chosen for, compared with what is allowed
+constexpr double regular_ratio = 2e-2;  // of pivots, from which on a singular position lies behind
+constexpr double near_ratio = 0.2;      // below which steps that fail are left to Runge-Kutta
+constexpr double longer = 4;            // steps of Runge-Kutta, compared with those of an Adams method
+constexpr int most_failures = 100;
+constexpr std::size_t fixed_order = 8;
+
+}  // namespace
+
+bool Adams::advance(double limit) {
+  const bool fixed = options_.fixed_step > 0;
+  const double smallest = scale_.smallest_step(t_);
+  failures_ = 0;
+  if (fixed) h_ = options_.fixed_step;
+  const auto by_itself = [&] { return !crossing_ && !(fixed && k_ < fixed_order); };
+  // Runge-Kutta goes on from a state of its own, and takes the turns out of that: they must be taken once.
+  if (by_itself()) {
+    motion_.equations().evaluator().take_turns(motion_.q(std::span(y_)));
+    stepped_by_runge_kutta_ = false;
+  }
+  while (by_itself()) {
+    const double remaining = limit - t_;
+    const bool lands = h_ * (fixed ? 1 + 1e-9 : 1.01) >= remaining;
+    // Two equal steps instead of a long one and a tiny one.
+    double h = lands ? remaining : h_;
+    if (!lands && !fixed && 2 * h > remaining) h = remaining / 2;
+    if ((h < smallest && !lands) || failures_ > most_failures) return false;
+    t_new_ = lands ? limit : t_ + h;
+    if (try_step(h)) return true;
+    if (fixed && !crossing_) return false;
+  }
+  return advance_by_runge_kutta(limit);
+}
+
+// False: too large an error, in which case order and step were reduced, or a singular position nearby.
+bool Adams::try_step(double h) {
+  const bool fixed = options_.fixed_step > 0;
+  const std::size_t n = motion_.coordinates();
+  predict(h);
+  if (!motion_.derivative(t_new_, Side::before, y_new_, slope_)) {
+    culprit_ = -1;
+    fail(h, 1e10, true);
+    return false;
+  }
+  if (dips()) {
+    crossing_ = true;
+    return false;
+  }
+  for (std::size_t c = 0; c < change_.size(); ++c) change_[c] = slope_[n + c] - predicted_[c];
+  const Errors errors = estimate(h);
+  const bool lower = errors.favour_lower(k_);
+  double error = fixed ? 0 : error_of_step(h);
+  if (!(error <= 1) && std::isfinite(error)) error = compared_with_end(h, error);
+  if (!(error <= 1) && std::isfinite(error)) error = filtered(h, error);
+  if (!(error <= 1)) {
+    fail(h, std::isfinite(error) ? errors.now : 1e10, lower);
+    return false;
+  }
+  if (!finish(h)) {
+    culprit_ = -1;
+    fail(h, 1e10, true);
+    return false;
+  }
+  const bool steady = k_before_ >= k_ && k_ < most && history_.equal_steps(k_, h);
+  const double above = steady && !starting_ && !lower ? estimate_above(h) : -1;
+  update(h);
+  t_before_ = t_;
+  t_ = t_new_;
+  y_.swap(y_new_);
+  stepped_by_runge_kutta_ = false;
+  ++motion_.equations().evaluator().counters.steps;
+  observe_ratio();
+  const std::span<const double> y(y_), k(slope_);
+  scale_.observe(t_, h, motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()),
+                 motion_.equations().applied_forces());
+  if (!fixed) choose(h, errors, lower, above);
+  return true;
+}
+
+// The error compared with the motion at the step's end, where that is faster.
+double Adams::compared_with_end(double h, double error) {
+  const std::span<const double> y(y_new_), k(slope_);
+  return scale_.compare_with_end(motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()), error,
+                                 [&] { return error_of_step(h); });
+}
+
+void Adams::fail(double h, double error, bool lower) {
+  ++motion_.equations().evaluator().counters.rejected;
+  starting_ = false;
+  double cut = 0.5;
+  if (++failures_ > 3 && goal < 0.25 * error) cut = std::max(std::sqrt(goal / error), 0.01);
+  if (failures_ >= 3) {
+    k_ = 1;
+  } else if (lower && k_ > 1) {
+    --k_;
+  }
+  h_ = cut * h;
+  // Differences of many points magnify what rounding makes of accelerations beside a singular position.
+  if (failures_ >= 3 && motion_.equations().smallest_pivot_ratio() < near_ratio * usual_ratio_) crossing_ = true;
+}
+
+// Order and size of the next step. `above`: the error at order k + 1, negative where it is not known.
+void Adams::choose(double h, const Errors& errors, bool lower, double above) {
+  double error = errors.now;
+  const auto change_order = [&](bool up) {
+    error = up ? std::max(above, 0.0) : errors.below;
+    k_ = up ? k_ + 1 : k_ - 1;
+  };
+  if (lower || k_ == most) starting_ = false;
+  if (starting_) {
+    ++k_;
+  } else if (lower) {
+    change_order(false);
+  } else if (above >= 0) {
+    if (k_ > 1 && errors.below <= std::min(errors.now, above)) {
+      change_order(false);
+    } else if (above < (k_ > 1 ? 1 : 0.5) * errors.now) {
+      change_order(true);
+    }
+  }
+  const double power = static_cast<double>(k_) + 1;
+  if (starting_ || goal >= error * std::pow(2, power)) {
+    h_ = 2 * h;
+  } else {
+    h_ = goal >= error ? h : h * std::clamp(std::pow(goal / error, 1 / power), 0.5, 0.9);
+  }
+}
+
+// A step of Runge-Kutta: across a singular position, or one of the first of a fixed length.
+bool Adams::advance_by_runge_kutta(double limit) {
+  const bool fixed = options_.fixed_step > 0;
+  if (!stepped_by_runge_kutta_ || runge_kutta_.time() != t_) {
+    if (!runge_kutta_.take_over(t_, y_, longer * h_, scale_, usual_ratio_)) return false;
+  }
+  const bool advanced = runge_kutta_.advance(limit);
+  culprit_ = runge_kutta_.culprit();
+  if (!advanced) return false;
+  const double h = runge_kutta_.time() - t_;
+  if (!crossing_) predict(h);
+  t_before_ = t_;
+  t_ = runge_kutta_.time();
+  position_residual_ = runge_kutta_.position_residual();
+  std::copy(runge_kutta_.state().begin(), runge_kutta_.state().end(), y_.begin());
+  std::copy(runge_kutta_.slope().begin(), runge_kutta_.slope().end(), slope_.begin());
+  scale_ = runge_kutta_.scale();
+  stepped_by_runge_kutta_ = true;
+  observe_ratio();
+  if (!crossing_) {
+    update(h);
+    ++k_;
+    return true;
+  }
+  ++crossing_steps_;
+  if (runge_kutta_.pivot_ratio() > regular_ratio && !runge_kutta_.dips()) {
+    forget();
+    h_ = fixed ? options_.fixed_step : std::min(h_, h);
+  }
+  return true;
+}
+
+}  // namespace catena

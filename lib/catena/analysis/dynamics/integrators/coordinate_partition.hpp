@@ -1,0 +1,64 @@
+// Generalized coordinate partitioning (R. Wehage, E. Haug, J. Mech. Design 104 (1982)): the coordinates q are split
+// into as many independent ones v as there are degrees of freedom, which are integrated, and dependent ones u, which
+// follow:
+//
+//   Phi(u, v, t) = 0       by Newton's method from the integrator's estimate, v held
+//   Phi_u du/dt = nu - Phi_v dv/dt
+//
+// Choice of v: rows of a basis of the tangent space (random motions, made tangent and orthonormal, lengths in the
+// scene's length scale), picked by QR with pivoting, so that Phi_u is far from singular. It is made anew when a pivot
+// of Phi_u Phi_u^T has become 100 times as small, compared with the whole row, as it was when the choice was made.
+// Singular case: where Phi_q loses rank no choice serves. The basis is dense: up to 500 degrees of freedom.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "catena/analysis/motion/equations_of_motion.hpp"
+#include "catena/assembly/systems/schur_system.hpp"
+
+namespace catena {
+
+class CoordinatePartition {
+ public:
+  static constexpr int most_freedoms = 500;
+
+  explicit CoordinatePartition(EquationsOfMotion& equations);
+
+  /// Chooses independent coordinates at q, which meets the constraints at the evaluator's time. False: a value is not
+  /// finite, or there are more degrees of freedom than most_freedoms.
+  bool choose(std::span<const double> q);
+  /// Solves for the dependent positions and velocities; false where Newton's method does not converge or the choice is
+  /// unusable.
+  bool solve(double t, Side side, std::span<double> q, std::span<double> qd);
+  /// Whether the last solve() found the choice poor.
+  bool has_worsened() const { return ratio_ < worse * ratio_of_choice_; }
+  /// The mechanism went on without solve(): the choice must be made anew.
+  void forget() { ratio_ = 0; }
+  int choices() const { return choices_; }
+  double position_residual() const { return position_residual_; }
+
+ private:
+  static constexpr double worse = 0.3, unusable = 0.02;
+  void find_tangents(int freedoms);
+  void pick_independent(int freedoms);
+  void leave_out();
+  bool factorize();
+
+  EquationsOfMotion& equations_;
+  Evaluator& evaluator_;
+  const Plan& plan_;
+  Scaling scaling_;
+  SchurSystem system_;                     // with lengths in length scales in place of masses
+  std::vector<double> weight_, all_free_;  // by coordinate; zero holds a coordinate
+  std::vector<double> none_;               // substitutes of weights
+  std::vector<double> row_square_;         // of a whole row, scaled
+  std::vector<double> jacobian_, residual_, multipliers_, change_;
+  std::vector<std::vector<double>> tangents_;  // by degree of freedom; scaled, by coordinate
+  std::vector<double> mirror_;
+  int freedoms_ = -1, choices_ = 0;
+  double ratio_ = 1, ratio_of_choice_ = 1, position_residual_ = 0;
+};
+
+}  // namespace catena

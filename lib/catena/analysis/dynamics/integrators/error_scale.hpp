@@ -1,0 +1,131 @@
+// What errors of positions and velocities are compared with, so that one number serves all coordinates.
+//
+//   positions    tolerance x L (lengths), tolerance x 1 rad (angles)
+//   velocities   tolerance x (min(V L, sqrt(2 E / m)) + |v|), tolerance x (min(V, sqrt(2 E / J)) + |omega|)
+//
+// L: the scene's length scale. V, in 1/s: how fast the mechanism is, and what its accelerations make of a displacement
+// of L or 1 rad: max(|v|/L, |omega|, sqrt(|a|/L), sqrt(|alpha|)). An error of velocity then counts as much as the error
+// of position it grows into. A fast passage is forgotten again, but the time scale 1/V grows no faster than time goes
+// by: where a mechanism rests for an instant its velocities keep a scale.
+//
+// E, in J: the largest kinetic energy so far, at the start also what the accelerations do over a length L. No body can
+// be faster than all of E makes it: beside a light part that rushes the velocity of a heavy one still counts.
+//
+// Rounding: accelerations are not known better than to 4 eps min(A, F / m), A the largest |Q| / m, F the largest force,
+// for constraints pass it on. What that makes of velocities and positions in a step of size h counts as no error: where
+// loads are held, so that nothing moves but by rounding, no step would be short enough.
+//
+// tolerance: `step_tolerance` of a run of up to n0 = 200 radians of V. In a longer one errors of energy turn into
+// errors of phase, so that errors of steps add up with the square of the length: they are given (n0/n)^2 of it, n =
+// integral of V so far and as long as V now is to go. Never less than what double precision holds.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "catena/analysis/motion/motion_memory.hpp"
+
+namespace catena {
+
+class ErrorScale {
+ public:
+  double step_tolerance = 1e-10;
+  double length = 1;
+  double horizon = 0;  ///< s; where the run ends
+
+  /// Masses and moments of inertia by coordinate, zeros allowed.
+  void set_masses(std::span<const double> masses) {
+    mass_.assign(masses.begin(), masses.end());
+    speed_.resize(mass_.size());
+    inverse_.resize(mass_.size());
+    for (std::size_t c = 0; c < mass_.size(); ++c) {
+      inverse_[c] = mass_[c] > 0 ? (c % 3 == 2 ? length : 1 / length) / mass_[c] : 0;
+      speed_[c] = mass_[c] > 0 ? std::sqrt(2 / mass_[c]) : std::numeric_limits<double>::infinity();
+    }
+  }
+
+  /// Of the motion so far, but for the step.
+  IntegratorMemory memory() const { return {.rate = rate_, .root_energy = root_energy_, .radians = radians_}; }
+  void remember(const IntegratorMemory& memory) {
+    rate_ = memory.rate;
+    root_energy_ = memory.root_energy;
+    radians_ = memory.radians;
+  }
+
+  double rate() const { return rate_; }
+  double tolerance() const { return tolerance_; }
+  /// Of an error of position and of velocity v at coordinate c that count as much as the tolerance; the latter is zero
+  /// where nothing has moved yet.
+  double position_unit(std::size_t c, double h) const {
+    return (tolerance_ + h * h * rounding(c)) * (c % 3 == 2 ? 1 : length);
+  }
+  double velocity_unit(std::size_t c, double h, double v) const {
+    const double unit = c % 3 == 2 ? 1 : length;
+    return tolerance_ * (std::min(rate_ * unit, root_energy_ * speed_[c]) + std::abs(v)) +
+           std::abs(h) * rounding(c) * unit;
+  }
+  /// The shortest step, s, that may be tried at t: below it time does not go on.
+  double smallest_step(double t) const {
+    constexpr double part = 1e-13;
+    const double moment = rate_ > 0 ? 1 / rate_ : 0;
+    return part * std::max(std::abs(t), horizon > t ? std::min(moment, horizon - t) : moment);
+  }
+  /// `error()` once more where velocities and accelerations at the end of a step that failed show that the mechanism is
+  /// faster than was known: at a start where forces only begin to grow nothing else has a size. What it shows is kept
+  /// if the step is good then.
+  template <class Error>
+  double compare_with_end(std::span<const double> qd, std::span<const double> qdd, double error, Error&& again) {
+    const double rate = rate_, root_energy = root_energy_;
+    measure(qd, qdd);
+    if (rate_ > 2 * rate) error = again();
+    if (!(error <= 1)) rate_ = rate, root_energy_ = root_energy;
+    return error;
+  }
+
+  /// Takes note of velocities and accelerations (three a body) at t, a time `step` after the last ones; 0: at a start.
+  /// Generalized forces `loads` say how well accelerations are known.
+  void observe(double t, double step, std::span<const double> qd, std::span<const double> qdd,
+               std::span<const double> loads) {
+    rate_ /= 1 + std::abs(step) * rate_;
+    measure(qd, qdd);
+    force_ = acceleration_ = 0;
+    for (std::size_t c = 0; c < qd.size(); ++c) {
+      const double force = std::abs(loads[c]) / (c % 3 == 2 ? length : 1);
+      force_ = std::max(force_, force);
+      if (mass_[c] > 0) acceleration_ = std::max(acceleration_, force * inverse_[c]);
+    }
+    if (step == 0) {
+      double energy = 0;
+      for (std::size_t c = 0; c < qd.size(); ++c) energy += mass_[c] * std::abs(qdd[c]) * (c % 3 == 2 ? 1 : length);
+      root_energy_ = std::max(root_energy_, std::sqrt(energy));
+    }
+    radians_ += rate_ * std::abs(step);
+    const double part = std::min(1.0, brief_run / (radians_ + rate_ * std::max(horizon - t, 0.0)));
+    tolerance_ = std::max(step_tolerance * part * part, least_tolerance);
+  }
+
+ private:
+  double rounding(std::size_t c) const {
+    return 4 * std::numeric_limits<double>::epsilon() * std::min(acceleration_, force_ * inverse_[c]);
+  }
+  void measure(std::span<const double> qd, std::span<const double> qdd) {
+    double fastest = 0, strongest = 0, energy = 0;
+    for (std::size_t c = 0; c + 2 < qd.size(); c += 3) {
+      fastest = std::max({fastest, std::abs(qd[c]) / length, std::abs(qd[c + 1]) / length, std::abs(qd[c + 2])});
+      strongest = std::max({strongest, std::abs(qdd[c]) / length, std::abs(qdd[c + 1]) / length, std::abs(qdd[c + 2])});
+      for (std::size_t k = c; k < c + 3; ++k) energy += 0.5 * mass_[k] * qd[k] * qd[k];
+    }
+    rate_ = std::max({rate_, fastest, std::sqrt(strongest)});
+    root_energy_ = std::max(root_energy_, std::sqrt(energy));
+  }
+
+  static constexpr double brief_run = 200, least_tolerance = 1e-15;
+  double rate_ = 0, root_energy_ = 0, radians_ = 0, tolerance_ = 0;
+  double force_ = 0, acceleration_ = 0;         // N, and in units: largest of the loads and of what they would do alone
+  std::vector<double> mass_, speed_, inverse_;  // speed_: of a coordinate that has 1 J; inverse_: units / s^2 a N
+};
+
+}  // namespace catena

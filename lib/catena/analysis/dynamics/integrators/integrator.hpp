@@ -1,0 +1,51 @@
+// What dynamics asks of a method that integrates a constrained motion step by step. One object an integration; nothing
+// allocates after the first step. Times in s, states as in motion.hpp.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "catena/analysis/motion/motion_memory.hpp"
+
+namespace catena {
+
+class Integrator {
+ public:
+  Integrator() = default;
+  Integrator(const Integrator&) = delete;
+  Integrator& operator=(const Integrator&) = delete;
+  virtual ~Integrator() = default;
+
+  /// Starts, or starts anew after a jump, at (t, y), which must meet the constraints. False: no acceleration there.
+  virtual bool start(double t, std::span<const double> y) = 0;
+  /// Makes one step that does not go beyond `limit` (> time()). False: none can be made; see culprit().
+  virtual bool advance(double limit) = 0;
+  /// The state at t between previous_time() and time(), as exact as the steps; constraints are met no better than that.
+  virtual void interpolate(double t, std::span<double> y) = 0;
+  /// What a user should know of how the run went; sentences.
+  virtual std::vector<std::string> remarks() const { return {}; }
+  /// What it has learnt of the motion; and, before start(), what another one had.
+  virtual IntegratorMemory memory() const = 0;
+  virtual void remember(const IntegratorMemory& memory) = 0;
+  /// Whether another one may go on from here: not across a singular position.
+  virtual bool may_pause() const = 0;
+  /// Whether ends of steps lie on the constraints to rounding.
+  virtual bool meets_constraints() const { return true; }
+
+  double time() const { return t_; }
+  double previous_time() const { return t_before_; }
+  std::span<const double> state() const { return y_; }
+  /// Coordinate (of a moving body) whose error was largest in the step that failed; -1: not finite, or constraints.
+  int culprit() const { return culprit_; }
+  /// Of positions at time(), in length scales or rad.
+  double position_residual() const { return position_residual_; }
+
+ protected:
+  double t_ = 0, t_before_ = 0, position_residual_ = 0;
+  std::vector<double> y_;
+  int culprit_ = -1;
+};
+
+}  // namespace catena

@@ -1,0 +1,70 @@
+// The motion of a mechanism as a first-order system, for integrators:
+//
+//   y = [q, qd, work]        y' = [qd, qdd, power]
+//
+// q and qd have plan.coordinates() entries each, of which those of moving bodies change; `work` are integrals that
+// ride along (see energy_account.hpp), none if no account is kept.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "catena/analysis/motion/energy_account.hpp"
+#include "catena/analysis/motion/equations_of_motion.hpp"
+
+namespace catena {
+
+class Motion {
+ public:
+  Motion(EquationsOfMotion& equations, EnergyAccount* account)
+      : equations_(equations),
+        account_(account),
+        coordinates_(static_cast<std::size_t>(equations.plan().coordinates())) {}
+
+  /// Entries of q, and of qd.
+  std::size_t coordinates() const { return coordinates_; }
+  std::size_t size() const { return 2 * coordinates_ + works(); }
+  std::size_t works() const { return account_ ? account_->size() : 0; }
+  std::span<double> q(std::span<double> y) const { return y.first(coordinates_); }
+  std::span<double> qd(std::span<double> y) const { return y.subspan(coordinates_, coordinates_); }
+  std::span<const double> q(std::span<const double> y) const { return y.first(coordinates_); }
+  std::span<const double> qd(std::span<const double> y) const { return y.subspan(coordinates_, coordinates_); }
+  std::span<const double> work(std::span<const double> y) const { return y.subspan(2 * coordinates_); }
+
+  /// y' at (t, y) into k; false where it does not exist. `stabilisation`: see EquationsOfMotion::accelerations.
+  bool derivative(double t, Side side, std::span<const double> y, std::span<double> k, double stabilisation = 0) const {
+    const std::span<const double> v = qd(y);
+    std::copy(v.begin(), v.end(), k.begin());
+    const std::span<double> a = k.subspan(coordinates_, coordinates_);
+    if (!equations_.accelerations(t, side, q(y), v, a, stabilisation)) return false;
+    if (std::abs(t - known_t_) <= known_for_ && equations_.is_singular()) {
+      std::copy(known_.begin(), known_.end(), a.begin());
+      return true;
+    }
+    if (account_) account_->powers(v, equations_.multipliers(), k.subspan(2 * coordinates_));
+    return true;
+  }
+
+  /// Says what [qdd, power] is within `moment` of t as long as constraints depend on each other, where the equations
+  /// do not: at a start in a singular position.
+  void know(double t, double moment, std::span<const double> accelerations_and_powers) {
+    known_t_ = t;
+    known_for_ = moment;
+    known_.assign(accelerations_and_powers.begin(), accelerations_and_powers.end());
+  }
+
+  EquationsOfMotion& equations() const { return equations_; }
+  /// Coordinates that can change: the first ones of q and of qd.
+  std::size_t moving() const { return 3 * static_cast<std::size_t>(equations_.plan().moving); }
+
+ private:
+  EquationsOfMotion& equations_;
+  EnergyAccount* account_;
+  std::size_t coordinates_;
+  double known_t_ = 0, known_for_ = -1;
+  std::vector<double> known_;
+};
+
+}  // namespace catena

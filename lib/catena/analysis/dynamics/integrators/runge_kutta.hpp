@@ -1,0 +1,120 @@
+// Adaptive explicit Runge-Kutta integration of a constrained motion: orders 8 and 5 (tableau.hpp), kept on the
+// constraints in one of three ways.
+//
+// Projection: positions and velocities, after every step, in the mass metric.
+// Stabilisation (J. Baumgarte, Comp. Meth. Appl. Mech. Eng. 1 (1972)): nothing is projected; the accelerations meet
+//   Phi'' + 2 s Phi' + s^2 Phi = 0        s = rate of the motion, see error_scale.hpp, at most 1 / fixed step
+// in place of Phi'' = 0, so that what errors of integration leave of Phi decays while the mechanism moves on. s changes
+// between steps when it is wrong by a factor of two. (As large as 1 / step it would destroy the order: stages miss the
+// constraints by h^2, which s^2 makes an error of order one.) The drift is of the size of the tolerance, or of the
+// error of a fixed step. Steps across singular positions are projected: stabilised, they would end on any branch.
+//
+// Partition: independent coordinates are integrated, the others solved for at every stage (coordinate_partition.hpp).
+//   Across singular positions, where no choice of independent coordinates holds, steps are projected as well.
+//
+// Passing singular positions (flat four-bars) without knowing of them takes four things, all found by experiment (see
+// NUMERICS.md): the part of an error estimate that the projection removes does not count; a step across such a position
+// is made with all its stages projected; none ends where a pivot of the Schur complement keeps less than 1e-7 of
+// itself, or what the tolerance makes of it; where order 8 does not get ahead, order 5 takes over for a while. One
+// object an integration; nothing allocates after construction.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "catena/analysis/dynamics/integrators/coordinate_partition.hpp"
+#include "catena/analysis/dynamics/integrators/error_scale.hpp"
+#include "catena/analysis/dynamics/integrators/integrator.hpp"
+#include "catena/analysis/dynamics/integrators/motion.hpp"
+#include "catena/analysis/motion/tableau.hpp"
+
+namespace catena {
+
+enum class ConstraintKeeping { projection, stabilisation, partition };
+
+struct RungeKuttaOptions {
+  int order = 8;  ///< 5 or 8
+  ConstraintKeeping keeping = ConstraintKeeping::projection;
+  double tolerance = 1e-10;  ///< of a step's error, see error_scale.hpp
+  double fixed_step = 0;     ///< s; 0: adaptive
+  double horizon = 0;        ///< s, where the run ends: the tolerance of a step depends on how far that is
+  bool may_lower_order = true;
+};
+
+class RungeKutta final : public Integrator {
+ public:
+  RungeKutta(Motion motion, const RungeKuttaOptions& options);
+
+  bool start(double t, std::span<const double> y) override;
+  bool advance(double limit) override;
+  /// Of order 7 or 5.
+  void interpolate(double t, std::span<double> y) override;
+  std::vector<std::string> remarks() const override;
+  IntegratorMemory memory() const override;
+  void remember(const IntegratorMemory& memory) override;
+  bool may_pause() const override { return !crossing_ && !passing_singular_; }
+  /// Goes on with steps of size h (s) where another method came to at (t, y), with what that knows of the motion: the
+  /// scale of errors and the largest pivot ratio.
+  bool take_over(double t, std::span<const double> y, double h, const ErrorScale& scale, double usual_ratio);
+  std::span<const double> slope() const { return slope_; }
+  const ErrorScale& scale() const { return scale_; }
+  /// Smallest pivot ratio at the last evaluation, compared with the largest so far: very unequal masses make all small.
+  double pivot_ratio() const;
+  /// Whether a singular position lies within the step whose stages were evaluated, as far as they show it.
+  bool dips() const;
+
+  bool meets_constraints() const override { return options_.keeping != ConstraintKeeping::stabilisation; }
+
+ private:
+  const Tableau& tableau() const {
+    return (options_.order == 5 && !long_steps_) || low_order_left_ > 0 ? dormand_prince_5() : dormand_prince_8();
+  }
+  bool projects() const { return crossing_ || options_.keeping == ConstraintKeeping::projection; }
+  bool derivative(double t, Side side, std::span<const double> y, std::span<double> k) const {
+    return motion_.derivative(t, side, y, k, stabilisation_);
+  }
+  bool partitions() const { return partition_ && !crossing_; }
+  bool follow_motion();
+  bool begin_projection();
+  /// out = from + h sum weight stage; `from` may be nullptr.
+  void combine(const StageSum& sum, double h, const double* from, std::span<double> out) const;
+  bool evaluate_stages(double h);
+  bool project_stage(double t, Side side);
+  bool solve_dependent(double t, Side side, std::span<double> y) {
+    return partition_->solve(t, side, motion_.q(y), motion_.qd(y));
+  }
+  bool factorize_new_point();
+  double error_size(double h);
+  double filtered_error(double h, double raw);
+  bool finish_step();
+  bool detour(double h);
+  void repeat_with_projected_stages(double h);
+  bool try_crossing(double h, double error);
+  double compared_with_end(double h, double error);
+  void reject(double h);
+  void accept(double growth, double proposed);
+  void observe_ratio();
+  void observe_rates();
+  void prepare_interpolant();
+
+  Motion motion_;
+  std::unique_ptr<CoordinatePartition> partition_;  // only where it is asked for
+  RungeKuttaOptions options_;
+  ErrorScale scale_;
+  double t_new_ = 0, h_ = 0, stabilisation_ = 0;
+  std::vector<double> y_before_, y_new_, y_stage_, slope_, slope_new_;
+  std::vector<std::vector<double>> stage_;
+  std::vector<std::vector<double>> interpolant_;
+  std::vector<double> error_, error_low_;  // [q, qd]
+  bool interpolant_ready_ = false, step_was_low_order_ = false, passing_singular_ = false, projecting_stages_ = false,
+       crossing_ = false, long_steps_ = false;
+  int low_order_left_ = 0, rejections_ = 0, detours_ = 0;
+  std::int64_t low_order_steps_ = 0, projected_steps_ = 0;
+  double accepted_error_ = 1, best_error_ = 0, best_step_ = 0;
+  double smallest_stage_ratio_ = 1, largest_stage_ratio_ = 1, start_ratio_ = 1, undisturbed_step_ = 0,
+         singular_ratio_ = 0, usual_ratio_ = 1e-300;
+};
+
+}  // namespace catena

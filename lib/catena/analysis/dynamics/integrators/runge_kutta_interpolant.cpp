@@ -1,0 +1,60 @@
+// RungeKutta::interpolate: the state between the last two, from the stages of the step.
+#include <algorithm>
+
+#include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
+
+namespace catena {
+
+// Order 8: the interpolant of order 7 of DOP853, three more evaluations.
+//   y(t0 + s h) = y0 + s (r1 + (1-s) (r2 + s (r3 + (1-s) (r4 + s (r5 + (1-s) (r6 + s r7))))))
+void RungeKutta::prepare_interpolant() {
+  const Tableau& table = dormand_prince_8();
+  const double h = t_ - t_before_;
+  stage_[12] = slope_;
+  for (std::size_t s = 13; s < 16; ++s) {
+    combine(table.a[s], h, y_before_.data(), y_stage_);
+    motion_.derivative(t_before_ + table.c[s] * h, Side::after, y_stage_, stage_[s]);
+  }
+  for (std::size_t i = 0; i < y_.size(); ++i) {
+    const double difference = y_[i] - y_before_[i], bend = h * stage_[0][i] - difference;
+    interpolant_[0][i] = difference;
+    interpolant_[1][i] = bend;
+    interpolant_[2][i] = difference - h * slope_[i] - bend;
+  }
+  for (std::size_t k = 0; k < 4; ++k) combine(table.interpolant[k], h, nullptr, interpolant_[3 + k]);
+}
+
+void RungeKutta::interpolate(double t, std::span<double> y) {
+  const double h = t_ - t_before_;
+  const double s = (t - t_before_) / h, r = 1 - s;
+  if (!step_was_low_order_) {
+    if (!interpolant_ready_) prepare_interpolant();
+    interpolant_ready_ = true;
+    const auto& c = interpolant_;
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      y[i] =
+          y_before_[i] +
+          s * (c[0][i] + r * (c[1][i] + s * (c[2][i] + r * (c[3][i] + s * (c[4][i] + r * (c[5][i] + s * c[6][i]))))));
+    }
+    return;
+  }
+  // Order 5: positions by the quintic through positions, velocities and accelerations at both ends, velocities by its
+  // derivative, the rest by cubics.
+  const std::size_t n = motion_.coordinates();
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    const bool position = i < n, velocity = i >= n && i < 2 * n;
+    const std::size_t p = velocity ? i - n : i;
+    const double y0 = y_before_[p], y1 = y_[p], d0 = h * stage_[0][p], d1 = h * slope_[p];
+    if (!position && !velocity) {
+      y[i] = y0 + s * (y1 - y0 + r * ((1 - 2 * s) * (y0 - y1) + r * d0 - s * d1));
+      continue;
+    }
+    const double a0 = h * h * stage_[0][p + n], a1 = h * h * slope_[p + n];
+    const double c2 = a0 / 2, A = y1 - y0 - d0 - c2, B = d1 - d0 - a0, C = a1 - a0;
+    const double c3 = 10 * A - 4 * B + C / 2, c4 = -15 * A + 7 * B - C, c5 = 6 * A - 3 * B + C / 2;
+    y[i] = position ? y0 + s * (d0 + s * (c2 + s * (c3 + s * (c4 + s * c5))))
+                    : (d0 + s * (2 * c2 + s * (3 * c3 + s * (4 * c4 + s * 5 * c5)))) / h;
+  }
+}
+
+}  // namespace catena

@@ -1,0 +1,174 @@
+// RungeKutta::advance: the size of steps, and what is done near singular positions.
+#include <algorithm>
+#include <cmath>
+
+#include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
+
+namespace catena {
+namespace {
+
+constexpr double safety = 0.9;
+constexpr double largest_growth = 2.5, largest_cut = 0.2;
+// Where no step across a singular position is good enough, the best is taken if its error is below this.
+constexpr double largest_crossing_error = 300;
+constexpr double other_steps[] = {0.8, 0.6, 1.15, 0.4, 0.9, 1.3};  // what is tried instead of h
+// Pivot ratios below which all methods project, and above which they cease to.
+constexpr double nearly_singular = 0.1, regular = 0.2;
+constexpr int rejections_before_low_order = 8, low_order_run = 30;
+constexpr int most_rejections = 100;
+
+}  // namespace
+
+// Chooses the next step after a rejection; order 5 gets its turn when order 8 does not get ahead.
+void RungeKutta::reject(double h) {
+  ++motion_.equations().evaluator().counters.rejected;
+  h_ = h;
+  if (++rejections_ % rejections_before_low_order == 0 && tableau().order == 8 && options_.may_lower_order) {
+    low_order_left_ = low_order_run;
+  }
+}
+
+// Another step size in place of h, so that neither its end nor a stage lies beside a singular position.
+bool RungeKutta::detour(double h) {
+  if (detours_ == static_cast<int>(std::size(other_steps))) return false;
+  if (detours_ == 0) undisturbed_step_ = h;
+  ++motion_.equations().evaluator().counters.rejected;
+  h_ = undisturbed_step_ * other_steps[detours_++];
+  return true;
+}
+
+void RungeKutta::repeat_with_projected_stages(double h) {
+  projecting_stages_ = true;
+  best_error_ = largest_crossing_error;
+  best_step_ = 0;
+  h_ = h;
+}
+
+// What to do about a step of size h that failed near a singular position: project its stages; try other sizes; at last
+// take the best of those unless it is bad. False: none of this helps, h_ is as it was.
+bool RungeKutta::try_crossing(double h, double error) {
+  if (!projecting_stages_) {
+    repeat_with_projected_stages(h);
+    return true;
+  }
+  if (error < best_error_) {
+    best_error_ = error;
+    best_step_ = h;
+  }
+  if (detour(h)) return true;
+  if (best_step_ == 0) return false;
+  h_ = best_step_;
+  accepted_error_ = 1.1 * best_error_;
+  best_step_ = 0;
+  return true;
+}
+
+// The error compared with the motion at the step's end, where that is faster.
+double RungeKutta::compared_with_end(double h, double error) {
+  const std::size_t last = static_cast<std::size_t>(tableau().stages) - 1;
+  const std::span<const double> y(y_new_), k(stage_[last]);
+  return scale_.compare_with_end(motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()), error,
+                                 [&] { return error_size(h); });
+}
+
+bool RungeKutta::advance(double limit) {
+  const bool fixed = options_.fixed_step > 0;
+  const double smallest = scale_.smallest_step(t_);
+  double proposed = fixed ? options_.fixed_step : h_;
+  detours_ = 0;
+  projecting_stages_ = false;
+  accepted_error_ = 1;
+  rejections_ = 0;
+  // Short steps would end again and again beside a singular position.
+  long_steps_ = !fixed && start_ratio_ < nearly_singular;
+  if (!follow_motion()) return false;
+  std::copy(slope_.begin(), slope_.end(), stage_[0].begin());
+  motion_.equations().evaluator().take_turns(motion_.q(std::span(y_)));
+  interpolant_ready_ = false;
+  h_ = proposed;
+  while (true) {
+    const double remaining = limit - t_;
+    const bool lands = h_ * (fixed ? 1 + 1e-9 : 1.01) >= remaining;
+    // Two equal steps instead of a long one and a tiny one.
+    double h = lands ? remaining : h_;
+    if (!lands && !fixed && detours_ == 0 && 2 * h > remaining) h = remaining / 2;
+    if ((h < smallest && !lands) || rejections_ > most_rejections) return false;
+    t_new_ = lands ? limit : t_ + h;
+    if (!evaluate_stages(h)) {
+      culprit_ = -1;
+      if (fixed) return false;
+      reject(h / 4);
+      continue;
+    }
+    if (!projects() && smallest_stage_ratio_ < nearly_singular) {
+      if (!begin_projection()) return false;
+      continue;
+    }
+    double error = fixed ? 0 : error_size(h);
+    if (!(error <= 1) && std::isfinite(error)) error = compared_with_end(h, error);
+    bool factored = false;
+    if (!(error <= 1) && std::isfinite(error) && projects()) {
+      factored = factorize_new_point();
+      if (factored) error = filtered_error(h, error);
+    }
+    if (!std::isfinite(error)) error = 1e10;
+    const double growth =
+        std::clamp(safety * std::pow(std::max(error, 1e-10), -1.0 / tableau().order), largest_cut, largest_growth);
+    if (error <= accepted_error_ && !fixed && !projecting_stages_ && projects() && dips()) {
+      // Errors of stages across the constraints spoil each other here, and the estimate does not see all of it.
+      repeat_with_projected_stages(h);
+      continue;
+    }
+    if (error > accepted_error_) {
+      // Near a singular position a shorter step would only walk into it.
+      if (projects() && dips() && try_crossing(h, error)) continue;
+      reject(h * std::min(growth, 1.0));
+      continue;
+    }
+    if (!factored && !factorize_new_point()) {
+      if (fixed) return false;
+      reject(h / 4);
+      continue;
+    }
+    const double ratio = pivot_ratio();
+    if (ratio > 10 * singular_ratio_) passing_singular_ = false;
+    if (ratio < singular_ratio_ && !passing_singular_ && !lands && !fixed && projects()) {
+      if (detour(h)) continue;
+      passing_singular_ = true;
+    }
+    if (!finish_step()) {
+      culprit_ = -1;
+      if (fixed) return false;
+      reject(h / 4);
+      continue;
+    }
+    accept(growth, std::max(proposed, h));
+    return true;
+  }
+}
+
+void RungeKutta::accept(double growth, double proposed) {
+  const double h = t_new_ - t_;
+  ++motion_.equations().evaluator().counters.steps;
+  step_was_low_order_ = tableau().order == 5;
+  if (low_order_left_ > 0) {
+    --low_order_left_;
+    ++low_order_steps_;
+  }
+  if (crossing_) {
+    ++projected_steps_;
+    crossing_ = pivot_ratio() < regular;
+    if (partitions()) partition_->forget();
+  }
+  t_before_ = t_;
+  t_ = t_new_;
+  y_before_.swap(y_);
+  y_.swap(y_new_);
+  slope_.swap(slope_new_);
+  observe_ratio();
+  observe_rates();
+  // A step that was cut short by a limit says nothing against the longer one.
+  h_ = rejections_ > 0 ? h * std::min(growth, 1.0) : std::max(h * growth, h < proposed ? proposed : 0.0);
+}
+
+}  // namespace catena

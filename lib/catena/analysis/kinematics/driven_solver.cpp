@@ -1,0 +1,406 @@
+#include "catena/analysis/kinematics/driven_solver.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+constexpr int max_iterations = 25;
+constexpr int max_refinements = 10;
+// All in length scales or rad. A residual of `rounding` is zero; corrections below `rounding_floor` need not shrink any
+// more; what is predicted to change by less than `negligible` is not computed.
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double rounding = 1e-16;
+constexpr double rounding_floor = 1e-12;
+constexpr double negligible = 1e-14;
+// Residual of a linear system that is rounding, as part of the terms of its row.
+constexpr double backward_rounding = 64 * epsilon;
+// Shifts are compared with the length scale, or with this part of the extent of a long structure.
+constexpr double part_of_extent = 0.01;
+// Factors from further away than this are replaced: a new factorization costs two or three solves.
+constexpr double keep_distance = 1e-4;
+// Refinement that leaves more than this of an error takes longer than new factors.
+constexpr double keep_rate = 1e-2;
+// Old factors do not show a determinant that changes its sign: they are kept only where no pivot is near zero.
+constexpr double keep_rcond = 1e-2;
+// A ratio of successive corrections above this asks for new factors.
+constexpr double poor_contraction = 0.1;
+
+}  // namespace
+
+DrivenSolver::DrivenSolver(Evaluator& evaluator)
+    : evaluator_(evaluator), plan_(evaluator.plan()), scaling_(plan_, evaluator.length_scale()) {
+  values_.resize(at(plan_.trash_slot()) + 1);
+  evaluator_.start_jacobian(values_);
+  phi_.resize(at(plan_.rows));
+  q_factored_.resize(at(plan_.columns));
+  q_.resize(at(plan_.columns));
+  step_.resize(at(plan_.columns));
+  x_.resize(at(plan_.columns));
+  rhs_.resize(at(plan_.rows));
+  residual_all_.resize(at(plan_.rows));
+  // The end of a long structure moves by many of the lengths that its parts are made of while they hardly turn.
+  Vec2<double> low{}, high{};
+  for (int p = 0; p < plan_.moving; ++p) {
+    const Vec2<double> place = evaluator_.origin(p) - evaluator_.origin(0);
+    low = {std::min(low.x, place.x), std::min(low.y, place.y)};
+    high = {std::max(high.x, place.x), std::max(high.y, place.y)};
+  }
+  motion_unit_ = std::max(evaluator_.length_scale(), part_of_extent * std::max(high.x - low.x, high.y - low.y));
+  if (plan_.rows == plan_.columns) {
+    rows_.resize(at(plan_.rows));
+    std::iota(rows_.begin(), rows_.end(), 0);
+    all_rows_ = true;
+  }
+}
+
+// Entries of the rows in use; returns their norm over all rows in use.
+double DrivenSolver::gather_rows(std::span<const double> all, std::span<double> chosen) const {
+  if (all_rows_) return scaling_.scan_rows(all.size(), [&](std::size_t k) { return chosen[k] = all[k]; });
+  double largest = 0;
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    chosen[k] = all[at(rows_[k])];
+    const double size = std::abs(chosen[k]) * scaling_.row_unit(rows_[k]);
+    if (!(size <= largest)) largest = size;
+  }
+  return largest;
+}
+
+void DrivenSolver::to_columns(std::span<const double> coordinates, std::span<double> columns) const {
+  for (std::size_t c = 0; c < columns.size(); ++c) columns[c] = coordinates[at(plan_.coordinate[c])];
+}
+
+void DrivenSolver::to_coordinates(std::span<const double> columns, std::span<double> coordinates) const {
+  for (std::size_t c = 0; c < columns.size(); ++c) coordinates[at(plan_.coordinate[c])] = columns[c];
+}
+
+std::span<const double> DrivenSolver::jacobian() {
+  if (!jacobian_valid_) {
+    evaluator_.jacobian(values_);
+    jacobian_valid_ = true;
+  }
+  return std::span(values_).first(at(plan_.trash_slot()));
+}
+
+bool DrivenSolver::values_never_changed(std::span<const double> values) {
+  if (values_changed_) return false;
+  values_changed_ = !std::equal(values.begin(), values.end(), first_values_.begin(), first_values_.end());
+  if (values_changed_) first_values_ = {};
+  return !values_changed_;
+}
+
+bool DrivenSolver::factorize() {
+  std::span<const double> values = jacobian();
+  if (!all_rows_) {
+    for (std::size_t k = 0; k < gather_.size(); ++k) matrix_values_[k] = values[at(gather_[k])];
+    values = matrix_values_;
+  }
+  if (!analyzed_) {
+    factor_result_ =
+        factorization_.analyze(all_rows_ ? plan_.jacobian : matrix_, Kernel::automatic, evaluator_.counters);
+    if (!factor_result_.ok()) return false;
+    // Pivots, by which branches are told apart and rows chosen, must not depend on the unit of length.
+    std::vector<double> units(at(plan_.columns));
+    for (std::size_t c = 0; c < units.size(); ++c) {
+      units[c] = plan_.coordinate[c] % 3 == 2 ? 1 : evaluator_.length_scale();
+    }
+    factorization_.set_column_units(units);
+    analyzed_ = true;
+    values_changed_ = false;
+    first_values_.assign(values.begin(), values.end());
+  }
+  // Linear constraints, and joints at the origins of their bodies, give the same values at every configuration: their
+  // factors stay. Once the values have changed they are not compared again.
+  const bool same = factorization_.is_factorized() && (plan_.constant_jacobian || values_never_changed(values));
+  if (!same) factor_result_ = factorization_.factorize(values, evaluator_.counters);
+  factors_valid_ = factor_result_.ok();
+  rcond_ = factors_valid_ ? factorization_.rcond() : 0;
+  q_factored_ = q_;
+  t_factored_ = evaluator_.time();
+  gap_ = 0;
+  return factors_valid_;
+}
+
+// Evaluates the constraints at q, which it keeps, with its distance from where the factors were made.
+void DrivenSolver::evaluate_at(std::span<const double> q) {
+  evaluator_.set_configuration(q);
+  evaluator_.phi(phi_);
+  jacobian_valid_ = jacobian_valid_ && plan_.constant_jacobian;
+  const auto keep = [&](auto&& coordinate) {
+    const auto sizes = scaling_.scan_columns<2>(q_.size(), [&](std::size_t c) {
+      const double value = q_[c] = q[coordinate(c)];
+      return std::array{value, value - q_factored_[c]};
+    });
+    extent_ = sizes[0].all;
+    gap_ = sizes[1].all;
+  };
+  if (plan_.contiguous) {
+    keep([](std::size_t c) { return c; });
+  } else {
+    keep([&](std::size_t c) { return at(plan_.coordinate[c]); });
+  }
+}
+
+double DrivenSolver::redundant_residual(std::span<const double> residual_of_all, int* worst) const {
+  double largest = 0;
+  for (int row = 0; row < plan_.rows && !all_rows_; ++row) {
+    if (in_use_[at(row)]) continue;
+    const double size = std::abs(residual_of_all[at(row)]) * scaling_.row_unit(row);
+    if (!(size <= largest)) largest = size, *worst = row;
+  }
+  return largest;
+}
+
+std::span<const BlockMargin> DrivenSolver::block_margins() {
+  if (!factorization_.is_factorized()) return {};
+  return factorization_.block_margins();
+}
+
+double DrivenSolver::residual_at(std::span<const double> q) {
+  evaluate_at(q);
+  return gather_rows(phi_, step_);
+}
+
+double DrivenSolver::distance(std::span<const double> a, std::span<const double> b, double* angle) const {
+  const double unit = 1 / motion_unit_;
+  double shift = 0, turn = 0;
+  for (std::size_t k = 0; k + 2 < 3 * at(plan_.moving); k += 3) {
+    const double x = std::abs(a[k] - b[k]), y = std::abs(a[k + 1] - b[k + 1]), phi = std::abs(a[k + 2] - b[k + 2]);
+    shift = x > shift ? x : shift;
+    shift = y > shift ? y : shift;
+    turn = phi > turn ? phi : turn;
+  }
+  if (angle) *angle = turn;
+  return std::max(shift * unit, turn);
+}
+
+bool DrivenSolver::null_vectors(std::span<double> w, std::span<double> z) {
+  if (!is_square() || !factors_valid_) return false;
+  // A start without symmetry: a null vector orthogonal to it would be missed.
+  for (std::size_t k = 0; k < step_.size(); ++k) step_[k] = 1 + 0.37 * std::sin(1.0 + static_cast<double>(k));
+  const auto normalise = [&] {
+    double square = 0;
+    for (double x : step_) square += x * x;
+    for (double& x : step_) x /= std::sqrt(square);
+    return square > 0 && std::isfinite(square);
+  };
+  for (int iteration = 0; iteration < 4; ++iteration) {
+    factorization_.solve_transposed(step_, evaluator_.counters);
+    if (!normalise()) return false;
+    if (iteration == 3) {
+      std::fill(w.begin(), w.end(), 0.0);
+      for (std::size_t k = 0; k < rows_.size(); ++k) w[at(rows_[k])] = step_[k];
+    }
+    factorization_.solve(step_, evaluator_.counters);
+    if (!normalise()) return false;
+  }
+  std::fill(z.begin(), z.end(), 0.0);
+  to_coordinates(step_, z);
+  return true;
+}
+
+bool DrivenSolver::factors_serve() const {
+  if (!factors_valid_) return false;
+  const bool exact = plan_.constant_jacobian || (gap_ == 0 && t_factored_ == evaluator_.time());
+  return exact || (gap_ <= keep_distance && rcond_ >= keep_rcond);
+}
+
+// What is left of an error after one refinement with factors made at a distance.
+double DrivenSolver::refinement_rate() const { return plan_.constant_jacobian || gap_ == 0 ? 0 : gap_ / rcond_; }
+
+// A linear system needs no determinant: factors serve as long as refinement with them converges fast.
+bool DrivenSolver::factors_refine() const { return factors_valid_ && refinement_rate() <= keep_rate; }
+
+NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
+  NewtonOutcome outcome;
+  double size = 0;  // of the last correction
+  double rate = 0;  // by which the next correction will be smaller
+  double last_residual = std::numeric_limits<double>::infinity();
+  // Without a set of rows that determines everything there is nothing that could converge.
+  if (!is_square()) return outcome;
+  for (;; ++outcome.iterations) {
+    evaluate_at(q);
+    outcome.residual = gather_rows(phi_, step_);
+    if (!std::isfinite(outcome.residual)) return outcome;
+    // A long structure moves its far end by many length scales: its residuals cannot be rounder than its coordinates.
+    const double attainable = std::max(tolerance, 8 * epsilon * extent_);
+    // Corrections are the residual times a condition: they need not become small, but then the residual stays.
+    const bool small = outcome.residual <= attainable;
+    const bool settled =
+        rate * size <= std::max(negligible, epsilon * extent_) || outcome.residual > poor_contraction * last_residual;
+    if (outcome.residual <= rounding || (outcome.iterations > 0 && small && settled)) {
+      outcome.converged = true;
+      return outcome;
+    }
+    last_residual = outcome.residual;
+    if (outcome.iterations == max_iterations) return outcome;
+    if (!factors_serve() && !factorize()) {
+      outcome.factor = factor_result_;
+      return outcome;
+    }
+    factorization_.solve(step_, evaluator_.counters);
+    ++evaluator_.counters.iterations;
+    const double last_size = size;
+    const Scaling::Size correction = plan_.contiguous ? subtract_step(q) : scaling_.column_size(step_);
+    size = correction.all;
+    if (!std::isfinite(size)) return outcome;
+    // A correction with factors from a distance g leaves about (g + size) size.
+    rate = plan_.constant_jacobian ? 0 : gap_ + size;
+    if (outcome.iterations == 0) {
+      outcome.first_correction = size;
+      outcome.first_turn = correction.angle;
+    } else if (!small && size > std::max(rounding_floor, 64 * epsilon * extent_)) {
+      const double ratio = size / last_size;
+      outcome.contraction = std::max(outcome.contraction, ratio);
+      rate = std::max(rate, ratio);
+      if (ratio > poor_contraction) factors_valid_ = false;
+    } else if (small && size <= std::max(rounding_floor, 64 * epsilon * extent_)) {
+      rate = 0;  // what is left is rounding
+    }
+    if (plan_.contiguous) continue;
+    for (std::size_t c = 0; c < step_.size(); ++c) q[at(plan_.coordinate[c])] -= step_[c];
+  }
+}
+
+// q -= step_, measured on the way.
+Scaling::Size DrivenSolver::subtract_step(std::span<double> q) {
+  return scaling_.scan_columns<1>(step_.size(), [&](std::size_t c) {
+    q[c] -= step_[c];
+    return std::array{step_[c]};
+  })[0];
+}
+
+void DrivenSolver::subtract_product(std::span<const double> values, std::span<const double> x,
+                                    std::span<double> rest) const {
+  const int* start = plan_.jacobian.column_start.data();
+  const int* row = plan_.jacobian.row_index.data();
+  for (int c = 0; c < plan_.columns; ++c) {
+    const double factor = x[at(c)];
+    for (int k = start[c]; k < start[c + 1]; ++k) rest[at(row[k])] -= values[at(k)] * factor;
+  }
+}
+
+bool DrivenSolver::solve_refined(std::span<double> x, bool has_start) {
+  const std::span<const double> values = jacobian();
+  bool factored_here = false;
+  if (!factors_refine()) {
+    if (!factorize()) return false;
+    factored_here = true;
+  }
+  // At rest the solution is zero: a start would be refined towards it for ever, no digit of zero being right.
+  if (std::all_of(rhs_.begin(), rhs_.end(), [](double value) { return value == 0; })) {
+    std::fill(x.begin(), x.end(), 0.0);
+    return true;
+  }
+  if (!has_start) std::fill(x.begin(), x.end(), 0.0);
+  const std::span<double> rest = all_rows_ ? std::span<double>(step_) : std::span<double>(residual_all_);
+  double size = 0, all = 0, rate = refinement_rate();
+  for (int k = 0; k < max_refinements; ++k) {
+    std::copy(rhs_.begin(), rhs_.end(), rest.begin());
+    if (has_start || k > 0) subtract_product(values, x, rest);
+    if (!all_rows_) gather_rows(rest, step_);
+    factorization_.solve(step_, evaluator_.counters);
+    const double last_size = size;
+    const auto sizes = scaling_.scan_columns<2>(x.size(), [&](std::size_t c) {
+      x[c] += step_[c];
+      return std::array{step_[c], x[c]};
+    });
+    size = sizes[0].all;
+    all = sizes[1].all;
+    if (!std::isfinite(size)) return false;
+    if (k > 0) rate = std::max(rate, size / last_size);
+    if (rate * size <= negligible * all || size <= rounding * all) return true;
+    if (k > 0 && size > poor_contraction * last_size) {
+      if (size > rounding_floor * all && !factored_here) {
+        if (!factorize()) return false;
+        factored_here = true;
+        rate = 0;
+      } else if (k > 1 && is_solved_to_rounding(values, x)) {
+        return true;
+      }
+    }
+  }
+  return size <= tolerance * all || is_solved_to_rounding(values, x);
+}
+
+// In a structure of very many parts corrections end well above the rounding of x: its own condition multiplies it. What
+// is left then is an exact solution of equations that differ from the given ones by rounding, row by row.
+bool DrivenSolver::is_solved_to_rounding(std::span<const double> values, std::span<const double> x) {
+  std::copy(rhs_.begin(), rhs_.end(), residual_all_.begin());
+  subtract_product(values, x, residual_all_);
+  terms_.resize(rhs_.size());
+  for (std::size_t r = 0; r < rhs_.size(); ++r) terms_[r] = std::abs(rhs_[r]);
+  for (int c = 0; c < plan_.columns; ++c) {
+    for (int k = plan_.jacobian.column_start[at(c)]; k < plan_.jacobian.column_start[at(c) + 1]; ++k) {
+      terms_[at(plan_.jacobian.row_index[at(k)])] += std::abs(values[at(k)] * x[at(c)]);
+    }
+  }
+  return std::all_of(rows_.begin(), rows_.end(),
+                     [&](int row) { return std::abs(residual_all_[at(row)]) <= backward_rounding * terms_[at(row)]; });
+}
+
+// Solves for the columns of a vector over all coordinates, in place where they are the same.
+bool DrivenSolver::solve_rate(std::span<double> rate, bool has_start) {
+  if (plan_.contiguous) return solve_refined(rate.first(at(plan_.columns)), has_start);
+  if (has_start) to_columns(rate, x_);
+  if (!solve_refined(x_, has_start)) return false;
+  to_coordinates(x_, rate);
+  return true;
+}
+
+bool DrivenSolver::solve_velocity(std::span<double> qd, bool has_start) {
+  if (!is_square()) return false;
+  evaluator_.nu(rhs_);
+  return solve_rate(qd, has_start);
+}
+
+bool DrivenSolver::solve_acceleration(std::span<const double> qd, std::span<double> qdd, bool has_start) {
+  if (!is_square()) return false;
+  evaluator_.gamma(qd, rhs_);
+  return solve_rate(qdd, has_start);
+}
+
+bool DrivenSolver::solve_multipliers(std::span<const double> rhs, std::span<double> lambda) {
+  if (!is_square()) return false;
+  const std::span<const double> values = jacobian();
+  if (!factors_refine() && !factorize()) return false;
+  std::fill(lambda.begin(), lambda.end(), 0.0);
+  double size = 0;
+  for (int k = 0; k < max_refinements; ++k) {
+    std::copy(rhs.begin(), rhs.end(), step_.begin());
+    if (k > 0) {
+      for (double& x : lambda) x = -x;
+      multiply_transposed_add(plan_.jacobian, values, lambda, step_);
+      for (double& x : lambda) x = -x;
+    }
+    factorization_.solve_transposed(step_, evaluator_.counters);
+    const double last_size = size;
+    double all = 0;
+    size = 0;
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      double& x = lambda[at(rows_[r])];
+      x += step_[r];
+      size = std::max(size, std::abs(step_[r]));
+      all = std::max(all, std::abs(x));
+    }
+    if (!std::isfinite(all)) return false;
+    const double rate = k > 0 ? size / last_size : refinement_rate();
+    if (rate * size <= negligible * all || size <= rounding * all) return true;
+    if (k > 0 && rate > poor_contraction) return size <= tolerance * all;
+  }
+  return true;
+}
+
+double DrivenSolver::factor_at(std::span<const double> q) {
+  if (!is_square()) return 0;
+  evaluate_at(q);
+  return factorize() ? rcond_ : 0;
+}
+
+}  // namespace catena

@@ -1,0 +1,391 @@
+#include "catena/analysis/kinematics/kinematics_branches.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "catena/analysis/pose/jacobian_rank.hpp"
+#include "catena/analysis/pose/quadratics.hpp"
+#include "catena/assembly/systems/constraint_projector.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+constexpr double vanishing = Quadratics::vanishing;
+
+/// What the search works on: Phi_q at the singular configuration and its null spaces.
+struct NullSpaces {
+  RankReport rank;
+  std::vector<double> values;
+  std::vector<std::vector<double>> z;  // right null vectors by coordinate, largest entry (rad, length scales) one
+};
+
+NullSpaces find_null_spaces(Evaluator& evaluator, std::span<const double> q, double threshold) {
+  const Plan& plan = evaluator.plan();
+  NullSpaces spaces;
+  spaces.values = jacobian_values(evaluator, q);
+  RankOptions options;
+  options.tolerance = threshold;
+  spaces.rank = jacobian_rank(evaluator, plan.jacobian, spaces.values, options);
+  const SparseVectors& vectors = spaces.rank.right_null_vectors;
+  for (int k = 0; k < vectors.count(); ++k) {
+    std::vector<double> z(at(plan.coordinates()), 0.0);
+    double largest = 0;
+    for (std::size_t n = 0; n < vectors.indices(k).size(); ++n) {
+      const int coordinate = plan.coordinate[at(vectors.indices(k)[n])];
+      const double value = vectors.values(k)[n];
+      z[at(coordinate)] = value;
+      largest = std::max(largest, std::abs(value) / (coordinate % 3 == 2 ? 1 : evaluator.length_scale()));
+    }
+    for (double& value : z) value /= largest;
+    spaces.z.push_back(std::move(z));
+  }
+  return spaces;
+}
+
+/// w_i^T (gamma(qd0 + rate sum a_j z_j) - own) / rate^2; `own`: what is no condition on the direction, empty: nothing.
+Quadratics make_quadratics(Evaluator& evaluator, const NullSpaces& spaces, std::span<const double> qd0, double rate,
+                           std::span<const double> own) {
+  const Plan& plan = evaluator.plan();
+  const std::size_t k = spaces.z.size();
+  const auto count = at(spaces.rank.left_null_vectors.count());
+  std::vector<double> gamma(at(plan.rows)), qd(qd0.begin(), qd0.end());
+  std::vector<double> size(count, 0.0);  // of the terms
+  const auto values_at = [&](std::span<const double> a) {
+    for (std::size_t c = 0; c < qd.size(); ++c) {
+      qd[c] = qd0[c];
+      for (std::size_t j = 0; j < k; ++j) qd[c] += rate * a[j] * spaces.z[j][c];
+    }
+    evaluator.gamma(qd, gamma);
+    std::vector<double> f(count, 0.0);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto rows = spaces.rank.left_null_vectors.indices(static_cast<int>(i));
+      const auto weights = spaces.rank.left_null_vectors.values(static_cast<int>(i));
+      double terms = 0;
+      for (std::size_t n = 0; n < rows.size(); ++n) {
+        f[i] += weights[n] * gamma[at(rows[n])] / (rate * rate);
+        terms += std::abs(weights[n] * gamma[at(rows[n])]) / (rate * rate);
+      }
+      size[i] = std::max(size[i], terms);
+    }
+    return f;
+  };
+  std::vector<double> a(k, 0.0);
+  const std::vector<double> centre = values_at(a);
+  std::vector<std::vector<double>> plus(k), minus(k);
+  for (std::size_t j = 0; j < k; ++j) {
+    a[j] = 1;
+    plus[j] = values_at(a);
+    a[j] = -1;
+    minus[j] = values_at(a);
+    a[j] = 0;
+  }
+  Quadratics all;
+  all.k = k;
+  std::vector<std::vector<double>> mixed(count, std::vector<double>(k * k, 0.0));
+  for (std::size_t j = 0; j < k; ++j) {
+    for (std::size_t l = 0; l < j; ++l) {
+      a[j] = a[l] = 1;
+      const std::vector<double> both = values_at(a);
+      a[j] = a[l] = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const double twice = both[i] - plus[j][i] - plus[l][i] + centre[i];
+        mixed[i][j * k + l] = mixed[i][l * k + j] = twice / 2;
+      }
+    }
+    for (std::size_t i = 0; i < count; ++i) mixed[i][j * k + j] = (plus[j][i] + minus[j][i]) / 2 - centre[i];
+  }
+  std::vector<double> still(count, 0.0);
+  for (std::size_t i = 0; i < count && !own.empty(); ++i) {
+    const auto rows = spaces.rank.left_null_vectors.indices(static_cast<int>(i));
+    const auto weights = spaces.rank.left_null_vectors.values(static_cast<int>(i));
+    for (std::size_t n = 0; n < rows.size(); ++n) still[i] += weights[n] * own[at(rows[n])] / (rate * rate);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    std::vector<double> linear(k);
+    double largest = 0;
+    for (std::size_t j = 0; j < k; ++j) {
+      linear[j] = (plus[j][i] - minus[j][i]) / 2;
+      largest = std::max(largest, std::abs(linear[j]));
+    }
+    for (double value : mixed[i]) largest = std::max(largest, std::abs(value));
+    // Rows that repeat others ask for nothing.
+    if (!(largest > vanishing * size[i])) continue;
+    all.constant.push_back((centre[i] - still[i]) / largest);
+    for (double& value : linear) value /= largest;
+    for (double& value : mixed[i]) value /= largest;
+    all.linear.push_back(std::move(linear));
+    all.quadratic.push_back(std::move(mixed[i]));
+  }
+  return all;
+}
+
+/// The speed of the fastest driver, m/s or rad/s; the accelerations of all of them go to their rows of `own`, of other
+/// rows zero.
+double largest_driver_speed(const Evaluator& evaluator, std::span<double> own) {
+  const Plan& plan = evaluator.plan();
+  double speed = 0;
+  for (int r = 0; r < plan.rows; ++r) {
+    const int element = plan.row_element[at(r)];
+    own[at(r)] = 0;
+    if (evaluator.model().elements[at(element)].kind != ElementKind::driver) continue;
+    // In the solver's rows those of squared distances have the second derivative of c as others have.
+    const Taylor<double> value = evaluator.element_value(element);
+    own[at(r)] = value.dd;
+    speed = std::max(speed, std::abs(value.d));
+  }
+  return speed;
+}
+
+/// Bodies ordered by `share`, those with less than a thousandth of the largest left out.
+std::vector<int> most_concerned(std::span<const double> share, std::size_t most) {
+  std::vector<int> bodies(share.size());
+  double largest = 0;
+  for (std::size_t b = 0; b < share.size(); ++b) bodies[b] = static_cast<int>(b), largest = std::max(largest, share[b]);
+  std::stable_sort(bodies.begin(), bodies.end(), [&](int a, int b) { return share[at(a)] > share[at(b)]; });
+  std::size_t kept = 0;
+  while (kept < bodies.size() && kept < most && share[at(bodies[kept])] > 1e-3 * largest && largest > 0) ++kept;
+  bodies.resize(kept);
+  return bodies;
+}
+
+/// The bodies whose velocities tell the branches apart, and what they are, per branch.
+void put_into_words(const Evaluator& evaluator, SingularPoint& point) {
+  const Plan& plan = evaluator.plan();
+  const double length = evaluator.length_scale();
+  std::vector<double> spread(at(plan.moving), 0.0);
+  std::vector<char> turns(at(plan.moving), 0);
+  const bool alone = point.tangents.size() == 1;  // nothing to be told apart from but rest
+  for (int b = 0; b < plan.moving; ++b) {
+    double low[3], high[3];
+    for (int c = 0; c < 3; ++c) {
+      low[c] = high[c] = alone ? 0 : point.tangents.front()[at(3 * b + c)];
+      for (const auto& tangent : point.tangents) {
+        low[c] = std::min(low[c], tangent[at(3 * b + c)]);
+        high[c] = std::max(high[c], tangent[at(3 * b + c)]);
+      }
+    }
+    const double along = std::max(high[0] - low[0], high[1] - low[1]) / length, angular = high[2] - low[2];
+    turns[at(b)] = angular >= 1e-3 * along;
+    spread[at(b)] = std::max(along, angular);
+  }
+  const std::vector<int> bodies = most_concerned(spread, 3);
+  double largest = 0;
+  for (int b : bodies) largest = std::max(largest, spread[at(b)]);
+  const auto clean = [&](double value) { return std::abs(value) < 1e-9 * largest ? 0.0 : value; };
+  for (const auto& tangent : point.tangents) {
+    std::string text;
+    for (int b : bodies) {
+      const double* v = &tangent[at(3 * b)];
+      const std::string name(evaluator.model().body_name(plan.model_body[at(b)]));
+      text += text.empty() ? "" : ", ";
+      text += turns[at(b)] ? fmt::format("\"{}\" turns at {:.4g} rad/s", name, clean(v[2]))
+                           : fmt::format("\"{}\" moves at ({:.4g}, {:.4g}) m/s", name, clean(v[0]), clean(v[1]));
+    }
+    point.branches.push_back(!text.empty() ? text : alone ? "all bodies at rest" : "all bodies as before");
+  }
+}
+
+/// A combination of rows that vanishes, and its part of b: |w^T b| / (|w| |b|) as in disagreement().
+struct Opposed {
+  std::vector<double> w;
+  double part = 0;
+};
+
+/// Of the left null vectors the one that b disagrees with most.
+Opposed most_opposed(const Evaluator& evaluator, const RankReport& rank, std::span<const double> b) {
+  const Plan& plan = evaluator.plan();
+  const auto unit = [&](int r) { return plan.row_is_angle[at(r)] ? 1 : evaluator.length_scale(); };
+  double squares_b = 0;
+  for (int r = 0; r < plan.rows; ++r) squares_b += b[at(r)] / unit(r) * (b[at(r)] / unit(r));
+  Opposed most{std::vector<double>(b.size(), 0.0)};
+  int place = rank.left_null_vectors.count() > 0 ? 0 : -1;
+  for (int k = 0; k < rank.left_null_vectors.count() && squares_b > 0; ++k) {
+    const auto rows = rank.left_null_vectors.indices(k);
+    const auto weights = rank.left_null_vectors.values(k);
+    double product = 0, squares_w = 0;
+    for (std::size_t n = 0; n < rows.size(); ++n) {
+      product += weights[n] * b[at(rows[n])];
+      squares_w += weights[n] * unit(rows[n]) * weights[n] * unit(rows[n]);
+    }
+    const double part = std::abs(product) / std::sqrt(squares_w * squares_b);
+    if (part > most.part) most.part = part, place = k;
+  }
+  if (place < 0) return most;
+  const auto rows = rank.left_null_vectors.indices(place);
+  for (std::size_t n = 0; n < rows.size(); ++n) most.w[at(rows[n])] = rank.left_null_vectors.values(place)[n];
+  return most;
+}
+
+/// Whether no null vector can be followed with the drivers at rest: w^T gamma, which is quadratic in velocities, does
+/// not vanish for any of them. `own`: gamma at rest.
+bool is_held(Evaluator& evaluator, const NullSpaces& spaces, std::span<const double> own) {
+  std::vector<double> gamma(own.size());
+  return std::all_of(spaces.z.begin(), spaces.z.end(), [&](const std::vector<double>& z) {
+    evaluator.gamma(z, gamma);
+    for (std::size_t r = 0; r < gamma.size(); ++r) gamma[r] -= own[r];
+    return most_opposed(evaluator, spaces.rank, gamma).part > vanishing;
+  });
+}
+
+}  // namespace
+
+double disagreement(const Evaluator& evaluator, std::span<const double> w, std::span<const double> b) {
+  double product = 0, squares_w = 0, squares_b = 0;
+  for (std::size_t r = 0; r < w.size(); ++r) {
+    const double unit = evaluator.plan().row_is_angle[r] ? 1 : evaluator.length_scale();
+    product += w[r] * b[r];
+    squares_w += w[r] * unit * w[r] * unit;
+    squares_b += b[r] / unit * (b[r] / unit);
+  }
+  return squares_w > 0 && squares_b > 0 ? std::abs(product) / std::sqrt(squares_w * squares_b) : 0;
+}
+
+void SingularPoint::name_bodies(const Evaluator& evaluator, std::span<const std::vector<double>> motions) {
+  const Plan& plan = evaluator.plan();
+  std::vector<double> share(at(plan.moving), 0.0);
+  for (const auto& z : motions) {
+    for (int b = 0; b < plan.moving; ++b) {
+      const double shift = std::max(std::abs(z[at(3 * b)]), std::abs(z[at(3 * b + 1)])) / evaluator.length_scale();
+      share[at(b)] = std::max({share[at(b)], shift, std::abs(z[at(3 * b + 2)])});
+    }
+  }
+  bodies.clear();
+  for (int b : most_concerned(share, 10)) bodies.emplace_back(evaluator.model().body_name(plan.model_body[at(b)]));
+}
+
+void SingularPoint::find_driver(const Evaluator& evaluator, std::span<const double> w, std::span<const double> nu) {
+  const Plan& plan = evaluator.plan();
+  double most = -1;
+  for (int r = 0; r < plan.rows; ++r) {
+    const int element = plan.row_element[at(r)];
+    if (evaluator.model().elements[at(element)].kind != ElementKind::driver) continue;
+    const double share = std::abs(w[at(r)] * nu[at(r)]);
+    if (share > most) most = share, driver = element;
+  }
+  if (driver >= 0) driver_value = evaluator.element_value(driver).f;
+}
+
+void SingularPoint::put_first(std::size_t k) {
+  const auto place = static_cast<std::ptrdiff_t>(k);
+  std::rotate(tangents.begin(), tangents.begin() + place, tangents.begin() + place + 1);
+  if (k < branches.size()) std::rotate(branches.begin(), branches.begin() + place, branches.begin() + place + 1);
+}
+
+std::string_view SingularPoint::kind_name() const {
+  switch (kind) {
+    case Kind::branch_point:
+      return "branch_point";
+    case Kind::tangency:
+      return "tangency";
+    case Kind::rest:
+      return "rest";
+    case Kind::isolated:
+      return "isolated";
+    case Kind::lock_up:
+      return "lock_up";
+  }
+  return {};
+}
+
+std::string SingularPoint::describe_branches() const {
+  constexpr std::size_t most = 8;
+  std::string text;
+  for (std::size_t k = 0; k < branches.size() && k < most; ++k) {
+    text += fmt::format("{}branch {}: {}", text.empty() ? "" : "; ", k + 1, branches[k]);
+  }
+  if (branches.size() > most) text += fmt::format("; and {} more", branches.size() - most);
+  return text;
+}
+
+std::string SingularPoint::describe_ways() const {
+  return fmt::format("{} branches meet there ({}, with the fastest driver at 1 rad/s or m/s)", branches.size(),
+                     describe_branches());
+}
+
+SingularPoint find_branches(Evaluator& evaluator, std::span<const double> q, std::span<const double> along,
+                            double threshold, Drivers drivers) {
+  const Plan& plan = evaluator.plan();
+  SingularPoint point;
+  point.t = evaluator.time();
+  point.q.assign(q.begin(), q.end());
+  const NullSpaces spaces = find_null_spaces(evaluator, q, threshold);
+  point.nullity = plan.columns - spaces.rank.rank;
+  point.name_bodies(evaluator, spaces.z);
+  // A particular velocity, the least, if none is known.
+  std::vector<double> nu(at(plan.rows)), qd0(at(plan.coordinates()), 0.0);
+  evaluator.nu(nu);
+  const Opposed opposed = most_opposed(evaluator, spaces.rank, nu);
+  point.find_driver(evaluator, opposed.w, nu);
+  const std::vector<double> nothing(qd0.size(), 0.0);
+  std::vector<double> own(at(plan.rows));
+  evaluator.gamma(nothing, own);
+  point.held_to_second_order = !spaces.z.empty() && is_held(evaluator, spaces, own);
+  if (along.empty() && opposed.part > clear_disagreement) {
+    point.kind = SingularPoint::Kind::lock_up;
+    return point;
+  }
+  if (!along.empty()) {
+    qd0.assign(along.begin(), along.end());
+  } else if (plan.rows > 0) {
+    ConstraintProjector projector(evaluator.shared_plan());
+    std::vector<double> inverse(at(plan.columns)), x(at(plan.columns)), lambda(at(plan.rows));
+    const double square = evaluator.length_scale() * evaluator.length_scale();
+    for (int c = 0; c < plan.columns; ++c) inverse[at(c)] = plan.coordinate[at(c)] % 3 == 2 ? 1 / square : 1;
+    projector.set_inverse_weights(inverse);
+    if (projector.factorize(spaces.values, evaluator.counters).ok()) projector.solve(nu, x, lambda, evaluator.counters);
+    for (int c = 0; c < plan.columns; ++c) qd0[at(plan.coordinate[at(c)])] = x[at(c)];
+  }
+  double rate = 0;
+  for (int c = 0; c < 3 * plan.moving; ++c) {
+    rate = std::max(rate, std::abs(qd0[at(c)]) / (c % 3 == 2 ? 1 : evaluator.length_scale()));
+  }
+  const bool searchable = !spaces.z.empty() && point.nullity <= most_nullity && std::isfinite(rate);
+  if (!searchable) {
+    if (!along.empty()) point.tangents.push_back(qd0);
+    return point;
+  }
+  double largest_nu = 0;
+  for (double value : nu) largest_nu = std::max(largest_nu, std::abs(value));
+  // Drivers that rest but do not stay may leave a dead point at once: w^T gamma = 0 then asks for a velocity.
+  const bool starts = along.empty() && largest_nu == 0 && drivers == Drivers::moving &&
+                      most_opposed(evaluator, spaces.rank, own).part > clear_disagreement;
+  if (starts) {
+    double gain = 0;
+    for (int r = 0; r < plan.rows; ++r) {
+      gain = std::max(gain, std::abs(own[at(r)]) / (plan.row_is_angle[at(r)] ? 1 : evaluator.length_scale()));
+    }
+    rate = std::sqrt(gain);
+  } else if (!(rate > 0) || largest_nu == 0) {
+    point.kind = SingularPoint::Kind::rest;
+    point.tangents.push_back(qd0);
+    return point;
+  }
+  double speed = 1;
+  if (drivers == Drivers::about_to_move) {
+    speed = largest_driver_speed(evaluator, own);
+  } else {
+    own.clear();
+  }
+  const Quadratics system = make_quadratics(evaluator, spaces, qd0, rate, own);
+  std::vector<double> first;
+  if (!along.empty()) first.assign(system.k, 0.0);
+  for (const auto& root : real_roots(system, first)) {
+    std::vector<double> tangent = qd0;
+    for (std::size_t c = 0; c < tangent.size(); ++c) {
+      for (std::size_t j = 0; j < system.k; ++j) tangent[c] += rate * root[j] * spaces.z[j][c];
+      tangent[c] /= speed;
+    }
+    point.tangents.push_back(std::move(tangent));
+  }
+  point.kind = point.tangents.empty()       ? SingularPoint::Kind::isolated
+               : point.tangents.size() == 1 ? SingularPoint::Kind::tangency
+                                            : SingularPoint::Kind::branch_point;
+  if (!point.tangents.empty()) put_into_words(evaluator, point);
+  return point;
+}
+
+}  // namespace catena

@@ -1,0 +1,298 @@
+// Across singular configurations: which branches meet there, and on which one the motion goes on.
+//
+// The branch is extrapolated from two instants before the suspected one to two behind it and solved for there, where
+// the equations determine it again. Hermite's polynomial through the four (kinematics_bridge.hpp) must then meet the
+// constraints all the way: with links that only nearly align it does not, since the true branch turns away. Along it
+// the singular instants are found (kinematics_instants.cpp), and there the null spaces and the branches are taken.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+
+#include "catena/analysis/kinematics/kinematics.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// A node's prediction may be off by this part of the bridge's motion. Whether the nodes lie on one branch is judged by
+// the constraints along the polynomial.
+constexpr double allowance = 0.2;
+// Residual of the polynomial, in length scales or rad, beyond what rounding explains.
+constexpr double bridge_tolerance = 2e-12;
+constexpr double rounded_place = 16 * std::numeric_limits<double>::epsilon();
+constexpr int samples = 9;
+// So much of a bridge is a moment: drivers that rest move a moment later, and the mechanism is still there.
+constexpr double moment = 2e-3;
+// Part of a bridge to which instants on it are known for certain.
+constexpr double same_instant = 1e-9;
+// Length below which rows count as dependent at a singular configuration found to rounding.
+constexpr double dependence = 1e-7;
+
+}  // namespace
+
+// Whether functions of time are as smooth at t as within the run: outside of it those of the user's own end.
+bool Kinematics::functions_go_on(double t) const {
+  return evaluator_.time_limit().contains(t) || std::none_of(model_->functions.begin(), model_->functions.end(),
+                                                             std::mem_fn(&TimeFunction<double>::has_callback));
+}
+
+// Solves at t from the prediction in trial_.
+bool Kinematics::add_node(MotionBridge& bridge, double t, double allowed) {
+  if (!functions_go_on(t)) return false;
+  evaluator_.set_time(t);
+  restore_fixed(trial_, {}, {});
+  newton_ = solver_.solve_position(trial_);
+  if (!newton_.converged || newton_.first_correction > allowed) return false;
+  // Once more: rounding in a node is enlarged on the bridge.
+  if (!solver_.solve_position(trial_).converged) return false;
+  std::vector<double> rates(q_.size(), 0.0), accelerations(q_.size(), 0.0);
+  if (!solver_.solve_velocity(rates, false) || !solver_.solve_acceleration(rates, accelerations, false)) return false;
+  bridge.add(t, trial_, rates, accelerations);
+  return true;
+}
+
+// Nodes at centre + {-2, -1, 1, 2} h (h is negative when time runs backwards). Those behind are predicted from four
+// before, so sharply that it is the same branch even where others lie near; where the run ends too early for them and
+// with it what is known of a driver, the four before make the bridge.
+bool Kinematics::build_bridge(MotionBridge& bridge, double centre, double h, double reach) {
+  MotionBridge before;
+  for (int k = 1; k <= MotionBridge::capacity; ++k) {
+    const double t = centre - k * h;
+    if (!functions_go_on(t)) break;
+    if (before.empty()) {
+      trial_ = q_;
+      predict(t, trial_, {}, {});
+    } else {
+      before.evaluate(t, trial_, {}, {});
+    }
+    if (!add_node(before, t, allowance * reach)) break;
+  }
+  if (before.size() < 2) return false;
+  bridge = before;
+  if (!functions_go_on(centre + 2 * h)) return true;
+  bridge.keep_first(2);
+  for (int k = 1; k <= 2; ++k) {
+    (k == 1 ? before : bridge).evaluate(centre + k * h, trial_, {}, {});
+    if (!add_node(bridge, centre + k * h, allowance * reach)) return false;
+  }
+  return true;
+}
+
+bool Kinematics::follows_constraints(const MotionBridge& bridge, double from, double to) {
+  std::vector<double> q(q_.size());
+  double extent = 0, place = 0;
+  for (std::size_t k = 0; k < q_.size(); ++k) extent = std::max(extent, std::abs(q_[k]) / evaluator_.length_scale());
+  for (int p = 0; p < plan_->bodies; ++p) {
+    const Vec2<double> origin = evaluator_.origin(p);
+    place = std::max({place, std::abs(origin.x), std::abs(origin.y)});
+  }
+  // Lengths of a mechanism that is described far from the origin are rounded like its places: links that repeat each
+  // other do so no better.
+  const double tolerance = bridge_tolerance + 1e-14 * extent + rounded_place * place / evaluator_.length_scale();
+  for (int k = 0; k < samples; ++k) {
+    const double t = from + (to - from) * k / (samples - 1);
+    evaluator_.set_time(t);
+    bridge.evaluate(t, q, {}, {});
+    if (!(solver_.residual_at(q) <= tolerance)) return false;
+  }
+  return true;
+}
+
+SingularPoint Kinematics::look_at(const MotionBridge& bridge, double t, double from, double to) {
+  const bool rests = find_rest(bridge, t, from, to);
+  std::vector<double> q(q_.size()), qd(q_.size());
+  bridge.evaluate(t, q, qd, {});
+  evaluator_.set_time(t);
+  SingularPoint point = find_branches(evaluator_, q, qd, dependence);
+  if (!rests || point.nullity == 0) return point;
+  // Where the drivers rest the velocity says nothing; a moment later it does.
+  const double later = t + std::copysign(moment * (to - from), t - t_);
+  bridge.evaluate(later, {}, qd, {});
+  evaluator_.set_time(later);
+  point = find_branches(evaluator_, q, {}, dependence, Drivers::about_to_move);
+  point.kind = SingularPoint::Kind::rest;
+  point.t = t;
+  // The branch that goes on as before comes first.
+  const double rate = solver_.distance(qd, nothing_, nullptr);
+  std::size_t before = 0;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < point.tangents.size(); ++k) {
+    const double size = rate / solver_.distance(point.tangents[k], nothing_, nullptr);
+    for (std::size_t c = 0; c < trial_.size(); ++c) trial_[c] = size * point.tangents[k][c];
+    if (const double off = solver_.distance(trial_, qd, nullptr); off < nearest) nearest = off, before = k;
+  }
+  if (before > 0) point.put_first(before);
+  return point;
+}
+
+void Kinematics::announce(const SingularPoint& point, Report& report) {
+  std::string text;
+  switch (point.kind) {
+    case SingularPoint::Kind::branch_point:
+      text = fmt::format("at t = {:.12g} s branches meet: {}; {} ", point.t, point.describe_branches(),
+                         options_.branch <= 1 ? "the motion goes on as before, along" : "the motion takes");
+      text += fmt::format("branch {}", std::max(1, options_.branch));
+      break;
+    case SingularPoint::Kind::rest:
+      text = fmt::format("at t = {:.12g} s the drivers rest in a singular configuration; ", point.t);
+      if (point.tangents.size() > 1 && options_.branch > 1) {
+        text += fmt::format("the motion takes branch {}: {}", options_.branch, point.describe_ways());
+      } else {
+        text += "the motion goes on as smoothly as it came";
+        if (point.tangents.size() > 1) text += ", along branch 1: " + point.describe_ways();
+      }
+      break;
+    default:
+      text = fmt::format("at t = {:.12g} s the mechanism passes a singular configuration; the motion goes on as before",
+                         point.t);
+  }
+  if (point.nullity > 1) {
+    text += fmt::format(" ({} motions are undetermined at that instant)", point.nullity);
+  }
+  report.warnings.push_back(std::move(text));
+}
+
+// The time in which the mechanism moves by `reach`, at the greatest speed that the drivers have within twice that time:
+// where they come to rest the present speed says nothing. 0: it does not move.
+double Kinematics::bridge_length(double centre, double reach) {
+  const double rate = largest_rate();
+  std::vector<double> nu(at(plan_->rows));
+  const auto speed = [&](double t) {
+    if (!functions_go_on(t)) return 0.0;
+    evaluator_.set_time(t);
+    evaluator_.nu(nu);
+    return std::sqrt(std::inner_product(nu.begin(), nu.end(), nu.begin(), 0.0));
+  };
+  const double present = speed(t_);
+  double h = reach / rate;
+  if (!(present > 0) || !std::isfinite(h)) return 0;
+  for (int k = 0; k < 60; ++k) {
+    double most = present;
+    for (int s = -2; s <= 2; ++s) most = std::max(most, speed(centre + s * h));
+    if (h * rate * most <= 1.5 * reach * present) return h;
+    h *= 0.7;
+  }
+  return 0;
+}
+
+// Looks for singular configurations about the suspected stretch from t_ to `next`. Passed: the bridge is in place.
+Kinematics::Passage Kinematics::pass_singular(double next, double target, double reach, Report& report) {
+  const double middle = t_ + (next - t_) / 2, length = bridge_length(middle, reach);
+  if (!(length > 0)) return Passage::none;
+  const double h = target > t_ ? length : -length;
+  // A node that falls on the singular instant spoils the first bridge, not the second.
+  MotionBridge bridge;
+  double from = 0, to = 0;
+  bool built = false;
+  for (double shift : {0.0, 0.5}) {
+    const double centre = middle + shift * h;
+    from = centre - length, to = centre + length;
+    if (!functions_go_on(centre + 2 * h)) (h > 0 ? to : from) = target;
+    built = build_bridge(bridge, centre, h, reach) && follows_constraints(bridge, from, to);
+    if (built) break;
+    bridge.clear();
+  }
+  if (!built) return Passage::none;
+  // Those behind have been dealt with.
+  std::vector<double> instants = singular_instants(bridge, from, to);
+  std::erase_if(instants, [&](double instant) { return (instant - t_) * h <= 0; });
+  if (instants.empty()) return follow_bridge(bridge, h > 0 ? std::min(to, target) : std::max(from, target));
+  // Around the singular instant itself the nodes lie where rounding is least.
+  const double first = h > 0 ? instants.front() : instants.back();
+  MotionBridge centred;
+  bool moved = functions_go_on(first - 2 * h) && functions_go_on(first + 2 * h);
+  for (int k : {-1, -2, 1, 2}) {
+    if (!moved) break;
+    bridge.evaluate(first + k * h, trial_, {}, {});
+    moved = add_node(centred, first + k * h, allowance * reach);
+  }
+  if (moved && (target - (first - h)) * h >= 0 && follows_constraints(centred, first - length, first + length)) {
+    bridge = std::move(centred);
+    from = first - length;
+    to = first + length;
+  }
+  for (double instant : instants) {
+    if (instant > latest_ + same_instant * length || instant < earliest_ - same_instant * length) continue;
+    // Instants closer than they are known are one.
+    if (!singular_points_.empty() && instant != first &&
+        std::abs(instant - singular_points_.back().t) < same_instant * (to - from)) {
+      continue;
+    }
+    SingularPoint point = look_at(bridge, instant, from, to);
+    // Only the rows in use depend on each other, others take their place.
+    if (point.nullity == 0) continue;
+    const bool branches = point.kind == SingularPoint::Kind::branch_point ||
+                          (point.kind == SingularPoint::Kind::rest && point.tangents.size() > 1);
+    if (options_.branch > 1 && branches) {
+      if (options_.branch > static_cast<int>(point.tangents.size())) {
+        report.status = Status::bifurcation;
+        report.message =
+            fmt::format("at t = {:.12g} s branch {} was asked for, but {} meet: {}", point.t, options_.branch,
+                        point.tangents.size(),
+                        point.kind == SingularPoint::Kind::rest ? point.describe_ways() : point.describe_branches());
+        singular_points_.push_back(std::move(point));
+        return Passage::failed;
+      }
+      choice_ = point;
+    }
+    announce(point, report);
+    singular_points_.push_back(std::move(point));
+    if (choice_) break;
+  }
+  bridge_ = std::move(bridge);
+  bridge_from_ = from;
+  bridge_to_ = to;
+  if (choice_) (h > 0 ? bridge_to_ : bridge_from_) = choice_->t;
+  return Passage::passed;
+}
+
+// Nothing is singular about the stretch after all: the bridge shows the way across it.
+Kinematics::Passage Kinematics::follow_bridge(const MotionBridge& bridge, double t) {
+  evaluator_.set_time(t);
+  bridge.evaluate(t, trial_, {}, {});
+  restore_fixed(trial_, {}, {});
+  newton_ = solver_.solve_position(trial_);
+  if (!newton_.converged || newton_.first_correction > 1e3 * bridge_tolerance) return Passage::none;
+  q_.swap(trial_);
+  t_ = t;
+  has_velocity_ = has_acceleration_ = false;
+  ++evaluator_.counters.steps;
+  solver_.factor_at(q_);
+  remember_margins();
+  if (solver_.solve_velocity(qd_, false)) {
+    has_velocity_ = true;
+    predictor_.push(t_, q_, qd_, {});
+  }
+  return Passage::regular;
+}
+
+void Kinematics::place_on_bridge(double t) {
+  bridge_.evaluate(t, trial_, qd_, qdd_);
+  restore_fixed(trial_, qd_, qdd_);
+  q_.swap(trial_);
+  t_ = t;
+  has_velocity_ = has_acceleration_ = on_bridge_ = true;
+  evaluator_.set_time(t);
+  newton_ = {};
+  newton_.converged = true;
+  newton_.residual = solver_.residual_at(q_);
+}
+
+void Kinematics::leave_bridge(double end) {
+  place_on_bridge(end);
+  predictor_.clear();
+  predictor_.push(t_, q_, qd_, qdd_);
+  bridge_.clear();
+  on_bridge_ = false;
+  solver_.factor_at(q_);
+  margins_.clear();
+  remember_margins();
+  choose_better_rows();
+}
+
+}  // namespace catena

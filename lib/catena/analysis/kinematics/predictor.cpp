@@ -1,0 +1,115 @@
+#include "catena/analysis/kinematics/predictor.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace catena {
+namespace {
+
+// Newton's divided differences with repeated nodes: one scheme serves Hermite data of any order and plain points.
+// A node holds (instant, derivative); data vectors are addressed symbolically through weights on them.
+constexpr int max_nodes = 6;
+using Weights = std::array<double, max_nodes>;
+
+struct Nodes {
+  int count = 0;
+  std::array<double, max_nodes> t{};   // instant of the node
+  std::array<int, max_nodes> group{};  // first node of the same instant
+};
+
+// Weights of the data in the value and first two derivatives at t of the interpolating polynomial.
+std::array<Weights, 3> weights_at(const Nodes& nodes, double t) {
+  const int n = nodes.count;
+  std::array<Weights, 3> result{};
+  for (int datum = 0; datum < n; ++datum) {
+    // Divided differences of the data set that is 1 at `datum` and 0 elsewhere.
+    std::array<double, max_nodes> f{}, newton{};
+    const auto value = [&](int node, int derivative) {
+      const int source = nodes.group[static_cast<std::size_t>(node)] + derivative;
+      const double factorial = derivative == 2 ? 2 : 1;
+      return source == datum ? 1 / factorial : 0.0;
+    };
+    for (int k = 0; k < n; ++k) f[static_cast<std::size_t>(k)] = value(k, 0);
+    newton[0] = f[0];
+    for (int order = 1; order < n; ++order) {
+      for (int k = 0; k + order < n; ++k) {
+        const auto a = static_cast<std::size_t>(k), b = static_cast<std::size_t>(k + order);
+        const bool same = nodes.t[a] == nodes.t[b];
+        f[a] = same ? value(k, order) : (f[a + 1] - f[a]) / (nodes.t[b] - nodes.t[a]);
+      }
+      newton[static_cast<std::size_t>(order)] = f[0];
+    }
+    // Horner with derivatives.
+    double p = 0, pd = 0, pdd = 0;
+    for (int k = n - 1; k >= 0; --k) {
+      const double x = t - nodes.t[static_cast<std::size_t>(k)];
+      pdd = pdd * x + 2 * pd;
+      pd = pd * x + p;
+      p = p * x + newton[static_cast<std::size_t>(k)];
+    }
+    const auto d = static_cast<std::size_t>(datum);
+    result[0][d] = p;
+    result[1][d] = pd;
+    result[2][d] = pdd;
+  }
+  return result;
+}
+
+}  // namespace
+
+Predictor::Predictor(std::size_t size) : ring_(capacity) {
+  for (Instant& instant : ring_) instant.q.resize(size), instant.qd.resize(size), instant.qdd.resize(size);
+}
+
+void Predictor::push(double t, std::span<const double> q, std::span<const double> qd, std::span<const double> qdd) {
+  if (count_ == 0 || back(0).t != t) {
+    head_ = (head_ + 1) % capacity;
+    count_ = std::min(count_ + 1, capacity);
+  }
+  Instant& instant = ring_[static_cast<std::size_t>(head_)];
+  instant.t = t;
+  instant.derivatives = qd.empty() ? 0 : qdd.empty() ? 1 : 2;
+  std::copy(q.begin(), q.end(), instant.q.begin());
+  std::copy(qd.begin(), qd.end(), instant.qd.begin());
+  std::copy(qdd.begin(), qdd.end(), instant.qdd.begin());
+}
+
+bool Predictor::predict(double t, std::span<double> q, std::span<double> qd, std::span<double> qdd) const {
+  if (count_ == 0) return false;
+  // With derivatives two instants suffice; without, up to four.
+  const int instants = std::min(count_, back(0).derivatives > 0 ? 2 : capacity);
+  Nodes nodes;
+  std::array<const double*, max_nodes> data{};
+  for (int k = 0; k < instants; ++k) {
+    const Instant& instant = back(k);
+    const int group = nodes.count;
+    for (int d = 0; d <= instant.derivatives && nodes.count < max_nodes; ++d) {
+      const auto n = static_cast<std::size_t>(nodes.count++);
+      nodes.t[n] = instant.t;
+      nodes.group[n] = group;
+      data[n] = (d == 0 ? instant.q : d == 1 ? instant.qd : instant.qdd).data();
+    }
+  }
+  const auto weights = weights_at(nodes, t);
+  // Always six terms, those without data with weight zero: a fixed count lets the compiler vectorise over entries.
+  for (int k = nodes.count; k < max_nodes; ++k) data[static_cast<std::size_t>(k)] = data[0];
+  const double *a = data[0], *b = data[1], *c = data[2], *d = data[3], *e = data[4], *f = data[5];
+  const auto sum = [&](const Weights& w, std::size_t i) {
+    return w[0] * a[i] + w[1] * b[i] + w[2] * c[i] + w[3] * d[i] + w[4] * e[i] + w[5] * f[i];
+  };
+  // In one pass if all are wanted: what a large scene pays for is reading the data.
+  double *position = q.data(), *velocity = qd.data(), *acceleration = qdd.data();
+  if (!q.empty() && !qd.empty() && !qdd.empty()) {
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      const double x = sum(weights[0], i), v = sum(weights[1], i), w = sum(weights[2], i);
+      position[i] = x, velocity[i] = v, acceleration[i] = w;
+    }
+    return true;
+  }
+  for (std::size_t i = 0; i < q.size(); ++i) position[i] = sum(weights[0], i);
+  for (std::size_t i = 0; i < qd.size(); ++i) velocity[i] = sum(weights[1], i);
+  for (std::size_t i = 0; i < qdd.size(); ++i) acceleration[i] = sum(weights[2], i);
+  return true;
+}
+
+}  // namespace catena

@@ -1,0 +1,98 @@
+// The equations of motion of a mechanism as a right-hand side: accelerations from positions and velocities, and the
+// projections that keep both on the constraints (THEORY section 4).
+//
+//   accelerations   [M, Phi_q^T; Phi_q, 0] [qdd; lambda] = [Q; gamma]
+//   positions       q -= M^-1 Phi_q^T S^-1 Phi(q), repeated with the factors at hand until Phi is rounding
+//   velocities      qd -= M^-1 Phi_q^T S^-1 (Phi_q qd - nu): the least change in the mass metric
+//
+// Vectors have plan.coordinates() entries, three a body in plan order, of which those of moving bodies are written.
+// Nothing here allocates after the first call of accelerations().
+#pragma once
+
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "catena/analysis/motion/mass_matrix.hpp"
+#include "catena/analysis/pose/scaling.hpp"
+#include "catena/assembly/evaluate.hpp"
+#include "catena/assembly/systems/schur_system.hpp"
+#include "catena/base/status.hpp"
+
+namespace catena {
+
+class EquationsOfMotion {
+ public:
+  explicit EquationsOfMotion(Evaluator& evaluator);
+
+  /// Takes over the masses, or says which body lacks what.
+  Report use_masses();
+  /// Chooses the small masses that stand for zero ones as what resists at q and the evaluator's time asks for.
+  /// Allocates; nothing without massless coordinates.
+  void weigh_massless(std::span<const double> q);
+  /// Whether accelerations at q and the evaluator's time are unique in spite of massless coordinates: whether M is
+  /// positive definite where the constraints leave freedom.
+  Report check_massless(std::span<const double> q);
+  /// The body whose massless coordinate nothing determined at the last accelerations(), in words; empty: none.
+  std::string undetermined() const;
+
+  /// qdd at (t, q, qd); `side` where a function of time jumps at t. False: something is not finite. `stabilisation`, s
+  /// in 1/s: constraints that are not met return to zero by Phi'' + 2 s Phi' + s^2 Phi = 0.
+  bool accelerations(double t, Side side, std::span<const double> q, std::span<const double> qd, std::span<double> qdd,
+                     double stabilisation = 0);
+  /// Multipliers of the solver's rows at the last accelerations().
+  std::span<const double> multipliers() const { return lambda_; }
+
+  /// Generalized forces of gravity and force elements at the last accelerations().
+  std::span<const double> applied_forces() const { return loads_; }
+
+  // The rest uses the factors, the configuration and the time of the last accelerations() or factorize().
+
+  /// Factors at (t, q) without computing accelerations.
+  bool factorize(double t, Side side, std::span<const double> q);
+  /// Largest residual of positions, in length scales or rad.
+  double position_residual(std::span<const double> q);
+  /// Moves q onto the constraints. Returns the largest residual left, in length scales or rad.
+  double project_position(std::span<double> q, int max_iterations);
+  /// Changes qd to what the constraints allow at the configuration that project_position() left, until the residual is
+  /// rounding compared with the velocities `rate` (1/s), at most twice. Returns the residual of qd as it was.
+  double project_velocity(std::span<double> qd, double rate);
+  /// Directions among the rows that are not solved for, see SchurSystem and RedundantRows. The next use factors anew.
+  void leave_out(SparseVectors directions) {
+    system_.leave_out(std::move(directions));
+    factored_ = false;
+  }
+  const SparseVectors& left_out() const { return system_.left_out(); }
+  std::vector<double> row_sizes() const { return system_.row_sizes(); }
+  void solve_rows(std::span<double> x) { system_.solve_rows(x, evaluator_.counters); }
+  /// Removes from x the part that the constraints do not allow, roughly: for estimates of errors.
+  void remove_forbidden(std::span<double> x);
+  /// See SchurSystem: near zero where constraints depend on each other.
+  double smallest_pivot_ratio() const { return plan_.rows > 0 ? system_.smallest_pivot_ratio() : 1; }
+  int weakest_row() const { return system_.weakest_row(); }
+  /// Whether constraints that are solved for depend on each other, in a singular position.
+  bool is_singular() const { return plan_.rows > 0 && system_.is_regularised(); }
+  /// Whether multipliers are not unique: there, and always where constraints are redundant.
+  bool is_dependent() const { return is_singular() || left_out().count() > 0; }
+
+  Evaluator& evaluator() { return evaluator_; }
+  const Plan& plan() const { return plan_; }
+  const MassMatrix& masses() const { return masses_; }
+  /// Positions beyond this cannot be told from rounding; in length scales or rad.
+  static constexpr double position_rounding = 1e-15;
+
+ private:
+  bool evaluate_jacobian(double t, Side side, std::span<const double> q);
+  void stabilise(std::span<const double> qd, double rate);
+
+  Evaluator& evaluator_;
+  const Plan& plan_;
+  MassMatrix masses_;
+  Scaling scaling_;
+  SchurSystem system_;
+  bool factored_ = false, weighed_ = false;
+  std::vector<double> jacobian_, gamma_, lambda_, loads_, residual_, multipliers_, change_;
+};
+
+}  // namespace catena

@@ -1,0 +1,143 @@
+#include "catena/analysis/motion/initial_velocities.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "catena/analysis/pose/scaling.hpp"
+#include "catena/assembly/systems/constraint_projector.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+constexpr double given_weight = 1e4;
+constexpr int most_rounds = 12;
+// One that is massless counts with its small mass, 1e-4 of what resists, which the author's word raises above that.
+constexpr double given_massless_weight = 1e8;
+// Velocities are corrected until the constraints' residual no longer shrinks, so often at most.
+constexpr int most_corrections = 4;
+
+/// What the model, or an earlier analysis, says of the velocities, by column.
+struct Wanted {
+  std::vector<double> velocity, weight;
+  std::vector<char> given, follows;  // massless and not given: it follows what has mass
+};
+
+Wanted wanted_velocities(const Evaluator& evaluator, const MassMatrix& masses, std::span<const double> given) {
+  const Plan& plan = evaluator.plan();
+  Wanted wanted{std::vector<double>(at(plan.columns), 0.0), std::vector<double>(at(plan.columns), 1.0),
+                std::vector<char>(at(plan.columns), 0), std::vector<char>(at(plan.columns), 0)};
+  for (int c = 0; c < plan.columns; ++c) {
+    const int coordinate = plan.coordinate[at(c)], k = coordinate % 3;
+    const auto& body = evaluator.model().bodies[at(plan.model_body[at(coordinate / 3)])];
+    const double mass = masses.mass[at(coordinate)];
+    const bool massless = !(mass > 0);
+    wanted.weight[at(c)] = massless ? masses.substitute[at(coordinate)] : mass;
+    if (!given.empty()) {
+      wanted.given[at(c)] = !massless;
+      wanted.velocity[at(c)] = given[at(coordinate)];
+    } else if (k == 2) {
+      wanted.given[at(c)] = body.angular_velocity_given;
+      wanted.velocity[at(c)] = body.angular_velocity_given ? body.angular_velocity : 0;
+    } else if (body.velocity_given) {
+      wanted.given[at(c)] = 1;
+      // From the author's origin to the centroid.
+      const double omega = body.angular_velocity_given ? body.angular_velocity : 0;
+      const Vec2<double> arm = evaluator.frames()[at(coordinate / 3)].axis(body.origin);
+      const Vec2<double> v = body.velocity - omega * perpendicular(arm);
+      wanted.velocity[at(c)] = k == 0 ? v.x : v.y;
+    }
+    wanted.follows[at(c)] = massless && !wanted.given[at(c)];
+    if (wanted.given[at(c)]) wanted.weight[at(c)] *= massless ? given_massless_weight : given_weight;
+    if (wanted.follows[at(c)] && !given.empty()) wanted.weight[at(c)] *= given_weight;
+  }
+  return wanted;
+}
+
+}  // namespace
+
+VelocityOutcome find_initial_velocities(EquationsOfMotion& equations, std::span<const double> q,
+                                        std::span<const double> given, std::span<double> qd) {
+  VelocityOutcome outcome;
+  Evaluator& evaluator = equations.evaluator();
+  const Plan& plan = evaluator.plan();
+  evaluator.set_configuration(q);
+  const Wanted wanted = wanted_velocities(evaluator, equations.masses(), given);
+  std::vector<double> velocity = wanted.velocity;
+  if (plan.rows > 0) {
+    std::vector<double> jacobian(at(plan.trash_slot()) + 1), nu(at(plan.rows)), rest(nu), lambda(nu);
+    std::vector<double> asked = wanted.velocity, step(velocity.size()), inverse(velocity.size());
+    for (std::size_t c = 0; c < inverse.size(); ++c) inverse[c] = 1 / wanted.weight[c];
+    evaluator.start_jacobian(jacobian);
+    evaluator.jacobian(jacobian);
+    evaluator.nu(nu);
+    const auto values = std::span<const double>(jacobian).first(at(plan.trash_slot()));
+    ConstraintProjector projector(evaluator.shared_plan());
+    projector.set_inverse_weights(inverse);
+    if (!projector.factorize(values, evaluator.counters).ok()) {
+      outcome.status = Status::singular;
+      outcome.message = "initial velocities are not determined: the constraints' Jacobian is not finite";
+      return outcome;
+    }
+    for (int round = 0; round < most_rounds; ++round) {
+      rest = nu;
+      for (std::size_t c = 0; c < step.size(); ++c) step[c] = -asked[c];
+      multiply_add(plan.jacobian, values, step, rest);
+      projector.solve(rest, step, lambda, evaluator.counters);
+      double change = 0, size = 0;
+      for (std::size_t c = 0; c < step.size(); ++c) {
+        const double next = asked[c] + step[c];
+        change = std::max(change, std::abs(next - velocity[c]));
+        size = std::max(size, std::abs(next));
+        velocity[c] = next;
+        if (wanted.given[c]) asked[c] += wanted.velocity[c] - next;
+        // So that its small mass counts for nothing in the end.
+        if (wanted.follows[c]) asked[c] = next;
+      }
+      if (round > 0 && change <= 1e-15 * size) break;
+    }
+    int worst = -1;
+    const double length = evaluator.length_scale();
+    double left = std::numeric_limits<double>::infinity();
+    for (int k = 0; k <= most_corrections; ++k) {
+      rest = nu;
+      for (std::size_t c = 0; c < step.size(); ++c) step[c] = -velocity[c];
+      multiply_add(plan.jacobian, values, step, rest);
+      const double now = row_norm(plan, rest, length, &worst);
+      const bool shrinks = now < 0.5 * left;
+      left = now;
+      if (!shrinks || k == most_corrections || now == 0) break;
+      projector.solve(rest, step, lambda, evaluator.counters);
+      for (std::size_t c = 0; c < step.size(); ++c) velocity[c] += step[c];
+    }
+    const double scale = std::max(
+        {column_norm(plan, velocity, length), column_norm(plan, wanted.velocity, length), row_norm(plan, nu, length)});
+    if (!(left <= 1e-9 * scale)) {
+      const int element = worst < 0 ? 0 : plan.row_element[at(worst)];
+      outcome.status = Status::inconsistent;
+      outcome.message = fmt::format(
+          "no velocities meet all constraints and drivers at t = {:.12g} s: {} \"{}\" misses by {:.3g}; likely cause: "
+          "drivers that contradict each other, or a driver that starts with a jump",
+          evaluator.time(), evaluator.model().element_type(element), evaluator.model().element_name(element), left);
+      return outcome;
+    }
+  }
+  std::fill(qd.begin(), qd.end(), 0.0);
+  for (int c = 0; c < plan.columns; ++c) {
+    const int coordinate = plan.coordinate[at(c)];
+    qd[at(coordinate)] = velocity[at(c)];
+    const double change = std::abs(velocity[at(c)] - wanted.velocity[at(c)]);
+    if (wanted.given[at(c)] && change > outcome.changed) {
+      outcome.changed = change;
+      outcome.changed_turn = plan.coordinate[at(c)] % 3 == 2;
+      outcome.changed_body = plan.model_body[at(coordinate / 3)];
+    }
+  }
+  return outcome;
+}
+
+}  // namespace catena

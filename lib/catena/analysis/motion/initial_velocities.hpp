@@ -1,0 +1,32 @@
+// Initial velocities that the constraints allow:
+//
+//   given components are kept where the constraints allow, else changed least in the mass metric;
+//   omitted ones get the least kinetic energy
+//
+//   min |qd_given - given|_M first, then min qd_omitted^T M qd_omitted, both subject to Phi_q qd = nu
+//
+// found as a sequence of least changes in which given components weigh 10^4 times their mass and what is still missing
+// of them is added to what is asked for (Bregman iteration): exact after a few rounds, with one factorization.
+// A velocity is given for the origin of its author's frame. What is massless and not given has a small mass that is
+// taken back from round to round: it follows what has mass and resists nothing.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "catena/analysis/motion/equations_of_motion.hpp"
+
+namespace catena {
+
+struct VelocityOutcome : Report {
+  double changed = 0;         ///< largest change of a given component, m/s or rad/s
+  bool changed_turn = false;  ///< an angular velocity
+  int changed_body = -1;      ///< whose it was, in the model's numbering
+};
+
+/// Finds qd (size plan.coordinates()) at the evaluator's time and the assembled configuration q. `given`, if not empty,
+/// are velocities of an earlier analysis, all of which count as given; otherwise those of the model do.
+VelocityOutcome find_initial_velocities(EquationsOfMotion& equations, std::span<const double> q,
+                                        std::span<const double> given, std::span<double> qd);
+
+}  // namespace catena

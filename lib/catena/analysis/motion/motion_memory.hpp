@@ -1,0 +1,59 @@
+// What a motion under way goes on from: all that a fresh Dynamics of the same model, or one in another process on the
+// same machine, needs to make the very same steps and rows, bit for bit, as any other that starts from these numbers.
+//
+// It holds no history of an integrator. A run that is to be taken up again later drops its own history where it pauses,
+// and goes on from these numbers as well: see Pauses in dynamics_with_events.hpp. Units: SI.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "catena/linalg/patterns/sparse_vectors.hpp"
+
+namespace catena {
+
+/// Energies at an event, for a motion that goes on with other constraints. Units: J.
+struct WorkSoFar {
+  double supplied = 0, dissipated = 0;  ///< by loads and drivers; by damping
+  double initial_energy = 0, energy = 0;
+  std::vector<double> by_driver;  ///< by number of the element; empty: nothing was summed up
+};
+
+/// What an integrator has learnt about the motion.
+struct IntegratorMemory {
+  double step = 0;                                ///< proposed for the next one, s
+  double rate = 0, root_energy = 0, radians = 0;  ///< see ErrorScale
+  double usual_ratio = 1e-300;                    ///< largest pivot ratio so far
+};
+
+/// What happened at an event: `row` is the number of the row given at that instant, from 0.
+struct EventRecord {
+  std::string name;
+  double t = 0;
+  std::int64_t row = 0;
+};
+
+/// What those who watch for events have seen.
+struct EventMemory {
+  std::vector<int> released;  ///< constraints that do not hold, by number of the element
+  std::vector<int> turned;    ///< by element: turns by which a value was moved when it was engaged; empty: none
+  std::vector<int> sides;     ///< by event: see EventWatch
+  std::vector<double> largest;
+  std::vector<EventRecord> records;
+};
+
+struct MotionMemory {
+  double t = 0;
+  std::vector<double> y;      ///< [q, qd, work] in the order of the plan, relative to its origins; see Motion
+  std::vector<double> turns;  ///< by moving body: whole turns that its angle in y lacks
+  double initial_energy = 0;
+  std::int64_t next_row = 0, steps = 0;  ///< of the grid; made so far, rejected ones included
+  std::int64_t rows_given = 0;           ///< those at events included
+  SparseVectors left_out;                ///< directions among the rows: see RedundantRows
+  IntegratorMemory integrator;
+  WorkSoFar earlier;  ///< what was summed up before the last event that acted
+  EventMemory events;
+};
+
+}  // namespace catena

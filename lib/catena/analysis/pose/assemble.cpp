@@ -1,0 +1,289 @@
+#include "catena/analysis/pose/assemble.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "catena/analysis/pose/whole_turns.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+constexpr int max_iterations = 200;
+constexpr int max_approach_iterations = 60;
+// Back onto the constraints from a short way off: what takes longer was too long a way.
+constexpr int max_return_iterations = 12;
+// A body may turn at most this far in one step: beyond it the linearisation says nothing, and linkages flip.
+constexpr double largest_turn = 0.5;
+// Steps that turn bodies by more than this many times that are long along combinations of rows that hardly move
+// anything; scaled down as a whole they would leave the others unmet, so it is these that damping shortens.
+constexpr double far_too_long = 4;
+// Residuals from here on overflow as soon as they are squared.
+constexpr double largest_residual = 1e120;
+constexpr double smallest_factor = 1e-4;
+/// Where a search sets out again: beside the place where the last one ended, or beside the estimate, every coordinate
+/// displaced by up to so much (rad, attachment distances).
+struct Start {
+  bool from_estimate;
+  double displacement;
+};
+// The first ones leave a symmetric sketch and hardly change which assembly is nearest; the others are for sketches that
+// lead into a misfit that is least all around: of 96 six-bars drawn in one line four did.
+constexpr Start starts[] = {{false, 1e-3}, {false, 0.03}, {false, 0.3}, {false, 1.0}, {true, 0.3}, {true, 1.0},
+                            {true, 1.0},   {true, 2.0},   {true, 2.0},  {true, 3.0},  {true, 3.0}, {true, 3.0}};
+// No further one is tried after so many iterations times rows: a factorization costs a microsecond a row.
+constexpr double most_work = 4e6;
+// Coordinates of a body that has moved by many length scales cannot be rounder than this many of their last digits.
+constexpr double attainable_digits = 8 * std::numeric_limits<double>::epsilon();
+
+// But no residual above this one is rounding, however far away a mechanism is: redundant rows contradict each other
+// then.
+constexpr double most_rounding = 1e-8;
+
+/// What the rounding of places far from the origin leaves of lengths between them, in length scales: constraints that
+/// repeat each other there meet no better.
+double rounding_of_places(const Evaluator& evaluator) {
+  double place = 0;
+  for (int p = 0; p < evaluator.plan().bodies; ++p) {
+    const Vec2<double> origin = evaluator.origin(p);
+    place = std::max({place, std::abs(origin.x), std::abs(origin.y)});
+  }
+  return std::min(most_rounding, attainable_digits * place / evaluator.length_scale());
+}
+
+}  // namespace
+
+Assembler::Assembler(Evaluator& evaluator)
+    : evaluator_(evaluator), plan_(evaluator.plan()), scaling_(evaluator.plan(), evaluator.length_scale()) {
+  const std::vector<double> radius = evaluator.attachment_radii();
+  inverse_weights_.resize(at(plan_.columns));
+  weights_.resize(at(plan_.columns));
+  reach_.resize(at(plan_.columns));
+  for (int c = 0; c < plan_.columns; ++c) {
+    const int body = plan_.coordinate[at(c)] / 3, k = plan_.coordinate[at(c)] % 3;
+    weights_[at(c)] = k == 2 ? radius[at(body)] * radius[at(body)] : 1;
+    const auto& values = evaluator.model().bodies[at(plan_.model_body[at(body)])];
+    const bool held = k == 0 ? values.hold_x : k == 1 ? values.hold_y : values.hold_angle;
+    inverse_weights_[at(c)] = held ? 0 : 1 / weights_[at(c)];
+    reach_[at(c)] = held ? 0 : k == 2 ? 1 : radius[at(body)];
+  }
+  values_.resize(at(plan_.trash_slot()) + 1);
+  evaluator_.start_jacobian(values_);
+  phi_.resize(at(plan_.rows));
+  lambda_.resize(at(plan_.rows));
+  step_.resize(at(plan_.columns));
+  trial_.resize(at(plan_.coordinates()));
+}
+
+// Half the sum of squared residuals, lengths in length scales.
+double Assembler::merit(std::span<const double> q) {
+  evaluator_.set_configuration(q);
+  evaluator_.phi(phi_);
+  double sum = 0;
+  for (std::size_t r = 0; r < phi_.size(); ++r) {
+    const double size = phi_[r] * scaling_.row_unit(static_cast<int>(r));
+    sum += size * size;
+  }
+  return sum / 2;
+}
+
+void Assembler::advance(std::span<const double> from, double factor, std::span<double> to) const {
+  std::copy(from.begin(), from.end(), to.begin());
+  for (int c = 0; c < plan_.columns; ++c) to[at(plan_.coordinate[at(c)])] += factor * step_[at(c)];
+}
+
+double Assembler::weighted_distance(std::span<const double> a, std::span<const double> b) const {
+  double sum = 0;
+  for (int c = 0; c < plan_.columns; ++c) {
+    const double d = a[at(plan_.coordinate[at(c)])] - b[at(plan_.coordinate[at(c)])];
+    sum += weights_[at(c)] * d * d;
+  }
+  return std::sqrt(sum);
+}
+
+double Assembler::extent(std::span<const double> q) const {
+  return scaling_
+      .scan_columns<1>(step_.size(), [&](std::size_t c) { return std::array{q[at(plan_.coordinate[c])]}; })[0]
+      .all;
+}
+
+bool Assembler::restore(std::span<double> q, double tolerance, int most_iterations, AssemblyOutcome& outcome) {
+  double now = merit(q);
+  double damping = 0;
+  for (int k = 0; k < most_iterations; ++k) {
+    const double residual = scaling_.row_norm(phi_);
+    outcome.residual = residual;
+    if (!(residual > std::max(tolerance, attainable_digits * extent(q)))) return std::isfinite(residual);
+    evaluator_.jacobian(values_);
+    if (!projector_->factorize(values_, evaluator_.counters, damping).ok()) {
+      damping = std::max(10 * damping, 1e-8);
+      if (damping > 1) break;
+      continue;
+    }
+    projector_->solve(phi_, step_, lambda_, evaluator_.counters);
+    ++outcome.iterations;
+    ++evaluator_.counters.iterations;
+    double turn = 0;
+    for (int c = 0; c < plan_.columns; ++c) {
+      step_[at(c)] = -step_[at(c)];
+      if (plan_.coordinate[at(c)] % 3 == 2) turn = std::max(turn, std::abs(step_[at(c)]));
+    }
+    if (turn > far_too_long * largest_turn && damping < 1) {
+      damping = std::max(10 * damping, 1e-8);
+      continue;
+    }
+    double factor = turn > largest_turn ? largest_turn / turn : 1;
+    double then = 0;
+    for (; factor >= smallest_factor; factor /= 2) {
+      advance(q, factor, trial_);
+      then = merit(trial_);
+      if (then < (1 - 1e-4 * factor) * now) break;
+    }
+    if (factor < smallest_factor) {
+      // The direction is no use: dependent rows made it long. Shorten it where it is long, or give up.
+      merit(q);
+      damping = std::max(100 * damping, 1e-6);
+      if (damping > 1e6) break;
+      continue;
+    }
+    damping = damping > 1e-8 ? damping / 10 : 0;
+    std::copy(trial_.begin(), trial_.end(), q.begin());
+    now = then;
+    if (evaluator_.trace)
+      (*evaluator_.trace)("assembly", outcome.iterations, scaling_.row_norm(phi_),
+                          factor * scaling_.column_norm(step_));
+  }
+  return outcome.residual <= rounding_of_places(evaluator_);
+}
+
+void Assembler::approach_estimate(std::span<double> q, std::span<const double> estimate, double tolerance,
+                                  AssemblyOutcome& outcome) {
+  std::vector<double> candidate(q.begin(), q.end()), pull(step_.size()), out(phi_.size());
+  double distance = weighted_distance(q, estimate);
+  for (int k = 0; k < max_approach_iterations && distance > 0; ++k) {
+    evaluator_.set_configuration(q);
+    evaluator_.jacobian(values_);
+    if (!projector_->factorize(values_, evaluator_.counters).ok()) return;
+    for (int c = 0; c < plan_.columns; ++c) {
+      const int i = plan_.coordinate[at(c)];
+      pull[at(c)] = estimate[at(i)] - q[at(i)];
+    }
+    // The part of the pull that the constraints allow.
+    std::fill(out.begin(), out.end(), 0.0);
+    multiply_add(plan_.jacobian, std::span<const double>(values_).first(at(plan_.trash_slot())), pull, out);
+    projector_->solve(out, step_, lambda_, evaluator_.counters);
+    double size = 0, turn = 0;
+    for (int c = 0; c < plan_.columns; ++c) {
+      step_[at(c)] = pull[at(c)] - step_[at(c)];
+      size += weights_[at(c)] * step_[at(c)] * step_[at(c)];
+      if (plan_.coordinate[at(c)] % 3 == 2) turn = std::max(turn, std::abs(step_[at(c)]));
+    }
+    if (std::sqrt(size) <= 1e-10 * distance) return;
+    const std::vector<double> direction = step_;
+    bool closer = false;
+    for (double factor = turn > largest_turn ? largest_turn / turn : 1; factor > 1e-3 && !closer; factor /= 2) {
+      step_ = direction;
+      advance(q, factor, candidate);
+      AssemblyOutcome trial;
+      closer = restore(candidate, tolerance, max_return_iterations, trial) &&
+               weighted_distance(candidate, estimate) < distance * (1 - 1e-12);
+      outcome.iterations += trial.iterations;
+    }
+    if (!closer) return;
+    std::copy(candidate.begin(), candidate.end(), q.begin());
+    distance = weighted_distance(q, estimate);
+  }
+}
+
+// The misfit of a sketch drawn in one line, or as its own mirror image, has no slope across that symmetry: steps stay
+// within it and end where the misfit is least there, a saddle. So the search sets out again from beside it, every
+// coordinate displaced by a number of its own, the same ones every time.
+bool Assembler::restore_from_beside(std::span<double> q, std::span<const double> estimate, double tolerance,
+                                    AssemblyOutcome& outcome) {
+  const std::vector<double> saddle(q.begin(), q.end());
+  std::mt19937_64 random(1);
+  for (const Start& start : starts) {
+    std::copy_n(start.from_estimate ? estimate.begin() : std::span<const double>(saddle).begin(), q.size(), q.begin());
+    for (int c = 0; c < plan_.columns; ++c) {
+      const double number = 2 * std::ldexp(static_cast<double>(random() >> 11), -53) - 1;
+      q[at(plan_.coordinate[at(c)])] += start.displacement * number * reach_[at(c)];
+    }
+    if (restore(q, tolerance, max_iterations, outcome)) return true;
+    if (static_cast<double>(outcome.iterations) * plan_.rows > most_work) return false;
+  }
+  return false;
+}
+
+int Assembler::element_out_of_range(std::span<const double> q) {
+  merit(q);
+  for (std::size_t row = 0; row < phi_.size(); ++row) {
+    if (!(std::abs(phi_[row]) < largest_residual)) return plan_.row_element[row];
+  }
+  return -1;
+}
+
+AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
+  AssemblyOutcome outcome;
+  if (plan_.rows == 0) return outcome;
+  const std::vector<double> given(q.begin(), q.end());
+  move_whole_turns(evaluator_, q);
+  const std::vector<double> estimate(q.begin(), q.end());
+  merit(q);
+  if (!projector_ && !(scaling_.row_norm(phi_) <= tolerance)) {
+    projector_.emplace(evaluator_.shared_plan());
+    projector_->set_inverse_weights(inverse_weights_);
+  }
+  bool met = restore(q, tolerance, max_iterations, outcome);
+  if (!met) {
+    // Where all of this fails too, what stands in the way is looked for from where the estimate led.
+    std::vector<double> beside(q.begin(), q.end());
+    const double residual = outcome.residual;
+    met = restore_from_beside(beside, estimate, tolerance, outcome);
+    if (met) {
+      std::copy(beside.begin(), beside.end(), q.begin());
+    } else {
+      outcome.residual = residual;
+    }
+  }
+  if (!met) {
+    if (const int element = element_out_of_range(estimate); element >= 0) {
+      outcome.status = Status::not_assembled;
+      outcome.message = fmt::format(
+          "{} \"{}\" cannot be evaluated in the given configuration: places or lengths are too large for double "
+          "precision",
+          evaluator_.model().element_type(element), evaluator_.model().element_name(element));
+      std::copy(given.begin(), given.end(), q.begin());
+      return outcome;
+    }
+    // The best configuration found may differ a lot from what was given without being any use: keep what was given.
+    const Conflict conflict = find_conflict(evaluator_, *projector_, q);
+    outcome.misfits = conflict.unmet;
+    outcome.status = Status::not_assembled;
+    outcome.message =
+        fmt::format("the constraints cannot all be met from the given configuration; nearest: {}; likely cause: {}",
+                    describe_misfits(evaluator_.model(), outcome.misfits),
+                    describe_held(evaluator_.model()) + describe_cause(evaluator_.model(), conflict));
+    std::copy(given.begin(), given.end(), q.begin());
+    evaluator_.set_configuration(q);
+    return outcome;
+  }
+  if (weighted_distance(q, estimate) > 0) {
+    approach_estimate(q, estimate, tolerance, outcome);
+  }
+  merit(q);
+  outcome.residual = scaling_.row_norm(phi_);
+  for (int c = 0; c < plan_.columns; ++c) {
+    const int i = plan_.coordinate[at(c)];
+    double& largest = i % 3 == 2 ? outcome.turned : outcome.shifted;
+    largest = std::max(largest, std::abs(q[at(i)] - estimate[at(i)]));
+  }
+  outcome.moved = weighted_distance(q, estimate) / std::sqrt(std::max(1, plan_.moving));
+  return outcome;
+}
+
+}  // namespace catena

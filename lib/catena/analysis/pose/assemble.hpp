@@ -1,0 +1,65 @@
+// Assembly: the configuration nearest to a given estimate that meets all constraints (THEORY section 3).
+//
+//   min sum_b |dr_b|^2 + rho_b^2 dphi_b^2   subject to   Phi(q, t) = 0        rho: RMS attachment distance of the body
+//
+// Whole turns are moved first; then damped Gauss-Newton steps of least weighted size, none of which may enlarge the
+// residual; then, where freedom is left, sliding along the constraints towards the estimate. Sketches from which steps
+// lead into a saddle of the misfit, as links drawn in one line, are displaced a little from it. Never returns a worse
+// configuration than it was given and never reports success above the tolerance, or the rounding of the coordinates.
+// Where constraints cannot be met those that stand in the way are named (misfits.hpp).
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "catena/analysis/pose/misfits.hpp"
+#include "catena/analysis/pose/scaling.hpp"
+#include "catena/assembly/evaluate.hpp"
+#include "catena/assembly/systems/constraint_projector.hpp"
+#include "catena/base/status.hpp"
+
+namespace catena {
+
+struct AssemblyOutcome : Report {
+  int iterations = 0;
+  double residual = 0;          ///< largest, in length scales or rad
+  double moved = 0;             ///< how far the estimate was off: weighted RMS over bodies, m
+  double shifted = 0;           ///< the same: largest shift of a body's centroid, m
+  double turned = 0;            ///< and largest angle, but for whole turns, rad
+  std::vector<Misfit> misfits;  ///< the worst first, at most ten; filled when not assembled
+};
+
+class Assembler {
+ public:
+  explicit Assembler(Evaluator& evaluator);
+
+  /// Assembles q (plan order) in place at the evaluator's time. `tolerance` is relative to the length scale.
+  AssemblyOutcome assemble(std::span<double> q, double tolerance = 1e-12);
+
+ private:
+  bool restore(std::span<double> q, double tolerance, int most_iterations, AssemblyOutcome& outcome);
+  bool restore_from_beside(std::span<double> q, std::span<const double> estimate, double tolerance,
+                           AssemblyOutcome& outcome);
+  void approach_estimate(std::span<double> q, std::span<const double> estimate, double tolerance,
+                         AssemblyOutcome& outcome);
+  /// An element whose residual at q overflows when it is squared, or -1.
+  int element_out_of_range(std::span<const double> q);
+  double merit(std::span<const double> q);
+  /// Largest coordinate relative to the bodies' origins, length scales; angles in rad.
+  double extent(std::span<const double> q) const;
+  void advance(std::span<const double> from, double factor, std::span<double> to) const;
+  double weighted_distance(std::span<const double> a, std::span<const double> b) const;
+
+  Evaluator& evaluator_;
+  const Plan& plan_;
+  Scaling scaling_;
+  std::vector<double> inverse_weights_;           // per column
+  std::optional<ConstraintProjector> projector_;  // made where there is something to assemble
+  std::vector<double> weights_;                   // per column
+  std::vector<double> reach_;  // per column: what a displacement of 1 is, m or rad; 0 of what is held
+  std::vector<double> values_, phi_, lambda_, step_, trial_;
+};
+
+}  // namespace catena

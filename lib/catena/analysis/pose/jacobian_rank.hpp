@@ -1,0 +1,25 @@
+// Rank of the constraint Jacobian in units that no scene chooses.
+//
+//   Phi_q D y = ...,   D = length scale on the columns of x and y, 1 on those of angles
+//
+// The rank analysis (rank_revealing.hpp) makes rows and columns of length one, but which rows are nearly dependent is
+// judged after a bounded number of such passes: with coordinates in metres a machine of long links would be judged by
+// another measure than the same machine of short ones. With displacements in length scales both are the same matrix.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "catena/assembly/evaluate.hpp"
+#include "catena/linalg/rank/rank_revealing.hpp"
+
+namespace catena {
+
+/// The entries of Phi_q (plan.jacobian) at q, plan order, and the evaluator's time, which it leaves there.
+std::vector<double> jacobian_values(Evaluator& evaluator, std::span<const double> q);
+
+/// Rank of rows of Phi_q: `pattern` has all its columns, values are those in SI units, and so are the null vectors.
+RankReport jacobian_rank(const Evaluator& evaluator, const SparsePattern& pattern, std::span<const double> values,
+                         const RankOptions& options = {});
+
+}  // namespace catena

@@ -1,0 +1,159 @@
+#include "catena/analysis/pose/least_velocity.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// Of the right-hand side: rows left with more than this are not met.
+constexpr double contradiction = 1e-8;
+// Of the largest residual: rows with more than this share in it.
+constexpr double comparable = 0.2;
+constexpr int most_corrections = 4;
+constexpr double position_rounding = 1e-15;  // length scales, rad
+
+bool has_masses(const Evaluator& evaluator) {
+  const Plan& plan = evaluator.plan();
+  return std::all_of(plan.coordinate.begin(), plan.coordinate.end(), [&](int coordinate) {
+    const auto& body = evaluator.model().bodies[at(plan.model_body[at(coordinate / 3)])];
+    return coordinate % 3 == 2 ? body.has_inertia && body.inertia > 0 : body.has_mass && body.mass > 0;
+  });
+}
+
+}  // namespace
+
+LeastVelocity::LeastVelocity(Evaluator& evaluator)
+    : evaluator_(evaluator),
+      plan_(evaluator.plan()),
+      scaling_(evaluator.plan(), evaluator.length_scale()),
+      projector_(evaluator.shared_plan()),
+      in_mass_metric_(has_masses(evaluator)) {
+  const std::vector<double> radius = evaluator.attachment_radii();
+  weight_.resize(at(plan_.columns));
+  std::vector<double> inverse(weight_.size());
+  for (std::size_t c = 0; c < weight_.size(); ++c) {
+    const int coordinate = plan_.coordinate[c], b = coordinate / 3;
+    const bool angle = coordinate % 3 == 2;
+    const auto& body = evaluator.model().bodies[at(plan_.model_body[at(b)])];
+    weight_[c] = in_mass_metric_ ? (angle ? body.inertia : body.mass) : angle ? radius[at(b)] * radius[at(b)] : 1;
+    inverse[c] = 1 / weight_[c];
+  }
+  projector_.set_inverse_weights(inverse);
+  jacobian_.resize(at(plan_.trash_slot()) + 1);
+  evaluator_.start_jacobian(jacobian_);
+  for (std::vector<double>* rows : {&right_, &rest_, &mu_, &lambda_}) rows->resize(at(plan_.rows));
+  start_.resize(weight_.size());
+  step_.resize(weight_.size());
+  turning_.resize(at(plan_.coordinates()));
+}
+
+bool LeastVelocity::factorize(double t, Side side, std::span<const double> q) {
+  evaluator_.set_time(t, side);
+  evaluator_.set_configuration(q);
+  evaluator_.jacobian(jacobian_);
+  return plan_.rows == 0 || projector_.factorize(jacobian_, evaluator_.counters).ok();
+}
+
+bool LeastVelocity::complete(std::span<const double> right_hand_side, std::span<double> out) {
+  const auto values = std::span<const double>(jacobian_).first(at(plan_.trash_slot()));
+  const auto subtract_product = [&] {
+    std::copy(right_hand_side.begin(), right_hand_side.end(), rest_.begin());
+    for (std::size_t c = 0; c < start_.size(); ++c) step_[c] = -start_[c];
+    multiply_add(plan_.jacobian, values, step_, rest_);
+  };
+  subtract_product();
+  projector_.solve(rest_, step_, lambda_, evaluator_.counters);
+  for (std::size_t c = 0; c < start_.size(); ++c) start_[c] += step_[c];
+  std::fill(out.begin(), out.end(), 0.0);
+  for (int c = 0; c < plan_.columns; ++c) out[at(plan_.coordinate[at(c)])] = start_[at(c)];
+  subtract_product();
+  const double left = scaling_.row_norm(rest_);
+  const double scale = std::max(scaling_.row_norm(right_hand_side), scaling_.column_norm(start_));
+  return std::isfinite(scale) && left <= contradiction * scale;
+}
+
+bool LeastVelocity::velocity(double t, Side side, std::span<const double> q, std::span<double> qd) {
+  if (!factorize(t, side, q)) return false;
+  evaluator_.nu(right_);
+  std::fill(start_.begin(), start_.end(), 0.0);
+  const bool met = complete(right_, qd);
+  mu_ = lambda_;
+  return met;
+}
+
+bool LeastVelocity::acceleration(std::span<const double> qd, std::span<double> qdd) {
+  std::fill(turning_.begin(), turning_.end(), 0.0);
+  evaluator_.visit_constraint_hessians(mu_, [&](int i, int j, const auto& matrix) {
+    const std::size_t place[2] = {3 * at(i), 3 * at(j)};
+    for (std::size_t r = 0; r < 6; ++r) {
+      for (std::size_t c = 0; c < 6; ++c) {
+        turning_[place[r / 3] + r % 3] += matrix[6 * r + c] * qd[place[c / 3] + c % 3];
+      }
+    }
+  });
+  for (std::size_t c = 0; c < start_.size(); ++c) start_[c] = turning_[at(plan_.coordinate[c])] / weight_[c];
+  evaluator_.gamma(qd, right_);
+  return complete(right_, qdd);
+}
+
+double LeastVelocity::project(double t, Side side, std::span<double> q) {
+  double residual = 0, last = 0;
+  if (plan_.rows == 0) return residual;
+  if (!factorize(t, side, q)) return std::nan("");
+  for (int k = 0; k <= most_corrections; ++k) {
+    evaluator_.set_configuration(q);
+    evaluator_.phi(right_);
+    residual = scaling_.row_norm(right_);
+    if (!(residual > position_rounding) || k == most_corrections || (k > 0 && residual > last / 2)) break;
+    last = residual;
+    projector_.solve(right_, step_, lambda_, evaluator_.counters);
+    ++evaluator_.counters.iterations;
+    for (int c = 0; c < plan_.columns; ++c) q[at(plan_.coordinate[at(c)])] -= step_[at(c)];
+  }
+  return residual;
+}
+
+double LeastVelocity::growth(std::span<const double> qd, std::span<const double> x) const {
+  double product = 0, square = 0;
+  for (std::size_t c = 0; c < weight_.size(); ++c) {
+    const std::size_t k = at(plan_.coordinate[c]);
+    product += weight_[c] * qd[k] * x[k];
+    square += weight_[c] * qd[k] * qd[k];
+  }
+  return square > 0 ? product / square : 0;
+}
+
+double LeastVelocity::size(std::span<const double> rate) const {
+  return scaling_
+      .scan_columns<1>(weight_.size(), [&](std::size_t c) { return std::array{rate[at(plan_.coordinate[c])]}; })[0]
+      .all;
+}
+
+std::vector<int> LeastVelocity::worst_elements() const {
+  const double worst = scaling_.row_norm(rest_);
+  std::vector<std::pair<double, int>> order;
+  for (int r = 0; r < plan_.rows; ++r) {
+    const double size = std::abs(rest_[at(r)]) * scaling_.row_unit(r);
+    if (!(size < comparable * worst)) order.push_back({-size, plan_.row_element[at(r)]});
+  }
+  std::stable_sort(order.begin(), order.end());
+  std::vector<int> elements;
+  for (const auto& [size, element] : order) {
+    if (std::find(elements.begin(), elements.end(), element) == elements.end()) elements.push_back(element);
+  }
+  return elements;
+}
+
+int LeastVelocity::heaviest_row() const {
+  int heaviest = 0;
+  const auto size = [&](int r) { return std::abs(mu_[at(r)]) / scaling_.row_unit(r); };
+  for (int r = 0; r < plan_.rows; ++r) {
+    if (size(r) > size(heaviest)) heaviest = r;
+  }
+  return heaviest;
+}
+
+}  // namespace catena

@@ -1,0 +1,75 @@
+#include "catena/analysis/run/watched_elements.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "catena/elements/all.hpp"
+
+namespace catena {
+
+WatchedElements::WatchedElements(const Evaluator& evaluator) : evaluator_(evaluator) {
+  for_each_list(evaluator.model().constraints, [&](const auto& list, int) {
+    if constexpr (HasTrouble<ElementOf<decltype(list)>>) {
+      for (const auto& entry : list) {
+        if (evaluator.plan().element_row[static_cast<std::size_t>(entry.id)] >= 0) elements_.push_back(entry.id);
+      }
+    }
+  });
+  const auto look = [&](const auto& list, int) {
+    if constexpr (HasCurveUse<ElementOf<decltype(list)>>) {
+      for (const auto& entry : list) {
+        if (entry.element.can_leave_curve()) ending_.push_back(entry.id);
+      }
+    }
+  };
+  for_each_list(evaluator.model().constraints, look);
+  for_each_list(evaluator.model().forces, look);
+}
+
+Report WatchedElements::check() const {
+  if (Report ends = check_ends(); !ends.ok()) return ends;
+  Report report;
+  for (int element : elements_) {
+    const char* trouble = evaluator_.trouble(element);
+    if (!trouble) continue;
+    const Model& model = evaluator_.model();
+    report.status = Status::singular;
+    report.message = fmt::format("{} \"{}\" determines nothing at t = {:.12g} s: {}", model.element_type(element),
+                                 model.element_name(element), evaluator_.time(), trouble);
+    break;
+  }
+  return report;
+}
+
+void WatchedElements::find_places(std::vector<double>& out) const {
+  out.clear();
+  for (int element : ending_) {
+    const std::optional<CurveUse> use = evaluator_.curve_use(element);
+    out.push_back(use ? (use->parameter - use->first) / (use->last - use->first)
+                      : std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+Report WatchedElements::check_ends() const {
+  Report report;
+  const Model& model = evaluator_.model();
+  for (int element : ending_) {
+    const std::optional<CurveUse> use = evaluator_.curve_use(element);
+    if (!use || !(use->excess() > allowed_excess)) continue;
+    const bool low = use->parameter < (use->first + use->last) / 2;
+    const std::string why =
+        use->end
+            ? fmt::format("its curve is left at its end at ({:.9g}, {:.9g}) m", use->end->x, use->end->y)
+            : fmt::format("its table ends at an elongation of {:.9g} m, which is passed", low ? use->first : use->last);
+    report.status = Status::singular;
+    report.message = fmt::format(
+        "{} \"{}\" determines nothing at t = {:.9g} s: {}; end the analysis before, make the {} longer, or say with "
+        "\"beyond\" what lies there",
+        model.element_type(element), model.element_name(element), evaluator_.time(), why, use->end ? "curve" : "table");
+    break;
+  }
+  return report;
+}
+
+}  // namespace catena

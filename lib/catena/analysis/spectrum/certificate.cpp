@@ -1,0 +1,285 @@
+#include "catena/analysis/spectrum/certificate.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "catena/analysis/spectrum/free_motions.hpp"
+#include "catena/analysis/spectrum/modes_operator.hpp"
+#include "catena/analysis/spectrum/motion_groups.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+constexpr double neutral_part = 1e-10;
+// Modes softer than this part of the stiffest are asked whether they are rounding: far more than rounding can leave.
+constexpr double suspicious_part = 1e-6;
+// Stiffnesses below this are none, N/m.
+constexpr double no_stiffness = 1e-100;
+constexpr double rigid_part = 1e6;
+// What regularised rows can make of a stiffness, beside what rounding can: they give way by 1e-10 of what the bodies
+// around them do, and StiffnessFloor counts 2e-13 of the same terms. Measured on balanced arms: up to 10.
+constexpr double most_bias = 500;
+constexpr int usual_steps = 8, most_steps = 40;
+
+// Lanczos with the inverse on the null space of Phi_q, in the metric W, all vectors kept orthogonal.
+class InverseLanczos {
+ public:
+  InverseLanczos(StaticSystem& system, const std::vector<double>& weights) : system_(system), weights_(weights) {}
+
+  // Lowest k found after at most `steps` steps, and its vector; stops where it settles. `negative`: wants k < 0.
+  double lowest(int steps, bool negative, std::vector<double>& mode) {
+    const std::size_t n = weights_.size();
+    std::vector<double> v(n);
+    // A start without structure; anything fixed will do.
+    unsigned seed = 12345;
+    for (double& x : v) {
+      seed = seed * 1664525u + 1013904223u;
+      x = static_cast<double>(seed >> 8) / (1 << 24) - 0.5;
+    }
+    for (std::size_t k = 0; k < n; ++k) v[k] /= std::sqrt(weights_[k]);
+    apply(v);
+    if (!normalise(v)) return 0;
+    basis_.push_back(v);
+    double best = 0, before = 0;
+    Eigen::VectorXd ritz;
+    for (int step = 0; step < steps; ++step) {
+      std::vector<double> w = basis_.back();
+      apply(w);
+      for (int pass = 0; pass < 2; ++pass) {
+        for (std::size_t b = 0; b < basis_.size(); ++b) {
+          const double h = product(basis_[b], w);
+          if (pass == 0 && b + 1 == basis_.size()) alpha_.push_back(h);
+          for (std::size_t k = 0; k < n; ++k) w[k] -= h * basis_[b][k];
+        }
+      }
+      const double length = std::sqrt(product(w, w));
+      ritz = lowest_ritz(best);
+      const bool settled = step > 1 && std::abs(best - before) <= 1e-3 * std::abs(best) && (!negative || best < 0);
+      before = best;
+      if (settled || !(length > 1e-12 * std::abs(alpha_.front()))) break;
+      beta_.push_back(length);
+      for (double& x : w) x /= length;
+      if (step + 1 < steps) basis_.push_back(w);
+    }
+    combine(ritz, mode);
+    return best;
+  }
+
+  // Of what was found, the smallest |k|, with its sign, and its vector.
+  double softest(std::vector<double>& mode) const {
+    const auto solver = spectrum();
+    Eigen::Index largest = 0;
+    solver.eigenvalues().cwiseAbs().maxCoeff(&largest);
+    combine(solver.eigenvectors().col(largest), mode);
+    return 1 / solver.eigenvalues()[largest];
+  }
+
+ private:
+  void combine(const Eigen::VectorXd& ritz, std::vector<double>& mode) const {
+    mode.assign(weights_.size(), 0.0);
+    for (std::size_t b = 0; b < basis_.size() && b < static_cast<std::size_t>(ritz.size()); ++b) {
+      for (std::size_t k = 0; k < mode.size(); ++k) mode[k] += ritz[static_cast<Eigen::Index>(b)] * basis_[b][k];
+    }
+    normalise(mode);
+  }
+  // v := top part of the inverse times [W v; 0].
+  void apply(std::vector<double>& v) {
+    work_.assign(v.size() + at(system_.plan().rows), 0.0);
+    for (std::size_t k = 0; k < v.size(); ++k) work_[k] = weights_[k] * v[k];
+    system_.matrix().solve_unrefined(work_, system_.evaluator().counters);
+    std::copy_n(work_.begin(), v.size(), v.begin());
+  }
+  double product(const std::vector<double>& a, const std::vector<double>& b) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < a.size(); ++k) sum += weights_[k] * a[k] * b[k];
+    return sum;
+  }
+  bool normalise(std::vector<double>& v) const {
+    const double length = std::sqrt(product(v, v));
+    if (!(length > 0) || !std::isfinite(length)) return false;
+    for (double& x : v) x /= length;
+    return true;
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum() const {
+    const auto n = static_cast<Eigen::Index>(alpha_.size());
+    Eigen::VectorXd diagonal(n), beside(std::max<Eigen::Index>(n - 1, 0));
+    for (Eigen::Index i = 0; i < n; ++i) diagonal[i] = alpha_[static_cast<std::size_t>(i)];
+    for (Eigen::Index i = 0; i + 1 < n; ++i) beside[i] = beta_[static_cast<std::size_t>(i)];
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+    solver.computeFromTridiagonal(diagonal, beside);
+    return solver;
+  }
+  // Eigenvector of the tridiagonal matrix for the most negative k, else the smallest positive.
+  Eigen::VectorXd lowest_ritz(double& k) const {
+    const auto solver = spectrum();
+    // k = 1 / theta: of negative ones the smallest in size is the lowest of the spectrum that is resolved.
+    const Eigen::VectorXd& theta = solver.eigenvalues();
+    const double largest = theta.cwiseAbs().maxCoeff();
+    Eigen::Index chosen = theta.size() - 1;
+    for (Eigen::Index i = chosen; i >= 0; --i) {
+      if (theta[i] < -1e-6 * largest) {
+        chosen = i;
+        break;
+      }
+    }
+    k = 1 / theta[chosen];
+    return solver.eigenvectors().col(chosen);
+  }
+
+  StaticSystem& system_;
+  const std::vector<double>& weights_;
+  std::vector<std::vector<double>> basis_;
+  std::vector<double> alpha_, beta_, work_;
+};
+
+double stiffness_of(const KktMatrix& matrix, std::span<const double> v) {
+  std::vector<double> product(v.size());
+  matrix.multiply_stiffness(v, product);
+  double sum = 0;
+  for (std::size_t c = 0; c < v.size(); ++c) sum += product[c] * v[c];
+  return sum;
+}
+
+// Scales v so that v^T W v = 1.
+void normalise(const std::vector<double>& weights, std::vector<double>& v) {
+  double square = 0;
+  for (std::size_t c = 0; c < v.size(); ++c) square += weights[c] * v[c] * v[c];
+  if (!(square > 0)) return;
+  for (double& x : v) x /= std::sqrt(square);
+}
+
+// The factors of K project a motion that K does not resist to where rows of compliance eps let it go under the forces
+// mu, K v + Phi_q^T mu = 0: v^T K v = -eps mu^2 < 0, always. Those of W leave nothing. The matrix holds the exact K
+// afterwards, and factors with this shift.
+void keep_to_constraints(StaticSystem& system, std::span<const double> lambda, double shift, std::vector<double>& v) {
+  std::vector<double> work(v.size() + at(system.plan().rows));
+  system.fill_weights();
+  if (system.factorize().ok()) project_to_null_space(system, v, work);
+  system.fill(lambda, Curvature::exact, shift);
+  // A pivot that vanishes now would have vanished before: the same numbers had factors.
+  static_cast<void>(system.factorize());
+  if (shift != 0) system.fill(lambda, Curvature::exact, 0);
+}
+
+}  // namespace
+
+Certificate certify(StaticSystem& system, std::span<const double> lambda) {
+  Certificate result;
+  const Plan& plan = system.plan();
+  KktMatrix& matrix = system.matrix();
+  if (plan.columns == 0) {
+    result.valid = result.stable = true;
+    return result;
+  }
+  std::vector<double> weights(at(plan.columns));
+  for (int c = 0; c < plan.columns; ++c) {
+    const int coordinate = plan.coordinate[at(c)];
+    const double r = coordinate % 3 == 2 ? system.radius()[at(coordinate / 3)] : 1;
+    weights[at(c)] = r * r;
+  }
+  system.fill(lambda, Curvature::exact, 0);
+  bool factored = system.factorize().ok();
+  const double stiffest = std::max(matrix.largest_stiffness(), system.force_size() / system.length());
+  // Where nothing resists and nothing pulls, any motion is free: found with a stiffness of 1 N/m in the place of none.
+  const bool nothing = !(stiffest > no_stiffness);
+  const double floor = nothing ? 1 : neutral_part * stiffest;
+  const bool shifted = !factored || nothing;
+  if (shifted) {
+    // A pivot vanished exactly: something is neutral. Beside it the factors exist.
+    system.fill(lambda, Curvature::exact, floor);
+    factored = system.factorize().ok();
+    if (!factored) return result;
+  }
+  result.valid = true;
+  result.negative_modes = matrix.negative_modes();
+  const bool unstable = result.negative_modes > 0;
+  InverseLanczos lanczos(system, weights);
+  const double lowest = lanczos.lowest(unstable ? most_steps : usual_steps, unstable, result.mode);
+  // Where the constraints leave no freedom the inverse is what eps made it: far stiffer than anything in K.
+  if (lowest == 0 || std::abs(lowest) > rigid_part * (nothing ? floor : stiffest)) {
+    result.mode.clear();
+    result.stable = result.negative_modes == 0;
+    return result;
+  }
+  // Whether the softest of all, beside negative ones too, is more than regularised rows and rounding make it.
+  std::vector<double> softest;
+  const double biased = std::abs(lanczos.softest(softest) - (shifted ? floor : 0));
+  std::optional<StiffnessFloor> rounding;
+  if (biased <= suspicious_part * stiffest) rounding.emplace(system, lambda, 0);
+  const bool doubtful = rounding && !nothing && plan.rows > 0 && biased <= most_bias * (*rounding)(softest);
+  // The Rayleigh quotient with the true matrix, and what rounding leaves of it. The vector must keep to the constraints
+  // exactly: what the regularised factors let it leave them by counts with the whole stiffness.
+  if (doubtful) {
+    result.mode = std::move(softest);
+    keep_to_constraints(system, lambda, shifted ? floor : 0, result.mode);
+    normalise(weights, result.mode);
+  } else {
+    std::vector<double> work(at(plan.columns + plan.rows));
+    project_to_null_space(system, result.mode, work);
+    if (shifted) system.fill(lambda, Curvature::exact, 0);
+  }
+  const double quotient = result.softest_stiffness = stiffness_of(matrix, result.mode);
+  result.curvature_floor = neutral_part * matrix.absolute_quadratic(result.mode);
+  if (rounding) result.curvature_floor = std::max(result.curvature_floor, (*rounding)(result.mode));
+  result.neutral = std::abs(quotient) <= result.curvature_floor;
+  result.neutral_modes = result.neutral ? 1 : 0;
+  // The inertia counts what regularised rows or rounding made negative: counted again without.
+  if (result.neutral || doubtful) {
+    if (std::optional<FreeMotions> free = find_free_motions(system, lambda, neutral_part)) {
+      result.negative_modes = free->negative;
+      result.neutral_modes = std::max(free->count, result.neutral_modes);
+      result.neutral = result.neutral_modes > 0;
+      result.free_bodies = std::move(free->bodies);
+      if (free->negative > 0) {
+        result.mode = std::move(free->lowest);
+        normalise(weights, result.mode);
+        result.softest_stiffness = stiffness_of(matrix, result.mode);
+      }
+    } else {
+      system.fill(lambda, Curvature::exact, std::max(floor, 2 * biased));
+      if (system.factorize().ok()) result.negative_modes = matrix.negative_modes();
+      system.fill(lambda, Curvature::exact, 0);
+      if (!result.neutral && quotient < 0) result.negative_modes = std::max(result.negative_modes, 1);
+    }
+    if (result.neutral && result.free_bodies.empty()) {
+      result.free_bodies = names_of_moving(system, lambda, {result.mode});
+    }
+  }
+  result.stable = result.negative_modes == 0 && !result.neutral;
+  return result;
+}
+
+std::string describe_mode(const Evaluator& evaluator, std::span<const double> mode, std::span<const double> radius) {
+  const Plan& plan = evaluator.plan();
+  int body = -1;
+  double largest = 0, motion[3] = {0, 0, 0};
+  for (int b = 0; b < plan.moving; ++b) {
+    double v[3] = {0, 0, 0};
+    for (int k = 0; k < 3; ++k) {
+      const int c = plan.column[at(3 * b + k)];
+      if (c >= 0) v[k] = mode[at(c)];
+    }
+    const double size = std::hypot(v[0], v[1]) + radius[at(b)] * std::abs(v[2]);
+    if (size > largest * (1 + 1e-6)) {
+      largest = size;
+      body = b;
+      std::copy(v, v + 3, motion);
+    }
+  }
+  if (body < 0) return "nothing";
+  const double travel = std::hypot(motion[0], motion[1]), turn = radius[at(body)] * std::abs(motion[2]);
+  const std::string_view name = evaluator.model().body_name(plan.model_body[at(body)]);
+  if (turn > travel) return fmt::format("body \"{}\" turning", name);
+  // Either sense of a mode is as good: the one with the larger positive component is shown.
+  const double sign = (std::abs(motion[0]) >= std::abs(motion[1]) ? motion[0] : motion[1]) < 0 ? -1 : 1;
+  const auto shown = [&](double v) { return std::abs(v) < 1e-6 * travel ? 0.0 : sign * v / travel; };
+  return fmt::format("body \"{}\" along ({:.3g}, {:.3g})", name, shown(motion[0]), shown(motion[1]));
+}
+
+}  // namespace catena

@@ -1,0 +1,127 @@
+#include "catena/analysis/spectrum/modes_dense.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+using Basis = Eigen::Map<Eigen::MatrixXd>;
+
+Basis basis_of(MotionGroup& group) {
+  return {group.basis.data(), static_cast<Eigen::Index>(group.columns.size()), group.freedoms()};
+}
+
+// Part of a motion, in lengths, that must be that of coordinates with mass: the same measure as for ranks.
+constexpr double least_part = 1e-10;
+
+bool lower(const Mode& a, const Mode& b) { return a.omega2 < b.omega2; }
+
+}  // namespace
+
+DenseModes::DenseModes(StaticSystem& system, MotionGroups& groups, std::span<const double> mass)
+    : system_(system), groups_(groups) {
+  // Coordinates without mass get a length's weight of no importance; their groups are made orthonormal in M below.
+  std::vector<double> weight(mass.begin(), mass.end());
+  for (const MotionGroup& group : groups_.groups()) {
+    const bool complete =
+        std::all_of(group.columns.begin(), group.columns.end(), [&](int c) { return mass[at(c)] > 0; });
+    for (int c : group.columns) {
+      const double arm = 1 / system.matrix().inverse_arms()[at(c)];
+      if (!complete) weight[at(c)] = arm * arm;
+    }
+  }
+  groups_.orthonormalise(weight);
+  for (int k = 0; k < static_cast<int>(groups_.groups().size()) && !massless_; ++k) {
+    MotionGroup& group = groups_.groups()[at(k)];
+    if (group.freedoms() == 0 || !use_masses(group, mass)) continue;
+    solve(group, k);
+  }
+  std::sort(found_.begin(), found_.end(), [](const Found& a, const Found& b) { return a.value < b.value; });
+}
+
+// Z^T M Z = I by the QR decomposition of M^1/2 Z where some coordinates have no mass. False: there is no such basis.
+bool DenseModes::use_masses(MotionGroup& group, std::span<const double> mass) {
+  std::vector<int> heavy;
+  for (int k = 0; k < static_cast<int>(group.columns.size()); ++k) {
+    if (mass[at(group.columns[at(k)])] > 0) heavy.push_back(k);
+  }
+  if (heavy.size() == group.columns.size()) return true;
+  Basis z = basis_of(group);
+  Eigen::MatrixXd moved(static_cast<Eigen::Index>(heavy.size()), z.cols());
+  for (std::size_t k = 0; k < heavy.size(); ++k) {
+    const int c = group.columns[at(heavy[k])];
+    moved.row(static_cast<Eigen::Index>(k)) = z.row(heavy[k]) / system_.matrix().inverse_arms()[at(c)];
+  }
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> geometry(moved.rows(), moved.cols());
+  geometry.setThreshold(least_part);
+  geometry.compute(moved);
+  if (geometry.rank() < z.cols()) {
+    // The motion that pivoting found last moves nothing that has mass: of what has none in it, the largest.
+    const Eigen::Index rank = geometry.rank();
+    Eigen::VectorXd y = Eigen::VectorXd::Zero(z.cols());
+    if (rank > 0) {
+      y.head(rank) = geometry.matrixR()
+                         .topLeftCorner(rank, rank)
+                         .triangularView<Eigen::Upper>()
+                         .solve(-geometry.matrixR().col(rank).head(rank));
+    }
+    y[rank] = 1;
+    const Eigen::VectorXd v = z * (geometry.colsPermutation() * y);
+    Eigen::Index largest = -1;
+    double most = -1;
+    for (Eigen::Index k = 0; k < v.size(); ++k) {
+      const int c = group.columns[static_cast<std::size_t>(k)];
+      const double travel = std::abs(v[k]) / system_.matrix().inverse_arms()[at(c)];
+      if (mass[at(c)] > 0 || travel <= most) continue;
+      most = travel;
+      largest = k;
+    }
+    massless_ = group.columns[static_cast<std::size_t>(largest)];
+    return false;
+  }
+  for (std::size_t k = 0; k < heavy.size(); ++k) {
+    moved.row(static_cast<Eigen::Index>(k)) = std::sqrt(mass[at(group.columns[at(heavy[k])])]) * z.row(heavy[k]);
+  }
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(moved);
+  const Eigen::MatrixXd r = factors.matrixR().topRows(z.cols()).triangularView<Eigen::Upper>();
+  z = (z * factors.colsPermutation()).eval();
+  r.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(z);
+  return true;
+}
+
+void DenseModes::solve(MotionGroup& group, int number) {
+  Basis z = basis_of(group);
+  reduce_stiffness(system_.matrix(), group, reduced_);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(Basis(reduced_.data(), z.cols(), z.cols()));
+  ok_ = ok_ && solver.info() == Eigen::Success && solver.eigenvalues().allFinite();
+  z = (z * solver.eigenvectors()).eval();
+  for (Eigen::Index k = 0; k < z.cols(); ++k) {
+    found_.push_back({solver.eigenvalues()[k], number, static_cast<int>(k)});
+  }
+}
+
+std::vector<Mode> DenseModes::lowest(int count, const StiffnessFloor& floor) const {
+  std::vector<Mode> modes;
+  std::vector<double> product(at(system_.plan().columns));
+  for (int k = 0; k < static_cast<int>(found_.size()); ++k) {
+    const Found& found = found_[at(k)];
+    if (k >= count && !modes.empty() && modes.back().omega2 > 0) break;
+    const MotionGroup& group = groups_.groups()[at(found.group)];
+    Mode mode{0, std::vector<double>(product.size(), 0.0)};
+    const std::size_t n = group.columns.size();
+    for (std::size_t c = 0; c < n; ++c) mode.shape[at(group.columns[c])] = group.basis[at(found.place) * n + c];
+    system_.matrix().multiply_stiffness(mode.shape, product);
+    for (std::size_t c = 0; c < product.size(); ++c) mode.omega2 += mode.shape[c] * product[c];
+    if (std::abs(mode.omega2) <= floor(mode.shape)) mode.omega2 = 0;
+    modes.push_back(std::move(mode));
+  }
+  std::stable_sort(modes.begin(), modes.end(), lower);
+  return modes;
+}
+
+}  // namespace catena

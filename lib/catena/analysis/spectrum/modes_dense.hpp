@@ -1,0 +1,53 @@
+// All eigenvalues of K v = omega^2 M v on the null space of Phi_q by dense algebra, group by group.
+//
+//   Z^T K Z y = omega^2 y,   v = Z y,   Z^T M Z = I        Z as in motion_groups.hpp, with the masses as its metric
+//
+// The standard symmetric problem in mass-weighted coordinates: complete by construction, equal eigenvalues as often as
+// they are there, each to rounding of its group's largest. Coordinates without mass take part through a metric of their
+// own first; singular where a motion of them moves no mass at all. Values are Rayleigh quotients of the shapes with the
+// sparse K, wrong by the square of the shapes' errors only; one that cannot be told from rounding (StiffnessFloor) is
+// 0.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "catena/analysis/spectrum/motion_groups.hpp"
+
+namespace catena {
+
+struct Mode {
+  double omega2 = 0;
+  std::vector<double> shape;  ///< over columns, v^T M v = 1
+};
+
+class DenseModes {
+ public:
+  /// The matrix must hold K; `mass`: per column.
+  DenseModes(StaticSystem& system, MotionGroups& groups, std::span<const double> mass);
+
+  /// A column of the motion that moves no mass, if there is one: then nothing else can be asked.
+  std::optional<int> massless_column() const { return massless_; }
+  /// False where the iteration of the dense solver did not end: with numbers that are not finite.
+  bool ok() const { return ok_; }
+  /// The `count` lowest modes, and all that are zero or negative, ascending.
+  std::vector<Mode> lowest(int count, const StiffnessFloor& floor) const;
+
+ private:
+  struct Found {
+    double value = 0;
+    int group = 0, place = 0;
+  };
+  bool use_masses(MotionGroup& group, std::span<const double> mass);
+  void solve(MotionGroup& group, int number);
+
+  StaticSystem& system_;
+  MotionGroups& groups_;
+  std::vector<Found> found_;  // ascending
+  std::vector<double> reduced_;
+  std::optional<int> massless_;
+  bool ok_ = true;
+};
+
+}  // namespace catena

@@ -1,0 +1,114 @@
+#include "catena/analysis/spectrum/modes_operator.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+constexpr int most_corrections = 30, projections = 3;
+// A correction that is not below this part of the one before is noise.
+constexpr double least_gain = 0.5;
+// Corrections below this part of the solution are rounding.
+constexpr double rounding = 1e-16;
+
+double size_of(std::span<const double> weight, std::span<const double> x) {
+  double sum = 0;
+  for (std::size_t c = 0; c < weight.size(); ++c) sum += weight[c] * x[c] * x[c];
+  return std::sqrt(sum);
+}
+
+}  // namespace
+
+std::vector<double> length_weights(const StaticSystem& system) {
+  const Plan& plan = system.plan();
+  std::vector<double> weights(at(plan.columns));
+  for (int c = 0; c < plan.columns; ++c) {
+    const int coordinate = plan.coordinate[at(c)];
+    const double r = coordinate % 3 == 2 ? system.radius()[at(coordinate / 3)] : 1;
+    weights[at(c)] = r * r;
+  }
+  return weights;
+}
+
+double decisive_component(const Plan& plan, std::span<const double> shape) {
+  double largest[2] = {0, 0};
+  for (int c = 0; c < plan.columns; ++c) {
+    double& most = largest[plan.coordinate[at(c)] % 3 == 2];
+    // Equal ones but for rounding: the first.
+    if (std::abs(shape[at(c)]) > (1 + 1e-9) * std::abs(most)) most = shape[at(c)];
+  }
+  return std::abs(largest[1]) > 1e-9 * std::abs(largest[0]) ? largest[1] : largest[0];
+}
+
+void solve_to_rounding(StaticSystem& system, std::span<const double> weight, std::span<const double> given,
+                       std::span<double> x, std::span<double> correction) {
+  KktMatrix& matrix = system.matrix();
+  Counters& counters = system.evaluator().counters;
+  std::copy(given.begin(), given.end(), x.begin());
+  matrix.solve_unrefined(x, counters);
+  double before = size_of(weight, x);
+  for (int k = 0; k < most_corrections; ++k) {
+    matrix.multiply(x, correction);
+    for (std::size_t i = 0; i < x.size(); ++i) correction[i] = given[i] - correction[i];
+    matrix.solve_unrefined(correction, counters);
+    const double now = size_of(weight, correction);
+    if (!(now < least_gain * before)) return;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += correction[i];
+    // What the next one would be, going by the last two.
+    if (now * (now / before) <= rounding * size_of(weight, x)) return;
+    before = now;
+  }
+}
+
+void project_to_null_space(StaticSystem& system, std::span<double> v, std::span<double> x) {
+  const Plan& plan = system.plan();
+  if (plan.rows == 0) return;
+  const std::span<double> gap = x.subspan(v.size());
+  for (int k = 0; k < projections; ++k) {
+    std::fill(x.begin(), x.end(), 0.0);
+    multiply_add(plan.jacobian, system.jacobian(), v, gap);
+    system.matrix().solve_unrefined(x, system.evaluator().counters);
+    for (std::size_t c = 0; c < v.size(); ++c) v[c] -= x[c];
+  }
+}
+
+ModeOperator::ModeOperator(StaticSystem& system, std::vector<double> mass)
+    : system_(system), mass_(std::move(mass)), typical_(mass_.size(), 0.0), weight_(length_weights(system)) {
+  double sum = 0, count = 0;
+  for (std::size_t c = 0; c < mass_.size(); ++c) {
+    sum += mass_[c] / weight_[c];
+    count += mass_[c] > 0;
+  }
+  // What has no mass takes part like what has.
+  const double mean = count > 0 ? sum / count : 1;
+  for (std::size_t c = 0; c < mass_.size(); ++c) {
+    typical_[c] = 1 / std::sqrt(mass_[c] > 0 ? mass_[c] : mean * weight_[c]);
+  }
+  given_.resize(at(system.plan().columns + system.plan().rows));
+  solution_.resize(given_.size());
+  correction_.resize(given_.size());
+}
+
+bool ModeOperator::factorize(std::span<const double> lambda, double sigma) {
+  system_.fill(lambda, Curvature::exact, 0);
+  system_.matrix().add_diagonal(mass_, -sigma);
+  return system_.factorize().ok();
+}
+
+void ModeOperator::metric(std::span<const double> v, std::span<double> Gv) {
+  for (std::size_t c = 0; c < v.size(); ++c) Gv[c] = mass_[c] * v[c];
+}
+
+void ModeOperator::invert(std::span<double> v) {
+  std::fill(given_.begin(), given_.end(), 0.0);
+  metric(v, {given_.data(), v.size()});
+  solve_to_rounding(system_, weight_, given_, solution_, correction_);
+  std::copy_n(solution_.begin(), v.size(), v.begin());
+}
+
+void ModeOperator::project(std::span<double> v) { project_to_null_space(system_, v, solution_); }
+
+}  // namespace catena

@@ -1,0 +1,70 @@
+// The motions that constraints allow, as dense bases of the null space of Phi_q, group by group.
+//
+//   Phi_q Z = 0,   Z^T W Z = I,   W = diag(weight) > 0        any allowed motion: v = Z y
+//
+// A group holds the coordinates that entries of K and Phi_q tie together. Groups are treated apart: what is stiff in
+// one cannot cost digits in another, and many small problems are cheaper than a large one. The rank is that of the
+// analysis of mobility (jacobian_rank.hpp), judged in length scales; only then an independent set of rows is
+// orthogonalised in the metric W (Householder), so that masses over many orders do not decide about the rank.
+// Units: those of the coordinates, m and rad. Source: G. Golub, C. Van Loan, Matrix Computations, 4th ed., 5.2 and 8.7.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "catena/analysis/balance/static_system.hpp"
+
+namespace catena {
+
+struct MotionGroup {
+  std::vector<int> columns;   ///< of Phi_q, ascending
+  std::vector<int> rows;      ///< independent ones, ascending
+  std::vector<double> basis;  ///< Z, columns.size() x freedoms(), one column after the other
+
+  int freedoms() const { return static_cast<int>(columns.size() - rows.size()); }
+};
+
+class MotionGroups {
+ public:
+  /// At the system's configuration. `split`: groups by what is not zero in K as the matrix holds it now; else one group
+  /// of everything, for stiffnesses that will change.
+  MotionGroups(StaticSystem& system, bool split);
+
+  /// Whether dense algebra is affordable for all of them: a second or so at the limits.
+  bool are_small(int most_freedoms = usual_freedoms) const;
+  int freedoms() const;
+  /// Fills the bases.
+  void orthonormalise(std::span<const double> weight);
+
+  std::vector<MotionGroup>& groups() { return groups_; }
+  const std::vector<MotionGroup>& groups() const { return groups_; }
+
+  static constexpr int usual_freedoms = 500;
+
+ private:
+  StaticSystem& system_;
+  std::vector<MotionGroup> groups_;
+};
+
+/// Z^T K Z of a group, freedoms() x freedoms(), with the K that the matrix holds.
+void reduce_stiffness(const KktMatrix& matrix, const MotionGroup& group, std::vector<double>& reduced);
+
+/// Per body of the plan, m: how far from its origin constraints and forces take hold of it, the scene's length where
+/// all do at the origin: what makes turning and travel comparable whatever the units.
+std::vector<double> body_arms(StaticSystem& system, std::span<const double> lambda);
+
+/// What of v^T K v cannot be told from zero, N m (v over columns): rounding of all the stiffnesses that act on the
+/// bodies that move, before any of them cancel, of their places far from the origin, of the stiffest body that they are
+/// tied to, and the force left unbalanced there.
+class StiffnessFloor {
+ public:
+  /// `residual`, N: the unbalanced force; without `groups` nobody is tied to anybody.
+  StiffnessFloor(StaticSystem& system, std::span<const double> lambda, double residual,
+                 const MotionGroups* groups = nullptr);
+  double operator()(std::span<const double> v) const;
+
+ private:
+  std::vector<double> floor_;  // per column
+};
+
+}  // namespace catena

@@ -1,0 +1,253 @@
+#include "catena/analysis/stability/buckling.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "catena/analysis/balance/static_holding.hpp"
+#include "catena/analysis/run/process_time.hpp"
+#include "catena/analysis/run/state_conversion.hpp"
+#include "catena/analysis/run/time_coverage.hpp"
+#include "catena/analysis/run/watched_elements.hpp"
+#include "catena/analysis/spectrum/modes_operator.hpp"
+#include "catena/analysis/spectrum/static_balance.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// Steps of the parameter that are tried until its effect on K stands out from rounding.
+constexpr double steps[] = {1, 1e6, 1e12};
+constexpr double visible_effect = 1e-6, smallest_effect = 1e-12;
+constexpr int most_vectors = 300, most_refinements = 20;
+constexpr double refined = 1e-12, linear_part = 1e-9;
+// Constraints met to this, in length scales or rad, where the parameter leaves them alone.
+constexpr double kept_place = 1e-9;
+
+// K0^-1 (K0 - K1) in the metric K0, K0 what the system's matrix holds and has factored.
+class BucklingOperator final : public SpectralOperator {
+ public:
+  BucklingOperator(StaticSystem& system, const KktMatrix& loaded)
+      : system_(system), loaded_(loaded), weight_(length_weights(system)) {
+    for (double w : weight_) typical_.push_back(1 / std::sqrt(w));
+    given_.resize(weight_.size() + at(system.plan().rows));
+    solution_.resize(given_.size());
+    correction_.resize(given_.size());
+    product_.resize(weight_.size());
+  }
+
+  int columns() const override { return static_cast<int>(weight_.size()); }
+  std::span<const double> typical() const override { return typical_; }
+  void metric(std::span<const double> v, std::span<double> Gv) override { system_.matrix().multiply_stiffness(v, Gv); }
+  void invert(std::span<double> v) override {
+    std::fill(given_.begin(), given_.end(), 0.0);
+    const std::span<double> top{given_.data(), v.size()};
+    metric(v, top);
+    loaded_.multiply_stiffness(v, product_);
+    for (std::size_t c = 0; c < v.size(); ++c) top[c] -= product_[c];
+    solve_to_rounding(system_, weight_, given_, solution_, correction_);
+    std::copy_n(solution_.begin(), v.size(), v.begin());
+  }
+  void project(std::span<double> v) override { project_to_null_space(system_, v, solution_); }
+
+ private:
+  StaticSystem& system_;
+  const KktMatrix& loaded_;
+  std::vector<double> weight_, typical_, given_, solution_, correction_, product_;
+};
+
+// Positions of the `count` largest in size; none while there are fewer.
+std::vector<int> largest_ones(std::span<const double> theta, int count) {
+  if (static_cast<int>(theta.size()) < count) return {};
+  std::vector<int> order(theta.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<int>(k);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return std::abs(theta[at(a)]) > std::abs(theta[at(b)]); });
+  order.resize(at(count));
+  return order;
+}
+
+ModelAt required(ModelAt model_at) {
+  if (!model_at)
+    throw std::invalid_argument("buckling: there is nothing that makes models at other values of the parameter");
+  return model_at;
+}
+
+}  // namespace
+
+Buckling::Buckling(std::shared_ptr<const Model> model, ModelAt model_at, const BucklingOptions& options)
+    : model_(std::move(model)),
+      plan_(Plan::make(catena::required(model_))),
+      options_(options),
+      evaluator_(plan_, *model_),
+      system_(evaluator_),
+      path_(system_, required(std::move(model_at)), options.present, 1) {
+  point_ = {evaluator_.given_configuration(), std::vector<double>(at(plan_->rows), 0.0), options.present};
+}
+
+void Buckling::start_from(const SystemState& state) {
+  t_ = state.t;
+  point_.q = configuration_of(evaluator_, state);
+}
+
+Report Buckling::not_stable() const {
+  return {Status::refused,
+          fmt::format("the equilibrium is not stable at the present value {:.6g} of the parameter: nothing is left to "
+                      "lose; begin with a smaller load",
+                      options_.present),
+          {}};
+}
+
+SystemState Buckling::state() const { return state_of(evaluator_, t_, point_.q); }
+
+Report Buckling::stiffness_at(double p, KktMatrix& matrix) {
+  PathPoint loaded = point_;
+  loaded.p = p;
+  outside_ = !path_.move_to(loaded);
+  if (outside_) {
+    return {Status::refused, fmt::format("the scene does not allow the value {:.6g} of the parameter", p), {}};
+  }
+  if (system_.phi_norm() > kept_place) {
+    return {Status::refused,
+            "the parameter moves constraints, so that the configuration cannot be kept; an analysis of type path "
+            "follows it",
+            {}};
+  }
+  // The multipliers are needed whether or not it is known already that the load moves the equilibrium.
+  const bool moves = !balance_loads(system_, loaded.lambda).negligible();
+  moves_ = moves_ || moves;
+  matrix.set_hessian(evaluator_, loaded.lambda, Curvature::exact);
+  matrix.complete(system_.jacobian(), 0);
+  return {};
+}
+
+Report Buckling::find_with(double step, int count, std::vector<Load>& loads, double& effect,
+                           const std::function<bool()>& go_on) {
+  loads.clear();
+  KktMatrix other(plan_, system_.radius());
+  if (Report outcome = stiffness_at(options_.present + step, other); !outcome.ok()) return outcome;
+  if (!path_.factorize(point_) || path_.negative_modes() > 0) return not_stable();
+  BucklingOperator op(system_, other);
+  Lanczos lanczos(op);
+  const auto wanted = [&](std::span<const double> theta) { return largest_ones(theta, count); };
+  const int most = std::min(plan_->columns, std::max(most_vectors, 3 * count + 60));
+  const bool settled = lanczos.run(wanted, most, go_on);
+  if (go_on && !go_on()) return {Status::cancelled, "stopped while loads were looked for", {}};
+  if (!settled && !lanczos.exhausted()) {
+    return {Status::not_converged,
+            fmt::format("{} loads did not settle within {} steps of Lanczos' method; ask for fewer", count, most),
+            {}};
+  }
+  effect = 0;
+  const int found = std::min(count, static_cast<int>(lanczos.theta().size()));
+  for (int k : largest_ones(lanczos.theta(), found)) {
+    const double theta = lanczos.theta()[at(k)];
+    effect = std::max(effect, std::abs(theta));
+    if (std::abs(theta) > smallest_effect * std::max(1.0, effect)) loads.push_back({step / theta, lanczos.vector(k)});
+  }
+  return {};
+}
+
+Report Buckling::find(BucklingReport& report, const std::function<bool()>& go_on) {
+  if (Report assembly = assemble_for_statics(system_, point_.q); !assembly.ok()) return assembly;
+  if (std::optional<Report> loose = find_loose_bodies(system_, evaluator_)) return *loose;
+  const bool unbalanced = !balance_loads(system_, point_.lambda).negligible();
+  if (unbalanced) {
+    report.warnings.emplace_back(
+        "the configuration is no equilibrium; an equilibrium analysis before this one finds it");
+  }
+  if (!path_.move_to(point_)) return {Status::refused, "the scene does not allow the parameter's present value", {}};
+  std::vector<Load> loads;
+  groups_.emplace(system_, false);
+  const bool dense = groups_->are_small() && plan_->columns > 0;
+  Report outcome = dense ? find_by_dense(loads, go_on) : find_by_lanczos(loads, go_on);
+  if (!outcome.ok()) return outcome;
+  if (loads.empty()) {
+    report.warnings.emplace_back("no value of the parameter makes this equilibrium unstable");
+    return {};
+  }
+  for (Load& load : loads) {
+    report.loads.push_back(options_.present + load.distance);
+    const double largest = decisive_component(*plan_, load.shape);
+    for (double& x : load.shape) x /= largest;
+    report.shapes.push_back(std::move(load.shape));
+  }
+  if (moves_ && !unbalanced) {
+    report.warnings.emplace_back(
+        "the load moves the equilibrium: these are estimates of linear buckling theory; an analysis of type path finds "
+        "the critical points on the way");
+  }
+  if (static_cast<int>(report.loads.size()) < options_.count) {
+    report.warnings.push_back(fmt::format("there are only {} such values", report.loads.size()));
+  }
+  return {};
+}
+
+Report Buckling::find_by_lanczos(std::vector<Load>& loads, const std::function<bool()>& go_on) {
+  double effect = 0;
+  for (double step : steps) {
+    step *= std::max(std::abs(options_.present), 1.0);
+    if (Report pass = find_with(step, options_.count, loads, effect, go_on); !pass.ok()) return pass;
+    if (effect > visible_effect) break;
+  }
+  if (loads.empty()) return {};
+  // Again with the load itself as the step: rounding is least there, and a parameter that does not enter linearly is
+  // iterated. Linear ones take this one pass for all loads.
+  std::vector<Load> again;
+  for (std::size_t k = 0; k < loads.size(); ++k) {
+    bool linear = k == 0;
+    // A step that is the load itself gives itself back: the secant rule for that.
+    double step = loads[k].distance, step_before = 0, gap_before = 0;
+    for (int round = 0; round < most_refinements; ++round) {
+      if (Report pass = find_with(step, static_cast<int>(loads.size()), again, effect, go_on); !pass.ok()) return pass;
+      if (k >= again.size()) break;
+      for (std::size_t other = k; other < std::min(again.size(), loads.size()); ++other) {
+        linear = linear && std::abs(again[other].distance - loads[other].distance) <=
+                               linear_part * std::abs(loads[other].distance);
+      }
+      if (linear) {
+        loads = again;
+        break;
+      }
+      loads[k] = again[k];
+      const double gap = again[k].distance - step;
+      if (std::abs(gap) <= refined * std::abs(step)) break;
+      const double next = round == 0 ? again[k].distance : step - gap * (step - step_before) / (gap - gap_before);
+      step_before = step;
+      gap_before = gap;
+      step = next;
+    }
+    if (linear) break;
+  }
+  return {};
+}
+
+BucklingReport Buckling::run(const std::function<bool()>& go_on) {
+  const ProcessTimer timer;
+  BucklingReport report;
+  report.bodies = static_cast<int>(model_->bodies.size());
+  report.rows = plan_->rows;
+  report.islands = plan_->islands;
+  Report outcome = check_time_functions(*model_, {t_, t_});
+  if (outcome.ok()) {
+    evaluator_.set_time(t_);
+    path_.set_time(t_);
+    outcome = {Status::refused,
+               "follower forces have no energy, and buckling under forces without one is not built; give the forces in "
+               "ground axes",
+               {}};
+    if (evaluator_.conservative()) outcome = find(report, go_on);
+    path_.move_to(point_);
+    if (outcome.ok()) outcome = WatchedElements(evaluator_).check_ends();
+  }
+  report.status = outcome.status;
+  report.message = std::move(outcome.message);
+  report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
+  report.counters = evaluator_.counters;
+  report.seconds = timer.seconds();
+  return report;
+}
+
+}  // namespace catena

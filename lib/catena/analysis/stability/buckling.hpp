@@ -1,0 +1,83 @@
+// Buckling: the values of a load parameter at which the current equilibrium, kept in place, loses its stability.
+//
+//   K(p) v = 0 on the null space of Phi_q,   K(p) = K0 + (p - p0) K'        K0 > 0: stable at the present value p0
+//
+// Up to 500 degrees of freedom the eigenvalues of Z^T K(p) Z, taken in the metric of K0, are followed as functions of
+// p, whatever the load's dependence on it (buckling_dense.cpp). Larger ones: K0^-1 (K0 - K(p1)) v = theta v by Lanczos'
+// method, p = p0 + (p1 - p0) / theta: exact for loads that enter K linearly, iterated with p1 = p for others.
+// Multipliers belong to each value of the parameter, the configuration to the present one: where the load moves the
+// equilibrium, a warning says so, and what is found is the estimate of linear buckling theory; a path finds the true
+// critical points. The values nearest to the present one come first. Refused: an equilibrium that is not stable, a
+// parameter that moves constraints.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "catena/analysis/run/analysis_report.hpp"
+#include "catena/analysis/run/system_state.hpp"
+#include "catena/analysis/spectrum/motion_groups.hpp"
+#include "catena/analysis/stability/path_system.hpp"
+
+namespace catena {
+
+struct BucklingOptions {
+  double present = 0;  ///< value p0 of the parameter
+  int count = 1;
+};
+
+struct BucklingReport : AnalysisReport {
+  std::vector<double> loads;                ///< values of the parameter, nearest to the present one first
+  std::vector<std::vector<double>> shapes;  ///< over columns; the largest turning or displacement is 1 rad or m
+};
+
+class Buckling {
+ public:
+  /// `model`: at options.present.
+  Buckling(std::shared_ptr<const Model> model, ModelAt model_at, const BucklingOptions& options);
+
+  const Plan& plan() const { return *plan_; }
+  Evaluator& evaluator() { return evaluator_; }
+
+  void start_from(const SystemState& state);
+  BucklingReport run(const std::function<bool()>& go_on = {});
+
+  double time() const { return t_; }
+  /// The configuration, assembled, plan order.
+  std::span<const double> q() const { return point_.q; }
+  SystemState state() const;
+
+ private:
+  class Spectrum;
+  class Search;
+  struct Load {
+    double distance = 0;  // p - p0
+    std::vector<double> shape;
+  };
+  Report find(BucklingReport& report, const std::function<bool()>& go_on);
+  /// The `count` nearest loads by Lanczos' method, or by dense algebra.
+  Report find_by_lanczos(std::vector<Load>& loads, const std::function<bool()>& go_on);
+  Report find_by_dense(std::vector<Load>& loads, const std::function<bool()>& go_on);
+  /// K at a value of the parameter to `matrix`, with the multipliers that belong to it.
+  Report stiffness_at(double p, KktMatrix& matrix);
+  Report not_stable() const;
+  /// Loads by the difference of K between p0 and p0 + step.
+  Report find_with(double step, int count, std::vector<Load>& loads, double& effect,
+                   const std::function<bool()>& go_on);
+
+  std::shared_ptr<const Model> model_;
+  std::shared_ptr<const Plan> plan_;
+  BucklingOptions options_;
+  Evaluator evaluator_;
+  StaticSystem system_;
+  PathSystem path_;
+  PathPoint point_;
+  std::optional<MotionGroups> groups_;
+  double t_ = 0;
+  bool moves_ = false;    // the load moves the equilibrium
+  bool outside_ = false;  // the value asked for last is none that the scene allows
+};
+
+}  // namespace catena

@@ -1,0 +1,171 @@
+#include "catena/analysis/stability/modes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "catena/analysis/motion/equations_of_motion.hpp"
+#include "catena/analysis/motion/mass_matrix.hpp"
+#include "catena/analysis/run/process_time.hpp"
+#include "catena/analysis/run/state_conversion.hpp"
+#include "catena/analysis/run/time_coverage.hpp"
+#include "catena/analysis/run/watched_elements.hpp"
+#include "catena/analysis/spectrum/certificate.hpp"
+#include "catena/analysis/spectrum/free_motions.hpp"
+#include "catena/analysis/spectrum/modes_dense.hpp"
+#include "catena/analysis/spectrum/modes_search.hpp"
+#include "catena/analysis/spectrum/static_balance.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+constexpr int default_count = 10;
+// Freedoms up to which all modes are computed at once where a third of them or more are wanted: some ten seconds.
+constexpr int most_complete_freedoms = 1500;
+
+// Whether any motion loses power to damping.
+bool is_damped(const Evaluator& evaluator) {
+  std::vector<double> qd(at(evaluator.plan().coordinates()), 0.0);
+  for (int k = 0; k < 3 * evaluator.plan().moving; ++k) qd[at(k)] = std::sin(1.0 + k) + std::cos(0.7 * k * k);
+  return evaluator.dissipation(qd) != 0;
+}
+
+}  // namespace
+
+Modes::Modes(std::shared_ptr<const Model> model, const PlanOptions& plan_options, const ModesOptions& options)
+    : model_(std::move(model)),
+      plan_(Plan::make(required(model_), plan_options)),
+      options_(options),
+      evaluator_(plan_, *model_),
+      system_(evaluator_),
+      q_(evaluator_.given_configuration()) {}
+
+void Modes::start_from(const SystemState& state) {
+  t_ = state.t;
+  q_ = configuration_of(evaluator_, state);
+  moving_ = std::any_of(state.qd.begin(), state.qd.end(), [](double v) { return v != 0; });
+}
+
+SystemState Modes::state() const { return state_of(evaluator_, t_, q_); }
+
+// The `count` lowest modes and all that are zero or negative, where dense algebra is affordable; of a larger mechanism
+// the `count` lowest.
+Report Modes::find_modes(const MassMatrix& masses, std::span<const double> mass, std::span<const double> lambda,
+                         double residual, int count, std::vector<Mode>& modes, const std::function<bool()>& go_on) {
+  const auto undetermined = [&](int coordinate) {
+    return Report{
+        Status::refused,
+        fmt::format("the motion of body \"{}\" is not determined: its {} is zero and the constraints tie it to "
+                    "nothing that has mass",
+                    model_->body_name(plan_->model_body[at(coordinate / 3)]), coordinate % 3 == 2 ? "inertia" : "mass"),
+        {}};
+  };
+  system_.fill(lambda, Curvature::exact, 0);
+  MotionGroups groups(system_, true);
+  const StiffnessFloor floor(system_, lambda, residual, &groups);
+  // Nearly all modes of a larger mechanism cost less this way too.
+  const bool most_of_all = 3 * static_cast<std::int64_t>(count) >= groups.freedoms();
+  if (groups.are_small(most_of_all ? most_complete_freedoms : MotionGroups::usual_freedoms)) {
+    const DenseModes dense(system_, groups, mass);
+    if (dense.massless_column()) return undetermined(plan_->coordinate[at(*dense.massless_column())]);
+    if (!dense.ok()) {
+      return {
+          Status::not_converged, "the eigenvalues of the stiffness did not settle: is a number in it infinite?", {}};
+    }
+    if (go_on && !go_on()) return {Status::cancelled, "stopped while modes were looked for", {}};
+    modes = dense.lowest(count, floor);
+    return {};
+  }
+  if (!masses.massless.empty()) {
+    EquationsOfMotion equations(evaluator_);
+    Report report = equations.use_masses();
+    if (report.ok()) report = equations.check_massless(q_);
+    if (!report.ok()) return report;
+    system_.move_to(q_);
+  }
+  ModeSearch search(system_, lambda, {mass.begin(), mass.end()}, floor, go_on);
+  Report report = search.find(std::min(count, plan_->columns), modes);
+  hidden_unstable_ = search.unstable();
+  return report;
+}
+
+ModesReport Modes::run(const std::function<bool()>& go_on) {
+  const ProcessTimer timer;
+  ModesReport report;
+  report.bodies = static_cast<int>(model_->bodies.size());
+  report.rows = plan_->rows;
+  report.islands = plan_->islands;
+  const auto end = [&](Report outcome) {
+    report.status = outcome.status;
+    report.message = std::move(outcome.message);
+    report.counters = evaluator_.counters;
+    report.seconds = timer.seconds();
+    return report;
+  };
+  if (!evaluator_.conservative()) {
+    return end({Status::refused,
+                "follower forces have no energy, and the modes of forces without one are not built; give the forces in "
+                "ground axes",
+                {}});
+  }
+  if (Report functions = check_time_functions(*model_, {t_, t_}); !functions.ok()) return end(std::move(functions));
+  evaluator_.set_time(t_);
+  if (Report assembly = assemble_for_statics(system_, q_); !assembly.ok()) return end(std::move(assembly));
+  if (Report ends = WatchedElements(evaluator_).check_ends(); !ends.ok()) return end(std::move(ends));
+  MassMatrix masses;
+  if (Report missing = masses.load(evaluator_); !missing.ok()) return end(std::move(missing));
+  std::vector<double> mass(at(plan_->columns)), lambda(at(plan_->rows));
+  for (int c = 0; c < plan_->columns; ++c) mass[at(c)] = masses.mass[at(plan_->coordinate[at(c)])];
+  const Imbalance left = balance_loads(system_, lambda);
+  if (is_damped(evaluator_)) report.warnings.emplace_back("damping is left out: these are the undamped modes");
+  if (moving_) report.warnings.emplace_back("velocities are left out: these are the modes of the mechanism at rest");
+
+  const int wanted = options_.count > 0 ? options_.count : default_count;
+  std::vector<Mode> modes;
+  Report outcome = find_modes(masses, mass, lambda, left.negligible() ? left.force : 0, wanted, modes, go_on);
+  if (!left.negligible()) {
+    const int body = plan_->model_body[at(plan_->coordinate[at(left.column)] / 3)];
+    report.warnings.push_back(fmt::format(
+        "the configuration is no equilibrium: {:.3g} N would set body \"{}\" in motion; an equilibrium analysis before "
+        "this one finds the place about which it oscillates",
+        left.force, model_->body_name(body)));
+  }
+  std::vector<std::vector<double>> free;
+  for (const Mode& mode : modes) {
+    report.unstable += mode.omega2 < 0;
+    if (mode.omega2 == 0) free.push_back(mode.shape);
+  }
+  report.free_motions = static_cast<int>(free.size());
+  report.free_bodies = names_of_moving(system_, lambda, free);
+  report.unstable = std::max(report.unstable, hidden_unstable_);
+  modes.resize(std::min(modes.size(), at(wanted)));
+  for (Mode& mode : modes) {
+    report.omega2.push_back(mode.omega2);
+    report.omega.push_back(std::sqrt(std::abs(mode.omega2)));
+    const double sense = std::copysign(1.0, decisive_component(*plan_, mode.shape));
+    for (double& x : mode.shape) x *= sense;
+    report.shapes.push_back(std::move(mode.shape));
+  }
+  const int found = static_cast<int>(modes.size());
+  if (outcome.ok() && found == 0) {
+    report.warnings.emplace_back("nothing can move: there are no modes");
+  } else if (outcome.ok() && found < options_.count) {
+    report.warnings.push_back(fmt::format("{} degree{} of freedom: {} mode{} instead of {}", found,
+                                          found > 1 ? "s" : "", found, found > 1 ? "s" : "", options_.count));
+  }
+  if (report.free_motions > 0) {
+    report.warnings.push_back(fmt::format("free to second order, with omega2 = 0: {}",
+                                          describe_free_motions(report.free_motions, report.free_bodies)));
+  }
+  if (report.unstable > 0) {
+    report.warnings.push_back(fmt::format("unstable: {} mode{} with a negative omega2, the lowest: {}", report.unstable,
+                                          report.unstable > 1 ? "s" : "",
+                                          describe_mode(evaluator_, report.shapes.front(), system_.radius())));
+  }
+  return end(std::move(outcome));
+}
+
+}  // namespace catena

@@ -1,0 +1,73 @@
+// Small oscillations about the current configuration: natural frequencies and shapes (THEORY section 5).
+//
+//   K v = omega^2 M v   on the null space of Phi_q,   K = V_qq + sum lambda Phi_qq,   M = diag(m, m, J)
+//
+// The lowest omega^2 in 1/s^2, ascending: negative ones (growth rates) first, zero for motions that nothing resists.
+// Up to 500 degrees of freedom that are tied together dense algebra finds all of them (modes_dense.hpp); beyond,
+// Lanczos' method the lowest (modes_search.hpp), and that none was missed is certain: the inertia of K - mu M just
+// below the highest one counts those that there must be. Functions of time, drivers among them, are frozen; damping and
+// gyroscopic terms are left out, and warnings say so. Where forces are not in balance there are no small oscillations
+// about that place: done all the same, with a warning. Refused: bodies without mass where the constraints tie them to
+// nothing that has mass; forces without an energy.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "catena/analysis/motion/mass_matrix.hpp"
+#include "catena/analysis/run/analysis_report.hpp"
+#include "catena/analysis/run/system_state.hpp"
+#include "catena/analysis/spectrum/modes_dense.hpp"
+
+namespace catena {
+
+struct ModesOptions {
+  int count = 0;  ///< how many, 0: all, at most ten
+};
+
+struct ModesReport : AnalysisReport {
+  std::vector<double> omega2;               ///< rad^2/s^2, ascending
+  std::vector<double> omega;                ///< sqrt(|omega2|), rad/s; a growth rate, 1/s, where omega2 < 0
+  std::vector<std::vector<double>> shapes;  ///< over columns, v^T M v = 1 kg m^2; the largest angle or, where none
+                                            ///< turns, the largest displacement is positive
+  int unstable = 0;                         ///< how many omega^2 below zero there are in all
+  int free_motions = 0;                     ///< how many zeros: in all, or among those found in a large mechanism
+  std::vector<std::string> free_bodies;     ///< bodies that take part in them
+};
+
+class Modes {
+ public:
+  explicit Modes(std::shared_ptr<const Model> model, const PlanOptions& plan_options = {},
+                 const ModesOptions& options = {});
+
+  const Plan& plan() const { return *plan_; }
+  Evaluator& evaluator() { return evaluator_; }
+
+  /// The configuration, and the time at which functions are frozen; before that the given one at t = 0.
+  void start_from(const SystemState& state);
+  /// `go_on`: called now and then; false cancels.
+  ModesReport run(const std::function<bool()>& go_on = {});
+
+  double time() const { return t_; }
+  /// The configuration, assembled, plan order.
+  std::span<const double> q() const { return q_; }
+  SystemState state() const;
+
+ private:
+  Report find_modes(const MassMatrix& masses, std::span<const double> mass, std::span<const double> lambda,
+                    double residual, int count, std::vector<Mode>& modes, const std::function<bool()>& go_on);
+
+  std::shared_ptr<const Model> model_;
+  std::shared_ptr<const Plan> plan_;
+  ModesOptions options_;
+  Evaluator evaluator_;
+  StaticSystem system_;
+  bool moving_ = false;
+  int hidden_unstable_ = 0;  // counted by the inertia of a large mechanism
+  double t_ = 0;
+  std::vector<double> q_;
+};
+
+}  // namespace catena

@@ -1,0 +1,77 @@
+// A path of static equilibria as a parameter of the scene changes: through limit points, past branch points.
+//
+// From the equilibrium at the present value, in steps of a given length along the path (path_system.hpp), predicted
+// along the tangent and corrected by Newton's method; shortened where that fails or the path bends. Whenever the number
+// of negative modes changes, the critical points between are located, told apart and given a row of their own. At a
+// branch point the path goes on as it came, or, on request, on the branch that leaves it to one side or the other.
+// Ends at the wanted value of the parameter, exactly, or after the largest number of steps.
+// Limits: two critical points within one step whose modes cancel (one becomes stable while another turns unstable) are
+// not seen; a path that only touches the wanted value between two points goes on; and where constraints lose rank (a
+// rope pulled straight) multipliers pass through infinity while positions go on smoothly, and so does the path.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "catena/analysis/run/analysis_report.hpp"
+#include "catena/analysis/run/row_observer.hpp"
+#include "catena/analysis/run/system_state.hpp"
+#include "catena/analysis/stability/path_critical.hpp"
+
+namespace catena {
+
+struct PathOptions {
+  double from = 0, to = 0;  ///< values of the parameter
+  int max_steps = 500;
+  double arc = 0.05;  ///< length of a step in the measure of path_system.hpp
+  /// At the first branch point: 1 goes straight on, 2 and 3 leave along the mode, its largest angle (displacement,
+  /// where nothing turns) positive, and against it; 0: as 1.
+  int branch = 0;
+};
+
+struct PathCritical {
+  bool branch = false;  ///< else a limit point
+  double value = 0;     ///< of the parameter
+  int row = 0;          ///< from 0: the row at this point
+  std::string mode;     ///< the body that moves most in the singular mode
+  int modes = 1;        ///< how many become singular there
+};
+
+struct PathReport : AnalysisReport {
+  std::vector<PathCritical> critical;
+  std::vector<double> negative_modes;  ///< a row: how many; 0 is stable
+  int steps = 0;
+};
+
+class Path {
+ public:
+  /// `model`: at options.from. Both must have the same structure at all values of the parameter.
+  Path(std::shared_ptr<const Model> model, ModelAt model_at, const PathOptions& options,
+       const PlanOptions& plan_options = {});
+
+  const Plan& plan() const { return *plan_; }
+  Evaluator& evaluator() { return evaluator_; }
+
+  void start_from(const SystemState& state);
+  /// `observe` gets the value of the parameter and the snapshot of every row; false cancels.
+  PathReport run(const std::function<bool(double, const Snapshot&)>& observe);
+  SystemState state() const;
+
+ private:
+  class March;
+
+  Report follow(PathReport& report, const std::function<bool(double, const Snapshot&)>& observe);
+
+  std::shared_ptr<const Model> model_;
+  std::shared_ptr<const Plan> plan_;
+  ModelAt model_at_;
+  PathOptions options_;
+  Evaluator evaluator_;
+  StaticSystem system_;
+  PathSystem path_;
+  double t_ = 0;
+  std::vector<double> q_;
+};
+
+}  // namespace catena

@@ -1,0 +1,207 @@
+#include "catena/analysis/stability/path_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "catena/analysis/spectrum/modes_operator.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+constexpr int most_iterations = 12;
+// Solved: residual forces in parts of the largest force, constraints in length scales, the place on the path.
+constexpr double solved = 1e-13, place_solved = 1e-12;
+// Good enough where rounding lets it get no better.
+constexpr double nearly_solved = 1e-9;
+// Steps beyond this are astray: parts of the mechanism's extent, or rad.
+constexpr double astray = 3;
+constexpr double difference = 1e-5;
+
+}  // namespace
+
+PathSystem::PathSystem(StaticSystem& system, ModelAt model_at, double p, double scale)
+    : system_(system),
+      evaluator_(system.evaluator()),
+      plan_(system.plan()),
+      model_at_(std::move(model_at)),
+      p_(p),
+      scale_(scale),
+      time_(evaluator_.time()),
+      weight_(length_weights(system)) {
+  Vec2<double> mean{};
+  for (int b = 0; b < plan_.moving; ++b) {
+    first_origin_.push_back(evaluator_.origin(b));
+    mean += (1.0 / plan_.moving) * evaluator_.origin(b);
+  }
+  double square = 0;
+  for (const Vec2<double>& origin : first_origin_) square += squared_norm(origin - mean) / plan_.moving;
+  extent_ = std::max(system.length(), std::sqrt(square));
+  for (int c = 0; c < plan_.columns; ++c) {
+    const double length = plan_.coordinate[at(c)] % 3 == 2 ? system.length() : extent_;
+    weight_[at(c)] /= plan_.moving * length * length;
+  }
+  placed_.assign(at(plan_.coordinates()), 0.0);
+  given_.resize(at(plan_.columns + plan_.rows));
+  for (auto* vector : {&correction_, &newton_, &along_, &derivative_, &side_}) vector->resize(given_.size());
+}
+
+bool PathSystem::set_parameter(double p) {
+  if (p == p_) return true;
+  const auto known =
+      std::find_if(models_.begin(), models_.end(), [&](const auto& entry) { return entry.second && entry.first == p; });
+  std::shared_ptr<const Model> model = known != models_.end() ? known->second : model_at_(p);
+  if (!model) return false;
+  if (known == models_.end()) {
+    models_[next_model_] = {p, model};
+    next_model_ = (next_model_ + 1) % models_.size();
+  }
+  evaluator_.set_model(*model);
+  model_ = std::move(model);
+  evaluator_.set_time(time_);
+  system_.take_over_model();
+  p_ = p;
+  return true;
+}
+
+bool PathSystem::move_to(const PathPoint& x) {
+  if (!set_parameter(x.p)) return false;
+  // Bodies that do not move stay where their model puts them.
+  const std::vector<double> given = evaluator_.given_configuration();
+  std::copy(given.begin() + 3 * plan_.moving, given.end(), placed_.begin() + 3 * plan_.moving);
+  for (int b = 0; b < plan_.moving; ++b) {
+    const Vec2<double> shift = first_origin_[at(b)] - evaluator_.origin(b);
+    placed_[at(3 * b)] = x.q[at(3 * b)] + shift.x;
+    placed_[at(3 * b + 1)] = x.q[at(3 * b + 1)] + shift.y;
+    placed_[at(3 * b + 2)] = x.q[at(3 * b + 2)];
+  }
+  system_.move_to(placed_);
+  return true;
+}
+
+bool PathSystem::factorize(const PathPoint& x) {
+  if (!move_to(x)) return false;
+  system_.fill(x.lambda, Curvature::exact, 0);
+  return system_.factorize().ok();
+}
+
+void PathSystem::residual(const PathPoint& x, std::vector<double>& out) {
+  const std::span<double> all = out;
+  system_.residual(x.lambda, all.first(at(plan_.columns)));
+  std::copy(system_.phi().begin(), system_.phi().end(), all.begin() + plan_.columns);
+}
+
+void PathSystem::parameter_derivative(const PathPoint& x, std::vector<double>& derivative) {
+  derivative.resize(given_.size());
+  PathPoint beside = x;
+  const double h = difference * std::max(scale_, std::abs(x.p));
+  // One-sided where the scene ends.
+  beside.p = x.p + h;
+  if (!move_to(beside)) move_to(beside = x);
+  residual(beside, derivative);
+  const double above = beside.p;
+  beside.p = x.p - h;
+  if (!move_to(beside)) move_to(beside = x);
+  residual(beside, side_);
+  for (std::size_t k = 0; k < derivative.size(); ++k) derivative[k] = (derivative[k] - side_[k]) / (above - beside.p);
+  move_to(x);
+}
+
+void PathSystem::solve(std::span<const double> given, std::span<double> x) {
+  solve_to_rounding(system_, weight_, given, x, correction_);
+}
+
+PathPoint PathSystem::tangent(const PathPoint& x, const PathPoint& previous) {
+  parameter_derivative(x, derivative_);
+  for (double& d : derivative_) d = -d;
+  solve(derivative_, along_);
+  PathPoint t{{along_.begin(), along_.begin() + plan_.columns}, {along_.begin() + plan_.columns, along_.end()}, 1};
+  const double length = std::copysign(std::sqrt(product(t, t)), product(t, previous));
+  for (double& v : t.q) v /= length;
+  for (double& v : t.lambda) v /= length;
+  t.p /= length;
+  return t;
+}
+
+PathPoint PathSystem::along_parameter(double sign) const {
+  return {std::vector<double>(at(plan_.columns), 0.0), std::vector<double>(at(plan_.rows), 0.0),
+          std::copysign(scale_, sign)};
+}
+
+double PathSystem::product(const PathPoint& a, const PathPoint& b) const {
+  double sum = a.p * b.p / (scale_ * scale_);
+  for (std::size_t c = 0; c < weight_.size(); ++c) sum += weight_[c] * a.q[c] * b.q[c];
+  return sum;
+}
+
+PathPoint PathSystem::advanced(const PathPoint& x, const PathPoint& t, double s) const {
+  PathPoint result = x;
+  for (int c = 0; c < plan_.columns; ++c) result.q[at(plan_.coordinate[at(c)])] += s * t.q[at(c)];
+  for (std::size_t r = 0; r < t.lambda.size(); ++r) result.lambda[r] += s * t.lambda[r];
+  result.p += s * t.p;
+  return result;
+}
+
+int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t, double s) {
+  double before = 0;
+  for (int k = 0; k <= most_iterations; ++k) {
+    if (!move_to(x)) return -1;
+    residual(x, given_);
+    double place = t.p * (x.p - from.p) / (scale_ * scale_) - s;
+    for (int c = 0; c < plan_.columns; ++c) {
+      const std::size_t coordinate = at(plan_.coordinate[at(c)]);
+      place += weight_[at(c)] * t.q[at(c)] * (x.q[coordinate] - from.q[coordinate]);
+    }
+    const double force = system_.force_norm({given_.data(), at(plan_.columns)});
+    const double rounding = k > 0 ? system_.rounding_force() : 0, scale = system_.force_scale(x.lambda) + rounding;
+    const double error =
+        std::max({scale > 0 ? force / scale : 0, system_.phi_norm(), solved / place_solved * std::abs(place)});
+    const double exact = std::max(solved, 10 * system_.rounding_change());
+    const double noise = exact + (scale > 0 ? rounding / scale : 0);
+    if (error <= exact || (k > 0 && error <= nearly_solved && error >= 0.5 * before)) return k;
+    if (!std::isfinite(error)) return -1;
+    before = error;
+    if (k == most_iterations) break;
+    // One-sided: it steers the iteration only.
+    PathPoint beside = x;
+    beside.p += difference * std::max(scale_, std::abs(x.p));
+    if (move_to(beside)) {
+      residual(beside, derivative_);
+      for (std::size_t i = 0; i < derivative_.size(); ++i)
+        derivative_[i] = (derivative_[i] - given_[i]) / (beside.p - x.p);
+      move_to(x);
+    } else {
+      parameter_derivative(x, derivative_);
+    }
+    system_.fill(x.lambda, Curvature::exact, 0);
+    if (!system_.factorize().ok()) {
+      // Exactly singular: a little beside it will do for a step.
+      system_.fill(x.lambda, Curvature::exact, 1e-10 * system_.matrix().largest_stiffness());
+      if (!system_.factorize().ok()) return -1;
+    }
+    for (double& r : given_) r = -r;
+    solve(given_, newton_);
+    for (double& d : derivative_) d = -d;
+    solve(derivative_, along_);
+    double own = t.p / (scale_ * scale_), rest = place;
+    for (std::size_t c = 0; c < weight_.size(); ++c) {
+      own += weight_[c] * t.q[c] * along_[c];
+      rest += weight_[c] * t.q[c] * newton_[c];
+    }
+    const double dp = -rest / own;
+    for (std::size_t i = 0; i < newton_.size(); ++i) newton_[i] += dp * along_[i];
+    for (int c = 0; c < plan_.columns; ++c) {
+      const double unit = plan_.coordinate[at(c)] % 3 == 2 ? 1 : extent_;
+      if (!(std::abs(newton_[at(c)]) < astray * unit)) return -1;
+    }
+    // What may be rounding beside the stiffest spring is so only if nothing would move.
+    if (error <= noise && system_.change_norm({newton_.data(), at(plan_.columns)}) <= nearly_solved) return k;
+    for (int c = 0; c < plan_.columns; ++c) x.q[at(plan_.coordinate[at(c)])] += newton_[at(c)];
+    for (int r = 0; r < plan_.rows; ++r) x.lambda[at(r)] += newton_[at(plan_.columns + r)];
+    x.p += dp;
+  }
+  return -1;
+}
+
+}  // namespace catena

@@ -1,0 +1,183 @@
+#include "catena/analysis/statics/equilibrium.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "catena/analysis/balance/static_holding.hpp"
+#include "catena/analysis/pose/minimum_norm.hpp"
+#include "catena/analysis/run/process_time.hpp"
+#include "catena/analysis/run/state_conversion.hpp"
+#include "catena/analysis/run/time_coverage.hpp"
+#include "catena/analysis/run/watched_elements.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// Reactions balance the loads if nothing more than this part of them is left.
+constexpr double balanced = 1e-9;
+
+PlanOptions with_gaps(PlanOptions options) {
+  options.one_sided = true;
+  return options;
+}
+
+}  // namespace
+
+Equilibrium::Equilibrium(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
+                         const EquilibriumOptions& options)
+    : model_(std::move(model)),
+      plan_(Plan::make(required(model_), with_gaps(plan_options))),
+      options_(options),
+      evaluator_(plan_, *model_),
+      system_(evaluator_) {
+  if (!(options.tolerance > 0)) throw std::invalid_argument("equilibrium: the tolerance must be above zero");
+  if (options.find < 1) throw std::invalid_argument("equilibrium: find asks for at least one equilibrium");
+  q_ = evaluator_.given_configuration();
+  lambda_.assign(at(plan_->rows), 0.0);
+}
+
+void Equilibrium::start_from(const SystemState& state) {
+  t_ = state.t;
+  solved_ = false;
+  take_over_places(evaluator_, state, q_);
+}
+
+void Equilibrium::set_model(std::shared_ptr<const Model> model) {
+  required(model);
+  // Origins may move with the parameters: places are kept in the ground frame.
+  std::vector<Vec2<double>> before(at(plan_->bodies));
+  for (int p = 0; p < plan_->bodies; ++p) before[at(p)] = evaluator_.origin(p);
+  evaluator_.set_model(*model);
+  model_ = std::move(model);
+  system_.take_over_model();
+  for (int p = 0; p < plan_->moving; ++p) {
+    q_[3 * at(p)] += before[at(p)].x - evaluator_.origin(p).x;
+    q_[3 * at(p) + 1] += before[at(p)].y - evaluator_.origin(p).y;
+  }
+}
+
+SystemState Equilibrium::state() const { return state_of(evaluator_, t_, q_); }
+
+// Where rows depend on each other many multipliers balance the loads: the least of them are given, and that is said.
+void Equilibrium::choose_least_reactions(Report& report) {
+  MinimumNorm least(evaluator_);
+  if (!least.factorize()) return;
+  std::vector<double> loads(at(plan_->coordinates())), multipliers(lambda_.size());
+  evaluator_.applied_forces(std::vector<double>(loads.size(), 0.0), loads);
+  // Least reactions that do not balance the loads would be none.
+  if (!(least.solve(loads, multipliers) <= balanced)) return;
+  // One-sided elements only push: where the least reactions would pull, those found are kept.
+  for (int r : plan_->gap_rows) {
+    if (multipliers[at(r)] > 0) return;
+  }
+  lambda_ = std::move(multipliers);
+  const std::string names = least.name_ambiguous();
+  if (names.empty()) return;
+  report.warnings.push_back(fmt::format(
+      "redundant constraints: the reactions of {} are not unique; of all that balance the loads the least are given",
+      names));
+}
+
+EquilibriumReport Equilibrium::solve() {
+  const ProcessTimer timer;
+  EquilibriumReport report;
+  report.bodies = static_cast<int>(model_->bodies.size());
+  report.rows = plan_->rows;
+  report.islands = plan_->islands;
+  const auto end = [&](Report outcome) {
+    report.status = outcome.status;
+    report.message = std::move(outcome.message);
+    for (std::string& warning : outcome.warnings) report.warnings.push_back(std::move(warning));
+    report.counters = evaluator_.counters;
+    report.seconds = timer.seconds();
+    solved_ = report.ok();
+    return report;
+  };
+  if (Report functions = check_time_functions(*model_, {t_, t_}); !functions.ok()) return end(std::move(functions));
+  evaluator_.set_time(t_);
+  system_.move_to(q_);
+  if (std::optional<Report> loose = find_loose_bodies(system_, evaluator_)) return end(*loose);
+  StaticSearch search(system_, {.solver = options_.solver,
+                                .tolerance = options_.tolerance,
+                                .stationary = options_.accept == Accept::stationary,
+                                .warm = solved_,
+                                .verbose = options_.verbose});
+  StaticResult result = search.find(q_, lambda_);
+  report.solver = std::string(result.solver);
+  report.iterations = result.iterations;
+  report.residual = result.residual;
+  report.energy = system_.energy();
+  const Certificate& c = result.certificate;
+  report.certified = c.valid && result.has_energy && result.report.status != Status::not_converged;
+  report.stable = report.certified && c.stable;
+  report.neutral = report.certified && c.neutral;
+  report.negative_modes = report.certified ? c.negative_modes : 0;
+  report.free_motions = report.certified ? c.neutral_modes : 0;
+  if (report.certified) report.free_bodies = c.free_bodies;
+  report.softest_stiffness = c.softest_stiffness;
+  if (!c.mode.empty()) {
+    report.softest_mode = describe_mode(evaluator_, c.mode, system_.radius());
+    report.softest_shape.assign(3 * model_->bodies.size(), 0.0);
+    for (int k = 0; k < plan_->columns; ++k) {
+      const int coordinate = plan_->coordinate[at(k)];
+      report.softest_shape[3 * at(plan_->model_body[at(coordinate / 3)]) + at(coordinate % 3)] = c.mode[at(k)];
+    }
+  }
+  for (int r : result.dependent_rows) {
+    const std::string name = model_->element_name(plan_->row_element[at(r)]);
+    if (report.redundant.empty() || report.redundant.back() != name) report.redundant.push_back(name);
+  }
+  if (const WatchedElements watched(evaluator_); result.report.ok() && watched.has_ends()) {
+    evaluator_.set_configuration(q_);
+    if (Report left = watched.check_ends(); !left.ok()) result.report = std::move(left);
+  }
+  if (result.report.ok()) {
+    const auto& closed = result.gaps.closed;
+    int open = 0;
+    for (std::size_t k = 0; k < closed.size(); ++k) {
+      if (closed[k]) report.active.push_back(model_->element_name(plan_->row_element[at(plan_->gap_rows[k])]));
+      open += !closed[k] || result.gaps.weak[k];
+    }
+    report.rank = plan_->rows - static_cast<int>(result.dependent_rows.size()) - open;
+    report.dof = plan_->columns - *report.rank;
+    if (!result.dependent_rows.empty()) choose_least_reactions(result.report);
+  }
+  return end(std::move(result.report));
+}
+
+bool Equilibrium::send_row(const Needs& needs, RowObserver& observer, Report& report) {
+  const Snapshot snapshot{.evaluator = evaluator_,
+                          .t = t_,
+                          .q = q_,
+                          .lambda = needs.multipliers ? std::span<const double>(lambda_) : std::span<const double>{},
+                          .residual = system_.phi_norm() * evaluator_.length_scale()};
+  if (observer.observe(snapshot)) return true;
+  report.status = Status::cancelled;
+  report.message = fmt::format("stopped at t = {:.12g} s; the rows so far are kept", t_);
+  return false;
+}
+
+EquilibriumReport Equilibrium::run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
+  EquilibriumReport report;
+  const ProcessTimer timer;
+  system_.watch([&] { return observer.proceed(t_); });
+  for (std::int64_t k = 0; k < grid.size(); ++k) {
+    t_ = grid[k];
+    if (options_.find > 1) {
+      report = find_several(needs, observer);
+      break;
+    }
+    report = solve();
+    if (!report.ok() || !send_row(needs, observer, report)) break;
+  }
+  system_.watch({});
+  report.seconds = timer.seconds();
+  return report;
+}
+
+}  // namespace catena

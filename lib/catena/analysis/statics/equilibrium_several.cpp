@@ -1,0 +1,93 @@
+// Several equilibria of one scene: the first from the given start, the others from random starts around it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "catena/analysis/statics/equilibrium.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// Starts: some for every scene, more for every equilibrium wanted.
+constexpr int least_starts = 30, starts_each = 15;
+// Places are shaken by this part of angles times the length scale, where nothing turns: else by the usual part.
+constexpr double shaken_places = 0.5, shaken_beside_angles = 0.1;
+// Places closer than this, in extents or rad (whole turns aside), are the same, if their energies are.
+constexpr double same_place = 1e-6, same_energy = 1e-9;
+
+struct Candidate {
+  std::vector<double> q, lambda;
+  EquilibriumReport report;
+};
+
+bool are_same(const Candidate& a, const Candidate& b, double extent, double energy_size) {
+  if (std::abs(a.report.energy - b.report.energy) > same_energy * energy_size) return false;
+  for (std::size_t k = 0; k < a.q.size(); ++k) {
+    const double d = a.q[k] - b.q[k];
+    const double apart = k % 3 == 2 ? std::remainder(d, 2 * std::numbers::pi) : d / extent;
+    if (std::abs(apart) > same_place) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+EquilibriumReport Equilibrium::find_several(const Needs& needs, RowObserver& observer) {
+  const std::vector<double> start = q_;
+  const StaticSearch search(system_, {});
+  const bool turns = std::any_of(plan_->coordinate.begin(), plan_->coordinate.end(), [](int k) { return k % 3 == 2; });
+  const double place = turns ? shaken_beside_angles : shaken_places;
+  std::vector<Candidate> found;
+  EquilibriumReport first;
+  const int starts = least_starts + starts_each * options_.find;
+  int used = 0;
+  for (; used < starts && static_cast<int>(found.size()) < options_.find; ++used) {
+    q_ = start;
+    solved_ = false;
+    // In turn: close to the start, everywhere, and between.
+    constexpr double angles[] = {std::numbers::pi, 0.3, 1.0};
+    if (used > 0) search.shake(q_, static_cast<unsigned>(used), angles[at(used % 3)], place);
+    Candidate candidate;
+    candidate.report = solve();
+    if (used == 0) first = candidate.report;
+    if (candidate.report.status == Status::cancelled) return candidate.report;
+    // What is loose or without a bottom is so from every start.
+    if (used == 0 && !first.ok() && first.status != Status::not_converged && first.status != Status::not_assembled)
+      break;
+    if (!candidate.report.ok()) continue;
+    candidate.q = q_;
+    candidate.lambda = lambda_;
+    const double energy_size = std::max(std::abs(candidate.report.energy), system_.load_size() * system_.length());
+    const bool known = std::any_of(found.begin(), found.end(), [&](const Candidate& other) {
+      return are_same(candidate, other, system_.extent(), energy_size);
+    });
+    if (!known) found.push_back(std::move(candidate));
+  }
+  if (found.empty()) return first;
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.report.energy < b.report.energy; });
+  EquilibriumReport report = found.front().report;
+  report.counters = evaluator_.counters;
+  for (const Candidate& candidate : found) {
+    const EquilibriumReport& r = candidate.report;
+    report.found.push_back({r.energy, r.stable, r.negative_modes, r.residual});
+  }
+  report.warnings.push_back(fmt::format("{} different equilibria found from {} starts, {} wanted; there may be others",
+                                        found.size(), used, options_.find));
+  for (const Candidate& candidate : found) {
+    q_ = candidate.q;
+    lambda_ = candidate.lambda;
+    system_.move_to(q_);
+    if (!send_row(needs, observer, report)) break;
+  }
+  q_ = found.front().q;
+  lambda_ = found.front().lambda;
+  system_.move_to(q_);
+  return report;
+}
+
+}  // namespace catena

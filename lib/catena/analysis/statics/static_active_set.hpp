@@ -1,0 +1,24 @@
+// What the two parts of static_gaps.hpp share: the units in which gaps and their forces are compared.
+//
+// A gap counts in a length L or in radians, its force in F or F L, F a force that is typical of the mechanism, N.
+#pragma once
+
+#include "catena/analysis/balance/static_system.hpp"
+
+namespace catena {
+
+struct GapUnits {
+  double gap = 1, force = 1;
+};
+
+/// Of a gap's row, from L and F: 1 rad and F L against angles.
+inline GapUnits units_of(const StaticSystem& system, int row, const GapUnits& scale) {
+  const bool angle = system.plan().row_is_angle[static_cast<std::size_t>(row)] != 0;
+  return angle ? GapUnits{1, scale.force * scale.gap} : scale;
+}
+
+/// The largest dead load (springs on the way to their places may hold any force); where there is none, what one
+/// thousandth of a length scale makes of the stiffest spring; 1 N where there is neither.
+double typical_force(StaticSystem& system);
+
+}  // namespace catena

@@ -1,0 +1,50 @@
+// Newton's method on the equations of static equilibrium with gaps, from anywhere; ends on the exact active set.
+//
+//   V_q + Phi_q^T lambda - Psi_q^T p = 0,   Phi = 0,   p >= 0,   Psi >= 0,   p Psi = 0
+//
+// First smoothed: the last three are p Psi = mu, written as the smooth equation
+//
+//   w + p - sqrt((w - p)^2 + 4 t^2) = 0        w, p: gap and force in the units L and F (F L against angles), mu = t^2
+//
+// which full Newton steps may leave on any side, other than an interior point's. Linearised it is one row of the matrix
+// of equilibrium, Psi_q dq - d lambda = ..., d > 0 a compliance (kkt_matrix.hpp): stiff where the gap is about to
+// close, soft where it is open, and the inertia says the same as without gaps. K and clipped turns are those of
+// static_newton.hpp; t falls as fast as the steps become short. Then exactly: the gaps with p > w hold as equations,
+// the others not at all; solved to rounding by Newton; those with p < 0 are released, those with Psi < 0 are added, all
+// at once at first, one by one, the worst first, where a set comes back. Source: Chen and Harker, SIAM J. Matrix Anal.
+// Appl. 14 (1993), for the smoothing; Nocedal and Wright, Numerical Optimization, chapter 16, for active sets.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "catena/analysis/statics/static_newton.hpp"
+
+namespace catena {
+
+/// Which gaps are closed, one entry a gap in the order of Plan::gap_rows.
+struct ActiveSet {
+  std::vector<char> closed;
+  std::vector<char> weak;  ///< closed without force, or open by nothing: rounding decides which
+  int changes = 0;         ///< sets that were tried beside the first
+};
+
+struct StaticGapOptions {
+  int max_iterations = 200;  ///< of the smoothed equations
+  int first_steps = 80;      ///< of them, until the first smoothing has arrived
+  double tolerance = 1e-12;  ///< of gaps in length scales or rad, of their forces relative to the largest one
+};
+
+/// Iterates q (size coordinates()) and lambda (rows) in place; `set` is filled. The system is left with the closed gaps
+/// as equations.
+StaticOutcome solve_with_gaps(StaticSystem& system, std::span<double> q, std::span<double> lambda, ActiveSet& set,
+                              const StaticGapOptions& options);
+
+/// The same from a point near a solution, with multipliers: the second part alone.
+StaticOutcome finish_with_gaps(StaticSystem& system, std::span<double> q, std::span<double> lambda, ActiveSet& set,
+                               const StaticGapOptions& options);
+
+/// All gaps at the system's configuration, m or rad, in the order of Plan::gap_rows.
+std::vector<double> gap_values(StaticSystem& system);
+
+}  // namespace catena

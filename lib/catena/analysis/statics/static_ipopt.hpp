@@ -1,0 +1,32 @@
+// Static equilibrium by Ipopt's interior-point method with MUMPS: exact gradient, Jacobian and Hessian of the
+// Lagrangian, their patterns from the plan.
+//
+// Ipopt's tolerance is absolute, so it is given a scaled problem: lengths in extents L of the scene, angles in rad,
+// forces in units of the sum F of all applied forces, energies in F L. Rows that depend on
+// others at the start are left out (their multipliers are zero): an interior-point method wants independent equations.
+// One-sided rows become bounds on them. What it cannot do: tell a minimum from another stationary point (the
+// certificate does), nor promise the valley of the start. One problem at a time runs in a process: MUMPS shares its
+// workspace. Source: Waechter, Biegler, Math. Program. 106 (2006).
+#pragma once
+
+#include <span>
+
+#include "catena/analysis/statics/static_newton.hpp"
+
+namespace catena {
+
+struct StaticIpoptOptions {
+  int max_iterations = 500;
+  double tolerance = 1e-11;  ///< of residual forces relative to the largest force, of constraints to the length
+  bool warm = false;         ///< q and lambda are near a solution
+  bool verbose = false;      ///< Ipopt's log to standard error
+};
+
+/// Whether the library was built with Ipopt (CATENA_WITH_IPOPT).
+bool ipopt_is_built_in();
+
+/// Iterates q (size coordinates()) and lambda (rows) in place. Misuse where ipopt_is_built_in() is false: singular.
+StaticOutcome solve_by_ipopt(StaticSystem& system, std::span<double> q, std::span<double> lambda,
+                             const StaticIpoptOptions& options);
+
+}  // namespace catena

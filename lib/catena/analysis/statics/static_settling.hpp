@@ -1,0 +1,31 @@
+// Static equilibrium by settling: the motion with nothing but damping in the metric W = (1, 1, radius^2), followed by
+// implicit steps that lengthen as the forces fade, down to Newton's own steps.
+//
+//   [ K + s W   Phi_q^T ] [ dq      ]   [ Q - Phi_q^T lambda ]        K = -dQ/dq + sum lambda Phi_qq
+//   [ Phi_q       -E    ] [ dlambda ] = [ -Phi               ]
+//
+// s = W / time step, N/m: reduced in proportion to the residual force, raised where a step made it much larger. K is
+// the true tangent and need not be symmetric: forces that follow a body's axes have no energy, and this is the solver
+// for them. Where there is an energy it is a last resort: it goes downhill in general, but promises no minimum.
+// E is tiny and lets dependent rows pass; it does not enter the solution. Singular case: a direction in which nothing
+// resists and nothing pulls. Source: Kelley and Keyes, SIAM J. Numer. Anal. 35 (1998), pseudo-transient continuation.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "catena/analysis/statics/static_newton.hpp"
+#include "catena/linalg/factorization/factorization.hpp"
+
+namespace catena {
+
+struct StaticSettlingOptions {
+  int max_iterations = 1000;
+  double tolerance = 1e-12;  ///< of the residual force, relative to the largest force
+};
+
+/// Iterates q (size coordinates()) and lambda (rows) in place.
+StaticOutcome solve_by_settling(StaticSystem& system, std::span<double> q, std::span<double> lambda,
+                                const StaticSettlingOptions& options);
+
+}  // namespace catena

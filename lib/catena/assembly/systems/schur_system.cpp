@@ -1,0 +1,321 @@
+#include "catena/assembly/systems/schur_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+constexpr double regularisation = 1e-12;  // part of the diagonal that is added
+constexpr double singular_ratio = 1e-10;  // below this pivot ratio it is
+// Rounds in which a residual that shrinks to a half, at least, comes to rounding.
+constexpr int most_massless_rounds = 52;
+constexpr double massless_rounding = 1e-15;
+constexpr int most_probes = 4;  // random loads: a coordinate that resists all of them is rare, and only costs rounds
+constexpr double unequal_masses = 1e5;     // largest to least; from here on light bodies cost digits
+constexpr double refinement_ratio = 1e-5;  // below this one solutions are refined
+
+}  // namespace
+
+SchurSystem::SchurSystem(std::shared_ptr<const Plan> plan) : plan_(std::move(plan)) {
+  const SparsePattern& a = plan_->jacobian;
+  const std::size_t coordinates = at(3 * plan_->moving);
+  inverse_masses_.assign(coordinates, 1.0);
+  change_.resize(coordinates);
+  right_hand_side_.resize(at(plan_->rows));
+  correction_.resize(at(plan_->rows));
+  column_start_.assign(coordinates + 1, 0);
+  for (std::size_t k = 0, c = 0; k < coordinates; ++k) {
+    if (plan_->column[k] >= 0) c = at(plan_->column[k]) + 1;
+    column_start_[k + 1] = a.column_start[c];
+  }
+}
+
+void SchurSystem::set_masses(std::span<const double> masses, std::span<const double> substitutes) {
+  masses_.assign(masses.begin(), masses.end());
+  massless_.clear();
+  double least[2] = {}, largest[2] = {};  // of masses, of moments of inertia
+  for (std::size_t c = 0; c < masses.size(); ++c) {
+    const std::size_t kind = c % 3 == 2 ? 1 : 0;
+    largest[kind] = std::max(largest[kind], masses[c]);
+    if (masses[c] > 0 && (least[kind] == 0 || masses[c] < least[kind])) least[kind] = masses[c];
+    const double mass = masses[c] > 0 ? masses[c] : substitutes[c];
+    inverse_masses_[c] = mass > 0 ? 1 / mass : 0;
+    if (!(masses[c] > 0) && mass > 0) massless_.push_back(static_cast<int>(c));
+  }
+  unequal_ = largest[0] > unequal_masses * least[0] || largest[1] > unequal_masses * least[1];
+  if (!massless_.empty() || unequal_) {
+    rest_Q_.resize(masses.size());
+    extra_qdd_.resize(masses.size());
+    rest_gamma_.resize(at(plan_->rows));
+    extra_lambda_.resize(at(plan_->rows));
+  }
+  constants_known_ = false;
+}
+
+void SchurSystem::leave_out(SparseVectors directions) {
+  // Until the next factorization the diagonal is that of S + C, too.
+  const auto add_squares = [&](double sign) {
+    for (std::size_t n = 0; n < left_out_.index.size() && analyzed_; ++n) {
+      diagonal_values_[at(left_out_.index[n])] += sign * left_out_.value[n] * left_out_.value[n];
+    }
+  };
+  add_squares(-1);
+  left_out_ = std::move(directions);
+  add_squares(1);
+  place_left_out();
+}
+
+void SchurSystem::add_left_out(double factor, std::span<const double> lambda, std::span<double> out) const {
+  for (int k = 0; k < left_out_.count(); ++k) {
+    const std::span<const int> rows = left_out_.indices(k);
+    const std::span<const double> c = left_out_.values(k);
+    double sum = 0;
+    for (std::size_t a = 0; a < c.size(); ++a) sum += c[a] * lambda[at(rows[a])];
+    for (std::size_t a = 0; a < c.size(); ++a) out[at(rows[a])] += factor * sum * c[a];
+  }
+}
+
+void SchurSystem::solve_rows(std::span<double> x, Counters& counters) {
+  std::copy(x.begin(), x.end(), right_hand_side_.begin());
+  solve_refined(x, right_hand_side_, counters);
+}
+
+std::vector<double> SchurSystem::row_sizes() const {
+  std::vector<double> sizes = diagonal_values_;
+  for (std::size_t n = 0; n < left_out_.index.size(); ++n) {
+    sizes[at(left_out_.index[n])] -= left_out_.value[n] * left_out_.value[n];
+  }
+  for (double& size : sizes) size = std::sqrt(std::max(size, 0.0));
+  return sizes;
+}
+
+void SchurSystem::assemble(std::span<const Column> columns, const int* slot, std::span<double> values) const {
+  const double* jacobian = jacobian_.data();
+  for (const Column& column : columns) {
+    const double inverse_mass = inverse_masses_[at(column.coordinate)];
+    for (int x = column.first; x < column.last; ++x) {
+      const double factor = inverse_mass * jacobian[x];
+      for (int y = column.first; y <= x; ++y) values[at(*slot++)] += factor * jacobian[y];
+    }
+  }
+}
+
+void SchurSystem::fill(double regularised_part) {
+  const std::span<double> values = factors_.values();
+  std::copy(constant_values_.begin(), constant_values_.end(), values.begin());
+  assemble(varying_, varying_slot_.data(), values);
+  const int* slot = left_out_slot_.data();
+  for (int k = 0; k < left_out_.count(); ++k) {
+    const std::span<const double> c = left_out_.values(k);
+    for (std::size_t a = 0; a < c.size(); ++a) {
+      for (std::size_t b = 0; b <= a; ++b) values[at(*slot++)] += c[a] * c[b];
+    }
+  }
+  for (std::size_t k = 0; k < diagonal_.size(); ++k) {
+    double& value = values[at(diagonal_[k])];
+    // A row that touches nothing that can move must not stop the others.
+    if (value == 0) value = 1;
+    diagonal_values_[k] = value;
+    value *= 1 + regularised_part;
+  }
+}
+
+bool SchurSystem::factor_values(Counters& counters) {
+  const FactorResult result = factors_.factorize(counters);
+  smallest_ratio_ = 1;
+  weakest_row_ = -1;
+  if (!result.ok()) {
+    smallest_ratio_ = 0;
+    weakest_row_ = result.index;
+    return result.status == FactorStatus::singular;
+  }
+  const std::span<const double> pivot = factors_.pivots();
+  const std::span<const int> order = factors_.order();
+  std::size_t weakest = 0;
+  double smallest = 2;
+  for (std::size_t k = 0; k < pivot.size(); ++k) {
+    const double ratio = pivot[k] / diagonal_values_[at(order[k])];
+    if (ratio < smallest) {
+      smallest = ratio;
+      weakest = k;
+    }
+  }
+  smallest_ratio_ = std::max(smallest, 0.0);
+  weakest_row_ = order[weakest];
+  return true;
+}
+
+bool SchurSystem::factorize(std::span<const double> jacobian, Counters& counters) {
+  jacobian_ = jacobian;
+  if (plan_->rows == 0) return true;
+  if (!analyzed_ && !analyze(counters)) return false;
+  if (!constants_known_) {
+    std::fill(constant_values_.begin(), constant_values_.end(), 0.0);
+    assemble(constant_, constant_slot_.data(), constant_values_);
+    constants_known_ = true;
+  }
+  // Where rows depended on each other the last time they probably still do.
+  fill(regularised_ ? regularisation : 0);
+  if (!factor_values(counters)) return false;
+  if (smallest_ratio_ < singular_ratio && !regularised_) {
+    fill(regularisation);
+    regularised_ = true;
+    return factor_values(counters) && smallest_ratio_ > 0;
+  }
+  regularised_ = smallest_ratio_ < singular_ratio || (regularised_ && smallest_ratio_ < 10 * singular_ratio);
+  return true;
+}
+
+void SchurSystem::multiply_add(std::span<const double> x, std::span<double> out) const {
+  const double* jacobian = jacobian_.data();
+  const int* row = plan_->jacobian.row_index.data();
+  for (std::size_t c = 0; c + 1 < column_start_.size(); ++c) {
+    const double factor = x[c];
+    for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) out[at(row[k])] += jacobian[k] * factor;
+  }
+}
+
+void SchurSystem::spread(std::span<const double> lambda, std::span<double> x) const {
+  const double* jacobian = jacobian_.data();
+  const int* row = plan_->jacobian.row_index.data();
+  for (std::size_t c = 0; c + 1 < column_start_.size(); ++c) {
+    double sum = 0;
+    for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) sum += jacobian[k] * lambda[at(row[k])];
+    x[c] = inverse_masses_[c] * sum;
+  }
+}
+
+void SchurSystem::solve(std::span<double> x, Counters& counters) { factors_.solve(x, counters); }
+
+void SchurSystem::solve_refined(std::span<double> lambda, std::span<const double> b, Counters& counters) {
+  solve(lambda, counters);
+  if (smallest_ratio_ >= refinement_ratio) return;
+  spread(lambda, change_);
+  std::fill(correction_.begin(), correction_.end(), 0.0);
+  multiply_add(change_, correction_);
+  add_left_out(1, lambda, correction_);
+  for (std::size_t k = 0; k < correction_.size(); ++k) correction_[k] = b[k] - correction_[k];
+  solve(correction_, counters);
+  for (std::size_t k = 0; k < correction_.size(); ++k) lambda[k] += correction_[k];
+}
+
+void SchurSystem::solve_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
+                               std::span<double> lambda, Counters& counters) {
+  solve_with_masses(Q, gamma, qdd, lambda, counters);
+  if (!massless_.empty() || unequal_) refine_motion(Q, gamma, qdd, lambda, counters);
+}
+
+void SchurSystem::solve_with_masses(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
+                                    std::span<double> lambda, Counters& counters) {
+  const std::size_t coordinates = inverse_masses_.size();
+  for (std::size_t c = 0; c < coordinates; ++c) qdd[c] = inverse_masses_[c] * Q[c];
+  if (plan_->rows == 0) return;
+  for (std::size_t k = 0; k < right_hand_side_.size(); ++k) right_hand_side_[k] = -gamma[k];
+  multiply_add(qdd, right_hand_side_);
+  std::copy(right_hand_side_.begin(), right_hand_side_.end(), lambda.begin());
+  solve_refined(lambda, right_hand_side_, counters);
+  const double* jacobian = jacobian_.data();
+  const int* row = plan_->jacobian.row_index.data();
+  for (std::size_t c = 0; c < coordinates; ++c) {
+    double sum = 0;
+    for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) sum += jacobian[k] * lambda[at(row[k])];
+    qdd[c] -= inverse_masses_[c] * sum;
+  }
+}
+
+// What massless coordinates lack of equilibrium, rest_Q_ there, compared with the largest force of all.
+double SchurSystem::find_massless_residual(std::span<const double> Q, std::span<const double> lambda) {
+  double largest = 0, left = 0;
+  for (std::size_t c = 0; c < rest_Q_.size(); ++c) {
+    double sum = std::abs(Q[c]);
+    for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) {
+      sum += std::abs(jacobian_[at(k)] * lambda[at(plan_->jacobian.row_index[at(k)])]);
+    }
+    largest = std::max(largest, sum * std::sqrt(inverse_masses_[c]));
+  }
+  for (int c : massless_) {
+    const double part = std::abs(rest_Q_[at(c)]) * std::sqrt(inverse_masses_[at(c)]);
+    if (part > left) {
+      left = part;
+      worst_massless_ = c;
+    }
+  }
+  return left > 0 ? left / largest : 0;
+}
+
+// Adds the solution for what the true equations leave: Q - M qdd - Phi_q^T lambda and gamma - Phi_q qdd. One round
+// where masses are only unequal; with massless coordinates until nothing is gained any more.
+void SchurSystem::refine_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
+                                std::span<double> lambda, Counters& counters) {
+  double first_change = 0;
+  massless_residual_ = 0;
+  for (int round = 0;; ++round) {
+    for (std::size_t c = 0; c < rest_Q_.size(); ++c) {
+      double rest = 0;
+      if (inverse_masses_[c] > 0) {
+        rest = Q[c] - masses_[c] * qdd[c];
+        for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) {
+          rest -= jacobian_[at(k)] * lambda[at(plan_->jacobian.row_index[at(k)])];
+        }
+      }
+      rest_Q_[c] = rest;
+    }
+    if (!massless_.empty()) {
+      const double before = massless_residual_;
+      massless_residual_ = find_massless_residual(Q, lambda);
+      const bool shrinks = round == 0 || massless_residual_ < 0.5 * before;
+      if (!(massless_residual_ > massless_rounding) || !shrinks || round == most_massless_rounds) return;
+    }
+    std::copy(gamma.begin(), gamma.end(), rest_gamma_.begin());
+    for (std::size_t c = 0; c < rest_Q_.size(); ++c) extra_qdd_[c] = -qdd[c];
+    multiply_add(extra_qdd_, rest_gamma_);
+    add_left_out(1, lambda, rest_gamma_);
+    solve_with_masses(rest_Q_, rest_gamma_, extra_qdd_, extra_lambda_, counters);
+    double change = 0, whole = 0;
+    for (std::size_t c = 0; c < rest_Q_.size(); ++c) {
+      change = std::max(change, std::abs(extra_qdd_[c]));
+      whole = std::max(whole, std::abs(qdd[c]));
+      qdd[c] += extra_qdd_[c];
+    }
+    for (std::size_t k = 0; k < extra_lambda_.size(); ++k) lambda[k] += extra_lambda_[k];
+    if (round == 0) first_change = change;
+    // Every round leaves the same part of what it changed.
+    if (massless_.empty() && (round > 2 || !(change * first_change > 1e-15 * whole * whole))) return;
+  }
+}
+
+std::vector<double> SchurSystem::massless_shares(Counters& counters) {
+  std::vector<double> shares(massless_.size(), 0.0), loads(inverse_masses_.size()), qdd(loads), lambda(at(plan_->rows));
+  const std::vector<double> gamma(lambda);
+  std::mt19937 random(1);
+  for (int probe = 0; probe < most_probes; ++probe) {
+    for (int c : massless_) loads[at(c)] = (random() & 1 ? 1 : -1) / std::sqrt(inverse_masses_[at(c)]);
+    solve_with_masses(loads, gamma, qdd, lambda, counters);
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      const std::size_t c = at(massless_[k]);
+      shares[k] = std::max(shares[k], std::abs(qdd[c]) / std::sqrt(inverse_masses_[c]));
+    }
+  }
+  return shares;
+}
+
+void SchurSystem::least_change(std::span<const double> b, std::span<double> x, std::span<double> lambda,
+                               Counters& counters) {
+  std::copy(b.begin(), b.end(), lambda.begin());
+  std::copy(b.begin(), b.end(), right_hand_side_.begin());
+  solve_refined(lambda, right_hand_side_, counters);
+  spread(lambda, x);
+}
+
+void SchurSystem::least_change_rough(std::span<const double> b, std::span<double> x, std::span<double> lambda,
+                                     Counters& counters) {
+  std::copy(b.begin(), b.end(), lambda.begin());
+  solve(lambda, counters);
+  spread(lambda, x);
+}
+
+}  // namespace catena

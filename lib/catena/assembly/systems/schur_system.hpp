@@ -1,0 +1,142 @@
+// The equations of motion by the Schur complement of the constraints, for bodies that all have mass:
+//
+//   [M, Phi_q^T; Phi_q, 0] [qdd; lambda] = [Q; gamma]
+//   S lambda = Phi_q M^-1 Q - gamma        qdd = M^-1 (Q - Phi_q^T lambda)        S = Phi_q M^-1 Phi_q^T
+//
+// and the least change, in the mass metric, that constraints ask for: x = M^-1 Phi_q^T S^-1 b. M is diagonal, so that S
+// is assembled column by column of Phi_q straight into the place where it is factored; products of constant columns are
+// formed once. Vectors are in coordinates: three a moving body.
+//
+// Massless coordinates (M only positive definite where the constraints leave freedom) get a small mass s, and the
+// solution is refined with the true M until what is left at them is rounding: with r the constrained mass, that which
+// really resists, each round leaves s / (s + r). s is to be small beside r and no smaller: it costs log(r / s) digits
+// of every single solve. Residuals are measured as forces over the root of s, compared with the largest such force.
+//
+// Very unequal masses: the inverse of a light one drowns the others' in S, and accelerations as M^-1 (Q - Phi_q^T
+// lambda) are differences of large numbers. One round of refinement with the residuals of both equations brings the
+// digits back, as far as the masses that matter determine them.
+//
+// Rows that always depend on others (redundant constraints) make S singular along the motion. For each dependence one
+// direction c among the rows of one element is left out: no multiplier acts along it, and its equation is not solved,
+//
+//   [M, Phi_q^T; Phi_q, -C] [qdd; lambda] = [Q; gamma]        C = sum c c^T,   S + C in place of S
+//
+// With as many directions as dependences, none of them orthogonal to the null space of S, the matrix is regular, and
+// on the constraints C lambda = 0 holds by itself: the solution is the exact one, with multipliers that have no part
+// along c. Off the constraints by d, where integrators evaluate their stages, the solution changes by O(d) and
+// smoothly. (Regularising the rows instead gives multipliers of O(1/d) there, and accelerations that are wrong by
+// O(1).)
+//
+// Singular case: rows that depend on each other for an instant. As soon as a pivot keeps less than 1e-10 of its
+// diagonal, 1e-12 of the diagonal is added and solutions are refined with the true S: accelerations are then exact on
+// the constraints, multipliers one of many. Nothing allocates after the first factorization.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "catena/assembly/plan.hpp"
+#include "catena/base/counters.hpp"
+#include "catena/linalg/block/block_factorization.hpp"
+#include "catena/linalg/patterns/sparse_vectors.hpp"
+
+namespace catena {
+
+class SchurSystem {
+ public:
+  explicit SchurSystem(std::shared_ptr<const Plan> plan);
+
+  /// Masses by coordinate, size 3 plan.moving, and what counts for those that are zero; zero there too holds a
+  /// coordinate where it is.
+  void set_masses(std::span<const double> masses, std::span<const double> substitutes);
+
+  /// Directions c to leave out, each within the rows of one element and of the size of sqrt(S) there; none: all rows
+  /// are solved for. Takes effect with the next factorize().
+  void leave_out(SparseVectors directions);
+  const SparseVectors& left_out() const { return left_out_; }
+  /// x = (S + C)^-1 x. On the constraints the solutions for all c span the left null space of Phi_q.
+  void solve_rows(std::span<double> x, Counters& counters);
+  /// sqrt(S_rr) of the last factorize(), by row: what a unit of its multiplier counts in the metric of the masses.
+  std::vector<double> row_sizes() const;
+
+  /// Factors S at the given values of Phi_q (size entries + 1); they must stay where they are for the solves.
+  /// False if that is impossible: a value that is not finite.
+  bool factorize(std::span<const double> jacobian, Counters& counters);
+
+  /// qdd and lambda from Q and gamma. Sizes: coordinates (Q, qdd), rows (gamma, lambda). `lambda` may be `gamma`.
+  void solve_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
+                    std::span<double> lambda, Counters& counters);
+  /// Part of M qdd - Q + Phi_q^T lambda that the last solve_motion() left at massless coordinates, relative to the
+  /// forces in it; 0 without such coordinates. Near 1: nothing that has mass determines their motion.
+  double massless_residual() const { return massless_residual_; }
+  /// s / (s + r) of every massless coordinate, in the order of their numbers, or somewhat more: from a few solves with
+  /// random loads. Changes what solve_motion() left.
+  std::vector<double> massless_shares(Counters& counters);
+  /// The coordinate where it was largest.
+  int worst_massless() const { return worst_massless_; }
+
+  /// The least x, in the mass metric, with Phi_q x = b. Sizes: rows (b, lambda), coordinates (x).
+  void least_change(std::span<const double> b, std::span<double> x, std::span<double> lambda, Counters& counters);
+
+  /// The same without refinement: good to the last digits where rows are independent, to 1e-12 / sin^2 elsewhere.
+  void least_change_rough(std::span<const double> b, std::span<double> x, std::span<double> lambda, Counters& counters);
+
+  /// out += Phi_q x.
+  void multiply_add(std::span<const double> x, std::span<double> out) const;
+
+  /// Smallest part of a diagonal entry of S that elimination left: sin^2 of the angle between a row and those before.
+  double smallest_pivot_ratio() const { return smallest_ratio_; }
+  int weakest_row() const { return weakest_row_; }
+  /// Diagonal entry of S + C that belongs to the row; 1 where nothing that it touches can move.
+  double diagonal(int row) const { return diagonal_values_[static_cast<std::size_t>(row)]; }
+  /// What elimination left of the row's diagonal entry of S + C.
+  double pivot(int row) const { return factors_.pivot(row); }
+  bool is_regularised() const { return regularised_; }
+
+ private:
+  struct Column {
+    int coordinate;
+    int first, last;  // entries of Phi_q
+  };
+  bool analyze(Counters& counters);
+  bool analyze_factors(const SparsePattern& lower, Counters& counters);
+  void assemble(std::span<const Column> columns, const int* slot, std::span<double> values) const;
+  void place_left_out();
+  /// S + C, its diagonal increased by a part of itself, to where it is factored.
+  void fill(double regularised_part);
+  /// out += factor C lambda.
+  void add_left_out(double factor, std::span<const double> lambda, std::span<double> out) const;
+  bool factor_values(Counters& counters);
+  void solve(std::span<double> x, Counters& counters);
+  /// x = M^-1 Phi_q^T lambda.
+  void spread(std::span<const double> lambda, std::span<double> x) const;
+  void solve_refined(std::span<double> lambda, std::span<const double> b, Counters& counters);
+  void solve_with_masses(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
+                         std::span<double> lambda, Counters& counters);
+  double find_massless_residual(std::span<const double> Q, std::span<const double> lambda);
+  void refine_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
+                     std::span<double> lambda, Counters& counters);
+
+  std::shared_ptr<const Plan> plan_;
+  std::vector<double> masses_, inverse_masses_;
+  std::vector<int> massless_;
+  std::span<const double> jacobian_;
+  std::vector<int> column_start_;  // of Phi_q, by coordinate
+  std::vector<Column> varying_, constant_;
+  std::vector<int> varying_slot_, constant_slot_;  // of the products of each column
+  std::vector<int> diagonal_;                      // by row
+  std::vector<int> pair_start_, pair_slot_;        // of every row: pairs with the rows of its element up to itself
+  SparseVectors left_out_;
+  std::vector<int> left_out_slot_;  // of the products of each direction
+  std::vector<double> constant_values_, diagonal_values_;
+  std::vector<double> right_hand_side_, correction_, change_;
+  std::vector<double> rest_Q_, rest_gamma_, extra_qdd_, extra_lambda_;  // for massless coordinates and unequal masses
+  BlockFactorization factors_;
+  bool analyzed_ = false, constants_known_ = false, regularised_ = false, unequal_ = false;
+  double smallest_ratio_ = 1;
+  double massless_residual_ = 0;
+  int weakest_row_ = -1, worst_massless_ = -1;
+};
+
+}  // namespace catena

@@ -1,0 +1,155 @@
+#include "catena/scene/describing/analysis_description.hpp"
+
+#include "catena/analysis/dynamics/dynamics_options.hpp"
+
+namespace catena {
+namespace {
+
+using Keys = std::vector<AnalysisKey>;
+
+const AnalysisKey type{"type", KeyKind::word, "which analysis"};
+const AnalysisKey outputs{"outputs", KeyKind::columns, "columns of its rows (default: the scene's outputs)"};
+const AnalysisKey set{"set", KeyKind::set, "parameters and their values, for this analysis"};
+const AnalysisKey from{"from",
+                       KeyKind::word,
+                       "\"initial\": starts at t = 0 from the given configuration, not where the one before ended",
+                       {},
+                       {},
+                       {"previous", "initial"}};
+const AnalysisKey until{"until", KeyKind::number, "last instant, s", UnitKind::time, Domain::positive};
+const AnalysisKey every{"every", KeyKind::number, "a row at every multiple of it, s (default: a hundredth of until)",
+                        UnitKind::time, Domain::positive};
+const AnalysisKey at_times{"at", KeyKind::times, "an instant or a list of instants, in place of until and every, s",
+                           UnitKind::time, Domain::any};
+const AnalysisKey at_time{"at", KeyKind::time, "instant at which functions of time are frozen (default: the current)",
+                          UnitKind::time, Domain::any};
+const AnalysisKey free_motions{"free",
+                               KeyKind::word,
+                               "what to do where motions are not driven: refuse, or take the smallest velocities",
+                               {},
+                               {},
+                               {"refuse", "minimum_norm"}};
+const AnalysisKey branch{"branch", KeyKind::whole, "which of the branches listed where several meet, from 1"};
+const AnalysisKey tolerance{"tolerance", KeyKind::number, "relative error allowed", UnitKind::none, Domain::positive};
+const AnalysisKey parameter{
+    "parameter", KeyKind::parameter, "the parameter that changes", UnitKind::none, Domain::any, {}, true};
+
+AnalysisDescription make(std::string_view name, std::string_view summary, std::string_view results, bool timed,
+                         Keys keys) {
+  AnalysisDescription d{name, summary, results, timed, false, {type, set, from}};
+  d.keys.insert(d.keys.end(), keys.begin(), keys.end());
+  return d;
+}
+
+/// An analysis whose keys are not known yet.
+AnalysisDescription announce(std::string_view name, std::string_view summary) {
+  return {name, summary, "", false, true, {type, outputs, set, from}};
+}
+
+std::vector<AnalysisDescription> describe_all() {
+  return {
+      make("check", "Bodies, equations, degrees of freedom by count and by rank, redundant constraints, islands.",
+           "bodies, rows, rank, dof, mobility, redundant, islands", false, {at_time}),
+      make("assemble", "The configuration nearest to the given one that meets all constraints.",
+           "residual, moved, iterations", false, {outputs, at_time}),
+      make("kinematics", "Positions, velocities and accelerations of a driven mechanism over time.",
+           "dof, mobility, singular", true, {outputs, until, every, at_times, free_motions, branch}),
+      make("inverse_dynamics", "Loads of drivers and reactions in a driven mechanism over time.",
+           "dof, mobility, singular", true, {outputs, until, every, at_times, free_motions, branch}),
+      make("dynamics", "Motion under forces over time.",
+           "method, events, estimated_error, integrated_apart (how many groups of mechanisms had steps of their own)",
+           true,
+           {outputs,
+            until,
+            every,
+            at_times,
+            tolerance,
+            {"method",
+             KeyKind::word,
+             "integrator: rk8, rk5 (Runge-Kutta) and adams (multistep, fewest evaluations in smooth motions) project "
+             "onto "
+             "the constraints after every step, baumgarte stabilises them and shows how they drift, partitioning "
+             "integrates independent coordinates; auto takes adams for open chains of ten bodies and more, else rk8",
+             {},
+             {},
+             {integration_methods.begin(), integration_methods.end()}},
+            {"step", KeyKind::number, "fixed step, s (default: chosen by the tolerance)", UnitKind::time},
+            {"max_steps", KeyKind::whole,
+             "largest number of steps, rejected ones included: the analysis ends when it will not do (default 10^7)"},
+            {"estimate_error", KeyKind::flag,
+             "whether to run it a second time, at a tenth of the tolerance or half the step: estimated_error is the "
+             "largest difference of the two at its rows, which are those of the finer run"},
+            {"events", KeyKind::events, "what to watch for, and what to do then"}}),
+      make("equilibrium", "A configuration at rest, and whether it is stable.",
+           "energy, stable, neutral, negative_modes, free_motions and moving_freely (what nothing resists to second "
+           "order), residual, solver, iterations, active (the closed gaps), equilibria",
+           false,
+           {outputs,
+            at_time,
+            tolerance,
+            {"solver", KeyKind::word, "numerical method", {}, {}, {"auto", "newton", "ipopt", "nlopt"}},
+            {"accept", KeyKind::word, "which equilibria count", {}, {}, {"stable", "stationary"}},
+            {"find", KeyKind::whole, "how many equilibria to look for (default 1)"}}),
+      make("path", "Equilibria as a parameter changes, one row a step and one a critical point.",
+           "critical, negative_modes, steps", false,
+           {outputs,
+            at_time,
+            parameter,
+            {"to", KeyKind::number, "last value of the parameter", UnitKind::none, Domain::any, {}, true},
+            {"max_steps", KeyKind::whole, "largest number of steps (default 500)"},
+            {"arc", KeyKind::number,
+             "longest step: travel of the bodies in parts of the extent and change of the parameter in parts of its "
+             "range "
+             "(default 0.05)",
+             UnitKind::none, Domain::positive},
+            {"branch", KeyKind::whole,
+             "at the first branch point: 1 goes straight on (default), 2 and 3 leave to either side"}}),
+      make("buckling",
+           "Values of a load parameter at which the current equilibrium, kept in place, loses its stability.", "loads",
+           false, {outputs, at_time, parameter, {"count", KeyKind::whole, "how many loads (default 1)"}}),
+      make("modes", "Small undamped oscillations about the current configuration at rest: omega^2 ascending.",
+           "omega2, omega, unstable, free_motions and moving_freely (those with omega2 = 0)", false,
+           {outputs,
+            at_time,
+            {"count", KeyKind::whole, "how many modes (default: all, at most ten)"},
+            {"shapes", KeyKind::flag,
+             "whether to add columns with the shapes: what each output moves by, for a modal mass of 1 kg m^2"}}),
+      announce("sensitivity", "Derivatives of results with respect to parameters."),
+      announce("optimise", "Parameters that make an objective least."),
+      announce("sweep", "An analysis repeated over values of parameters."),
+  };
+}
+
+}  // namespace
+
+const AnalysisKey* AnalysisDescription::find(std::string_view key) const {
+  for (const AnalysisKey& known : keys) {
+    if (known.name == key) return &known;
+  }
+  return nullptr;
+}
+
+std::span<const AnalysisKey> event_keys() {
+  static const Keys keys{
+      {"name", KeyKind::word, "its name in the results"},
+      {"when", KeyKind::columns, "the column that is watched", {}, {}, {}, true},
+      {"value", KeyKind::number, "the value at which the event happens (default 0)", UnitKind::none, Domain::any},
+      {"direction", KeyKind::word, "rising, falling or both", {}, {}, {"any", "up", "down"}},
+      {"action", KeyKind::word, "what happens then", {}, {}, {"record", "stop", "release", "engage"}},
+      {"element", KeyKind::word, "the element that is released or engaged"}};
+  return keys;
+}
+
+std::span<const AnalysisDescription> analysis_descriptions() {
+  static const std::vector<AnalysisDescription> all = describe_all();
+  return all;
+}
+
+const AnalysisDescription* find_analysis_type(std::string_view type_name) {
+  for (const AnalysisDescription& description : analysis_descriptions()) {
+    if (description.type == type_name) return &description;
+  }
+  return nullptr;
+}
+
+}  // namespace catena

@@ -1,7 +1,0 @@
-#include "catena/scene/element_filler.hpp"
-
-namespace catena {
-
-template ElementFiller<double> element_filler(int type);
-
-}  // namespace catena

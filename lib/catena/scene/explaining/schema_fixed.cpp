@@ -1,0 +1,60 @@
+#include "catena/scene/explaining/schema_fixed.hpp"
+
+namespace catena {
+
+std::string_view fixed_definitions() {
+  return R"json({
+"number": {
+  "anyOf": [{"type": "number"}, {"type": "string", "minLength": 1}],
+  "description": "a number (SI, radians), a quantity \"120 mm\", an expression \"=2*a\" or a parameter"
+},
+"pair": {"type": "array", "items": {"$ref": "#/$defs/number"}, "minItems": 2, "maxItems": 2},
+"numbers": {"type": "array", "items": {"$ref": "#/$defs/number"}},
+"beyond": {"enum": ["error", "hold", "line"], "description": "what is beyond the ends (default: it is an error)"},
+"table": {"anyOf": [
+  {"type": "array", "items": {"$ref": "#/$defs/pair"}},
+  {"type": "object", "additionalProperties": false, "required": ["points"], "properties": {
+    "points": {"type": "array", "items": {"$ref": "#/$defs/pair"}}, "beyond": {"$ref": "#/$defs/beyond"}}}
+]},
+"outputs": {"type": "array", "items": {"type": "string"}},
+"parameter": {"anyOf": [
+  {"$ref": "#/$defs/number"},
+  {"type": "object", "additionalProperties": false, "required": ["value"], "properties": {
+    "value": {"$ref": "#/$defs/number"}, "min": {"$ref": "#/$defs/number"}, "max": {"$ref": "#/$defs/number"}}}
+]},
+"attachment": {
+  "anyOf": [
+    {"type": "string"},
+    {"type": "array", "prefixItems": [{"type": "string"}, {"$ref": "#/$defs/pair"}], "minItems": 2, "maxItems": 2}],
+  "description": "\"body\", \"body.point\" or [\"body\", [x', y']]"
+},
+"function": {"anyOf": [
+  {"$ref": "#/$defs/number"},
+  {"type": "object", "minProperties": 1, "maxProperties": 1, "additionalProperties": false, "properties": {
+    "polynomial": {"allOf": [{"$ref": "#/$defs/numbers"}, {"minItems": 1}]},
+    "harmonic": {"type": "object", "additionalProperties": false, "required": ["amplitude", "omega"], "properties": {
+      "amplitude": {"$ref": "#/$defs/number"}, "omega": {"$ref": "#/$defs/number"},
+      "phase": {"$ref": "#/$defs/number"}, "offset": {"$ref": "#/$defs/number"}}},
+    "step": {"type": "object", "additionalProperties": false, "required": ["t0", "t1", "from", "to"], "properties": {
+      "t0": {"$ref": "#/$defs/number"}, "t1": {"$ref": "#/$defs/number"},
+      "from": {"$ref": "#/$defs/number"}, "to": {"$ref": "#/$defs/number"}, "order": {"enum": [3, 5]}}},
+    "spline": {"type": "object", "additionalProperties": false, "required": ["t", "value"], "properties": {
+      "t": {"$ref": "#/$defs/numbers"}, "value": {"$ref": "#/$defs/numbers"},
+      "end": {"enum": ["natural", "clamped", "periodic"]}, "beyond": {"$ref": "#/$defs/beyond"}}},
+    "sum": {"type": "array", "minItems": 1, "items": {"$ref": "#/$defs/function"}},
+    "product": {"type": "array", "minItems": 1, "items": {"$ref": "#/$defs/function"}}}}
+]},
+"curve": {"type": "object", "minProperties": 1, "maxProperties": 1, "additionalProperties": false, "properties": {
+  "circle": {"type": "object", "additionalProperties": false, "required": ["centre", "radius"], "properties": {
+    "centre": {"$ref": "#/$defs/pair"}, "radius": {"$ref": "#/$defs/number"}}},
+  "spline": {"type": "object", "additionalProperties": false, "required": ["points"], "properties": {
+    "points": {"type": "array", "items": {"$ref": "#/$defs/pair"}}, "end": {"enum": ["natural", "periodic"]},
+    "beyond": {"$ref": "#/$defs/beyond"}}},
+  "polar": {"type": "object", "additionalProperties": false, "required": ["angle", "radius"], "properties": {
+    "angle": {"$ref": "#/$defs/numbers"}, "radius": {"$ref": "#/$defs/numbers"}}},
+  "line": {"type": "object", "additionalProperties": false, "required": ["point", "axis"], "properties": {
+    "point": {"$ref": "#/$defs/pair"}, "axis": {"$ref": "#/$defs/pair"}}}}}
+})json";
+}
+
+}  // namespace catena

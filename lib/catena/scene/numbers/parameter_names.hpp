@@ -1,0 +1,48 @@
+// The names of a scene's parameters, numbered in file order, and what is known of their units. Expressions hold the
+// numbers.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "catena/scene/numbers/unit.hpp"
+
+namespace catena {
+
+class ParameterNames {
+ public:
+  /// Adds a name and returns its number; a name that exists keeps its number.
+  int add(std::string_view name) {
+    const auto [place, added] = index_.try_emplace(std::string(name), static_cast<int>(names_.size()));
+    if (added) {
+      names_.emplace_back(name);
+      dimensions_.emplace_back();
+    }
+    return place->second;
+  }
+  /// The number of a name, -1 if there is none.
+  int find(std::string_view name) const {
+    const auto place = index_.find(name);
+    return place == index_.end() ? -1 : place->second;
+  }
+  std::span<const std::string> all() const { return names_; }
+  std::size_t size() const { return names_.size(); }
+
+  /// The dimension of a parameter given as a quantity; unknown for plain numbers and expressions.
+  const std::optional<Dimension>& dimension(int index) const { return dimensions_[static_cast<std::size_t>(index)]; }
+  void set_dimension(int index, const std::optional<Dimension>& dimension) {
+    dimensions_[static_cast<std::size_t>(index)] = dimension;
+  }
+
+ private:
+  std::vector<std::string> names_;
+  std::vector<std::optional<Dimension>> dimensions_;
+  std::map<std::string, int, std::less<>> index_;
+};
+
+}  // namespace catena

@@ -1,0 +1,228 @@
+#include "catena/scene/reading/analysis_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "catena/scene/json/near_miss.hpp"
+#include "catena/scene/numbers/evaluation.hpp"
+#include "catena/scene/numbers/number_domain.hpp"
+
+namespace catena {
+namespace {
+
+constexpr double most_rows = 1e9;
+
+}  // namespace
+
+const AnalysisDescription* AnalysisReader::read_type(const JsonValue& object) {
+  const JsonValue type = object.find("type");
+  if (!type) {
+    error(object, "an analysis needs a \"type\"");
+    return nullptr;
+  }
+  const std::string_view text = read_string(type, {"type", "an analysis"}, diagnostics_);
+  if (!type.is(JsonKind::string)) return nullptr;
+  const AnalysisDescription* found = find_analysis_type(text);
+  if (!found) {
+    NearMiss near(text);
+    for (const AnalysisDescription& d : analysis_descriptions()) near.consider(d.type);
+    error(type, fmt::format("unknown analysis {}{}", in_quotes(text), near.hint()));
+  }
+  return found;
+}
+
+std::vector<PlacedName> AnalysisReader::names(const JsonValue& list, const FieldName& field,
+                                              std::span<const double> parameters) {
+  std::vector<PlacedName> result;
+  const auto take = [&](const JsonValue& value) {
+    const std::string_view text = read_string(value, field, diagnostics_);
+    if (!value.is(JsonKind::string)) return;
+    PlacedName placed{std::string(text), value};
+    if (NameTemplate::has_braces(text)) {
+      const NameText pattern = reading_.name(value);
+      placed.name.clear();
+      if (pattern.pattern < 0) return;
+      const Evaluation<double> evaluation(value.source(), scene_.expressions, parameters, diagnostics_);
+      if (!evaluation.append_name(scene_.patterns[static_cast<std::size_t>(pattern.pattern)], value.offset(),
+                                  placed.name))
+        return;
+    }
+    result.push_back(std::move(placed));
+  };
+  if (!list.is(JsonKind::array)) {
+    error(list, fmt::format("{} must be a list of names; this is {}", field.text(), describe(list.kind())));
+    return result;
+  }
+  result.reserve(list.size());
+  for (const JsonValue& value : list.elements()) take(value);
+  return result;
+}
+
+double AnalysisReader::number(const AnalysisKey& key, const JsonValue& value, const FieldName& field) {
+  const ExpectedDimension unit = key.unit == UnitKind::none && key.domain == Domain::any
+                                     ? ExpectedDimension()
+                                     : ExpectedDimension(dimension_of(key.unit));
+  const NumberValue read = reading_.numbers.read(value, unit, field);
+  const Evaluation<double> evaluation(value.source(), scene_.expressions, values_, diagnostics_);
+  const double result = evaluation(read);
+  if (std::isnan(result)) return result;
+  const bool whole = key.kind == KeyKind::whole;
+  if (whole && (result < 1 || result != std::round(result) || result > 2e9)) {
+    error(value, fmt::format("{} must be a whole number above zero; it is {}", field.text(), result));
+  } else if (!whole && !fits(result, key.domain)) {
+    error(value, field.text() + " " + out_of_domain(result, key.domain));
+  }
+  return result;
+}
+
+void AnalysisReader::read_parameters(const JsonValue& set, AnalysisTask& task) {
+  if (!set) {
+    task.parameters = parameters_.evaluate<double>(scene_.expressions, diagnostics_);
+    return;
+  }
+  ParameterTable changed = parameters_;
+  changed.set(set, scene_.expressions, diagnostics_);
+  task.parameters = changed.evaluate<double>(scene_.expressions, diagnostics_);
+  task.changes_parameters = true;
+}
+
+void AnalysisReader::read_key(const AnalysisKey& key, const JsonValue& value, AnalysisTask& task) {
+  const FieldName field{key.name, task.type()};
+  switch (key.kind) {
+    case KeyKind::number:
+    case KeyKind::whole:
+      task.numbers[key.name] = number(key, value, field);
+      break;
+    case KeyKind::time:
+      task.at = std::vector<double>{number(key, value, field)};
+      break;
+    case KeyKind::times:
+      task.at.emplace();
+      if (!value.is(JsonKind::array)) {
+        task.at->push_back(number(key, value, field));
+        break;
+      }
+      for (const JsonValue& instant : value.elements()) task.at->push_back(number(key, instant, field));
+      if (value.size() == 0) error(value, field.text() + " may not be an empty list");
+      break;
+    case KeyKind::flag:
+      task.numbers[key.name] = read_flag(value, field, diagnostics_) ? 1 : 0;
+      break;
+    case KeyKind::word:
+      if (!key.words.empty()) task.numbers[key.name] = read_word(value, key.words, field, diagnostics_);
+      break;
+    case KeyKind::columns:
+      task.outputs = names(value, field, task.parameters);
+      break;
+    case KeyKind::parameter: {
+      const std::string_view name = read_string(value, field, diagnostics_);
+      const int index = parameters_.names().find(name);
+      if (value.is(JsonKind::string) && index < 0) {
+        error(value, fmt::format("{}: unknown parameter {}{}", field.text(), in_quotes(name),
+                                 NearMiss(name).consider_all(parameters_.names().all()).hint()));
+      }
+      task.numbers[key.name] = index;
+      break;
+    }
+    case KeyKind::set:
+      break;
+    case KeyKind::events:
+      read_events(value, task);
+      break;
+  }
+}
+
+// until, every and at exclude each other in part, and should not ask for more rows than anyone can want.
+void AnalysisReader::check_times(const std::vector<JsonValue>& values, const AnalysisTask& task) {
+  const auto given = [&](std::string_view key) {
+    for (std::size_t k = 0; k < task.description->keys.size(); ++k) {
+      if (task.description->keys[k].name == key) return values[k];
+    }
+    return JsonValue();
+  };
+  const JsonValue until = given("until"), every = given("every"), at = given("at");
+  if (at && (until || every)) {
+    error(at, fmt::format("{} may not have \"at\" together with \"until\" or \"every\"", task.type()));
+  } else if (every && !until) {
+    error(every, fmt::format("\"every\" of {} needs \"until\" too", task.type()));
+  } else if (until && every && task.number("every", 1) > 0 &&
+             task.number("until", 0) / task.number("every", 1) > most_rows) {
+    error(every, fmt::format("{} would give more than {} rows", task.type(), most_rows));
+  }
+}
+
+std::optional<AnalysisTask> AnalysisReader::read(const JsonValue& object, const JsonValue& scene_outputs) {
+  if (!object.is(JsonKind::object)) {
+    error(object, fmt::format("an analysis must be an object {{...}}; this is {}", describe(object.kind())));
+    return {};
+  }
+  AnalysisTask task;
+  task.description = read_type(object);
+  if (!task.description) return {};
+  task.place = object;
+  const std::vector<AnalysisKey>& known = task.description->keys;
+  std::vector<std::string_view> keys;
+  for (const AnalysisKey& key : known) keys.push_back(key.name);
+  std::vector<JsonValue> values(keys.size());
+  if (task.description->announced) {
+    for (std::size_t k = 0; k < keys.size(); ++k) values[k] = object.find(keys[k]);
+  } else {
+    read_members(object, keys, task.type(), values, diagnostics_);
+  }
+
+  JsonValue set;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    if (known[k].kind == KeyKind::set) set = values[k];
+  }
+  read_parameters(set, task);
+  values_ = task.parameters;
+  bool own_outputs = false;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    if (!values[k]) {
+      if (known[k].required) error(object, fmt::format("{} needs {}", task.type(), in_quotes(keys[k])));
+      continue;
+    }
+    if (keys[k] == "type") continue;
+    own_outputs = own_outputs || keys[k] == "outputs";
+    read_key(known[k], values[k], task);
+  }
+  task.from_initial = task.word("from") == 1;
+  check_times(values, task);
+  if (!own_outputs && scene_outputs && task.description->find("outputs")) {
+    task.outputs = names(scene_outputs, {"outputs"}, task.parameters);
+  }
+  return task;
+}
+
+std::vector<std::string> AnalysisTask::output_names() const {
+  std::vector<std::string> names;
+  names.reserve(outputs.size());
+  for (const PlacedName& placed : outputs) names.push_back(placed.name);
+  return names;
+}
+
+std::optional<AnalysisTask> read_analysis(const JsonValue& object, const JsonValue& outputs, SceneTemplate& scene,
+                                          const ParameterTable& parameters, Diagnostics& diagnostics) {
+  return AnalysisReader(scene, parameters, diagnostics).read(object, outputs);
+}
+
+std::vector<AnalysisTask> read_analyses(const JsonValue& list, const JsonValue& outputs, SceneTemplate& scene,
+                                        const ParameterTable& parameters, Diagnostics& diagnostics) {
+  std::vector<AnalysisTask> tasks;
+  if (!list.is(JsonKind::array)) {
+    report(list, fmt::format("\"analyses\" must be a list; this is {}", describe(list.kind())), diagnostics);
+    return tasks;
+  }
+  for (const JsonValue& object : list.elements()) {
+    if (auto task = read_analysis(object, outputs, scene, parameters, diagnostics)) tasks.push_back(std::move(*task));
+  }
+  return tasks;
+}
+
+std::vector<PlacedName> read_outputs(const JsonValue& list, SceneTemplate& scene, std::span<const double> parameters,
+                                     Diagnostics& diagnostics) {
+  return AnalysisReader(scene, scene.parameters, diagnostics).names(list, {"outputs"}, parameters);
+}
+
+}  // namespace catena

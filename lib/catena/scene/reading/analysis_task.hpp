@@ -1,0 +1,63 @@
+// One analysis of a scene, read: its keys as values, ready to be run.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "catena/scene/describing/analysis_description.hpp"
+#include "catena/scene/reading/scene_template.hpp"
+
+namespace catena {
+
+struct EventRequest {
+  std::string name, column;
+  double value = 0;
+  int direction = 0;  ///< position among the words of the key: any, up, down
+  int action = 0;     ///< record, stop, release, engage
+  std::string element;
+  JsonValue place, element_place;  ///< of the column; of the element
+};
+
+/// A name that an analysis uses, and where it stands.
+struct PlacedName {
+  std::string name;
+  JsonValue place;
+};
+
+struct AnalysisTask {
+  const AnalysisDescription* description = nullptr;
+  JsonValue place;  ///< the object
+  bool from_initial = false;
+  bool changes_parameters = false;
+  std::vector<double> parameters;  ///< all of the scene's, with `set` applied
+  std::vector<PlacedName> outputs;
+  std::map<std::string_view, double> numbers;  ///< numbers, flags (0 or 1), positions of words and parameters
+  std::optional<std::vector<double>> at;
+  std::vector<EventRequest> events;
+
+  std::string_view type() const { return description->type; }
+  bool has(std::string_view key) const { return numbers.contains(key); }
+  double number(std::string_view key, double otherwise) const {
+    const auto found = numbers.find(key);
+    return found == numbers.end() ? otherwise : found->second;
+  }
+  /// The position of a key's word among its words; 0, the default, where it is not given.
+  int word(std::string_view key) const { return static_cast<int>(number(key, 0)); }
+  std::vector<std::string> output_names() const;
+};
+
+/// Reads the analyses of a list. `parameters` are those of the scene; `outputs` its outputs, or absent. Tasks that are
+/// wrong are reported and left out.
+std::vector<AnalysisTask> read_analyses(const JsonValue& list, const JsonValue& outputs, SceneTemplate& scene,
+                                        const ParameterTable& parameters, Diagnostics& diagnostics);
+/// The same of a single object.
+std::optional<AnalysisTask> read_analysis(const JsonValue& object, const JsonValue& outputs, SceneTemplate& scene,
+                                          const ParameterTable& parameters, Diagnostics& diagnostics);
+/// Checks a list of outputs that no analysis may use.
+std::vector<PlacedName> read_outputs(const JsonValue& list, SceneTemplate& scene, std::span<const double> parameters,
+                                     Diagnostics& diagnostics);
+
+}  // namespace catena

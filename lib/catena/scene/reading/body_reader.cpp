@@ -1,0 +1,227 @@
+// Bodies: from JSON to templates.
+#include <fmt/format.h>
+
+#include <array>
+
+#include "catena/scene/describing/body_keys.hpp"
+#include "catena/scene/numbers/name_rules.hpp"
+#include "catena/scene/reading/scene_reading.hpp"
+
+namespace catena {
+namespace {
+
+/// Numbers of a body that is being read, by BodyNumber.
+class Numbers {
+ public:
+  void set(BodyNumber which, const NumberValue& value) {
+    const auto k = static_cast<std::size_t>(which);
+    values_[k] = value;
+    given_ = static_cast<std::uint16_t>(given_ | 1u << k);
+  }
+  void set_pair(BodyNumber first, const std::array<NumberValue, 2>& pair) {
+    set(first, pair[0]);
+    set(static_cast<BodyNumber>(static_cast<int>(first) + 1), pair[1]);
+  }
+  void store(SceneReading& reading, BodyTemplate& body) const {
+    body.given = given_;
+    body.first_number = static_cast<std::uint32_t>(reading.scene.numbers.size());
+    for (std::size_t k = 0; k < values_.size(); ++k) {
+      if ((given_ >> k) & 1) reading.scene.numbers.push_back(values_[k]);
+    }
+  }
+
+ private:
+  std::array<NumberValue, body_numbers> values_;
+  std::uint16_t given_ = 0;
+};
+
+void read_hold(const JsonValue& value, std::string_view owner, BodyTemplate& body, Diagnostics& diagnostics) {
+  const FieldName field{"hold", owner};
+  if (!value.is(JsonKind::array)) {
+    report(
+        value,
+        fmt::format("{} must be a list such as [\"x\", \"angle\"]; this is {}", field.text(), describe(value.kind())),
+        diagnostics);
+    return;
+  }
+  for (const JsonValue& column : value.elements()) {
+    const int word = read_word(column, hold_columns, field, diagnostics);
+    if (word == 0) body.hold_x = true;
+    if (word == 1) body.hold_y = true;
+    if (word == 2) body.hold_angle = true;
+  }
+}
+
+}  // namespace
+
+void SceneReading::point_list(const JsonValue& value, BodyTemplate& body, std::string_view owner) {
+  body.first_point = static_cast<std::uint32_t>(scene.points.size());
+  if (!value.is(JsonKind::object)) {
+    error(value, fmt::format("{} must be an object of names and places [x', y']; this is {}",
+                             FieldName{"points", owner}.text(), describe(value.kind())));
+    return;
+  }
+  for (const JsonMember member : value.members()) {
+    PointTemplate point;
+    point.name = name(member.key);
+    const std::string text = sample(point.name);
+    if (!point.name.empty() || member.name().empty()) {
+      if (const std::string problem = point_name_problem(text); !problem.empty()) error(member.key, problem);
+    }
+    const auto place =
+        numbers.read_pair(member.value, ExpectedDimension(dimension_of(UnitKind::length)), {member.name(), owner});
+    point.x = place[0];
+    point.y = place[1];
+    scene.points.push_back(point);
+    ++body.points;
+  }
+}
+
+void SceneReading::part(const JsonValue& object, std::string_view body_owner) {
+  using Shape = PartTemplate::Shape;
+  PartTemplate part;
+  part.offset = static_cast<std::uint32_t>(object.offset());
+  const std::string owner = "a part of " + std::string(body_owner);
+  std::array<JsonValue, part_keys.size()> v;
+  if (!read_members(object, part_keys, owner, v, diagnostics)) return;
+  const auto& [mass, centroid, inertia, rectangle, disc, polygon] = v;
+  const auto read = [&](const JsonValue& value, UnitKind unit, std::string_view key, std::string_view of, bool required,
+                        const JsonValue& whole) {
+    if (value) {
+      part.numbers.push_back(numbers.read(value, unit, {key, of}));
+    } else {
+      if (required) error(whole, fmt::format("{} needs {}", of, in_quotes(key)));
+      part.numbers.push_back(required ? NumberValue() : NumberValue::constant(0));
+    }
+  };
+  const auto read_place = [&](const JsonValue& value, std::string_view key, std::string_view of) {
+    std::array<NumberValue, 2> place{NumberValue::constant(0), NumberValue::constant(0)};
+    if (value) place = numbers.read_pair(value, dimension_of(UnitKind::length), {key, of});
+    part.numbers.insert(part.numbers.end(), place.begin(), place.end());
+  };
+  if (mass) {
+    part.mass = numbers.read(mass, UnitKind::mass, {"mass", owner});
+  } else {
+    error(object, owner + " needs \"mass\"");
+  }
+  const int shapes = (rectangle ? 1 : 0) + (disc ? 1 : 0) + (polygon ? 1 : 0);
+  if (shapes > 1) error(object, owner + " may have only one shape");
+  if (shapes > 0 && (centroid || inertia)) {
+    error(centroid ? centroid : inertia, fmt::format("{} of {} follows from its shape and may not be given",
+                                                     centroid ? "centroid" : "inertia", owner));
+  }
+  if (rectangle) {
+    part.shape = Shape::rectangle;
+    const std::string of = "rectangle in " + owner;
+    std::array<JsonValue, rectangle_keys.size()> r;
+    if (!read_members(rectangle, rectangle_keys, of, r, diagnostics)) return;
+    read_place(r[0], rectangle_keys[0], of);
+    read(r[1], UnitKind::length, rectangle_keys[1], of, true, rectangle);
+    read(r[2], UnitKind::length, rectangle_keys[2], of, true, rectangle);
+    read(r[3], UnitKind::angle, rectangle_keys[3], of, false, rectangle);
+  } else if (disc) {
+    part.shape = Shape::disc;
+    const std::string of = "disc in " + owner;
+    std::array<JsonValue, disc_keys.size()> d;
+    if (!read_members(disc, disc_keys, of, d, diagnostics)) return;
+    read_place(d[0], disc_keys[0], of);
+    read(d[1], UnitKind::length, disc_keys[1], of, true, disc);
+  } else if (polygon) {
+    part.shape = Shape::polygon;
+    const FieldName field{"polygon", owner};
+    if (!polygon.is(JsonKind::array) || polygon.size() < 3) {
+      error(polygon, field.text() + " must be a list of at least three corners [x', y']");
+      return;
+    }
+    for (const JsonValue& corner : polygon.elements()) {
+      const auto place = numbers.read_pair(corner, ExpectedDimension(dimension_of(UnitKind::length)), field);
+      part.numbers.insert(part.numbers.end(), place.begin(), place.end());
+    }
+  } else {
+    read_place(centroid, "centroid", owner);
+    read(inertia, UnitKind::inertia, "inertia", owner, false, object);
+  }
+  scene.parts.push_back(std::move(part));
+}
+
+void SceneReading::ground_body(const JsonValue& value) {
+  static constexpr std::array<std::string_view, 1> keys{"points"};
+  std::array<JsonValue, 1> v;
+  if (!read_members(value, keys, "the ground", v, diagnostics) || !v[0]) return;
+  point_list(v[0], scene.ground, "the ground");
+}
+
+void SceneReading::body(const JsonMember& member, BlockTemplate& block) {
+  if (member.name() == "ground") return ground_body(member.value);
+  BodyTemplate body;
+  body.offset = static_cast<std::uint32_t>(member.value.offset());
+  body.name = name(member.key);
+  if (!body.name.empty() || member.name().empty()) {
+    if (const std::string problem = element_name_problem(sample(body.name)); !problem.empty())
+      error(member.key, problem);
+  }
+  const std::string owner = "body " + in_quotes(member.name());
+  std::array<JsonValue, body_keys.size()> v;
+  if (!read_members(member.value, body_keys, owner, v, diagnostics)) {
+    block.bodies.push_back(body);
+    return;
+  }
+  const auto& [mass, inertia, position, angle, velocity, angular_velocity, points, centroid, parts, rod, fixed,
+               particle, hold] = v;
+  Numbers given;
+  const auto number = [&](const JsonValue& value, BodyNumber which, UnitKind unit, std::string_view key) {
+    if (value) given.set(which, numbers.read(value, unit, {key, owner}));
+  };
+  const auto pair = [&](const JsonValue& value, BodyNumber which, UnitKind unit, std::string_view key,
+                        std::string_view of) {
+    if (value) given.set_pair(which, numbers.read_pair(value, dimension_of(unit), {key, of}));
+  };
+  number(mass, BodyNumber::mass, UnitKind::mass, "mass");
+  number(inertia, BodyNumber::inertia, UnitKind::inertia, "inertia");
+  pair(position, BodyNumber::position_x, UnitKind::length, "position", owner);
+  number(angle, BodyNumber::angle, UnitKind::angle, "angle");
+  pair(velocity, BodyNumber::velocity_x, UnitKind::velocity, "velocity", owner);
+  number(angular_velocity, BodyNumber::angular_velocity, UnitKind::angular_velocity, "angular_velocity");
+  pair(centroid, BodyNumber::centroid_x, UnitKind::length, "centroid", owner);
+  if (points) point_list(points, body, owner);
+  if (parts) {
+    body.first_part = static_cast<std::uint32_t>(scene.parts.size());
+    if (!parts.is(JsonKind::array) || parts.size() == 0) {
+      error(parts, FieldName{"parts", owner}.text() + " must be a list of parts");
+    } else {
+      for (const JsonValue& object : parts.elements()) part(object, owner);
+    }
+    body.parts = static_cast<std::uint32_t>(scene.parts.size()) - body.first_part;
+    const JsonValue& excluded = mass ? mass : inertia ? inertia : centroid;
+    if (excluded)
+      error(excluded,
+            fmt::format("mass, inertia and centroid of {} follow from its parts and may not be given", owner));
+  }
+  if (rod) {
+    const std::string of = "rod of " + owner;
+    std::array<JsonValue, rod_keys.size()> r;
+    if (read_members(rod, rod_keys, of, r, diagnostics)) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        if (r[k]) {
+          pair(r[k], k == 0 ? BodyNumber::from_x : BodyNumber::to_x, UnitKind::length, rod_keys[k], of);
+        } else {
+          error(rod, fmt::format("{} needs {}", of, in_quotes(rod_keys[k])));
+          given.set_pair(k == 0 ? BodyNumber::from_x : BodyNumber::to_x, {});
+        }
+      }
+    } else {
+      for (const BodyNumber end : {BodyNumber::from_x, BodyNumber::to_x}) given.set_pair(end, {});
+    }
+    if (position || angle) {
+      error(position ? position : angle,
+            fmt::format("{} of {} follows from its rod and may not be given", position ? "position" : "angle", owner));
+    }
+  }
+  if (fixed) body.fixed = read_flag(fixed, {"fixed", owner}, diagnostics);
+  if (particle) body.particle = read_flag(particle, {"particle", owner}, diagnostics);
+  if (hold) read_hold(hold, owner, body, diagnostics);
+  given.store(*this, body);
+  block.bodies.push_back(body);
+}
+
+}  // namespace catena

@@ -1,0 +1,121 @@
+// Curves in body frames, and tables: from JSON to templates.
+#include <fmt/format.h>
+
+#include <array>
+
+#include "catena/scene/reading/scene_reading.hpp"
+
+namespace catena {
+namespace {
+
+constexpr std::array<std::string_view, 4> curve_keys{"circle", "spline", "polar", "line"};
+
+/// One number a line of a list of pairs.
+void append_pairs(const JsonValue& list, const ExpectedDimension& first, const ExpectedDimension& second,
+                  const FieldName& field, NumberReader& reader, std::vector<NumberValue>& out,
+                  Diagnostics& diagnostics) {
+  if (!list.is(JsonKind::array)) {
+    report(list, fmt::format("{} must be a list of pairs; this is {}", field.text(), describe(list.kind())),
+           diagnostics);
+    return;
+  }
+  for (const JsonValue& pair : list.elements()) {
+    if (!pair.is(JsonKind::array) || pair.size() != 2) {
+      report(pair, fmt::format("{} must be a list of pairs [a, b]", field.text()), diagnostics);
+      out.insert(out.end(), 2, NumberValue());  // what was reported counts as known
+      continue;
+    }
+    auto element = pair.elements().begin();
+    out.push_back(reader.read(*element, first, field));
+    ++element;
+    out.push_back(reader.read(*element, second, field));
+  }
+}
+
+}  // namespace
+
+int SceneReading::curve(const JsonValue& value, const FieldName& field) {
+  CurveTemplate result;
+  result.offset = static_cast<std::uint32_t>(value.offset());
+  const Dimension metre = dimension_of(UnitKind::length);
+  const auto done = [&] {
+    scene.curves.push_back(std::move(result));
+    return static_cast<int>(scene.curves.size()) - 1;
+  };
+  if (!value.is(JsonKind::object)) {
+    error(value, fmt::format("{} must be a curve such as {{\"circle\": {{\"centre\": [0, 0], \"radius\": 0.1}}}}; this "
+                             "is {}",
+                             field.text(), describe(value.kind())));
+    return done();
+  }
+  const std::optional<JsonMember> member = read_only_member(value, curve_keys, field, "curve", diagnostics);
+  if (!member) return done();
+  const auto key = std::find(curve_keys.begin(), curve_keys.end(), member->name());
+  result.kind = static_cast<CurveTemplate::Kind>(key - curve_keys.begin());
+  const std::string owner = fmt::format("{} in {}", *key, field.text());
+  static constexpr std::array<std::array<std::string_view, 3>, 4> keys{
+      {{"centre", "radius", ""}, {"points", "end", "beyond"}, {"angle", "radius", ""}, {"point", "axis", ""}}};
+  const bool spline = result.kind == CurveTemplate::Kind::spline;
+  const auto names = std::span(keys[static_cast<std::size_t>(result.kind)]).first(spline ? 3 : 2);
+  std::array<JsonValue, 3> v;
+  if (!read_members(member->value, names, owner, v, diagnostics)) return done();
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (!v[k] && !(spline && k == 1)) error(member->value, fmt::format("{} needs {}", owner, in_quotes(names[k])));
+  }
+  if (!v[0] || (!v[1] && !spline)) return done();
+  const auto pair = [&](std::size_t k, const ExpectedDimension& dimension) {
+    const auto numbers_read = numbers.read_pair(v[k], dimension, {names[k], owner});
+    result.numbers.insert(result.numbers.end(), numbers_read.begin(), numbers_read.end());
+  };
+  switch (result.kind) {
+    case CurveTemplate::Kind::circle:
+      pair(0, metre);
+      result.numbers.push_back(numbers.read(v[1], metre, {names[1], owner}));
+      break;
+    case CurveTemplate::Kind::spline:
+      append_pairs(v[0], metre, metre, {names[0], owner}, numbers, result.numbers, diagnostics);
+      if (v[1]) {
+        static constexpr std::array<std::string_view, 2> words{"natural", "periodic"};
+        if (read_word(v[1], words, {names[1], owner}, diagnostics) == 1) result.end = SplineEnd::periodic;
+      }
+      result.beyond = beyond(v[2], result.end, owner);
+      break;
+    case CurveTemplate::Kind::polar: {
+      const auto angles = numbers.read_list(v[0], dimension_of(UnitKind::angle), {names[0], owner});
+      const auto radii = numbers.read_list(v[1], metre, {names[1], owner});
+      if (angles.size() != radii.size()) {
+        error(v[1], fmt::format("{}: {} angles, but {} radii", owner, angles.size(), radii.size()));
+        break;
+      }
+      result.numbers = angles;
+      result.numbers.insert(result.numbers.end(), radii.begin(), radii.end());
+      break;
+    }
+    case CurveTemplate::Kind::line:
+      pair(0, metre);
+      pair(1, ExpectedDimension());
+      break;
+  }
+  return done();
+}
+
+int SceneReading::table(const JsonValue& value, UnitKind first, UnitKind second, const FieldName& field) {
+  TableTemplate result;
+  result.offset = static_cast<std::uint32_t>(value.offset());
+  JsonValue pairs = value;
+  if (value.is(JsonKind::object)) {
+    static constexpr std::array<std::string_view, 2> keys{"points", "beyond"};
+    const std::string owner = field.text();
+    std::array<JsonValue, 2> v;
+    read_members(value, keys, owner, v, diagnostics);
+    if (!v[0]) error(value, fmt::format("{} needs \"points\", a list of pairs", owner));
+    result.beyond = beyond(v[1], SplineEnd::natural, owner);
+    pairs = v[0];
+  }
+  if (pairs)
+    append_pairs(pairs, dimension_of(first), dimension_of(second), field, numbers, result.numbers, diagnostics);
+  scene.tables.push_back(std::move(result));
+  return static_cast<int>(scene.tables.size()) - 1;
+}
+
+}  // namespace catena

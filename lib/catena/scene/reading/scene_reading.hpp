@@ -1,0 +1,89 @@
+// What the readers of a scene's parts share: the scene that is made, the place for errors, and the reading of objects,
+// names, words and flags with the checks that every key has.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "catena/scene/numbers/number_reader.hpp"
+#include "catena/scene/reading/scene_template.hpp"
+
+namespace catena {
+
+/// Reports what stands at `value`.
+void report(const JsonValue& value, std::string message, Diagnostics& diagnostics);
+
+/// What becomes of a key that is none, but near to one that is not given: it is left out, or taken to be that one and
+/// reported before all else, so that nothing is reported that only follows from the misspelling.
+enum class Misspelt { left_out, as_meant };
+
+/// Finds the members of an object by their keys: out[k] is the value of keys[k], absent if it is not given. Keys that
+/// are none of these are reported, with the nearest one. False, with a report, if `object` is no object.
+bool read_members(const JsonValue& object, std::span<const std::string_view> keys, std::string_view owner,
+                  std::span<JsonValue> out, Diagnostics& diagnostics, Misspelt misspelt = Misspelt::left_out);
+
+/// The key that a member of the object stands for: its own, or the one of `keys` that it misspells; else empty.
+std::string_view meant_key(const JsonValue& object, const JsonMember& member, std::span<const std::string_view> keys);
+
+/// The only member of an object whose key says what it is, such as {"harmonic": ...}; nothing, with a report, if there
+/// is none or more. `what` is what the keys name: "function of time".
+std::optional<JsonMember> read_only_member(const JsonValue& object, std::span<const std::string_view> keys,
+                                           const FieldName& field, std::string_view what, Diagnostics& diagnostics);
+
+/// true or false.
+bool read_flag(const JsonValue& value, const FieldName& field, Diagnostics& diagnostics);
+/// One of some words: its position, -1 with a report if it is none.
+int read_word(const JsonValue& value, std::span<const std::string_view> words, const FieldName& field,
+              Diagnostics& diagnostics);
+/// A text; empty, with a report, if it is none.
+std::string_view read_string(const JsonValue& value, const FieldName& field, Diagnostics& diagnostics);
+
+class SceneReading {
+ public:
+  SceneReading(SceneTemplate& the_scene, Diagnostics& all_diagnostics)
+      : scene(the_scene),
+        diagnostics(all_diagnostics),
+        numbers(the_scene.parameters.names(), the_scene.expressions, all_diagnostics) {}
+
+  /// What is beyond the ends of a table or curve, a word; a periodic one has none.
+  Beyond beyond(const JsonValue& value, SplineEnd end, std::string_view owner);
+  void error(const JsonValue& value, std::string message) { report(value, std::move(message), diagnostics); }
+
+  /// A name, or a part of one: text[from, to) of the string. Rules for names are not checked.
+  NameText name(const JsonValue& string, std::size_t from = 0, std::size_t to = std::string_view::npos);
+  /// The name with 0 for every expression: what rules are checked on.
+  std::string sample(const NameText& name) const;
+  /// Appends numbers to the scene's array; returns the place of the first.
+  std::uint32_t keep(std::span<const NumberValue> values);
+
+  /// A function of time in `unit`: its number in the scene, or -1 where a plain number was found and put into `plain`.
+  /// Functions of a product have no unit of their own.
+  int function(const JsonValue& value, const ExpectedDimension& unit, const FieldName& field, NumberValue& plain);
+  /// A curve in a body frame: its number.
+  int curve(const JsonValue& value, const FieldName& field);
+  /// A list of pairs, or an object with it and what is beyond its ends: its number.
+  int table(const JsonValue& value, UnitKind first, UnitKind second, const FieldName& field);
+
+  void body(const JsonMember& member, BlockTemplate& block);
+  void element(const JsonValue& object, std::string_view list, BlockTemplate& block);
+  /// The member `key` of a scene or replicate block that holds bodies, elements or blocks.
+  void section(std::string_view key, const JsonValue& value, BlockTemplate& block, int depth);
+  void block(const JsonValue& object, BlockTemplate& parent, int depth);
+
+  SceneTemplate& scene;
+  Diagnostics& diagnostics;
+  NumberReader numbers;
+
+ private:
+  FunctionTemplate function_object(const JsonValue& value, const ExpectedDimension& unit, const FieldName& field);
+  FunctionTemplate function_part(const JsonValue& value, const ExpectedDimension& unit, const FieldName& field);
+  void part(const JsonValue& object, std::string_view owner);
+  void ground_body(const JsonValue& value);
+  void point_list(const JsonValue& value, BodyTemplate& body, std::string_view owner);
+  void attachment(const JsonValue& value, std::string_view key, std::string_view owner, bool has_at,
+                  AttachmentTemplate& attachment, NumberValue* local);
+};
+
+}  // namespace catena

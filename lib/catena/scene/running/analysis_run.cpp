@@ -1,0 +1,91 @@
+#include "catena/scene/running/analysis_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "catena/analysis/run/time_coverage.hpp"
+#include "catena/elements/all.hpp"
+#include "catena/scene/running/distance_check.hpp"
+
+namespace catena {
+namespace {
+
+struct Runner {
+  std::string_view type;
+  AnalysisFunction run;
+};
+
+constexpr Runner entries[] = {{"check", run_check},           {"assemble", run_assemble},
+                              {"kinematics", run_kinematics}, {"inverse_dynamics", run_inverse_dynamics},
+                              {"dynamics", run_dynamics},     {"equilibrium", run_equilibrium},
+                              {"modes", run_modes},           {"path", run_path},
+                              {"buckling", run_buckling}};
+
+Report refuse(std::string message) {
+  Report report;
+  report.status = Status::refused;
+  report.message = std::move(message);
+  return report;
+}
+
+}  // namespace
+
+AnalysisFunction analysis_function(std::string_view type) {
+  for (const Runner& entry : entries) {
+    if (entry.type == type) return entry.run;
+  }
+  return nullptr;
+}
+
+double frozen_time(const AnalysisContext& context) {
+  return context.task.at ? context.task.at->front() : context.state.t;
+}
+
+std::optional<TimeGrid> time_grid(const AnalysisContext& context, Report& report) {
+  const AnalysisTask& task = context.task;
+  double first = context.state.t, last = first;
+  std::optional<TimeGrid> grid;
+  if (task.at) {
+    for (const double t : *task.at) {
+      first = std::min(first, t);
+      last = std::max(last, t);
+    }
+    grid = TimeGrid::list(*task.at);
+  } else if (task.has("until")) {
+    const double until = task.number("until", 0);
+    if (until <= context.state.t) {
+      report =
+          refuse(fmt::format("\"until\" is {} s, but the analysis starts at {} s, where the one before ended; "
+                             "\"from\": \"initial\" starts "
+                             "at 0",
+                             until, context.state.t));
+      return {};
+    }
+    last = until;
+    grid = TimeGrid::range(context.state.t, until, task.number("every", until / 100));
+  } else {
+    grid = TimeGrid::instant(context.state.t);
+  }
+  if (report = check_time_functions(*context.model, {first, last}); !report.ok()) return {};
+  if (const auto problem = vanishing_distance(*context.model, context.state.t, *grid)) {
+    report = refuse(*problem);
+    return {};
+  }
+  return grid;
+}
+
+PlanOptions plan_options(const Model& model, const std::vector<std::string>& outputs) {
+  return {elements_with_reactions(model, outputs)};
+}
+
+void take_report(AnalysisResult& result, AnalysisReport report, const ColumnSet* columns, std::int64_t rows) {
+  result.report = std::move(report);
+  if (!columns) return;
+  result.has_rows = true;
+  result.columns.assign(columns->info().begin(), columns->info().end());
+  result.rows = rows;
+  for (const std::string& note : columns->notes()) result.report.warnings.push_back(note);
+}
+
+}  // namespace catena

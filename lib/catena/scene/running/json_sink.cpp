@@ -1,0 +1,230 @@
+// The result document, written as results come: nothing but the row at hand is kept.
+#include <optional>
+
+#include "catena/base/si_unit.hpp"
+#include "catena/scene/json/json_text.hpp"
+#include "catena/scene/running/scene_runner.hpp"
+
+namespace catena {
+namespace {
+
+void append_json(std::string& out, const std::string& text) { catena::append_json(out, std::string_view(text)); }
+
+void append_key(std::string& out, std::string_view key) {
+  out += ", ";
+  catena::append_json(out, key);
+  out += ": ";
+}
+
+template <class Range, class F>
+void append_list(std::string& out, const Range& range, F&& append) {
+  out += '[';
+  bool first = true;
+  for (const auto& entry : range) {
+    if (!first) out += ", ";
+    first = false;
+    append(entry);
+  }
+  out += ']';
+}
+
+/// {"name": value, ...}
+template <class Pairs>
+void append_object(std::string& out, const Pairs& pairs) {
+  out += '{';
+  bool first = true;
+  for (const auto& [name, value] : pairs) {
+    if (!first) out += ", ";
+    first = false;
+    append_json(out, name);
+    out += ": ";
+    catena::append_json(out, value);
+  }
+  out += '}';
+}
+
+struct FieldWriter {
+  std::string& out;
+
+  void operator()(bool value) const { catena::append_json(out, value); }
+  void operator()(std::int64_t value) const { catena::append_json(out, value); }
+  void operator()(double value) const { catena::append_json(out, value); }
+  void operator()(const std::string& value) const { catena::append_json(out, std::string_view(value)); }
+  void operator()(const std::vector<double>& list) const {
+    append_list(out, list, [&](double value) { catena::append_json(out, value); });
+  }
+  void operator()(const std::vector<std::string>& list) const {
+    append_list(out, list, [&](const std::string& value) { append_json(out, value); });
+  }
+  void operator()(const std::vector<FieldRecord>& records) const {
+    append_list(out, records, [&](const FieldRecord& record) {
+      out += '{';
+      bool first = true;
+      for (const auto& [name, value] : record) {
+        if (!first) out += ", ";
+        first = false;
+        append_json(out, name);
+        out += ": ";
+        std::visit(*this, value);
+      }
+      out += '}';
+    });
+  }
+};
+
+void append_counters(std::string& out, const Counters& c) {
+  const std::pair<std::string_view, std::int64_t> all[] = {{"symbolic", c.symbolic},
+                                                           {"factorizations", c.factorizations},
+                                                           {"refactorizations", c.refactorizations},
+                                                           {"solves", c.solves},
+                                                           {"iterations", c.iterations},
+                                                           {"configurations", c.configurations},
+                                                           {"phis", c.phis},
+                                                           {"jacobians", c.jacobians},
+                                                           {"nus", c.nus},
+                                                           {"gammas", c.gammas},
+                                                           {"forces", c.forces},
+                                                           {"hessians", c.hessians},
+                                                           {"fallbacks", c.fallbacks},
+                                                           {"steps", c.steps},
+                                                           {"rejected", c.rejected}};
+  out += '{';
+  bool first = true;
+  for (const auto& [name, value] : all) {
+    if (!first) out += ", ";
+    first = false;
+    catena::append_json(out, name);
+    out += ": ";
+    catena::append_json(out, value);
+  }
+  out += '}';
+}
+
+class JsonSink final : public ResultSink, private RowSink {
+ public:
+  explicit JsonSink(TextOutput& output) : output_(output) {}
+
+  void begin_run(const RunHeader& header) override {
+    text_ = "{\"catena\": 1";
+    append_key(text_, "scene");
+    append_json(text_, header.scene);
+    append_key(text_, "version");
+    append_json(text_, header.version);
+    append_key(text_, "gravity");
+    append_list(text_, header.gravity, [&](double value) { catena::append_json(text_, value); });
+    append_key(text_, "parameters");
+    append_object(text_, header.parameters);
+    append_key(text_, "set");
+    append_object(text_, header.set);
+    append_key(text_, "analyses");
+    text_ += '[';
+    send();
+  }
+  RowSink& begin_analysis(std::string_view type) override {
+    text_ = count_++ > 0 ? ",\n  {\"type\": " : "\n  {\"type\": ";
+    catena::append_json(text_, type);
+    rows_ = -1;
+    has_table_ = type != "check";
+    send();
+    return *this;
+  }
+  void end_analysis(const AnalysisResult& result) override {
+    if (has_table_ && rows_ < 0) begin({});  // refused before its columns were known: a table without any
+    text_.clear();
+    if (rows_ >= 0) text_ += rows_ > 0 ? "\n  ]" : "]";
+    append_report(result);
+    if (!result.set.empty()) {
+      append_key(text_, "set");
+      append_object(text_, result.set);
+    }
+    for (const NamedField& field : result.fields) {
+      append_key(text_, field.name);
+      std::visit(FieldWriter{text_}, field.value);
+    }
+    text_ += '}';
+    send();
+  }
+  void end_run() override {
+    text_ = count_ > 0 ? "\n]}\n" : "]}\n";
+    send();
+    output_.flush();
+  }
+
+ private:
+  void begin(std::span<const ColumnInfo> columns) override {
+    text_.clear();
+    append_key(text_, "columns");
+    append_list(text_, columns, [&](const ColumnInfo& column) { append_json(text_, column.name); });
+    append_key(text_, "units");
+    append_list(text_, columns, [&](const ColumnInfo& column) { catena::append_json(text_, si_unit(column.unit)); });
+    append_key(text_, "rows");
+    text_ += '[';
+    rows_ = 0;
+    send();
+  }
+  bool row(std::span<const double> values) override {
+    text_ = rows_++ > 0 ? ",\n    " : "\n    ";
+    append_list(text_, values, [&](double value) { catena::append_json(text_, value); });
+    send();
+    return true;
+  }
+
+  void append_report(const AnalysisResult& result) {
+    const AnalysisReport& report = result.report;
+    append_key(text_, "status");
+    catena::append_json(text_, to_string(report.status));
+    append_key(text_, "message");
+    append_json(text_, report.message);
+    append_key(text_, "warnings");
+    append_list(text_, report.warnings, [&](const std::string& warning) { append_json(text_, warning); });
+    const auto append_count = [&](std::string_view name, const std::optional<int>& value) {
+      if (!value) return;
+      append_key(text_, name);
+      catena::append_json(text_, std::int64_t{*value});
+    };
+    const bool structure = !result.has_rows && report.bodies > 0;  // a table has its rows, a refused analysis nothing
+    if (structure) {
+      append_count("bodies", report.bodies);
+      append_count("rows", report.rows);
+      append_count("rank", report.rank);
+    }
+    append_count("dof", report.dof);
+    append_count("mobility", report.mobility);
+    append_key(text_, "redundant");
+    append_list(text_, report.redundant, [&](const std::string& name) { append_json(text_, name); });
+    if (structure) append_count("islands", report.islands);
+    append_key(text_, "seconds");
+    catena::append_json(text_, report.seconds);
+    append_key(text_, "counters");
+    append_counters(text_, report.counters);
+  }
+  void send() { output_.write(text_); }
+
+  TextOutput& output_;
+  std::string text_;  // what goes out next; kept for its memory
+  int count_ = 0;     // analyses so far
+  std::int64_t rows_ = -1;
+  bool has_table_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<ResultSink> json_result_sink(TextOutput& output) { return std::make_unique<JsonSink>(output); }
+
+std::string invalid_json(const SceneOutcome& outcome) {
+  std::string out = "{\"catena\": 1, \"status\": \"invalid\", \"errors\": ";
+  append_list(out, outcome.errors, [&](const Diagnostic& error) {
+    out += "\n  {\"file\": ";
+    append_json(out, error.file);
+    append_key(out, "line");
+    catena::append_json(out, std::int64_t{error.line});
+    append_key(out, "column");
+    catena::append_json(out, std::int64_t{error.column});
+    append_key(out, "message");
+    append_json(out, error.message);
+    out += '}';
+  });
+  return out + "}\n";
+}
+
+}  // namespace catena

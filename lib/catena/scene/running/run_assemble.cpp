@@ -1,0 +1,170 @@
+// assemble and check: where a mechanism can be, and how much it can move from there.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "catena/analysis/kinematics/kinematics.hpp"
+#include "catena/analysis/motion/initial_velocities.hpp"
+#include "catena/analysis/pose/mobility.hpp"
+#include "catena/analysis/run/process_time.hpp"
+#include "catena/analysis/spectrum/free_motions.hpp"
+#include "catena/scene/running/analysis_run.hpp"
+
+namespace catena {
+namespace {
+
+std::string quoted_names(const Model& model, const std::vector<int>& elements) {
+  constexpr std::size_t most = 8;
+  std::string text;
+  for (std::size_t k = 0; k < elements.size() && k < most; ++k)
+    text += (k == 0 ? "\"" : ", \"") + model.element_name(elements[k]) + "\"";
+  return elements.size() > most ? text + ", ..." : text;
+}
+
+void start(Kinematics& analysis, const AnalysisContext& context) {
+  SystemState state = context.state;
+  state.t = frozen_time(context);
+  analysis.start_from(state);
+  if (context.trace) analysis.evaluator().trace = &context.trace;
+}
+
+void take_outcome(AnalysisReport& report, const AssemblyOutcome& outcome, Kinematics& analysis) {
+  static_cast<Report&>(report) = outcome;
+  report.bodies = analysis.plan().bodies;
+  report.rows = analysis.plan().rows;
+  report.islands = analysis.plan().islands;
+}
+
+void add_misfits(AnalysisResult& result, const AssemblyOutcome& outcome, const Model& model) {
+  if (outcome.misfits.empty()) return;
+  std::vector<FieldRecord> records;
+  for (const Misfit& misfit : outcome.misfits) {
+    records.push_back({{"element", model.element_name(misfit.element)},
+                       {"residual", misfit.size},
+                       {"unit", std::string(misfit.angle ? "rad" : "m")}});
+  }
+  result.fields.push_back({"misfits", std::move(records)});
+}
+
+/// One-sided elements do not take part in assembly: those that its outcome violates are named.
+void warn_of_closed_gaps(const Evaluator& evaluator, AnalysisReport& report) {
+  constexpr double overlap = 1e-9;
+  constexpr std::size_t most = 10;
+  const Model& model = evaluator.model();
+  std::size_t count = 0;
+  for (const int element : model.gaps()) {
+    const double gap = evaluator.measure(element, {}, {}).value;
+    if (gap >= -overlap * evaluator.length_scale() || ++count > most) continue;
+    report.warnings.push_back(
+        fmt::format("{} \"{}\" is violated by {:.3g} here: assembly leaves one-sided elements out",
+                    model.element_type(element), model.element_name(element), -gap));
+  }
+  if (count > most) report.warnings.push_back(fmt::format("{} more one-sided elements are violated", count - most));
+}
+
+/// What a start of dynamics would make of the velocities that bodies are given.
+void check_velocities(Kinematics& analysis, const Model& model, AnalysisReport& report) {
+  const bool given = std::any_of(model.bodies.begin(), model.bodies.end(),
+                                 [](const auto& body) { return body.velocity_given || body.angular_velocity_given; });
+  if (!given) return;
+  EquationsOfMotion equations(analysis.evaluator());
+  if (!equations.use_masses().ok()) return;
+  equations.weigh_massless(analysis.q());
+  std::vector<double> qd(analysis.q().size());
+  const VelocityOutcome outcome = find_initial_velocities(equations, analysis.q(), {}, qd);
+  if (!outcome.ok()) {
+    report.warnings.push_back("initial velocities: " + outcome.message);
+  } else if (outcome.changed > 1e-9) {
+    report.warnings.push_back(
+        fmt::format("the given velocities do not meet the constraints: dynamics changes them by up to {:.3g} {} "
+                    "(body \"{}\")",
+                    outcome.changed, outcome.changed_turn ? "rad/s" : "m/s", model.body_name(outcome.changed_body)));
+  }
+}
+
+}  // namespace
+
+void run_assemble(AnalysisContext& context, AnalysisResult& result) {
+  const ProcessTimer timer;
+  const std::vector<std::string> names = context.task.output_names();
+  PlanOptions options = plan_options(*context.model, names);
+  options.released_elements = context.model->gaps();
+  Kinematics analysis(context.model, options);
+  const ColumnSet columns =
+      ColumnSet::resolve(*context.model, analysis.plan(), names, {.analysis = context.task.type()});
+  start(analysis, context);
+  ReportingRows rows(columns, context, context.state.t);
+  const AssemblyOutcome outcome = analysis.assemble();
+  AnalysisReport report;
+  take_outcome(report, outcome, analysis);
+  // In metres, as the column: angles count times the length scale, unless there is nothing else.
+  const std::vector<char>& angles = analysis.plan().row_is_angle;
+  const bool only_angles = !angles.empty() && std::all_of(angles.begin(), angles.end(), std::identity());
+  const double scale = analysis.evaluator().length_scale();
+  if (outcome.ok()) {
+    analysis.evaluator().set_configuration(analysis.q());
+    rows.observe({.evaluator = analysis.evaluator(),
+                  .t = analysis.time(),
+                  .q = analysis.q(),
+                  .residual = outcome.residual * scale});
+    // Places alone change hands: the velocities and the time stay those of the motion so far.
+    context.state.q = analysis.state().q;
+    warn_of_closed_gaps(analysis.evaluator(), report);
+  }
+  report.counters = analysis.evaluator().counters;
+  report.seconds = timer.seconds();
+  take_report(result, std::move(report), &columns, rows.rows());
+  result.fields = {{"residual", outcome.residual * (only_angles ? 1 : scale)},
+                   {"moved", outcome.moved},
+                   {"iterations", std::int64_t{outcome.iterations}}};
+  add_misfits(result, outcome, *context.model);
+}
+
+void run_check(AnalysisContext& context, AnalysisResult& result) {
+  const ProcessTimer timer;
+  const Model& model = *context.model;
+  // Every equation counts here, those of welded bodies too.
+  PlanOptions options;
+  for (int e = 0; e < static_cast<int>(model.elements.size()); ++e) options.keep_elements.push_back(e);
+  options.released_elements = model.gaps();
+  Kinematics analysis(context.model, options);
+  start(analysis, context);
+  const AssemblyOutcome outcome = analysis.assemble();
+  AnalysisReport report;
+  take_outcome(report, outcome, analysis);
+  const MobilityReport mobility = analyse_mobility(analysis.evaluator(), analysis.q());
+  report.rank = mobility.rank;
+  report.dof = mobility.dof();
+  report.mobility = mobility.mobility();
+  for (const int element : mobility.redundant_elements) report.redundant.push_back(model.element_name(element));
+  report.warnings.insert(report.warnings.end(), mobility.warnings.begin(), mobility.warnings.end());
+  for (std::size_t k = 0; k < mobility.redundant_elements.size() && k < 10; ++k) {
+    if (mobility.dependent_on[k].empty()) continue;
+    const std::vector<int>& wrong = mobility.contradictory_elements;
+    const bool agrees = std::find(wrong.begin(), wrong.end(), mobility.redundant_elements[k]) == wrong.end();
+    report.warnings.push_back(fmt::format("\"{}\" {} {}{}", model.element_name(mobility.redundant_elements[k]),
+                                          agrees ? "repeats what follows from" : "contradicts",
+                                          quoted_names(model, mobility.dependent_on[k]),
+                                          agrees ? "" : ": the places fit, the velocities do not"));
+  }
+  std::optional<FreeMotions> free;
+  if (outcome.ok() && mobility.dof() > 0) free = find_free_motions(context.model, analysis.state());
+  const bool any_free = free && free->count > 0;
+  if (outcome.ok()) {
+    warn_of_closed_gaps(analysis.evaluator(), report);
+    check_velocities(analysis, model, report);
+    for (std::string& doubt : gears_that_do_not_fit(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
+  }
+  report.counters = analysis.evaluator().counters;
+  report.seconds = timer.seconds();
+  take_report(result, std::move(report), nullptr, 0);
+  if (!mobility.free_bodies.empty()) result.fields.push_back({"free_bodies", mobility.free_bodies});
+  if (any_free) {
+    result.fields.push_back({"free_motions", std::int64_t{free->count}});
+    result.fields.push_back({"moving_freely", free->bodies});
+  }
+  add_misfits(result, outcome, model);
+}
+
+}  // namespace catena

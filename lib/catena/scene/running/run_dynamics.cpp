@@ -1,0 +1,199 @@
+// dynamics: the motion that follows from forces; with events, an estimate of its error, or checkpoints.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "catena/analysis/dynamics/dynamics_of_islands.hpp"
+#include "catena/analysis/dynamics/dynamics_with_events.hpp"
+#include "catena/analysis/dynamics/error_estimate.hpp"
+#include "catena/analysis/dynamics/paces.hpp"
+#include "catena/scene/running/analysis_run.hpp"
+
+namespace catena {
+namespace {
+
+constexpr ColumnSources sources{
+    .analysis = "dynamics", .timed = true, .velocity = true, .acceleration = true, .multipliers = true, .work = true};
+// Of an analysis: time between checkpoints where none is given.
+constexpr double part_between_checkpoints = 0.05;
+
+std::vector<Event> events_of(const AnalysisTask& task, const Model& model) {
+  // In the order of the keys' words.
+  constexpr EventDirection directions[] = {EventDirection::any, EventDirection::up, EventDirection::down};
+  constexpr EventAction actions[] = {EventAction::record, EventAction::stop, EventAction::release, EventAction::engage};
+  std::vector<Event> events;
+  for (const EventRequest& request : task.events) {
+    events.push_back({request.name, request.column, request.value, directions[request.direction],
+                      actions[request.action], request.element.empty() ? -1 : model.find_element(request.element)});
+  }
+  return events;
+}
+
+DynamicsOptions options_of(const AnalysisTask& task) {
+  DynamicsOptions options;
+  options.method = static_cast<IntegrationMethod>(task.word("method"));  // in the order of the key's words
+  options.tolerance = task.number("tolerance", options.tolerance);
+  options.step = task.number("step", options.step);
+  options.max_steps = static_cast<std::int64_t>(task.number("max_steps", static_cast<double>(options.max_steps)));
+  return options;
+}
+
+/// One object a kind of coordinate.
+std::vector<FieldRecord> records_of(const EstimatedError& error, const Model& model) {
+  struct Kind {
+    const char *quantity, *unit;
+    const ErrorOfMotion& of;
+  };
+  const Kind kinds[] = {{"position", "m", error.position},
+                        {"angle", "rad", error.angle},
+                        {"velocity", "m/s", error.velocity},
+                        {"angular velocity", "rad/s", error.angular_velocity}};
+  std::vector<FieldRecord> records;
+  for (const Kind& kind : kinds) {
+    FieldRecord record{{"quantity", std::string(kind.quantity)},
+                       {"error", kind.of.error},
+                       {"unit", std::string(kind.unit)},
+                       {"relative", kind.of.relative()}};
+    if (kind.of.body >= 0) {
+      record.emplace_back("body", std::string(model.body_name(kind.of.body)));
+      record.emplace_back("t", kind.of.t);
+    }
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
+class DynamicsTask {
+ public:
+  DynamicsTask(AnalysisContext& context, AnalysisResult& result)
+      : context_(context),
+        result_(result),
+        model_(context.model),
+        options_(options_of(context.task)),
+        used_options_(options_),
+        names_(context.task.output_names()),
+        estimates_(context.estimate_error || context.task.number("estimate_error", 0) != 0) {}
+
+  void run();
+
+ private:
+  /// Nothing, or why the analysis cannot do all that is asked for at once.
+  std::string conflict() const;
+  /// Runs what was made with used_options_.
+  template <class Analysis>
+  void run_or_estimate(Analysis& analysis, const PlanOptions& plan);
+  void run_with_events_or_pauses();
+  /// Has the motion saved now and then; where it cannot be, `failure` says why.
+  Pauses pauses(std::string& failure) const;
+  void run_apart(const std::vector<std::vector<int>>& classes);
+
+  AnalysisContext& context_;
+  AnalysisResult& result_;
+  std::shared_ptr<const Model> model_;
+  DynamicsOptions options_, used_options_;  // what was asked for; those of the finer run where the error is wanted
+  std::vector<std::string> names_;
+  std::optional<TimeGrid> grid_;
+  bool estimates_;
+};
+
+std::string DynamicsTask::conflict() const {
+  const std::vector<EventRequest>& events = context_.task.events;
+  const bool acts = std::any_of(events.begin(), events.end(), [](const EventRequest& event) {
+    const auto action = static_cast<EventAction>(event.action);
+    return action == EventAction::release || action == EventAction::engage;
+  });
+  if (estimates_ && acts) {
+    return "the error cannot be estimated where events release or engage a constraint: they would happen at other "
+           "instants in the second run";
+  }
+  if (context_.checkpoint && estimates_) return "an estimate of the error and checkpoints do not go together";
+  return {};
+}
+
+template <class Analysis>
+void DynamicsTask::run_or_estimate(Analysis& analysis, const PlanOptions& plan) {
+  if (!estimates_) {
+    run_over_time(context_, result_, analysis, *grid_, names_, sources);
+    return;
+  }
+  WithErrorEstimate both(analysis, model_, plan, options_);
+  run_over_time(context_, result_, both, *grid_, names_, sources);
+  result_.fields.push_back({"estimated_error", records_of(both.error(), *model_)});
+}
+
+Pauses DynamicsTask::pauses(std::string& failure) const {
+  const CheckpointRequest& request = *context_.checkpoint;
+  const double begin = context_.state.t;
+  Pauses pauses{request.every > 0 ? request.every : part_between_checkpoints * (grid_->last() - begin)};
+  pauses.save = [&request, &failure, begin](const MotionMemory& memory) {
+    try {
+      request.save(begin, memory);
+    } catch (const CheckpointError& error) {
+      failure = error.what();  // of a run of hours the rows are worth more than its checkpoints
+    }
+  };
+  return pauses;
+}
+
+void DynamicsTask::run_with_events_or_pauses() {
+  std::vector<std::string> reactions = names_;
+  for (const EventRequest& request : context_.task.events) reactions.push_back(request.column);
+  const PlanOptions plan = plan_options(*model_, reactions);
+  DynamicsWithEvents analysis(model_, plan, used_options_, events_of(context_.task, *model_), sources);
+  std::string failure, taken_up;
+  if (context_.checkpoint) {
+    analysis.pause(pauses(failure));
+    if (const std::optional<Checkpoint>& restart = context_.checkpoint->restart) {
+      analysis.resume(restart->motion);
+      taken_up = fmt::format("taken up from a checkpoint at t = {:.12g} s: the {} rows before are not given again",
+                             restart->motion.t, restart->motion.rows_given);
+    }
+  }
+  run_or_estimate(analysis, plan);
+  std::vector<std::string>& warnings = result_.report.warnings;
+  if (!failure.empty()) warnings.push_back("a checkpoint was not saved: " + failure);
+  if (!taken_up.empty()) warnings.push_back(taken_up);
+  result_.fields.push_back({"method", std::string(to_string(analysis.method()))});
+  if (context_.task.events.empty()) return;
+  std::vector<FieldRecord> records;
+  for (const EventRecord& record : analysis.records())
+    records.push_back({{"name", record.name}, {"t", record.t}, {"row", record.row}});
+  result_.fields.push_back({"events", std::move(records)});
+}
+
+/// Mechanisms that have nothing to do with each other, and differ in pace.
+void DynamicsTask::run_apart(const std::vector<std::vector<int>>& classes) {
+  DynamicsOfIslands analysis(model_, plan_options(*model_, names_), used_options_, classes);
+  run_over_time(context_, result_, analysis, *grid_, names_, sources);
+  std::string methods;
+  for (const IntegrationMethod method : analysis.methods()) {
+    const std::string_view name = to_string(method);
+    if (methods.find(name) == std::string::npos) methods += (methods.empty() ? "" : ", ") + std::string(name);
+  }
+  result_.fields.push_back({"method", methods});
+  result_.fields.push_back({"integrated_apart", static_cast<std::int64_t>(analysis.classes())});
+}
+
+void DynamicsTask::run() {
+  if (const std::string why = conflict(); !why.empty()) return refuse(result_, why);
+  if (context_.checkpoint && context_.checkpoint->restart)
+    context_.state = {context_.checkpoint->restart->begin, {}, {}};
+  grid_ = time_grid(context_, result_.report);
+  if (!grid_) return;
+  if (estimates_) used_options_ = finer_options(options_);
+  if (!context_.task.events.empty() || context_.checkpoint) return run_with_events_or_pauses();
+  // A fixed step is the same for all; two runs that are compared must be divided alike.
+  if (!estimates_ && options_.step == 0) {
+    if (const auto classes = classes_of_pace(model_); classes.size() > 1) return run_apart(classes);
+  }
+  const PlanOptions plan = plan_options(*model_, names_);
+  Dynamics analysis(model_, plan, used_options_);
+  run_or_estimate(analysis, plan);
+  result_.fields.push_back({"method", std::string(to_string(analysis.method()))});
+}
+
+}  // namespace
+
+void run_dynamics(AnalysisContext& context, AnalysisResult& result) { DynamicsTask(context, result).run(); }
+
+}  // namespace catena

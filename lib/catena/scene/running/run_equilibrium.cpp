@@ -1,0 +1,83 @@
+// equilibrium: the configuration at rest, certified.
+#include <fmt/format.h>
+
+#include "catena/analysis/statics/equilibrium.hpp"
+#include "catena/analysis/statics/static_ipopt.hpp"
+#include "catena/analysis/statics/static_nlopt.hpp"
+#include "catena/scene/running/analysis_run.hpp"
+
+namespace catena {
+
+void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
+  const AnalysisTask& task = context.task;
+  // In the order of the keys' words.
+  constexpr StaticSolver solvers[] = {StaticSolver::automatic, StaticSolver::newton, StaticSolver::ipopt,
+                                      StaticSolver::nlopt};
+  EquilibriumOptions options;
+  options.solver = solvers[task.word("solver")];
+  const bool built_in = options.solver == StaticSolver::ipopt   ? ipopt_is_built_in()
+                        : options.solver == StaticSolver::nlopt ? nlopt_is_built_in()
+                                                                : true;
+  if (!built_in) {
+    const std::string name = options.solver == StaticSolver::ipopt ? "Ipopt" : "NLopt";
+    return refuse(result, fmt::format("this catena was built without {} (CATENA_WITH_{}=OFF); leave \"solver\" out, or "
+                                      "take \"newton\"",
+                                      name, name == "Ipopt" ? "IPOPT" : "NLOPT"));
+  }
+  options.verbose = context.verbose;
+  options.find = static_cast<int>(task.number("find", 1));
+  options.tolerance = task.number("tolerance", options.tolerance);
+  options.accept = task.word("accept") == 0 ? Accept::stable : Accept::stationary;
+  const std::vector<std::string> names = task.output_names();
+  Equilibrium analysis(context.model, plan_options(*context.model, names), options);
+  const bool conservative = analysis.evaluator().conservative();
+  if (!conservative && (options.solver == StaticSolver::ipopt || options.solver == StaticSolver::nlopt)) {
+    return refuse(result,
+                  fmt::format("the solver {} minimises an energy, which forces that turn with their body do not "
+                              "have; leave \"solver\" out",
+                              options.solver == StaticSolver::ipopt ? "ipopt" : "nlopt"));
+  }
+  if (options.solver == StaticSolver::nlopt && analysis.plan().columns > StaticNloptOptions::most_columns) {
+    return refuse(result,
+                  fmt::format("the solver nlopt is dense and made for at most {} coordinates; this scene has {}",
+                              StaticNloptOptions::most_columns, analysis.plan().columns));
+  }
+  const ColumnSet columns =
+      ColumnSet::resolve(*context.model, analysis.plan(), names, {.analysis = task.type(), .multipliers = true});
+  SystemState start = context.state;
+  start.t = frozen_time(context);
+  analysis.start_from(start);
+  if (context.trace) analysis.evaluator().trace = &context.trace;
+  ReportingRows rows(columns, context, start.t);
+  const EquilibriumReport report = analysis.run(TimeGrid::instant(start.t), columns.needs(), rows);
+  context.state = analysis.state();
+  if (report.certified) {
+    result.fields = {{"energy", report.energy},
+                     {"stable", report.stable},
+                     {"neutral", report.neutral},
+                     {"negative_modes", static_cast<std::int64_t>(report.negative_modes)}};
+    if (report.free_motions > 0) {
+      result.fields.push_back({"free_motions", static_cast<std::int64_t>(report.free_motions)});
+      result.fields.push_back({"moving_freely", report.free_bodies});
+    }
+  }
+  if (report.certified || report.ok()) {
+    result.fields.push_back({"residual", report.residual});
+    result.fields.push_back({"solver", report.solver});
+    result.fields.push_back({"iterations", static_cast<std::int64_t>(report.iterations)});
+  }
+  if (!analysis.plan().gap_rows.empty() && report.ok()) result.fields.push_back({"active", report.active});
+  if (!report.found.empty()) {
+    std::vector<FieldRecord> list;
+    for (const FoundEquilibrium& f : report.found) {
+      list.push_back({{"row", static_cast<std::int64_t>(list.size())},
+                      {"energy", f.energy},
+                      {"stable", f.stable},
+                      {"negative_modes", static_cast<std::int64_t>(f.negative_modes)}});
+    }
+    result.fields.push_back({"equilibria", std::move(list)});
+  }
+  take_report(result, report, &columns, rows.rows());
+}
+
+}  // namespace catena

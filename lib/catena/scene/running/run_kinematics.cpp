@@ -1,0 +1,80 @@
+// kinematics and inverse_dynamics: a driven mechanism over time.
+#include "catena/analysis/kinematics/kinematics.hpp"
+#include "catena/analysis/kinematics/minimum_norm_motion.hpp"
+#include "catena/scene/running/analysis_run.hpp"
+
+namespace catena {
+namespace {
+
+/// The branches in words; where none goes on, that.
+std::vector<std::string> branches_of(const SingularPoint& point) {
+  if (!point.branches.empty()) return point.branches;
+  if (point.kind == SingularPoint::Kind::lock_up) return {"none goes on beyond the dead point"};
+  return {point.kind == SingularPoint::Kind::isolated ? "none goes on" : "not known"};
+}
+
+/// "singular": one object a singular configuration met.
+void add_singular_points(AnalysisResult& result, const std::vector<SingularPoint>& points, const Model& model) {
+  if (points.empty()) return;
+  std::vector<FieldRecord> records;
+  for (const SingularPoint& point : points) {
+    FieldRecord record{{"t", point.t},
+                       {"kind", std::string(point.kind_name())},
+                       {"nullity", std::int64_t{point.nullity}},
+                       {"bodies", point.bodies},
+                       {"branches", branches_of(point)}};
+    if (point.driver >= 0) {
+      record.emplace_back("driver", model.element_name(point.driver));
+      record.emplace_back("value", point.driver_value);
+    }
+    records.push_back(std::move(record));
+  }
+  result.fields.push_back({"singular", std::move(records)});
+}
+
+/// Whether constraints and drivers determine the motion where the analysis starts.
+bool is_driven(const AnalysisContext& context) {
+  Kinematics analysis(context.model);
+  analysis.start_from(context.state);
+  RowFunction nothing([](const Snapshot&) { return true; });
+  return analysis.run(TimeGrid::instant(context.state.t), {}, nothing).status != Status::under_driven;
+}
+
+void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics) {
+  const AnalysisTask& task = context.task;
+  const std::optional<TimeGrid> grid = time_grid(context, result.report);
+  if (!grid) return;
+  const std::vector<std::string> names = task.output_names();
+  KinematicsOptions options;
+  options.inverse_dynamics = inverse_dynamics;
+  if (task.has("branch")) {
+    options.branch = static_cast<int>(task.number("branch", 0));
+    if (options.branch < 1) return refuse(result, "branches are numbered from 1");
+  }
+  const ColumnSources sources{.analysis = task.type(),
+                              .timed = true,
+                              .velocity = true,
+                              .acceleration = true,
+                              .multipliers = inverse_dynamics,
+                              .work = inverse_dynamics};
+  if (task.word("free") != 0 && !is_driven(context)) {
+    if (inverse_dynamics) {
+      return refuse(result,
+                    "\"minimum_norm\" is for kinematics alone: motions that nothing drives would need forces of their "
+                    "own; add drivers");
+    }
+    MinimumNormMotion analysis(context.model, plan_options(*context.model, names));
+    run_over_time(context, result, analysis, *grid, names, sources);
+    return add_singular_points(result, analysis.singular_points(), *context.model);
+  }
+  Kinematics analysis(context.model, plan_options(*context.model, names), options);
+  run_over_time(context, result, analysis, *grid, names, sources);
+  add_singular_points(result, analysis.singular_points(), *context.model);
+}
+
+}  // namespace
+
+void run_kinematics(AnalysisContext& context, AnalysisResult& result) { run(context, result, false); }
+void run_inverse_dynamics(AnalysisContext& context, AnalysisResult& result) { run(context, result, true); }
+
+}  // namespace catena

@@ -1,0 +1,393 @@
+#include "catena/scene/running/scene_runner.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "catena/scene/building/build_model.hpp"
+#include "catena/scene/json/near_miss.hpp"
+#include "catena/scene/reading/scene_reader.hpp"
+#include "catena/scene/reading/scene_reading.hpp"
+#include "catena/scene/running/analysis_run.hpp"
+#include "catena/scene/running/command_text.hpp"
+#include "catena/scene/running/scene_checkpoints.hpp"
+
+namespace catena {
+namespace {
+
+/// `four_bar` of `scenes/four_bar.json`.
+std::string stem(const std::string& path) {
+  const std::size_t slash = path.find_last_of('/');
+  std::string name = slash == std::string::npos ? path : path.substr(slash + 1);
+  const std::size_t dot = name.find_last_of('.');
+  return dot == std::string::npos || dot == 0 ? name : name.substr(0, dot);
+}
+
+/// For a "did you mean": names of at most some thousand elements.
+std::vector<std::string> element_names(const Model& model) {
+  std::vector<std::string> names;
+  for (int e = 0; e < static_cast<int>(std::min<std::size_t>(model.elements.size(), 2000)); ++e)
+    names.push_back(model.element_name(e));
+  return names;
+}
+
+void print_iteration(std::string_view method, int iteration, double residual, double change) {
+  const std::string line = fmt::format("{} {}: residual {:.3g}, change {:.3g}\n", method, iteration, residual, change);
+  std::fputs(line.c_str(), stderr);
+}
+
+class SceneRun {
+ public:
+  SceneRun(const RunOptions& options, ResultSink& sink, SceneOutcome& outcome)
+      : options_(options), sink_(sink), outcome_(outcome) {}
+
+  void run(const std::string& path);
+
+ private:
+  /// Reads and checks everything; false if anything is wrong.
+  bool prepare(SourceText source);
+  void read_tasks();
+  void check_columns(const std::vector<PlacedName>& names, const Model& model);
+  void check_task(const AnalysisTask& task);
+  void check_event(const EventRequest& event, const Model& model);
+  std::shared_ptr<const Model> build(std::span<const double> parameters);
+  void run_all();
+  /// Builds models in which one parameter of the task has another value.
+  std::function<std::shared_ptr<const Model>(int, double)> builder_of(const AnalysisTask& task);
+  /// The task with the parameters that earlier paths left behind, unless it sets them itself.
+  AnalysisTask with_handed_on(AnalysisTask task, Diagnostics& diagnostics);
+  ParameterTable table_of(const AnalysisTask& task);
+  std::vector<ParameterSeed<double>> handed_on_to(const AnalysisTask& task) const;
+  AnalysisResult run_task(const AnalysisTask& read, int number, SystemState& state, RowSink& rows);
+  std::vector<std::pair<std::string, double>> named_parameters(std::span<const double> values) const;
+  void finish_errors();
+  /// Whether what the options say of dynamics can be done.
+  bool check_dynamics_options();
+  void refuse(int exit_code, const std::string& why);
+
+  const RunOptions& options_;
+  ResultSink& sink_;
+  SceneOutcome& outcome_;
+  Diagnostics diagnostics_;
+  CommandText command_;
+  std::unique_ptr<SceneTemplate> scene_;
+  ParameterTable parameters_;
+  std::shared_ptr<const Model> model_;
+  std::vector<AnalysisTask> tasks_;
+  std::vector<ParameterSeed<double>> handed_on_;  // values of parameters that paths left behind
+  SceneCheckpoints checkpoints_{options_};
+};
+
+std::shared_ptr<const Model> SceneRun::build(std::span<const double> parameters) {
+  return std::make_shared<Model>(build_model<double>(*scene_, parameters, {options_.max_elements}, diagnostics_));
+}
+
+// The names of columns are checked once the model is there; with errors before, half of it may be missing.
+void SceneRun::check_columns(const std::vector<PlacedName>& names, const Model& model) {
+  std::vector<NamedColumn> found;
+  for (const PlacedName& placed : names) {
+    found.clear();
+    const std::optional<UnknownColumn> unknown = find_columns(model, placed.name, found);
+    if (!unknown || diagnostics_.full() || diagnostics_.reported(placed.place.source(), placed.place.offset()))
+      continue;
+    diagnostics_.error(placed.place.source(), placed.place.offset(),
+                       fmt::format("unknown column {}: {}{}", in_quotes(placed.name), unknown->message,
+                                   NearMiss(placed.name).consider_all(unknown->candidates).hint()));
+  }
+}
+
+void SceneRun::check_task(const AnalysisTask& task) {
+  std::shared_ptr<const Model> model = model_;
+  if (task.changes_parameters) {
+    model = build(task.parameters);
+    if (!diagnostics_.ok()) return;
+  }
+  check_columns(task.outputs, *model);
+  for (const EventRequest& event : task.events) check_event(event, *model);
+}
+
+void SceneRun::check_event(const EventRequest& event, const Model& model) {
+  check_columns({{event.column, event.place}}, model);
+  std::vector<NamedColumn> found;
+  if (!find_columns(model, event.column, found) && found.size() > 1) {
+    report(event.place,
+           fmt::format("\"when\" of an event wants one column; {} stands for {} of them, such as {}",
+                       in_quotes(event.column), found.size(), in_quotes(found.front().info.name)),
+           diagnostics_);
+  }
+  if (event.element.empty()) return;
+  const int element = model.find_element(event.element);
+  if (element < 0) {
+    report(event.element_place,
+           fmt::format("there is no constraint {} to release or engage{}", in_quotes(event.element),
+                       NearMiss(event.element).consider_all(element_names(model)).hint()),
+           diagnostics_);
+  } else if (const ElementKind kind = model.elements[static_cast<std::size_t>(element)].kind;
+             kind == ElementKind::force || kind == ElementKind::gap) {
+    report(event.element_place,
+           fmt::format("{} is a force; only constraints and drivers are released or engaged", in_quotes(event.element)),
+           diagnostics_);
+  }
+}
+
+void SceneRun::read_tasks() {
+  SceneTemplate& scene = *scene_;
+  const std::vector<double> values = parameters_.evaluate<double>(scene.expressions, diagnostics_);
+  if (scene.outputs) read_outputs(scene.outputs, scene, values, diagnostics_);
+  if (scene.analyses) tasks_ = read_analyses(scene.analyses, scene.outputs, scene, parameters_, diagnostics_);
+  if (command_.read_outputs(options_.outputs, diagnostics_)) {
+    const std::vector<PlacedName> outputs = read_outputs(command_.outputs(), scene, values, diagnostics_);
+    for (AnalysisTask& task : tasks_) {
+      if (task.description->find("outputs")) task.outputs = outputs;
+    }
+  }
+  if (options_.verb.empty()) return;
+  // The scene's own analyses were checked, but one from the command line is run in their place.
+  tasks_.clear();
+  if (!command_.read_verb(options_.verb, options_.verb_options, diagnostics_)) return;
+  if (auto task = read_analysis(command_.verb(), scene.outputs, scene, parameters_, diagnostics_))
+    tasks_.push_back(std::move(*task));
+}
+
+bool SceneRun::prepare(SourceText source) {
+  scene_ = read_scene(std::move(source), diagnostics_);
+  if (!scene_ || scene_->may_lack_parts) return false;
+  parameters_ = scene_->parameters;
+  if (command_.read_set(options_.set, diagnostics_)) parameters_.set(command_.set(), scene_->expressions, diagnostics_);
+  const std::vector<double> values = parameters_.evaluate<double>(scene_->expressions, diagnostics_);
+  model_ = build(values);
+  const bool model_is_sound = diagnostics_.ok();
+  read_tasks();
+  if (model_is_sound) {
+    for (const AnalysisTask& task : tasks_) check_task(task);
+    if (scene_->outputs && tasks_.empty())
+      check_columns(read_outputs(scene_->outputs, *scene_, values, diagnostics_), *model_);
+  }
+  return diagnostics_.ok();
+}
+
+// Errors in what came from the command line are the caller's, not the scene's.
+void SceneRun::finish_errors() {
+  bool in_scene = false;
+  std::string command_errors;
+  for (const Diagnostic& error : diagnostics_.items()) {
+    if (CommandText::is_command(error)) {
+      command_errors += fmt::format("catena: {}: {}\n", command_.option_of(error), error.message);
+    } else {
+      in_scene = true;
+    }
+  }
+  if (in_scene) {
+    outcome_.exit_code = 3;
+    outcome_.error_text = diagnostics_.text();
+    outcome_.errors = diagnostics_.in_order();
+  } else {
+    outcome_.exit_code = 2;
+    outcome_.error_text = command_errors;
+  }
+}
+
+ParameterTable SceneRun::table_of(const AnalysisTask& task) {
+  ParameterTable table = parameters_;
+  if (const JsonValue set = task.place.find("set")) table.set(set, scene_->expressions, diagnostics_);
+  return table;
+}
+
+std::vector<ParameterSeed<double>> SceneRun::handed_on_to(const AnalysisTask& task) const {
+  std::vector<ParameterSeed<double>> seeds;
+  const JsonValue set = task.place.find("set");
+  for (const ParameterSeed<double>& seed : handed_on_) {
+    if (!set || !set.find(parameters_.names().all()[static_cast<std::size_t>(seed.index)])) seeds.push_back(seed);
+  }
+  return seeds;
+}
+
+AnalysisTask SceneRun::with_handed_on(AnalysisTask task, Diagnostics& diagnostics) {
+  const std::vector<ParameterSeed<double>> seeds = handed_on_to(task);
+  if (seeds.empty()) return task;
+  task.parameters = table_of(task).evaluate<double>(scene_->expressions, diagnostics, seeds);
+  task.changes_parameters = true;
+  return task;
+}
+
+std::vector<std::pair<std::string, double>> SceneRun::named_parameters(std::span<const double> values) const {
+  std::vector<std::pair<std::string, double>> named;
+  const auto& names = parameters_.names().all();
+  for (std::size_t k = 0; k < names.size() && k < values.size(); ++k) named.emplace_back(names[k], values[k]);
+  return named;
+}
+
+std::function<std::shared_ptr<const Model>(int, double)> SceneRun::builder_of(const AnalysisTask& task) {
+  auto table = std::make_shared<ParameterTable>(table_of(task));
+  return [this, table, handed_on = handed_on_to(task)](int parameter, double value) -> std::shared_ptr<const Model> {
+    Diagnostics diagnostics(1);
+    std::vector<ParameterSeed<double>> seeds = handed_on;  // the last one of a parameter counts
+    seeds.push_back({parameter, value});
+    const std::vector<double> values = table->evaluate<double>(scene_->expressions, diagnostics, seeds);
+    if (!diagnostics.ok()) return nullptr;
+    auto model = std::make_shared<Model>(build_model<double>(*scene_, values, {options_.max_elements}, diagnostics));
+    return diagnostics.ok() ? model : nullptr;
+  };
+}
+
+AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemState& state, RowSink& rows) {
+  AnalysisResult result;
+  Diagnostics unfit(1);
+  const AnalysisTask task = with_handed_on(read, unfit);
+  result.type = task.type();
+  const AnalysisFunction function = analysis_function(task.type());
+  if (!function) {
+    result.report.status = Status::refused;
+    result.report.message = fmt::format("{} is not built yet", task.type());
+    return result;
+  }
+  // Elsewhere a gap would have to open and close in time.
+  const bool one_sided = task.type() == "equilibrium" || task.type() == "check" || task.type() == "assemble";
+  if (const std::vector<int> gaps = model_->gaps(); !gaps.empty() && !one_sided) {
+    result.report.status = Status::refused;
+    result.report.message =
+        fmt::format("{} \"{}\" is one-sided: {} does not treat such elements yet; equilibrium does",
+                    model_->element_type(gaps.front()), model_->element_name(gaps.front()), task.type());
+    return result;
+  }
+  const auto is_path = [](const AnalysisTask& earlier) { return earlier.type() == "path"; };
+  if (number == checkpoints_.first_analysis() && !read.from_initial &&
+      std::any_of(tasks_.begin(), tasks_.begin() + number, is_path)) {
+    result.report.status = Status::refused;
+    result.report.message =
+        "a checkpoint does not keep the parameter that a path before it ended with: run the whole scene";
+    return result;
+  }
+  if (!unfit.ok()) {
+    result.report.status = Status::refused;
+    result.report.message = fmt::format("with the parameters that the path before left behind: {}", unfit.text());
+    return result;
+  }
+  CheckpointRequest checkpoint = checkpoints_.request(number);
+  AnalysisContext context{.task = task,
+                          .model = task.changes_parameters ? build(task.parameters) : model_,
+                          .state = state,
+                          .rows = rows,
+                          .cancel = options_.cancel,
+                          .progress = {},
+                          .verbose = options_.verbose,
+                          .trace = options_.verbose ? IterationTrace(print_iteration) : IterationTrace(),
+                          .model_at = {},
+                          .parameter_name = {},
+                          .estimate_error = options_.estimate_error,
+                          .checkpoint = checkpoints_.wanted() ? &checkpoint : nullptr};
+  if (task.changes_parameters) {
+    // Those that follow from what was set differ too.
+    const auto before = named_parameters(parameters_.evaluate<double>(scene_->expressions, diagnostics_));
+    const auto own = named_parameters(task.parameters);
+    const JsonValue set = task.place.find("set");
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      if ((set && set.find(own[k].first)) || own[k].second != before[k].second) result.set.push_back(own[k]);
+    }
+  }
+  if (task.has("parameter")) {
+    context.model_at = builder_of(task);
+    context.parameter_name = parameters_.names().all()[static_cast<std::size_t>(task.word("parameter"))];
+  }
+  if (options_.progress) {
+    context.progress = [&, number](double fraction) {
+      options_.progress({task.type(), number, static_cast<int>(tasks_.size()), fraction});
+    };
+  }
+  try {
+    function(context, result);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    result.report.status = Status::refused;
+    result.report.message = error.what();
+  }
+  if (context.parameter_at_end && result.report.ok()) {
+    const int parameter = task.word("parameter");
+    std::erase_if(handed_on_, [&](const auto& seed) { return seed.index == parameter; });
+    handed_on_.push_back({parameter, *context.parameter_at_end});
+  }
+  return result;
+}
+
+void SceneRun::run_all() {
+  SystemState state;
+  sink_.begin_run({.scene = outcome_.scene,
+                   .description = std::string(scene_->description),
+                   .gravity = {model_->gravity.x, model_->gravity.y},
+                   .bodies = static_cast<int>(model_->bodies.size()),
+                   .elements = static_cast<int>(model_->elements.size()),
+                   .analyses = static_cast<int>(tasks_.size()) - checkpoints_.first_analysis(),
+                   .version = CATENA_VERSION,
+                   .parameters = named_parameters(parameters_.evaluate<double>(scene_->expressions, diagnostics_)),
+                   .set = options_.set});
+  const auto first = static_cast<std::size_t>(checkpoints_.first_analysis());
+  for (std::size_t k = first; k < tasks_.size(); ++k) {
+    const AnalysisTask& task = tasks_[k];
+    if (k > first && outcome_.analyses.back().report.status == Status::cancelled) break;
+    if (task.from_initial) {
+      state = {};
+      handed_on_.clear();
+    } else if (k > first && !outcome_.analyses.back().report.ok()) {
+      break;  // there is no state to go on from
+    }
+    RowSink& rows = sink_.begin_analysis(task.type());
+    outcome_.analyses.push_back(run_task(task, static_cast<int>(k), state, rows));
+    sink_.end_analysis(outcome_.analyses.back());
+    if (!outcome_.analyses.back().report.ok()) outcome_.exit_code = 1;
+  }
+  sink_.end_run();
+}
+
+void SceneRun::refuse(int exit_code, const std::string& why) {
+  outcome_.exit_code = exit_code;
+  outcome_.error_text = fmt::format("catena: {}\n", why);
+}
+
+bool SceneRun::check_dynamics_options() {
+  if (!(options_.checkpoint_every >= 0) || !std::isfinite(options_.checkpoint_every)) {
+    refuse(2, "--checkpoint-every: wants seconds above zero");
+    return false;
+  }
+  const bool any =
+      std::any_of(tasks_.begin(), tasks_.end(), [](const auto& task) { return task.type() == "dynamics"; });
+  if (any) return true;
+  if (options_.estimate_error) {
+    refuse(2, "--estimate-error: the scene has no dynamics analysis, and others have no error of integration");
+  } else if (!options_.checkpoint.empty()) {
+    refuse(2, "--checkpoint: the scene has no dynamics analysis, and others have nothing to be saved on the way");
+  }
+  return outcome_.exit_code == 0;
+}
+
+void SceneRun::run(const std::string& path) {
+  outcome_.scene = stem(path);
+  std::optional<SourceText> source;
+  try {
+    source.emplace(SourceText::read(path));
+    checkpoints_.prepare(source->text());
+  } catch (const FileError& error) {
+    return refuse(4, error.what());
+  } catch (const CheckpointError& error) {
+    return refuse(4, error.what());
+  }
+  if (!prepare(std::move(*source))) {
+    finish_errors();
+    return;
+  }
+  if (!check_dynamics_options()) return;
+  if (!scene_->name.empty()) outcome_.scene = scene_->name;
+  run_all();
+}
+
+}  // namespace
+
+SceneOutcome run_scene(const std::string& path, const RunOptions& options, ResultSink& sink) {
+  SceneOutcome outcome;
+  SceneRun(options, sink, outcome).run(path);
+  return outcome;
+}
+
+}  // namespace catena

@@ -1,0 +1,81 @@
+// A scene from its file to its results: read, checked, analysed; the entry points of the command line.
+//
+// Rows and results go to a ResultSink as they come; what is returned is the outcome: the exit code, the errors in the
+// scene's text, and the report of every analysis. Nothing is thrown but std::bad_alloc.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "catena/results/analysis_result.hpp"
+#include "catena/results/result_sink.hpp"
+#include "catena/results/text_output.hpp"
+#include "catena/scene/json/diagnostic.hpp"
+
+namespace catena {
+
+/// How far a run has come.
+struct Progress {
+  std::string_view analysis;  ///< its type
+  int number = 0;             ///< from 0
+  int analyses = 1;
+  double fraction = 0;  ///< of this analysis, 0 ... 1
+};
+
+struct RunOptions {
+  /// Run this analysis alone instead of the scene's list: the `type` of an analysis, or empty.
+  std::string verb;
+  /// Keys of that analysis as text, as on the command line; a list is the same key several times.
+  std::vector<std::pair<std::string, std::string>> verb_options;
+  /// Parameters to change: name, and a value in the syntax of scenes (a number, "30 deg", "=2*a").
+  std::vector<std::pair<std::string, std::string>> set;
+  /// Columns in place of all outputs that the scene names; empty: the scene's.
+  std::vector<std::string> outputs;
+  std::int64_t max_elements = 10'000'000;  ///< a larger scene is refused
+  const std::atomic<bool>* cancel = nullptr;
+  std::function<void(const Progress&)> progress;  ///< called often; may be empty
+  bool verbose = false;         ///< iterations for a configuration, and solvers' own logs, to standard error
+  bool estimate_error = false;  ///< of every dynamics analysis; an error if there is none
+  /// File to which dynamics analyses save where they are, every so many seconds of their time, s; empty: none. 0 s: a
+  /// twentieth of the analysis.
+  std::string checkpoint;
+  double checkpoint_every = 0;
+  std::string restart;  ///< file from which a run is taken up again, or empty; checkpoint_every is then the file's
+};
+
+struct SceneOutcome {
+  /// 0 all solved; 1 an analysis was not; 2 an option wrong; 3 the scene's text wrong; 4 a file missing or unusable
+  int exit_code = 0;
+  std::string scene;               ///< its name
+  std::vector<Diagnostic> errors;  ///< the first ones, in the order of the text
+  std::string error_text;          ///< what to print: the errors as a compiler prints them, or one sentence
+  std::vector<AnalysisResult> analyses;
+};
+
+/// Reads the scene and runs its analyses. `sink` sees nothing at all if the scene is wrong.
+SceneOutcome run_scene(const std::string& path, const RunOptions& options, ResultSink& sink);
+
+/// The document that replaces the results of a wrong scene: {"catena":1,"status":"invalid","errors":[...]} and newline.
+std::string invalid_json(const SceneOutcome& outcome);
+
+/// Writes the result document, row by row, to `output`, which must outlive it. A failure to write shows there and stops
+/// no analysis: other sinks may still want its rows.
+std::unique_ptr<ResultSink> json_result_sink(TextOutput& output);
+
+/// The JSON Schema of scenes.
+std::string schema_json();
+
+/// What `catena explain NAME` prints: of an element, an analysis, a function of time, a column. Nothing if unknown.
+std::optional<std::string> explain(std::string_view name);
+
+/// Everything explain() knows, in the order in which it should be listed.
+std::vector<std::string> explained_names();
+
+}  // namespace catena
