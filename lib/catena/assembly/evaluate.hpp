@@ -102,6 +102,15 @@ class Evaluator {
   /// Measured quantity of a scalar constraint with time derivatives; qd, qdd may be empty (zero). The second derivative
   /// of one that is released lacks the accelerations' part.
   Measured measure(int element, std::span<const double> qd, std::span<const double> qdd) const;
+  /// One scalar equation or gap along the motion, whether it has a row or not: what it measures (of a gap the distance
+  /// that is reported; else the residual), its rate, the part of its second derivative that velocities make, and its
+  /// gradient by the coordinates of its two plan bodies.
+  struct ScalarMotion {
+    double value = 0, rate = 0, bend = 0;
+    int body_i = -1, body_j = -1;
+    double gradient[6] = {};
+  };
+  ScalarMotion scalar_motion(int element, std::span<const double> qd) const;
   /// Dense Phi_q of one element in THEORY's form: rows x 6 (columns 3 ... 5 zero for absolute types), and its scale.
   struct ElementJacobian {
     int rows = 0, bodies = 0;

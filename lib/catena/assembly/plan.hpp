@@ -49,6 +49,8 @@ struct PlanOptions {
   /// Whether one-sided elements get rows. Where they do not, models that have some are refused unless they are
   /// released.
   bool one_sided = false;
+  /// Whether friction of joints may get rows, where it is not released: only while it sticks, in motion.
+  bool friction = false;
 };
 
 struct Plan {

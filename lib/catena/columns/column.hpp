@@ -34,8 +34,10 @@ enum class ColumnKind : unsigned char {
   rate,         ///< its time derivative
   joint_angle,  ///< phi_j - phi_i
   joint_omega,
-  gap,    ///< of a one-sided element
-  slide,  ///< of P_j seen from P_i, along axis_i
+  gap,       ///< of a one-sided element
+  friction,  ///< of a contact, along the curve's direction, or in a joint; on j
+  slip,      ///< of the touching material points, j relative to i
+  slide,     ///< of P_j seen from P_i, along axis_i
   slide_rate,
   load,   ///< lambda dPhi/dc: positive pushes the value up
   power,  ///< load x dc/dt

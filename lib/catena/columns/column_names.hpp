@@ -45,7 +45,8 @@ std::vector<NamedColumn> default_columns(const Model& model);
 /// Whether the column shows multipliers, or what is made of them.
 constexpr bool is_reaction(ColumnKind kind) {
   return (kind >= ColumnKind::reaction_x && kind <= ColumnKind::push) ||
-         (kind >= ColumnKind::load && kind <= ColumnKind::work);
+         (kind >= ColumnKind::load && kind <= ColumnKind::work) || kind == ColumnKind::friction ||
+         kind == ColumnKind::slip;
 }
 
 }  // namespace catena

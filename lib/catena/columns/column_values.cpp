@@ -52,7 +52,12 @@ class RowValues {
       case ColumnKind::multiplier:
         return reactions(column).multiplier[column.detail];
       case ColumnKind::push:
+        if (!s_.contact_force.empty()) return s_.contact_force[static_cast<std::size_t>(column.index)];
         return 0 - reactions(column).multiplier[0];
+      case ColumnKind::friction:
+        return s_.contact_friction.empty() ? 0 : s_.contact_friction[static_cast<std::size_t>(column.index)];
+      case ColumnKind::slip:
+        return s_.contact_slip.empty() ? 0 : s_.contact_slip[static_cast<std::size_t>(column.index)];
       case ColumnKind::gap:
         return evaluator_.measure(column.index, {}, {}).value;
       case ColumnKind::slack:
@@ -193,7 +198,7 @@ class RowValues {
   }
 
   double potential() {
-    if (!potential_) potential_ = evaluator_.potential_energy();
+    if (!potential_) potential_ = evaluator_.potential_energy() + s_.contact_energy;
     return *potential_;
   }
   double kinetic() {

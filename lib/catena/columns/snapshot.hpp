@@ -20,6 +20,10 @@ struct Snapshot {
   double dissipated = 0;                  ///< J
   double initial_energy = 0;              ///< total_energy() at the start, J
   std::span<const double> driver_work{};  ///< by number of the element, J
+  /// In motion with contacts, by number of the element: what a contact presses with, its friction and its slip; empty:
+  /// there are none, or forces were not computed. Units: N or N m, m/s or rad/s.
+  std::span<const double> contact_force{}, contact_friction{}, contact_slip{};
+  double contact_energy = 0;  ///< stored in elastic contacts, J
 };
 
 /// What an analysis must compute for the columns asked for: nothing else is computed.

@@ -13,6 +13,7 @@
 #include "catena/elements/constraints/coupler.hpp"
 #include "catena/elements/constraints/custom_constraint.hpp"
 #include "catena/elements/constraints/displacement.hpp"
+#include "catena/elements/constraints/friction.hpp"
 #include "catena/elements/constraints/gear.hpp"
 #include "catena/elements/constraints/point_on_curve.hpp"
 #include "catena/elements/constraints/rack_pinion.hpp"

@@ -20,6 +20,19 @@ concept OneSided = requires {
   requires E::one_sided;
 };
 
+/// Friction of a joint, which is listed with them but bounds nothing.
+template <class E>
+concept Dry = requires {
+  requires E::dry;
+};
+
+/// nullptr, or what is wrong with the numbers of impacts and friction. A mu_static below zero was not given.
+inline const char* check_impact_and_friction(double restitution, double mu, double mu_static) {
+  if (restitution > 1) return "\"restitution\" is a part of the closing speed: 0 ... 1";
+  if (mu_static >= 0 && mu_static < mu) return "\"mu_static\" may not be below \"mu\"";
+  return nullptr;
+}
+
 /// Whether row `row` of this element is measured in radians.
 template <class E>
 bool row_in_angle(const E& element, int row) {

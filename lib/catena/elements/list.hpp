@@ -31,10 +31,11 @@
   X(Translational)            \
   X(Weld)
 
-/// One-sided constraints (gap_element.hpp): scenes list them as forces.
+/// One-sided constraints (gap_element.hpp), and friction of joints: scenes list them as forces.
 #define CATENA_GAPS(X) \
   X(Cable)             \
   X(Contact)           \
+  X(Friction)          \
   X(Stop)
 
 /// All with rows, also those that only C++ can make; they come last.

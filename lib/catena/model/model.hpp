@@ -101,8 +101,9 @@ class BasicModel {
   /// The element's name, `type#n` if it has none.
   std::string element_name(int element) const;
   std::string_view element_type(int element) const;
-  /// The one-sided elements, file order.
+  /// The one-sided elements, and the friction of joints, file order.
   std::vector<int> gaps() const;
+  std::vector<int> frictions() const;
   /// Number of the body or -2; of the element or -1.
   int find_body(std::string_view name) const;
   int find_element(std::string_view name) const;

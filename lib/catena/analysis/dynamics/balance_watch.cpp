@@ -34,13 +34,13 @@ void BalanceWatch::begin(const Snapshot& start, double tolerance, bool work_know
   tolerance_ = tolerance;
   work_known_ = work_known;
   largest_kinetic_ = kinetic_energy(start);
-  least_potential_ = largest_potential_ = start.evaluator.potential_energy();
+  least_potential_ = largest_potential_ = start.evaluator.potential_energy() + start.contact_energy;
   initial_ = work_known ? start.initial_energy : largest_kinetic_ + least_potential_;
   missing_ = 0;
 }
 
 void BalanceWatch::observe(const Snapshot& state) {
-  const double kinetic = kinetic_energy(state), potential = state.evaluator.potential_energy();
+  const double kinetic = kinetic_energy(state), potential = state.evaluator.potential_energy() + state.contact_energy;
   largest_kinetic_ = std::max(largest_kinetic_, kinetic);
   least_potential_ = std::min(least_potential_, potential);
   largest_potential_ = std::max(largest_potential_, potential);
@@ -51,7 +51,7 @@ Report BalanceWatch::check(double t) const {
   Report report;
   // Energies beyond all bounds tell nothing; the integration ends by itself.
   if (!std::isfinite(missing_)) return report;
-  const double energy = largest_kinetic_ + largest_potential_ - least_potential_;
+  const double energy = this->energy();
   const double size = std::max({std::abs(least_potential_), std::abs(largest_potential_), std::abs(initial_)});
   if (std::abs(missing_) <= permitted * tolerance_ * energy + rounding * size) return report;
   report.status = Status::not_converged;

@@ -8,6 +8,8 @@
 // potential act and their work is not summed up nothing can be told. Units: J.
 #pragma once
 
+#include <algorithm>
+
 #include "catena/base/status.hpp"
 #include "catena/columns/snapshot.hpp"
 
@@ -20,6 +22,10 @@ class BalanceWatch {
 
   /// `work_known`: snapshots carry work and dissipation. Evaluates energies at the start.
   void begin(const Snapshot& start, double tolerance, bool work_known);
+  /// Energy of what came before, in phases of one motion: a part of its errors is that of the whole.
+  void know_energy(double energy) { earlier_ = energy; }
+  /// Largest kinetic energy and range of the potential, so far.
+  double energy() const { return std::max(earlier_, largest_kinetic_ + largest_potential_ - least_potential_); }
   /// Takes note of a state of the motion; whose evaluator stands there.
   void observe(const Snapshot& state);
   /// not_converged, with figures, where energy was lost or gained at the last state by more than is allowed.
@@ -27,6 +33,7 @@ class BalanceWatch {
 
  private:
   double tolerance_ = 0, initial_ = 0, missing_ = 0, largest_kinetic_ = 0, least_potential_ = 0, largest_potential_ = 0;
+  double earlier_ = 0;
   bool work_known_ = false;
 };
 

@@ -54,7 +54,7 @@ Report Dynamics::start() {
     if (const Report freedoms = check_freedoms(); !freedoms.ok()) return freedoms;
   }
   account_.reset();
-  const bool conserves = BalanceWatch::conserves(evaluator_);
+  const bool conserves = BalanceWatch::conserves(evaluator_) && !(contacts_ && contacts_->dissipates());
   // Where constraints are redundant or parts massless the work is summed up for the check alone.
   const bool delicate = redundant_.count() > 0 || !equations_.masses().massless.empty();
   if (needs_.work || (!conserves && delicate)) account_.emplace(evaluator_);
@@ -77,6 +77,7 @@ Report Dynamics::start() {
   if (balance_) {
     evaluator_.set_time(t_);
     evaluator_.set_configuration(std::span<const double>(y_row_).first(q_.size()));
+    balance_->know_energy(earlier_motion_);
     balance_->begin(snapshot(t_, y_row_, {}), options_.tolerance, account_.has_value());
   }
   if (!watched_.has_ends()) return {};

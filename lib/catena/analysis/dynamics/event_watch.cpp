@@ -57,30 +57,48 @@ EventWatch::EventWatch(std::vector<Event> events, const Model& model, const Plan
 }
 
 int EventWatch::side(std::size_t k, double g) const {
-  const double tiny = std::max(smallest, rounding * std::max(largest_[k], std::abs(events_[k].value)));
+  const double tiny = std::max(smallest, rounding * std::max(largest_[k], std::abs(target(k))));
   return g > tiny ? 1 : g < -tiny ? -1 : 0;
 }
 
 /// Whether a passage from the side last seen to the other one is in the direction that is watched.
 bool EventWatch::counts(std::size_t k) const {
+  if (k >= events_.size()) return side_[k] == transitions_[k - events_.size()].side;
   return events_[k].direction == EventDirection::any || (events_[k].direction == EventDirection::up) == (side_[k] < 0);
 }
 
 void EventWatch::sample(const Snapshot& state, std::span<double> g) {
-  for (std::size_t k = 0; k < events_.size(); ++k) {
-    double value = 0;
-    columns_[k].evaluate(state, {&value, 1});
+  for (std::size_t k = 0; k < side_.size(); ++k) {
+    const double value = value_of(k, state);
     largest_[k] = std::max(largest_[k], std::abs(value));
-    g[k] = value - events_[k].value;
+    g[k] = value - target(k);
   }
+}
+
+double EventWatch::value_of(std::size_t k, const Snapshot& state) const {
+  if (k >= events_.size()) return transitions_[k - events_.size()].value(state);
+  double value = 0;
+  columns_[k].evaluate(state, {&value, 1});
+  return value;
+}
+
+void EventWatch::watch(std::vector<Transition> transitions, const Needs& needs) {
+  transitions_ = std::move(transitions);
+  transition_needs_ = needs;
+  const std::size_t size = events_.size() + transitions_.size();
+  side_.resize(events_.size());
+  for (const Transition& transition : transitions_) side_.push_back(transition.side);
+  largest_.resize(events_.size());
+  largest_.resize(size, 0.0);
+  found_at_.resize(events_.size());
+  found_at_.resize(size, -std::numeric_limits<double>::infinity());
+  for (std::vector<double>& g : g_) g.resize(size);
 }
 
 double EventWatch::watched(std::size_t k, double t, const StateAt& state_at) {
   const std::optional<Snapshot> state = state_at(t);
   if (!state) return std::numeric_limits<double>::quiet_NaN();
-  double value = 0;
-  columns_[k].evaluate(*state, {&value, 1});
-  return value - events_[k].value;
+  return value_of(k, *state) - target(k);
 }
 
 // The root between an instant on the old side and one on the new side: the secant through the ends, the older end's
@@ -165,6 +183,7 @@ std::optional<FoundEvent> EventWatch::find(double from, double to, const StateAt
   if (!(from < to)) return {};
   const int parts = samples(from, to, state_at);
   times_[2] = from;
+  // A transition knows the side on which it begins, whatever rounding says at once.
   for (std::size_t k = 0; parts > 0 && k < events_.size(); ++k) {
     const int now = side(k, g_[2][k]);
     if (now != 0) side_[k] = now;
@@ -178,7 +197,7 @@ std::optional<FoundEvent> EventWatch::find(double from, double to, const StateAt
     if (!state) return {};
     sample(*state, g_[2]);
     std::optional<FoundEvent> first;
-    for (std::size_t k = 0; k < events_.size(); ++k) {
+    for (std::size_t k = 0; k < side_.size(); ++k) {
       if (side_[k] == 0) {
         side_[k] = side(k, g_[2][k]);
         continue;

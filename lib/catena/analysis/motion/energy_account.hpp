@@ -23,6 +23,7 @@ class EnergyAccount {
   void powers(std::span<const double> qd, std::span<const double> lambda, std::span<double> out);
 
   static double dissipated(std::span<const double> work) { return work[0]; }
+  static double& dissipated(std::span<double> work) { return work[0]; }
   /// Of loads and drivers together.
   static double supplied(std::span<const double> work);
   /// Scatters the drivers' work to `by_element`, which has one entry an element of the model.

@@ -118,6 +118,7 @@ bool EquationsOfMotion::accelerations(double t, Side side, std::span<const doubl
                                       std::span<double> qdd, double stabilisation) {
   if (!evaluate_jacobian(t, side, q)) return false;
   evaluator_.applied_forces(qd, loads_);
+  if (state_loads_) state_loads_->add(qd, loads_);
   if (plan_.rows > 0) evaluator_.gamma(qd, gamma_);
   if (plan_.rows > 0 && stabilisation > 0) stabilise(qd, stabilisation);
   system_.solve_motion(loads_, gamma_, qdd, lambda_, evaluator_.counters);
@@ -128,6 +129,7 @@ bool EquationsOfMotion::accelerations(double t, Side side, std::span<const doubl
     system_.solve_motion(loads_, gamma_, qdd, lambda_, evaluator_.counters);
     if (system_.massless_residual() > unresisted) return false;
   }
+  if (state_loads_ && !state_loads_->complete(*this, gamma_, loads_, qdd, lambda_)) return false;
   double sum = 0;
   for (std::size_t c = 0; c < change_.size(); ++c) sum += qdd[c];
   return std::isfinite(sum);

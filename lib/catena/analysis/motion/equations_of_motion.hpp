@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "catena/analysis/motion/mass_matrix.hpp"
+#include "catena/analysis/motion/state_loads.hpp"
 #include "catena/analysis/pose/scaling.hpp"
 #include "catena/assembly/evaluate.hpp"
 #include "catena/assembly/systems/schur_system.hpp"
@@ -41,6 +42,14 @@ class EquationsOfMotion {
   /// in 1/s: constraints that are not met return to zero by Phi'' + 2 s Phi' + s^2 Phi = 0.
   bool accelerations(double t, Side side, std::span<const double> q, std::span<const double> qd, std::span<double> qdd,
                      double stabilisation = 0);
+  /// Forces beside those of the model's elements, from now on; nullptr: none.
+  void attach(StateLoads* loads) { state_loads_ = loads; }
+  const StateLoads* state_loads() const { return state_loads_; }
+  /// Solves [M, Phi_q^T; Phi_q, 0] [qdd; lambda] = [loads; gamma] with the factors at hand.
+  void solve_motion(std::span<const double> loads, std::span<const double> gamma, std::span<double> qdd,
+                    std::span<double> lambda) {
+    system_.solve_motion(loads, gamma, qdd, lambda, evaluator_.counters);
+  }
   /// Multipliers of the solver's rows at the last accelerations().
   std::span<const double> multipliers() const { return lambda_; }
 
@@ -91,6 +100,7 @@ class EquationsOfMotion {
   MassMatrix masses_;
   Scaling scaling_;
   SchurSystem system_;
+  StateLoads* state_loads_ = nullptr;
   bool factored_ = false, weighed_ = false;
   std::vector<double> jacobian_, gamma_, lambda_, loads_, residual_, multipliers_, change_;
 };

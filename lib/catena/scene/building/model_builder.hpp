@@ -48,6 +48,8 @@ class ModelBuilder {
   std::vector<Vec2<S>> table(const TableTemplate& source);
   /// Where a stop acts, from the name of its column; false, with a report, if there is no such column.
   bool find_column(const ElementTemplate& source, ElementEntry<Stop<S>, S>& stop);
+  /// The same of the joint that rubs, from its name.
+  bool find_column(const ElementTemplate& source, ElementEntry<Friction<S>, S>& friction);
   /// Adds an element that is complete, under its name.
   template <class E>
   void append(const ElementTemplate& source, const ElementEntry<E, S>& entry, ElementKind kind);

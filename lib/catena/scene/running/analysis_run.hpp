@@ -104,7 +104,8 @@ void take_report(AnalysisResult& result, AnalysisReport report, const ColumnSet*
 template <class Analysis>
 void run_over_time(AnalysisContext& context, AnalysisResult& result, Analysis& analysis, const TimeGrid& grid,
                    const std::vector<std::string>& outputs, const ColumnSources& sources) {
-  const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), outputs, sources);
+  // Of the model that is analysed: motion with friction adds equations to that of the scene.
+  const ColumnSet columns = ColumnSet::resolve(analysis.evaluator().model(), analysis.plan(), outputs, sources);
   analysis.start_from(context.state);
   if (context.trace) analysis.evaluator().trace = &context.trace;
   ReportingRows rows(columns, context, grid.last());

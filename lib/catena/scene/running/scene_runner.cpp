@@ -244,11 +244,12 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
     return result;
   }
   // Elsewhere a gap would have to open and close in time.
-  const bool one_sided = task.type() == "equilibrium" || task.type() == "check" || task.type() == "assemble";
+  const bool one_sided =
+      task.type() == "equilibrium" || task.type() == "check" || task.type() == "assemble" || task.type() == "dynamics";
   if (const std::vector<int> gaps = model_->gaps(); !gaps.empty() && !one_sided) {
     result.report.status = Status::refused;
     result.report.message =
-        fmt::format("{} \"{}\" is one-sided: {} does not treat such elements yet; equilibrium does",
+        fmt::format("{} \"{}\" is one-sided: {} does not treat such elements yet; dynamics and equilibrium do",
                     model_->element_type(gaps.front()), model_->element_name(gaps.front()), task.type());
     return result;
   }

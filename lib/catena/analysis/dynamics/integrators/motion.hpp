@@ -43,7 +43,11 @@ class Motion {
       std::copy(known_.begin(), known_.end(), a.begin());
       return true;
     }
-    if (account_) account_->powers(v, equations_.multipliers(), k.subspan(2 * coordinates_));
+    if (account_) {
+      const std::span<double> powers = k.subspan(2 * coordinates_);
+      account_->powers(v, equations_.multipliers(), powers);
+      if (const StateLoads* loads = equations_.state_loads()) EnergyAccount::dissipated(powers) += loads->dissipation();
+    }
     return true;
   }
 
