@@ -54,9 +54,10 @@ Report Dynamics::start() {
     if (const Report freedoms = check_freedoms(); !freedoms.ok()) return freedoms;
   }
   account_.reset();
-  const bool conserves = BalanceWatch::conserves(evaluator_) && !(contacts_ && contacts_->dissipates());
-  // Where constraints are redundant or parts massless the work is summed up for the check alone.
-  const bool delicate = redundant_.count() > 0 || !equations_.masses().massless.empty();
+  // Where constraints are redundant, parts massless or contacts rub the work is summed up for the check alone.
+  const bool rubs = contacts_ && contacts_->dissipates();
+  const bool conserves = BalanceWatch::conserves(evaluator_) && !rubs;
+  const bool delicate = redundant_.count() > 0 || !equations_.masses().massless.empty() || rubs;
   if (needs_.work || (!conserves && delicate)) account_.emplace(evaluator_);
   balance_.reset();
   if ((account_ || conserves) && options_.step == 0) balance_.emplace();

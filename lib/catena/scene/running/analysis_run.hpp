@@ -15,6 +15,7 @@
 #include "catena/results/analysis_result.hpp"
 #include "catena/results/column_rows.hpp"
 #include "catena/scene/reading/analysis_task.hpp"
+#include "catena/scene/running/gap_watch.hpp"
 #include "catena/scene/running/gear_check.hpp"
 #include "catena/scene/running/scene_checkpoints.hpp"
 
@@ -69,6 +70,7 @@ class ReportingRows final : public RowObserver {
 
   bool observe(const Snapshot& snapshot) override {
     tell(snapshot.t);
+    if (gaps) gaps->observe(snapshot);
     return rows_.observe(snapshot);
   }
   bool proceed(double t) override {
@@ -76,6 +78,7 @@ class ReportingRows final : public RowObserver {
     return !(context_.cancel && context_.cancel->load(std::memory_order_relaxed));
   }
   std::int64_t rows() const { return rows_.rows(); }
+  GapWatch* gaps = nullptr;  ///< looks at the rows too; may be none
 
  private:
   void tell(double t) const {
@@ -109,7 +112,10 @@ void run_over_time(AnalysisContext& context, AnalysisResult& result, Analysis& a
   analysis.start_from(context.state);
   if (context.trace) analysis.evaluator().trace = &context.trace;
   ReportingRows rows(columns, context, grid.last());
+  GapWatch gaps(*context.model);
+  if (sources.analysis != "dynamics") rows.gaps = &gaps;
   AnalysisReport report = analysis.run(grid, columns.needs(), rows);
+  for (std::string& doubt : gaps.warnings()) report.warnings.push_back(std::move(doubt));
   for (std::string& doubt : gears_that_do_not_fit(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
   context.state = analysis.state();
   take_report(result, std::move(report), &columns, rows.rows());
