@@ -1,6 +1,7 @@
 // Functions of time: what a driver prescribes, and the magnitude of an applied force.
 //
-//   f(t), f'(t), f''(t)   constant, polynomial, harmonic, smooth step, spline through a table, sums, products, your own
+//   f(t), f'(t), f''(t)   constant, polynomial, harmonic, smooth step, motion law, spline through a table, sums,
+//   products, your own
 //
 // They are evaluated once per instant, all three derivatives together, and read by the elements. The scalar S is
 // double, or Dual where derivatives with respect to design parameters (amplitudes, table values, step times) are
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "catena/base/dual.hpp"
+#include "catena/base/motion_law.hpp"
 #include "catena/base/spline.hpp"
 #include "catena/base/taylor.hpp"
 
@@ -58,6 +60,8 @@ class TimeFunction {
   /// From `from` at t0 to `to` at t1 > t0 and constant outside; with u = (t - t0) / (t1 - t0) along
   /// 3 u^2 - 2 u^3 (order 3: the velocity is continuous) or 10 u^3 - 15 u^4 + 6 u^5 (order 5: the acceleration too).
   static TimeFunction step(const S& t0, const S& t1, const S& from, const S& to, int order);
+  /// From `from` at t0 to `to` at t1 > t0 by a motion law, and constant outside.
+  static TimeFunction law(MotionLaw law, const S& t0, const S& t1, const S& from, const S& to);
   /// Cubic spline through (t[k], value[k]). Outside the table `beyond` holds, except that a periodic one repeats.
   static TimeFunction spline(std::span<const S> t, std::span<const S> value, SplineEnd end,
                              Beyond beyond = Beyond::error);

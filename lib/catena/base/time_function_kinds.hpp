@@ -71,6 +71,33 @@ struct Step {
 };
 
 template <class S>
+struct Law {
+  S t0, t1, from, to;
+  MotionLawPieces pieces;
+
+  Taylor<S> evaluate(double t, Side side) const { return continue_from(t, side, t); }
+  Taylor<S> continue_from(double place, Side side, double t) const {
+    if (!is_after(place, value_of(t0), side)) return Taylor<S>(from);
+    if (is_after(place, value_of(t1), side)) return Taylor<S>(to);
+    const S width = t1 - t0;
+    std::size_t k = 0;
+    while (k + 1 < pieces.count && is_after(place, end(k), side)) ++k;
+    const Taylor<S> u((S(t) - t0) / width, S(1.0) / width, S(0.0));
+    return Taylor<S>(from) + Taylor<S>(to - from) * pieces.piece[k].rise(u);
+  }
+  /// The instant at which piece k ends and the next one begins.
+  double end(std::size_t k) const { return value_of(t0) + pieces.piece[k + 1].start * value_of(t1 - t0); }
+  TimeRange domain() const { return {}; }
+  double next_breakpoint(double t) const {
+    if (t < value_of(t0)) return value_of(t0);
+    for (std::size_t k = 0; k + 1 < pieces.count; ++k) {
+      if (t < end(k) && !same_instant(t, end(k))) return end(k);
+    }
+    return t < value_of(t1) ? value_of(t1) : never;
+  }
+};
+
+template <class S>
 struct Table {
   Spline<S> curve;
 

@@ -26,6 +26,8 @@ TimeFunction<S> ModelBuilder<S>::function(const FunctionTemplate& source) {
       return TimeFunction<S>::harmonic(n[0], n[1], n[2], n[3]);
     case Kind::step:
       return TimeFunction<S>::step(n[0], n[1], n[2], n[3], source.order);
+    case Kind::law:
+      return TimeFunction<S>::law(source.law, n[0], n[1], n[2], n[3]);
     case Kind::spline:
       return TimeFunction<S>::spline(std::span(n).first(n.size() / 2), std::span(n).last(n.size() / 2), source.end,
                                      source.beyond);

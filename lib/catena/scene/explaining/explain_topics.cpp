@@ -61,7 +61,7 @@ Example
 )"},
       {{"function", "value"},
        R"(function: a function of time, for the value of a driver or the magnitude of a force
-  a number, or one of polynomial, harmonic, step, spline, sum, product (catena explain harmonic ...)
+  a number, or one of polynomial, harmonic, step, law, spline, sum, product (catena explain harmonic ...)
 )"},
       {{"polynomial"},
        R"(polynomial: a function of time
@@ -92,6 +92,18 @@ Example
 
 Example
   {"step": {"t0": 0, "t1": 0.5, "from": 0, "to": "90 deg", "order": 5}}
+)"},
+      {{"law"},
+       R"(law: a motion law of cams, as a function of time
+  a rise from one value to another in a given time, constant outside; dwells follow from sums
+
+  type       "cycloidal" and "poly4567": smoothest; "poly345"; "modified_trapezoid": least peak acceleration;
+             "modified_sine": little torque
+  t0, t1     s, t1 > t0
+  from, to   in the unit of the value
+
+Example
+  {"law": {"type": "modified_sine", "t0": 0, "t1": 0.5, "from": 0, "to": "90 deg"}}
 )"},
       {{"spline"},
        R"(spline: a cubic spline through a table, as a function of time

@@ -32,13 +32,14 @@ struct NameText {
 };
 
 struct FunctionTemplate {
-  enum class Kind : unsigned char { constant, polynomial, harmonic, step, spline, sum, product };
+  enum class Kind : unsigned char { constant, polynomial, harmonic, step, law, spline, sum, product };
   Kind kind = Kind::constant;
   SplineEnd end = SplineEnd::natural;
   Beyond beyond = Beyond::error;
   int order = 5;             // of a step
+  MotionLaw law = MotionLaw::cycloidal;
   std::uint32_t offset = 0;  // of the value in the text
-  /// constant: 1; polynomial: coefficients; harmonic: amplitude, omega, phase, offset; step: t0, t1, from, to;
+  /// constant: 1; polynomial: coefficients; harmonic: amplitude, omega, phase, offset; step, law: t0, t1, from, to;
   /// spline: all times, then all values
   std::vector<NumberValue> numbers;
   std::vector<FunctionTemplate> parts;
