@@ -40,14 +40,15 @@ TEST_P(Laws, AreSmoothWherePiecesMeet) {
   }
 }
 
-// Simpson's rule on s'' gives s', on s' gives s: the derivatives belong together.
+// Simpson's rule on s'' gives s', on s' gives s: the derivatives belong together. Its error is h^5 / 2880 times the
+// fifth derivative of s, at most 1.1e4 (modified sine: (4 pi)^5 / (4 (4 + pi))), and the sixth, at most 1.4e5.
 TEST_P(Laws, IntegrateToThemselves) {
   for (double u = 0; u < 0.999; u += 1.0 / 64) {
     const double h = 1.0 / 64;
     const Taylor<double> a = value(GetParam(), u, Side::after), m = value(GetParam(), u + h / 2),
                          b = value(GetParam(), u + h, Side::before);
-    EXPECT_NEAR(b.d - a.d, h / 6 * (a.dd + 4 * m.dd + b.dd), 2e-7);
-    EXPECT_NEAR(b.f - a.f, h / 6 * (a.d + 4 * m.d + b.d), 2e-9);
+    EXPECT_NEAR(b.d - a.d, h / 6 * (a.dd + 4 * m.dd + b.dd), h * h * h * h * h / 2880 * 1.4e5 + 1e-14);
+    EXPECT_NEAR(b.f - a.f, h / 6 * (a.d + 4 * m.d + b.d), h * h * h * h * h / 2880 * 1.1e4 + 1e-15);
   }
 }
 
