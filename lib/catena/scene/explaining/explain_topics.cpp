@@ -169,9 +169,11 @@ inverse_dynamics to about 1e-10 of the energy exchanged, however far apart rows 
        R"(gap: of a contact, stop or cable A, which push or pull one way only
   A.gap [m, rad]     how far it is from closing; never negative at an equilibrium, but for an elastic cable's stretch
   A.force [N, N m]   what keeps it from closing, never negative: normal force, torque of the bound, tension
-  At an equilibrium one of the two is zero. The result "active" lists those whose gap is closed. equilibrium treats
-  them; check and assemble leave them out and say which are violated; other analyses refuse a scene that has some
-  (elastic cables are springs, which every analysis knows).
+  A.friction [N], A.slip [m/s]   of a contact in motion, along the curve's direction, on j relative to i
+  At an equilibrium one of gap and force is zero. The result "active" lists those whose gap is closed. In dynamics they
+  close with impacts, or press by a stiffness k, rub and open again: "events" lists every change. kinematics, check and
+  assemble leave them out and say which are violated; modes, path and buckling refuse a scene that has some (elastic
+  cables are springs, which every analysis knows).
 )"},
       {{"energy", "momentum", "residual", "t"},
        R"(energy, momentum, residual: columns of the whole mechanism
