@@ -160,9 +160,33 @@ bool ContactProblem::solve() {
     if (sweep == most_sweeps) return false;
   }
   const std::vector<double> swept = x;
+  const std::vector<State> states = state;
+  // Redundant places first: sweeps leave the later ones of them without a force, though they close as well.
+  if (close_redundant(size)) {
+    solve_states();
+    if (fits(size)) return true;
+    x = swept;
+    state = states;
+  }
   solve_states();
   if (!fits(size)) x = swept;
   return true;
+}
+
+// Closes open places whose gap does not open either; false: there are none.
+bool ContactProblem::close_redundant(double size) {
+  bool any = false;
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    const std::size_t n = 2 * k, t = n + 1;
+    if (state[k] != State::open || !place[k].has_normal || !(D(n, n) > 0)) continue;
+    if (std::abs(without_own(k, 0)) > tolerated * D(n, n) * size) continue;
+    const double w_t = place[k].has_friction ? without_own(k, 1) : 0;
+    const bool rests = place[k].slip == 0 && std::abs(w_t) <= tolerated * D(t, t) * size;
+    state[k] = place[k].has_friction && rests ? State::sticks : State::slides;
+    if (place[k].has_friction && !rests) direction[k] = place[k].slip != 0 ? place[k].slip : w_t > 0 ? 1 : -1;
+    any = true;
+  }
+  return any;
 }
 
 }  // namespace catena

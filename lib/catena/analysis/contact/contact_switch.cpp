@@ -85,7 +85,7 @@ void ContactSwitch::find_touching(const std::vector<ContactState>& states, int t
 }
 
 // What a unit force at every touching place makes of accelerations and multipliers, on the constraints.
-bool ContactSwitch::find_responses() {
+void ContactSwitch::find_responses() {
   change_.assign(2 * active_.size(), std::vector<double>(load_.size(), 0.0));
   multipliers_.assign(2 * active_.size(), nothing_);
   for (std::size_t a = 0; a < active_.size(); ++a) {
@@ -97,7 +97,6 @@ bool ContactSwitch::find_responses() {
       equations_.solve_motion(load_, nothing_, change_[2 * a + along], multipliers_[2 * a + along]);
     }
   }
-  return true;
 }
 
 void ContactSwitch::fill(ContactProblem& problem) const {

@@ -59,7 +59,7 @@ class ContactSwitch {
  private:
   void look(std::span<const double> qd);
   void find_touching(const std::vector<ContactState>& states, int trigger);
-  bool find_responses();
+  void find_responses();
   void fill(ContactProblem& problem) const;
   Report collide(double t, std::span<double> qd, std::vector<ContactState>& states);
   bool apply(double restitution_part, std::span<double> qd, double& energy);
