@@ -58,7 +58,9 @@ void expect_laws(const ContactProblem& p) {
       EXPECT_NEAR(along, -p.place[k].mu * p.direction[k] * normal, rounding);
       EXPECT_GE(slip * p.direction[k], -rounding);
     }
-    if (p.state[k] == State::open) EXPECT_EQ(along, 0);
+    if (p.state[k] == State::open) {
+      EXPECT_EQ(along, 0);
+    }
   }
 }
 
