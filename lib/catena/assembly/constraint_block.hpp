@@ -49,7 +49,7 @@ struct ConstraintData {
   std::vector<Timed> timed;           ///< elements whose value is a function of time
 };
 
-/// What the rows of one element are made of, dense, for reactions: Phi_qi and Phi_qj in THEORY's forms.
+/// What the rows of one element are made of, dense, for reactions: Phi_qi and Phi_qj of the published equations.
 template <class E>
 struct LocalJacobian {
   std::array<double, jacobian_size<E>> entries{};  ///< row-major, 3 columns a body

@@ -102,7 +102,8 @@ class Evaluator {
   /// Measured quantity of a scalar constraint with time derivatives; qd, qdd may be empty (zero). The second derivative
   /// of one that is released lacks the accelerations' part.
   Measured measure(int element, std::span<const double> qd, std::span<const double> qdd) const;
-  /// Dense Phi_q of one element in THEORY's form: rows x 6 (columns 3 ... 5 zero for absolute types), and its scale.
+  /// Dense Phi_q of one element's published equations: rows x 6 (columns 3 ... 5 zero for absolute types), and its
+  /// scale.
   struct ElementJacobian {
     int rows = 0, bodies = 0;
     int body_i = -1, body_j = -1;  ///< plan bodies; `bodies` of the plan stands for the ground
@@ -119,7 +120,7 @@ class Evaluator {
   Taylor<double> element_value(int element) const;
 
   /// Per plan body: RMS distance of its attachment points from the centroid, length_scale() if none. The mean over all
-  /// attachment points goes to `mean` (THEORY's Lc).
+  /// attachment points goes to `mean` (Lc in apps/manual/dynamics.md#least-reactions).
   std::vector<double> attachment_radii(double* mean = nullptr) const;
   /// What a residual in metres is compared with: the mean attachment distance, else the extent of the given positions,
   /// else 1 m.

@@ -1,4 +1,4 @@
-// From the names users write to columns: `crank.tip.vx`, `A.i.fx`, `drive.load`, `energy`; SCENES.md, section Columns.
+// From the names users write to columns, `crank.tip.vx`, `A.i.fx`, `drive.load`: apps/manual/scenes.md#columns.
 //
 // Needs the model only, so that a scene's names are checked where they stand, before any plan exists. A bare body,
 // point, `A.reaction`, `energy` or `momentum` stands for all of its columns. Time: one hash look-up a name, or a scan

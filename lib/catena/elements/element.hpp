@@ -5,9 +5,9 @@
 //   type           its name in scene files
 //   rows, bodies   number of equations; 1 body (body-ground, absolute) or 2 (i, j; either may be the ground)
 //   functions      0, or 1 if the equation contains a value c that may be a function of time: then it can be a driver
-//   equation       the equation in words of THEORY, for `explain`
+//   equation       the equation as text, for `explain`
 //   fields()       what a scene file sets: see field.hpp
-//   phi<T>(a, out) the rows, in the published form: THEORY.md section 2; templated on the scalar T
+//   phi<T>(a, out) Phi as published (apps/manual/constraints.md); templated on the scalar T
 //
 // and from phi alone the library derives Phi_q (dual numbers), nu and gamma (Taylor series in time), second derivatives
 // and parameter derivatives. Optional members, found by their presence:

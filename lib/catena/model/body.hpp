@@ -1,7 +1,7 @@
 // A rigid body as the model keeps it: centroidal values, whatever frame its author used.
 //
-// The frame is at the centroid (THEORY section 1). If the author's origin is elsewhere, `origin` is its place in the
-// centroidal frame; every local coordinate was shifted when it was read, and columns shift back.
+// The frame is at the centroid (apps/manual/constraints.md#coordinates). If the author's origin is elsewhere, `origin`
+// is its place in the centroidal frame; every local coordinate was shifted when it was read, and columns shift back.
 // Units: kg, kg m^2, m, rad, m/s, rad/s.
 #pragma once
 

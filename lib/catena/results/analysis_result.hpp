@@ -21,7 +21,7 @@ using FieldRecord = std::vector<std::pair<std::string, FieldScalar>>;
 using FieldValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<std::string>,
                                 std::vector<FieldRecord>>;
 
-/// A result that is no row: "stable", "iterations", "events". Names and meanings: SCENES.md, section Results.
+/// A result that is no row: "stable", "iterations", "events". Names and meanings: apps/manual/scenes.md#results.
 struct NamedField {
   std::string name;
   FieldValue value;

@@ -1,6 +1,7 @@
 // The equations of static equilibrium at one configuration: what all its solvers and the certificate share.
 //
-//   V_q + Phi_q^T lambda = 0,   Phi = 0        V_q = -Q, Q the applied forces at rest (THEORY section 5)
+//   V_q + Phi_q^T lambda = 0,   Phi = 0        V_q = -Q, Q the applied forces at rest
+//   (apps/manual/statics.md#equilibrium)
 //
 // Rows of one-sided elements are gaps, Psi >= 0 with lambda <= 0. Either all of them are seen as such (use_gaps: what
 // optimisers want; phi() and jacobian() hold them all, phi_norm() what is below zero), or some hold as equations and

@@ -1,4 +1,4 @@
-// Forward dynamics: the motion that follows from forces, constraints and drivers (THEORY section 4).
+// Forward dynamics: the motion that follows from forces, constraints and drivers (apps/manual/dynamics.md).
 //
 // The start is assembled, its velocities made consistent; then an integrator steps through time, stopping where a
 // function of time has a breakpoint, and rows are interpolated between its steps and projected onto the constraints, so

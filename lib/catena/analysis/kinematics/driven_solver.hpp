@@ -1,5 +1,5 @@
 // Position, velocity and acceleration of a kinematically driven mechanism: Newton-Raphson on Phi(q, t) = 0, then one
-// refined solve each with the factorization at hand (THEORY section 3).
+// refined solve each with the factorization at hand (apps/manual/kinematics.md#driven-motion).
 //
 //   Phi_q dq = -Phi        Phi_q qd = nu        Phi_q qdd = gamma
 //

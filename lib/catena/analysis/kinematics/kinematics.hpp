@@ -1,4 +1,5 @@
-// Kinematic analysis: positions, velocities and accelerations of a driven mechanism over time (THEORY section 3).
+// Kinematic analysis: positions, velocities and accelerations of a driven mechanism over time
+// (apps/manual/kinematics.md).
 //
 // Between rows the motion is followed in steps of its own choice: a step whose prediction was far off, or on which
 // Newton contracted badly, is halved, so that no branch is jumped however coarse the rows are. Where branches meet the

@@ -2,7 +2,7 @@
 //
 //   dissipated   of dampers
 //   loads        work of the applied loads that have no potential: functions of time, follower forces
-//   driver k     -lambda nu of its row, THEORY's load x dc/dt
+//   driver k     -lambda nu of its equation: load x dc/dt (apps/manual/dynamics.md#driver-loads)
 //
 // The balance T + V - (T0 + V0) - (loads + drivers) + dissipated is zero but for the error of integration. Units: J, W.
 #pragma once

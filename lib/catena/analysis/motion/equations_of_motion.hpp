@@ -1,5 +1,5 @@
 // The equations of motion of a mechanism as a right-hand side: accelerations from positions and velocities, and the
-// projections that keep both on the constraints (THEORY section 4).
+// projections that keep both on the constraints (apps/manual/dynamics.md#equations-of-motion).
 //
 //   accelerations   [M, Phi_q^T; Phi_q, 0] [qdd; lambda] = [Q; gamma]
 //   positions       q -= M^-1 Phi_q^T S^-1 Phi(q), repeated with the factors at hand until Phi is rounding

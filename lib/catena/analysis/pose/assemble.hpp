@@ -1,4 +1,5 @@
-// Assembly: the configuration nearest to a given estimate that meets all constraints (THEORY section 3).
+// Assembly: the configuration nearest to a given estimate that meets all constraints
+// (apps/manual/kinematics.md#assembly).
 //
 //   min sum_b |dr_b|^2 + rho_b^2 dphi_b^2   subject to   Phi(q, t) = 0        rho: RMS attachment distance of the body
 //

@@ -3,7 +3,8 @@
 //   min qd^T W qd  subject to  Phi_q qd = nu       =>   qd = W^-1 Phi_q^T mu,   (Phi_q W^-1 Phi_q^T) mu = nu
 //
 // W: the masses and inertias if every moving body has them (then the kinetic energy is least), else [1, 1, rho^2], rho
-// the body's RMS attachment distance (THEORY section 3). Accelerations are the time derivative of these velocities:
+// the body's RMS attachment distance (apps/manual/kinematics.md#motion-of-least-velocity). Accelerations are the time
+// derivative of these velocities:
 //
 //   Phi_q qdd = gamma,   qdd nearest (in W) to  w = W^-1 (sum_r mu_r d2Phi_r/dq2) qd
 //

@@ -2,11 +2,11 @@
 //
 //   K v = k W v on the null space of Phi_q,   W = (1, 1, radius^2):   k, N/m, the stiffness of mode v
 //
-// The number p of negative k comes from the inertia of one factorization (THEORY section 5), whatever the size; the
-// softest mode from a few Lanczos steps with its inverse. Both see rows that give way a little, by the eps of the
-// regularisation, which takes eps mu^2 from every stiffness, mu the reactions that the motion changes: where that could
-// be what is left, the mode is projected to the null space by factors that have no K in them, and p counted anew by
-// dense algebra. Where k then cannot be told from rounding of the terms that make it up, before they cancel
+// The number p of negative k comes from the inertia of one factorization (apps/manual/statics.md#certificate), whatever
+// the size; the softest mode from a few Lanczos steps with its inverse. Both see rows that give way a little, by the
+// eps of the regularisation, which takes eps mu^2 from every stiffness, mu the reactions that the motion changes: where
+// that could be what is left, the mode is projected to the null space by factors that have no K in them, and p counted
+// anew by dense algebra. Where k then cannot be told from rounding of the terms that make it up, before they cancel
 // (motion_groups.hpp), or |v^T K v| <= 1e-10 sum |v_i K_ij v_j|, the place itself being known no better, the point is
 // neutral to second order: all motions that nothing resists are found (free_motions.hpp), and p counts the modes that
 // are negative beside them.

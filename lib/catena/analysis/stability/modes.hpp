@@ -1,4 +1,4 @@
-// Small oscillations about the current configuration: natural frequencies and shapes (THEORY section 5).
+// Small oscillations about the current configuration: natural frequencies and shapes (apps/manual/statics.md#modes).
 //
 //   K v = omega^2 M v   on the null space of Phi_q,   K = V_qq + sum lambda Phi_qq,   M = diag(m, m, J)
 //

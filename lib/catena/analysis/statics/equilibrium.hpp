@@ -1,4 +1,5 @@
-// Static equilibrium: the minimum of the potential energy under the constraints, with a certificate (THEORY section 5).
+// Static equilibrium: the minimum of the potential energy under the constraints, with a certificate
+// (apps/manual/statics.md#equilibrium).
 //
 //   min V(q)   subject to   Phi(q, t) = 0      functions of time frozen at t
 //
@@ -44,7 +45,7 @@ struct FoundEquilibrium {
   double residual = 0;  ///< N
 };
 
-/// Outcome of the last equilibrium computed; see SCENES.md, Results.
+/// Outcome of the last equilibrium computed; see apps/manual/scenes.md#analyses.
 struct EquilibriumReport : AnalysisReport {
   double energy = 0;       ///< potential energy, J
   bool certified = false;  ///< false where there is no energy (follower forces): then the next four say nothing

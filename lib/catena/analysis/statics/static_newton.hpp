@@ -9,7 +9,8 @@
 // of a minimum; the iteration then converges quadratically and ends with a correction by the factors at hand. At a
 // point that is stationary but no minimum it stops and says so.
 // What it cannot do: promise to stay in the valley where it started (StaticDescent does).
-// Source: NUMERICS (hanging chains by Newton); 700 starts of seven kinds at N = 100: all converged, 6 to 21 iterations.
+// Measured (apps/manual/numerics.md#hanging-chains): 700 starts of seven kinds at N = 100: all converged, 6 to 21
+// iterations.
 #pragma once
 
 #include <span>

@@ -5,7 +5,7 @@
 // W is diagonal and positive (a mass matrix, or the weights of assembly); W^-1 = 0 holds a coordinate where it is. The
 // Schur complement is factored by Cholesky with 1e-12 of its diagonal added and the solution refined with the true
 // Phi_q: exact where rows are independent, and where they depend on each other consistently x is exact as well; of a
-// contradictory b the part that can be met is met. Source: NUMERICS (regularisation with refinement).
+// contradictory b the part that can be met is met. Source: apps/manual/numerics.md#regularisation.
 #pragma once
 
 #include <memory>

@@ -7,10 +7,10 @@
 // D = 0 where constraints hold; rows of gaps may have a compliance d > 0 (set_compliance). Their part of the second
 // matrix follows from lambda = lambda' (1 + rho d): R holds rho / (1 + rho d), E holds eps + d (1 + rho d).
 // Inertia of the factored one: n_- = m + p, p the number of negative eigenvalues of K on the null space of Phi_q,
-// whatever the rank of Phi_q (THEORY section 5). rho and eps are chosen row by row from the stiffness of the bodies the
-// row touches, since a mechanism may hold springs and links over many orders of magnitude: rho comparable with K there,
-// eps = 1e-10 / rho. Where rows depend on each other eps decides between their multipliers: the least ones; a row whose
-// pivot is no larger than a few eps is reported as dependent.
+// whatever the rank of Phi_q (apps/manual/statics.md#certificate). rho and eps are chosen row by row from the stiffness
+// of the bodies the row touches, since a mechanism may hold springs and links over many orders of magnitude: rho
+// comparable with K there, eps = 1e-10 / rho. Where rows depend on each other eps decides between their multipliers:
+// the least ones; a row whose pivot is no larger than a few eps is reported as dependent.
 #pragma once
 
 #include <memory>

@@ -7,7 +7,7 @@
 // alone has whole zero blocks (of a hanging rod nothing is left but its stiffness against turning). Elimination order:
 // bodies by minimum degree in the graph of bodies that share an element, every constraint row directly after the last
 // of its bodies. Joints before their bodies would divide by eps; joints after all bodies would fill the matrix. Source:
-// NUMERICS (kernels); Golub and Greif, SIAM J. Sci. Comput. 24 (2003), for the augmentation.
+// apps/manual/numerics.md#matrix-of-equilibrium; Golub and Greif, SIAM J. Sci. Comput. 24 (2003), for the augmentation.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// Reads a scene's text into its compiled form (scene_template.hpp): the grammar of SCENES.md, every key checked.
+// Reads a scene's text into its compiled form (scene_template.hpp): apps/manual/scenes.md, every key checked.
 //
 // Everything that can be said without knowing parameters' values or other parts' names is said here; the rest is found
 // when the model is built. Linear in the length of the text.

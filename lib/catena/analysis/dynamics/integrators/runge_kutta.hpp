@@ -12,11 +12,11 @@
 // Partition: independent coordinates are integrated, the others solved for at every stage (coordinate_partition.hpp).
 //   Across singular positions, where no choice of independent coordinates holds, steps are projected as well.
 //
-// Passing singular positions (flat four-bars) without knowing of them takes four things, all found by experiment (see
-// NUMERICS.md): the part of an error estimate that the projection removes does not count; a step across such a position
-// is made with all its stages projected; none ends where a pivot of the Schur complement keeps less than 1e-7 of
-// itself, or what the tolerance makes of it; where order 8 does not get ahead, order 5 takes over for a while. One
-// object an integration; nothing allocates after construction.
+// Passing singular positions (flat four-bars) without knowing of them takes four things, all found by experiment
+// (apps/manual/numerics.md#singular-passages): the part of an error estimate that the projection removes does not
+// count; a step across such a position is made with all its stages projected; none ends where a pivot of the Schur
+// complement keeps less than 1e-7 of itself, or what the tolerance makes of it; where order 8 does not get ahead, order
+// 5 takes over for a while. One object an integration; nothing allocates after construction.
 #pragma once
 
 #include <cstdint>
