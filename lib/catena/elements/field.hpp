@@ -110,8 +110,8 @@ struct TableField {
   std::string_view doc;
 };
 
-/// What stands for a function of time that a scene leaves out. `given`: what the element measures in the given
-/// configuration, before assembly.
+/// The default of a function of time. `given`: the value that the element measures in the given configuration, before
+/// assembly.
 enum class Omitted { refused, zero, given };
 
 /// A function of time: the element's function number `index`.

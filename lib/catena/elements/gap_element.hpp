@@ -1,4 +1,5 @@
-// What one-sided elements (contact, stop, cable) share. They are constraint elements (element.hpp) whose row is a gap:
+// Common properties of the one-sided elements (contact, stop, cable). They are constraint elements (element.hpp) whose
+// row is a gap:
 //
 //   Psi(q) >= 0        p >= 0        p Psi = 0        V_q + Phi_q^T lambda - Psi_q^T p = 0
 //

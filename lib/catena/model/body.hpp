@@ -31,8 +31,8 @@ struct BasicBody {
   int first_point = -1;  ///< head of the list of its points
 };
 
-/// What an author says of a body: everything optional but the name. `centroid` is the centroid's place in the author's
-/// frame; position, velocity and all local coordinates refer to that frame's origin.
+/// A body as its author describes it: everything optional but the name. `centroid` is the centroid's place in the
+/// author's frame; position, velocity and all local coordinates refer to that frame's origin.
 struct BodyValues {
   double mass = -1, inertia = -1;  ///< negative: not given
   Vec2<double> position{};

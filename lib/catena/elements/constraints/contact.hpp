@@ -43,7 +43,7 @@ struct Contact : PointOnCurve<S> {
         NumberField{"c", &Contact::c, UnitKind::damping, Domain::not_negative, false, ""});
   }
 
-  /// An open contact asks nothing of the curve.
+  /// An open contact does not use the curve.
   std::optional<CurveUse> curve_use(const Arguments<double>& a) const {
     double gap;
     phi(a, &gap);

@@ -1,4 +1,4 @@
-// custom_constraint: one equation of the user's own making between body i and body j, in C++ only.
+// custom_constraint: a user-defined equation between body i and body j, in C++ only.
 //
 //   Phi = m(q_i, q_j) - c = 0         m: the law's measure, in m; c a function of time, hence it may be a driver
 //
@@ -12,8 +12,7 @@
 //   model.add("rail", custom_constraint(OnParabola{0.5}), i, j, 0.0);
 //
 // A joint of several equations is several of these. Frames are those of the centroids relative to a common origin.
-// Singular where the law's derivative vanishes. One virtual call an element and evaluation; models without one pay
-// nothing.
+// Singular where the law's derivative vanishes. Costs one virtual call per element and evaluation.
 #pragma once
 
 #include "catena/elements/element.hpp"
@@ -24,7 +23,7 @@ namespace catena {
 template <class S = double>
 struct CustomConstraint {
   static constexpr std::string_view type = "custom_constraint";
-  static constexpr std::string_view summary = "An equation of the user's own making, in C++.";
+  static constexpr std::string_view summary = "A user-defined equation, in C++.";
   static constexpr std::string_view equation = "m(q_i, q_j) - c = 0";
   static constexpr int rows = 1;
   static constexpr int bodies = 2;

@@ -3,7 +3,7 @@
 // solve allocates, unless pivots have to be chosen anew or a fallback takes over.
 //
 // KLU works on the diagonal blocks of the block triangular form; their pivots tell which part of a mechanism nears a
-// singular position. What the matrix of values must be: entry k of `values` belongs to entry k of the pattern.
+// singular position. Entry k of `values` belongs to entry k of the pattern.
 // Bad values (NaN) outside the diagonal blocks are not looked for in `factorize`; they come out in the solution.
 // One object serves one thread at a time; different objects are independent.
 #pragma once
@@ -21,7 +21,7 @@
 
 namespace catena {
 
-/// When solve_checked is content.
+/// When solve_checked accepts a solution.
 struct SolveCheck {
   double tolerance = 1e-13;  ///< for max_i |b - A x|_i / (sum_j |a_ij| * max|x| + |b_i|); blind to the rows' scales
   int max_refinements = 2;   ///< for each kernel tried
