@@ -1,5 +1,5 @@
-// The matrix of static equilibrium with its numbers: filled in place, factored with an augmentation that makes the
-// factorization exist, solved and refined against the matrix itself.
+// The matrix of static equilibrium: filled in place, factored with an augmentation for which L D L^T exists, solved and
+// refined against the matrix itself.
 //
 //   true      [ K    Phi_q^T ]        factored   [ K + Phi_q^T R Phi_q   Phi_q^T ]
 //             [ Phi_q   -D   ]                   [ Phi_q                 -E      ]
@@ -44,11 +44,11 @@ class KktMatrix {
     if (keep != keep_equal_factors_) last_.clear();
     keep_equal_factors_ = keep;
   }
-  /// Whether every K written with these multipliers is the one without: constraints without second derivatives here.
+  /// Whether K does not depend on these multipliers: constraints without second derivatives at this configuration.
   bool constraints_are_linear(Evaluator& evaluator);
 
-  /// Fills K at the evaluator's configuration, but for the stiffness against turning, which goes to turning(). Springs
-  /// at foreseen lengths where these are active.
+  /// Fills K at the evaluator's configuration, except the stiffness against turning, which goes to turning(). Springs
+  /// use foreseen lengths where these are active.
   void set_hessian(Evaluator& evaluator, std::span<const double> lambda, Curvature curvature,
                    const ForeseenSprings* springs = nullptr);
   /// Per moving body, N m: may be changed between set_hessian and complete.
@@ -63,7 +63,7 @@ class KktMatrix {
   /// The true matrix by slots of structure().pattern.
   std::span<const double> values() const { return {values_.data(), static_cast<std::size_t>(structure_.entries())}; }
 
-  /// Factors; analyses first where nothing did. `least_stiffness`, N/m: what a body counts that has none of its own.
+  /// Factors; analyses first if needed. `least_stiffness`, N/m: assumed for a body without any stiffness.
   FactorResult factorize(double least_stiffness, Counters& counters);
   /// Solves the true equations for x = [columns; rows] in place. Residuals are compared with `force`, N, and `length`,
   /// m, and refined to `tolerance` of these, if rounding allows.
@@ -80,7 +80,7 @@ class KktMatrix {
   bool is_factorized() const { return factorization_.is_factorized(); }
   /// p: negative eigenvalues of K on the null space of Phi_q.
   int negative_modes() const;
-  /// Constraint rows whose pivot vanished but for eps, ascending.
+  /// Constraint equations whose pivot vanished but for eps, ascending.
   std::vector<int> dependent_rows() const;
   /// Largest stiffness of a body, N/m.
   double largest_stiffness() const { return largest_stiffness_; }
