@@ -1,4 +1,4 @@
-// The least of all multipliers that hold a mechanism together where redundant constraints leave a choice:
+// The least of all multipliers that balance the same loads, where redundant constraints leave a choice:
 //
 //   min sum_k |F_k|^2 + (T_k / Lc)^2   subject to   Phi_q^T lambda = Q - M qdd
 //
