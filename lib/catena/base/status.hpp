@@ -1,5 +1,4 @@
-// The outcome of an analysis. Numerical outcomes are values, never exceptions; the names are those of the result
-// files.
+// The outcome of an analysis. Numerical outcomes are values, never exceptions; the names are those of the result files.
 #pragma once
 
 #include <string>

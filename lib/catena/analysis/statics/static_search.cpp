@@ -19,27 +19,29 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// Degrees of freedom up to which the valley of the start is followed: the work grows with them, Newton's does not.
+// Degrees of freedom up to which the energy is followed downhill from the start: the work grows with them, that of
+// Newton's method does not.
 constexpr int few_freedoms = 30;
-// Coordinates up to which it is followed, whatever the freedoms, where nothing else got anywhere.
+// Coordinates up to which it is followed, whatever the degrees of freedom, after other methods have failed.
 constexpr int most_downhill_columns = 3000;
 constexpr int most_trials = 14;
 // Steps downhill from where Newton's full steps do not settle: more where there is more to move, until that takes some
 // ten seconds.
 constexpr int least_downhill = 200, most_downhill_work = 20'000'000;
-// Starts of Newton's that fail before Ipopt is asked.
+// Starts of Newton's method that fail before Ipopt is used.
 constexpr unsigned starts_before_ipopt = 4;
-// Newton may move what another solver found by this much, length scales or rad: more is another place.
+// Newton's method may move the result of another solver by this much, length scales or rad: more is another
+// equilibrium.
 constexpr double largest_polish = 0.05;
 constexpr double rounding_tolerance = 1e-15;
-// What remains to be done where forces are known to rounding of stiff springs only, length scales or rad.
+// Largest remaining change where forces are known only to rounding of stiff springs, length scales or rad.
 constexpr double rounded_change = 1e-9;
-// Beyond this interior points only gather rounding: the rest is polished.
+// Below this interior-point iterations only accumulate rounding: Newton's method does the rest.
 constexpr double finest_barrier = 1e-10;
-// Of gaps and their forces, whatever was asked for: the last steps cost next to nothing.
+// Tolerance of gaps and their forces, whatever the option: the last steps are cheap.
 constexpr double gap_tolerance = 1e-12;
 constexpr int few_first_steps = 40, most_first_steps = 80;
-// A residual above this part of the forces is worth a remark.
+// A residual above this part of the forces is reported.
 constexpr double unsaid_rounding = 1e-9;
 // The square of this is the largest number.
 constexpr double largest_number = 1e154;
@@ -86,11 +88,11 @@ void warn_of_rounding(const StaticAccuracy& a, Report& report) {
 
 }  // namespace
 
-// What an optimiser found to its own tolerance, to rounding; kept as it is where Newton would leave the place.
+// Refines the result of an optimiser to rounding; keeps it where Newton's method would move to another equilibrium.
 StaticOutcome StaticSearch::polish_by_newton(std::vector<double>& q, std::vector<double>& lambda,
                                              StaticOutcome outcome) {
   const std::vector<double> found = q, multipliers = lambda;
-  // On to rounding, whatever was asked for: the steps cost next to nothing beside what went before.
+  // To rounding, whatever the tolerance: the steps cost little beside those before.
   const StaticOutcome polished = solve_by_newton(
       system_, q, lambda, {.max_iterations = 20, .tolerance = rounding_tolerance, .warm = true, .stationary = true});
   std::vector<double> change(at(system_.plan().columns));
@@ -113,7 +115,7 @@ StaticOutcome StaticSearch::polish_by_newton(std::vector<double>& q, std::vector
 StaticOutcome StaticSearch::minimise_with_gaps(std::vector<double>& q, std::vector<double>& lambda, bool warm, Way way,
                                                StaticResult& result) {
   StaticOutcome outcome;
-  // Steps that do not settle soon rarely do: patience is for when nothing else got anywhere.
+  // Steps that do not converge soon rarely do: more are allowed only after other methods have failed.
   const StaticGapOptions exact{.first_steps = result.iterations == 0 ? few_first_steps : most_first_steps,
                                .tolerance = std::min(options_.tolerance, gap_tolerance)};
   result.solver = way == Way::ipopt ? "ipopt" : way == Way::nlopt ? "nlopt" : "newton";
@@ -130,7 +132,7 @@ StaticOutcome StaticSearch::minimise_with_gaps(std::vector<double>& q, std::vect
     return outcome;
   }
   if (warm) {
-    // Where the closed gaps stay closed, a small change of parameters needs no more.
+    // Where the closed gaps stay closed this suffices for a small change of parameters.
     const std::vector<double> before = q, multipliers = lambda;
     outcome = finish_with_gaps(system_, q, lambda, result.gaps, exact);
     result.iterations += outcome.iterations;
@@ -195,7 +197,7 @@ StaticOutcome StaticSearch::minimise(std::vector<double>& q, std::vector<double>
                             {.tolerance = options_.tolerance, .warm = warm, .stationary = options_.stationary});
   result.iterations += outcome.iterations;
   if (outcome.end != StaticEnd::slow) return outcome;
-  // Full steps that go back and forth have come far down all the same: the energy decides about the rest of the way.
+  // Full steps that alternate have lowered the energy all the same: descent continues from their end.
   const int columns = std::max(system_.plan().columns, 1);
   const int most = std::max(least_downhill, std::min(least_downhill + 2 * columns, most_downhill_work / columns));
   outcome = solve_by_descent(system_, q, lambda, {.max_iterations = most, .tolerance = options_.tolerance});
@@ -203,9 +205,9 @@ StaticOutcome StaticSearch::minimise(std::vector<double>& q, std::vector<double>
   return outcome;
 }
 
-// Whether forces balance and constraints hold to the tolerance. What may be rounding beside the stiffest spring passes
-// only if a Newton step, by the factors of the certificate, would move nothing: it may be all that a soft spring holds.
-// Along a neutral motion a step says nothing.
+// Whether forces balance and constraints hold to the tolerance. A residual that may be rounding of the stiffest spring
+// is accepted only if a Newton step with the factors of the certificate would move nothing: it may be the whole force
+// of a soft spring. Along a neutral motion a step carries no information.
 bool StaticSearch::is_accurate(std::span<const double> lambda, const Certificate& certificate) {
   accuracy_ = judge_balance(system_, lambda, options_.tolerance);
   if (!(system_.phi_norm() <= std::max(options_.tolerance, 10 * system_.rounding_change()))) return false;
@@ -254,7 +256,7 @@ void StaticSearch::shake(std::vector<double>& q, unsigned seed, double angle, do
   }
 }
 
-// Numbers whose products with each other cannot be represented are no numbers to compute with.
+// Refuses forces and stiffnesses whose products overflow.
 std::optional<Report> StaticSearch::find_overflow(std::span<double> lambda) {
   system_.fill(lambda, Curvature::exact, 0);
   const Plan& plan = system_.plan();
@@ -326,7 +328,7 @@ Report StaticSearch::explain(const StaticOutcome& outcome, const std::vector<dou
   return report;
 }
 
-// Why the last point that was looked at is no equilibrium, from its accuracy and certificate.
+// Describes why the last point is no equilibrium, from its accuracy and certificate.
 void StaticSearch::describe_point(const StaticResult& result, Report& report) {
   const Certificate& c = result.certificate;
   const StaticAccuracy& a = accuracy_;
@@ -354,7 +356,7 @@ void StaticSearch::describe_point(const StaticResult& result, Report& report) {
             : "; likely cause: a start far off, or an energy without a minimum nearby";
 }
 
-// Forces that follow their body: the residual alone, and nothing that could certify what is found.
+// Forces that follow their body: only the residual is solved, and the result cannot be certified.
 StaticResult StaticSearch::find_without_energy(std::vector<double>& q, std::vector<double>& lambda) {
   StaticResult result;
   result.has_energy = false;
@@ -437,7 +439,7 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
       }
     }
     if (!own) break;
-    // Where following the valley does not get anywhere Newton may, and where that does not, another start or Ipopt.
+    // If descent fails Newton's method is tried, and then another start or Ipopt.
     q = start;
     if (trial + 2 == most_trials && !system_.has_gaps() && options_.solver == StaticSolver::automatic) {
       way = Way::settling;
