@@ -75,8 +75,7 @@ std::string structure_text(const AnalysisReport& report) {
     text += "  mobility " + std::to_string(*report.mobility) + ": ";
     text += count(*report.mobility, "degree of freedom", "degrees of freedom") + " if the drivers are taken away\n";
   }
-  if (report.islands > 1)
-    text += "  " + std::to_string(report.islands) + " groups of bodies move apart from each other\n";
+  if (report.islands > 1) text += "  " + std::to_string(report.islands) + " groups of bodies move independently\n";
   return text;
 }
 

@@ -221,7 +221,7 @@ Report Kinematics::start_singular(SingularPoint point, double direction) {
     report.status = Status::singular;
     report.message = fmt::format(
         "the motion starts at t = {:.12g} s in a singular configuration {}; start a little before or after it", t_,
-        rests ? "in which the drivers rest" : "from which no velocity goes on");
+        rests ? "in which the drivers rest" : "from which no motion continues");
     return report;
   }
   const int branch = count == 1 ? 1 : options_.branch;

@@ -26,7 +26,7 @@ struct SingularPoint {
     branch_point,  ///< branches with different velocities meet
     tangency,      ///< branches touch with the same velocity, or the configuration is regular again to second order
     rest,          ///< the drivers rest there, and the motion goes through or turns back
-    isolated,      ///< no velocity goes on from here
+    isolated,      ///< no velocity continues the motion from here
     lock_up,       ///< the drivers ask for a motion that is not possible
   };
   Kind kind = Kind::branch_point;

@@ -145,7 +145,7 @@ void Kinematics::announce(const SingularPoint& point, Report& report) {
       if (point.tangents.size() > 1 && options_.branch > 1) {
         text += fmt::format("the motion takes branch {}: {}", options_.branch, point.describe_ways());
       } else {
-        text += "the motion goes on as smoothly as it came";
+        text += "the motion continues smoothly";
         if (point.tangents.size() > 1) text += ", along branch 1: " + point.describe_ways();
       }
       break;

@@ -155,7 +155,7 @@ Report Kinematics::move_and_sum_up(double t) {
 std::string Kinematics::doubt_of_work() const {
   if (!account_ || !(unsure_ > doubtful_error * exchanged_)) return {};
   return fmt::format(
-      "work is summed up no better than to {:.2g} J, of {:.3g} J exchanged: loads change too fast for the motion, or "
+      "work is accurate to {:.2g} J only, of {:.3g} J exchanged: loads change too fast for the motion, or "
       "grow near a singular configuration",
       unsure_, exchanged_);
 }

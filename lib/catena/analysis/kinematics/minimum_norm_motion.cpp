@@ -95,7 +95,7 @@ Report MinimumNormMotion::no_velocity() const {
   report.status = Status::inconsistent;
   report.message = fmt::format(
       "no velocities meet all constraints and drivers at t = {:.12g} s; most concerned: {}; likely cause: drivers that "
-      "contradict each other or what the mechanism can do",
+      "contradict each other, or a motion that the mechanism cannot make",
       t_, names);
   return report;
 }
@@ -129,8 +129,8 @@ Report MinimumNormMotion::stuck(double target) {
     }
     report.status = Status::lock_up;
     report.message = fmt::format(
-        "lock-up at t = {:.12g} s: the drivers ask for a motion that the mechanism cannot make, however its free "
-        "motions help{}",
+        "lock-up at t = {:.12g} s: the drivers ask for a motion that the mechanism cannot make, whatever its free "
+        "motions do{}",
         point.t, where);
   } else {
     point.kind = SingularPoint::Kind::isolated;

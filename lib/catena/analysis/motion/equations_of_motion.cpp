@@ -78,7 +78,7 @@ std::string EquationsOfMotion::undetermined() const {
   if (masses_.massless.empty() || !(system_.massless_residual() > unresisted)) return {};
   const int worst = system_.worst_massless();
   return fmt::format(
-      "the motion of body \"{}\" is not determined: its {} is zero and the constraints tie it to nothing that has mass",
+      "the motion of body \"{}\" is not determined: its {} is zero and no constraint ties it to a body with mass",
       evaluator_.model().body_name(plan_.model_body[at(worst / 3)]), worst % 3 == 2 ? "inertia" : "mass");
 }
 

@@ -227,7 +227,8 @@ std::string describe_cause(const Model& model, const Conflict& conflict) {
     return fmt::format("the drivers {} contradict each other, or an estimate too far off", list(drivers));
   }
   if (drivers.size() == 1) {
-    return fmt::format("driver {} asks for what lengths do not allow, or an estimate too far off", list(drivers));
+    return fmt::format("driver {} asks for a position that the lengths do not allow, or an estimate too far off",
+                       list(drivers));
   }
   return fmt::format("lengths that do not fit among {}, or an estimate too far off", list(others));
 }

@@ -94,8 +94,8 @@ void Buckling::start_from(const SystemState& state) {
 
 Report Buckling::not_stable() const {
   return {Status::refused,
-          fmt::format("the equilibrium is not stable at the present value {:.6g} of the parameter: nothing is left to "
-                      "lose; begin with a smaller load",
+          fmt::format("the equilibrium is not stable at the present value {:.6g} of the parameter; begin "
+                      "with a smaller load",
                       options_.present),
           {}};
 }

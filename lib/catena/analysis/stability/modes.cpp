@@ -59,8 +59,8 @@ Report Modes::find_modes(const MassMatrix& masses, std::span<const double> mass,
   const auto undetermined = [&](int coordinate) {
     return Report{
         Status::refused,
-        fmt::format("the motion of body \"{}\" is not determined: its {} is zero and the constraints tie it to "
-                    "nothing that has mass",
+        fmt::format("the motion of body \"{}\" is not determined: its {} is zero and no constraint ties it to "
+                    "a body with mass",
                     model_->body_name(plan_->model_body[at(coordinate / 3)]), coordinate % 3 == 2 ? "inertia" : "mass"),
         {}};
   };

@@ -74,15 +74,15 @@ void name_weak_gaps(const Evaluator& evaluator, StaticResult& result) {
   if (count == 0) return;
   if (count > most) names += fmt::format(" and {} more", count - most);
   result.report.warnings.push_back(
-      fmt::format("just touching, without a force that could be told from rounding: {}", names));
+      fmt::format("closed gaps whose force cannot be distinguished from rounding: {}", names));
 }
 
 // Where forces balance as well as rounding allows, but not to the tolerance.
 void warn_of_rounding(const StaticAccuracy& a, Report& report) {
   if (a.balanced || a.residual <= unsaid_rounding * a.forces) return;
   report.warnings.push_back(
-      fmt::format("forces balance to {:.2g} N only, of {:.3g} N: rounding of places makes up to {:.2g} N of the "
-                  "stiffest springs, whatever the tolerance",
+      fmt::format("forces of {1:.3g} N balance to {0:.2g} N only: rounding of places changes the force of the stiffest "
+                  "springs by up to {2:.2g} N, whatever the tolerance",
                   a.residual, a.forces, a.rounding));
 }
 
@@ -268,8 +268,9 @@ std::optional<Report> StaticSearch::find_overflow(std::span<double> lambda) {
     Report report;
     report.status = Status::refused;
     report.message = fmt::format(
-        "what acts on body \"{}\" is too large to be computed with: {} beyond {:.0e} {}, and products of such numbers "
-        "cannot be represented; likely cause: a unit or an exponent mistyped",
+        "{1} on body \"{0}\" is too large to compute with: products of numbers beyond {2:.0e} {3} cannot be "
+        "represented; "
+        "likely cause: a mistyped unit or exponent",
         body_of(system_.evaluator(), c), forced ? (turning ? "a torque" : "a force") : "a stiffness", largest_number,
         forced ? (turning ? "N m" : "N") : (turning ? "N m/rad" : "N/m"));
     return report;
@@ -303,7 +304,7 @@ Report StaticSearch::explain(const StaticOutcome& outcome, const std::vector<dou
     }
     report.status = Status::unbounded;
     report.message =
-        fmt::format("the energy has no minimum: body \"{}\" {} without end; what should hold it?",
+        fmt::format("the energy has no minimum: body \"{}\" {} without end; likely cause: nothing holds it",
                     body_of(evaluator, farthest), plan.coordinate[at(farthest)] % 3 == 2 ? "turns" : "moves");
     return report;
   }
@@ -322,7 +323,7 @@ Report StaticSearch::explain(const StaticOutcome& outcome, const std::vector<dou
   if (worst != gap.end() && *worst < -absent_overlap * system_.length()) {
     const int element = plan.row_element[at(plan.gap_rows[static_cast<std::size_t>(worst - gap.begin())])];
     report.message +=
-        fmt::format("; {} \"{}\" is violated by {:.3g}: can all of them be met?",
+        fmt::format("; {} \"{}\" is violated by {:.3g}: not all of the one-sided elements may be compatible",
                     evaluator.model().element_type(element), evaluator.model().element_name(element), -*worst);
   }
   return report;
@@ -341,8 +342,8 @@ void StaticSearch::describe_point(const StaticResult& result, Report& report) {
     return;
   }
   const std::string where = a.column >= 0 ? fmt::format(" at body \"{}\"", body_of(system_.evaluator(), a.column)) : "";
-  report.message = fmt::format("no equilibrium found: the forces{} are out of balance by {:.3g} N, beside {:.3g} N",
-                               where, a.residual, a.forces);
+  report.message = fmt::format("no equilibrium found: the forces{} are out of balance by {:.3g} N, of {:.3g} N", where,
+                               a.residual, a.forces);
   if (a.loads < a.forces) report.message += fmt::format(" and loads of {:.3g} N", a.loads);
   if (system_.plan().rows > static_cast<int>(system_.plan().gap_rows.size())) {
     report.message += fmt::format("; the constraints miss by {:.3g} m or rad", system_.phi_norm() * system_.length());
@@ -467,7 +468,8 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
   result.dependent_rows = system_.matrix().dependent_rows();
   name_weak_gaps(evaluator, result);
   if (way == Way::valley && !few) {
-    result.report.warnings.push_back("found by going downhill from the start, after other ways had failed");
+    result.report.warnings.push_back(
+        "found by following the energy downhill from the start, after other methods had failed");
   }
   const Certificate& c = result.certificate;
   const std::string motion = c.mode.empty() ? "" : describe_mode(evaluator, c.mode, system_.radius());
@@ -481,7 +483,7 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
                                                  c.negative_modes > 1 ? "s" : "", motion));
   }
   if (pushed && result.report.ok()) {
-    result.report.warnings.push_back("the first stationary point found was no minimum and was left downhill");
+    result.report.warnings.push_back("a stationary point that is no minimum was left towards lower energy");
   }
   return result;
 }

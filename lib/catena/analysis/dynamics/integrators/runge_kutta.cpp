@@ -86,7 +86,7 @@ bool RungeKutta::begin_projection() {
 std::vector<std::string> RungeKutta::remarks() const {
   std::vector<std::string> all;
   if (low_order_steps_ > 0)
-    all.push_back(fmt::format("order 5 took over for {} steps where order 8 did not get ahead", low_order_steps_));
+    all.push_back(fmt::format("order 5 took over for {} steps where order 8 failed repeatedly", low_order_steps_));
   if (projected_steps_ > 0)
     all.push_back(fmt::format("{} steps across nearly singular positions were projected", projected_steps_));
   if (partition_ && partition_->choices() > 1)

@@ -15,8 +15,8 @@
 // Passing singular positions (flat four-bars) without knowing of them takes four things, all found by experiment
 // (apps/manual/numerics.md#singular-passages): the part of an error estimate that the projection removes does not
 // count; a step across such a position is made with all its stages projected; none ends where a pivot of the Schur
-// complement keeps less than 1e-7 of itself, or what the tolerance makes of it; where order 8 does not get ahead, order
-// 5 takes over for a while. One object an integration; nothing allocates after construction.
+// complement keeps less than 1e-7 of itself, or than a limit that follows from the tolerance; where order 8 fails
+// repeatedly, order 5 takes over for a while. One object an integration; nothing allocates after construction.
 #pragma once
 
 #include <cstdint>

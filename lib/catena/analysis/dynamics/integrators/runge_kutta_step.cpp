@@ -19,7 +19,7 @@ constexpr int most_rejections = 100;
 
 }  // namespace
 
-// Chooses the next step after a rejection; order 5 gets its turn when order 8 does not get ahead.
+// Chooses the next step after a rejection; order 5 is used when order 8 fails repeatedly.
 void RungeKutta::reject(double h) {
   ++motion_.equations().evaluator().counters.rejected;
   h_ = h;
