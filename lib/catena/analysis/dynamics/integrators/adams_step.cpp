@@ -104,7 +104,7 @@ void Adams::fail(double h, double error, bool lower) {
     --k_;
   }
   h_ = cut * h;
-  // Differences of many points magnify what rounding makes of accelerations beside a singular position.
+  // Differences of many points magnify the rounding of accelerations near a singular position.
   if (failures_ >= 3 && motion_.equations().smallest_pivot_ratio() < near_ratio * usual_ratio_) crossing_ = true;
 }
 

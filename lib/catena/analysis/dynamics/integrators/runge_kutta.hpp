@@ -55,14 +55,14 @@ class RungeKutta final : public Integrator {
   IntegratorMemory memory() const override;
   void remember(const IntegratorMemory& memory) override;
   bool may_pause() const override { return !crossing_ && !passing_singular_; }
-  /// Goes on with steps of size h (s) where another method came to at (t, y), with what that knows of the motion: the
-  /// scale of errors and the largest pivot ratio.
+  /// Continues with steps of size h (s) from the state (t, y) of another method, with its scale of errors and its
+  /// largest pivot ratio.
   bool take_over(double t, std::span<const double> y, double h, const ErrorScale& scale, double usual_ratio);
   std::span<const double> slope() const { return slope_; }
   const ErrorScale& scale() const { return scale_; }
   /// Smallest pivot ratio at the last evaluation, compared with the largest so far: very unequal masses make all small.
   double pivot_ratio() const;
-  /// Whether a singular position lies within the step whose stages were evaluated, as far as they show it.
+  /// Whether the stages of the last step indicate a singular position within it.
   bool dips() const;
 
   bool meets_constraints() const override { return options_.keeping != ConstraintKeeping::stabilisation; }
