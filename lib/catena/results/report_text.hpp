@@ -1,4 +1,4 @@
-// Outcomes of analyses in words, for people: what the mechanism is, what came out, what to know about it.
+// Outcomes of analyses as text for readers: the mechanism, the outcome, and warnings.
 #pragma once
 
 #include <string>
