@@ -39,10 +39,10 @@ std::vector<UnknownColumn> unknown_columns(const Model& model, std::span<const s
 /// names are passed over.
 std::vector<int> elements_with_reactions(const Model& model, std::span<const std::string> names);
 
-/// What is called so when nothing is asked for: x, y and angle of every body.
+/// The default columns: x, y and angle of every body.
 std::vector<NamedColumn> default_columns(const Model& model);
 
-/// Whether the column shows multipliers, or what is made of them.
+/// Whether the column shows multipliers, or values derived from them.
 constexpr bool is_reaction(ColumnKind kind) {
   return (kind >= ColumnKind::reaction_x && kind <= ColumnKind::push) ||
          (kind >= ColumnKind::load && kind <= ColumnKind::work);

@@ -22,7 +22,7 @@ struct Snapshot {
   std::span<const double> driver_work{};  ///< by number of the element, J
 };
 
-/// What an analysis must compute for the columns asked for: nothing else is computed.
+/// The quantities that an analysis must compute for the requested columns.
 struct Needs {
   bool velocity = false;
   bool acceleration = false;

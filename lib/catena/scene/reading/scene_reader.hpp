@@ -12,8 +12,8 @@
 
 namespace catena {
 
-/// The scene, or nothing where the text is not a scene at all. It may be built even if errors were reported: what was
-/// wrong is not there, or not a number, and building finds the errors that are left.
+/// The scene, or nothing where the text is not a scene at all. It may be built even if errors were reported: parts with
+/// errors are missing or NaN, and building finds the remaining errors.
 std::unique_ptr<SceneTemplate> read_scene(SourceText source, Diagnostics& diagnostics);
 
 /// The keys of a scene, and those of a replicate block.
