@@ -115,7 +115,7 @@ void add_common_options(CLI::App& command, Parsed& parsed) {
                   "also write one CSV file an analysis and report.json to this folder")
       ->type_name("DIR")
       ->check([](const std::string& folder) { return folder.empty() ? "the folder has no name" : ""; });
-  command.add_flag("--stats", run.stats, "print counts of the work done");
+  command.add_flag("--stats", run.stats, "print what was computed how often");
   command.add_flag("-q,--quiet", run.quiet, "print no table, report or progress");
   command.add_flag("-v,--verbose", run.verbose,
                    "print all rows and columns, the iterations of Newton's method, and the logs of solvers");

@@ -2,7 +2,7 @@
 //
 // Every kind comes in random sizes (1e-2 ... 1e2 m), masses and directions of gravity, with springs and dampers or
 // without, turned and shifted in the plane. Bodies have centroids off their pins. Most kinds can pass flat positions,
-// in which further equations become dependent; the generator ensures that they pass with a speed (well_posed).
+// in which further equations become dependent; whoever draws them sees to it that they pass with a speed (well_posed).
 #pragma once
 
 #include <numbers>

@@ -23,9 +23,9 @@
 //   reaction_point(i, j)   the place in the ground where reactions on both bodies act  (default: each body's own P)
 //   complete(i, j)         takes from the given configuration what the scene left out
 //   check()                nullptr, or what is wrong with the parameters, as a phrase
-//   trouble(a)             nullptr, or why the equation is undefined at this configuration, as a phrase
-//   can_leave_curve()      whether the element uses a curve or table that has ends
-//   curve_use(a)           the place in use on that curve or table, if it is in use (CurveUse)
+//   trouble(a)             nullptr, or why the row means nothing at this configuration, as a phrase
+//   can_leave_curve()      whether the element uses a curve or table that ends for good
+//   curve_use(a)           where on it the element stands, if it asks anything of it (CurveUse)
 //
 // Frames carry cosine and sine: no element calls trigonometry. One file an element, plus its lines in list.hpp.
 #pragma once

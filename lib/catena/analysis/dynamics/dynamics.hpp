@@ -3,8 +3,7 @@
 // The start is assembled, its velocities made consistent; then an integrator steps through time, stopping where a
 // function of time has a breakpoint, and rows are interpolated between its steps and projected onto the constraints, so
 // that however many there are they do not shorten steps. Accelerations and multipliers of rows come from one solve at
-// the row, only if needed. Where no step can be made any more, the report gives the instant and the cause; rows so far
-// are kept.
+// the row, only if needed. Where no step can be made any more, the report says when and why; rows so far are kept.
 #pragma once
 
 #include <limits>

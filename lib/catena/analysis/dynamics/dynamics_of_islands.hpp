@@ -30,7 +30,7 @@ class DynamicsOfIslands {
   /// Of each class.
   std::vector<IntegrationMethod> methods() const;
   void start_from(const SystemState& state);
-  /// If one of them cannot continue all end, with its message.
+  /// Where one of them cannot go on all end, with its message.
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
 
  private:

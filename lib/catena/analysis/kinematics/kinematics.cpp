@@ -29,8 +29,7 @@ constexpr double clearly_regular = 1e-9;
 constexpr double reactions_determined = 1e-6;
 // Part of the loads that least reactions may leave unbalanced.
 constexpr double balanced = 1e-10;
-// Equations closer to dependence than this count as dependent where a motion starts: given configurations are no more
-// exact.
+// Rows closer to dependence than this, where a motion starts: configurations are given no more exactly.
 constexpr double start_dependence = 1e-7;
 // How far along a branch (rad, length scales) rows are chosen where it starts.
 constexpr double start_distance = 0.02;
@@ -45,7 +44,7 @@ constexpr double suspicious_part = 1e-4;
 // Rates of redundant equations, if not needed for output, are checked at one in so many rows: they cost as much as the
 // positions, whose residual is checked at every step.
 constexpr std::int64_t rows_between_checks = 16;
-// After this time (s) drivers that rest at the start are evaluated again.
+// After so much time (s) drivers that rest at the start are looked at again.
 constexpr double moments[] = {1e-6, 1e-4, 1e-2, 1, 100};
 
 }  // namespace

@@ -37,7 +37,7 @@ constexpr double dependence = 1e-7;
 
 }  // namespace
 
-// Whether functions of time are as smooth at t as within the run: user-defined ones end with the run.
+// Whether functions of time are as smooth at t as within the run: outside of it those of the user's own end.
 bool Kinematics::functions_go_on(double t) const {
   return evaluator_.time_limit().contains(t) || std::none_of(model_->functions.begin(), model_->functions.end(),
                                                              std::mem_fn(&TimeFunction<double>::has_callback));

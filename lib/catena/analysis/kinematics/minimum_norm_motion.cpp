@@ -107,7 +107,7 @@ Report MinimumNormMotion::cancelled() const {
   return report;
 }
 
-// No step can be made: velocities have grown without bound, or equations have become dependent.
+// No step can be made: velocities have grown beyond all bounds, or rows have become dependent.
 Report MinimumNormMotion::stuck(double target) {
   Report report;
   const bool met = least_.velocity(t_, Side::after, q_, qd_);

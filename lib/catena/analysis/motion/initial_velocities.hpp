@@ -5,10 +5,10 @@
 //
 //   min |qd_given - given|_M first, then min qd_omitted^T M qd_omitted, both subject to Phi_q qd = nu
 //
-// found as a sequence of least changes in which given components weigh 10^4 times their mass and their remaining misfit
-// is added to the target (Bregman iteration): exact after a few rounds, with one factorization.
-// A velocity is given for the origin of its author's frame. Massless components that are not given have a small mass
-// whose effect is removed from round to round: they follow the bodies with mass and resist nothing.
+// found as a sequence of least changes in which given components weigh 10^4 times their mass and what is still missing
+// of them is added to what is asked for (Bregman iteration): exact after a few rounds, with one factorization.
+// A velocity is given for the origin of its author's frame. What is massless and not given has a small mass that is
+// taken back from round to round: it follows what has mass and resists nothing.
 #pragma once
 
 #include <span>

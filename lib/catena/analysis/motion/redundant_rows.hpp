@@ -12,10 +12,10 @@
 // at any place on the constraints. In exact arithmetic no result depends on the choice, so that a new one needs no
 // restart; it is made when bodies have moved by 0.3 rad or length scales and W has grown.
 //
-// p is the rank deficiency at a place where the mechanism is not singular: a start in a flat position has too low a
-// rank, so that the rank is also taken 0.1 rad along the drivers' or a free motion, and the larger one counts. Singular
-// case: a driven mechanism at rest in a singular position has no such place. Source: S. Goreinov, I. Oseledets et al.,
-// "How to find a good submatrix" (2010), with blocks as pivots.
+// p is the rank deficiency at a place where the mechanism is not singular by accident: a start in a flat position shows
+// too low a rank, so that the rank is also taken 0.1 rad along the drivers' or a free motion, and the larger one
+// counts. Singular case: a mechanism that is driven, but at rest, in a singular position has no such place. Source: S.
+// Goreinov, I. Oseledets et al., "How to find a good submatrix" (2010), with blocks as pivots.
 #pragma once
 
 #include <span>

@@ -102,7 +102,7 @@ class Path::March {
     return write(x_) ? Report{} : stopped();
   }
 
-  // The reason why rows ended: an element has left its curve, or the run was cancelled.
+  // Why no row is written any more: an element has left its curve, or the user stopped.
   Report stopped() const {
     return left_curve_.ok() ? Report{Status::cancelled, "stopped along the path", {}} : left_curve_;
   }

@@ -31,7 +31,7 @@ struct ExpressionError : std::runtime_error {
   std::size_t position;  ///< byte in the expression's text
 };
 
-/// The meaning of names in an expression.
+/// What names mean in an expression.
 struct ExpressionScope {
   const ParameterNames* parameters = nullptr;
   std::span<const std::string> loop_variables = {};  ///< outermost first
