@@ -63,7 +63,8 @@ void require_same_structure(const Model& known, const Model& model) {
   require_same(known.bodies.size(), model.bodies.size(), "bodies");
   require_same(known.elements.size(), model.elements.size(), "elements");
   const auto differs = [&](const std::string& who) {
-    throw std::invalid_argument("\"" + who + "\" is not what it was in the model that the analysis was made for");
+    throw std::invalid_argument(
+        "\"" + who + "\" differs from the element of this number in the model that the analysis was made for");
   };
   for (std::size_t b = 0; b < known.bodies.size(); ++b) {
     const auto &was = known.bodies[b], &is = model.bodies[b];

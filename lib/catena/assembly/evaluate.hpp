@@ -24,7 +24,7 @@ namespace catena {
 class Evaluator {
  public:
   /// The plan must be that of the model, and a model that is taken over must have the same bodies and elements:
-  /// std::invalid_argument says what differs. Spans of other sizes than said below are not checked.
+  /// std::invalid_argument names the difference. The sizes of spans are not checked.
   Evaluator(std::shared_ptr<const Plan> plan, const Model& model);
   // Defined where the element types are complete; here they are only declared.
   Evaluator(const Evaluator&);

@@ -41,7 +41,7 @@ using ForceValues = detail::BlocksOf<ForceLists<double>>::ForceValues;
 using ConstraintValues = detail::BlocksOf<ConstraintLists<double>>::Data;
 
 struct PlanOptions {
-  /// Elements whose reactions are wanted: a weld among them is solved for instead of eliminated.
+  /// Elements whose reactions are needed: a weld among them is solved for instead of eliminated.
   std::vector<int> keep_elements = {};
   /// Constraints that do not hold for the time being: they get no equations. Bodies are numbered as if they held, so
   /// that plans that differ only in released constraints number bodies alike.

@@ -1,4 +1,4 @@
-// Functions of time: what a driver prescribes, and the magnitude of an applied force.
+// Functions of time: the value prescribed by a driver, or the magnitude of an applied force.
 //
 //   f(t), f'(t), f''(t)   constant, polynomial, harmonic, smooth step, spline through a table, sums, products, your own
 //

@@ -83,7 +83,7 @@ std::string describe(Lack lack, const LeftOut& columns, const ColumnSources& sou
     case no_mass:
       return text + ": mass or inertia of body \"" + std::string(body) + "\" is not given";
     default:
-      return text + ": the joint is not solved for, what it ties cannot move";
+      return text + ": the joint is not solved for, since its bodies cannot move";
   }
 }
 

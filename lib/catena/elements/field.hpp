@@ -1,6 +1,6 @@
-// Descriptions of what a scene file may set on an element: key, member, unit, doc line, default. From these the scene
-// reader, the schema and `catena explain` are derived; elements never see JSON. A field without a doc line is reserved:
-// scenes may set it, but no analysis that is built reads it, so that schema and `explain` do not offer it.
+// Descriptions of the keys that a scene may set on an element: key, member, unit, doc line, default. From these the
+// scene reader, the schema and `catena explain` are derived; elements never see JSON. A field without a doc line is
+// reserved: scenes may set it, but no analysis that is built reads it, so that schema and `explain` do not offer it.
 #pragma once
 
 #include <string_view>

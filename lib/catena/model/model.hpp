@@ -71,7 +71,7 @@ class BasicModel {
   const Vec2<S>* find_point(int body, std::string_view name) const;
 
   /// New constraint; local points and axes are given in the authors' frames of the bodies. An empty name leaves it
-  /// unnamed. What the element can take from the given configuration (its value c, an angle) is taken from it.
+  /// unnamed. Values that the element can take from the given configuration (its value c, an angle) are taken from it.
   template <class E>
   int add(std::string_view name, const E& element, int i, int j = ground);
   /// The same with a value c for the equation.

@@ -17,7 +17,7 @@ std::string outcome_text(const AnalysisResult& result);
 /// The lines under the table: message, notes, freedoms and redundancy where they matter, named results.
 std::string report_text(const AnalysisResult& result);
 
-/// What --stats prints: counters that are not zero, and the time.
+/// The output of --stats: counters that are not zero, and the time.
 std::string counters_text(const AnalysisResult& result);
 
 }  // namespace catena

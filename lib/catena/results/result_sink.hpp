@@ -18,7 +18,7 @@
 
 namespace catena {
 
-/// What is known of a run before its first analysis.
+/// The data of a run known before its first analysis.
 struct RunHeader {
   std::string scene;  ///< its name; that of the file if it has none
   std::string description;

@@ -38,7 +38,7 @@ class Dynamics {
                     const DynamicsOptions& options = {});
 
   const Plan& plan() const { return *plan_; }
-  /// The method at work: what was asked for, or what was chosen.
+  /// The method in use: the requested one, or the one chosen automatically.
   IntegrationMethod method() const { return method_; }
   Evaluator& evaluator() { return evaluator_; }
 
@@ -58,7 +58,7 @@ class Dynamics {
   /// position, after its rows.
   void pause_after(double t) { pause_after_ = t; }
   bool paused() const { return paused_; }
-  /// What the motion goes on from where the last run paused.
+  /// The state of the motion where the last run paused.
   const MotionMemory& memory() const { return memory_; }
   /// Takes up a motion of the same model and options that paused: the next run() begins there, on the rest of its grid.
   void resume(const MotionMemory& memory);

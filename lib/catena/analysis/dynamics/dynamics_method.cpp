@@ -34,7 +34,7 @@ bool has_closed_loops(const Plan& plan) {
   bool closed = false;
   for_each_list(plan.blocks, [&](const auto& block, int) {
     for (int e = 0; e < block.size(); ++e) {
-      // What does not move is the ground.
+      // Bodies that do not move count as the ground.
       const int i = find(std::min(block.body_i[at(e)], plan.moving)),
                 j = find(std::min(block.body_j[at(e)], plan.moving));
       closed = closed || i == j;

@@ -25,7 +25,7 @@ inline std::string_view to_string(IntegrationMethod method) {
 }
 
 struct DynamicsOptions {
-  /// What double precision can hold.
+  /// The least tolerance that double precision allows.
   static constexpr double least_tolerance = 1e-14;
   IntegrationMethod method = IntegrationMethod::automatic;
   /// Of the state: positions relative to the scene's length scale, angles to 1 rad, velocities to the fastest so far.

@@ -93,8 +93,8 @@ Report Dynamics::check_redundant_rows() {
   return report;
 }
 
-// Where no step can be made: the driver that asks most for a motion that the constraints rule out, w^T Phi_q = 0 but
-// w^T nu != 0 (apps/manual/kinematics.md#singular-configurations); -1: none does.
+// Where no step can be made: the driver with the largest part in a motion that the constraints exclude, w^T Phi_q = 0
+// but w^T nu != 0 (apps/manual/kinematics.md#singular-configurations); -1: none does.
 int Dynamics::locked_driver() {
   if (plan_->rows == 0 || !(equations_.smallest_pivot_ratio() < nearly_dependent)) return -1;
   evaluator_.set_time(integrator_->time());

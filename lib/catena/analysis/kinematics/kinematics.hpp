@@ -35,8 +35,8 @@ namespace catena {
 struct KinematicsOptions {
   double tolerance = 1e-12;       ///< of constraint residuals, relative to the length scale
   bool inverse_dynamics = false;  ///< multipliers from Phi_q^T lambda = Q - M qdd
-  /// Which of the branches listed is taken wherever several meet. 0: not chosen: the motion goes on as before, which is
-  /// branch 1; where it starts at such a place it ends with the list.
+  /// Which of the branches listed is taken wherever several meet. 0: not chosen: the motion continues along its own
+  /// branch, which is branch 1; where it starts at such a place it ends with the list.
   int branch = 0;
 };
 

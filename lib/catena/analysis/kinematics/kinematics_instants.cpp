@@ -15,10 +15,10 @@ namespace {
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr int samples = 9;
-// A pivot whose least size is this part of what it is at the ends vanishes.
+// A pivot whose least size is below this part of its size at the ends vanishes.
 constexpr double vanishing = 1e-6;
-// Drivers that move less than the first part of what they do at the ends of the bridge may rest nearby; they do if less
-// than the second part is left.
+// Drivers slower than the first part of their speed at the ends of the bridge may rest nearby; they rest if less than
+// the second part is left.
 constexpr double slow = 1e-3, resting = 1e-6;
 
 }  // namespace

@@ -38,9 +38,9 @@ constexpr double sudden_part = 0.6, small_part = 0.3;
 constexpr double remaining_part = 0.3;
 // Passages are tried over stretches of this much motion (rad, length scales), one after the other.
 constexpr std::array<double, 6> reaches = {0.2, 0.1, 0.05, 0.015, 0.004, 0.001};
-// They are tried anew once steps have become this part of what they were at the first trial.
+// They are tried again once steps have become this part of their length at the first trial.
 constexpr double try_again = 1.0 / 32;
-// Rows are chosen anew where their reciprocal condition number has fallen to this part of what it was.
+// Equations are chosen again where their reciprocal condition number has fallen to this part of its value.
 constexpr double drifted = 0.01;
 // A step fails where it is longer than about half of the remaining way to a dead point.
 constexpr double most_steps_left = 4;

@@ -57,7 +57,7 @@ Report Kinematics::check_redundant_rows() {
 }
 
 // The same for velocities and accelerations: drivers may agree in place and differ in speed. `allowed`: part of the
-// largest rates. Without words the status is all that is said.
+// largest rates. Unless `in_words`, only the status is set.
 Report Kinematics::check_redundant_rates(double allowed, bool in_words) {
   if (plan_->rows == plan_->columns || on_bridge_) return {};
   // Near a singular configuration rates are as accurate as the equations in use allow, which may be no digit at all.

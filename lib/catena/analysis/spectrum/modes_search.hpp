@@ -28,7 +28,7 @@ class ModeSearch {
 
   /// The `count` lowest modes, ascending; fewer if there are no more.
   Report find(int count, std::vector<Mode>& modes);
-  /// How many omega^2 lie below zero in all; those that cannot be told from zero do not count.
+  /// How many omega^2 lie below zero in all; those that cannot be distinguished from zero do not count.
   int unstable() const { return unstable_; }
 
  private:

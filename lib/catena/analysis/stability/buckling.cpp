@@ -27,7 +27,7 @@ constexpr double refined = 1e-12, linear_part = 1e-9;
 // Constraints met to this, in length scales or rad, do not depend on the parameter.
 constexpr double kept_place = 1e-9;
 
-// K0^-1 (K0 - K1) in the metric K0, K0 what the system's matrix holds and has factored.
+// K0^-1 (K0 - K1) in the metric K0, K0 the factored K of the system's matrix.
 class BucklingOperator final : public SpectralOperator {
  public:
   BucklingOperator(StaticSystem& system, const KktMatrix& loaded)

@@ -262,7 +262,7 @@ class Path::March {
     return true;
   }
 
-  // Onto the branch that crosses at the critical point, to the side asked for.
+  // Onto the branch that crosses at the critical point, to the requested side.
   bool leave(const CriticalPoint& critical) {
     const int columns = path_.plan_->columns;
     PathPoint side{critical.mode, std::vector<double>(at(path_.plan_->rows), 0.0), 0};

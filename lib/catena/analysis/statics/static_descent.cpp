@@ -182,7 +182,7 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
       const Travel travel = travel_of(plan, change);
       double factor = std::min({1.0, reach * largest_turn / travel.turn, reach * extent / travel.length});
       const bool clipped = factor < 1;
-      // The energy is a sum of large terms: less than this cannot be told from rounding.
+      // The energy is a sum of large terms: a smaller change is rounding.
       const double noise = 1e-14 * (energy_size + system.force_size() * extent);
       for (; factor > smallest_factor; factor /= 2) {
         std::copy(q.begin(), q.end(), trial.begin());

@@ -44,7 +44,7 @@ class ForeseenSprings {
 
   /// Slots for everything else: springs have none.
   const HessianSlots& others() const { return others_; }
-  /// Adds K of all springs; convex: |f(L)| / L across the line, and without what is negative in the other parts.
+  /// Adds K of all springs; convex: |f(L)| / L across the line, and without negative contributions in the other parts.
   void add(const Evaluator& evaluator, Curvature curvature, std::span<double> values) const;
 
  private:

@@ -221,7 +221,7 @@ Refinement KktMatrix::solve(std::span<double> x, double force, double length, do
 void KktMatrix::solve_unrefined(std::span<double> x, Counters& counters) {
   const bool soft = !softness_.empty();
   const auto softening = [&](std::size_t r) { return 1 + rho_[r] * softness_[r]; };
-  // What was added to the first equation on the left, Phi_q^T R times the second one, is added on the right as well.
+  // Phi_q^T R times the second equation was added to the first one on the left, and is added on the right as well.
   const SparsePattern& phi_q = plan_->jacobian;
   const std::span<const double> second = x.subspan(at(structure_.columns));
   const bool nothing = std::all_of(second.begin(), second.end(), [](double v) { return v == 0; });

@@ -27,7 +27,7 @@ namespace catena {
 
 class KktMatrix {
  public:
-  /// `radius`: per plan body, what a radian is compared with in metres (Evaluator::attachment_radii).
+  /// `radius`: per plan body, the length in metres that corresponds to a radian (Evaluator::attachment_radii).
   KktMatrix(std::shared_ptr<const Plan> plan, std::span<const double> radius);
 
   void set_radius(std::span<const double> radius);

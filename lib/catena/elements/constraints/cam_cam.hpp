@@ -51,7 +51,7 @@ struct CamCam {
   const char* check() const {
     if (!curve_i || !curve_j) return "lacks a curve";
     if (curve_i.is_line() && curve_j.is_line()) return "two straight lines have no point of contact";
-    if (curve_i.holds() || curve_j.holds()) return "a cam that ends goes on as a line, or not at all: it cannot hold";
+    if (curve_i.holds() || curve_j.holds()) return "a cam cannot have \"beyond\": \"hold\"; use \"error\" or \"line\"";
     return contact.kind < 0 ? "the cams have no common normal in the given configuration" : nullptr;
   }
   const char* trouble(const Arguments<double>& a) const {

@@ -34,9 +34,10 @@ struct CustomConstraint {
   Vec2<S> s_i, s_j;  // where reactions are reported
 
   static constexpr auto fields() {
-    return std::make_tuple(PointField{"i", &CustomConstraint::s_i, 0, "the point P_i of body i for reactions"},
-                           PointField{"j", &CustomConstraint::s_j, 1, "the point P_j of body j for reactions"},
-                           FunctionField{"value", 0, UnitKind::length, Omitted::given, "c, what is measured"});
+    return std::make_tuple(
+        PointField{"i", &CustomConstraint::s_i, 0, "the point P_i of body i for reactions"},
+        PointField{"j", &CustomConstraint::s_j, 1, "the point P_j of body j for reactions"},
+        FunctionField{"value", 0, UnitKind::length, Omitted::given, "c, the value of the law's measure"});
   }
 
   const char* check() const { return law ? nullptr : "needs a law"; }
@@ -51,7 +52,7 @@ struct CustomConstraint {
   }
 };
 
-/// The element for a law; see equation_law.hpp for what a law has.
+/// The element for a law; see equation_law.hpp for the members of a law.
 template <class Law>
 CustomConstraint<double> custom_constraint(Law law) {
   return {std::make_shared<const EquationLawOf<Law>>(std::move(law)), {}, {}};

@@ -16,7 +16,7 @@
 
 namespace catena {
 
-/// What a stop bounds.
+/// The quantity that a stop bounds.
 enum class StopQuantity : unsigned char { angle, slide, distance };
 
 template <class S = double>

@@ -50,7 +50,7 @@ struct CustomForce {
   }
 };
 
-/// The element for a law; see force_law.hpp for what a law has.
+/// The element for a law; see force_law.hpp for the members of a law.
 template <class Law>
 CustomForce<double> custom_force(Law law) {
   return {std::make_shared<const ForceLawOf<Law>>(std::move(law)), {}, {}};

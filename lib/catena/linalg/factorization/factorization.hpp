@@ -81,7 +81,7 @@ class Factorization {
   int size() const { return pattern_.columns; }
   const SparsePattern& pattern() const { return pattern_; }
   bool is_factorized() const { return factorized_; }
-  /// klu or umfpack: what the next solve uses.
+  /// klu or umfpack: the kernel of the next solve.
   Kernel kernel_in_use() const { return umfpack_in_use_ ? Kernel::umfpack : Kernel::klu; }
 
   /// Smallest over largest pivot magnitude of the scaled matrix: a crude reciprocal condition number, 0 without a
@@ -106,8 +106,8 @@ class Factorization {
   PivotInfo smallest_pivot(int block) const;
 
   /// How far every diagonal block is from a singular matrix, with the sign of its determinant up to a factor that never
-  /// changes between factorizations: a sign that differs tells that a block went through a singular matrix in between.
-  /// Empty while UMFPACK is in use. No allocation after the first call.
+  /// changes between factorizations: a different sign shows that a block has passed a singular matrix in between. Empty
+  /// while UMFPACK is in use. No allocation after the first call.
   std::span<const BlockMargin> block_margins();
 
   /// A failed result in a sentence for a report.

@@ -1,7 +1,7 @@
 // Reads a scene's text into its compiled form (scene_template.hpp): apps/manual/scenes.md, every key checked.
 //
-// Everything that can be said without knowing parameters' values or other parts' names is said here; the rest is found
-// when the model is built. Linear in the length of the text.
+// Errors that do not depend on parameter values or on names of other parts are reported here; the others are found when
+// the model is built. Linear in the length of the text.
 #pragma once
 
 #include <array>

@@ -156,7 +156,7 @@ double Adams::error_of_step(double h) {
   return std::sqrt(largest);
 }
 
-// The error without most of what the projection at the step's end will remove.
+// The error without most of the part that the projection at the step's end will remove.
 double Adams::filtered(double h, double raw) {
   motion_.equations().remove_forbidden(std::span(change_).first(motion_.moving()));
   return std::min(raw, std::max(error_of_step(h), forbidden_part * raw));

@@ -29,7 +29,7 @@ class Integrator {
   /// Quantities observed along the motion; and, before start(), those of another integrator.
   virtual IntegratorMemory memory() const = 0;
   virtual void remember(const IntegratorMemory& memory) = 0;
-  /// Whether another one may go on from here: not across a singular position.
+  /// Whether another integrator may continue from here: not across a singular position.
   virtual bool may_pause() const = 0;
   /// Whether ends of steps lie on the constraints to rounding.
   virtual bool meets_constraints() const { return true; }

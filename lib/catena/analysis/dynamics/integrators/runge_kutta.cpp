@@ -212,7 +212,7 @@ double RungeKutta::error_size(double h) {
   return denominator == 0 ? 0 : std::abs(h) * high / std::sqrt(denominator);
 }
 
-// The error without most of what the projection at the step's end will remove.
+// The error without most of the part that the projection at the step's end will remove.
 double RungeKutta::filtered_error(double h, double raw) {
   const std::size_t moving = motion_.moving(), offset = motion_.coordinates();
   EquationsOfMotion& equations = motion_.equations();

@@ -1,4 +1,4 @@
-// RungeKutta::advance: the size of steps, and what is done near singular positions.
+// RungeKutta::advance: the size of steps, and the measures near singular positions.
 #include <algorithm>
 #include <cmath>
 
