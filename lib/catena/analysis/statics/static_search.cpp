@@ -269,8 +269,7 @@ std::optional<Report> StaticSearch::find_overflow(std::span<double> lambda) {
     report.status = Status::refused;
     report.message = fmt::format(
         "{1} on body \"{0}\" is too large to compute with: products of numbers beyond {2:.0e} {3} cannot be "
-        "represented; "
-        "likely cause: a mistyped unit or exponent",
+        "represented; likely cause: a mistyped unit or exponent",
         body_of(system_.evaluator(), c), forced ? (turning ? "a torque" : "a force") : "a stiffness", largest_number,
         forced ? (turning ? "N m" : "N") : (turning ? "N m/rad" : "N/m"));
     return report;
