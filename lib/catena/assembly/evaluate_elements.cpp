@@ -1,4 +1,4 @@
-// What the evaluator gives of single elements: measured quantities, their part of Phi_q, where they are attached.
+// Evaluation of single elements: measured quantities, their part of Phi_q, their attachment points.
 #include <algorithm>
 #include <cmath>
 
@@ -26,7 +26,8 @@ void Evaluator::with_element(int element, F&& f) const {
   });
 }
 
-// A constraint that does not hold for the time being is in no block, but what it measures can be seen all the same.
+// A constraint that does not hold for the time being is in no block, but its measured quantity can be evaluated all the
+// same.
 Measured Evaluator::measure_released(int element, std::span<const double> qd) const {
   Measured result;
   const ElementRecord& record = model_->elements[at(element)];
@@ -151,8 +152,8 @@ Taylor<double> Evaluator::element_value(int element) const {
   return value;
 }
 
-// Points of constraints; where all of a body's are in its centroid those of force elements, else the length scale: no
-// length may come from anywhere but the scene.
+// Points of constraints; where all points of a body are at its centroid, those of force elements; else the length
+// scale. Every length comes from the scene.
 std::vector<double> Evaluator::attachment_radii(double* mean) const {
   struct Points {
     double squares = 0;

@@ -138,7 +138,7 @@ void make_slots(Plan& plan) {
 
 std::shared_ptr<const Plan> Plan::make(const Model& model, const PlanOptions& options) {
   for (const std::vector<int>* numbers : {&options.keep_elements, &options.released_elements}) {
-    for (int e : *numbers) static_cast<void>(model.element_type(e));  // throws for what is none
+    for (int e : *numbers) static_cast<void>(model.element_type(e));  // throws for an invalid number
   }
   auto plan = std::make_shared<Plan>();
   const Elimination elimination = eliminate_bodies(model, welds_to_keep(model, options));

@@ -108,7 +108,7 @@ struct Table {
     if (ends()) {
       t = inside(t);
     } else if (!curve.periodic() && (same_instant(t, curve.first()) || same_instant(t, curve.last()))) {
-      // What holds beyond the end need not be as smooth as the spline is at its inner knots.
+      // The continuation beyond the end need not be as smooth as the spline is at its inner knots.
       return continue_from(t, side, t);
     }
     const SplineValue<S> value = curve.evaluate(S(t));
@@ -138,7 +138,7 @@ struct Table {
       return next == knots.end() ? never : *next;
     }
     const double period = curve.last() - curve.first();
-    // At times so large that a period is lost in rounding, or at none at all, there is nothing to stop at.
+    // At times so large that a period is lost in rounding, and at times that are not finite, there are no breakpoints.
     if (!std::isfinite(t) || same_instant(t, t + period)) return never;
     double cycles = std::floor((t - curve.first()) / period);
     auto next = std::upper_bound(knots.begin(), knots.end(), t - cycles * period);
@@ -197,7 +197,7 @@ struct Custom {
 
   Taylor<S> evaluate(double t, Side side) const {
     if (!range.contains(t)) throw OutsideTable(t, range.first, range.last);
-    // The callback knows of no sides: what holds before its breakpoint is what it says one rounding earlier.
+    // A callback has one value at an instant: the value before a breakpoint is taken one rounding earlier.
     const bool before = side == Side::before && t > range.first && std::binary_search(breaks.begin(), breaks.end(), t);
     const Taylor<double> value = function(before ? std::nextafter(t, -never) : t);
     return {S(value.f), S(value.d), S(value.dd)};

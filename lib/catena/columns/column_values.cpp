@@ -229,7 +229,8 @@ void ColumnSet::evaluate(const Snapshot& snapshot, std::span<double> out) const 
     throw std::invalid_argument("columns: the row is of another model than the one they were resolved for");
   const auto require = [](bool needed, std::span<const double> values, std::size_t size, const char* what) {
     if (needed && values.size() < size)
-      throw std::invalid_argument(std::string("columns: the row has no ") + what + "; an analysis wants needs()");
+      throw std::invalid_argument(std::string("columns: the row has no ") + what +
+                                  "; an analysis must compute needs()");
   };
   require(needs_.velocity, snapshot.qd, coordinates_, "velocities");
   require(needs_.acceleration, snapshot.qdd, coordinates_, "accelerations");

@@ -2,7 +2,7 @@
 //
 // Vectors are in plan order (three coordinates a body, the ground's zeros last; see assembly/evaluate.hpp). Empty spans
 // mean: not computed; the columns that need them must not be asked for. `lambda` has one multiplier a row of the plan
-// and belongs to the solver's scaled rows: THEORY's multiplier is scale x lambda.
+// and belongs to the solver's scaled equations: the published multiplier is scale x lambda.
 #pragma once
 
 #include <span>
@@ -26,7 +26,7 @@ struct Snapshot {
   double contact_energy = 0;  ///< stored in elastic contacts, J
 };
 
-/// What an analysis must compute for the columns asked for: nothing else is computed.
+/// The quantities that an analysis must compute for the requested columns.
 struct Needs {
   bool velocity = false;
   bool acceleration = false;

@@ -1,4 +1,4 @@
-// Every element type of list.hpp, complete: for those who treat all types alike and for users of the library.
+// Definitions of all element types of list.hpp: for code that treats all types alike, and for users of the library.
 #pragma once
 
 #include "catena/elements/constraints/absolute_angle.hpp"

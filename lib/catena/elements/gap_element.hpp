@@ -1,8 +1,9 @@
-// What one-sided elements (contact, stop, cable) share. They are constraint elements (element.hpp) whose row is a gap:
+// Common properties of the one-sided elements (contact, stop, cable). They are constraint elements (element.hpp) whose
+// row is a gap:
 //
 //   Psi(q) >= 0        p >= 0        p Psi = 0        V_q + Phi_q^T lambda - Psi_q^T p = 0
 //
-// so that the row's multiplier is -p. In addition to what a constraint has:
+// so that the row's multiplier is -p. In addition to the members of a constraint:
 //
 //   one_sided = true       phi is Psi, smooth; p at Psi = 0 is the force, N, or torque, N m, that keeps it from closing
 //   measure<T>(i, j)       the gap that is reported, m or rad: the same zero and the same sign as Psi

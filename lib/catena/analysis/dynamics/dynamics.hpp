@@ -1,4 +1,4 @@
-// Forward dynamics: the motion that follows from forces, constraints and drivers (THEORY section 4).
+// Forward dynamics: the motion that follows from forces, constraints and drivers (apps/manual/dynamics.md).
 //
 // The start is assembled, its velocities made consistent; then an integrator steps through time, stopping where a
 // function of time has a breakpoint, and rows are interpolated between its steps and projected onto the constraints, so
@@ -39,7 +39,7 @@ class Dynamics {
                     const DynamicsOptions& options = {});
 
   const Plan& plan() const { return *plan_; }
-  /// The method at work: what was asked for, or what was chosen.
+  /// The method in use: the requested one, or the one chosen automatically.
   IntegrationMethod method() const { return method_; }
   Evaluator& evaluator() { return evaluator_; }
 
@@ -59,7 +59,7 @@ class Dynamics {
   /// position, after its rows.
   void pause_after(double t) { pause_after_ = t; }
   bool paused() const { return paused_; }
-  /// What the motion goes on from where the last run paused.
+  /// The state of the motion where the last run paused.
   const MotionMemory& memory() const { return memory_; }
   /// Takes up a motion of the same model and options that paused: the next run() begins there, on the rest of its grid.
   void resume(const MotionMemory& memory);

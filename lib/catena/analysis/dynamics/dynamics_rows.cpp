@@ -1,4 +1,4 @@
-// Rows of Dynamics: the mechanism at an instant of the last step, events, and what is said where no step can be made.
+// Rows of Dynamics: the mechanism at an instant of the last step, events, and the report where no step can be made.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -82,7 +82,7 @@ std::optional<Snapshot> Dynamics::state_at(double t) {
     evaluator_.set_configuration(y.first(n));
   }
   if (account_) {
-    // Drivers that are released have no part in the present run, but what they did before it.
+    // Released drivers do no work in the present run, but their earlier work is kept.
     std::fill(driver_work_.begin(), driver_work_.end(), 0.0);
     account_->driver_work(y.subspan(2 * n), driver_work_);
     for (std::size_t e = 0; e < earlier_.by_driver.size(); ++e) driver_work_[e] += earlier_.by_driver[e];
@@ -134,7 +134,7 @@ Report Dynamics::stuck() {
         integrator_->time(), model_->element_type(driver), model_->element_name(driver));
     return report;
   }
-  // What means nothing in kinematics means nothing here.
+  // An element that is undefined in kinematics is undefined here as well.
   evaluator_.set_time(integrator_->time());
   evaluator_.set_configuration(integrator_->state().first(q_.size()));
   if (Report sound = watched_.check(); !sound.ok()) return sound;

@@ -2,18 +2,18 @@
 //
 // Between events it is Dynamics. At an event that releases or engages a constraint, the motion goes on from there with
 // a plan of the same bodies and other rows. Positions and, on a release, velocities are continuous; on engagement
-// velocities change as little as the constraint asks for in the mass metric (a plastic impact), and the energy lost
+// velocities get the least change in the mass metric that meets the constraint (a plastic impact), and the energy lost
 // counts as dissipated. A constraint that an event engages does not hold before. Angles are continuous everywhere: what
 // is engaged after some turns takes its value with it (engaged_turns.hpp). Units as in dynamics.hpp.
 //
 // Contacts, stops and cables are phases of the same kind (contact_phases.hpp): rows that come and go by themselves,
 // with impacts where they close.
 //
-// It can also pause now and then to save what it goes on from. At the end of the first step that reaches a multiple of
-// `every` after the last pause the integrator and all it holds are given up, and a new one goes on from the numbers
-// that were saved: in the run that goes on as in one that is taken up from them, which are thus equal bit for bit.
-// Pauses depend on simulated time alone. A run with pauses is as exact as one without, but may differ from it within
-// its tolerance; adams starts with short steps after each.
+// It can also pause at intervals to save its state. At the end of the first step that reaches a multiple of `every`
+// after the last pause the integrator is discarded, and a new one continues from the saved numbers, in the same run as
+// in one that is resumed from them: both are thus equal bit for bit. Pauses depend on simulated time alone. A run with
+// pauses is as exact as one without, but may differ from it within its tolerance; adams starts with short steps after
+// each.
 #pragma once
 
 #include <functional>

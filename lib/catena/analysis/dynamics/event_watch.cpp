@@ -10,7 +10,7 @@ namespace {
 // Samples of a step: at least so many, and one for each turn of a body by this angle, rad.
 constexpr double fewest_samples = 8, most_samples = 1e6;
 constexpr double turn_between_samples = 0.25;
-// A distance from the value below this part of the column's size, or below this number, cannot be told from none.
+// A distance from the value below this part of the column's size, or below this number, counts as zero.
 constexpr double rounding = 1e-13;
 constexpr double smallest = 1e-14;
 constexpr int most_iterations = 80;
@@ -161,7 +161,7 @@ std::optional<double> EventWatch::passage(std::size_t k, bool three, const State
   return {};
 }
 
-// How many samples show what happens in (from, to]: bodies that turn carry columns to and fro. Leaves the first sample.
+// Number of samples needed in (from, to], since columns oscillate with turning bodies. Leaves the first sample.
 int EventWatch::samples(double from, double to, const StateAt& state_at) {
   double turn = 0;
   const auto look = [&](double t, bool last) {
@@ -206,7 +206,7 @@ std::optional<FoundEvent> EventWatch::find(double from, double to, const StateAt
       if (!beyond) continue;
       double start = *beyond > times_[1] ? times_[1] : times_[0], end = *beyond;
       if (!counts(k)) {
-        // A passage that is not watched; out of a dip the way back is.
+        // A passage in a direction that is not watched; the return from a dip is watched.
         side_[k] = -side_[k];
         if (*beyond == times_[2]) continue;
         start = *beyond;

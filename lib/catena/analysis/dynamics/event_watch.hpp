@@ -5,8 +5,8 @@
 // Within a step of the integrator g is sampled on the dense output, at eight instants or more: a quarter of a radian of
 // the fastest body's turn apart at most. A change of sign, or a dip towards zero that a parabola through three samples
 // takes beyond it, is enclosed and the root found to rounding in t on states that meet the constraints, hence as exact
-// as the rows of the run. A column that starts at its value has no event there. What passes to and fro between two
-// samples without a visible dip goes unnoticed. Units: those of the columns, s.
+// as the rows of the run. A column that starts at its value has no event there. A column that crosses its value twice
+// between two samples without a visible dip is missed. Units: those of the columns, s.
 #pragma once
 
 #include <array>
@@ -56,7 +56,7 @@ class EventWatch {
   using StateAt = std::function<std::optional<Snapshot>(double)>;
 
   /// Throws ColumnError for an unknown column; std::invalid_argument for one that stands for several, or that the
-  /// analysis cannot give, and for a value that is not finite; std::out_of_range for an element that there is not.
+  /// analysis cannot give, and for a value that is not finite; std::out_of_range for an element that does not exist.
   EventWatch(std::vector<Event> events, const Model& model, const Plan& plan, const ColumnSources& sources);
 
   const std::vector<Event>& events() const { return events_; }
@@ -71,13 +71,13 @@ class EventWatch {
   int transition(int found) const { return found - static_cast<int>(events_.size()); }
   /// The first event in (from, to]; `state_at` gives the mechanism at an instant of that interval.
   std::optional<FoundEvent> find(double from, double to, const StateAt& state_at);
-  /// Keeps a record of an event that was found and whose row was given. True if it acts: the motion may not go on as
-  /// before.
+  /// Keeps a record of an event that was found and whose row was given. True if it acts: the motion must not continue
+  /// unchanged.
   bool take(const FoundEvent& found);
   /// Counts rows: called with the number of those given so far.
   std::function<std::int64_t()> rows_given;
   const std::vector<EventRecord>& records() const { return records_; }
-  /// What it has seen, without `released` and `turned`; and takes over what another one had.
+  /// Its state, without `released` and `turned`; and takes over the state of another one.
   EventMemory memory() const {
     const auto events = static_cast<std::ptrdiff_t>(events_.size());
     return {{}, {}, {side_.begin(), side_.begin() + events}, {largest_.begin(), largest_.begin() + events}, records_};

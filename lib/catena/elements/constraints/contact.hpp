@@ -63,7 +63,7 @@ struct Contact : PointOnCurve<S> {
     return check_impact_and_friction(value_of(restitution), value_of(mu), value_of(mu_static));
   }
 
-  /// An open contact asks nothing of the curve.
+  /// An open contact does not use the curve.
   std::optional<CurveUse> curve_use(const Arguments<double>& a) const {
     double gap;
     phi(a, &gap);

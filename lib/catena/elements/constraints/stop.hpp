@@ -16,7 +16,7 @@
 
 namespace catena {
 
-/// What a stop bounds.
+/// The quantity that a stop bounds.
 enum class StopQuantity : unsigned char { angle, slide, distance };
 
 template <class S = double>
@@ -40,7 +40,7 @@ struct Stop {
                            PointField{"j", &Stop::s_j, 1, "the point P_j of body j"},
                            AxisField{"axis_i", &Stop::axis_i, 0, false, "direction of a slide on body i"});
   }
-  /// What a scene sets in their place: the column says where the stop acts.
+  /// The keys of a scene in their place: the column determines where the stop acts.
   static constexpr auto keys() {
     return std::make_tuple(
         ColumnField{"column",
@@ -100,7 +100,7 @@ struct Stop {
   }
 
  private:
-  // What could not be read is no number, and was reported: it counts as given.
+  // A bound that could not be read is NaN and was reported: it counts as given.
   bool has_low() const { return value_of(min) != -std::numeric_limits<double>::infinity(); }
   bool has_high() const { return value_of(max) != std::numeric_limits<double>::infinity(); }
 };

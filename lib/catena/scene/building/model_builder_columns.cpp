@@ -51,7 +51,7 @@ template <class S>
 bool ModelBuilder<S>::find_column(const ElementTemplate& source, ElementEntry<Stop<S>, S>& stop) {
   const NameText& text = source.attachment[0].body;
   std::string column;
-  // Without a form it was no text, which was reported.
+  // An attachment without a form was not a text, which was reported.
   if (source.attachment[0].form == AttachmentTemplate::Form::absent || !make_name(text, column)) return false;
   const std::size_t dot = column.find('.');
   const std::string_view head = std::string_view(column).substr(0, dot);

@@ -75,7 +75,8 @@ std::vector<AnalysisDescription> describe_all() {
              {integration_methods.begin(), integration_methods.end()}},
             {"step", KeyKind::number, "fixed step, s (default: chosen by the tolerance)", UnitKind::time},
             {"max_steps", KeyKind::whole,
-             "largest number of steps, rejected ones included: the analysis ends when it will not do (default 10^7)"},
+             "largest number of steps, rejected ones included: the analysis ends when they do not suffice (default "
+             "10^7)"},
             {"estimate_error", KeyKind::flag,
              "whether to run it a second time, at a tenth of the tolerance or half the step: estimated_error is the "
              "largest difference of the two at its rows, which are those of the finer run"},

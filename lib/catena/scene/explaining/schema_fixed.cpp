@@ -10,7 +10,7 @@ std::string_view fixed_definitions() {
 },
 "pair": {"type": "array", "items": {"$ref": "#/$defs/number"}, "minItems": 2, "maxItems": 2},
 "numbers": {"type": "array", "items": {"$ref": "#/$defs/number"}},
-"beyond": {"enum": ["error", "hold", "line"], "description": "what is beyond the ends (default: it is an error)"},
+"beyond": {"enum": ["error", "hold", "line"], "description": "continuation beyond the ends (default: leaving the table is an error)"},
 "table": {"anyOf": [
   {"type": "array", "items": {"$ref": "#/$defs/pair"}},
   {"type": "object", "additionalProperties": false, "required": ["points"], "properties": {

@@ -1,5 +1,5 @@
-// A scene compiled: what its text says, with names and numbers ready to be evaluated, nothing expanded and no JSON
-// left.
+// A compiled scene: the content of its text without JSON, with names and numbers ready to be evaluated, nothing
+// expanded.
 //
 // A replicate block is kept once, whatever its count; names and numbers in it are made as often as it is repeated
 // (build_model.hpp). Numbers of bodies and elements lie in one array, those given only, so that a scene written out for

@@ -1,4 +1,4 @@
-// One analysis of a scene at work: what it gets, what it gives back; the table from types to functions that run them.
+// One analysis of a scene: its input and output, and the table from types to functions that run them.
 #pragma once
 
 #include <algorithm>
@@ -52,7 +52,7 @@ void run_modes(AnalysisContext& context, AnalysisResult& result);
 void run_path(AnalysisContext& context, AnalysisResult& result);
 void run_buckling(AnalysisContext& context, AnalysisResult& result);
 
-/// What runs an analysis of this type; nullptr if nothing does yet.
+/// The function that runs an analysis of this type; nullptr if none does.
 AnalysisFunction analysis_function(std::string_view type);
 
 /// The instants at which the task wants rows, or nothing, with the report refused: before the present time, or outside
@@ -61,7 +61,7 @@ std::optional<TimeGrid> time_grid(const AnalysisContext& context, Report& report
 /// The instant at which a static analysis is made.
 double frozen_time(const AnalysisContext& context);
 
-/// Sends rows on and tells how far the analysis has come.
+/// Passes rows on and reports the progress of the analysis.
 class ReportingRows final : public RowObserver {
  public:
   /// `last`: the instant at which the analysis ends, or the present one.
@@ -91,7 +91,7 @@ class ReportingRows final : public RowObserver {
   double first_, last_;
 };
 
-/// Ends an analysis that was asked for what cannot be done.
+/// Ends an analysis whose request cannot be met.
 inline void refuse(AnalysisResult& result, std::string message) {
   result.report.status = Status::refused;
   result.report.message = std::move(message);
@@ -100,7 +100,7 @@ inline void refuse(AnalysisResult& result, std::string message) {
 /// The names whose reactions must be solved for, as plan options.
 PlanOptions plan_options(const Model& model, const std::vector<std::string>& outputs);
 
-/// Takes over what an analysis said, in the order: outcome, columns, notes.
+/// Takes over the report of an analysis, in the order: outcome, columns, notes.
 void take_report(AnalysisResult& result, AnalysisReport report, const ColumnSet* columns, std::int64_t rows);
 
 /// Runs an analysis that goes through time, from the present state, and leaves the state where it ended.
