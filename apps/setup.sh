@@ -19,6 +19,7 @@ packages=(
   nlohmann-json3-dev    # scene files
   libcli11-dev          # the command line
   libfmt-dev            # text reports
+  esbuild               # the page of `catena view`
 )
 test_packages=(
   libgtest-dev
@@ -26,6 +27,7 @@ test_packages=(
   libboost-dev          # 50-digit arithmetic to compare with
   libbenchmark-dev      # apps/bench
   pkgconf               # the installed package is used through pkg-config too
+  node-typescript       # the types of the page are checked
   ccache                # the library is built several times over, mostly alike
 )
 all_packages=(clang clang-format)

@@ -37,6 +37,10 @@ struct Cable {
                            NumberField{"k", &Cable::k, UnitKind::stiffness, Domain::positive, false,
                                        "stiffness when taut (default: inextensible)"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.cable(s_i, s_j);
+  }
 
   void complete(const Frame<S>& i, const Frame<S>& j) {
     if (value_of(length) < 0) length = norm(separation(i, j, s_i, s_j));

@@ -42,6 +42,11 @@ struct Contact : PointOnCurve<S> {
         NumberField{"k", &Contact::k, UnitKind::stiffness, Domain::positive, false, ""},
         NumberField{"c", &Contact::c, UnitKind::damping, Domain::not_negative, false, ""});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.wall_on_i(this->curve, side);
+    pen.follower_on_j(this->s_j, radius);
+  }
 
   /// An open contact asks nothing of the curve.
   std::optional<CurveUse> curve_use(const Arguments<double>& a) const {

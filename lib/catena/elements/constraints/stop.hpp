@@ -52,6 +52,10 @@ struct Stop {
         BoundField{"k", &Stop::k, UnitKind::stiffness, UnitKind::torsion_stiffness, Domain::positive, ""},
         BoundField{"c", &Stop::c, UnitKind::damping, UnitKind::torsion_damping, Domain::not_negative, ""});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    if (quantity == StopQuantity::slide) pen.limits(s_i, axis_i, min, max);
+  }
 
   bool in_angle() const { return quantity == StopQuantity::angle; }
   void complete(const Frame<S>&, const Frame<S>&) { normalise(axis_i); }
