@@ -110,6 +110,8 @@ void add_common_options(CLI::App& command, Parsed& parsed) {
                   "also write one CSV file an analysis and report.json to this folder")
       ->type_name("DIR")
       ->check([](const std::string& folder) { return folder.empty() ? "the folder has no name" : ""; });
+  command.add_option("--view", run.page, "also write a page with the moving mechanism and its plots")
+      ->type_name("FILE");
   command.add_flag("--stats", run.stats, "print what was computed how often");
   command.add_flag("-q,--quiet", run.quiet, "print no table, report or progress");
   command.add_flag("-v,--verbose", run.verbose,

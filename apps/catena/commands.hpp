@@ -24,6 +24,7 @@ void add_explain_command(CLI::App& app, Action& chosen);
 void add_schema_command(CLI::App& app, Action& chosen);
 void add_draw_command(CLI::App& app, Action& chosen);
 void add_plot_command(CLI::App& app, Action& chosen);
+void add_view_command(CLI::App& app, Action& chosen);
 
 /// Prints text to the standard output; the exit code says whether that worked.
 int print(const std::string& text);

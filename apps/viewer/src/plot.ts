@@ -173,7 +173,9 @@ export class Plot {
       if (low < 0 || ys[row] < ys[low]) low = row;
       if (high < 0 || ys[row] > ys[high]) high = row;
     }
-    if (low < 0 || ys[low] === ys[high]) return;
+    // What differs by rounding alone is constant.
+    const size = low < 0 ? 0 : Math.max(Math.abs(ys[low]), Math.abs(ys[high]));
+    if (low < 0 || ys[high] - ys[low] <= 1e-9 * size) return;
     for (const row of [low, high]) painter.circle(points[2 * row], points[2 * row + 1], 2.6, { fill: colour });
   }
 

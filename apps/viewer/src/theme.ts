@@ -13,10 +13,6 @@ const bodyColours: Rgb[] = [
   [140, 122, 43],
 ];
 
-export const layers = [
-  "support", "guide", "belt", "curve", "gear", "link", "cable", "spring", "rod", "joint", "driver", "measure",
-];
-
 const ofBody = new Set(["link", "gear", "curve"]);
 
 function mix(a: Rgb, b: Rgb, part: number): Rgb {

@@ -26,7 +26,7 @@ namespace catena {
 
 /// What a line stands for; pages and figures give every role its colour and its place above or below others, in this
 /// order from the lowest.
-enum class Role { support, guide, belt, curve, gear, link, cable, spring, rod, joint, driver, measure };
+enum class Role { support, guide, curve, link, belt, gear, cable, spring, rod, joint, driver, measure };
 inline constexpr int roles = 12;
 
 /// The name of a role in the data of pages.

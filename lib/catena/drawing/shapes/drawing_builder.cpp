@@ -1,9 +1,13 @@
 #include "catena/drawing/shapes/drawing_builder.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
 
 #include "catena/drawing/shapes/symbols.hpp"
+#include "catena/elements/constraints/gear.hpp"
+#include "catena/elements/constraints/rack_pinion.hpp"
 
 namespace catena {
 namespace {
@@ -24,7 +28,13 @@ constexpr double link_width = 1.7, mass_radius = 1.25;
 
 }  // namespace
 
-DrawingBuilder::DrawingBuilder(const Model& model) : model_(model), looks_(model.bodies.size(), 0) {}
+DrawingBuilder::DrawingBuilder(const Model& model) : model_(model), looks_(model.bodies.size(), 0) {
+  smallest_wheel_ = std::numeric_limits<double>::infinity();
+  for (const auto& entry : std::get<std::vector<ElementEntry<Gear<double>, double>>>(model.constraints))
+    smallest_wheel_ = std::min({smallest_wheel_, entry.element.radius_i, entry.element.radius_j});
+  for (const auto& entry : std::get<std::vector<ElementEntry<RackPinion<double>, double>>>(model.constraints))
+    smallest_wheel_ = std::min(smallest_wheel_, entry.element.radius);
+}
 
 int DrawingBuilder::symbol(DrawnSymbol symbol) {
   const std::size_t hash = hash_of(symbol);
@@ -56,23 +66,37 @@ void DrawingBuilder::add_pin(int body_i, int body_j, int body, const Vec2<double
   pins_.emplace(std::minmax(body_i, body_j), Pin{body, local});
 }
 
-void DrawingBuilder::add_spiral(int element, int body_i, int body_j, const Vec2<double>& otherwise) {
-  spirals_.push_back({element, body_i, body_j, otherwise});
+void DrawingBuilder::add_at_pin(int element, int body_i, int body_j, const Vec2<double>& otherwise, DrawnSymbol look) {
+  at_pins_.push_back({element, body_i, body_j, otherwise, std::move(look)});
 }
 
-void DrawingBuilder::add_spirals() {
-  for (const Spiral& spiral : spirals_) {
-    const auto pin = pins_.find(std::minmax(spiral.body_i, spiral.body_j));
+void DrawingBuilder::add_symbols_at_pins() {
+  for (AtPin& wanted : at_pins_) {
+    const auto pin = pins_.find(std::minmax(wanted.body_i, wanted.body_j));
     const bool pinned = pin != pins_.end();
-    const int body = pinned ? pin->second.body : spiral.body_j;
     add({.anchor = Anchor::point,
-         .element = spiral.element,
-         .body_i = body,
-         .body_j = spiral.body_j,
-         .point_i = pinned ? pin->second.local : spiral.otherwise,
+         .element = wanted.element,
+         .body_i = pinned ? pin->second.body : wanted.body_j,
+         .point_i = pinned ? pin->second.local : wanted.otherwise,
          .point_j = {1, 0}},
-        spiral_symbol());
+        std::move(wanted.look));
   }
+}
+
+// The smallest one has enough teeth to look like a wheel.
+int DrawingBuilder::teeth_of(double radius) const {
+  constexpr int least = 18, most = 240;  // more look like a thick line
+  return std::min(most, static_cast<int>(std::lround(least * radius / std::min(radius, smallest_wheel_))));
+}
+
+const DrawingBuilder::Wheel* DrawingBuilder::find_wheel(int body, const Vec2<double>& centre, double radius) const {
+  const auto same = [&](const Wheel& wheel) {
+    constexpr double alike = 1e-9;  // of the radius: places that were computed in different ways
+    return wheel.body == body && std::abs(wheel.radius - radius) <= alike * radius &&
+           norm(wheel.centre - centre) <= alike * radius;
+  };
+  const auto wheel = std::find_if(wheels_.begin(), wheels_.end(), same);
+  return wheel == wheels_.end() ? nullptr : &*wheel;
 }
 
 void DrawingBuilder::add_given_shapes() {
@@ -144,7 +168,7 @@ void DrawingBuilder::sort_shapes() {
 Drawing DrawingBuilder::finish() {
   add_given_shapes();
   add_links();
-  add_spirals();
+  add_symbols_at_pins();
   find_typical_length();
   sort_shapes();
   return std::move(drawing_);

@@ -35,8 +35,21 @@ class DrawingBuilder {
   void has_look(int body);
   /// A pin holds these bodies together here: where a torsion spring between them is drawn.
   void add_pin(int body_i, int body_j, int body, const Vec2<double>& local);
-  /// A spiral at the pin between the two bodies, or at body j's centroid.
-  void add_spiral(int element, int body_i, int body_j, const Vec2<double>& otherwise);
+  /// A symbol at the pin between the two bodies, or where there is none at a place on body j.
+  void add_at_pin(int element, int body_i, int body_j, const Vec2<double>& otherwise, DrawnSymbol look);
+
+  /// A toothed wheel, drawn once however many others it meshes with.
+  struct Wheel {
+    int body;
+    Vec2<double> centre;
+    double radius;
+    int teeth;
+    double phase;  ///< angle of a tooth in the frame of the body
+  };
+  /// Number of teeth of a wheel: all wheels of a model have one module.
+  int teeth_of(double radius) const;
+  const Wheel* find_wheel(int body, const Vec2<double>& centre, double radius) const;
+  void remember(const Wheel& wheel) { wheels_.push_back(wheel); }
 
   /// The finished drawing, its shapes in the order of their roles.
   Drawing finish();
@@ -46,14 +59,15 @@ class DrawingBuilder {
     int body;
     Vec2<double> local;
   };
-  struct Spiral {
+  struct AtPin {
     int element, body_i, body_j;
     Vec2<double> otherwise;
+    DrawnSymbol look;
   };
   void add_links();
   void add_link(int body, std::vector<Vec2<double>> places);
   void add_given_shapes();
-  void add_spirals();
+  void add_symbols_at_pins();
   void find_typical_length();
   void sort_shapes();
 
@@ -63,7 +77,9 @@ class DrawingBuilder {
   std::vector<std::pair<int, Vec2<double>>> places_;  // body and place, as they came
   std::vector<char> looks_;                           // per body
   std::map<std::pair<int, int>, Pin> pins_;
-  std::vector<Spiral> spirals_;
+  std::vector<AtPin> at_pins_;
+  std::vector<Wheel> wheels_;
+  double smallest_wheel_ = 0;    // radius of a gear or pinion
   std::vector<double> lengths_;  // of links
 };
 

@@ -80,11 +80,15 @@ void Pen::roller(const Vec2<double>& s_i, const Vec2<double>& normal) {
   point(i_, s_i, ground, {1, 0}, pin_symbol());
 }
 
-void Pen::turn_on(int body, const Vec2<double>& local) {
-  if (driver_ && body >= 0) point(body, local, ground, {1, 0}, turn_symbol());
+void Pen::turn(const Vec2<double>& s_i) {
+  if (driver_) builder_.add_at_pin(element_, ground, i_, s_i, turn_symbol());
 }
 
-void Pen::turn(const Vec2<double>& s_i, const Vec2<double>& s_j) { turn_on(j_ < 0 ? i_ : j_, j_ < 0 ? s_i : s_j); }
+void Pen::turn(const Vec2<double>& s_i, const Vec2<double>& s_j) {
+  if (!driver_) return;
+  if (j_ < 0) return turn(s_i);
+  builder_.add_at_pin(element_, i_, j_, s_j, turn_symbol());
+}
 
 void Pen::measured_along(const Vec2<double>& s_i, const Vec2<double>& axis_i, const Vec2<double>& s_j) {
   builder_.attach(i_, s_i);
@@ -115,7 +119,9 @@ void Pen::spring(const Vec2<double>& s_i, const Vec2<double>& s_j, bool elastic,
   if (j_ < 0) point(ground, s_j, ground, {1, 0}, ground_pin_symbol());
 }
 
-void Pen::spiral_spring(const Vec2<double>&, const Vec2<double>& s_j) { builder_.add_spiral(element_, i_, j_, s_j); }
+void Pen::spiral_spring(const Vec2<double>&, const Vec2<double>& s_j) {
+  builder_.add_at_pin(element_, i_, j_, s_j, spiral_symbol());
+}
 
 void Pen::cable(const Vec2<double>& s_i, const Vec2<double>& s_j) {
   builder_.attach(i_, s_i);

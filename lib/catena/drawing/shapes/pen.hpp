@@ -31,7 +31,7 @@ class Pen {
   /// A support that lets the point of body i move across `normal`, a direction of the ground.
   void roller(const Vec2<double>& s_i, const Vec2<double>& normal);
   /// A torque or a prescribed angle: a curved arrow, unless the angle is constant.
-  void turn(const Vec2<double>& s_i) { turn_on(i_, s_i); }
+  void turn(const Vec2<double>& s_i);
   void turn(const Vec2<double>& s_i, const Vec2<double>& s_j);
   /// A distance along an axis that is prescribed.
   void measured_along(const Vec2<double>& s_i, const Vec2<double>& axis_i, const Vec2<double>& s_j);
@@ -63,8 +63,8 @@ class Pen {
   void span(const Vec2<double>& s_i, const Vec2<double>& s_j, DrawnSymbol look);
   /// A symbol at a place of `body`, along an axis of `axis_body`.
   void point(int body, const Vec2<double>& local, int axis_body, const Vec2<double>& axis, DrawnSymbol look);
-  void turn_on(int body, const Vec2<double>& local);
   void wheel(int body, const Vec2<double>& centre, DrawnLine rim, double spoke);
+  void toothed_wheel(const DrawingBuilder::Wheel& wheel, bool ring);
   void curve_on(int body, const BodyCurve<double>& curve, int side);
   Frame<double> given(int body) const { return builder_.model().frame(body); }
 

@@ -1,5 +1,4 @@
 // Gears, belts and racks: pitch circles with teeth that mesh as they do in the given configuration.
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -10,14 +9,7 @@ namespace catena {
 namespace {
 
 constexpr double full_turn = 2 * std::numbers::pi;
-constexpr int least_teeth = 12, most_teeth = 160;  // fewer look like stars, more like a thick line
-
 Vec2<double> on_circle(double radius, double angle) { return {radius * std::cos(angle), radius * std::sin(angle)}; }
-
-/// Teeth of a wheel of this radius where the smaller wheel of a pair has at least `least_teeth`.
-int teeth_of(double radius, double smaller) {
-  return std::min(most_teeth, static_cast<int>(std::lround(least_teeth * 1.5 * radius / smaller)));
-}
 
 /// Height of a tooth above and below the pitch circle.
 double half_height(double radius, int teeth) { return radius / teeth; }
@@ -48,31 +40,50 @@ double wrap_angle(double radius_i, double radius_j, double distance, bool crosse
 void Pen::wheel(int body, const Vec2<double>& centre, DrawnLine rim, double spoke) {
   builder_.attach(body, centre);
   builder_.has_look(body);
+  DrawnSymbol look{{std::move(rim)}};
   // One spoke shows the turning.
-  DrawnLine mark{.role = Role::gear, .points = {centre, centre + Vec2<double>{spoke, 0}}};
-  builder_.add({.element = element_, .body_i = body}, {{std::move(rim), std::move(mark)}});
+  if (spoke > 0) look.lines.push_back({.role = Role::gear, .points = {centre, centre + Vec2<double>{spoke, 0}}});
+  builder_.add({.element = element_, .body_i = body}, std::move(look));
 }
 
+void Pen::toothed_wheel(const DrawingBuilder::Wheel& known, bool ring) {
+  builder_.remember(known);
+  DrawnLine rim = toothed_rim(known.centre, known.radius, known.teeth, known.phase);
+  if (ring) {
+    rim.filled = false;
+    DrawnLine outside{.role = Role::gear, .points = {known.centre}, .radius = 1.1 * known.radius};
+    builder_.add({.element = element_, .body_i = known.body}, {{outside}});
+  }
+  wheel(known.body, known.centre, std::move(rim), ring ? 0 : 0.7 * known.radius);
+}
+
+// At the pitch point a tooth of one wheel stands in a gap of the other. `part` is how far the pitch point is from the
+// middle of a tooth of i, in pitches; angles of wheels outside of each other grow against each other there.
 void Pen::gears(const Vec2<double>& s_i, double radius_i, const Vec2<double>& s_j, double radius_j, bool internal) {
   const Frame<double> i = given(i_), j = given(j_);
   const Vec2<double> h = j.point(s_j) - i.point(s_i);
-  const double theta = std::atan2(h.y, h.x), smaller = std::min(radius_i, radius_j);
-  const int teeth_i = teeth_of(radius_i, smaller), teeth_j = teeth_of(radius_j, smaller);
-  // A tooth of i and a gap of j point at the pitch point; inside of a ring both look the same way.
+  const double theta = std::atan2(h.y, h.x);
   const bool i_inside = internal && radius_i < radius_j;
-  const double towards_i = i_inside ? theta + std::numbers::pi : theta;
-  const double towards_j = internal && !i_inside ? theta : theta + std::numbers::pi;
-  DrawnLine rim_i = toothed_rim(s_i, radius_i, teeth_i, towards_i - i.phi);
-  DrawnLine rim_j = toothed_rim(s_j, radius_j, teeth_j, towards_j - j.phi + std::numbers::pi / teeth_j);
-  if (internal) {
-    const bool ring_is_i = radius_i > radius_j;
-    (ring_is_i ? rim_i : rim_j).filled = false;
-    const double radius = ring_is_i ? radius_i : radius_j;
-    DrawnLine outside{.role = Role::gear, .points = {ring_is_i ? s_i : s_j}, .radius = 1.1 * radius};
-    builder_.add({.element = element_, .body_i = ring_is_i ? i_ : j_}, {{outside}});
+  const double at_i = (i_inside ? theta + std::numbers::pi : theta) - i.phi;
+  const double at_j = (internal && !i_inside ? theta : theta + std::numbers::pi) - j.phi;
+  DrawingBuilder::Wheel first{i_, s_i, radius_i, builder_.teeth_of(radius_i), at_i};
+  DrawingBuilder::Wheel second{j_, s_j, radius_j, builder_.teeth_of(radius_j), at_j};
+  const auto* known_i = builder_.find_wheel(i_, s_i, radius_i);
+  const auto* known_j = builder_.find_wheel(j_, s_j, radius_j);
+  const double way = internal ? 1 : -1;
+  const auto mesh = [&](const DrawingBuilder::Wheel& known, double at_known, DrawingBuilder::Wheel& other, double at) {
+    const double part = (at_known - known.phase) * known.teeth / full_turn;
+    other.phase = at - (way * part + 0.5) * full_turn / other.teeth;
+  };
+  if (known_i) first = *known_i;
+  if (known_j) second = *known_j;
+  if (known_j && !known_i) {
+    mesh(second, at_j, first, at_i);
+  } else if (!known_j) {
+    mesh(first, at_i, second, at_j);
   }
-  wheel(i_, s_i, std::move(rim_i), 0.7 * radius_i);
-  wheel(j_, s_j, std::move(rim_j), 0.7 * radius_j);
+  if (!known_i) toothed_wheel(first, internal && !i_inside);
+  if (!known_j) toothed_wheel(second, i_inside);
 }
 
 void Pen::belt(const Vec2<double>& s_i, double radius_i, const Vec2<double>& s_j, double radius_j, bool crossed) {
@@ -98,7 +109,7 @@ void Pen::belt(const Vec2<double>& s_i, double radius_i, const Vec2<double>& s_j
 
 void Pen::rack_and_pinion(const Vec2<double>& s_i, const Vec2<double>& axis_i, const Vec2<double>& s_j, double radius,
                           int side) {
-  const int teeth = teeth_of(radius, radius);
+  const int teeth = builder_.teeth_of(radius);
   const Frame<double> i = given(i_), j = given(j_);
   const Vec2<double> axis = axis_i / norm(axis_i), to_rack = i.axis(-static_cast<double>(side) * perpendicular(axis));
   // A gap of the pinion points at the rack, which has a tooth there.
@@ -113,7 +124,7 @@ void Pen::rack_and_pinion(const Vec2<double>& s_i, const Vec2<double>& axis_i, c
                       .module = 2 * radius / teeth,
                       .side = static_cast<double>(side)},
                      {.anchor = Anchor::body, .element = element_, .body_i = i_}, bar_symbol(0, Role::gear));
-  wheel(j_, s_j, toothed_rim(s_j, radius, teeth, phase), 0.7 * radius);
+  if (!builder_.find_wheel(j_, s_j, radius)) toothed_wheel({j_, s_j, radius, teeth, phase}, false);
 }
 
 }  // namespace catena

@@ -56,8 +56,8 @@ void add_dashpot(DrawnSymbol& symbol, double v) {
 }  // namespace
 
 const char* role_name(Role role) {
-  constexpr const char* names[roles] = {"support", "guide",  "belt", "curve", "gear",   "link",
-                                        "cable",   "spring", "rod",  "joint", "driver", "measure"};
+  constexpr const char* names[roles] = {"support", "guide",  "curve", "link",  "belt",   "gear",
+                                        "cable",   "spring", "rod",   "joint", "driver", "measure"};
   return names[static_cast<int>(role)];
 }
 

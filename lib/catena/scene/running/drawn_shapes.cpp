@@ -17,9 +17,10 @@ void draw_shapes(const AnalysisContext& context, Evaluator& evaluator, double t,
   }
 }
 
-// Without masses there is no mode to show, and the equilibrium is none the worse for it: its report says nothing of it.
+// Without masses, or with contacts that may open, there is no mode to show, and the equilibrium is none the worse for
+// it: its report says nothing of it.
 void draw_softest_mode(const AnalysisContext& context) {
-  if (!context.poses) return;
+  if (!context.poses || !context.model->gaps().empty()) return;
   Modes modes(context.model, {}, {.count = 1});
   modes.start_from(context.state);
   const ModesReport report = modes.run([&] { return !(context.cancel && context.cancel->load()); });

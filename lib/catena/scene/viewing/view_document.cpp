@@ -133,8 +133,9 @@ void append_analysis(ViewJson& json, const RecordedAnalysis& analysis, std::size
   json.close(']').close('}');
 }
 
-/// What the page does not hold, in sentences.
-std::vector<std::string> notes_of(const RunRecord& record) {
+}  // namespace
+
+std::vector<std::string> view_notes(const RunRecord& record) {
   std::vector<std::string> notes;
   for (std::size_t k = 0; k < record.analyses.size(); ++k) {
     const RecordedAnalysis& a = record.analyses[k];
@@ -155,8 +156,6 @@ std::vector<std::string> notes_of(const RunRecord& record) {
   return notes;
 }
 
-}  // namespace
-
 std::string view_document(const RunRecord& record) {
   const Drawings drawings(record);
   std::string out;
@@ -174,7 +173,7 @@ std::string view_document(const RunRecord& record) {
   for (const RecordedAnalysis& analysis : record.analyses)
     append_analysis(json, analysis, drawings.number(analysis.model));
   json.close(']').key("notes").open('[');
-  for (const std::string& note : notes_of(record)) json.text(note);
+  for (const std::string& note : view_notes(record)) json.text(note);
   json.close(']').close('}');
   return out;
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "catena/drawing/shapes/drawing.hpp"
 #include "catena/scene/viewing/run_recorder.hpp"
@@ -15,6 +16,9 @@ inline constexpr int view_version = 1;
 
 /// The document; the record must have a model.
 std::string view_document(const RunRecord& record);
+
+/// What the document leaves out of the run, in sentences.
+std::vector<std::string> view_notes(const RunRecord& record);
 
 /// The drawing of a model as an object: symbols, shapes, loads, the given poses. `ViewJson` stands where the value
 /// goes.
