@@ -1,11 +1,12 @@
 // Mechanisms of thousands of bodies by WebGL: every span as a line, every area by its outline, in the colours of bodies.
 //
 // Corners are computed here once a picture and handed over in one array; a mechanism of 10^5 links is 2 x 10^5 corners.
+// Symbols, which stand at points, come behind all links and are left out while they are smaller than a pixel.
 
 import { Camera } from "./camera";
 import { Drawing } from "./contract";
-import { bodyOf, symbolSize } from "./mechanism";
-import { place, Placement, Pose } from "./placement";
+import { symbolSize } from "./mechanism";
+import { anchorPoint, Placement, Pose, ShapeTable } from "./placement";
 import { Rgb, Theme } from "./theme";
 
 const vertexSource = `
@@ -43,19 +44,28 @@ export class LargeScene {
   private readonly colours: Uint8Array;
   private readonly cornerBuffer: WebGLBuffer | null;
   private readonly colourBuffer: WebGLBuffer | null;
+  /** Shapes in the order of drawing; the first `links` of them are no symbols. */
+  private readonly order: number[] = [];
+  private readonly links: number;
   private count = 0;
 
   /** null where the browser has no WebGL. */
-  static create(canvas: HTMLCanvasElement, drawing: Drawing): LargeScene | null {
+  static create(canvas: HTMLCanvasElement, drawing: Drawing, shapes: ShapeTable): LargeScene | null {
     const gl = canvas.getContext("webgl", { antialias: true, alpha: true });
     const program = gl ? compile(gl) : null;
-    return gl && program ? new LargeScene(gl, program, drawing) : null;
+    return gl && program ? new LargeScene(gl, program, drawing, shapes) : null;
   }
 
   private constructor(private readonly gl: WebGLRenderingContext, private readonly program: WebGLProgram,
-                      private readonly drawing: Drawing) {
+                      private readonly drawing: Drawing, private readonly shapes: ShapeTable) {
     let segments = 0;
-    for (const shape of drawing.shapes) segments += this.segmentsOf(shape[1]);
+    const symbols: number[] = [];
+    for (let k = 0; k < shapes.count; ++k) {
+      segments += this.segmentsOf(shapes.symbol[k]);
+      (shapes.anchor[k] === anchorPoint ? symbols : this.order).push(k);
+    }
+    this.links = this.order.length;
+    for (const k of symbols) this.order.push(k);
     this.corners = new Float32Array(4 * segments);
     this.colours = new Uint8Array(6 * segments);
     this.cornerBuffer = gl.createBuffer();
@@ -74,9 +84,10 @@ export class LargeScene {
   /** To be called once a theme. */
   paint(theme: Theme): void {
     let at = 0;
-    for (const shape of this.drawing.shapes) {
-      const base: Rgb = theme.body(bodyOf(shape));
-      for (let k = 0; k < 2 * this.segmentsOf(shape[1]); ++k) {
+    for (const k of this.order) {
+      const base: Rgb = theme.body(this.shapes.bodyOf(k));
+      const corners = 2 * this.segmentsOf(this.shapes.symbol[k]);
+      for (let n = 0; n < corners; ++n) {
         for (let c = 0; c < 3; ++c) this.colours[at++] = base[c];
       }
     }
@@ -92,7 +103,7 @@ export class LargeScene {
     gl.clear(gl.COLOR_BUFFER_BIT);
     gl.useProgram(this.program);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.cornerBuffer);
-    gl.bufferData(gl.ARRAY_BUFFER, this.corners, gl.STREAM_DRAW);
+    gl.bufferData(gl.ARRAY_BUFFER, this.corners.subarray(0, this.count), gl.STREAM_DRAW);
     const placeAt = gl.getAttribLocation(this.program, "place");
     gl.enableVertexAttribArray(placeAt);
     gl.vertexAttribPointer(placeAt, 2, gl.FLOAT, false, 0, 0);
@@ -115,11 +126,13 @@ export class LargeScene {
     const size = symbolSize(this.drawing, camera);
     const { placement: p, corners } = this;
     let at = 0;
-    for (const shape of this.drawing.shapes) {
-      place(shape, pose, size, p);
+    const last = size * camera.scale < 1 ? this.links : this.order.length;
+    for (let n = 0; n < last; ++n) {
+      const shape = this.order[n];
+      this.shapes.place(shape, pose, size, p);
       const x = p.x - camera.x;
       const y = p.y - camera.y;
-      for (const line of this.drawing.symbols[shape[1]].lines) {
+      for (const line of this.drawing.symbols[this.shapes.symbol[shape]].lines) {
         if (line.radius) continue;
         const q = line.points;
         const pieces = q.length / 2 - (line.closed ? 0 : 1);

@@ -1,9 +1,9 @@
 // Draws the shapes of a mechanism, and finds which of them lies under the pointer.
 
 import { Camera } from "./camera";
-import { Drawing, Line, Shape } from "./contract";
+import { Drawing, Line } from "./contract";
 import { Painter } from "./painter";
-import { place, Placement, Pose } from "./placement";
+import { anchorBody, anchorSpan, Placement, Pose, ShapeTable } from "./placement";
 import { Theme } from "./theme";
 
 /** Largest and smallest size of a symbol on the page, px. */
@@ -17,11 +17,6 @@ export interface Highlight {
 
 export const nothing: Highlight = { body: -2, element: -1 };
 
-/** The body whose colour a shape has. */
-export function bodyOf(shape: Shape): number {
-  return shape[0] === 1 && shape[6] >= 0 ? shape[6] : shape[3];
-}
-
 /** Size of symbols, m: a quarter of a usual link, but within the limits on the page. */
 export function symbolSize(drawing: Drawing, camera: Camera): number {
   const growth = Math.max(1, Math.sqrt(camera.scale / camera.fitted));
@@ -33,26 +28,31 @@ export function symbolSize(drawing: Drawing, camera: Camera): number {
 export class MechanismPainter {
   private readonly placement: Placement = { x: 0, y: 0, ux: 0, uy: 0, vx: 0, vy: 0 };
 
-  constructor(private readonly drawing: Drawing, private readonly redundant: Set<number>) {}
+  constructor(private readonly drawing: Drawing, private readonly shapes: ShapeTable,
+              private readonly redundant: Set<number>) {}
 
   /** `only`: numbers of the shapes to draw; all if null. */
   draw(painter: Painter, camera: Camera, pose: Pose, theme: Theme, lit: Highlight, only: number[] | null): void {
     const size = symbolSize(this.drawing, camera);
-    const { shapes, symbols } = this.drawing;
-    const count = only ? only.length : shapes.length;
-    for (let k = 0; k < count; ++k) {
-      const shape = shapes[only ? only[k] : k];
-      place(shape, pose, size, this.placement);
-      for (const line of symbols[shape[1]].lines) this.line(painter, camera, theme, shape, line, size, lit);
+    const count = only ? only.length : this.shapes.count;
+    for (let n = 0; n < count; ++n) {
+      const k = only ? only[n] : n;
+      this.shapes.place(k, pose, size, this.placement);
+      for (const line of this.linesOf(k)) this.line(painter, camera, theme, k, line, size, lit);
     }
   }
 
-  private line(painter: Painter, camera: Camera, theme: Theme, shape: Shape, line: Line, size: number,
+  private linesOf(k: number): Line[] {
+    return this.drawing.symbols[this.shapes.symbol[k]].lines;
+  }
+
+  private line(painter: Painter, camera: Camera, theme: Theme, k: number, line: Line, size: number,
                lit: Highlight): void {
-    const body = bodyOf(shape);
+    const body = this.shapes.bodyOf(k);
+    const element = this.shapes.element[k];
     const p = this.placement;
-    const isLit = (shape[2] >= 0 && shape[2] === lit.element) || (body >= 0 && shape[2] < 0 && body === lit.body);
-    const isRedundant = this.redundant.has(shape[2]);
+    const isLit = (element >= 0 && element === lit.element) || (body >= 0 && element < 0 && body === lit.body);
+    const isRedundant = this.redundant.has(element);
     const colour = theme.edge(line.role, body);
     const edge = isRedundant ? `rgb(${theme.warning})` : isLit ? `rgb(${theme.accent})` : colour;
     const fill = line.filled ? theme.fill(line.role, body) : undefined;
@@ -92,9 +92,9 @@ export class MechanismPainter {
   /** What all shapes together cover, without the size of symbols. */
   extent(pose: Pose, low: [number, number], high: [number, number]): void {
     const p = this.placement;
-    for (const shape of this.drawing.shapes) {
-      place(shape, pose, 0, p);
-      for (const line of this.drawing.symbols[shape[1]].lines) {
+    for (let n = 0; n < this.shapes.count; ++n) {
+      this.shapes.place(n, pose, 0, p);
+      for (const line of this.linesOf(n)) {
         const around = (line.radius ?? 0) * Math.hypot(p.vx, p.vy);
         for (let k = 0; k < line.points.length; k += 2) {
           const x = p.x + p.ux * line.points[k] + p.vx * line.points[k + 1];
@@ -113,10 +113,12 @@ export class MechanismPainter {
   visible(camera: Camera, pose: Pose, most: number): number[] | null {
     const out: number[] = [];
     const room = 60;
-    for (let k = 0; k < this.drawing.shapes.length; ++k) {
-      place(this.drawing.shapes[k], pose, 0, this.placement);
+    // Where everything is in sight there is nothing to look for.
+    if (this.shapes.count > most && camera.scale < 1.5 * camera.fitted) return null;
+    for (let k = 0; k < this.shapes.count; ++k) {
+      this.shapes.place(k, pose, 0, this.placement);
       const { x, y, ux, uy } = this.placement;
-      const span = this.drawing.shapes[k][0] === 2;
+      const span = this.shapes.anchor[k] === anchorSpan;
       const px = camera.toPageX(x);
       const py = camera.toPageY(y);
       const qx = span ? camera.toPageX(x + ux) : px;
@@ -124,7 +126,7 @@ export class MechanismPainter {
       const outside =
         Math.max(px, qx) < -room || Math.min(px, qx) > camera.width + room ||
         Math.max(py, qy) < -room || Math.min(py, qy) > camera.height + room;
-      if (outside && this.drawing.shapes[k][0] !== 0) continue;
+      if (outside && this.shapes.anchor[k] !== anchorBody) continue;
       if (out.length === most) return null;
       out.push(k);
     }
@@ -136,10 +138,9 @@ export class MechanismPainter {
     const size = symbolSize(this.drawing, camera);
     let found = -1;
     let best = Infinity;
-    for (let k = this.drawing.shapes.length - 1; k >= 0; --k) {
-      const shape = this.drawing.shapes[k];
-      place(shape, pose, size, this.placement);
-      for (const line of this.drawing.symbols[shape[1]].lines) {
+    for (let k = this.shapes.count - 1; k >= 0; --k) {
+      this.shapes.place(k, pose, size, this.placement);
+      for (const line of this.linesOf(k)) {
         const away = this.distance(line, camera, px, py, size);
         if (away < reach && away < best - 1) {
           best = away;

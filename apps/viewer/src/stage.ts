@@ -4,9 +4,10 @@ import { ArrowKind, arrowKinds, Arrows } from "./arrows";
 import { Camera } from "./camera";
 import { byId } from "./dom";
 import { LargeScene } from "./large_scene";
-import { bodyOf, Highlight, MechanismPainter, nothing } from "./mechanism";
+import { Highlight, MechanismPainter, nothing } from "./mechanism";
 import { Motion } from "./motion";
 import { CanvasPainter, Painter, SvgPainter } from "./painter";
+import { ShapeTable } from "./placement";
 import { css, Theme } from "./theme";
 
 /** More shapes than this in sight go to WebGL: a canvas draws some ten thousand lines a picture. */
@@ -26,6 +27,7 @@ export class Stage {
   private readonly glCanvas = byId<HTMLCanvasElement>("large");
   private motion!: Motion;
   private painter!: MechanismPainter;
+  private shapes!: ShapeTable;
   private large: LargeScene | null = null;
   arrows!: Arrows;
   shownArrows = new Set<ArrowKind>(["loads"]);
@@ -50,10 +52,11 @@ export class Stage {
     const redundant = new Set<number>();
     const names = new Set(motion.analysis.redundant);
     if (names.size > 0) motion.data.elements.name.forEach((name, k) => names.has(name) && redundant.add(k));
-    this.painter = new MechanismPainter(drawing, redundant);
+    this.shapes = new ShapeTable(drawing.shapes);
+    this.painter = new MechanismPainter(drawing, this.shapes, redundant);
     this.arrows = new Arrows(motion);
     this.paths.clear();
-    this.large = drawing.shapes.length > mostOnCanvas ? LargeScene.create(this.glCanvas, drawing) : null;
+    this.large = drawing.shapes.length > mostOnCanvas ? LargeScene.create(this.glCanvas, drawing, this.shapes) : null;
     this.large?.paint(this.theme);
     this.findExtent();
   }
@@ -234,7 +237,7 @@ export class Stage {
 
   /** Body and element of a shape. */
   ownerOf(shape: number): Highlight {
-    const found = this.drawing.shapes[shape];
-    return found[2] >= 0 ? { body: -2, element: found[2] } : { body: bodyOf(found), element: -1 };
+    const element = this.shapes.element[shape];
+    return element >= 0 ? { body: -2, element } : { body: this.shapes.bodyOf(shape), element: -1 };
   }
 }
