@@ -30,7 +30,10 @@ test_packages=(
   node-typescript       # the types of the page are checked
   ccache                # the library is built several times over, mostly alike
 )
-all_packages=(clang clang-format)
+all_packages=(
+  clang clang-format
+  libclang-rt-dev       # the sanitizers of clang
+)
 
 case "${1:-}" in
   "") ;;
