@@ -71,9 +71,10 @@ void Pen::gears(const Vec2<double>& s_i, double radius_i, const Vec2<double>& s_
   const auto* known_i = builder_.find_wheel(i_, s_i, radius_i);
   const auto* known_j = builder_.find_wheel(j_, s_j, radius_j);
   const double way = internal ? 1 : -1;
+  const double offset = internal ? 0 : 0.5;  // the rim of a ring is seen from inside: its gaps point outwards
   const auto mesh = [&](const DrawingBuilder::Wheel& known, double at_known, DrawingBuilder::Wheel& other, double at) {
     const double part = (at_known - known.phase) * known.teeth / full_turn;
-    other.phase = at - (way * part + 0.5) * full_turn / other.teeth;
+    other.phase = at - (way * part + offset) * full_turn / other.teeth;
   };
   if (known_i) first = *known_i;
   if (known_j) second = *known_j;
