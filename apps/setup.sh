@@ -3,6 +3,7 @@
 #
 #   apps/setup.sh            what building the library and the command line needs
 #   apps/setup.sh --tests    also what the tests and benchmarks need
+#   apps/setup.sh --browser  also the browser that pages are tested in
 #   apps/setup.sh --all      also the second compiler and the formatter
 #
 # Installs only what is missing, as root or through sudo, and says what it does. With nothing missing it ends at once
@@ -30,6 +31,10 @@ test_packages=(
   node-typescript       # the types of the page are checked
   ccache                # the library is built several times over, mostly alike
 )
+browser_packages=(
+  chromium chromium-driver
+  nodejs                # speaks with the driver
+)
 all_packages=(
   clang clang-format
   libclang-rt-dev       # the sanitizers of clang
@@ -38,9 +43,10 @@ all_packages=(
 case "${1:-}" in
   "") ;;
   --tests) packages+=("${test_packages[@]}") ;;
-  --all) packages+=("${test_packages[@]}" "${all_packages[@]}") ;;
+  --browser) packages+=("${test_packages[@]}" "${browser_packages[@]}") ;;
+  --all) packages+=("${test_packages[@]}" "${browser_packages[@]}" "${all_packages[@]}") ;;
   *)
-    echo "usage: apps/setup.sh [--tests | --all]" >&2
+    echo "usage: apps/setup.sh [--tests | --browser | --all]" >&2
     exit 2
     ;;
 esac

@@ -23,7 +23,7 @@ await test({ reducedMotion: true }, async (page) => {
     const [xs, ys] = arguments;
     const { camera, canvas } = catena.stage;
     const context = canvas.getContext("2d");
-    // The mechanism itself covers parts of the path: it is drawn alone.
+    // The mechanism crosses the path: the path is drawn alone.
     context.clearRect(0, 0, canvas.width, canvas.height);
     const drawn = catena.stage.painter.draw;
     catena.stage.painter.draw = () => undefined;
@@ -53,8 +53,12 @@ await test({ reducedMotion: true }, async (page) => {
   await page.keys("\uE011");  // home
   await page.keys("\uE014\uE014\uE014");  // right
   near(await page.run("return catena.player.clock"), rows[3][0], 1e-12, "three steps");
-  await page.run(`const bar = document.getElementById("clock"); bar.value = 500; bar.dispatchEvent(new Event("input"))`);
-  near(await page.run("return catena.player.clock"), (rows[0][0] + rows.at(-1)[0]) / 2, 1e-9, "scrubbing to the middle");
+  await page.run(`
+    const bar = document.getElementById("clock");
+    bar.value = 500;
+    bar.dispatchEvent(new Event("input"));`);
+  const middle = (rows[0][0] + rows.at(-1)[0]) / 2;
+  near(await page.run("return catena.player.clock"), middle, 1e-9, "scrubbing to the middle");
   await page.keys(" ");
   equal(await page.run("return catena.player.playing"), true, "the space bar plays");
   await page.keys(" ");

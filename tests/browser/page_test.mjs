@@ -49,7 +49,8 @@ export function makePage(scenePath, name, ...options) {
 
 /** The results of a scene, as JSON gives them. */
 export function results(scenePath, ...options) {
-  return JSON.parse(execFileSync(catena, ["run", "--json", scenePath, ...options], { encoding: "utf8", maxBuffer: 1 << 28 }));
+  const said = execFileSync(catena, ["run", "--json", scenePath, ...options], { encoding: "utf8", maxBuffer: 1 << 28 });
+  return JSON.parse(said);
 }
 
 /** Runs a test with a browser and ends the program with its outcome. */
@@ -69,5 +70,7 @@ export async function test(options, body) {
 }
 
 /** Waits until the page has drawn what was asked of it. */
-export const settle = (page) => page.runAsync(
-    "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))");
+export const settle = (page) => page.runAsync(`
+    const done = arguments[0];
+    const wait = (pictures) => (pictures > 0 ? requestAnimationFrame(() => wait(pictures - 1)) : done(true));
+    wait(3);`);

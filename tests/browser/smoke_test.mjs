@@ -9,7 +9,8 @@ check(made.bytes <= 350e3, `the page of a four-bar has ${made.bytes} bytes, and 
 await test({}, async (page) => {
   await page.open(made.page);
   await settle(page);
-  equal(await page.run("return document.getElementById('scene-name').textContent"), "crank-rocker", "name of the scene");
+  const name = await page.run("return document.getElementById('scene-name').textContent");
+  equal(name, "crank-rocker", "name of the scene");
   const inked = () => page.run(`
     const canvas = document.getElementById("mechanism");
     const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);

@@ -115,6 +115,7 @@ TEST(ViewDocument, PosesAreThoseOfTheColumns) {
   const json& frames = dynamics.at("poses").at("frames");
   ASSERT_EQ(frames.at("type"), "float32");
   const std::vector<double> values = numbers_in<float>(frames);
+  const std::vector<double> base = numbers_in<double>(frames.at("base"));
   std::map<std::string, std::vector<double>> columns;
   for (const json& column : dynamics.at("columns"))
     columns[column.at("name")] = numbers_in<double>(column.at("values"));
@@ -123,8 +124,8 @@ TEST(ViewDocument, PosesAreThoseOfTheColumns) {
   ASSERT_EQ(values.size(), rows * 6);
   EXPECT_EQ(numbers_in<double>(dynamics.at("poses").at("t")), columns.at("t"));
   for (std::size_t k = 0; k < rows; ++k) {
-    EXPECT_NEAR(frames.at("x")[0].get<double>() + values[6 * k], columns.at("arm.x")[k], 1e-7);
-    EXPECT_NEAR(frames.at("y")[0].get<double>() + values[6 * k + 4], columns.at("bob.y")[k], 1e-7);
+    EXPECT_NEAR(base[0] + values[6 * k], columns.at("arm.x")[k], 1e-7);
+    EXPECT_NEAR(base[3] + values[6 * k + 4], columns.at("bob.y")[k], 1e-7);
     EXPECT_NEAR(values[6 * k + 2], columns.at("arm.angle")[k], 1e-6);
   }
   // The force of this row, as the scene writes it.
@@ -182,13 +183,15 @@ TEST(ViewDocument, ManyPosesArePackedInSixteenBits) {
   ASSERT_EQ(frames.at("type"), "uint16");
   const std::vector<double> values = numbers_in<std::uint16_t>(frames), t = numbers_in<double>(poses.at("t"));
   ASSERT_EQ(values.size(), t.size() * 3 * bodies);
-  const double step = frames.at("x")[1], first = frames.at("x")[0];
+  const std::vector<double> base = numbers_in<double>(frames.at("base"));
+  const double step = frames.at("step")[0];
+  EXPECT_NEAR(step, bodies / 100 * 2.0 / 65535, 1e-9) << "that of the body that moves farthest";
   const double turn = 2 * std::numbers::pi;
   for (std::size_t k = 0; k < t.size(); k += 17) {
     for (std::size_t b = 0; b < bodies; b += 97) {
       const double number = static_cast<double>(b + 1), at = values[3 * (k * bodies + b)];
-      EXPECT_NEAR(first + step * at, number + number / 100 * t[k], 0.51 * step);
-      const double angle = values[3 * (k * bodies + b) + 2] * frames.at("angle")[1].get<double>();
+      EXPECT_NEAR(base[2 * b] + step * at, number + number / 100 * t[k], 0.51 * step);
+      const double angle = values[3 * (k * bodies + b) + 2] * frames.at("step")[2].get<double>();
       EXPECT_NEAR(std::remainder(angle - number / 10 * t[k], turn), 0, 0.51 * turn / 65536);
     }
   }

@@ -52,7 +52,8 @@ export class Arrows {
     if (kind === "velocities" && this.motion.velocities) {
       const at = 3 * data.bodies.length * pose;
       for (let b = 0; b < data.bodies.length; ++b) {
-        f(now.q[3 * b], now.q[3 * b + 1], this.motion.velocities[at + 3 * b], this.motion.velocities[at + 3 * b + 1], false);
+        const v = this.motion.velocities;
+        f(now.q[3 * b], now.q[3 * b + 1], v[at + 3 * b], v[at + 3 * b + 1], false);
       }
     } else if (kind === "reactions" && this.motion.reactions && analysis.poses.reactions) {
       const count = analysis.poses.reactions.elements.length;

@@ -7,9 +7,8 @@ export interface PackedNumbers {
 
 export interface PackedFrames {
   type: "float32" | "uint16";
-  x: [number, number];
-  y: [number, number];
-  angle: [number, number];
+  step: [number, number, number];
+  base: PackedNumbers;
   data: string;
 }
 

@@ -17,7 +17,7 @@ export function decodeNumbers(packed: PackedNumbers): Float64Array | Float32Arra
 /** Frames [x, y, angle] of all bodies, pose after pose; decoded as they are read, so that memory stays small. */
 export class Frames {
   private readonly values: Float32Array | Uint16Array;
-  private readonly offset: number[];
+  private readonly base: ArrayLike<number>;
   private readonly step: number[];
   readonly wrapped: boolean;
 
@@ -25,25 +25,25 @@ export class Frames {
     const buffer = bytesOf(packed.data).buffer;
     this.wrapped = packed.type === "uint16";
     this.values = this.wrapped ? new Uint16Array(buffer) : new Float32Array(buffer);
-    this.offset = [packed.x[0], packed.y[0], packed.angle[0]];
-    this.step = [packed.x[1], packed.y[1], packed.angle[1]];
+    this.base = decodeNumbers(packed.base);
+    this.step = packed.step;
   }
 
   /** Between pose `row` and the next one, `part` of the way; angles that were wrapped turn the shorter way. */
   interpolate(row: number, part: number, out: Float64Array): void {
     const width = 3 * this.bodies;
-    const { values, offset, step } = this;
+    const { values, base, step } = this;
     const first = row * width;
     const second = part > 0 ? first + width : first;
-    for (let k = 0; k < width; k += 3) {
+    for (let k = 0, b = 0; k < width; k += 3, b += 2) {
       for (let c = 0; c < 2; ++c) {
         const a = values[first + k + c];
-        out[k + c] = offset[c] + step[c] * (a + part * (values[second + k + c] - a));
+        out[k + c] = base[b + c] + step[c] * (a + part * (values[second + k + c] - a));
       }
       const a = values[first + k + 2];
       let change = values[second + k + 2] - a;
       if (this.wrapped) change -= 65536 * Math.round(change / 65536);
-      out[k + 2] = offset[2] + step[2] * (a + part * change);
+      out[k + 2] = step[2] * (a + part * change);
     }
   }
 }

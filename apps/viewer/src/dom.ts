@@ -26,7 +26,7 @@ const icons = {
   back: "M12 3v12L4 9z",
   on: "M6 3v12l8-6z",
   loop: "M9 3a6 6 0 1 1-5.6 3.9l1.9.7A4 4 0 1 0 9 5v2.4L5 4l4-3.4z",
-  theme: "M9 2a7 7 0 1 0 0 14zm0 0a7 7 0 0 1 0 14",
+  theme: "M9 1a8 8 0 1 0 0 16A8 8 0 0 0 9 1zm0 2v12A6 6 0 0 1 9 3z",
 };
 
 /** A picture on a button: no font need have it. */
@@ -38,6 +38,7 @@ export function setIcon(element: HTMLElement, name: keyof typeof icons): void {
     svg.setAttribute(key, value);
   path.setAttribute("d", icons[name]);
   path.setAttribute("fill", "currentColor");
+  path.setAttribute("fill-rule", "evenodd");
   svg.append(path);
   element.replaceChildren(svg);
 }

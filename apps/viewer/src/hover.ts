@@ -9,7 +9,8 @@ import { short } from "./ticks";
 
 const mostValues = 9;
 
-export function describe(data: PageData, motion: Motion, table: Table, row: number, owner: Highlight): (Node | string)[] {
+export function describe(data: PageData, motion: Motion, table: Table, row: number,
+                         owner: Highlight): (Node | string)[] {
   const isElement = owner.element >= 0;
   const name = isElement ? data.elements.name[owner.element] : data.bodies[owner.body] ?? "ground";
   const type = isElement ? data.elements.types[data.elements.type[owner.element]] : "body";

@@ -82,7 +82,8 @@ function act(page: Page, event: KeyboardEvent): boolean {
 export function listenToKeys(page: Page): void {
   const help = byId<HTMLDialogElement>("help");
   const rows = keys.map(([key, what]) => make("tr", {}, make("td", {}, key), make("td", {}, what)));
-  help.append(make("h2", {}, "keys"), make("table", {}, ...rows), make("form", { method: "dialog" }, make("button", {}, "close")));
+  help.append(make("h2", {}, "keys"), make("table", {}, ...rows),
+              make("form", { method: "dialog" }, make("button", {}, "close")));
   byId("help-button").addEventListener("click", () => help.showModal());
   addEventListener("keydown", (event) => {
     const target = event.target as HTMLElement;

@@ -1,4 +1,5 @@
-// Mechanisms of thousands of bodies by WebGL: every span as a line, every area by its outline, in the colours of bodies.
+// Mechanisms of thousands of bodies by WebGL: every span as a line, every area by its outline, in the colours of
+// bodies.
 //
 // Corners are computed here once a picture and handed over in one array; a mechanism of 10^5 links is 2 x 10^5 corners.
 // Symbols, which stand at points, come behind all links and are left out while they are smaller than a pixel.

@@ -1,9 +1,7 @@
 // The page as a whole: which analysis is shown, what happens at keys and buttons.
 
-import { arrowKinds } from "./arrows";
 import { PageData } from "./contract";
 import { button, byId, make, setIcon } from "./dom";
-import { save, saveCanvas } from "./files";
 import { describe } from "./hover";
 import { listenToKeys } from "./keys";
 import { Highlight, nothing } from "./mechanism";
@@ -11,12 +9,15 @@ import { Motion } from "./motion";
 import { PlotMark } from "./plot";
 import { PlotPanel } from "./plot_panel";
 import { Player } from "./player";
+import { pointPanel } from "./point_panel";
 import { reportPanel } from "./report_panel";
 import { Stage, Trace } from "./stage";
+import { drawScaleBar, makeStageTools } from "./stage_tools";
 import { Table } from "./table";
 import { tablePanel } from "./table_panel";
 import { Theme } from "./theme";
 import { short } from "./ticks";
+import { unanalysed } from "./unanalysed";
 
 type Tab = "plots" | "report" | "table" | "points";
 const tabs: Tab[] = ["plots", "report", "table", "points"];
@@ -62,7 +63,8 @@ export class Page {
   private makeChoices(): void {
     const choice = byId<HTMLSelectElement>("analysis");
     this.data.analyses.forEach((analysis, k) => {
-      choice.append(new Option(`${k + 1} ${analysis.type}${analysis.status === "ok" ? "" : `: ${analysis.status}`}`, String(k)));
+      const outcome = analysis.status === "ok" ? "" : `: ${analysis.status}`;
+      choice.append(new Option(`${k + 1} ${analysis.type}${outcome}`, String(k)));
     });
     if (this.data.analyses.length === 0) choice.append(new Option("none: as given", "-1"));
     choice.addEventListener("change", () => this.showAnalysis(Number(choice.value)));
@@ -81,7 +83,7 @@ export class Page {
     this.selected = nothing;
     this.stage.show(this.motion);
     this.stage.traces = this.firstTraces();
-    this.makeTools();
+    makeStageTools(this);
     const bad = analysis.status !== "ok";
     byId("status").textContent = bad ? `${analysis.status}: ${analysis.message}` : analysis.status;
     byId("status").className = bad ? "bad" : "";
@@ -103,38 +105,6 @@ export class Page {
     return points.body.map((body, k) => ({
       body, u: points.at[2 * k], v: points.at[2 * k + 1], name: `${bodies[body]}.${points.name[k]}`,
     }));
-  }
-
-  private makeTools(): void {
-    const tools = byId("stage-tools");
-    tools.replaceChildren(
-        button("fit", "show everything (f)", () => this.stage.fit()),
-        button("PNG", "save the picture as PNG",
-               () => saveCanvas(`${this.data.scene}.png`, this.stage.picture(this.player.clock))),
-        button("SVG", "save the picture as SVG",
-               () => save(`${this.data.scene}.svg`, this.stage.svg(this.player.clock), "image/svg+xml")));
-    const units = { velocities: "m/s", reactions: "N", loads: "N" };
-    const names = { velocities: "velocities", reactions: "reactions", loads: "forces" };
-    const shown = arrowKinds.filter((kind) => this.stage.arrows.has(kind));
-    for (const kind of shown) {
-      const box = make("input", { type: "checkbox" });
-      box.checked = this.stage.shownArrows.has(kind);
-      box.addEventListener("change", () => {
-        if (box.checked) this.stage.shownArrows.add(kind);
-        else this.stage.shownArrows.delete(kind);
-        this.redraw();
-      });
-      const most = `${short(this.stage.arrows.largestOf(kind))} ${units[kind]}`;
-      tools.append(make("label", { title: `the longest arrow is ${most}` }, box, ` ${names[kind]} ≤ ${most}`));
-    }
-    if (shown.length === 0) return;
-    const scale = make("input", { type: "range", min: "-1.5", max: "1.5", step: "0.1", value: "0", "aria-label": "length of arrows" });
-    scale.value = String(Math.log10(this.stage.arrowScale));
-    scale.addEventListener("input", () => {
-      this.stage.arrowScale = Math.pow(10, Number(scale.value));
-      this.redraw();
-    });
-    tools.append(make("label", { title: "length of arrows" }, "↔ ", scale));
   }
 
   /** Events, singular instants, critical points: what happens at a row or an instant. */
@@ -160,7 +130,8 @@ export class Page {
     const { begin, end } = this.motion;
     byId("marks").replaceChildren(...(this.motion.count > 1 ? this.marks() : []).slice(0, 200).map((mark) => {
       const clock = mark.t ?? this.motion.clockAt(this.poseOfRow(mark.row));
-      const title = mark.t === undefined ? `${mark.label} at row ${mark.row}` : `${mark.label} at t = ${short(mark.t)} s`;
+      const when = mark.t === undefined ? `row ${mark.row}` : `t = ${short(mark.t)} s`;
+      const title = `${mark.label} at ${when}`;
       const element = button("", title, () => (this.player.pause(), this.player.moveTo(clock)));
       element.style.left = `${end > begin ? (100 * (clock - begin)) / (end - begin) : 0}%`;
       return element;
@@ -199,34 +170,16 @@ export class Page {
     const { analysis } = this.motion;
     if (tab === "plots") this.panel.replaceChildren(this.plotRoot);
     if (tab === "table") this.panel.replaceChildren(tablePanel(this.table, analysis.type, (row) => this.goToRow(row)));
-    if (tab === "points") this.panel.replaceChildren(this.pointList());
+    if (tab === "points") this.panel.replaceChildren(pointPanel(this, this.allPoints()));
     if (tab === "report") {
       this.panel.replaceChildren(reportPanel(this.data, analysis, this.motion.shape, {
+        showAnalysis: (number) => this.showAnalysis(number),
         showShape: (shape) => this.showShape(shape),
         goToRow: (row) => this.goToRow(row),
         goToTime: (t) => (this.player.pause(), this.player.moveTo(t)),
       }));
     }
     this.plots.draw();
-  }
-
-  private pointList(): HTMLElement {
-    const root = make("div", {}, make("p", { class: "note" }, "Points whose paths are drawn."));
-    const points = [
-      ...this.allPoints(),
-      ...this.data.bodies.slice(0, 500).map((name, body) => ({ body, u: 0, v: 0, name: `${name} (centroid)` })),
-    ];
-    for (const point of points.slice(0, 1000)) {
-      const box = make("input", { type: "checkbox" });
-      box.checked = this.stage.traces.some((trace) => trace.name === point.name);
-      box.addEventListener("change", () => {
-        this.stage.traces = this.stage.traces.filter((trace) => trace.name !== point.name);
-        if (box.checked) this.stage.traces.push(point);
-        this.redraw();
-      });
-      root.append(make("div", {}, make("label", {}, box, ` ${point.name}`)));
-    }
-    return root;
   }
 
   private hover(shape: number, x: number, y: number): void {
@@ -270,30 +223,6 @@ export class Page {
     this.waiting = false;
     this.stage.draw(this.player.clock);
     this.plots.moveCursor(this.motion.rowNumber(this.motion.nearestPose(this.player.clock)));
-    this.drawScaleBar();
+    drawScaleBar(this.stage.camera.scale);
   }
-
-  private drawScaleBar(): void {
-    const { scale } = this.stage.camera;
-    const power = Math.pow(10, Math.floor(Math.log10(120 / scale)));
-    const length = [5, 2, 1].map((f) => f * power).find((l) => l * scale <= 120) ?? power;
-    const bar = byId("scale-bar");
-    bar.style.width = `${length * scale}px`;
-    bar.replaceChildren(make("span", {}, length >= 1 ? `${short(length)} m` : length >= 1e-3 ? `${short(1000 * length)} mm` : `${short(length)} m`));
-  }
-}
-
-/** What stands for an analysis in a scene without any: the given configuration. */
-function unanalysed() {
-  const empty = { type: "float64" as const, data: "" };
-  return {
-    type: "none", status: "ok", message: "The scene has no analyses: it is shown as it is given.", warnings: [],
-    seconds: 0, redundant: [], set: {}, fields: {}, drawing: 0, rows: { count: 0, total: 0, stride: 1 }, columns: [],
-    poses: {
-      count: 0, total: 0, stride: 1, t: empty,
-      frames: { type: "float32" as const, x: [0, 1] as [number, number], y: [0, 1] as [number, number],
-                angle: [0, 1] as [number, number], data: "" },
-    },
-    shapes: [],
-  };
 }

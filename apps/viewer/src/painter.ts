@@ -117,7 +117,8 @@ export class SvgPainter implements Painter {
 
   circle(x: number, y: number, radius: number, paint: Paint): void {
     if (!isFinite(x) || !isFinite(y)) return;
-    this.out += `<circle cx="${x.toFixed(2)}" cy="${y.toFixed(2)}" r="${radius.toFixed(2)}"${this.attributes(paint)}/>\n`;
+    const place = `cx="${x.toFixed(2)}" cy="${y.toFixed(2)}" r="${radius.toFixed(2)}"`;
+    this.out += `<circle ${place}${this.attributes(paint)}/>\n`;
   }
 
   text(x: number, y: number, text: string, paint: TextPaint): void {

@@ -1,4 +1,5 @@
-// Where a shape stands at a configuration: the same frames (origin, e_u, e_v) as lib/catena/drawing/shapes/placement.hpp.
+// Where a shape stands at a configuration: the same frames (origin, e_u, e_v) as in
+// lib/catena/drawing/shapes/placement.hpp.
 
 import { Shape } from "./contract";
 

@@ -44,7 +44,8 @@ export class Player {
     // What takes hours or milliseconds is shown in some seconds.
     const seconds = motion.end - motion.begin;
     const natural = motion.timed && seconds > 0 ? seconds / 6 : 1;
-    const nearest = speeds.reduce((a, b) => (Math.abs(Math.log(b / natural)) < Math.abs(Math.log(a / natural)) ? b : a));
+    const away = (speed: number) => Math.abs(Math.log(speed / natural));
+    const nearest = speeds.reduce((a, b) => (away(b) < away(a) ? b : a));
     this.setSpeed(seconds > 30 || seconds < 1 ? nearest : 1);
     this.moveTo(motion.begin);
   }

@@ -126,7 +126,8 @@ export class Plot {
     painter.path([left, top, this.width - right, top, this.width - right, floor, left, floor], true,
                  { stroke: css(theme.faint), width: 1 });
     const columns = this.table.analysis.columns;
-    painter.text((left + this.width - right) / 2, this.height - 6, withUnit(columns[this.x].name, this.table.unit(this.x)),
+    const name = withUnit(columns[this.x].name, this.table.unit(this.x));
+    painter.text((left + this.width - right) / 2, this.height - 6, name,
                  { size: 11, colour: css(theme.ink), anchor: "middle" });
     const units = [...new Set(this.ys.map((y) => this.table.unit(y)))].filter((unit) => unit);
     if (units.length > 0)
@@ -143,7 +144,8 @@ export class Plot {
       points[2 * row + 1] = this.pageY(ay, ys[row]);
     }
     if (this.scatter || xs.length === 1) {
-      for (let row = 0; row < xs.length; ++row) painter.circle(points[2 * row], points[2 * row + 1], 2.5, { fill: colour });
+      for (let row = 0; row < xs.length; ++row)
+        painter.circle(points[2 * row], points[2 * row + 1], 2.5, { fill: colour });
     } else if (this.unstable) {
       this.partsByStability(painter, points, colour);
     } else {
@@ -175,7 +177,7 @@ export class Plot {
     }
     // What differs by rounding alone is constant.
     const size = low < 0 ? 0 : Math.max(Math.abs(ys[low]), Math.abs(ys[high]));
-    if (low < 0 || ys[high] - ys[low] <= 1e-9 * size) return;
+    if (low < 0 || ys[high] - ys[low] <= 1e-7 * size) return;
     for (const row of [low, high]) painter.circle(points[2 * row], points[2 * row + 1], 2.6, { fill: colour });
   }
 
@@ -194,7 +196,8 @@ export class Plot {
     const px = this.pageX(ax, xs[row]);
     painter.path([px, top, px, this.height - bottom], false, { stroke: css(theme.accent), width: 1 });
     this.ys.forEach((y, k) => {
-      painter.circle(px, this.pageY(ay, this.table.values(y)[row]), 3.4, { fill: theme.line(k), stroke: css(theme.paper) });
+      const py = this.pageY(ay, this.table.values(y)[row]);
+      painter.circle(px, py, 3.4, { fill: theme.line(k), stroke: css(theme.paper) });
     });
   }
 

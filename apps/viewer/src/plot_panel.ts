@@ -22,7 +22,8 @@ export class PlotPanel {
   private unstable: boolean[] | null = null;
   private cursor = -1;
 
-  constructor(private readonly root: HTMLElement, public theme: Theme, private readonly chosen: (row: number) => void) {}
+  constructor(private readonly root: HTMLElement, public theme: Theme,
+              private readonly chosen: (row: number) => void) {}
 
   show(table: Table, marks: PlotMark[], unstable: boolean[] | null): void {
     this.table = table;
@@ -104,13 +105,16 @@ export class PlotPanel {
       element.setAttribute("aria-pressed", "false");
       return element;
     };
-    const name = () => `${plot.ys.map((y) => this.table.names[y]).slice(0, 3).join("-") || "plot"}`.replace(/[^\w.-]+/g, "_");
+    const name = () => {
+      const columns = plot.ys.slice(0, 3).map((y) => this.table.names[y]);
+      return (columns.join("-") || "plot").replace(/[^\w.-]+/g, "_");
+    };
     const columns = button("columns", "which columns", () => {
       const open = box.querySelector(".chooser");
       if (open) open.remove();
       else box.append(this.chooser(view));
     });
-    return make("div", { class: "tools" }, "over ", x, columns,
+    return make("div", { class: "tools" }, x, columns,
                 toggle("log x", "logarithmic horizontal axis", () => (plot.logX = !plot.logX)),
                 toggle("log y", "logarithmic vertical axis", () => (plot.logY = !plot.logY)),
                 button("⤢", "show all (double click)", () => (plot.resetZoom(), this.draw())),
@@ -131,7 +135,8 @@ export class PlotPanel {
     const fill = () => {
       items.replaceChildren();
       const wanted = search.value.toLowerCase();
-      const found = this.table.names.map((name, k) => ({ name, k })).filter(({ name }) => name.toLowerCase().includes(wanted));
+      const found = this.table.names.map((name, k) => ({ name, k }))
+          .filter(({ name }) => name.toLowerCase().includes(wanted));
       for (const { name, k } of found.slice(0, mostListed)) {
         const box = make("input", { type: "checkbox" });
         box.checked = view.plot.ys.includes(k);
@@ -142,7 +147,8 @@ export class PlotPanel {
         });
         items.append(make("label", {}, box, " ", name));
       }
-      if (found.length > mostListed) items.append(make("p", { class: "note" }, `${found.length - mostListed} more: search`));
+      const more = found.length - mostListed;
+      if (more > 0) items.append(make("p", { class: "note" }, `${more} more: search`));
     };
     search.addEventListener("input", fill);
     fill();

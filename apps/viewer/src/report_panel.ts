@@ -39,7 +39,8 @@ function modeTable(analysis: Analysis, present: number, chosen: (mode: number) =
     const squared = omega2[k];
     const frequency = squared === undefined ? "" : squared >= 0 ? short(Math.sqrt(squared) / (2 * Math.PI)) : "grows";
     const cells = loads.length > 0 ? [String(k + 1), show(loads[k])] : [String(k + 1), show(squared), frequency];
-    const row = make("tr", { tabindex: "0", class: k === present ? "chosen" : "" }, ...cells.map((c) => make("td", {}, c)));
+    const row = make("tr", { tabindex: "0", class: k === present ? "chosen" : "" },
+                     ...cells.map((c) => make("td", {}, c)));
     row.addEventListener("click", () => chosen(k));
     row.addEventListener("keydown", (event) => event.key === "Enter" && chosen(k));
     return row;
@@ -49,6 +50,7 @@ function modeTable(analysis: Analysis, present: number, chosen: (mode: number) =
 }
 
 export interface ReportActions {
+  showAnalysis(number: number): void;
   showShape(shape: number): void;
   goToRow(row: number): void;
   goToTime(t: number): void;
@@ -60,6 +62,21 @@ function parameters(data: PageData, analysis: Analysis): HTMLElement[] {
   const list = make("dl");
   for (const [name, value] of names.slice(0, 100)) list.append(make("dt", {}, name), make("dd", {}, show(value)));
   return [make("h2", {}, "parameters"), list];
+}
+
+/** All analyses of the run, how they ended and what was said of them. */
+function analysisList(data: PageData, present: Analysis, chosen: (number: number) => void): HTMLElement[] {
+  if (data.analyses.length < 2) return [];
+  const rows = data.analyses.map((analysis, k) => {
+    const warnings = analysis.warnings.length;
+    const cells = [`${k + 1} ${analysis.type}`, analysis.status, warnings > 0 ? `${warnings} warnings` : ""];
+    const row = make("tr", { tabindex: "0", class: analysis === present ? "chosen" : "" },
+                     ...cells.map((c) => make("td", {}, c)));
+    row.addEventListener("click", () => chosen(k));
+    row.addEventListener("keydown", (event) => event.key === "Enter" && chosen(k));
+    return row;
+  });
+  return [make("h2", {}, "analyses"), make("div", { class: "scroll" }, make("table", {}, ...rows))];
 }
 
 export function reportPanel(data: PageData, analysis: Analysis, shape: number, actions: ReportActions): HTMLElement {
@@ -91,7 +108,8 @@ export function reportPanel(data: PageData, analysis: Analysis, shape: number, a
     root.append(make("h2", {}, analysis.type === "equilibrium" ? "softest mode" : "shapes"),
                 modeTable(analysis, shape, (k) => actions.showShape(k)));
   }
-  root.append(...tables, ...parameters(data, analysis));
+  root.append(...tables, ...analysisList(data, analysis, (k) => actions.showAnalysis(k)),
+              ...parameters(data, analysis));
   if (data.description) root.append(make("h2", {}, "scene"), make("p", {}, data.description));
   for (const note of data.notes) root.append(make("p", { class: "note" }, note));
   root.append(make("p", { class: "note" }, `catena ${data.version}`));

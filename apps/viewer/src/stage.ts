@@ -126,12 +126,12 @@ export class Stage {
   }
 
   private paint(painter: Painter, clock: number, only: number[] | null): void {
+    this.painter.draw(painter, this.camera, this.motion.pose, this.theme, this.lit, only);
     for (const trace of this.traces) {
       const { x, y, points } = this.pageTrace(trace);
       painter.path(points, false, { stroke: css(this.theme.accent), width: 1.6 });
       painter.circle(x, y, 3.2, { fill: css(this.theme.accent) });
     }
-    this.painter.draw(painter, this.camera, this.motion.pose, this.theme, this.lit, only);
     const pose = this.motion.nearestPose(clock);
     for (const kind of arrowKinds) {
       if (this.shownArrows.has(kind) && this.arrows.has(kind) && this.motion.shape < 0)
@@ -161,7 +161,8 @@ export class Stage {
 
   svg(clock: number): string {
     this.motion.moveTo(clock, this.swing);
-    const painter = new SvgPainter(Math.round(this.camera.width), Math.round(this.camera.height), css(this.theme.paper));
+    const { width, height } = this.camera;
+    const painter = new SvgPainter(Math.round(width), Math.round(height), css(this.theme.paper));
     this.paint(painter, clock, null);
     return painter.finish();
   }
@@ -216,7 +217,8 @@ export class Stage {
       const others = [...pointers.entries()].filter(([id]) => id !== event.pointerId);
       if (others.length === 1) {
         const other = others[0][1];
-        const factor = Math.hypot(now.x - other.x, now.y - other.y) / Math.hypot(before.x - other.x, before.y - other.y);
+        const apart = (p: { x: number; y: number }) => Math.hypot(p.x - other.x, p.y - other.y);
+        const factor = apart(now) / apart(before);
         if (isFinite(factor) && factor > 0) this.camera.zoom(factor, (now.x + other.x) / 2, (now.y + other.y) / 2);
       }
       const share = 1 / pointers.size;
@@ -227,7 +229,8 @@ export class Stage {
     });
     const release = (event: PointerEvent) => {
       const p = at(event);
-      if (pointers.delete(event.pointerId) && moved < 5 && event.type === "pointerup") this.clicked(this.find(p.x, p.y));
+      const was = pointers.delete(event.pointerId);
+      if (was && moved < 5 && event.type === "pointerup") this.clicked(this.find(p.x, p.y));
     };
     this.canvas.addEventListener("pointerup", release);
     this.canvas.addEventListener("pointercancel", release);

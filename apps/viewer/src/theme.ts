@@ -47,7 +47,8 @@ export class Theme {
 
   /** Of line number k in a plot. */
   line(k: number): string {
-    return css(mix(bodyColours[k % bodyColours.length], this.dark ? [255, 255, 255] : [0, 0, 0], this.dark ? 0.25 : 0.1));
+    const colour = bodyColours[k % bodyColours.length];
+    return css(this.dark ? mix(colour, [255, 255, 255], 0.25) : mix(colour, [0, 0, 0], 0.1));
   }
 
   edge(role: string, body: number): string {

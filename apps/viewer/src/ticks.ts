@@ -35,8 +35,9 @@ export function rangeOf(lists: ArrayLike<number>[], log: boolean): Axis {
   }
   if (!(low <= high)) return { first: log ? 1 : 0, last: log ? 10 : 1, log };
   if (log) return low < high ? { first: low, last: high, log } : { first: low / 2, last: high * 2, log };
+  // What differs by rounding is shown as the constant it is.
   const size = Math.max(Math.abs(low), Math.abs(high));
-  const room = high - low <= 1e-12 * size ? (size > 0 ? 0.1 * size : 1) : 0.04 * (high - low);
+  const room = high - low <= 1e-7 * size ? (size > 0 ? 0.1 * size : 1) : 0.04 * (high - low);
   return { first: low - room, last: high + room, log };
 }
 

@@ -145,12 +145,12 @@ std::string Figure::draw(const CanvasMaker& make_canvas) {
   const auto poses = static_cast<double>(figure_.poses.size());
   for (std::size_t k = 0; k + 1 < figure_.poses.size(); ++k)
     draw_pose(*canvas, figure_.poses[k], palest - 0.35 * static_cast<double>(k) / poses);
+  draw_pose(*canvas, figure_.poses.back(), 0);
   for (const auto& trace : figure_.traces) {
     std::vector<Vec2<double>> points;
     for (const Vec2<double>& p : trace) points.push_back(on_page(p));
     canvas->path(points, false, {.stroke = role_colour(Role::driver, ground), .width = 1.2});
   }
-  draw_pose(*canvas, figure_.poses.back(), 0);
   draw_loads(*canvas, figure_.poses.back());
   return canvas->finish();
 }

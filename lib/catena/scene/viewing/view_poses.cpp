@@ -1,4 +1,5 @@
-// Poses in the data of pages: exact to single precision while they are few, else in 16 bits a coordinate.
+// Poses in the data of pages: exact to single precision while they are few, else in 16 bits a coordinate. Each body's
+// places count from a base of its own, so that a mechanism of kilometres shows the play of its links.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -14,31 +15,32 @@ namespace {
 constexpr std::size_t most_exact = 2'000'000;
 constexpr double levels = 65535, angle_levels = 65536;
 
-struct Range {
-  double low = INFINITY, high = -INFINITY;
+/// Where a body is at its lowest x and y, and how far it moves from there.
+struct Reach {
+  Vec2<double> low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
 
-  void include(double value) {
-    if (!std::isfinite(value)) return;
-    low = std::min(low, value);
-    high = std::max(high, value);
+  void include(double x, double y) {
+    if (!std::isfinite(x) || !std::isfinite(y)) return;
+    low = {std::min(low.x, x), std::min(low.y, y)};
+    high = {std::max(high.x, x), std::max(high.y, y)};
   }
-  double first() const { return low <= high ? low : 0; }
-  double span() const { return low <= high ? high - low : 0; }
+  Vec2<double> base() const { return low.x <= high.x ? low : Vec2<double>{}; }
+  Vec2<double> span() const { return low.x <= high.x ? high - low : Vec2<double>{}; }
 };
 
-/// Of x (part 0), y (1) or angles (2) of all bodies in all poses.
-Range range_of(const RecordedAnalysis& analysis, std::size_t part) {
-  Range range;
+std::vector<Reach> reaches_of(const RecordedAnalysis& analysis) {
+  std::vector<Reach> reaches(analysis.layout.bodies);
   for (std::size_t k = 0; k < analysis.poses.size(); ++k) {
-    const std::span<const double> pose = analysis.poses[k];
-    for (std::size_t b = 0; b < analysis.layout.bodies; ++b) range.include(pose[PoseLayout::frames + 3 * b + part]);
+    const std::span<const double> frames = analysis.poses[k].subspan(PoseLayout::frames, 3 * reaches.size());
+    for (std::size_t b = 0; b < reaches.size(); ++b) reaches[b].include(frames[3 * b], frames[3 * b + 1]);
   }
-  return range;
+  return reaches;
 }
 
-std::uint16_t level_of(double value, double first, double step) {
-  if (!std::isfinite(value) || !(step > 0)) return 0;
-  return static_cast<std::uint16_t>(std::clamp(std::round((value - first) / step), 0.0, levels));
+/// The number of steps from the base; the farthest body needs all levels.
+std::uint16_t level_of(double away, double step) {
+  if (!std::isfinite(away) || !(step > 0)) return 0;
+  return static_cast<std::uint16_t>(std::clamp(std::round(away / step), 0.0, levels));
 }
 
 std::uint16_t angle_level(double angle) {
@@ -48,38 +50,39 @@ std::uint16_t angle_level(double angle) {
                                     0xffff);
 }
 
-void append_pair(ViewJson& json, std::string_view key, double offset, double step) {
-  json.key(key).open('[').value(offset).value(step).close(']');
-}
-
 void append_frames(ViewJson& json, const RecordedAnalysis& analysis) {
-  const std::size_t bodies = analysis.layout.bodies, poses = analysis.poses.size();
-  const Range x = range_of(analysis, 0), y = range_of(analysis, 1);
+  const std::vector<Reach> reaches = reaches_of(analysis);
+  const std::size_t bodies = reaches.size(), poses = analysis.poses.size();
   const bool exact = 3 * bodies * poses <= most_exact;
-  const double origin[2] = {x.first() + x.span() / 2, y.first() + y.span() / 2};
-  const double step[2] = {x.span() / levels, y.span() / levels};
-  json.key("frames").open('{').key("type").text(exact ? "float32" : "uint16");
-  append_pair(json, "x", exact ? origin[0] : x.first(), exact ? 1 : step[0]);
-  append_pair(json, "y", exact ? origin[1] : y.first(), exact ? 1 : step[1]);
-  append_pair(json, "angle", 0, exact ? 1 : 2 * std::numbers::pi / angle_levels);
-  PackedNumbers packed;
+  PackedNumbers base, packed;
+  Vec2<double> most{};
+  for (const Reach& reach : reaches) {
+    base.add_double(reach.base().x);
+    base.add_double(reach.base().y);
+    most = {std::max(most.x, reach.span().x), std::max(most.y, reach.span().y)};
+  }
+  const Vec2<double> step = exact ? Vec2<double>{1, 1} : most / levels;
   packed.reserve(3 * bodies * poses * (exact ? 4 : 2));
   for (std::size_t k = 0; k < poses; ++k) {
     const std::span<const double> frames = analysis.poses[k].subspan(PoseLayout::frames, 3 * bodies);
-    for (std::size_t b = 0; b < 3 * bodies; b += 3) {
+    for (std::size_t b = 0; b < bodies; ++b) {
+      const Vec2<double> away = Vec2<double>{frames[3 * b], frames[3 * b + 1]} - reaches[b].base();
       if (exact) {
-        packed.add_float(frames[b] - origin[0]);
-        packed.add_float(frames[b + 1] - origin[1]);
-        packed.add_float(frames[b + 2]);
+        packed.add_float(away.x);
+        packed.add_float(away.y);
+        packed.add_float(frames[3 * b + 2]);
       } else {
-        packed.add_short(level_of(frames[b], x.first(), step[0]));
-        packed.add_short(level_of(frames[b + 1], y.first(), step[1]));
-        packed.add_short(angle_level(frames[b + 2]));
+        packed.add_short(level_of(away.x, step.x));
+        packed.add_short(level_of(away.y, step.y));
+        packed.add_short(angle_level(frames[3 * b + 2]));
       }
     }
   }
-  json.key("data");
-  std::string& out = json.text_of_value();
+  json.key("frames").open('{').key("type").text(exact ? "float32" : "uint16");
+  json.key("step").open('[').value(step.x).value(step.y);
+  json.value(exact ? 1 : 2 * std::numbers::pi / angle_levels).close(']');
+  json.key("base").packed("float64", base);
+  std::string& out = json.key("data").text_of_value();
   out += '"';
   packed.append_to(out);
   out += '"';
