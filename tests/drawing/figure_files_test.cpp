@@ -92,6 +92,21 @@ TEST(AxisTicks, AreRoundAndCoverTheValues) {
   }
 }
 
+TEST(AxisTicks, OfTightAxesLieWithinTheValues) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> part(-1, 1);
+  for (int trial = 0; trial < 500; ++trial) {
+    const double values[] = {part(random), part(random)};
+    const AxisTicks axis = choose_ticks(values, 5, false, AxisEnds::tight);
+    EXPECT_EQ(axis.first, std::min(values[0], values[1]));
+    EXPECT_EQ(axis.last, std::max(values[0], values[1]));
+    ASSERT_GE(axis.at.size(), 1u);
+    EXPECT_EQ(axis.at.size(), axis.labels.size());
+    const double room = 1e-8 * (axis.last - axis.first);
+    for (const double mark : axis.at) EXPECT_TRUE(mark >= axis.first - room && mark <= axis.last + room);
+  }
+}
+
 TEST(AxisTicks, OfLogarithmicAxesArePowersOfTen) {
   const double values[] = {0.02, 300, -1, 0, NAN};
   const AxisTicks axis = choose_ticks(values, 6, true);

@@ -36,7 +36,7 @@ std::string scientific(double value, double step) {
   return label.substr(0, e) + "e" + std::to_string(exponent);
 }
 
-AxisTicks linear_ticks(double low, double high, int wanted) {
+AxisTicks linear_ticks(double low, double high, int wanted, AxisEnds ends) {
   // A line of equal values gets some room; so does one whose values differ by rounding alone.
   const double size = std::max(std::abs(low), std::abs(high));
   if (high - low <= 1e-12 * size || high == low) {
@@ -56,6 +56,15 @@ AxisTicks linear_ticks(double low, double high, int wanted) {
     const double value = std::abs(axis.first + k * step) < 1e-9 * step ? 0 : axis.first + k * step;
     axis.at.push_back(value);
     axis.labels.push_back(long_numbers ? scientific(value, step) : decimal(value, decimals));
+  }
+  if (ends == AxisEnds::round) return axis;
+  // The outer marks may lie beyond the values.
+  axis.first = low;
+  axis.last = high;
+  while (axis.at.back() > high + 1e-9 * step) axis.at.pop_back(), axis.labels.pop_back();
+  if (axis.at.front() < low - 1e-9 * step) {
+    axis.at.erase(axis.at.begin());
+    axis.labels.erase(axis.labels.begin());
   }
   return axis;
 }
@@ -83,7 +92,7 @@ double AxisTicks::place(double value) const {
   return std::log(value / first) / std::log(last / first);
 }
 
-AxisTicks choose_ticks(std::span<const double> values, int wanted, bool logarithmic) {
+AxisTicks choose_ticks(std::span<const double> values, int wanted, bool logarithmic, AxisEnds ends) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const double value : values) {
     if (!std::isfinite(value) || (logarithmic && !(value > 0))) continue;
@@ -91,7 +100,7 @@ AxisTicks choose_ticks(std::span<const double> values, int wanted, bool logarith
     high = std::max(high, value);
   }
   if (!(low <= high)) low = logarithmic ? 1 : 0, high = logarithmic ? 10 : 1;  // nothing to show
-  return logarithmic ? logarithmic_ticks(low, high, wanted) : linear_ticks(low, high, wanted);
+  return logarithmic ? logarithmic_ticks(low, high, wanted) : linear_ticks(low, high, wanted, ends);
 }
 
 }  // namespace catena

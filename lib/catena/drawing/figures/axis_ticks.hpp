@@ -23,7 +23,10 @@ struct AxisTicks {
   double place(double value) const;
 };
 
+/// How far an axis goes: to round numbers, or to the values themselves.
+enum class AxisEnds { round, tight };
+
 /// The axis that shows every finite value. On a logarithmic one values that are not above zero have no place.
-AxisTicks choose_ticks(std::span<const double> values, int wanted, bool logarithmic);
+AxisTicks choose_ticks(std::span<const double> values, int wanted, bool logarithmic, AxisEnds ends = AxisEnds::round);
 
 }  // namespace catena

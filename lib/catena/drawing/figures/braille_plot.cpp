@@ -134,7 +134,7 @@ std::string draw_panel(const Plot& plot, const PlotPanel& panel, const AxisTicks
 }  // namespace
 
 std::string braille_plot(const Plot& plot, std::size_t columns, std::size_t rows, bool colours) {
-  const AxisTicks x = choose_ticks(plot.x, std::max(2, static_cast<int>(columns) / 12), plot.log_x);
+  const AxisTicks x = choose_ticks(plot.x, std::max(2, static_cast<int>(columns) / 12), plot.log_x, AxisEnds::tight);
   std::string out;
   for (const PlotPanel& panel : plot.panels) {
     if (colours) {

@@ -102,7 +102,7 @@ std::string draw_plot(const Plot& plot, double width, double panel_height, const
     height += legends.back() + panel_height + between;
   }
   const auto canvas = make_canvas(width, height - between);
-  const AxisTicks x = choose_ticks(plot.x, std::max(2, static_cast<int>(inside / 60)), plot.log_x);
+  const AxisTicks x = choose_ticks(plot.x, std::max(2, static_cast<int>(inside / 45)), plot.log_x, AxisEnds::tight);
   double y = top;
   if (!plot.title.empty()) {
     canvas->text({left, y + 8}, plot.title, {.size = 10});
