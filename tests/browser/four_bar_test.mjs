@@ -1,12 +1,14 @@
 // A four-bar's page against the results of the same scene: traces, plots, scrubbing, stepping, files, keys.
 
-import { check, equal, makePage, near, outputFolder, results, scene, settle, test } from "./page_test.mjs";
+import { check, draw, equal, makePage, near, outputFolder, results, scene, settle, test } from "./page_test.mjs";
 
 const path = scene("crank_rocker");
 const made = makePage(path, "four_bar");
 const run = results(path, "--outputs", "coupler.pen.x,coupler.pen.y,rocker.angle");
 const kinematics = run.analyses.findIndex((analysis) => analysis.type === "kinematics");
 const { columns, rows } = run.analyses[kinematics];
+const circlesOf = (svg) => [...svg.matchAll(/<circle cx="([-0-9.]+)" cy="([-0-9.]+)"/g)]
+    .map((found) => ({ x: Number(found[1]), y: Number(found[2]) }));
 const column = (name) => rows.map((row) => row[columns.indexOf(name)]);
 
 await test({ reducedMotion: true }, async (page) => {
@@ -63,6 +65,22 @@ await test({ reducedMotion: true }, async (page) => {
   equal(await page.run("return catena.player.playing"), true, "the space bar plays");
   await page.keys(" ");
   equal(await page.run("return catena.player.playing"), false, "and pauses");
+
+  // The page and `catena draw` show the same picture: every circle at the same place but for scale and shift.
+  const pose = rows[7][columns.indexOf("t")];
+  await page.run("catena.goToRow(7)");
+  const pagePicture = circlesOf(await page.run("return catena.stage.svg(catena.player.clock)"));
+  const drawn = circlesOf(draw(path, "--at", String(pose), "--analysis", String(kinematics + 1)));
+  // The page marks where traced points are as well.
+  const marks = await page.run("return catena.stage.traces.length");
+  equal(pagePicture.length - marks, drawn.length, "circles of the page and of catena draw");
+  const far = drawn.length - 1;
+  const scaleOf = (list) => Math.hypot(list[far].x - list[0].x, list[far].y - list[0].y);
+  const scale = scaleOf(drawn) / scaleOf(pagePicture);
+  drawn.forEach((circle, k) => {
+    near(circle.x - drawn[0].x, scale * (pagePicture[k].x - pagePicture[0].x), 0.03, `x of circle ${k}`);
+    near(circle.y - drawn[0].y, scale * (pagePicture[k].y - pagePicture[0].y), 0.03, `y of circle ${k}`);
+  });
 
   // What goes into files.
   const csv = await page.run("return catena.table.csv(catena.table.names.map((_, k) => k))");

@@ -53,6 +53,10 @@ export function results(scenePath, ...options) {
   return JSON.parse(said);
 }
 
+/** What `catena draw` prints: the figure as SVG. */
+export const draw = (scenePath, ...options) =>
+    execFileSync(catena, ["draw", scenePath, ...options], { encoding: "utf8", maxBuffer: 1 << 26 });
+
 /** Runs a test with a browser and ends the program with its outcome. */
 export async function test(options, body) {
   const page = await startBrowser({ driver, browser, ...options });

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <random>
 #include <set>
 
+#include "catena/drawing/shapes/guide_travel.hpp"
 #include "catena/drawing/shapes/pen.hpp"
 #include "catena/drawing/shapes/placement.hpp"
-#include "catena/elements/constraints/gear.hpp"
+#include "catena/elements/all.hpp"
 #include "catena/model/model_add.hpp"
 #include "catena/scene/viewing/record_figure.hpp"
 #include "drawing/recorded_text.hpp"
@@ -92,6 +94,82 @@ TEST(Drawings, ShowEveryTypeOfElement) {
     EXPECT_GT(own, 0);
     for (const Vec2<double>& p : corners_of(*run.record().model, drawing, 0.1))
       EXPECT_TRUE(std::isfinite(p.x) && std::isfinite(p.y));
+  }
+}
+
+/// A random mechanism that floats: bodies with elements of many types between them, nothing on the ground.
+Model random_model(std::mt19937& random) {
+  std::uniform_real_distribution<double> part(-1, 1);
+  const auto place = [&] { return Vec2<double>{part(random), part(random)}; };
+  Model model;
+  const int bodies = 2 + static_cast<int>(random() % 5);
+  for (int b = 0; b < bodies; ++b)
+    model.add_body("b" + std::to_string(b),
+                   {.position = {3.0 * b + part(random), part(random)}, .angle = 4 * part(random)});
+  for (int e = 0; e < 12; ++e) {
+    const int i = static_cast<int>(random() % static_cast<unsigned>(bodies));
+    const int j = (i + 1) % bodies;
+    const Vec2<double> s_i = place(), s_j = place(), axis{1 + part(random) / 2, part(random)};
+    switch (random() % 9) {
+      case 0:
+        model.add("", Revolute<double>{s_i, s_j}, i, j);
+        break;
+      case 1:
+        model.add("", Translational<double>{s_i, s_j, axis, {}}, i, j);
+        break;
+      case 2:
+        model.add("", Slot<double>{s_i, s_j, axis}, i, j);
+        break;
+      case 3:
+        model.add("", Coupler<double>{s_i, s_j}, i, j);
+        break;
+      case 4:
+        model.add("", Weld<double>{s_i, s_j}, i, j);
+        break;
+      case 5:
+        model.add_force("", SpringDamper<double>{s_i, s_j, 1.0, part(random) > 0 ? 1.0 : 0.0}, i, j);
+        break;
+      case 6:
+        model.add("", Belt<double>{s_i, s_j, 0.2, 0.3, part(random) > 0}, i, j);
+        break;
+      case 7:
+        model.add("", Gear<double>{s_i, s_j, 0.2, 0.5, part(random) > 0}, i, j);
+        break;
+      default:
+        model.add_force("", TorsionSpring<double>{s_i, s_j, 1.0, 0.0}, i, j);
+    }
+  }
+  return model;
+}
+
+// Who moves a whole mechanism moves its picture: all corners but those of symbols that stand upright on the page.
+TEST(Drawings, OfRandomMechanismsMoveWithThem) {
+  std::mt19937 random(2024);
+  std::uniform_real_distribution<double> part(-1, 1);
+  for (int trial = 0; trial < 60; ++trial) {
+    const Model model = random_model(random);
+    Drawing drawing = draw_model(model);
+    std::vector<Frame<double>> frames = given_poses(model), moved;
+    observe_guides(drawing, frames);
+    fit_guides(drawing, 0.1);
+    const Frame<double> motion = make_frame(7 * part(random), 7 * part(random), 4 * part(random));
+    for (const Frame<double>& f : frames) {
+      const Vec2<double> at = motion.point(f.origin());
+      moved.push_back(make_frame(at.x, at.y, f.phi + motion.phi));
+    }
+    int compared = 0;
+    for (const DrawnShape& shape : drawing.shapes) {
+      if (shape.anchor == Anchor::point && shape.body_j < 0) continue;
+      const Placement before = place(shape, frames, 0.1), after = place(shape, moved, 0.1);
+      for (const DrawnLine& line : drawing.symbols[static_cast<std::size_t>(shape.symbol)].lines) {
+        for (const Vec2<double>& p : line.points) {
+          const Vec2<double> away = after(p) - motion.point(before(p));
+          ASSERT_LT(norm(away), 1e-9) << "trial " << trial;
+          ++compared;
+        }
+      }
+    }
+    EXPECT_GT(compared, 10);
   }
 }
 

@@ -11,7 +11,7 @@ void draw_element(DrawingBuilder& builder, const Entry& entry, int number, bool 
   Pen pen(builder, number, entry.i, E::bodies == 1 ? ground : entry.j, driver);
   if constexpr (requires { entry.element.draw(pen); }) {
     entry.element.draw(pen);
-  } else {
+  } else if constexpr (requires { entry.element.s_i, entry.element.s_j; }) {
     pen.tie(entry.element.s_i, entry.element.s_j);
   }
 }

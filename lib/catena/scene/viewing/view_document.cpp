@@ -23,7 +23,7 @@ class Drawings {
     for (const RecordedAnalysis& analysis : record.analyses) {
       add(analysis.model);
       Drawing& drawing = drawings_[number(analysis.model)];
-      for (std::size_t k = 0; k < analysis.poses.size(); ++k)
+      for (std::size_t k = 0; k < analysis.poses.size() && !drawing.guides.empty(); ++k)
         observe_guides(drawing, frames_of(analysis.layout, analysis.poses[k]));
     }
     for (Drawing& drawing : drawings_) fit_guides(drawing, 0.2 * drawing.typical_length);
