@@ -3,6 +3,7 @@
 #
 #   apps/setup.sh            what building the library and the command line needs
 #   apps/setup.sh --tests    also what the tests and benchmarks need
+#   apps/setup.sh --browser  also the browser that pages are tested in
 #   apps/setup.sh --all      also the second compiler and the formatter
 #
 # Installs only what is missing, as root or through sudo, and says what it does. With nothing missing it ends at once
@@ -19,6 +20,7 @@ packages=(
   nlohmann-json3-dev    # scene files
   libcli11-dev          # the command line
   libfmt-dev            # text reports
+  esbuild               # the page of `catena view`
 )
 test_packages=(
   libgtest-dev
@@ -26,7 +28,12 @@ test_packages=(
   libboost-dev          # 50-digit arithmetic to compare with
   libbenchmark-dev      # apps/bench
   pkgconf               # the installed package is used through pkg-config too
+  node-typescript       # the types of the page are checked
   ccache                # the library is built several times over, mostly alike
+)
+browser_packages=(
+  chromium chromium-driver
+  nodejs                # speaks with the driver
 )
 all_packages=(
   clang clang-format
@@ -36,9 +43,10 @@ all_packages=(
 case "${1:-}" in
   "") ;;
   --tests) packages+=("${test_packages[@]}") ;;
-  --all) packages+=("${test_packages[@]}" "${all_packages[@]}") ;;
+  --browser) packages+=("${test_packages[@]}" "${browser_packages[@]}") ;;
+  --all) packages+=("${test_packages[@]}" "${browser_packages[@]}" "${all_packages[@]}") ;;
   *)
-    echo "usage: apps/setup.sh [--tests | --all]" >&2
+    echo "usage: apps/setup.sh [--tests | --browser | --all]" >&2
     exit 2
     ;;
 esac

@@ -13,7 +13,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 mode="${1:-}"
 case "$mode" in
-  "" | --long) packages=--tests ;;
+  "") packages=--tests ;;
+  --long) packages=--browser ;;
   --all) packages=--all ;;
   *)
     echo "usage: tests/run.sh [--all | --long]" >&2

@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "run_command.hpp"
+#include "scene_arguments.hpp"
 
 namespace catena::cli {
 namespace {
@@ -85,12 +86,6 @@ const std::vector<Verb>& verbs() {
   return all;
 }
 
-/// What is wrong with the text of a count; empty if nothing is.
-std::string whole_number(const std::string& text) {
-  const bool digits = !text.empty() && text.size() < 19 && text.find_first_not_of("0123456789") == std::string::npos;
-  return digits && text.find_first_not_of('0') != std::string::npos ? "" : "wants a whole number above 0, not " + text;
-}
-
 /// An option of the verb: on the command line max_steps may be written --max-steps.
 std::string option_name(std::string_view key) {
   std::string name = "--" + std::string(key);
@@ -102,30 +97,25 @@ std::string option_name(std::string_view key) {
 struct Parsed {
   RunCommand run;
   std::vector<std::string> outputs;  // of a whole scene
-  std::vector<std::string> set;
+  SceneArguments scene;
   std::vector<std::pair<std::string, std::vector<std::string>>> keys;
 };
 
 void add_common_options(CLI::App& command, Parsed& parsed) {
   RunCommand& run = parsed.run;
-  command.add_option("SCENE", run.scene, "the scene file")->required()->type_name("FILE");
+  add_scene_arguments(command, parsed.scene);
   command.add_flag("--json", run.json, "print results as JSON, every digit");
   command
       .add_option("-o,--output-dir,--output", run.directory,
                   "also write one CSV file an analysis and report.json to this folder")
       ->type_name("DIR")
       ->check([](const std::string& folder) { return folder.empty() ? "the folder has no name" : ""; });
+  command.add_option("--view", run.page, "also write a page with the moving mechanism and its plots")
+      ->type_name("FILE");
   command.add_flag("--stats", run.stats, "print what was computed how often");
   command.add_flag("-q,--quiet", run.quiet, "print no table, report or progress");
   command.add_flag("-v,--verbose", run.verbose,
                    "print all rows and columns, the iterations of Newton's method, and the logs of solvers");
-  command.add_option("--set", parsed.set, "change a parameter: NAME=VALUE, in the syntax of scenes")
-      ->allow_extra_args(false)
-      ->type_name("NAME=VALUE");
-  command.add_option("--max-elements", run.options.max_elements, "refuse larger scenes")
-      ->capture_default_str()
-      ->type_name("N")
-      ->check(whole_number);
 }
 
 /// Of `run` and `dynamics`.
@@ -148,29 +138,15 @@ void add_dynamics_options(CLI::App& command, RunOptions& options) {
       ->excludes(interval);
 }
 
-/// The entries of a list that may be written as in a scene: [0.1, 0.2] for 0.1,0.2.
-std::vector<std::string> without_brackets(std::vector<std::string> values) {
-  if (values.empty() || !values.front().starts_with('[') || !values.back().ends_with(']')) return values;
-  values.front().erase(0, 1);
-  values.back().pop_back();
-  for (std::string& value : values) {
-    value.erase(0, value.find_first_not_of(' '));
-    value.erase(value.find_last_not_of(' ') + 1);
-  }
-  return values;
-}
-
 /// What was read, as the scene runner wants it. Throws CLI::ValidationError.
 RunCommand complete(const Parsed& parsed, const std::string& analysis) {
   RunCommand run = parsed.run;
+  const RunOptions common = parsed.scene.options();
+  run.scene = parsed.scene.scene;
+  run.options.set = common.set;
+  run.options.max_elements = common.max_elements;
   run.options.verb = analysis;
   run.options.outputs = without_brackets(parsed.outputs);
-  for (const std::string& assignment : parsed.set) {
-    const std::size_t equals = assignment.find('=');
-    if (equals == 0 || equals == std::string::npos)
-      throw CLI::ValidationError("--set", "wants NAME=VALUE, not \"" + assignment + "\"");
-    run.options.set.emplace_back(assignment.substr(0, equals), assignment.substr(equals + 1));
-  }
   for (const auto& [key, values] : parsed.keys) {
     for (const std::string& value : without_brackets(values)) run.options.verb_options.emplace_back(key, value);
   }

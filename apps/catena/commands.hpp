@@ -22,6 +22,9 @@ using Action = std::function<int()>;
 void add_run_commands(CLI::App& app, Action& chosen);  ///< run, and the verbs that run one analysis
 void add_explain_command(CLI::App& app, Action& chosen);
 void add_schema_command(CLI::App& app, Action& chosen);
+void add_draw_command(CLI::App& app, Action& chosen);
+void add_plot_command(CLI::App& app, Action& chosen);
+void add_view_command(CLI::App& app, Action& chosen);
 
 /// Prints text to the standard output; returns the exit code.
 int print(const std::string& text);

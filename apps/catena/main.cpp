@@ -78,6 +78,9 @@ int run(int argc, char** argv) {
   add_run_commands(app, chosen);
   add_explain_command(app, chosen);
   add_schema_command(app, chosen);
+  add_draw_command(app, chosen);
+  add_plot_command(app, chosen);
+  add_view_command(app, chosen);
 
   const std::string first = argc > 1 ? argv[1] : "-";
   const std::vector<std::string> known = command_names(app);

@@ -11,8 +11,10 @@
 #include "catena/results/interrupt.hpp"
 #include "catena/results/progress_bar.hpp"
 #include "catena/results/text_sink.hpp"
+#include "catena/scene/viewing/run_recorder.hpp"
 #include "commands.hpp"
 #include "result_folder.hpp"
+#include "view_page.hpp"
 
 namespace catena::cli {
 namespace {
@@ -102,7 +104,17 @@ int execute(const RunCommand& command) {
   }
   if (!command.directory.empty()) sinks.add(folder.emplace(command.directory));
 
+  std::optional<RunRecorder> recorder;
+  if (!command.page.empty()) {
+    if (const std::string obstacle = viewer_obstacle(); !obstacle.empty()) {
+      complain(obstacle);
+      return usage;
+    }
+    sinks.add(recorder.emplace());
+  }
+
   RunOptions options = command.options;
+  options.poses = recorder ? &*recorder : nullptr;
   options.cancel = &interrupt_flag();
   options.verbose = command.verbose;
   if (bar.visible()) {
@@ -116,7 +128,8 @@ int execute(const RunCommand& command) {
   if (outcome.exit_code == wrong_scene && command.json) output.write(invalid_json(outcome));
   output.flush();
   print_messages(command, outcome);
-  const bool written = finish_output(output, folder ? &*folder : nullptr, command.quiet);
+  bool written = finish_output(output, folder ? &*folder : nullptr, command.quiet);
+  if (recorder && recorder->record().model) written = write_page(command.page, recorder->record()) == solved && written;
   if (output.reader_gone()) {
     std::signal(SIGPIPE, SIG_DFL);
     std::raise(SIGPIPE);

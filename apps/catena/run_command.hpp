@@ -11,6 +11,7 @@ namespace catena::cli {
 struct RunCommand {
   std::string scene;      ///< path
   std::string directory;  ///< of -o, or empty
+  std::string page;       ///< of --view, or empty
   bool json = false, stats = false, quiet = false, verbose = false;
   RunOptions options;
 };

@@ -3,7 +3,8 @@
 //   Model model = ...                       model/model.hpp, model/model_add.hpp, elements/all.hpp
 //   Kinematics, Dynamics, Assembler ...     analysis/
 //   ColumnSet, ResultStorage, RowSink       columns/, results/
-//   run_scene(path, options, sink)          scene/scene_runner.hpp
+//   run_scene(path, options, sink)          scene/running/scene_runner.hpp
+//   RunRecorder, draw_record, plot_record   scene/viewing/: figures, plots and pages of a run
 //
 // Units SI, radians. Numerical outcomes are values (base/status.hpp); exceptions are for misuse and bad scenes.
 #pragma once
@@ -17,3 +18,6 @@
 #include "catena/results/column_rows.hpp"
 #include "catena/results/result_storage.hpp"
 #include "catena/scene/running/scene_runner.hpp"
+#include "catena/scene/viewing/record_figure.hpp"
+#include "catena/scene/viewing/view_document.hpp"
+#include "catena/scene/viewing/viewer_page.hpp"

@@ -47,7 +47,7 @@ TEST(Usage, HelpAndVersionAreNoMistakes) {
   const ProgramResult help = run_catena({"--help"});
   EXPECT_EQ(help.exit_code, 0);
   for (const char* command : {"run", "check", "assemble", "kinematics", "inverse", "dynamics", "equilibrium", "path",
-                              "modes", "explain", "schema"}) {
+                              "modes", "explain", "schema", "draw", "plot", "view"}) {
     EXPECT_NE(help.out.find(std::string("\n  ") + command), std::string::npos) << command;
     EXPECT_EQ(run_catena({command, "--help"}).exit_code, 0) << command;
   }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the library and the command line with UMFPACK, SPQR, Ipopt and NLopt all left out, makes sure that none of
-# them is linked, and runs a mechanism.
+# Builds the library and the command line with UMFPACK, SPQR, Ipopt, NLopt and the viewer all left out, makes sure that
+# none of the libraries is linked, and runs a mechanism.
 # CMakeLists.txt sets SOURCE_DIR BUILD_DIR WORK_DIR CMAKE CXX GENERATOR.
 set -euo pipefail
 work="$WORK_DIR/switched_off"
@@ -10,6 +10,7 @@ work="$WORK_DIR/switched_off"
 "$CMAKE" -S "$SOURCE_DIR" -B "$work" -G "$GENERATOR" -DCMAKE_CXX_COMPILER="$CXX" -DCMAKE_BUILD_TYPE=Release \
   -DCATENA_WERROR=ON -DCATENA_INSTANTIATE_DIR="$BUILD_DIR/instantiate" \
   -DCATENA_WITH_UMFPACK=OFF -DCATENA_WITH_SPQR=OFF -DCATENA_WITH_IPOPT=OFF -DCATENA_WITH_NLOPT=OFF \
+  -DCATENA_WITH_VIEWER=OFF \
   -DCATENA_BUILD_TESTS=OFF -DCATENA_BUILD_BENCH=OFF
 "$CMAKE" --build "$work"
 
@@ -36,3 +37,9 @@ SCENE
   fi
   grep -i "built without $solver" "$work/held_$solver.txt"
 done
+if "$program" view "$SOURCE_DIR/data/scenes/crank_rocker.json" -o "$work/page.html" >"$work/view.txt" 2>&1; then
+  echo "view wrote a page although the viewer was left out"
+  exit 1
+fi
+grep "built without the viewer" "$work/view.txt"
+"$program" draw "$SOURCE_DIR/data/scenes/crank_rocker.json" --svg "$work/crank_rocker.svg"

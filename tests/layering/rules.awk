@@ -1,24 +1,27 @@
 # The rules on includes and headers; run over all sources by check.sh. Prints violations and exits 1 if there are any.
 #
-#   base <- elements <- model;  base <- linalg;  {model, linalg} <- assembly <- columns <- analysis <- results <- scene
+#   base <- elements <- model <- drawing;  base <- linalg
+#   {model, linalg} <- assembly <- columns <- analysis <- results;  {results, drawing} <- scene
 #
 # `may[layer]` lists what a layer may include, itself among it. apps and tests may include every layer, and so may the
 # umbrella header lib/catena/catena.hpp. `part[folder]` lists what a folder inside of a layer may include of its own
 # layer; a folder that is not listed there is an error, and so is one of more than 30 files:
 #
 #   analysis  run <- pose <- motion <- {kinematics, contact <- dynamics};  pose <- balance <- spectrum <- statics <- stability
-#   scene     json <- numbers <- describing <- reading <- building <- running <- explaining
+#   scene     json <- numbers <- describing <- reading <- building <- running <- viewing <- explaining
+#   drawing   shapes <- figures
 
 BEGIN {
   may["base"] = " base "
   may["elements"] = " base elements "
   may["model"] = " base elements model "
+  may["drawing"] = " base elements model drawing "
   may["linalg"] = " base linalg "
   may["assembly"] = " base elements model linalg assembly "
   may["columns"] = may["assembly"] "columns "
   may["analysis"] = may["columns"] "analysis "
   may["results"] = may["analysis"] "results "
-  may["scene"] = may["results"] "scene "
+  may["scene"] = may["results"] "drawing scene "
   every = may["scene"]
 
   chain("analysis", "run pose motion")
@@ -30,7 +33,8 @@ BEGIN {
   after("analysis", "spectrum", "run pose balance")
   after("analysis", "statics", "run pose balance spectrum")
   after("analysis", "stability", "run pose motion balance spectrum statics")
-  chain("scene", "json numbers describing reading building running explaining")
+  chain("scene", "json numbers describing reading building running viewing explaining")
+  chain("drawing", "shapes figures")
   chain("linalg", "patterns kernels")
   after("linalg", "factorization", "patterns kernels")
   after("linalg", "block", "patterns kernels")

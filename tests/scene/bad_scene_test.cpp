@@ -57,6 +57,14 @@ const BadScene texts[] = {
     {"InvalidUtf8", "{\"catena\": 1, \"name\": \"a§\xff\"}", "UTF-8"},
     {"KeyTwice", "{\"catena\": 1, \"name\": \"a\", §\"name\": \"b\"}", "name"},
     {"BodyTwice", "{\"catena\": 1, \"bodies\": {\"a\": {}, §\"a\": {}}}", "duplicate key \"a\""},
+    {"DrawNoList", R"({"catena": 1, "bodies": {"a": {"draw": §{"disc": {"radius": 1}}}}})", "must be a list of shapes"},
+    {"DrawNothing", R"({"catena": 1, "bodies": {"a": {"draw": [§{}]}}})", "must be one of"},
+    {"DrawTwo", R"({"catena": 1, "bodies": {"a": {"draw": [§{"disc": {"radius": 1}, "line": [[0, 0], [1, 0]]}]}}})",
+     "must be one of"},
+    {"DrawnDot", R"({"catena": 1, "bodies": {"ground": {"draw": [{"line": §[[0, 0]]}]}}})", "at least two corners"},
+    {"DrawnMass", R"({"catena": 1, "bodies": {"a": {"draw": [{§"mass": 1, "disc": {"radius": 1}}]}}})", "mass"},
+    {"DrawnNoArea", R"({"catena": 1, "bodies": {"a": {"draw": [§{"disc": {"radius": 0}}]}}})", "disc without area"},
+    {"DrawnInKilograms", R"({"catena": 1, "bodies": {"a": {"draw": [{"disc": {"radius": §"1 kg"}}]}}})", "kg"},
 };
 
 const BadScene scenes[] = {

@@ -26,6 +26,7 @@
 //   trouble(a)             nullptr, or why the row means nothing at this configuration, as a phrase
 //   can_leave_curve()      whether the element uses a curve or table that ends for good
 //   curve_use(a)           where on it the element stands, if it asks anything of it (CurveUse)
+//   draw(pen)              how it looks in figures, by calls of drawing/pen.hpp  (default: a line between its points)
 //
 // Frames carry cosine and sine: no element calls trigonometry. One file an element, plus its lines in list.hpp.
 #pragma once

@@ -15,7 +15,7 @@
 //   potential<T>(a)            V with Q = -V_q at rest and functions frozen; present if the element can have one
 //   conservative()             false where these parameters have no potential (a follower force); default: has
 //   dissipation(a)             power lost to damping, W (default 0)
-//   complete(i, j), check(), can_leave_curve(), curve_use(a)    as for constraints
+//   complete(i, j), check(), can_leave_curve(), curve_use(a), draw(pen)    as for constraints
 //
 // Frames may be given relative to any common origin; `ground` is where that origin lies. Units: N, N m, J, W.
 #pragma once

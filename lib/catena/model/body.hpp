@@ -5,6 +5,8 @@
 // Units: kg, kg m^2, m, rad, m/s, rad/s.
 #pragma once
 
+#include <vector>
+
 #include "catena/base/vec2.hpp"
 
 namespace catena {
@@ -39,6 +41,15 @@ struct BodyValues {
   double angle = 0;
   Vec2<double> centroid{};
   bool fixed = false, particle = false;
+};
+
+/// What a body looks like in figures, where its author says so; no analysis depends on it. Local coordinates in the
+/// centroidal frame, m.
+struct BodyShape {
+  int body = ground;
+  bool closed = true;                  ///< an area; else a line
+  double radius = 0;                   ///< above zero: a disc about the one point in `points`
+  std::vector<Vec2<double>> points{};  ///< corners
 };
 
 /// A named point of a body, local coordinates in the centroidal frame.

@@ -56,6 +56,7 @@ class BasicModel {
   ConstraintLists<S> constraints;
   ForceLists<S> forces;
   std::vector<TimeFunction<S>> functions;
+  std::vector<BodyShape> shapes;        ///< what bodies look like in figures
   std::vector<ElementRecord> elements;  ///< file order
   NameTable names;                      ///< of bodies, constraints, drivers, forces
   NameTable point_names;

@@ -28,6 +28,10 @@ struct AbsoluteAngle {
     return std::make_tuple(PointField{"i", &AbsoluteAngle::s_i, 0, "the body"},
                            FunctionField{"value", 0, UnitKind::angle, Omitted::given, "c, the angle of the body"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.turn(s_i);
+  }
 
   template <class T>
   T measure(const Frame<T>& i, const Frame<T>&) const {

@@ -33,6 +33,10 @@ struct AbsoluteDistance {
                            PlaceField{"ground", &AbsoluteDistance::ground, "the place C in the ground frame"},
                            FunctionField{"value", 0, UnitKind::length, Omitted::given, "c, the distance, not zero"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.rod_to_ground(s_i, ground);
+  }
 
   template <class T>
   T measure(const Frame<T>& i, const Frame<T>&) const {

@@ -29,6 +29,10 @@ struct AbsoluteX {
     return std::make_tuple(PointField{"i", &AbsoluteX::s_i, 0, "the point P of the body"},
                            FunctionField{"value", 0, UnitKind::length, Omitted::given, "c, the abscissa of P"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.roller(s_i, {1, 0});
+  }
 
   template <class T>
   T measure(const Frame<T>& i, const Frame<T>&) const {

@@ -29,6 +29,10 @@ struct AbsoluteY {
     return std::make_tuple(PointField{"i", &AbsoluteY::s_i, 0, "the point P of the body"},
                            FunctionField{"value", 0, UnitKind::length, Omitted::given, "c, the ordinate of P"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.roller(s_i, {0, 1});
+  }
 
   template <class T>
   T measure(const Frame<T>& i, const Frame<T>&) const {

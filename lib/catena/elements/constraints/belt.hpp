@@ -39,6 +39,10 @@ struct Belt {
         FlagField{"crossed", &Belt::crossed,
                   "whether the belt is crossed: the pulleys then turn against each other (default false)"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.belt(s_i, radius_i, s_j, radius_j, crossed);
+  }
 
   void complete(const Frame<S>& i, const Frame<S>& j) { constant = pair().constant(i, j, separation(i, j, s_i, s_j)); }
   const char* check() const {

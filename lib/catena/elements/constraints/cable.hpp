@@ -42,6 +42,10 @@ struct Cable {
                            NumberField{"rest_speed", &Cable::rest_speed, UnitKind::velocity, Domain::not_negative,
                                        false, "a slower rebound is none (default: 1e-4 of the speed of the motion)"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.cable(s_i, s_j);
+  }
 
   void complete(const Frame<S>& i, const Frame<S>& j) {
     if (value_of(length) < 0) length = norm(separation(i, j, s_i, s_j));

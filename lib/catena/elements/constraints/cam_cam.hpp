@@ -42,6 +42,11 @@ struct CamCam {
                            CurveField{"curve_i", &CamCam::curve_i, 0, "the first cam, in the frame of body i"},
                            CurveField{"curve_j", &CamCam::curve_j, 1, "the second cam, in the frame of body j"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.curve_on_i(curve_i);
+    pen.curve_on_j(curve_j);
+  }
 
   void complete(const Frame<S>& i, const Frame<S>& j) {
     if (curve_i && curve_j && !(curve_i.is_line() && curve_j.is_line()))

@@ -46,6 +46,11 @@ struct CamFlat {
                            CurveField{"curve", &CamFlat::curve, 0, "the cam, in the frame of body i"},
                            AxisField{"axis_j", &CamFlat::axis_j, 1, true, "direction of the face in body j"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.curve_on_i(curve);
+    pen.face_on_j(s_j, axis_j);
+  }
 
   void complete(const Frame<S>& i, const Frame<S>& j) {
     normalise(axis_j);

@@ -62,6 +62,11 @@ struct Contact : PointOnCurve<S> {
     if (const char* wrong = Base::check()) return wrong;
     return check_impact_and_friction(value_of(restitution), value_of(mu), value_of(mu_static));
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.wall_on_i(this->curve, side);
+    pen.follower_on_j(this->s_j, radius);
+  }
 
   /// An open contact does not use the curve.
   std::optional<CurveUse> curve_use(const Arguments<double>& a) const {

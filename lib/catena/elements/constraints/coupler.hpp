@@ -33,6 +33,10 @@ struct Coupler {
                            PointField{"j", &Coupler::s_j, 1, "the pin P_j on body j"},
                            FunctionField{"value", 0, UnitKind::length, Omitted::given, "l, the length, not zero"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.rod(s_i, s_j);
+  }
 
   template <class T>
   T measure(const Frame<T>& i, const Frame<T>& j) const {

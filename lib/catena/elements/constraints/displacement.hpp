@@ -33,6 +33,10 @@ struct Displacement {
                            AxisField{"axis_i", &Displacement::axis_i, 0, true, "direction fixed in body i"},
                            FunctionField{"value", 0, UnitKind::length, Omitted::given, "c, the displacement"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.measured_along(s_i, axis_i, s_j);
+  }
 
   void complete(const Frame<S>&, const Frame<S>&) { normalise(axis_i); }
   const char* check() const { return has_direction(axis_i) ? nullptr : "axis_i has no direction"; }

@@ -36,6 +36,10 @@ struct Gear {
         NumberField{"radius_j", &Gear::radius_j, UnitKind::length, Domain::positive, true, "pitch radius R_j"},
         FlagField{"internal", &Gear::internal, "whether one gear runs inside the other (default false)"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.gears(s_i, radius_i, s_j, radius_j, internal);
+  }
 
   void complete(const Frame<S>& i, const Frame<S>& j) { constant = pair().constant(i, j, separation(i, j, s_i, s_j)); }
   const char* check() const {

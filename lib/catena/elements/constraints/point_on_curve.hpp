@@ -39,6 +39,11 @@ struct PointOnCurve {
                            PointField{"j", &PointOnCurve::s_j, 1, "the point P_j of body j"},
                            CurveField{"curve", &PointOnCurve::curve, 0, "the curve, in the frame of body i"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.curve_on_i(curve);
+    pen.follower_on_j(s_j, S{});
+  }
 
   void complete(const Frame<S>& i, const Frame<S>& j) {
     if (curve) parameter = curve.nearest(plain(local(i, j)));

@@ -38,6 +38,10 @@ struct RackPinion {
         NumberField{"radius", &RackPinion::radius, UnitKind::length, Domain::positive, true, "pitch radius R_p"},
         SideField{"side", &RackPinion::side, "1: the pinion is to the left of the rack's direction, -1: to the right"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.rack_and_pinion(s_i, axis_i, s_j, radius, side);
+  }
 
   void complete(const Frame<S>& i, const Frame<S>& j) {
     normalise(axis_i);

@@ -30,6 +30,10 @@ struct RelativeAngle {
         PointField{"i", &RelativeAngle::s_i, 0, "body i"}, PointField{"j", &RelativeAngle::s_j, 1, "body j"},
         FunctionField{"value", 0, UnitKind::angle, Omitted::given, "c, the angle of j measured from i"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.turn(s_i, s_j);
+  }
 
   template <class T>
   T measure(const Frame<T>& i, const Frame<T>& j) const {

@@ -31,6 +31,10 @@ struct RelativeDistance {
                            PointField{"j", &RelativeDistance::s_j, 1, "the point P_j on body j"},
                            FunctionField{"value", 0, UnitKind::length, Omitted::given, "c, the distance, not zero"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.rod(s_i, s_j);
+  }
 
   template <class T>
   T measure(const Frame<T>& i, const Frame<T>& j) const {

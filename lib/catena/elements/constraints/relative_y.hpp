@@ -32,6 +32,10 @@ struct RelativeY {
                            PointField{"j", &RelativeY::s_j, 1, "the point P_j of body j"},
                            FunctionField{"value", 0, UnitKind::length, Omitted::given, "c, the difference"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.measured_along(s_i, {0, 1}, s_j);
+  }
 
   template <class T>
   T measure(const Frame<T>& i, const Frame<T>& j) const {

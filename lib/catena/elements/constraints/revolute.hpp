@@ -31,6 +31,10 @@ struct Revolute {
     return std::make_tuple(PointField{"i", &Revolute::s_i, 0, "the pin's place on body i"},
                            PointField{"j", &Revolute::s_j, 1, "the pin's place on body j"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.pin(s_i, s_j);
+  }
 
   template <class T>
   void phi(const Arguments<T>& a, T* out) const {

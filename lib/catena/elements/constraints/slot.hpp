@@ -34,6 +34,10 @@ struct Slot {
                            FunctionField{"value", 0, UnitKind::length, Omitted::zero,
                                          "c, the offset to the left of the axis (default 0)"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.slot(s_i, axis_i, s_j);
+  }
 
   void complete(const Frame<S>&, const Frame<S>&) { normalise(axis_i); }
   const char* check() const { return has_direction(axis_i) ? nullptr : "axis_i has no direction"; }

@@ -60,6 +60,10 @@ struct Stop {
         BoundField{"rest_speed", &Stop::rest_speed, UnitKind::velocity, UnitKind::angular_velocity,
                    Domain::not_negative, "a slower rebound is none (default: 1e-4 of the speed of the motion)"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    if (quantity == StopQuantity::slide) pen.limits(s_i, axis_i, min, max);
+  }
 
   bool in_angle() const { return quantity == StopQuantity::angle; }
   void complete(const Frame<S>&, const Frame<S>&) { normalise(axis_i); }

@@ -42,6 +42,10 @@ struct Translational {
                            AxisField{"axis_j", &Translational::axis_j, 1, false,
                                      "the same direction in body j (default: as in the given configuration)"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.slide(s_i, axis_i, s_j, axis_j);
+  }
 
   void complete(const Frame<S>& i, const Frame<S>& j) {
     if (!has_direction(axis_j)) axis_j = j.to_local(i.axis(axis_i));

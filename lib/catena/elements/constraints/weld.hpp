@@ -37,6 +37,10 @@ struct Weld {
     return std::make_tuple(PointField{"i", &Weld::s_i, 0, "the weld's place on body i"},
                            PointField{"j", &Weld::s_j, 1, "the weld's place on body j"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.weld(s_i, s_j);
+  }
 
   void complete(const Frame<S>& i, const Frame<S>& j) { angle = j.phi - i.phi; }
 

@@ -42,6 +42,10 @@ struct Bushing {
         NumberField{"angle", &Bushing::angle, UnitKind::angle, Domain::any, false,
                     "free angle theta0 of j measured from i (default 0)"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.bushing(s_i, s_j);
+  }
 
   const char* check() const {
     for (const S& number : {kx, ky, kt, cx, cy, ct}) {

@@ -31,6 +31,10 @@ struct ElasticCable {
                     "its length L without tension (default: the given distance)"},
         NumberField{"k", &ElasticCable::k, UnitKind::stiffness, Domain::positive, true, "stiffness when taut"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.cable(s_i, s_j);
+  }
 
   void complete(const Frame<S>& i, const Frame<S>& j) {
     if (value_of(length) < 0) length = norm(separation(i, j, s_i, s_j));

@@ -28,6 +28,10 @@ struct PointForce {
         FunctionPairField{"force", 0, UnitKind::force, "components f_x, f_y, functions of time"},
         ChoiceField{"frame", &PointForce::in_body_axes, "ground", "body", "whose axes the components are in"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.force(s_i, in_body_axes);
+  }
 
   bool conservative() const { return !in_body_axes; }
 

@@ -39,6 +39,10 @@ struct SpringDamper {
         TableField{"curve", &SpringDamper::curve, UnitKind::length, UnitKind::force,
                    "g, added to the tension: a smooth curve through pairs [elongation l - l0, tension]"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.spring(s_i, s_j, value_of(k) != 0 || curve, value_of(c) != 0);
+  }
 
   void complete(const Frame<S>& i, const Frame<S>& j) {
     if (length < S(0.0)) length = norm(j.point(s_j) - i.point(s_i));

@@ -26,6 +26,10 @@ struct Torque {
                            PointField{"j", &Torque::s_j, 1, "the body that gets -n (default: the ground)"},
                            FunctionField{"torque", 0, UnitKind::torque, Omitted::refused, "n, a function of time"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.turn(s_i, s_j);
+  }
 
   template <class T>
   void force(const ForceArguments<T>& a, Wrench<T>& on_i, Wrench<T>& on_j) const {

@@ -35,6 +35,10 @@ struct TorsionSpring {
                     "free angle theta0 of j measured from i (default: the given one)"},
         FunctionField{"torque", 0, UnitKind::torque, Omitted::zero, "N, added to n (default 0)"});
   }
+  template <class Pen>
+  void draw(Pen& pen) const {
+    pen.spiral_spring(s_i, s_j);
+  }
 
   void complete(const Frame<S>& i, const Frame<S>& j) {
     if (value_of(angle) != value_of(angle)) angle = j.phi - i.phi;

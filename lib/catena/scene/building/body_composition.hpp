@@ -54,6 +54,8 @@ const char* BodyComposition<S>::add(PartTemplate::Shape shape, const S& mass, st
       return value_of(n[2]) <= 0 ? "is a disc without area" : nullptr;
     case PartTemplate::Shape::polygon:
       return add_polygon(mass, n);
+    case PartTemplate::Shape::line:
+      break;  // has no mass: parts cannot be lines
   }
   return nullptr;
 }

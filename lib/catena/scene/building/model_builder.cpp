@@ -13,6 +13,7 @@ BasicModel<S> ModelBuilder<S>::build() {
   model_.gravity = {value(scene_.gravity[0]), value(scene_.gravity[1])};
   if (!count_elements()) return std::move(model_);
   add_points(ground, scene_.ground);
+  add_shapes(ground, scene_.ground);
   visit(scene_.root, Pass::bodies);
   visit(scene_.root, Pass::elements);
   if (has_stops_) visit(scene_.root, Pass::stops);

@@ -65,6 +65,8 @@ class ModelBuilder {
 
   void add_body(const BodyTemplate& source);
   void add_points(int body, const BodyTemplate& source);
+  /// What the body looks like: shapes that it is given for that, and those of its parts.
+  void add_shapes(int body, const BodyTemplate& source);
   void compose(const BodyTemplate& source, std::string_view name, BasicBody<S>& body, Vec2<S>& centroid);
   void add_element(const ElementTemplate& source);
   bool make_name(const NameText& name, std::string& out);

@@ -85,6 +85,7 @@ void ModelBuilder<S>::add_body(const BodyTemplate& source) {
     model_.add_point(number, "to", {end, S{}});
   }
   add_points(number, source);
+  add_shapes(number, source);
 }
 
 template <class S>

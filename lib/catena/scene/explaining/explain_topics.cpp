@@ -37,7 +37,9 @@ Example
   fixed              true: stays where it is given
   particle           true: its angle stays as given, and it needs no inertia
   hold               columns that assembly may not change: "x", "y", "angle"
-  The ground is the body "ground"; it may have points.
+  draw               what it looks like in figures: shapes in the body frame as of parts, without mass, and
+                     {"line": [[x', y'], ...]}; else links between the places where it is held
+  The ground is the body "ground"; it may have points and draw.
 
 Columns of a body crank and of its point tip
   crank.x [m] crank.y [m] crank.angle [rad] crank.vx [m/s] crank.vy [m/s] crank.omega [rad/s] crank.ax [m/s^2]

@@ -170,6 +170,11 @@ json body_schema() {
   json disc = object_of(
       {{"centre", length("centre")}, {"radius", number("radius", UnitKind::length, Domain::positive)}}, {"radius"});
   json polygon{{"type", "array"}, {"items", pair}, {"minItems", 3}};
+  json drawn = object_of({{"rectangle", rectangle},
+                          {"disc", disc},
+                          {"polygon", polygon},
+                          {"line", {{"type", "array"}, {"items", pair}, {"minItems", 2}}}},
+                         {});
   json part = object_of({{"mass", number("mass; negative for a hole", UnitKind::mass)},
                          {"centroid", length("its centroid")},
                          {"inertia", number("about its centroid", UnitKind::inertia)},
@@ -193,7 +198,8 @@ json body_schema() {
                          "the ends of a rod in the ground frame [m], in place of position and angle")},
        {"fixed", {{"type", "boolean"}, {"description", "stays where it is given"}}},
        {"particle", {{"type", "boolean"}, {"description", "its angle stays as given, and it needs no inertia"}}},
-       {"hold", std::move(hold)}});
+       {"hold", std::move(hold)},
+       {"draw", described(list_of(std::move(drawn)), "shapes that the body is drawn with, in its frame")}});
 }
 
 /// The lists of bodies and elements, which a scene and its blocks both have.

@@ -77,28 +77,65 @@ void SceneReading::point_list(const JsonValue& value, BodyTemplate& body, std::s
   }
 }
 
-void SceneReading::part(const JsonValue& object, std::string_view body_owner) {
+void SceneReading::corners(const JsonValue& list, std::size_t least, const FieldName& field, PartTemplate& part) {
+  if (!list.is(JsonKind::array) || list.size() < least) {
+    error(list,
+          fmt::format("{} must be a list of at least {} corners [x', y']", field.text(), least == 2 ? "two" : "three"));
+    return;
+  }
+  for (const JsonValue& corner : list.elements()) {
+    const auto place = numbers.read_pair(corner, ExpectedDimension(dimension_of(UnitKind::length)), field);
+    part.numbers.insert(part.numbers.end(), place.begin(), place.end());
+  }
+}
+
+bool SceneReading::shape(const JsonValue& rectangle, const JsonValue& disc, const JsonValue& polygon,
+                         const std::string& owner, PartTemplate& part) {
   using Shape = PartTemplate::Shape;
-  PartTemplate part;
-  part.offset = static_cast<std::uint32_t>(object.offset());
-  const std::string owner = "a part of " + std::string(body_owner);
-  std::array<JsonValue, part_keys.size()> v;
-  if (!read_members(object, part_keys, owner, v, diagnostics)) return;
-  const auto& [mass, centroid, inertia, rectangle, disc, polygon] = v;
   const auto read = [&](const JsonValue& value, UnitKind unit, std::string_view key, std::string_view of, bool required,
                         const JsonValue& whole) {
-    if (value) {
-      part.numbers.push_back(numbers.read(value, unit, {key, of}));
-    } else {
-      if (required) error(whole, fmt::format("{} needs {}", of, in_quotes(key)));
-      part.numbers.push_back(required ? NumberValue() : NumberValue::constant(0));
-    }
+    if (!value && required) error(whole, fmt::format("{} needs {}", of, in_quotes(key)));
+    part.numbers.push_back(value      ? numbers.read(value, unit, {key, of})
+                           : required ? NumberValue()
+                                      : NumberValue::constant(0));
   };
   const auto read_place = [&](const JsonValue& value, std::string_view key, std::string_view of) {
     std::array<NumberValue, 2> place{NumberValue::constant(0), NumberValue::constant(0)};
     if (value) place = numbers.read_pair(value, dimension_of(UnitKind::length), {key, of});
     part.numbers.insert(part.numbers.end(), place.begin(), place.end());
   };
+  if (rectangle) {
+    part.shape = Shape::rectangle;
+    const std::string of = "rectangle in " + owner;
+    std::array<JsonValue, rectangle_keys.size()> r;
+    if (!read_members(rectangle, rectangle_keys, of, r, diagnostics)) return true;
+    read_place(r[0], rectangle_keys[0], of);
+    read(r[1], UnitKind::length, rectangle_keys[1], of, true, rectangle);
+    read(r[2], UnitKind::length, rectangle_keys[2], of, true, rectangle);
+    read(r[3], UnitKind::angle, rectangle_keys[3], of, false, rectangle);
+  } else if (disc) {
+    part.shape = Shape::disc;
+    const std::string of = "disc in " + owner;
+    std::array<JsonValue, disc_keys.size()> d;
+    if (!read_members(disc, disc_keys, of, d, diagnostics)) return true;
+    read_place(d[0], disc_keys[0], of);
+    read(d[1], UnitKind::length, disc_keys[1], of, true, disc);
+  } else if (polygon) {
+    part.shape = Shape::polygon;
+    corners(polygon, 3, {"polygon", owner}, part);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void SceneReading::part(const JsonValue& object, std::string_view body_owner) {
+  PartTemplate part;
+  part.offset = static_cast<std::uint32_t>(object.offset());
+  const std::string owner = "a part of " + std::string(body_owner);
+  std::array<JsonValue, part_keys.size()> v;
+  if (!read_members(object, part_keys, owner, v, diagnostics)) return;
+  const auto& [mass, centroid, inertia, rectangle, disc, polygon] = v;
   if (mass) {
     part.mass = numbers.read(mass, UnitKind::mass, {"mass", owner});
   } else {
@@ -110,45 +147,51 @@ void SceneReading::part(const JsonValue& object, std::string_view body_owner) {
     error(centroid ? centroid : inertia, fmt::format("{} of {} follows from its shape and may not be given",
                                                      centroid ? "centroid" : "inertia", owner));
   }
-  if (rectangle) {
-    part.shape = Shape::rectangle;
-    const std::string of = "rectangle in " + owner;
-    std::array<JsonValue, rectangle_keys.size()> r;
-    if (!read_members(rectangle, rectangle_keys, of, r, diagnostics)) return;
-    read_place(r[0], rectangle_keys[0], of);
-    read(r[1], UnitKind::length, rectangle_keys[1], of, true, rectangle);
-    read(r[2], UnitKind::length, rectangle_keys[2], of, true, rectangle);
-    read(r[3], UnitKind::angle, rectangle_keys[3], of, false, rectangle);
-  } else if (disc) {
-    part.shape = Shape::disc;
-    const std::string of = "disc in " + owner;
-    std::array<JsonValue, disc_keys.size()> d;
-    if (!read_members(disc, disc_keys, of, d, diagnostics)) return;
-    read_place(d[0], disc_keys[0], of);
-    read(d[1], UnitKind::length, disc_keys[1], of, true, disc);
-  } else if (polygon) {
-    part.shape = Shape::polygon;
-    const FieldName field{"polygon", owner};
-    if (!polygon.is(JsonKind::array) || polygon.size() < 3) {
-      error(polygon, field.text() + " must be a list of at least three corners [x', y']");
-      return;
-    }
-    for (const JsonValue& corner : polygon.elements()) {
-      const auto place = numbers.read_pair(corner, ExpectedDimension(dimension_of(UnitKind::length)), field);
-      part.numbers.insert(part.numbers.end(), place.begin(), place.end());
-    }
-  } else {
-    read_place(centroid, "centroid", owner);
-    read(inertia, UnitKind::inertia, "inertia", owner, false, object);
+  if (!shape(rectangle, disc, polygon, owner, part)) {
+    std::array<NumberValue, 2> place{NumberValue::constant(0), NumberValue::constant(0)};
+    if (centroid) place = numbers.read_pair(centroid, dimension_of(UnitKind::length), {"centroid", owner});
+    part.numbers.assign(place.begin(), place.end());
+    part.numbers.push_back(inertia ? numbers.read(inertia, UnitKind::inertia, {"inertia", owner})
+                                   : NumberValue::constant(0));
   }
   scene.parts.push_back(std::move(part));
 }
 
+void SceneReading::drawn_shapes(const JsonValue& list, std::string_view body_owner, BodyTemplate& body) {
+  body.first_drawn = static_cast<std::uint32_t>(scene.drawn.size());
+  if (!list.is(JsonKind::array)) {
+    error(list, fmt::format("{} must be a list of shapes; this is {}", FieldName{"draw", body_owner}.text(),
+                            describe(list.kind())));
+    return;
+  }
+  const std::string owner = "a drawn shape of " + std::string(body_owner);
+  for (const JsonValue& object : list.elements()) {
+    PartTemplate part;
+    part.offset = static_cast<std::uint32_t>(object.offset());
+    std::array<JsonValue, drawn_keys.size()> v;
+    if (!read_members(object, drawn_keys, owner, v, diagnostics)) continue;
+    const auto& [rectangle, disc, polygon, line] = v;
+    const int shapes = (rectangle ? 1 : 0) + (disc ? 1 : 0) + (polygon ? 1 : 0) + (line ? 1 : 0);
+    if (shapes != 1) {
+      error(object, owner + " must be one of \"rectangle\", \"disc\", \"polygon\", \"line\"");
+      continue;
+    }
+    if (line) {
+      part.shape = PartTemplate::Shape::line;
+      corners(line, 2, {"line", owner}, part);
+    } else {
+      shape(rectangle, disc, polygon, owner, part);
+    }
+    scene.drawn.push_back(std::move(part));
+  }
+  body.drawn = static_cast<std::uint32_t>(scene.drawn.size()) - body.first_drawn;
+}
+
 void SceneReading::ground_body(const JsonValue& value) {
-  static constexpr std::array<std::string_view, 1> keys{"points"};
-  std::array<JsonValue, 1> v;
-  if (!read_members(value, keys, "the ground", v, diagnostics) || !v[0]) return;
-  point_list(v[0], scene.ground, "the ground");
+  std::array<JsonValue, ground_keys.size()> v;
+  if (!read_members(value, ground_keys, "the ground", v, diagnostics)) return;
+  if (v[0]) point_list(v[0], scene.ground, "the ground");
+  if (v[1]) drawn_shapes(v[1], "the ground", scene.ground);
 }
 
 void SceneReading::body(const JsonMember& member, BlockTemplate& block) {
@@ -167,7 +210,7 @@ void SceneReading::body(const JsonMember& member, BlockTemplate& block) {
     return;
   }
   const auto& [mass, inertia, position, angle, velocity, angular_velocity, points, centroid, parts, rod, fixed,
-               particle, hold] = v;
+               particle, hold, draw] = v;
   Numbers given;
   const auto number = [&](const JsonValue& value, BodyNumber which, UnitKind unit, std::string_view key) {
     if (value) given.set(which, numbers.read(value, unit, {key, owner}));
@@ -220,6 +263,7 @@ void SceneReading::body(const JsonMember& member, BlockTemplate& block) {
   if (fixed) body.fixed = read_flag(fixed, {"fixed", owner}, diagnostics);
   if (particle) body.particle = read_flag(particle, {"particle", owner}, diagnostics);
   if (hold) read_hold(hold, owner, body, diagnostics);
+  if (draw) drawn_shapes(draw, owner, body);
   given.store(*this, body);
   block.bodies.push_back(body);
 }

@@ -80,6 +80,12 @@ class SceneReading {
   FunctionTemplate function_object(const JsonValue& value, const ExpectedDimension& unit, const FieldName& field);
   FunctionTemplate function_part(const JsonValue& value, const ExpectedDimension& unit, const FieldName& field);
   void part(const JsonValue& object, std::string_view owner);
+  /// The numbers of the one shape of these that is given; false if none is.
+  bool shape(const JsonValue& rectangle, const JsonValue& disc, const JsonValue& polygon, const std::string& owner,
+             PartTemplate& part);
+  void corners(const JsonValue& list, std::size_t least, const FieldName& field, PartTemplate& part);
+  /// Shapes without mass: what the body looks like.
+  void drawn_shapes(const JsonValue& list, std::string_view body_owner, BodyTemplate& body);
   void ground_body(const JsonValue& value);
   void point_list(const JsonValue& value, BodyTemplate& body, std::string_view owner);
   void attachment(const JsonValue& value, std::string_view key, std::string_view owner, bool has_at,

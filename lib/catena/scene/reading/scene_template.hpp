@@ -86,13 +86,15 @@ struct PointTemplate {
   NumberValue x, y;
 };
 
-/// A part of a body: a mass, or a shape of uniform density.
+/// A part of a body: a mass, or a shape of uniform density. What a body looks like is given by shapes too, without
+/// mass, and by lines.
 struct PartTemplate {
-  enum class Shape : unsigned char { mass, rectangle, disc, polygon };
+  enum class Shape : unsigned char { mass, rectangle, disc, polygon, line };
   Shape shape = Shape::mass;
   std::uint32_t offset = 0;
   NumberValue mass;
-  /// mass: centroid, inertia; rectangle: centre, width, height, angle; disc: centre, radius; polygon: corners
+  /// mass: centroid, inertia; rectangle: centre, width, height, angle; disc: centre, radius; polygon and line:
+  /// corners
   std::vector<NumberValue> numbers;
 };
 
@@ -104,6 +106,7 @@ struct BodyTemplate {
   bool fixed = false, particle = false, hold_x = false, hold_y = false, hold_angle = false;
   std::uint32_t first_point = 0, points = 0;
   std::uint32_t first_part = 0, parts = 0;
+  std::uint32_t first_drawn = 0, drawn = 0;  ///< among the scene's `drawn`
 
   bool has(BodyNumber number) const { return (given >> static_cast<int>(number)) & 1; }
 };
@@ -156,7 +159,7 @@ struct SceneTemplate {
   std::vector<NumberValue> numbers;
   std::vector<NameTemplate> patterns;
   std::vector<PointTemplate> points;
-  std::vector<PartTemplate> parts;
+  std::vector<PartTemplate> parts, drawn;
   std::vector<FunctionTemplate> functions;
   std::vector<CurveTemplate> curves;
   std::vector<TableTemplate> tables;

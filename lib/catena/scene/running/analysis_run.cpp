@@ -75,6 +75,15 @@ std::optional<TimeGrid> time_grid(const AnalysisContext& context, Report& report
   return grid;
 }
 
+Needs needs_of(const AnalysisContext& context, const ColumnSet& columns, const ColumnSources& sources) {
+  Needs needs = columns.needs();
+  if (!context.poses) return needs;
+  const Needs drawn = context.poses->needs();
+  needs.velocity = needs.velocity || (drawn.velocity && sources.velocity);
+  needs.multipliers = needs.multipliers || (drawn.multipliers && sources.multipliers);
+  return needs;
+}
+
 PlanOptions plan_options(const Model& model, const std::vector<std::string>& outputs) {
   return {elements_with_reactions(model, outputs)};
 }

@@ -14,6 +14,7 @@
 #include "catena/columns/column_set.hpp"
 #include "catena/results/analysis_result.hpp"
 #include "catena/results/column_rows.hpp"
+#include "catena/results/pose_sink.hpp"
 #include "catena/scene/reading/analysis_task.hpp"
 #include "catena/scene/running/gap_watch.hpp"
 #include "catena/scene/running/gear_check.hpp"
@@ -38,6 +39,7 @@ struct AnalysisContext {
   std::optional<double> parameter_at_end{};
   bool estimate_error = false;              ///< of dynamics
   CheckpointRequest* checkpoint = nullptr;  ///< nullptr: no analysis has to pause
+  PoseSink* poses = nullptr;                ///< nullptr: nobody draws
 };
 
 using AnalysisFunction = void (*)(AnalysisContext& context, AnalysisResult& result);
@@ -71,6 +73,7 @@ class ReportingRows final : public RowObserver {
   bool observe(const Snapshot& snapshot) override {
     tell(snapshot.t);
     if (gaps) gaps->observe(snapshot);
+    if (context_.poses) context_.poses->pose(snapshot);
     return rows_.observe(snapshot);
   }
   bool proceed(double t) override {
@@ -97,6 +100,9 @@ inline void refuse(AnalysisResult& result, std::string message) {
   result.report.message = std::move(message);
 }
 
+/// What an analysis must compute for its columns and for those who draw; the latter get what it can give.
+Needs needs_of(const AnalysisContext& context, const ColumnSet& columns, const ColumnSources& sources);
+
 /// The names whose reactions must be solved for, as plan options.
 PlanOptions plan_options(const Model& model, const std::vector<std::string>& outputs);
 
@@ -114,7 +120,7 @@ void run_over_time(AnalysisContext& context, AnalysisResult& result, Analysis& a
   ReportingRows rows(columns, context, grid.last());
   GapWatch gaps(*context.model);
   if (sources.analysis != "dynamics") rows.gaps = &gaps;
-  AnalysisReport report = analysis.run(grid, columns.needs(), rows);
+  AnalysisReport report = analysis.run(grid, needs_of(context, columns, sources), rows);
   for (std::string& doubt : gaps.warnings()) report.warnings.push_back(std::move(doubt));
   for (std::string& doubt : gears_that_do_not_fit(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
   context.state = analysis.state();

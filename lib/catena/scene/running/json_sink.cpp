@@ -3,6 +3,7 @@
 
 #include "catena/base/si_unit.hpp"
 #include "catena/scene/json/json_text.hpp"
+#include "catena/scene/running/field_json.hpp"
 #include "catena/scene/running/scene_runner.hpp"
 
 namespace catena {
@@ -139,7 +140,7 @@ class JsonSink final : public ResultSink, private RowSink {
     }
     for (const NamedField& field : result.fields) {
       append_key(text_, field.name);
-      std::visit(FieldWriter{text_}, field.value);
+      append_field(text_, field.value);
     }
     text_ += '}';
     send();
@@ -208,6 +209,8 @@ class JsonSink final : public ResultSink, private RowSink {
 };
 
 }  // namespace
+
+void append_field(std::string& out, const FieldValue& value) { std::visit(FieldWriter{out}, value); }
 
 std::unique_ptr<ResultSink> json_result_sink(TextOutput& output) { return std::make_unique<JsonSink>(output); }
 

@@ -133,6 +133,10 @@ void run_check(AnalysisContext& context, AnalysisResult& result) {
   const AssemblyOutcome outcome = analysis.assemble();
   AnalysisReport report;
   take_outcome(report, outcome, analysis);
+  if (context.poses && outcome.ok()) {
+    analysis.evaluator().set_configuration(analysis.q());
+    context.poses->pose({.evaluator = analysis.evaluator(), .t = analysis.time(), .q = analysis.q()});
+  }
   const MobilityReport mobility = analyse_mobility(analysis.evaluator(), analysis.q());
   report.rank = mobility.rank;
   report.dof = mobility.dof();

@@ -9,6 +9,7 @@
 #include "catena/analysis/statics/static_ipopt.hpp"
 #include "catena/analysis/statics/static_nlopt.hpp"
 #include "catena/scene/running/analysis_run.hpp"
+#include "catena/scene/running/drawn_shapes.hpp"
 
 namespace catena {
 namespace {
@@ -91,14 +92,14 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
                   fmt::format("the solver nlopt is dense and made for at most {} coordinates; this scene has {}",
                               StaticNloptOptions::most_columns, analysis.plan().columns));
   }
-  const ColumnSet columns =
-      ColumnSet::resolve(*context.model, analysis.plan(), names, {.analysis = task.type(), .multipliers = true});
+  const ColumnSources sources{.analysis = task.type(), .multipliers = true};
+  const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), names, sources);
   SystemState start = context.state;
   start.t = frozen_time(context);
   analysis.start_from(start);
   if (context.trace) analysis.evaluator().trace = &context.trace;
   ReportingRows rows(columns, context, start.t);
-  EquilibriumReport report = analysis.run(TimeGrid::instant(start.t), columns.needs(), rows);
+  EquilibriumReport report = analysis.run(TimeGrid::instant(start.t), needs_of(context, columns, sources), rows);
   context.state = analysis.state();
   if (std::string left_out = friction_left_out(*context.model); !left_out.empty())
     report.warnings.push_back(std::move(left_out));
@@ -128,6 +129,7 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
     }
     result.fields.push_back({"equilibria", std::move(list)});
   }
+  if (report.ok()) draw_softest_mode(context);
   take_report(result, report, &columns, rows.rows());
 }
 

@@ -1,6 +1,7 @@
 // modes: small oscillations about the current configuration; one row a mode.
 #include "catena/analysis/stability/modes.hpp"
 #include "catena/scene/running/analysis_run.hpp"
+#include "catena/scene/running/drawn_shapes.hpp"
 #include "catena/scene/running/shape_columns.hpp"
 
 namespace catena {
@@ -35,6 +36,7 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
       shapes->evaluate(analysis.evaluator(), analysis.q(), report.shapes[k], std::span<double>(row).subspan(3));
     if (!context.rows.row(row)) break;
   }
+  draw_shapes(context, analysis.evaluator(), start.t, analysis.q(), report.shapes);
   // Places alone change hands, if they had to be assembled: velocities and time stay those of the motion so far.
   if (report.ok()) context.state.q = analysis.state().q;
   result.fields = {

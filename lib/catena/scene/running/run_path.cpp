@@ -37,6 +37,7 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
     row[0] = value;
     context.parameter_at_end = value;
     columns.evaluate(snapshot, std::span<double>(row).subspan(1));
+    if (context.poses) context.poses->pose(snapshot);
     ++rows;
     if (context.progress) context.progress(std::clamp((value - options.from) / (options.to - options.from), 0.0, 1.0));
     return context.rows.row(row) && !(context.cancel && context.cancel->load(std::memory_order_relaxed));

@@ -277,7 +277,9 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
                           .model_at = {},
                           .parameter_name = {},
                           .estimate_error = options_.estimate_error,
-                          .checkpoint = checkpoints_.wanted() ? &checkpoint : nullptr};
+                          .checkpoint = checkpoints_.wanted() ? &checkpoint : nullptr,
+                          .poses = options_.poses};
+  if (context.poses) context.poses->begin_poses(*context.model);
   if (task.changes_parameters) {
     // Those that follow from what was set differ too.
     const auto before = named_parameters(parameters_.evaluate<double>(scene_->expressions, diagnostics_));
@@ -314,6 +316,7 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
 
 void SceneRun::run_all() {
   SystemState state;
+  if (options_.poses) options_.poses->begin_poses(*model_);
   sink_.begin_run({.scene = outcome_.scene,
                    .description = std::string(scene_->description),
                    .gravity = {model_->gravity.x, model_->gravity.y},

@@ -21,6 +21,8 @@
 
 namespace catena {
 
+class PoseSink;
+
 /// How far a run has come.
 struct Progress {
   std::string_view analysis;  ///< its type
@@ -47,6 +49,7 @@ struct RunOptions {
   /// twentieth of the analysis.
   std::string checkpoint;
   double checkpoint_every = 0;
+  PoseSink* poses = nullptr;  ///< told where the bodies are (results/pose_sink.hpp), if anybody draws
   std::string restart;  ///< file from which a run is taken up again, or empty; checkpoint_every is then the file's
 };
 

@@ -1,0 +1,27 @@
+// A scene's run kept in memory for draw, plot and view, with its messages on the standard error.
+#pragma once
+
+#include <string>
+
+#include "catena/scene/viewing/run_recorder.hpp"
+#include "commands.hpp"
+#include "scene_arguments.hpp"
+
+namespace catena::cli {
+
+struct RecordedRun {
+  RunRecorder recorder;
+  SceneOutcome outcome;
+
+  /// Whether there is anything to show: the scene could be read.
+  bool usable() const { return recorder.record().model != nullptr; }
+};
+
+/// Runs the scene's analyses, with these columns in place of its own unless there are none. What went wrong has been
+/// said when it returns.
+void run_recorded(const SceneArguments& arguments, const std::vector<std::string>& outputs, RecordedRun& run);
+
+/// Writes a whole file and says where; the exit code.
+int write_file(const std::string& path, std::string_view content);
+
+}  // namespace catena::cli

@@ -1,0 +1,46 @@
+#include "scene_arguments.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace catena::cli {
+
+std::string whole_number(const std::string& text) {
+  const bool digits = !text.empty() && text.size() < 19 && text.find_first_not_of("0123456789") == std::string::npos;
+  return digits && text.find_first_not_of('0') != std::string::npos ? "" : "wants a whole number above 0, not " + text;
+}
+
+std::vector<std::string> without_brackets(std::vector<std::string> values) {
+  if (values.empty() || !values.front().starts_with('[') || !values.back().ends_with(']')) return values;
+  values.front().erase(0, 1);
+  values.back().pop_back();
+  for (std::string& value : values) {
+    value.erase(0, value.find_first_not_of(' '));
+    value.erase(value.find_last_not_of(' ') + 1);
+  }
+  return values;
+}
+
+void add_scene_arguments(CLI::App& command, SceneArguments& arguments) {
+  command.add_option("SCENE", arguments.scene, "the scene file")->required()->type_name("FILE");
+  command.add_option("--set", arguments.set, "change a parameter: NAME=VALUE, in the syntax of scenes")
+      ->allow_extra_args(false)
+      ->type_name("NAME=VALUE");
+  command.add_option("--max-elements", arguments.max_elements, "refuse larger scenes")
+      ->capture_default_str()
+      ->type_name("N")
+      ->check(whole_number);
+}
+
+RunOptions SceneArguments::options() const {
+  RunOptions options;
+  options.max_elements = max_elements;
+  for (const std::string& assignment : set) {
+    const std::size_t equals = assignment.find('=');
+    if (equals == 0 || equals == std::string::npos)
+      throw CLI::ValidationError("--set", "wants NAME=VALUE, not \"" + assignment + "\"");
+    options.set.emplace_back(assignment.substr(0, equals), assignment.substr(equals + 1));
+  }
+  return options;
+}
+
+}  // namespace catena::cli

@@ -1,0 +1,16 @@
+// Writing the page of a recorded run.
+#pragma once
+
+#include <string>
+
+#include "catena/scene/viewing/run_recorder.hpp"
+
+namespace catena::cli {
+
+/// Why this catena cannot write pages, as a message; empty if it can.
+std::string viewer_obstacle();
+
+/// Writes the page and says where, how large it is and what it leaves out; the exit code.
+int write_page(const std::string& path, const RunRecord& record);
+
+}  // namespace catena::cli

@@ -1,0 +1,96 @@
+// Keys: everything that a pointer does on the page.
+
+import { byId, make } from "./dom";
+import type { Page } from "./page";
+import { speeds } from "./player";
+
+const keys: [string, string][] = [
+  ["space", "play, pause"],
+  ["← →", "one row back, on; with shift ten"],
+  ["home, end", "to the first, the last row"],
+  ["[ ]", "slower, faster"],
+  ["l", "loop"],
+  ["+ −", "zoom in, out"],
+  ["arrows on the mechanism with alt", "pan"],
+  ["f", "show everything"],
+  ["n, p", "next, previous analysis"],
+  ["m", "next mode"],
+  ["1 2 3 4", "plots, report, table, points"],
+  ["d", "dark, light"],
+  ["?", "this list"],
+];
+
+function pan(page: Page, key: string): boolean {
+  const step = 40;
+  const by: Record<string, [number, number]> = {
+    ArrowLeft: [step, 0], ArrowRight: [-step, 0], ArrowUp: [0, step], ArrowDown: [0, -step],
+  };
+  if (!by[key]) return false;
+  page.stage.camera.pan(...by[key]);
+  page.redraw();
+  return true;
+}
+
+function faster(page: Page, by: number): void {
+  const at = speeds.indexOf(page.player.speed) + by;
+  page.player.setSpeed(speeds[Math.min(speeds.length - 1, Math.max(0, at))]);
+}
+
+function zoom(page: Page, factor: number): void {
+  page.stage.camera.zoom(factor, page.stage.camera.width / 2, page.stage.camera.height / 2);
+  page.redraw();
+}
+
+function nextAnalysis(page: Page, by: number): void {
+  const count = page.data.analyses.length;
+  if (count > 1) page.showAnalysis((page.data.analyses.indexOf(page.motion.analysis) + by + count) % count);
+}
+
+function act(page: Page, event: KeyboardEvent): boolean {
+  const { player, motion } = page;
+  if (event.altKey) return pan(page, event.key);
+  const rows = event.shiftKey ? 10 : 1;
+  const actions: Record<string, () => void> = {
+    " ": () => player.toggle(),
+    ArrowLeft: () => player.step(-rows),
+    ArrowRight: () => player.step(rows),
+    Home: () => (player.pause(), player.moveTo(motion.begin)),
+    End: () => (player.pause(), player.moveTo(motion.end)),
+    "[": () => faster(page, -1),
+    "]": () => faster(page, 1),
+    l: () => player.setLoop(!player.loop),
+    "+": () => zoom(page, 1.25),
+    "=": () => zoom(page, 1.25),
+    "-": () => zoom(page, 0.8),
+    f: () => page.stage.fit(),
+    n: () => nextAnalysis(page, 1),
+    p: () => nextAnalysis(page, -1),
+    m: () => motion.shapes.length > 0 && page.showShape((motion.shape + 1) % motion.shapes.length),
+    "1": () => page.showTab("plots"),
+    "2": () => page.showTab("report"),
+    "3": () => page.showTab("table"),
+    "4": () => page.showTab("points"),
+    d: () => page.toggleTheme(),
+    "?": () => byId<HTMLDialogElement>("help").showModal(),
+  };
+  const action = actions[event.key];
+  if (!action) return false;
+  action();
+  return true;
+}
+
+export function listenToKeys(page: Page): void {
+  const help = byId<HTMLDialogElement>("help");
+  const rows = keys.map(([key, what]) => make("tr", {}, make("td", {}, key), make("td", {}, what)));
+  help.append(make("h2", {}, "keys"), make("table", {}, ...rows),
+              make("form", { method: "dialog" }, make("button", {}, "close")));
+  byId("help-button").addEventListener("click", () => help.showModal());
+  addEventListener("keydown", (event) => {
+    const target = event.target as HTMLElement;
+    const typing = target.matches("input[type=search], select, dialog *");
+    // A button takes the space bar itself, a time bar its arrows.
+    const own = target.matches("button, input, tr") && (event.key === " " || event.key === "Enter");
+    if (typing || own || event.ctrlKey || event.metaKey) return;
+    if (act(page, event)) event.preventDefault();
+  });
+}

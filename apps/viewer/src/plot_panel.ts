@@ -1,0 +1,250 @@
+// The tab with the plots: which columns, zoom, files.
+
+import { button, make } from "./dom";
+import { save, saveCanvas } from "./files";
+import { CanvasPainter, SvgPainter } from "./painter";
+import { Plot, PlotMark } from "./plot";
+import { Table } from "./table";
+import { css, Theme } from "./theme";
+
+const mostListed = 400;
+
+interface View {
+  plot: Plot;
+  canvas: HTMLCanvasElement;
+  legend: HTMLElement;
+}
+
+export class PlotPanel {
+  private views: View[] = [];
+  private table!: Table;
+  private marks: PlotMark[] = [];
+  private unstable: boolean[] | null = null;
+  private cursor = -1;
+
+  constructor(private readonly root: HTMLElement, public theme: Theme,
+              private readonly chosen: (row: number) => void) {}
+
+  show(table: Table, marks: PlotMark[], unstable: boolean[] | null): void {
+    this.table = table;
+    this.marks = marks;
+    this.unstable = unstable;
+    this.views = [];
+    this.root.replaceChildren();
+    if (table.names.length === 0 || table.rows === 0) {
+      this.root.append(make("p", { class: "note" }, "This analysis has no rows to plot."));
+      return;
+    }
+    const adder = button("+ plot", "add a plot", () => this.add(0, [Math.min(1, table.names.length - 1)], true));
+    this.root.append(make("div", {}, adder));
+    for (const { x, ys } of this.firstPlots()) this.add(x, ys, false);
+  }
+
+  /** Columns of one unit together, at most three plots; of a path the load over the first displacement. */
+  private firstPlots(): { x: number; ys: number[] }[] {
+    const { table } = this;
+    if (table.analysis.type === "path" && table.names.length > 1) return [{ x: 1, ys: [0] }];
+    if (table.rows === 1) return [];
+    const groups = new Map<string, number[]>();
+    for (let c = 1; c < table.names.length && c < mostListed; ++c) {
+      const list = groups.get(table.unit(c)) ?? [];
+      if (list.length < 6) list.push(c);
+      groups.set(table.unit(c), list);
+    }
+    const plots = [...groups.values()].slice(0, 3).map((ys) => ({ x: 0, ys }));
+    return plots.length > 0 ? plots : [{ x: 0, ys: [0] }];
+  }
+
+  /** A plot of the columns of one body or element, in front of the others. */
+  showColumnsOf(name: string): void {
+    const ys = this.table.names.map((column, k) => (column.startsWith(name + ".") ? k : -1)).filter((k) => k > 0);
+    if (ys.length === 0 || this.table.rows < 2) return;
+    this.add(0, ys.slice(0, 6), true);
+  }
+
+  private add(x: number, ys: number[], first: boolean): void {
+    const plot = new Plot(this.table, x, ys, this.marks, this.unstable);
+    plot.scatter = this.isScattered(x);
+    const view: View = { plot, canvas: make("canvas", { tabindex: "0", role: "img", "aria-label": "plot" }),
+                         legend: make("div", { class: "legend" }) };
+    const box = make("div", { class: "plot" });
+    box.append(view.legend, view.canvas, this.tools(view, box));
+    this.listen(view);
+    if (first && this.views.length > 0) {
+      this.root.children[0].after(box);
+      this.views.unshift(view);
+    } else {
+      this.root.append(box);
+      this.views.push(view);
+    }
+    this.draw();
+  }
+
+  /** Rows of analyses the page does not know, and of sweeps, need not follow each other along x. */
+  private isScattered(x: number): boolean {
+    if (this.table.analysis.type !== "sweep" && this.table.analysis.type !== "modes") return false;
+    return x === 0 || this.table.rows > 2;
+  }
+
+  private tools(view: View, box: HTMLElement): HTMLElement {
+    const { plot } = view;
+    const x = make("select", { title: "horizontal axis", "aria-label": "horizontal axis" });
+    this.table.names.slice(0, mostListed).forEach((name, k) => x.append(new Option(name, String(k))));
+    x.value = String(plot.x);
+    x.addEventListener("change", () => {
+      plot.x = Number(x.value);
+      plot.resetZoom();
+      this.draw();
+    });
+    const toggle = (label: string, title: string, change: () => boolean) => {
+      const element = button(label, title, () => {
+        element.setAttribute("aria-pressed", String(change()));
+        plot.resetZoom();
+        this.draw();
+      });
+      element.setAttribute("aria-pressed", "false");
+      return element;
+    };
+    const name = () => {
+      const columns = plot.ys.slice(0, 3).map((y) => this.table.names[y]);
+      return (columns.join("-") || "plot").replace(/[^\w.-]+/g, "_");
+    };
+    const columns = button("columns", "which columns", () => {
+      const open = box.querySelector(".chooser");
+      if (open) open.remove();
+      else box.append(this.chooser(view));
+    });
+    return make("div", { class: "tools" }, x, columns,
+                toggle("log x", "logarithmic horizontal axis", () => (plot.logX = !plot.logX)),
+                toggle("log y", "logarithmic vertical axis", () => (plot.logY = !plot.logY)),
+                button("⤢", "show all (double click)", () => (plot.resetZoom(), this.draw())),
+                button("CSV", "save these columns as CSV",
+                       () => save(`${name()}.csv`, this.table.csv([...new Set([plot.x, ...plot.ys])]), "text/csv")),
+                button("PNG", "save as PNG", () => saveCanvas(`${name()}.png`, this.picture(view))),
+                button("SVG", "save as SVG", () => save(`${name()}.svg`, this.svg(plot), "image/svg+xml")),
+                button("✕", "remove this plot", () => {
+                  this.views = this.views.filter((other) => other !== view);
+                  box.remove();
+                }));
+  }
+
+  private chooser(view: View): HTMLElement {
+    const list = make("div", { class: "chooser" });
+    const search = make("input", { type: "search", placeholder: "search columns", "aria-label": "search columns" });
+    const items = make("div");
+    const fill = () => {
+      items.replaceChildren();
+      const wanted = search.value.toLowerCase();
+      const found = this.table.names.map((name, k) => ({ name, k }))
+          .filter(({ name }) => name.toLowerCase().includes(wanted));
+      for (const { name, k } of found.slice(0, mostListed)) {
+        const box = make("input", { type: "checkbox" });
+        box.checked = view.plot.ys.includes(k);
+        box.addEventListener("change", () => {
+          view.plot.ys = box.checked ? [...view.plot.ys, k] : view.plot.ys.filter((y) => y !== k);
+          view.plot.resetZoom();
+          this.draw();
+        });
+        items.append(make("label", {}, box, " ", name));
+      }
+      const more = found.length - mostListed;
+      if (more > 0) items.append(make("p", { class: "note" }, `${more} more: search`));
+    };
+    search.addEventListener("input", fill);
+    fill();
+    list.append(search, items);
+    return list;
+  }
+
+  private listen(view: View): void {
+    const { plot, canvas } = view;
+    let dragged = 0;
+    let from: { x: number; y: number } | null = null;
+    const at = (event: MouseEvent) => {
+      const box = canvas.getBoundingClientRect();
+      return { x: event.clientX - box.left, y: event.clientY - box.top };
+    };
+    canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      plot.zoom(Math.exp(-event.deltaY * 0.0015), at(event).x, at(event).y);
+      this.draw();
+    }, { passive: false });
+    canvas.addEventListener("pointerdown", (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      from = at(event);
+      dragged = 0;
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      if (!from) return;
+      const now = at(event);
+      plot.pan(now.x - from.x, now.y - from.y);
+      dragged += Math.abs(now.x - from.x) + Math.abs(now.y - from.y);
+      from = now;
+      this.draw();
+    });
+    canvas.addEventListener("pointerup", (event) => {
+      from = null;
+      if (dragged > 4) return;
+      const row = plot.rowNear(at(event).x, at(event).y);
+      if (row >= 0) this.chosen(this.table.numberOf(row));
+    });
+    canvas.addEventListener("dblclick", () => (plot.resetZoom(), this.draw()));
+    canvas.addEventListener("keydown", (event) => {
+      if (event.key === "+" || event.key === "-") {
+        plot.zoom(event.key === "+" ? 1.3 : 1 / 1.3, plot.width / 2, plot.height / 2);
+        event.stopPropagation();
+        this.draw();
+      }
+    });
+  }
+
+  /** The cursor stands at this row of the analysis. */
+  moveCursor(row: number): void {
+    const kept = this.table ? this.table.rowAt(row) : -1;
+    if (kept === this.cursor) return;
+    this.cursor = kept;
+    this.draw();
+  }
+
+  draw(): void {
+    for (const view of this.views) this.drawView(view);
+  }
+
+  private drawView(view: View): void {
+    const { plot, canvas, legend } = view;
+    if (canvas.isConnected && canvas.clientWidth > 0) plot.width = canvas.clientWidth;
+    this.drawOn(canvas, plot, false);
+    legend.replaceChildren(...plot.legend(this.cursor).map((entry, k) => {
+      const mark = make("i");
+      mark.style.background = this.theme.line(k);
+      const shown = entry.unit ? `${entry.name} = ${entry.value} ${entry.unit}` : `${entry.name} = ${entry.value}`;
+      return make("span", {}, mark, shown);
+    }));
+  }
+
+  private drawOn(canvas: HTMLCanvasElement, plot: Plot, onPaper: boolean): void {
+    const ratio = window.devicePixelRatio || 1;
+    canvas.width = Math.round(plot.width * ratio);
+    canvas.height = Math.round(plot.height * ratio);
+    const context = canvas.getContext("2d");
+    if (!context) return;
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    if (onPaper) {
+      context.fillStyle = css(this.theme.paper);
+      context.fillRect(0, 0, plot.width, plot.height);
+    }
+    plot.draw(new CanvasPainter(context), this.theme, this.cursor);
+  }
+
+  private picture(view: View): HTMLCanvasElement {
+    const copy = document.createElement("canvas");
+    this.drawOn(copy, view.plot, true);
+    return copy;
+  }
+
+  private svg(plot: Plot): string {
+    const painter = new SvgPainter(Math.round(plot.width), plot.height, css(this.theme.paper));
+    plot.draw(painter, this.theme, this.cursor);
+    return painter.finish();
+  }
+}

@@ -1,0 +1,40 @@
+// The mechanism itself as a figure: one pose, or several laid over each other, with the paths of points.
+//
+// The last pose is drawn in full; those before it are paler, the earlier the more, and without the supports. Symbols
+// are `symbol_points` tall, smaller where links are short: a quarter of the typical link at most. The scale is equal in
+// x and y and follows from everything that is shown. Lengths m, figure in points of 1/72 inch.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "catena/base/frame.hpp"
+#include "catena/drawing/figures/vector_canvas.hpp"
+#include "catena/drawing/shapes/drawing.hpp"
+
+namespace catena {
+
+/// Where the bodies are, and which forces act: one value a load of the drawing, in the axes that it names.
+struct FigurePose {
+  std::vector<Frame<double>> frames;
+  std::vector<Vec2<double>> loads{};
+};
+
+struct MechanismFigure {
+  std::string title;
+  double width = 480;        ///< points
+  double most_height = 480;  ///< points; the width is reduced where the figure would be taller
+  double symbol_points = 5;  ///< size of symbols
+  std::vector<FigurePose> poses{};
+  std::vector<std::vector<Vec2<double>>> traces{};  ///< paths of points, m
+};
+
+/// A canvas of the given width and height, points.
+using CanvasMaker = std::function<std::unique_ptr<VectorCanvas>(double width, double height)>;
+
+/// The file. `drawing` gets the ends of its guides from the poses. std::invalid_argument without a pose.
+std::string draw_mechanism(Drawing drawing, const MechanismFigure& figure, const CanvasMaker& canvas);
+
+}  // namespace catena

@@ -1,0 +1,30 @@
+// The data of a page: geometry, poses and columns of a recorded run as one JSON document.
+//
+// Its version is `catena_view`; every field is explained in apps/manual/viewer.md, and the page reads nothing else.
+// Numbers are finite or null, binary ones packed (packed_numbers.hpp).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "catena/drawing/shapes/drawing.hpp"
+#include "catena/scene/viewing/run_recorder.hpp"
+
+namespace catena {
+
+inline constexpr int view_version = 1;
+
+/// The document; the record must have a model.
+std::string view_document(const RunRecord& record);
+
+/// What the document leaves out of the run, in sentences.
+std::vector<std::string> view_notes(const RunRecord& record);
+
+/// The drawing of a model as an object: symbols, shapes, loads, the given poses. `ViewJson` stands where the value
+/// goes.
+class ViewJson;
+void append_drawing(ViewJson& json, const Model& model, const Drawing& drawing);
+/// Poses of an analysis as an object. `count`: how many of them.
+void append_poses(ViewJson& json, const RecordedAnalysis& analysis);
+
+}  // namespace catena
