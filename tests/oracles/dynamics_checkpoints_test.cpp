@@ -81,7 +81,7 @@ TEST_P(DynamicsCheckpoints, ChainWithFixedSteps) { check(rod_chain(5), 1, 0.11, 
 
 // Which directions among the rows are left out goes with the motion.
 TEST_P(DynamicsCheckpoints, RedundantCranksThatTurn) {
-  const testing::KnownMotion motion = testing::RedundantMechanism(0, 3).motion();
+  const testing::KnownMotion motion = testing::redundant_motion(0, 3);
   check(motion.model, motion.until, motion.until / 7.5, GetParam());
 }
 

@@ -9,7 +9,9 @@ TEST(KinematicSketches, FlatAndStraightOnesAssembleInEveryAnalysis) {
 }
 
 TEST(KinematicSketches, DeadCentresLockOrLeaveBothWays) {
-  for (unsigned seed = 0; seed < 60; ++seed) expect_dead_centre(seed);
+  for (const char* analysis : {"kinematics", "dynamics"}) {
+    for (unsigned seed = 0; seed < 60; ++seed) expect_dead_centre(seed, analysis);
+  }
 }
 
 }  // namespace

@@ -146,7 +146,7 @@ void run_known_trials(Draw&& draw, unsigned seed, int cases, const std::vector<I
 /// A redundant mechanism of a kind, kept clear of a rest in a flat position.
 inline std::optional<KnownMotion> draw_redundant(int kind, unsigned seed) {
   const bool lift = kind == number_of_kinds - 1;
-  KnownMotion motion = RedundantMechanism(kind, seed).motion();
+  KnownMotion motion = redundant_motion(kind, seed);
   // A lift folded flat may go on in many ways.
   if (!keep_clear_of_rest(motion, lift ? 0.3 : 0.15, !lift)) return {};
   return motion;
@@ -154,7 +154,7 @@ inline std::optional<KnownMotion> draw_redundant(int kind, unsigned seed) {
 
 /// A mechanism with massless bodies: first the kinds of massless_mechanisms.hpp, then those with redundant equations.
 inline std::optional<KnownMotion> draw_massless(int kind, unsigned seed) {
-  if (kind < number_of_massless_kinds) return MasslessMechanism(kind, seed).motion();
+  if (kind < number_of_massless_kinds) return massless_motion(kind, seed);
   std::optional<KnownMotion> motion = draw_redundant(massless_variants[kind - number_of_massless_kinds], seed);
   if (motion && !make_some_massless(*motion, seed)) return {};
   return motion;

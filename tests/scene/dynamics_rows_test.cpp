@@ -139,6 +139,50 @@ TEST(DynamicsRows, EndWhereDriversLockUp) {
   const double reach = std::hypot(0.54, 0.84) + std::hypot(1.66, 0.36);
   const double stretched = (std::sqrt(reach * reach - 1.44) - 2.2) / 0.3;
   EXPECT_TRUE(says(run.analysis(), "t = " + std::to_string(stretched).substr(0, 6))) << run.analysis().report.message;
+  // The last row is the place where it locks, without rates; what is known of it stands in fields.
+  EXPECT_NEAR(run.last("t"), stretched, 1e-9);
+  EXPECT_NEAR(run.last("a.angle"), std::asin(1.2 / reach), 1e-7);
+  const auto singular = field<std::vector<FieldRecord>>(run, "singular");
+  ASSERT_EQ(singular.size(), 1u);
+  const auto entry = [&](const std::string& name) -> const FieldScalar& {
+    for (const auto& [key, value] : singular[0]) {
+      if (key == name) return value;
+    }
+    throw std::out_of_range(name);
+  };
+  EXPECT_NEAR(std::get<double>(entry("t")), stretched, 1e-9);
+  EXPECT_EQ(std::get<std::string>(entry("kind")), "lock_up");
+  EXPECT_EQ(std::get<std::vector<std::string>>(entry("bodies")).size(), 2u);
+  EXPECT_EQ(std::get<std::vector<std::string>>(entry("branches")).size(), 1u);
+  EXPECT_EQ(std::get<std::string>(entry("driver")), "D");
+  EXPECT_NEAR(std::get<double>(entry("value")), 2.2 + 0.3 * stretched, 1e-9);
+}
+
+// Beside an arm that is stretched out, another one goes on: the row at that instant has both, at either's tolerance.
+TEST(DynamicsRows, TheRowAtALockUpHasTheMechanismsBeside) {
+  const auto scene = [](double stiffness) {
+    return R"({"catena": 1, "bodies": {
+        "ball": {"particle": true, "mass": 1, "position": [9, 0]},
+        "crank": {"mass": 1, "rod": {"from": [0, 0], "to": [0.6, 0.8]}},
+        "rod": {"mass": 1, "rod": {"from": [0.6, 0.8], "to": [2.1, 0.8]}}},
+      "constraints": [{"type": "revolute", "i": "ground", "j": "crank.from"},
+                      {"type": "revolute", "i": "crank.to", "j": "rod.from"},
+                      {"type": "absolute_y", "i": "ball", "value": 0}],
+      "drivers": [{"type": "absolute_y", "name": "E", "i": "rod.to", "value": 0.8},
+                  {"type": "absolute_x", "name": "D", "i": "rod.to", "value": {"polynomial": [2.1, 0.3]}}],
+      "forces": [{"type": "spring_damper", "i": ["ground", [8, 0]], "j": "ball", "length": 0.5, "k": )" +
+           std::to_string(stiffness) + R"(}],
+      "outputs": ["ball.x", "ball.vx", "crank.angle"], "analyses": [{"type": "dynamics", "until": 3, "every": 0.1}]})";
+  };
+  const double lock = (std::sqrt(2.5 * 2.5 - 0.64) - 2.1) / 0.3;
+  for (const double stiffness : {4.0, 4e6}) {
+    const TextRun run = run_text(scene(stiffness));
+    EXPECT_EQ(run.analysis().report.status, Status::lock_up) << run.analysis().report.message;
+    EXPECT_NEAR(run.last("t"), lock, 1e-9);
+    EXPECT_NEAR(run.last("crank.angle"), std::asin(0.8 / 2.5), 1e-7);
+    EXPECT_NEAR(run.last("ball.x"), 8.5 + 0.5 * std::cos(std::sqrt(stiffness) * lock), 1e-4) << stiffness;
+    EXPECT_EQ(field<std::vector<FieldRecord>>(run, "singular").size(), 1u);
+  }
 }
 
 TEST(DynamicsRows, EndAfterTheStepsAllowed) {

@@ -58,7 +58,7 @@ TEST(RunPath, StopsAtTheLimitOfAParameter) {
   EXPECT_EQ(run_text(truss(R"({"type": "path", "parameter": "Q", "to": 5})")).outcome.exit_code, 0);
   const TextRun run = run_text(truss(R"({"type": "path", "parameter": "Q", "to": 7})"));
   EXPECT_EQ(run.outcome.exit_code, 1);
-  EXPECT_EQ(run.analysis().report.status, Status::step_too_small);
+  EXPECT_EQ(run.analysis().report.status, Status::refused);
 }
 
 TEST(RunPath, TakesTheBranchAskedFor) {

@@ -9,7 +9,9 @@ TEST(KinematicStress, FlatAndStraightSketchesAssembleInEveryAnalysis) {
 }
 
 TEST(KinematicStress, DeadCentresLockOrLeaveBothWays) {
-  for (unsigned seed = 1000; seed < 5000; ++seed) expect_dead_centre(seed);
+  for (const char* analysis : {"kinematics", "dynamics"}) {
+    for (unsigned seed = 1000; seed < 5000; ++seed) expect_dead_centre(seed, analysis);
+  }
 }
 
 }  // namespace

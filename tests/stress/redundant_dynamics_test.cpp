@@ -56,15 +56,15 @@ void check_kind(const std::string& name, Draw&& draw) {
 
 class RedundantDynamics : public ::testing::TestWithParam<int> {};
 TEST_P(RedundantDynamics, FollowsTheKnownMotion) {
-  check_kind(redundant_kinds[GetParam()], [](unsigned seed) { return draw_redundant(GetParam(), seed); });
+  check_kind(redundant_kinds[GetParam()].name, [](unsigned seed) { return draw_redundant(GetParam(), seed); });
 }
 INSTANTIATE_TEST_SUITE_P(Kinds, RedundantDynamics, ::testing::Range(0, number_of_kinds));
 
 class MasslessDynamics : public ::testing::TestWithParam<int> {};
 TEST_P(MasslessDynamics, FollowsTheKnownMotion) {
   const int kind = GetParam(), own = number_of_massless_kinds;
-  const std::string name =
-      kind < own ? massless_kinds[kind] : std::string("massless: ") + redundant_kinds[massless_variants[kind - own]];
+  const std::string name = kind < own ? massless_kinds[kind].name
+                                      : std::string("massless: ") + redundant_kinds[massless_variants[kind - own]].name;
   check_kind(name, [](unsigned seed) { return draw_massless(GetParam(), seed); });
 }
 INSTANTIATE_TEST_SUITE_P(Kinds, MasslessDynamics, ::testing::Range(0, all_massless_kinds));

@@ -70,15 +70,29 @@ Report Dynamics::prepare(std::vector<std::string>& warnings) {
         assembled.shifted, assembled.turned));
   }
   equations_.weigh_massless(q_);
-  redundant_.find(q_);
+  start_ = singular_start();
+  std::optional<RedundantRows::GenericPlace> elsewhere;
+  if (start_) {
+    singular_points_.push_back(start_->point);
+    if (!start_->report.ok()) return start_->report;
+    elsewhere = place_along(*start_);
+  }
+  redundant_.find(q_, elsewhere ? &*elsewhere : nullptr);
   if (Report massless = equations_.check_massless(q_); !massless.ok()) return massless;
   const VelocityOutcome velocities = find_initial_velocities(equations_, q_, given_qd_, qd_);
+  if (velocities.dead_point) singular_points_.push_back(*velocities.dead_point);
   if (!velocities.ok()) return velocities;
   if (velocities.changed > 1e-9) {
     warnings.push_back(fmt::format(
         "{} did not meet the constraints: changed by up to {:.3g} {} (body \"{}\")",
         given_qd_.empty() ? std::string("the given velocities") : fmt::format("the velocities at t = {:.12g} s", t_),
         velocities.changed, velocities.changed_turn ? "rad/s" : "m/s", model_->body_name(velocities.changed_body)));
+  }
+  if (start_) {
+    // Of all velocities that the constraints allow there the motion has this one.
+    const std::vector<double>& tangent = start_->point.tangents[static_cast<std::size_t>(start_->branch - 1)];
+    const double speed = start_->point.kind == SingularPoint::Kind::rest ? 0 : 1;
+    for (std::size_t k = 0; k < qd_.size(); ++k) qd_[k] = speed * tangent[k];
   }
   prepared_ = true;
   return {};

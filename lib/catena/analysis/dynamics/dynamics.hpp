@@ -3,7 +3,8 @@
 // The start is assembled, its velocities made consistent; then an integrator steps through time, stopping where a
 // function of time has a breakpoint, and rows are interpolated between its steps and projected onto the constraints, so
 // that however many there are they do not shorten steps. Accelerations and multipliers of rows come from one solve at
-// the row, only if needed. Where no step can be made any more, the report says when and why; rows so far are kept.
+// the row, only if needed. Where no step can be made any more, the report says when and why; rows so far are kept. In a
+// dead point a last row gives the place, without the rates, which grow without bound there.
 #pragma once
 
 #include <limits>
@@ -23,6 +24,7 @@
 #include "catena/analysis/motion/singular_instant.hpp"
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/pose/minimum_norm.hpp"
+#include "catena/analysis/pose/singular_start.hpp"
 #include "catena/analysis/run/analysis_report.hpp"
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/row_observer.hpp"
@@ -78,6 +80,9 @@ class Dynamics {
   /// Counts work from an earlier start; energy that is missing against then counts as dissipated (an impact).
   void carry_on(WorkSoFar work) { earlier_ = std::move(work); }
 
+  /// Where the drivers asked for a motion that cannot be made: at the start, or where the run ended.
+  const std::vector<SingularPoint>& singular_points() const { return singular_points_; }
+
   double time() const { return t_; }
   std::span<const double> q() const { return q_; }
   std::span<const double> qd() const { return qd_; }
@@ -92,8 +97,14 @@ class Dynamics {
   Report prepare(std::vector<std::string>& warnings);
   std::unique_ptr<Integrator> make_integrator(const Motion& motion, double horizon) const;
   void look_for_singularity(double t);
-  int locked_driver();
+  std::optional<SingularPoint> dead_point_ahead();
+  double time_to_dead_point(std::span<const double> w, std::vector<double>& q);
+  void give_row_at_lock_up(RowObserver& observer);
   bool know_singular_start();
+  bool know_start_from_rest();
+  std::optional<SingularStart> singular_start();
+  int branch_of_given_velocities(const SingularPoint& point);
+  std::optional<RedundantRows::GenericPlace> place_along(const SingularStart& start);
   void remark_on_singularities(std::vector<std::string>& warnings) const;
   Report check_order() const;
   Report check_freedoms() const;
@@ -136,6 +147,9 @@ class Dynamics {
   std::int64_t singular_rows_ = 0, formal_rows_ = 0;
   bool unbounded_ = false;
   std::string singular_names_;
+  std::vector<SingularPoint> singular_points_;
+  std::optional<SingularStart> start_;  // in a singular position, driven
+  bool locked_ = false;                 // the row at the dead point was given
   bool prepared_ = false, resumed_ = false;
   // Of the run under way.
   TimeGrid grid_ = TimeGrid::list({});

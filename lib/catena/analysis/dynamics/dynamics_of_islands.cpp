@@ -42,7 +42,9 @@ class DynamicsOfIslands::Part final : public RowObserver {
         number_(owner.parts_.size()),
         part_(std::move(part)),
         model_(std::make_shared<const Model>(std::move(part_.model))),
-        dynamics_(model_, options_of(all), options) {
+        plan_options_(options_of(all)),
+        options_(options),
+        dynamics_(model_, plan_options_, options) {
     const Plan& plan = dynamics_.plan();
     for (int p = 0; p < plan.moving; ++p) {
       body_.push_back(owner.plan_->plan_body[at(part_.bodies[at(plan.model_body[at(p)])])]);
@@ -69,6 +71,20 @@ class DynamicsOfIslands::Part final : public RowObserver {
       }
     }
     dynamics_.start_from(own);
+    start_ = std::move(own);
+  }
+  /// Gives the row at t of a motion that may have gone past it: from the start again.
+  void go_again_to(double t, const Needs& needs) {
+    Dynamics again(model_, plan_options_, options_);
+    if (start_) again.start_from(*start_);
+    again.run(TimeGrid::instant(t), needs, *this);
+  }
+  /// Where it locked, if it did.
+  std::optional<SingularPoint> dead_point() const {
+    if (dynamics_.singular_points().empty()) return {};
+    SingularPoint point = dynamics_.singular_points().back();
+    if (point.driver >= 0) point.driver = part_.elements[at(point.driver)];
+    return point;
   }
   /// Reports the progress of all mechanisms to the observer as times between `from` and `to`.
   void go_through(double from, double to, RowObserver& watcher) {
@@ -118,6 +134,9 @@ class DynamicsOfIslands::Part final : public RowObserver {
   std::size_t number_;  // among the classes
   ModelPart part_;
   std::shared_ptr<const Model> model_;
+  PlanOptions plan_options_;
+  DynamicsOptions options_;
+  std::optional<SystemState> start_;
   Dynamics dynamics_;
   std::vector<int> body_, row_;  // in the plan of all: of a moving body of the part, of a row
   std::vector<double> factor_;   // of multipliers, by row of the part
@@ -159,11 +178,14 @@ AnalysisReport DynamicsOfIslands::run(const TimeGrid& grid, const Needs& needs, 
   const FlushDenormals flush;
   driver_work_.assign(needs.work ? model_->elements.size() : 0, 0.0);
   for (const auto& part : parts_) part->dynamics().begin(grid, needs);
+  singular_points_.clear();
   bool cancelled = false, together = true;
+  const Part* locked = nullptr;
   for (std::int64_t row = 0; row < grid.size() && together && !cancelled; ++row) {
     for (const auto& part : parts_) {
       part->go_through(t_, grid[row], observer);
       together = together && part->dynamics().go_on(row + 1, *part);
+      if (!together && !locked && part->dead_point()) locked = part.get();
     }
     if (together) cancelled = !give_row(grid[row], needs, observer);
   }
@@ -176,9 +198,20 @@ AnalysisReport DynamicsOfIslands::run(const TimeGrid& grid, const Needs& needs, 
     total.status = Status::cancelled;
     total.message = "stopped; the rows so far are kept";
   }
+  if (locked && total.status == Status::lock_up) give_row_at_lock_up(*locked, needs, observer);
   total.counters += evaluator_.counters;
   total.seconds = timer.seconds();
   return total;
+}
+
+// The others are elsewhere when one locks, and some have gone past that instant.
+void DynamicsOfIslands::give_row_at_lock_up(const Part& locked, const Needs& needs, RowObserver& observer) {
+  singular_points_.push_back(*locked.dead_point());
+  const double t = singular_points_.back().t;
+  for (const auto& part : parts_) {
+    if (part.get() != &locked) part->go_again_to(t, needs);
+  }
+  give_row(t, needs, observer);
 }
 
 // The mechanisms together at an instant at which each of them gave its row.

@@ -30,17 +30,21 @@ class DynamicsOfIslands {
   /// Of each class.
   std::vector<IntegrationMethod> methods() const;
   void start_from(const SystemState& state);
-  /// Where one of them cannot go on all end, with its message.
+  /// See Dynamics; drivers by their numbers in the whole model.
+  const std::vector<SingularPoint>& singular_points() const { return singular_points_; }
+  /// Where one of them cannot go on all end, with its message; in a dead point with a row of all at that instant.
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
 
  private:
   class Part;
   bool give_row(double t, const Needs& needs, RowObserver& observer);
+  void give_row_at_lock_up(const Part& locked, const Needs& needs, RowObserver& observer);
 
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const Plan> plan_;
   Evaluator evaluator_;
   std::vector<std::unique_ptr<Part>> parts_;
+  std::vector<SingularPoint> singular_points_;
   double t_ = 0;
   std::vector<double> q_, qd_, qdd_, lambda_, driver_work_;  // of all, in the order of plan_
 };

@@ -126,13 +126,9 @@ void Dynamics::describe_mobility(AnalysisReport& report) {
 
 Report Dynamics::stuck() {
   Report report;
-  if (const int driver = locked_driver(); driver >= 0) {
-    report.status = Status::lock_up;
-    report.message = fmt::format(
-        "lock-up at t = {:.12g} s: the drivers ask for a motion that the mechanism cannot make (a dead point); most "
-        "concerned: {} \"{}\"",
-        integrator_->time(), model_->element_type(driver), model_->element_name(driver));
-    return report;
+  if (std::optional<SingularPoint> point = dead_point_ahead()) {
+    singular_points_.push_back(std::move(*point));
+    return singular_points_.back().report_lock_up(*model_);
   }
   // An element that is undefined in kinematics is undefined here as well.
   evaluator_.set_time(integrator_->time());

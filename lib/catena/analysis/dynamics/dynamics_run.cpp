@@ -33,6 +33,8 @@ void Dynamics::begin(const TimeGrid& grid, const Needs& needs) {
   next_row_ = 0;
   at_jump_ = paused_ = dependent_ = always_dependent_ = unbounded_ = false;
   singular_rows_ = formal_rows_ = 0;
+  locked_ = false;
+  singular_points_.clear();
   report_ = {};
   report_.bodies = static_cast<int>(model_->bodies.size());
   report_.rows = plan_->rows;
@@ -115,7 +117,7 @@ Report Dynamics::set_out() {
     evaluator_.take_turns(std::span(y_row_).first(q_.size()));
   }
   if (!integrator_->start(t_, y_row_)) return stuck();
-  if (!resumed_ && know_singular_start()) {
+  if (!resumed_ && (know_start_from_rest() || know_singular_start())) {
     // An integrator keeps a copy of the motion, and the step that the first slope suggested.
     integrator_ = make_integrator(*motion_, grid_.last());
     if (!integrator_->start(t_, y_row_)) return stuck();
@@ -137,6 +139,7 @@ bool Dynamics::go_on(std::int64_t rows, RowObserver& observer) {
   const FlushDenormals flush;
   rows = std::min(rows, grid_.size());
   while (outcome_.ok() && next_row_ < rows && stopped_by_ < 0 && !paused_) outcome_ = next(observer);
+  if (outcome_.status == Status::lock_up && !std::exchange(locked_, true)) give_row_at_lock_up(observer);
   return outcome_.ok() && next_row_ >= rows;
 }
 

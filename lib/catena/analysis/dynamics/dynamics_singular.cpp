@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "catena/analysis/dynamics/dynamics.hpp"
-#include "catena/analysis/pose/jacobian_rank.hpp"
 #include "catena/analysis/pose/scaling.hpp"
 
 namespace catena {
@@ -15,10 +14,6 @@ namespace {
 constexpr double near_singular = 1e-8;
 // For so many of the moments over which derivatives are taken the slope at a start may stand for those after it.
 constexpr double known_moments = 10;
-
-// Where no step can be made: rows nearer to dependence than this (sine) count as dependent; and the part of |w| |nu|
-// from which w^T nu counts as something.
-constexpr double nearly_dependent = 1e-3, not_nothing = 1e-2;
 
 // Projection meets constraints to 1e-15, and what follows from them to that divided by a sine; in length scales or rad.
 constexpr double contradiction = 1e-9;
@@ -91,41 +86,6 @@ Report Dynamics::check_redundant_rows() {
       t_, model_->element_type(element), model_->element_name(element), left * (plan_->row_is_angle[row] ? 1 : length),
       plan_->row_is_angle[row] ? "rad" : "m");
   return report;
-}
-
-// Where no step can be made: the driver with the largest part in a motion that the constraints exclude, w^T Phi_q = 0
-// but w^T nu != 0 (apps/manual/kinematics.md#singular-configurations); -1: none does.
-int Dynamics::locked_driver() {
-  if (plan_->rows == 0 || !(equations_.smallest_pivot_ratio() < nearly_dependent)) return -1;
-  evaluator_.set_time(integrator_->time());
-  const std::vector<double> values = jacobian_values(evaluator_, integrator_->state().first(q_.size()));
-  std::vector<double> nu(static_cast<std::size_t>(plan_->rows));
-  evaluator_.nu(nu);
-  RankOptions options;
-  options.tolerance = nearly_dependent;
-  options.most_null_vectors = 0;
-  const RankReport rank = jacobian_rank(evaluator_, plan_->jacobian, values, options);
-  if (!rank.ok()) return -1;
-  const auto unit = [&](std::size_t row) { return plan_->row_is_angle[row] ? 1 : evaluator_.length_scale(); };
-  double rates = 0;
-  for (std::size_t r = 0; r < nu.size(); ++r) rates += nu[r] * nu[r] / (unit(r) * unit(r));
-  for (int k = 0; k < rank.left_null_vectors.count(); ++k) {
-    const std::span<const int> rows = rank.left_null_vectors.indices(k);
-    const std::span<const double> weights = rank.left_null_vectors.values(k);
-    double product = 0, size = 0, largest = 0;
-    int driver = -1;
-    for (std::size_t n = 0; n < rows.size(); ++n) {
-      const auto row = static_cast<std::size_t>(rows[n]);
-      product += weights[n] * nu[row];
-      size += weights[n] * weights[n] * unit(row) * unit(row);
-      if (std::abs(weights[n] * nu[row]) > largest) {
-        largest = std::abs(weights[n] * nu[row]);
-        driver = plan_->row_element[row];
-      }
-    }
-    if (std::abs(product) > not_nothing * std::sqrt(size * rates)) return driver;
-  }
-  return -1;
 }
 
 void Dynamics::remark_on_singularities(std::vector<std::string>& warnings) const {

@@ -48,6 +48,8 @@ class DynamicsWithEvents {
   void resume(const MotionMemory& memory);
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
   SystemState state() const { return dynamics_->state(); }
+  /// See Dynamics.
+  const std::vector<SingularPoint>& singular_points() const { return dynamics_->singular_points(); }
   const std::vector<EventRecord>& records() const { return watch_->records(); }
   /// Changes of contacts, in order of their instants but for accumulated bounces.
   const std::vector<ContactEvent>& contact_events() const { return contacts_.events(); }

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "catena/analysis/pose/mobility.hpp"
+#include "catena/analysis/pose/singular_start.hpp"
 #include "catena/analysis/pose/whole_turns.hpp"
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
@@ -29,8 +30,6 @@ constexpr double clearly_regular = 1e-9;
 constexpr double reactions_determined = 1e-6;
 // Part of the loads that least reactions may leave unbalanced.
 constexpr double balanced = 1e-10;
-// Rows closer to dependence than this, where a motion starts: configurations are given no more exactly.
-constexpr double start_dependence = 1e-7;
 // How far along a branch (rad, length scales) rows are chosen where it starts.
 constexpr double start_distance = 0.02;
 // Redundant rows that velocities and accelerations miss by more than the first part of them are a reason to look for
@@ -44,9 +43,6 @@ constexpr double suspicious_part = 1e-4;
 // Rates of redundant equations, if not needed for output, are checked at one in so many rows: they cost as much as the
 // positions, whose residual is checked at every step.
 constexpr std::int64_t rows_between_checks = 16;
-// After so much time (s) drivers that rest at the start are looked at again.
-constexpr double moments[] = {1e-6, 1e-4, 1e-2, 1, 100};
-
 }  // namespace
 
 Kinematics::Kinematics(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
@@ -174,7 +170,6 @@ Report Kinematics::prepare(double direction) {
   if (mobility.rank < plan_->columns) {
     SingularPoint point = find_branches(evaluator_, q_, {}, start_dependence);
     if (plan_->rows >= plan_->columns && point.held_to_second_order) {
-      if (point.kind == SingularPoint::Kind::lock_up) return lock_up(std::move(point));
       return start_singular(std::move(point), direction);
     }
     report.status = Status::under_driven;
@@ -191,48 +186,14 @@ Report Kinematics::prepare(double direction) {
   return report;
 }
 
-// Where the drivers rest: the branches along which the mechanism can move once the drivers move, shortly after, if they
-// do.
-void Kinematics::find_ways(SingularPoint& point, double direction) {
-  std::vector<double> nu(at(plan_->rows));
-  for (double later : moments) {
-    if (!functions_go_on(t_ + direction * later)) break;
-    evaluator_.set_time(t_ + direction * later);
-    evaluator_.nu(nu);
-    if (std::all_of(nu.begin(), nu.end(), [](double rate) { return rate == 0; })) continue;
-    point = find_branches(evaluator_, q_, {}, start_dependence, Drivers::about_to_move);
-    point.t = t_;
-    point.kind = SingularPoint::Kind::rest;
-    break;
-  }
-  evaluator_.set_time(t_);
-}
-
-// The mechanism is given where branches meet: the configuration does not tell which branch it is on.
-Report Kinematics::start_singular(SingularPoint point, double direction) {
+// The mechanism is given where branches meet: nothing says on which of them it is.
+Report Kinematics::start_singular(SingularPoint found, double direction) {
+  SingularStart start = decide_start(evaluator_, std::move(found), options_.branch, direction);
+  singular_points_.push_back(start.point);
+  if (!start.report.ok()) return start.report;
+  const SingularPoint& point = start.point;
+  const int branch = start.branch;
   Report report;
-  if (point.kind == SingularPoint::Kind::rest) find_ways(point, direction);
-  singular_points_.push_back(point);
-  const int count = static_cast<int>(point.tangents.size());
-  const bool rests = point.kind == SingularPoint::Kind::rest;
-  // Drivers that never move determine no direction.
-  if (count == 0 || (rests && solver_.distance(point.tangents.front(), nothing_, nullptr) == 0)) {
-    report.status = Status::singular;
-    report.message = fmt::format(
-        "the motion starts at t = {:.12g} s in a singular configuration {}; start a little before or after it", t_,
-        rests ? "in which the drivers rest" : "from which no motion continues");
-    return report;
-  }
-  const int branch = count == 1 ? 1 : options_.branch;
-  if (branch == 0 || branch > count) {
-    report.status = Status::bifurcation;
-    report.message = fmt::format("the motion starts at t = {:.12g} s where {}: {}; {}", t_,
-                                 rests ? "the drivers rest in a singular configuration" : "branches meet",
-                                 rests ? point.describe_ways() : point.describe_branches(),
-                                 branch == 0 ? std::string("choose one with \"branch\", or start a little away")
-                                             : fmt::format("\"branch\" asks for number {}", branch));
-    return report;
-  }
   if (plan_->rows > plan_->columns) {
     // Rows are chosen a little way along the branch, where they can be told apart.
     const std::vector<double>& tangent = point.tangents[at(branch - 1)];
@@ -252,14 +213,7 @@ Report Kinematics::start_singular(SingularPoint point, double direction) {
 
 // The drivers prescribe a velocity along a vanishing combination of equations.
 Report Kinematics::lock_up(SingularPoint point) {
-  Report report;
-  report.status = Status::lock_up;
-  report.message = fmt::format(
-      "lock-up at t = {:.12g} s: the drivers ask for a motion that the mechanism cannot make (a dead point)", point.t);
-  if (point.driver >= 0) {
-    report.message += fmt::format("; most concerned: driver \"{}\" at {:.6g}", model_->element_name(point.driver),
-                                  point.driver_value);
-  }
+  Report report = point.report_lock_up(*model_);
   singular_points_.push_back(std::move(point));
   return report;
 }

@@ -16,11 +16,11 @@
 #include <optional>
 
 #include "catena/analysis/kinematics/driven_solver.hpp"
-#include "catena/analysis/kinematics/kinematics_branches.hpp"
 #include "catena/analysis/kinematics/kinematics_bridge.hpp"
 #include "catena/analysis/kinematics/predictor.hpp"
 #include "catena/analysis/motion/energy_account.hpp"
 #include "catena/analysis/pose/assemble.hpp"
+#include "catena/analysis/pose/branches.hpp"
 #include "catena/analysis/pose/minimum_norm.hpp"
 #include "catena/analysis/pose/mobility.hpp"
 #include "catena/analysis/run/analysis_report.hpp"
@@ -81,7 +81,6 @@ class Kinematics {
   std::optional<SingularPoint> dead_point_here();
   Report follow_to(double t);
   Report find_rates(const Needs& needs);
-  void find_ways(SingularPoint& point, double direction);
   Report start_singular(SingularPoint point, double direction);
   bool choose_rows(std::span<const double> q);
   bool choose_better_rows();
@@ -131,7 +130,6 @@ class Kinematics {
   Passage pass_singular(double next, double target, double reach, Report& report);
   Passage follow_bridge(const MotionBridge& bridge, double t);
   Report take_branch(const SingularPoint& point, int branch, double direction);
-  double time_to_depart(double rest, double direction, double way);
   void leave_bridge(double end);
   void place_on_bridge(double t);
   bool functions_go_on(double t) const;

@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "catena/analysis/kinematics/kinematics.hpp"
+#include "catena/analysis/pose/departure.hpp"
 
 namespace catena {
 namespace {
@@ -22,56 +23,6 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 // of its distance from the nearest other branch. Further nodes may be off by this part of the motion.
 constexpr double entries[] = {0.02, 0.01, 0.005, 0.002, 0.001, 3e-4};
 constexpr double entry_allowance = 0.2;
-// Times (s) between which drivers at rest move by this much.
-constexpr double shortest = 1e-9, longest = 1e9;
-
-/// The distance that drivers at rest at an instant have moved after it, in the direction in which they leave.
-class Departure {
- public:
-  Departure(Evaluator& evaluator, double rest, double direction)
-      : evaluator_(evaluator), rest_(rest), direction_(direction) {
-    const auto& elements = evaluator.model().elements;
-    for (std::size_t e = 0; e < elements.size(); ++e) {
-      if (elements[e].kind == ElementKind::driver) drivers_.push_back(static_cast<int>(e));
-    }
-    evaluator_.set_time(rest, direction > 0 ? Side::after : Side::before);
-    for (int e : drivers_) start_.push_back(evaluator_.element_value(e));
-  }
-
-  /// Of the driver that has moved furthest after |t - rest|; negative where it lies on the other side at t.
-  double at(double t) const {
-    const Fastest fastest = fastest_at(t);
-    evaluator_.set_time(t);
-    return fastest.sign * way(fastest.driver);
-  }
-  /// Its acceleration at rest, of the same sign.
-  double acceleration(double t) const {
-    const Fastest fastest = fastest_at(t);
-    return fastest.sign * start_[fastest.driver].dd;
-  }
-
- private:
-  struct Fastest {
-    std::size_t driver = 0;
-    double sign = 0;
-  };
-  double way(std::size_t k) const { return evaluator_.element_value(drivers_[k]).f - start_[k].f; }
-  Fastest fastest_at(double t) const {
-    evaluator_.set_time(rest_ + direction_ * std::abs(t - rest_));
-    Fastest fastest;
-    double most = 0;
-    for (std::size_t k = 0; k < drivers_.size(); ++k) {
-      const double w = way(k);
-      if (std::abs(w) > std::abs(most)) most = w, fastest = {k, std::copysign(1.0, w)};
-    }
-    return fastest;
-  }
-
-  Evaluator& evaluator_;
-  double rest_, direction_;
-  std::vector<int> drivers_;
-  std::vector<Taylor<double>> start_;
-};
 
 /// The bridge with the singular configuration itself in place of its last instant. With the velocity v there,
 /// q = q* + s v + s^2 r(s),  and r(0) is half the acceleration; r is extrapolated from the others, in which an error of
@@ -102,22 +53,7 @@ MotionBridge anchor(const MotionBridge& bridge, const SingularPoint& point, std:
 
 }  // namespace
 
-// The time after which the drivers have moved by `way`; infinite: they do not, or they are not defined then.
-double Kinematics::time_to_depart(double rest, double direction, double way) {
-  const Departure departure(evaluator_, rest, direction);
-  const auto beyond = [&](double h) { return departure.at(rest + direction * h) >= way; };
-  double low = 0, high = shortest;
-  while (high < longest && functions_go_on(rest + direction * high) && !beyond(high)) low = high, high *= 2;
-  if (!(high < longest) || !functions_go_on(rest + direction * high)) return std::numeric_limits<double>::infinity();
-  while (high - low > 1e-3 * high) {
-    const double middle = low + (high - low) / 2;
-    (beyond(middle) ? high : low) = middle;
-  }
-  return high;
-}
-
-// Changes from the branch of the motion to the one chosen, a little beyond the branch point, and bridges the stretch to
-// it.
+// Leaves the branch that came for the one chosen, a little beyond the branch point, and bridges the way there.
 Report Kinematics::take_branch(const SingularPoint& point, int branch, double direction) {
   Report report;
   choice_.reset();
@@ -131,7 +67,7 @@ Report Kinematics::take_branch(const SingularPoint& point, int branch, double di
   std::vector<double> accelerations(q_.size());
   const Departure departure(evaluator_, point.t, direction);
   for (double entry : entries) {
-    const double h = direction * (rests ? time_to_depart(point.t, direction, entry / rate) : entry / rate);
+    const double h = direction * (rests ? time_to_depart(evaluator_, point.t, direction, entry / rate) : entry / rate);
     if (!std::isfinite(h)) continue;
     // Near the tangent: the deviation must be small enough to tell the branch from the others.
     const auto add_along_tangent = [&](MotionBridge& bridge, double t) {

@@ -14,6 +14,7 @@
 #include <numeric>
 
 #include "catena/analysis/kinematics/kinematics.hpp"
+#include "catena/analysis/pose/departure.hpp"
 
 namespace catena {
 namespace {
@@ -38,10 +39,7 @@ constexpr double dependence = 1e-7;
 }  // namespace
 
 // Whether functions of time are as smooth at t as within the run: outside of it those of the user's own end.
-bool Kinematics::functions_go_on(double t) const {
-  return evaluator_.time_limit().contains(t) || std::none_of(model_->functions.begin(), model_->functions.end(),
-                                                             std::mem_fn(&TimeFunction<double>::has_callback));
-}
+bool Kinematics::functions_go_on(double t) const { return functions_exist_at(evaluator_, t); }
 
 // Solves at t from the prediction in trial_.
 bool Kinematics::add_node(MotionBridge& bridge, double t, double allowed) {

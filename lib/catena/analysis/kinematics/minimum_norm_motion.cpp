@@ -8,8 +8,10 @@
 
 #include "catena/analysis/motion/tableau.hpp"
 #include "catena/analysis/pose/assemble.hpp"
+#include "catena/analysis/pose/dead_point.hpp"
 #include "catena/analysis/pose/mobility.hpp"
 #include "catena/analysis/pose/scaling.hpp"
+#include "catena/analysis/pose/singular_start.hpp"
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
@@ -84,7 +86,13 @@ Report MinimumNormMotion::prepare(AnalysisReport& report) {
   return {};
 }
 
-Report MinimumNormMotion::no_velocity() const {
+// At the start: in a dead point, or with rows that contradict each other.
+Report MinimumNormMotion::no_velocity() {
+  evaluator_.set_time(t_);
+  if (std::optional<SingularPoint> point = find_dead_point(evaluator_, q_)) {
+    singular_points_.push_back(std::move(*point));
+    return singular_points_.back().report_lock_up(*model_);
+  }
   Report report;
   std::string names;
   const std::vector<int> elements = least_.worst_elements();
@@ -107,8 +115,21 @@ Report MinimumNormMotion::cancelled() const {
   return report;
 }
 
+// The start lies where no motion goes on, or where several do and nothing chooses; ok: neither.
+Report MinimumNormMotion::stuck_at_start(double target) {
+  evaluator_.set_time(t_);
+  SingularPoint point = find_branches(evaluator_, q_, {}, start_dependence);
+  if (point.nullity <= plan_->columns - plan_->rows) return {};
+  SingularStart start = decide_start(evaluator_, std::move(point), 0, target < t_ ? -1 : 1, "drive what is free");
+  if (!start.report.ok()) singular_points_.push_back(std::move(start.point));
+  return start.report;
+}
+
 // No step can be made: velocities have grown beyond all bounds, or rows have become dependent.
 Report MinimumNormMotion::stuck(double target) {
+  if (t_ == started_) {
+    if (Report start = stuck_at_start(target); !start.ok()) return start;
+  }
   Report report;
   const bool met = least_.velocity(t_, Side::after, q_, qd_);
   const int element = met ? plan_->row_element[at(least_.heaviest_row())] : least_.worst_elements().front();
@@ -298,10 +319,13 @@ AnalysisReport MinimumNormMotion::run(const TimeGrid& grid, const Needs& needs, 
   report.bodies = static_cast<int>(model_->bodies.size());
   report.rows = plan_->rows;
   report.islands = plan_->islands;
+  std::int64_t rows = 0;
+  double last_row = t_;
   const auto end = [&](const Report& outcome) {
     report.status = outcome.status;
     report.message = outcome.message;
-    if (outcome.status == Status::lock_up) give_row_at_lock_up(needs, observer);
+    const bool given = rows > 0 && !singular_points_.empty() && singular_points_.back().t == last_row;
+    if (outcome.status == Status::lock_up && !given) give_row_at_lock_up(needs, observer);
     report.counters = evaluator_.counters;
     report.seconds = timer.seconds();
     return report;
@@ -327,6 +351,8 @@ AnalysisReport MinimumNormMotion::run(const TimeGrid& grid, const Needs& needs, 
                             .qdd = needs.acceleration ? std::span<const double>(qdd_) : none,
                             .residual = residual_ * evaluator_.length_scale()};
     if (!observer.observe(snapshot)) return end(cancelled());
+    ++rows;
+    last_row = t_;
   }
   // A later analysis continues with the velocities, whether or not they are output, since drivers do not determine
   // them.

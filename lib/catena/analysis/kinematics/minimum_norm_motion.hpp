@@ -16,7 +16,7 @@
 #include <memory>
 #include <optional>
 
-#include "catena/analysis/kinematics/kinematics_branches.hpp"
+#include "catena/analysis/pose/branches.hpp"
 #include "catena/analysis/pose/least_velocity.hpp"
 #include "catena/analysis/run/analysis_report.hpp"
 #include "catena/analysis/run/row_observer.hpp"
@@ -49,7 +49,8 @@ class MinimumNormMotion {
   double try_step(double end, bool lands_on_break, bool on_constraints);
   std::optional<double> jump(double limit, bool breaks, double rate);
   Report solve_rates(const Needs& needs);
-  Report no_velocity() const;
+  Report no_velocity();
+  Report stuck_at_start(double target);
   Report cancelled() const;
   Report stuck(double target);
   void give_row_at_lock_up(const Needs& needs, RowObserver& observer);

@@ -24,6 +24,12 @@ void EnergyAccount::powers(std::span<const double> qd, std::span<const double> l
   }
 }
 
+void EnergyAccount::powers_of_one(std::span<const double> qd, int driver, double power, std::span<double> out) {
+  out[0] = evaluator_.dissipation(qd);
+  out[1] = evaluator_.load_power(qd);
+  for (std::size_t k = 0; k < drivers_.size(); ++k) out[2 + k] = drivers_[k].element == driver ? power : 0;
+}
+
 double EnergyAccount::supplied(std::span<const double> work) {
   double sum = 0;
   for (double w : work.subspan(1)) sum += w;

@@ -21,6 +21,8 @@ class EnergyAccount {
   std::size_t size() const { return 2 + drivers_.size(); }
   /// The powers at the evaluator's configuration; lambda: multipliers of the solver's rows there.
   void powers(std::span<const double> qd, std::span<const double> lambda, std::span<double> out);
+  /// The same where one driver, by its element, does all that drivers do.
+  void powers_of_one(std::span<const double> qd, int driver, double power, std::span<double> out);
 
   static double dissipated(std::span<const double> work) { return work[0]; }
   static double& dissipated(std::span<double> work) { return work[0]; }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/pose/dead_point.hpp"
 #include "catena/analysis/pose/scaling.hpp"
 #include "catena/assembly/systems/constraint_projector.hpp"
 
@@ -118,6 +119,11 @@ VelocityOutcome find_initial_velocities(EquationsOfMotion& equations, std::span<
     const double scale = std::max(
         {column_norm(plan, velocity, length), column_norm(plan, wanted.velocity, length), row_norm(plan, nu, length)});
     if (!(left <= 1e-9 * scale)) {
+      outcome.dead_point = find_dead_point(evaluator, q);
+      if (outcome.dead_point) {
+        static_cast<Report&>(outcome) = outcome.dead_point->report_lock_up(evaluator.model());
+        return outcome;
+      }
       const int element = worst < 0 ? 0 : plan.row_element[at(worst)];
       outcome.status = Status::inconsistent;
       outcome.message = fmt::format(

@@ -9,19 +9,24 @@
 // of them is added to what is asked for (Bregman iteration): exact after a few rounds, with one factorization.
 // A velocity is given for the origin of its author's frame. What is massless and not given has a small mass that is
 // taken back from round to round: it follows what has mass and resists nothing.
+// Singular: where no velocity meets all rows the mechanism is in a dead point (`lock_up`, dead_point.hpp), or rows
+// contradict each other (`inconsistent`).
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
 #include "catena/analysis/motion/equations_of_motion.hpp"
+#include "catena/analysis/pose/singular_point.hpp"
 
 namespace catena {
 
 struct VelocityOutcome : Report {
-  double changed = 0;         ///< largest change of a given component, m/s or rad/s
-  bool changed_turn = false;  ///< an angular velocity
-  int changed_body = -1;      ///< whose it was, in the model's numbering
+  double changed = 0;                       ///< largest change of a given component, m/s or rad/s
+  bool changed_turn = false;                ///< an angular velocity
+  int changed_body = -1;                    ///< whose it was, in the model's numbering
+  std::optional<SingularPoint> dead_point;  ///< where the status is lock_up
 };
 
 /// Finds qd (size plan.coordinates()) at the evaluator's time and the assembled configuration q. `given`, if not empty,

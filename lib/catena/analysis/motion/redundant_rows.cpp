@@ -178,7 +178,7 @@ void RedundantRows::leave_out(const std::vector<int>& rows) {
   equations_.leave_out(std::move(directions));
 }
 
-void RedundantRows::find(std::span<const double> q) {
+void RedundantRows::find(std::span<const double> q, const GenericPlace* generic) {
   Evaluator& evaluator = equations_.evaluator();
   const double t = evaluator.time();
   equations_.leave_out({});
@@ -186,7 +186,13 @@ void RedundantRows::find(std::span<const double> q) {
   if (equations_.smallest_pivot_ratio() > independent_ratio) return;
   std::vector<int> rows = dependent_rows(q);
   Vector place(q.begin(), q.end()), other(place);
-  if (!rows.empty() && plan_.columns > plan_.rows - static_cast<int>(rows.size()) && probe(q, other)) {
+  const auto go_elsewhere = [&] {
+    if (!generic) return plan_.columns > plan_.rows - static_cast<int>(rows.size()) && probe(q, other);
+    evaluator.set_time(generic->t);
+    other = generic->q;
+    return true;
+  };
+  if (!rows.empty() && go_elsewhere()) {
     std::vector<int> there = dependent_rows(other);
     if (there.size() < rows.size()) {
       rows = std::move(there);

@@ -14,8 +14,9 @@
 //
 // p is the rank deficiency at a place where the mechanism is not singular by accident: a start in a flat position shows
 // too low a rank, so that the rank is also taken 0.1 rad along the drivers' or a free motion, and the larger one
-// counts. Singular case: a mechanism that is driven, but at rest, in a singular position has no such place. Source: S.
-// Goreinov, I. Oseledets et al., "How to find a good submatrix" (2010), with blocks as pivots.
+// counts. A mechanism that is driven and starts in a singular position is no such place itself, and its drivers may
+// rest there: whoever knows along which branch it starts gives a place on that. Source: S. Goreinov, I. Oseledets et
+// al., "How to find a good submatrix" (2010), with blocks as pivots.
 #pragma once
 
 #include <span>
@@ -29,10 +30,15 @@ class RedundantRows {
  public:
   explicit RedundantRows(EquationsOfMotion& equations);
 
-  /// Finds p and the directions, at q (assembled) and the evaluator's time; if there are any, the equations hold no
-  /// factors afterwards. Allocates.
-  void find(std::span<const double> q);
-  /// Continues with directions that were chosen before, at q.
+  /// A place of the motion, assembled at t, that is not singular.
+  struct GenericPlace {
+    double t = 0;
+    std::vector<double> q;
+  };
+  /// Finds p and the directions, at q (assembled) and the evaluator's time; the equations are left without factors if
+  /// there are any. `generic`: where the rank may be taken instead, if known; else it is looked for. Allocates.
+  void find(std::span<const double> q, const GenericPlace* generic = nullptr);
+  /// Goes on with directions that were chosen before, at q.
   void take_up(SparseVectors directions, std::span<const double> q);
   /// After a step to q, the place of the equations' factors: makes a new choice where one is needed.
   void follow(std::span<const double> q);

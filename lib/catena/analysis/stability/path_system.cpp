@@ -146,7 +146,11 @@ PathPoint PathSystem::advanced(const PathPoint& x, const PathPoint& t, double s)
 int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t, double s) {
   double before = 0;
   for (int k = 0; k <= most_iterations; ++k) {
-    if (!move_to(x)) return -1;
+    if (!move_to(x)) {
+      refused_value_ = x.p;
+      return -1;
+    }
+    refused_value_.reset();
     residual(x, given_);
     double place = t.p * (x.p - from.p) / (scale_ * scale_) - s;
     for (int c = 0; c < plan_.columns; ++c) {

@@ -15,6 +15,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -54,6 +55,10 @@ class PathSystem {
   PathPoint tangent(const PathPoint& x, const PathPoint& previous);
   /// Corrects x until it solves the equations with <t, x - from> = s. Returns the iterations needed, or -1.
   int correct(PathPoint& x, const PathPoint& from, const PathPoint& t, double s);
+  /// The value of the parameter at which the scene has no model and correct() gave up, the last one since
+  /// forget_refused_value().
+  std::optional<double> refused_value() const { return refused_value_; }
+  void forget_refused_value() { refused_value_.reset(); }
   /// x + s t.
   PathPoint advanced(const PathPoint& x, const PathPoint& t, double s) const;
 
@@ -78,6 +83,7 @@ class PathSystem {
   std::shared_ptr<const Model> model_;
   std::array<std::pair<double, std::shared_ptr<const Model>>, 3> models_{};  // the last ones
   std::size_t next_model_ = 0;
+  std::optional<double> refused_value_;
   double p_, scale_, time_, extent_ = 1;
   std::vector<Vec2<double>> first_origin_;
   std::vector<double> weight_, placed_, correction_, given_, newton_, along_, derivative_, side_;

@@ -57,7 +57,8 @@ std::vector<AnalysisDescription> describe_all() {
       make("inverse_dynamics", "Loads of drivers and reactions in a driven mechanism over time.",
            "dof, mobility, singular", true, {outputs, until, every, at_times, free_motions, branch}),
       make("dynamics", "Motion under forces over time.",
-           "method, events, estimated_error, integrated_apart (how many groups of mechanisms had steps of their own)",
+           "method, events, estimated_error, singular (dead points), integrated_apart (how many groups of mechanisms "
+           "had steps of their own)",
            true,
            {outputs,
             until,

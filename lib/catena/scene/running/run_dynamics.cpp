@@ -8,6 +8,7 @@
 #include "catena/analysis/dynamics/error_estimate.hpp"
 #include "catena/analysis/dynamics/paces.hpp"
 #include "catena/scene/running/analysis_run.hpp"
+#include "catena/scene/running/singular_entries.hpp"
 
 namespace catena {
 namespace {
@@ -158,6 +159,7 @@ void DynamicsTask::run_with_events_or_pauses() {
     }
   }
   run_or_estimate(analysis, plan);
+  add_singular_points(result_, analysis.singular_points(), *model_);
   std::vector<std::string>& warnings = result_.report.warnings;
   if (!failure.empty()) warnings.push_back("a checkpoint was not saved: " + failure);
   if (!taken_up.empty()) warnings.push_back(taken_up);
@@ -180,6 +182,7 @@ void DynamicsTask::run_with_events_or_pauses() {
 void DynamicsTask::run_apart(const std::vector<std::vector<int>>& classes) {
   DynamicsOfIslands analysis(model_, plan_options(*model_, names_), used_options_, classes);
   run_over_time(context_, result_, analysis, *grid_, names_, sources);
+  add_singular_points(result_, analysis.singular_points(), *model_);
   std::string methods;
   for (const IntegrationMethod method : analysis.methods()) {
     const std::string_view name = to_string(method);
@@ -204,6 +207,7 @@ void DynamicsTask::run() {
   const PlanOptions plan = plan_options(*model_, names_);
   Dynamics analysis(model_, plan, used_options_);
   run_or_estimate(analysis, plan);
+  add_singular_points(result_, analysis.singular_points(), *model_);
   result_.fields.push_back({"method", std::string(to_string(analysis.method()))});
 }
 

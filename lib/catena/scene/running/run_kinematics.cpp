@@ -2,35 +2,10 @@
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/analysis/kinematics/minimum_norm_motion.hpp"
 #include "catena/scene/running/analysis_run.hpp"
+#include "catena/scene/running/singular_entries.hpp"
 
 namespace catena {
 namespace {
-
-/// The branches in words; where none goes on, that.
-std::vector<std::string> branches_of(const SingularPoint& point) {
-  if (!point.branches.empty()) return point.branches;
-  if (point.kind == SingularPoint::Kind::lock_up) return {"none goes on beyond the dead point"};
-  return {point.kind == SingularPoint::Kind::isolated ? "none goes on" : "not known"};
-}
-
-/// "singular": one object a singular configuration met.
-void add_singular_points(AnalysisResult& result, const std::vector<SingularPoint>& points, const Model& model) {
-  if (points.empty()) return;
-  std::vector<FieldRecord> records;
-  for (const SingularPoint& point : points) {
-    FieldRecord record{{"t", point.t},
-                       {"kind", std::string(point.kind_name())},
-                       {"nullity", std::int64_t{point.nullity}},
-                       {"bodies", point.bodies},
-                       {"branches", branches_of(point)}};
-    if (point.driver >= 0) {
-      record.emplace_back("driver", model.element_name(point.driver));
-      record.emplace_back("value", point.driver_value);
-    }
-    records.push_back(std::move(record));
-  }
-  result.fields.push_back({"singular", std::move(records)});
-}
 
 /// One-sided elements do not take part: they are watched.
 PlanOptions plan_without_gaps(const Model& model, const std::vector<std::string>& outputs) {

@@ -16,6 +16,9 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 constexpr double independent_ratio = 1e-8;
 constexpr int most_iterations = 10;
 constexpr double good_enough = 1e-12;  // residual, in length scales or rad, where iterations gain nothing any more
+// Nor do they where coordinates move by no more than rounding makes of a product and its sum, however large the
+// residual that this leaves in rows with long arms (wheels of a thousand length scales).
+constexpr double rounding_of_places = 8 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -145,6 +148,15 @@ void CoordinatePartition::pick_independent(int freedoms) {
   }
 }
 
+// Whether the last correction of q was rounding.
+bool CoordinatePartition::change_is_rounding(std::span<const double> q) const {
+  for (int c : plan_.coordinate) {
+    const double unit = c % 3 == 2 ? 1 : evaluator_.length_scale();
+    if (!(std::abs(change_[at(c)]) <= rounding_of_places * std::max(std::abs(q[at(c)]), unit))) return false;
+  }
+  return true;
+}
+
 bool CoordinatePartition::solve(double t, Side side, std::span<double> q, std::span<double> qd) {
   position_residual_ = 0;
   if (plan_.rows == 0) return true;
@@ -157,7 +169,7 @@ bool CoordinatePartition::solve(double t, Side side, std::span<double> q, std::s
     if (!std::isfinite(position_residual_)) return false;
     if (k == 0 && (!factorize() || ratio_ < unusable * ratio_of_choice_)) return false;
     if (position_residual_ <= EquationsOfMotion::position_rounding) break;
-    if (k > 0 && position_residual_ > 0.5 * before && position_residual_ < good_enough) break;
+    if (k > 0 && position_residual_ > 0.5 * before && (before < good_enough || change_is_rounding(q))) break;
     if (k == most_iterations || (k > 0 && position_residual_ > before)) return false;
     before = position_residual_;
     system_.least_change(residual_, change_, multipliers_, evaluator_.counters);

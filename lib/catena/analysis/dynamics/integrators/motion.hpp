@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "catena/analysis/motion/energy_account.hpp"
@@ -43,6 +45,10 @@ class Motion {
       std::copy(known_.begin(), known_.end(), a.begin());
       return true;
     }
+    if (departure_ && t <= departed_) {
+      departure_(t, k.subspan(coordinates_));
+      return true;
+    }
     if (account_) {
       const std::span<double> powers = k.subspan(2 * coordinates_);
       account_->powers(v, equations_.multipliers(), powers);
@@ -58,6 +64,12 @@ class Motion {
     known_for_ = moment;
     known_.assign(accelerations_and_powers.begin(), accelerations_and_powers.end());
   }
+  /// Says that `slope(t, [qdd, power])` gives them until `departed`, whatever the equations say: where drivers begin
+  /// to move in a singular position.
+  void depart(double departed, std::function<void(double, std::span<double>)> slope) {
+    departed_ = departed;
+    departure_ = std::move(slope);
+  }
 
   EquationsOfMotion& equations() const { return equations_; }
   /// Coordinates that can change: the first ones of q and of qd.
@@ -69,6 +81,8 @@ class Motion {
   std::size_t coordinates_;
   double known_t_ = 0, known_for_ = -1;
   std::vector<double> known_;
+  double departed_ = 0;
+  std::function<void(double, std::span<double>)> departure_;
 };
 
 }  // namespace catena

@@ -1,23 +1,19 @@
-// Branches at a singular configuration: the velocities with which the mechanism may go on
-// (apps/manual/kinematics.md#singular-configurations).
+// A configuration at which the constraint Jacobian loses rank: what is known of it, and how it is said.
 //
-//   Phi_q qd = nu  has the solutions  qd = qd0 + sum_j a_j z_j,  z_j the right null vectors of Phi_q;
-//   a motion goes on along qd only if  Phi_q qdd = gamma(q, qd)  can be solved as well:
-//   w_i^T gamma(q, qd0 + sum_j a_j z_j) = 0  for all left null vectors w_i
+//   w_i^T Phi_q = 0,  Phi_q z_j = 0:   w_i the combinations of rows that vanish, z_j the motions that become possible
 //
-// quadratic equations in a, one for one at a simple branch point: two real roots = two branches, a double root = they
-// touch, none = the configuration is isolated. With more null vectors the real roots are searched for by Newton's
-// method from many starts, up to a nullity of `most_nullity`; above it only the nullity and the bodies are reported.
-// Where the drivers rest (nu = 0) all branches have the same velocity; they differ in the direction in which the
-// mechanism moves once the drivers do. These directions follow from the same equations with the driver speeds of a
-// moment later and without driver accelerations.
+// In columns and rows z and w are in m and rad; bodies and drivers are named by their part in them, lengths measured in
+// length scales. Kinds and their conditions: branches.hpp for motions that come to such a place or start
+// there, dead_point.hpp for places that no velocity leaves.
 #pragma once
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "catena/assembly/evaluate.hpp"
+#include "catena/analysis/pose/jacobian_rank.hpp"
+#include "catena/base/status.hpp"
 
 namespace catena {
 
@@ -54,24 +50,36 @@ struct SingularPoint {
   std::string describe_branches() const;
   /// The same for drivers that rest: where the branches lead once they move.
   std::string describe_ways() const;
+  /// The status `lock_up`, in the words that every analysis has for it.
+  Report report_lock_up(const Model& model) const;
 };
 
-inline constexpr int most_nullity = 6;
+/// Phi_q at a singular configuration and its null spaces.
+struct NullSpaces {
+  RankReport rank;
+  std::vector<double> values;
+  std::vector<std::vector<double>> z;  // right null vectors by coordinate, largest entry (rad, length scales) one
+};
+
+/// At q and the evaluator's time; `threshold`: length below which rows count as dependent, see RankOptions.
+NullSpaces find_null_spaces(Evaluator& evaluator, std::span<const double> q, double threshold);
+
+/// A combination of rows that vanishes, and its part of b: |w^T b| / (|w| |b|) as in disagreement().
+struct Opposed {
+  std::vector<double> w;
+  double part = 0;
+};
+
+/// Of the left null vectors the one that b disagrees with most.
+Opposed most_opposed(const Evaluator& evaluator, const RankReport& rank, std::span<const double> b);
+
+/// Bodies ordered by `share`, those with less than a thousandth of the largest left out.
+std::vector<int> most_concerned(std::span<const double> share, std::size_t most);
 
 /// |w^T b| / (|w| |b|) in length scales and rad. Where equations depend on each other, w^T Phi_q = 0, it tells whether
 /// they agree: b = nu for velocities, gamma for accelerations. 0 where b vanishes.
 double disagreement(const Evaluator& evaluator, std::span<const double> w, std::span<const double> b);
 /// A value above this one is not rounding: configurations, and hence their null vectors, are given to some 1e-7.
 inline constexpr double clear_disagreement = 1e-6;
-
-enum class Drivers {
-  moving,         ///< at the evaluator's time as in the motion
-  about_to_move,  ///< they rest, and the evaluator's time is a moment later: tangents for a fastest driver of speed 1
-};
-
-/// The branches at the evaluator's time and the singular configuration q. `along`: the velocity of the motion on
-/// arrival, empty if it starts here. `threshold`: length below which equations count as dependent, see RankOptions.
-SingularPoint find_branches(Evaluator& evaluator, std::span<const double> q, std::span<const double> along,
-                            double threshold, Drivers drivers = Drivers::moving);
 
 }  // namespace catena

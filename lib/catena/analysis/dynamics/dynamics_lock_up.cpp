@@ -1,0 +1,122 @@
+// Dynamics where no step can be made because drivers ask for what the mechanism cannot do: the place is located, told
+// and given a last row.
+//
+//   towards a dead point   q = q* - a sqrt(t* - t):   t* - t = |qd|^2 / (2 qd . qdd),   q* = q + 2 (t* - t) qd
+//
+// but for terms of t* - t. What rounding has left of the accelerations is mended from the constraints: along d = qd /
+// |qd|, which is the null vector there, w^T Phi_q(q + s d) d vanishes linearly at q*; and w^T Phi(q*, t*) = 0 has the
+// instant.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/pose/dead_point.hpp"
+
+namespace catena {
+namespace {
+
+// Rows nearer to dependence than this (sine) count as dependent: steps end where velocities have grown a thousandfold.
+constexpr double nearly_dependent = 1e-3;
+// The part of |w| |nu| from which w^T nu counts as something, w known to nearly_dependent.
+constexpr double not_nothing = 1e-2;
+// How much longer than by its accelerations the way to the dead point may be.
+constexpr double longest_way = 10;
+
+}  // namespace
+
+// Where no step can be made: the dead point ahead, if drivers ask for a motion that the constraints rule out,
+// w^T Phi_q = 0 but w^T nu != 0 (apps/manual/kinematics.md#singular-configurations).
+std::optional<SingularPoint> Dynamics::dead_point_ahead() {
+  if (plan_->rows == 0 || !(equations_.smallest_pivot_ratio() < nearly_dependent)) return {};
+  const std::size_t n = q_.size();
+  const double t = integrator_->time();
+  std::vector<double> q(integrator_->state().begin(), integrator_->state().begin() + static_cast<std::ptrdiff_t>(n));
+  const std::span<const double> qd = integrator_->state().subspan(n, n);
+  evaluator_.set_time(t);
+  const std::vector<double> values = jacobian_values(evaluator_, q);
+  RankOptions options;
+  options.tolerance = nearly_dependent;
+  options.most_null_vectors = 0;
+  const RankReport rank = jacobian_rank(evaluator_, plan_->jacobian, values, options);
+  if (!rank.ok()) return {};
+  std::vector<double> nu(static_cast<std::size_t>(plan_->rows));
+  evaluator_.nu(nu);
+  const Opposed opposed = most_opposed(evaluator_, rank, nu);
+  if (!(opposed.part > not_nothing)) return {};
+  const double rest = time_to_dead_point(opposed.w, q);
+  evaluator_.set_time(t + rest);
+  std::optional<SingularPoint> point = find_dead_point(evaluator_, q, nearly_dependent);
+  if (!point) return {};
+  // Of all motions that are possible there those count that grow without bound.
+  const std::vector<double> motion(qd.begin(), qd.end());
+  point->name_bodies(evaluator_, std::span(&motion, 1));
+  return point;
+}
+
+// Moves q, where the integrator is, to the dead point ahead, and returns the time until then; w: the combination of
+// rows that vanishes there.
+double Dynamics::time_to_dead_point(std::span<const double> w, std::vector<double>& q) {
+  const std::size_t n = q.size();
+  const double t = integrator_->time(), longest = grid_.last() - t;
+  const std::span<const double> y = integrator_->state(), qd = y.subspan(n, n);
+  std::vector<double> slope(y.size(), 0.0);
+  if (!equations_.accelerations(t, Side::after, y.first(n), qd, std::span(slope).subspan(n, n))) return 0;
+  const auto unit = [&](std::size_t k) { return k % 3 == 2 ? 1 : evaluator_.length_scale(); };
+  double product = 0, square = 0;
+  for (std::size_t k = 0; k < 3 * static_cast<std::size_t>(plan_->moving); ++k) {
+    product += qd[k] / unit(k) * (slope[n + k] / unit(k));
+    square += qd[k] / unit(k) * (qd[k] / unit(k));
+  }
+  double rest = square / (2 * product);
+  if (!(rest > 0) || !(rest < longest)) return 0;
+  const auto place = [&](double part) {
+    for (std::size_t k = 0; k < n; ++k) q[k] = y[k] + part * 2 * rest * qd[k];
+  };
+  std::vector<double> change(static_cast<std::size_t>(plan_->rows)), direction;
+  for (int c : plan_->coordinate) direction.push_back(qd[static_cast<std::size_t>(c)]);
+  const auto dependence = [&](double part) {
+    place(part);
+    std::fill(change.begin(), change.end(), 0.0);
+    multiply_add(plan_->jacobian, jacobian_values(evaluator_, q), direction, change);
+    double sum = 0;
+    for (std::size_t r = 0; r < change.size(); ++r) sum += w[r] * change[r];
+    return sum;
+  };
+  const double here = dependence(0), there = dependence(1);
+  const double part = here / (here - there);
+  place(part > 0 && part < longest_way ? part : 1);
+  evaluator_.set_configuration(q);
+  evaluator_.phi(change);
+  std::vector<double> nu(change);
+  evaluator_.nu(nu);
+  double off = 0, speed = 0;
+  for (std::size_t r = 0; r < nu.size(); ++r) off += w[r] * change[r], speed += w[r] * nu[r];
+  const double by_constraints = off / speed;
+  return by_constraints >= 0 && by_constraints < longest ? by_constraints : rest;
+}
+
+// The mechanism where it locks: places and times are known, rates and loads grow without bound.
+void Dynamics::give_row_at_lock_up(RowObserver& observer) {
+  const SingularPoint& point = singular_points_.back();
+  const std::size_t n = q_.size();
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  y_row_.resize(std::max(y_row_.size(), 2 * n));
+  slope_row_.assign(y_row_.size(), none);
+  std::fill(y_row_.begin(), y_row_.end(), none);
+  std::copy_n(point.q.begin(), n, y_row_.begin());
+  lambda_row_.assign(static_cast<std::size_t>(plan_->rows), none);
+  evaluator_.set_time(point.t);
+  evaluator_.set_configuration(point.q);
+  row_residual_ = equations_.position_residual(point.q);
+  evaluator_.add_turns(std::span(y_row_).first(n));
+  Snapshot row = snapshot(point.t, y_row_, needs_);
+  if (needs_.work) {
+    row.work = row.dissipated = none;
+    driver_work_.assign(model_->elements.size(), none);
+    row.driver_work = driver_work_;
+  }
+  observer.observe(row);
+}
+
+}  // namespace catena
