@@ -11,6 +11,12 @@
 
 namespace catena {
 
+/// What a contact presses with, its friction, along the curve or in a joint, on j, and its slip, j relative to i.
+/// Units: N or N m, m/s or rad/s.
+struct ContactLoad {
+  double force = 0, friction = 0, slip = 0;
+};
+
 struct Snapshot {
   const Evaluator& evaluator;  ///< set to this time and configuration
   double t = 0;
@@ -20,9 +26,8 @@ struct Snapshot {
   double dissipated = 0;                  ///< J
   double initial_energy = 0;              ///< total_energy() at the start, J
   std::span<const double> driver_work{};  ///< by number of the element, J
-  /// In motion with contacts, by number of the element: what a contact presses with, its friction and its slip; empty:
-  /// there are none, or forces were not computed. Units: N or N m, m/s or rad/s.
-  std::span<const double> contact_force{}, contact_friction{}, contact_slip{};
+  /// In motion with contacts, by number of the element; empty: there are none, or forces were not computed.
+  std::span<const ContactLoad> contacts{};
   double contact_energy = 0;  ///< stored in elastic contacts, J
 };
 

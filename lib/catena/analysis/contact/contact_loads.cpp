@@ -201,16 +201,10 @@ double ContactLoads::energy() const {
   return sum;
 }
 
-void ContactLoads::scatter(std::span<double> force, std::span<double> friction, std::span<double> slip) const {
-  std::fill(force.begin(), force.end(), 0.0);
-  std::fill(friction.begin(), friction.end(), 0.0);
-  std::fill(slip.begin(), slip.end(), 0.0);
+void ContactLoads::scatter(std::span<ContactLoad> loads) const {
+  std::fill(loads.begin(), loads.end(), ContactLoad{});
   for (std::size_t k = 0; k < points_.size(); ++k) {
-    if (!states_[k].closed) continue;
-    const std::size_t e = at(points_[k].element);
-    force[e] = normal_[k];
-    friction[e] = friction_[k];
-    slip[e] = slide_[k].rate;
+    if (states_[k].closed) loads[at(points_[k].element)] = {normal_[k], friction_[k], slide_[k].rate};
   }
 }
 

@@ -17,6 +17,7 @@
 #include "catena/analysis/contact/contact_points.hpp"
 #include "catena/analysis/motion/state_loads.hpp"
 #include "catena/assembly/evaluate.hpp"
+#include "catena/columns/snapshot.hpp"
 
 namespace catena {
 
@@ -40,8 +41,8 @@ class ContactLoads final : public StateLoads {
   /// What presses a place, from multipliers: of a joint its whole force; of a compliant place the force at the
   /// evaluator's configuration, negative where it would have to pull.
   double normal_from(std::size_t k, std::span<const double> qd, std::span<const double> lambda) const;
-  /// Scatters what presses, friction and slip to `force`, `friction` and `slip`, one entry an element.
-  void scatter(std::span<double> force, std::span<double> friction, std::span<double> slip) const;
+  /// Scatters what presses, friction and slip to `loads`, one entry an element.
+  void scatter(std::span<ContactLoad> loads) const;
   /// The largest speed at which forces were asked for.
   double speed() const { return speed_; }
 

@@ -120,6 +120,7 @@ class Dynamics {
   std::optional<Snapshot> state_at(double t);
   Report check_curve_ends(double from, RowObserver& observer);
   Report find_events(double from, RowObserver& observer);
+  Report show(double from, double to, RowObserver& observer);
   void find_multipliers();
   void describe_mobility(AnalysisReport& report);
   Report stuck();
@@ -171,7 +172,7 @@ class Dynamics {
   double row_residual_ = 0, earlier_motion_ = 0;
   EventWatch* events_ = nullptr;
   ContactLoads* contacts_ = nullptr;
-  std::vector<double> contact_force_, contact_friction_, contact_slip_;  // of the row, by element
+  std::vector<ContactLoad> contact_loads_;  // of the row, by element
   int stopped_by_ = -1;
   std::int64_t next_row_ = 0;
   WorkSoFar earlier_;

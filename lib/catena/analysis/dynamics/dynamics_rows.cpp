@@ -31,9 +31,7 @@ Snapshot Dynamics::snapshot(double t, std::span<const double> y, const Needs& ne
   if (needs.multipliers) s.lambda = lambda_row_;
   s.residual = row_residual_ * evaluator_.length_scale();
   if (contacts_) {
-    s.contact_force = contact_force_;
-    s.contact_friction = contact_friction_;
-    s.contact_slip = contact_slip_;
+    s.contacts = contact_loads_;
     s.contact_energy = contacts_->energy();
   }
   if (account_) {
@@ -75,7 +73,7 @@ std::optional<Snapshot> Dynamics::state_at(double t) {
     const std::span<double> slope(slope_row_);
     if (!equations_.accelerations(t, Side::after, y.first(n), y.subspan(n, n), slope.subspan(n, n))) return {};
     look_for_singularity(t);
-    if (contacts_) contacts_->scatter(contact_force_, contact_friction_, contact_slip_);
+    if (contacts_) contacts_->scatter(contact_loads_);
     if (needs_.multipliers) find_multipliers();
   } else {
     evaluator_.set_time(t);
@@ -155,10 +153,17 @@ Report Dynamics::stuck() {
   return report;
 }
 
+// A part of the last step to whoever wants to look between rows.
+Report Dynamics::show(double from, double to, RowObserver& observer) {
+  if (!observer.wants_stretches() || !(to > from)) return {};
+  return observer.cover({from, to, [this](double t) { return state_at(t); }}) ? Report{} : cancelled(to);
+}
+
 // Events within the last step, in order: rows before each, then its own.
 Report Dynamics::find_events(double from, RowObserver& observer) {
   const auto state = [&](double t) { return state_at(t); };
   while (const std::optional<FoundEvent> found = events_->find(from, t_, state)) {
+    if (const Report shown = show(from, found->t, observer); !shown.ok()) return shown;
     while (next_row_ < grid_.size() && grid_[next_row_] < found->t) {
       if (const Report given = give_row(grid_[next_row_++], observer); !given.ok()) return given;
     }
@@ -176,7 +181,7 @@ Report Dynamics::find_events(double from, RowObserver& observer) {
     t_ = found->t;
     return {};
   }
-  return {};
+  return show(from, t_, observer);
 }
 
 WorkSoFar Dynamics::work_so_far() const {

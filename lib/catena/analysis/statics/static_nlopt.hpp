@@ -10,6 +10,7 @@
 
 #include <span>
 
+#include "catena/analysis/minimiser/minimiser.hpp"
 #include "catena/analysis/statics/static_newton.hpp"
 
 namespace catena {
@@ -21,9 +22,6 @@ struct StaticNloptOptions {
   /// Larger scenes are refused by the analysis: dense steps would take minutes.
   static constexpr int most_columns = 100;
 };
-
-/// Whether the library was built with NLopt (CATENA_WITH_NLOPT).
-bool nlopt_is_built_in();
 
 /// Iterates q (size coordinates()) and lambda (rows) in place. StaticEnd::singular where nlopt_is_built_in() is false.
 StaticOutcome solve_by_nlopt(StaticSystem& system, std::span<double> q, std::span<double> lambda,

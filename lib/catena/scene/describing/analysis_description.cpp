@@ -31,6 +31,7 @@ const AnalysisKey free_motions{"free",
                                {"refuse", "minimum_norm"}};
 const AnalysisKey branch{"branch", KeyKind::whole, "which of the branches listed where several meet, from 1"};
 const AnalysisKey tolerance{"tolerance", KeyKind::number, "relative error allowed", UnitKind::none, Domain::positive};
+const AnalysisKey measures{"measures", KeyKind::measures, "names and what is measured: {\"peak\": {\"max\": column}}"};
 const AnalysisKey parameter{
     "parameter", KeyKind::parameter, "the parameter that changes", UnitKind::none, Domain::any, {}, true};
 
@@ -53,9 +54,9 @@ std::vector<AnalysisDescription> describe_all() {
       make("assemble", "The configuration nearest to the given one that meets all constraints.",
            "residual, moved, iterations", false, {outputs, at_time}),
       make("kinematics", "Positions, velocities and accelerations of a driven mechanism over time.",
-           "dof, mobility, singular", true, {outputs, until, every, at_times, free_motions, branch}),
+           "dof, mobility, singular", true, {outputs, until, every, at_times, free_motions, branch, measures}),
       make("inverse_dynamics", "Loads of drivers and reactions in a driven mechanism over time.",
-           "dof, mobility, singular", true, {outputs, until, every, at_times, free_motions, branch}),
+           "dof, mobility, singular", true, {outputs, until, every, at_times, free_motions, branch, measures}),
       make("dynamics", "Motion under forces over time.",
            "method, events, estimated_error, singular (dead points), integrated_apart (how many groups of mechanisms "
            "had steps of their own)",
@@ -81,7 +82,8 @@ std::vector<AnalysisDescription> describe_all() {
             {"estimate_error", KeyKind::flag,
              "whether to run it a second time, at a tenth of the tolerance or half the step: estimated_error is the "
              "largest difference of the two at its rows, which are those of the finer run"},
-            {"events", KeyKind::events, "what to watch for, and what to do then"}}),
+            {"events", KeyKind::events, "what to watch for, and what to do then"},
+            measures}),
       make("equilibrium", "A configuration at rest, and whether it is stable.",
            "energy, stable, neutral, negative_modes, free_motions and moving_freely (what nothing resists to second "
            "order), residual, solver, iterations, active (the closed gaps), equilibria",
@@ -98,7 +100,8 @@ std::vector<AnalysisDescription> describe_all() {
              "(held), and what part of it is needed (utilisation)",
              {},
              {},
-             {"leave_out", "hold"}}}),
+             {"leave_out", "hold"}},
+            measures}),
       make("path", "Equilibria as a parameter changes, one row a step and one a critical point.",
            "critical, negative_modes, steps", false,
            {outputs,
@@ -112,19 +115,58 @@ std::vector<AnalysisDescription> describe_all() {
              "(default 0.05)",
              UnitKind::none, Domain::positive},
             {"branch", KeyKind::whole,
-             "at the first branch point: 1 goes straight on (default), 2 and 3 leave to either side"}}),
+             "at the first branch point: 1 goes straight on (default), 2 and 3 leave to either side"},
+            measures}),
       make("buckling",
            "Values of a load parameter at which the current equilibrium, kept in place, loses its stability.", "loads",
-           false, {outputs, at_time, parameter, {"count", KeyKind::whole, "how many loads (default 1)"}}),
+           false, {outputs, at_time, parameter, {"count", KeyKind::whole, "how many loads (default 1)"}, measures}),
       make("modes", "Small undamped oscillations about the current configuration at rest: omega^2 ascending.",
            "omega2, omega, unstable, free_motions and moving_freely (those with omega2 = 0)", false,
            {outputs,
             at_time,
             {"count", KeyKind::whole, "how many modes (default: all, at most ten)"},
             {"shapes", KeyKind::flag,
-             "whether to add columns with the shapes: what each output moves by, for a modal mass of 1 kg m^2"}}),
-      announce("sensitivity", "Derivatives of results with respect to parameters."),
-      announce("optimise", "Parameters that make an objective least."),
+             "whether to add columns with the shapes: what each output moves by, for a modal mass of 1 kg m^2"},
+            measures}),
+      make(
+          "sensitivity", "Total derivatives of rows and measures of an analysis with respect to parameters.",
+          "what the analysis has; gradients; deviation", false,
+          {{"of", KeyKind::analysis, "the analysis", UnitKind::none, Domain::any, {}, true},
+           {"parameters", KeyKind::names, "which derivatives", UnitKind::none, Domain::any, {}, true},
+           {"mode",
+            KeyKind::word,
+            "forward: a column d(O)/d(p) for every output and parameter, and gradients of measures; adjoint: gradients "
+            "alone",
+            {},
+            {},
+            {"auto", "forward", "adjoint"}},
+           {"verify", KeyKind::flag,
+            "whether to compare with differences of second order: deviation is the largest one, relative"}}),
+      make(
+          "optimise", "Parameters that make an objective least under constraints.",
+          "variables, objective, constraints, active, optimality, evaluations, failed, solver", false,
+          {{"of", KeyKind::analysis, "the analysis, or a list of them in order", UnitKind::none, Domain::any, {}, true},
+           {"variables",
+            KeyKind::variables,
+            "parameters, each with \"min\", \"max\" and \"start\"",
+            UnitKind::none,
+            Domain::any,
+            {},
+            true},
+           {"minimise", KeyKind::objective, "a measure, or an expression over measures and parameters"},
+           {"maximise", KeyKind::objective, "the same, to be as large as can be"},
+           {"subject_to", KeyKind::relations, "expressions with <=, >= or == between them"},
+           {"solver",
+            KeyKind::word,
+            "auto is slsqp; mma and slsqp use gradients, bobyqa and cobyla none, crs2, isres and direct search "
+            "everywhere",
+            {},
+            {},
+            {"auto", "slsqp", "mma", "ipopt", "bobyqa", "cobyla", "crs2", "isres", "direct"}},
+           {"starts", KeyKind::whole, "how many starts: the given one, then random ones (default 1)"},
+           {"seed", KeyKind::whole, "of random starts (default 1)"},
+           tolerance,
+           {"max_evaluations", KeyKind::whole, "most designs that are analysed (default 1000)"}}),
       announce("sweep", "An analysis repeated over values of parameters."),
   };
 }

@@ -36,7 +36,7 @@ struct FunctionTemplate {
   Kind kind = Kind::constant;
   SplineEnd end = SplineEnd::natural;
   Beyond beyond = Beyond::error;
-  int order = 5;             // of a step
+  int order = 5;  // of a step
   MotionLaw law = MotionLaw::cycloidal;
   std::uint32_t offset = 0;  // of the value in the text
   /// constant: 1; polynomial: coefficients; harmonic: amplitude, omega, phase, offset; step, law: t0, t1, from, to;
@@ -146,6 +146,14 @@ struct BlockTemplate {
   std::vector<Section> sections;  ///< in the order of the text
 };
 
+/// A column of the scene's own, or an expression that stands where a column may: its name is then its text, "=a.x-b.x".
+struct OwnColumnTemplate {
+  std::string name, unit;
+  Expression expression;
+  std::vector<NamedInput> inputs;
+  JsonValue place;  ///< the text of the expression
+};
+
 struct SceneTemplate {
   std::unique_ptr<SourceText> source;
   std::unique_ptr<JsonDocument> document;  ///< names are views into it
@@ -163,6 +171,7 @@ struct SceneTemplate {
   std::vector<FunctionTemplate> functions;
   std::vector<CurveTemplate> curves;
   std::vector<TableTemplate> tables;
+  std::vector<OwnColumnTemplate> own_columns;
 
   JsonValue analyses, outputs;  ///< read by analysis_reader.hpp
   bool may_lack_parts = false;  ///< a key of the scene is none: what is in it is missing, and names in it are unknown

@@ -5,6 +5,7 @@
 #include "catena/analysis/contact/holding.hpp"
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
+#include "catena/analysis/sensitivity/static_derivatives.hpp"
 #include "catena/analysis/statics/equilibrium.hpp"
 #include "catena/analysis/statics/static_ipopt.hpp"
 #include "catena/analysis/statics/static_nlopt.hpp"
@@ -20,11 +21,12 @@ void run_holding(AnalysisContext& context, AnalysisResult& result) {
   const std::vector<std::string> names = context.task.output_names();
   ContactHolding analysis(context.model);
   Evaluator& evaluator = analysis.evaluator();
-  const ColumnSet columns =
-      ColumnSet::resolve(evaluator.model(), evaluator.plan(), names, {.analysis = context.task.type()});
+  const ColumnSources sources{.analysis = context.task.type()};
+  const ColumnSet columns = ColumnSet::resolve(evaluator.model(), evaluator.plan(), names, sources);
   SystemState start = context.state;
   start.t = frozen_time(context);
-  ReportingRows rows(columns, context, start.t);
+  AnalysisRows rows(columns, context, evaluator.model(), evaluator.plan(), sources, {start.t, start.t});
+  rows.begin();
   std::vector<double> q;
   const Holding holding = analysis.find(start, q);
   AnalysisReport report;
@@ -40,6 +42,8 @@ void run_holding(AnalysisContext& context, AnalysisResult& result) {
   report.counters = evaluator.counters;
   report.seconds = timer.seconds();
   take_report(result, std::move(report), &columns, rows.rows());
+  rows.finish(result);
+  add_field_measures(context, result);
 }
 
 /// What equilibrium leaves out, in words; nothing if there is no friction.
@@ -79,7 +83,7 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   options.tolerance = task.number("tolerance", options.tolerance);
   options.accept = task.word("accept") == 0 ? Accept::stable : Accept::stationary;
   const std::vector<std::string> names = task.output_names();
-  Equilibrium analysis(context.model, plan_options(*context.model, names), options);
+  Equilibrium analysis(context.model, plan_options(*context.model, task.column_names()), options);
   const bool conservative = analysis.evaluator().conservative();
   if (!conservative && (options.solver == StaticSolver::ipopt || options.solver == StaticSolver::nlopt)) {
     return refuse(result,
@@ -98,8 +102,18 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   start.t = frozen_time(context);
   analysis.start_from(start);
   if (context.trace) analysis.evaluator().trace = &context.trace;
-  ReportingRows rows(columns, context, start.t);
-  EquilibriumReport report = analysis.run(TimeGrid::instant(start.t), needs_of(context, columns, sources), rows);
+  AnalysisRows rows(columns, context, *context.model, analysis.plan(), sources, {start.t, start.t});
+  StaticDerivatives* derivatives = nullptr;
+  if (context.design) {
+    auto found = std::make_unique<StaticDerivatives>(analysis.evaluator(), designs_of(context),
+                                                     static_cast<int>(context.design->names.size()));
+    derivatives = found.get();
+    rows.differentiate(std::move(found));
+  }
+  rows.begin();
+  Needs needs = rows.needs();
+  needs.multipliers = needs.multipliers || derivatives;
+  EquilibriumReport report = analysis.run(TimeGrid::instant(start.t), needs, rows);
   context.state = analysis.state();
   if (std::string left_out = friction_left_out(*context.model); !left_out.empty())
     report.warnings.push_back(std::move(left_out));
@@ -131,6 +145,12 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   }
   if (report.ok()) draw_softest_mode(context);
   take_report(result, report, &columns, rows.rows());
+  rows.finish(result);
+  add_field_measures(context, result);
+  if (!derivatives || !report.certified || !report.ok()) return;
+  const Snapshot snapshot{
+      .evaluator = analysis.evaluator(), .t = analysis.time(), .q = analysis.q(), .lambda = analysis.lambda()};
+  if (derivatives->find(snapshot)) set_field_gradient(context, result, "energy", 0, derivatives->energy_gradient());
 }
 
 }  // namespace catena

@@ -1,4 +1,4 @@
-#include "catena/scene/running/gear_check.hpp"
+#include "catena/scene/judging/gear_check.hpp"
 
 #include <fmt/format.h>
 

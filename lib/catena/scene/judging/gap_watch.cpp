@@ -1,4 +1,4 @@
-#include "catena/scene/running/gap_watch.hpp"
+#include "catena/scene/judging/gap_watch.hpp"
 
 #include <fmt/format.h>
 

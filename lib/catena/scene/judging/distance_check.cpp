@@ -1,4 +1,4 @@
-#include "catena/scene/running/distance_check.hpp"
+#include "catena/scene/judging/distance_check.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "catena/scene/running/command_text.hpp"
+#include "catena/scene/models/command_text.hpp"
 
 #include <algorithm>
 #include <charconv>
