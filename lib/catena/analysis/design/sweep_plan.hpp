@@ -1,0 +1,60 @@
+// Which designs a sweep tries: values of several parameters, by number of the design.
+//
+//   grid            every combination; the last parameter changes first
+//   together        the k-th value of every parameter; a single value holds for all
+//   sobol, latin, random     points of the unit cube, brought to each parameter's range or distribution
+//
+// Design k is the same whoever asks for it, in whatever order. A list, or `from ... to` in `count` equal steps, counts
+// as a range from its least to its greatest value in a sampled design. A normal distribution is cut nowhere. Source:
+// base/sampling.hpp. Units: those of the parameters.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "catena/base/sampling.hpp"
+
+namespace catena {
+
+/// What a sweep says of one parameter.
+struct SweepRange {
+  enum class Kind : unsigned char { list, normal, uniform };
+  int parameter = -1;
+  Kind kind = Kind::list;
+  std::vector<double> values;    ///< of a list; of steps, all of them
+  double first = 0, second = 0;  ///< mean and deviation, or least and greatest
+};
+
+enum class SweepKind : unsigned char { grid, together, sobol, latin, random };
+
+struct SweepRequest {
+  std::vector<SweepRange> over;
+  SweepKind kind = SweepKind::grid;
+  std::int64_t samples = 1000;
+  std::uint64_t seed = 1;
+};
+
+class SweepPlan {
+ public:
+  /// More designs than this are taken for a mistake.
+  static constexpr std::int64_t most_designs = 1'000'000'000;
+
+  /// Why the request is no plan, in words; nothing if it is one.
+  static std::optional<std::string> trouble(const SweepRequest& request);
+  /// Throws std::invalid_argument with trouble().
+  explicit SweepPlan(SweepRequest request);
+
+  std::int64_t designs() const { return designs_; }
+  /// The parameters' values of design k = 0 ... designs - 1, in the order of `over`.
+  void values(std::int64_t k, std::span<double> out) const;
+
+ private:
+  SweepRequest request_;
+  std::int64_t designs_ = 0;
+  std::optional<SamplePoints> points_;
+};
+
+}  // namespace catena

@@ -1,0 +1,164 @@
+// sweep: analyses repeated over values of parameters; one row a design, whatever the number of threads.
+//
+// Designs are dealt out in order to threads that work in one process on models of their own; their rows are given in
+// the order of the designs, held back while an earlier one is under way. A design that cannot be analysed has its
+// status and no numbers. Memory holds the rows of a few designs a thread.
+#include <fmt/format.h>
+
+#include <condition_variable>
+#include <deque>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "catena/analysis/design/sweep_plan.hpp"
+#include "catena/scene/running/measured_design.hpp"
+
+namespace catena {
+namespace {
+
+/// What came of one design.
+struct SweptDesign {
+  std::vector<double> row;
+  Status status = Status::ok;
+};
+
+class Sweep {
+ public:
+  explicit Sweep(AnalysisContext& context)
+      : context_(context), plan_(context.task.sweep), count_(plan_.designs()), width_(context.task.sweep.over.size()) {
+    for (const AnalysisTask& inner : context.task.of) measures_ += inner.measures.size();
+  }
+
+  /// Gives all rows in order; returns how many.
+  std::int64_t run(int threads);
+  const std::map<std::string, std::int64_t>& failed() const { return failed_; }
+  bool stopped() const { return stopped_; }
+
+ private:
+  SweptDesign analyse(std::int64_t k) const;
+  void work();
+  bool take_next(std::int64_t& k);
+  void give(std::int64_t k, SweptDesign design);
+  bool cancelled() const { return context_.cancel && context_.cancel->load(std::memory_order_relaxed); }
+
+  AnalysisContext& context_;
+  SweepPlan plan_;
+  std::int64_t count_;
+  std::size_t width_, measures_ = 0;
+  // Shared by the threads, behind the mutex.
+  std::mutex mutex_;
+  std::condition_variable room_;
+  std::int64_t next_ = 0, given_ = 0;
+  std::map<std::int64_t, SweptDesign> waiting_;
+  std::map<std::string, std::int64_t> failed_;
+  std::exception_ptr trouble_;
+  bool stopped_ = false;
+  // Rows that may wait for an earlier design, before threads pause.
+  static constexpr std::size_t most_waiting = 1024;
+};
+
+SweptDesign Sweep::analyse(std::int64_t k) const {
+  SweptDesign design;
+  design.row.assign(2 + width_ + measures_, std::numeric_limits<double>::quiet_NaN());
+  design.row[0] = static_cast<double>(k + 1);
+  const std::span<double> values = std::span(design.row).subspan(1, width_);
+  plan_.values(k, values);
+  ParameterSeeds seeds = context_.seeds;
+  for (std::size_t p = 0; p < width_; ++p) seeds.push_back({context_.task.sweep.over[p].parameter, values[p]});
+  std::vector<MeasuredDesign> measured;
+  design.status = measure_design(context_, seeds, measured);
+  std::size_t column = 1 + width_;
+  for (const MeasuredDesign& one : measured) {
+    if (design.status == Status::ok || one.complete) design.row[column] = one.value;
+    ++column;
+  }
+  if (design.status != Status::ok) {
+    for (std::size_t m = 0; m < measures_; ++m) design.row[1 + width_ + m] = std::numeric_limits<double>::quiet_NaN();
+  }
+  design.row.back() = static_cast<double>(design.status);
+  return design;
+}
+
+bool Sweep::take_next(std::int64_t& k) {
+  std::unique_lock lock(mutex_);
+  room_.wait(lock, [&] { return stopped_ || waiting_.size() < most_waiting || next_ >= count_; });
+  if (stopped_ || next_ >= count_) return false;
+  k = next_++;
+  return true;
+}
+
+void Sweep::give(std::int64_t k, SweptDesign design) {
+  const std::lock_guard lock(mutex_);
+  waiting_.emplace(k, std::move(design));
+  for (auto first = waiting_.begin(); first != waiting_.end() && first->first == given_ && !stopped_;
+       first = waiting_.begin()) {
+    const SweptDesign& one = first->second;
+    if (one.status != Status::ok) ++failed_[std::string(to_string(one.status))];
+    if (!context_.rows.row(one.row)) stopped_ = true;
+    waiting_.erase(first);
+    ++given_;
+    if (context_.progress) context_.progress(static_cast<double>(given_) / static_cast<double>(count_));
+  }
+  if (cancelled()) stopped_ = true;
+  room_.notify_all();
+}
+
+void Sweep::work() {
+  std::int64_t k = 0;
+  try {
+    while (take_next(k)) give(k, analyse(k));
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    if (!trouble_) trouble_ = std::current_exception();
+    stopped_ = true;
+    room_.notify_all();
+  }
+}
+
+std::int64_t Sweep::run(int threads) {
+  std::vector<std::jthread> others;
+  for (int n = 1; n < threads; ++n) others.emplace_back([this] { work(); });
+  work();
+  others.clear();
+  if (trouble_) std::rethrow_exception(trouble_);
+  return given_;
+}
+
+}  // namespace
+
+void run_sweep(AnalysisContext& context, AnalysisResult& result) {
+  const AnalysisTask& task = context.task;
+  std::vector<ColumnInfo> info{{"design", UnitKind::none}};
+  for (const SweepRange& range : task.sweep.over)
+    info.push_back({context.models->names().all()[static_cast<std::size_t>(range.parameter)], UnitKind::own});
+  for (const AnalysisTask& inner : task.of) {
+    for (const PlacedMeasure& measure : inner.measures) info.push_back({measure.request.name, UnitKind::own});
+  }
+  info.push_back({"status", UnitKind::none});
+  info.back().is_status = true;
+  context.rows.begin(info);
+  Sweep sweep(context);
+  const std::int64_t rows = sweep.run(context.threads);
+  if (sweep.stopped()) {
+    result.report.status = Status::cancelled;
+    result.report.message = fmt::format("stopped after {} designs; their rows are kept", rows);
+  }
+  FieldRecord failed;
+  std::int64_t failures = 0;
+  for (const auto& [status, count] : sweep.failed()) {
+    failed.emplace_back(status, count);
+    failures += count;
+  }
+  if (failures > 0)
+    result.report.warnings.push_back(
+        fmt::format("{} of {} designs could not be analysed: see their status", failures, rows));
+  result.has_rows = true;
+  result.columns = std::move(info);
+  result.rows = rows;
+  result.fields.push_back({"designs", rows});
+  result.fields.push_back({"failed", std::move(failed)});
+}
+
+}  // namespace catena
