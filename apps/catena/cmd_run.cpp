@@ -101,7 +101,8 @@ struct ListVerb {
 };
 constexpr ListVerb list_verbs[] = {
     {"sensitivity", "Derivatives of rows and measures: the scene's sensitivity analyses"},
-    {"optimise", "Search for the best parameters: the scene's optimise analyses"}};
+    {"optimise", "Search for the best parameters: the scene's optimise analyses"},
+    {"sweep", "Designs over values of parameters: the scene's sweep analyses"}};
 
 struct Parsed {
   RunCommand run;
@@ -121,6 +122,11 @@ void add_common_options(CLI::App& command, Parsed& parsed) {
       ->check([](const std::string& folder) { return folder.empty() ? "the folder has no name" : ""; });
   command.add_option("--view", run.page, "also write a page with the moving mechanism and its plots")
       ->type_name("FILE");
+  command
+      .add_option("-j,--threads", run.options.threads,
+                  "threads that a sweep uses; its rows are the same for any number")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096));
   command.add_flag("--stats", run.stats, "print what was computed how often");
   command.add_flag("-q,--quiet", run.quiet, "print no table, report or progress");
   command.add_flag("-v,--verbose", run.verbose,

@@ -14,6 +14,7 @@ struct ColumnInfo {
   std::string name;
   UnitKind unit = UnitKind::none;
   std::string own_unit = {};  ///< with UnitKind::own: SI, in the syntax of scenes; empty: not known
+  bool is_status = false;     ///< its values number a Status, which is shown by its name
 
   /// "m/s"; "1" of a pure number, empty where the unit is not known.
   std::string_view unit_text() const;

@@ -8,7 +8,11 @@ void ColumnExtremes::begin(std::span<const ColumnInfo> columns) {
   all_.clear();
   rows_ = 0;
   timed_ = !columns.empty() && columns.front().unit == UnitKind::time;
-  for (const ColumnInfo& column : columns) all_.push_back({column.name, std::string(column.unit_text())});
+  is_status_.clear();
+  for (const ColumnInfo& column : columns) {
+    all_.push_back({column.name, std::string(column.unit_text())});
+    is_status_.push_back(column.is_status);
+  }
   target_.begin(columns);
 }
 
@@ -16,7 +20,7 @@ bool ColumnExtremes::row(std::span<const double> values) {
   const double t = timed_ ? values.front() : static_cast<double>(rows_);
   for (std::size_t k = 0; k < all_.size(); ++k) {
     ColumnExtreme& extreme = all_[k];
-    if (!std::isfinite(values[k])) continue;
+    if (is_status_[k] || !std::isfinite(values[k])) continue;
     if (!extreme.any || values[k] < extreme.least) {
       extreme.least = values[k];
       extreme.least_t = t;

@@ -31,6 +31,7 @@ class ColumnExtremes final : public RowSink {
  private:
   RowSink& target_;
   std::vector<ColumnExtreme> all_;
+  std::vector<bool> is_status_;  // of a column: its values are no numbers
   bool timed_ = false;
   std::size_t rows_ = 0;
 };

@@ -1,6 +1,7 @@
 #include "catena/results/csv_writer.hpp"
 
 #include "catena/results/number_format.hpp"
+#include "catena/results/status_word.hpp"
 
 namespace catena {
 namespace {
@@ -22,9 +23,11 @@ void append_field(std::string& line, const std::string& text) {
 
 void CsvWriter::begin(std::span<const ColumnInfo> columns) {
   line_.clear();
+  is_status_.clear();
   for (std::size_t k = 0; k < columns.size(); ++k) {
     if (k > 0) line_ += ',';
     append_field(line_, columns[k].name);
+    is_status_.push_back(columns[k].is_status);
   }
   line_ += "\r\n";
   output_.write(line_);
@@ -34,7 +37,10 @@ bool CsvWriter::row(std::span<const double> values) {
   line_.clear();
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (k > 0) line_ += ',';
-    append_exact(line_, values[k]);
+    if (is_status_[k])
+      line_ += status_word(values[k]);
+    else
+      append_exact(line_, values[k]);
   }
   line_ += "\r\n";
   output_.write(line_);

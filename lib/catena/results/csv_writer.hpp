@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "catena/base/row_sink.hpp"
 #include "catena/results/text_output.hpp"
@@ -22,6 +23,7 @@ class CsvWriter final : public RowSink {
  private:
   TextOutput& output_;
   std::string line_;
+  std::vector<bool> is_status_;  // by column
 };
 
 }  // namespace catena

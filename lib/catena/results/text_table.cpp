@@ -5,6 +5,7 @@
 #include <map>
 
 #include "catena/results/number_format.hpp"
+#include "catena/results/status_word.hpp"
 
 namespace catena {
 namespace {
@@ -15,6 +16,14 @@ constexpr std::size_t narrowest_column = 4;  // one digit, the gap, and a name
 /// Characters, not bytes: bytes that continue a UTF-8 character don't count.
 std::size_t width_of(std::string_view text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
+/// The cells of a column.
+std::vector<std::string> cells_of(const ColumnInfo& column, const std::vector<double>& values) {
+  if (!column.is_status) return format_column(values);
+  std::vector<std::string> words;
+  for (const double value : values) words.emplace_back(status_word(value));
+  return words;
 }
 
 /// Pure numbers need none.
@@ -97,6 +106,7 @@ TextTable::Text TextTable::list() const {
   std::size_t name_width = 0, number_width = 0;
   for (std::size_t k = 0; k < lines; ++k) {
     numbers.push_back(texts[columns_[k].unit][next[columns_[k].unit]++]);
+    if (columns_[k].is_status) numbers.back() = status_word(values_[k]);
     name_width = std::max(name_width, width_of(columns_[k].name));
     number_width = std::max(number_width, numbers.back().size());
   }
@@ -117,7 +127,7 @@ TextTable::Text TextTable::grid() const {
   std::vector<TableColumn> table;
   std::size_t width = 0;
   for (std::size_t k = 0; k < kept_columns_; ++k) {
-    TableColumn column{columns_[k].name, shown_unit(columns_[k]), format_column(shown(k)), 0};
+    TableColumn column{columns_[k].name, shown_unit(columns_[k]), cells_of(columns_[k], shown(k)), 0};
     column.width = std::max(width_of(column.name), width_of(column.unit));
     for (const std::string& cell : column.cells) column.width = std::max(column.width, cell.size());
     width += column.width + 2;

@@ -167,7 +167,27 @@ std::vector<AnalysisDescription> describe_all() {
            {"seed", KeyKind::whole, "of random starts (default 1)"},
            tolerance,
            {"max_evaluations", KeyKind::whole, "most designs that are analysed (default 1000)"}}),
-      announce("sweep", "An analysis repeated over values of parameters."),
+      make(
+          "sweep",
+          "An analysis repeated over values of parameters; one row a design, with its measures and its status.",
+          "designs, failed (how many, by status)", false,
+          {{"of", KeyKind::analysis, "the analysis, or a list of them in order", UnitKind::none, Domain::any, {}, true},
+           {"over",
+            KeyKind::over,
+            "parameters, each with a list of values, with \"from\", \"to\" and \"count\", or in a sampled design with "
+            "\"normal\": [mean, deviation] or \"uniform\": [least, greatest]",
+            UnitKind::none,
+            Domain::any,
+            {},
+            true},
+           {"design",
+            KeyKind::word,
+            "grid: every combination; together: the k-th value of each; sobol, latin, random: sampled",
+            {},
+            {},
+            {"grid", "together", "sobol", "latin", "random"}},
+           {"samples", KeyKind::whole, "how many sampled designs (default 1000)"},
+           {"seed", KeyKind::whole, "of latin and random designs (default 1)"}}),
   };
 }
 

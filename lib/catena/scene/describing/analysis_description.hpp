@@ -24,6 +24,7 @@ enum class KeyKind {
   analysis,   ///< an analysis, or a list of them
   names,      ///< a list of parameters
   variables,  ///< parameters with bounds and starts
+  over,       ///< parameters with values
   objective,  ///< a measure or an expression over measures and parameters
   relations,  ///< a list of expressions with <=, >= or ==
 };

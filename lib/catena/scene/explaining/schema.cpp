@@ -144,6 +144,16 @@ json key_schema(const AnalysisKey& key) {
           map_of(
               object_of({{"min", reference("number")}, {"max", reference("number")}, {"start", reference("number")}})),
           key.doc);
+    case KeyKind::over: {
+      const json pair{{"type", "array"}, {"items", reference("number")}, {"minItems", 2}, {"maxItems", 2}};
+      const json range = object_of({{"from", reference("number")},
+                                    {"to", reference("number")},
+                                    {"count", {{"type", "integer"}, {"minimum", 1}}},
+                                    {"normal", pair},
+                                    {"uniform", pair}});
+      return described(map_of({{"anyOf", json::array({reference("number"), list_of(reference("number")), range})}}),
+                       key.doc);
+    }
     case KeyKind::objective:
       return {{"type", "string"}, {"minLength", 1}, {"description", key.doc}};
     case KeyKind::relations:

@@ -151,6 +151,9 @@ void AnalysisReader::read_key(const AnalysisKey& key, const JsonValue& value, An
     case KeyKind::variables:
       read_variables(value, task);
       break;
+    case KeyKind::over:
+      read_over(value, task);
+      break;
     case KeyKind::objective:
       task.goal.maximise = key.name == "maximise";
       read_objective(value, task);
@@ -219,6 +222,7 @@ std::optional<AnalysisTask> AnalysisReader::read(const JsonValue& object, const 
   task.from_initial = task.word("from") == 1;
   check_times(values, task);
   if (task.type() == "optimise") check_design(object);
+  if (task.type() == "sweep") check_sweep(object, task);
   if (!own_outputs && scene_outputs && task.description->find("outputs")) {
     task.outputs = names(scene_outputs, {"outputs"}, task.parameters);
   }

@@ -42,6 +42,12 @@ class AnalysisReader {
   void read_relations(const JsonValue& list, AnalysisTask& task);
   void read_relation(const JsonValue& value, AnalysisTask& task);
   void check_design(const JsonValue& object);
+  // sweep_reader.cpp
+  void read_over(const JsonValue& object, AnalysisTask& task);
+  void read_range(const JsonMember& member, AnalysisTask& task);
+  void read_steps(const JsonMember& member, const std::array<JsonValue, 3>& v, const std::string& owner,
+                  SweepRange& range);
+  void check_sweep(const JsonValue& object, AnalysisTask& task);
   void read_event(const JsonValue& object, AnalysisTask& task);
   void check_times(const std::vector<JsonValue>& values, const AnalysisTask& task);
   void error(const JsonValue& value, std::string message) { report(value, std::move(message), diagnostics_); }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "catena/analysis/design/sweep_plan.hpp"
 #include "catena/analysis/measures/measure.hpp"
 #include "catena/scene/describing/analysis_description.hpp"
 #include "catena/scene/reading/scene_template.hpp"
@@ -79,6 +80,7 @@ struct AnalysisTask {
   std::vector<AnalysisTask> of;                 ///< the analyses that it differentiates or optimises
   std::vector<int> design_parameters;           ///< by which it differentiates
   DesignGoal goal;
+  SweepRequest sweep;
 
   std::string_view type() const { return description->type; }
   bool has(std::string_view key) const { return numbers.contains(key); }

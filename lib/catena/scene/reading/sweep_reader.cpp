@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "catena/scene/json/near_miss.hpp"
 #include "catena/scene/numbers/evaluation.hpp"

@@ -21,7 +21,7 @@ constexpr Runner entries[] = {{"check", run_check},           {"assemble", run_a
                               {"dynamics", run_dynamics},     {"equilibrium", run_equilibrium},
                               {"modes", run_modes},           {"path", run_path},
                               {"buckling", run_buckling},     {"sensitivity", run_sensitivity},
-                              {"optimise", run_optimise}};
+                              {"optimise", run_optimise},     {"sweep", run_sweep}};
 
 Report refuse(std::string message) {
   Report report;

@@ -48,6 +48,7 @@ struct AnalysisContext {
   bool estimate_error = false;              ///< of dynamics
   CheckpointRequest* checkpoint = nullptr;  ///< nullptr: no analysis has to pause
   PoseSink* poses = nullptr;                ///< nullptr: nobody draws
+  int threads = 1;                          ///< that a sweep may use
 };
 
 /// The model with another value of parameter number `parameter`, all else as in the context; nullptr if the scene does
@@ -70,6 +71,7 @@ void run_path(AnalysisContext& context, AnalysisResult& result);
 void run_buckling(AnalysisContext& context, AnalysisResult& result);
 void run_sensitivity(AnalysisContext& context, AnalysisResult& result);
 void run_optimise(AnalysisContext& context, AnalysisResult& result);
+void run_sweep(AnalysisContext& context, AnalysisResult& result);
 
 /// The function that runs an analysis of this type; nullptr if none does.
 AnalysisFunction analysis_function(std::string_view type);

@@ -2,6 +2,7 @@
 #include <limits>
 #include <optional>
 
+#include "catena/results/status_word.hpp"
 #include "catena/scene/json/json_text.hpp"
 #include "catena/scene/running/field_json.hpp"
 #include "catena/scene/running/scene_runner.hpp"
@@ -207,6 +208,8 @@ class JsonSink final : public ResultSink, private RowSink {
     text_.clear();
     append_key(text_, "columns");
     append_list(text_, columns, [&](const ColumnInfo& column) { append_json(text_, column.name); });
+    is_status_.clear();
+    for (const ColumnInfo& column : columns) is_status_.push_back(column.is_status);
     append_key(text_, "units");
     append_list(text_, columns, [&](const ColumnInfo& column) { catena::append_json(text_, column.unit_text()); });
     append_key(text_, "rows");
@@ -216,7 +219,13 @@ class JsonSink final : public ResultSink, private RowSink {
   }
   bool row(std::span<const double> values) override {
     text_ = rows_++ > 0 ? ",\n    " : "\n    ";
-    append_list(text_, values, [&](double value) { catena::append_json(text_, value); });
+    std::size_t k = 0;
+    append_list(text_, values, [&](double value) {
+      if (is_status_[k++])
+        catena::append_json(text_, status_word(value));
+      else
+        catena::append_json(text_, value);
+    });
     send();
     return true;
   }
@@ -253,8 +262,9 @@ class JsonSink final : public ResultSink, private RowSink {
   void send() { output_.write(text_); }
 
   TextOutput& output_;
-  std::string text_;  // what goes out next; kept for its memory
-  int count_ = 0;     // analyses so far
+  std::string text_;             // what goes out next; kept for its memory
+  int count_ = 0;                // analyses so far
+  std::vector<bool> is_status_;  // by column
   std::int64_t rows_ = -1;
   bool has_table_ = false;
 };

@@ -324,7 +324,8 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
                           .parameter_name = {},
                           .estimate_error = options_.estimate_error,
                           .checkpoint = checkpoints_.wanted() ? &checkpoint : nullptr,
-                          .poses = options_.poses};
+                          .poses = options_.poses,
+                          .threads = options_.threads};
   if (context.poses) context.poses->begin_poses(*context.model);
   if (task.changes_parameters) {
     // Those that follow from what was set differ too.

@@ -53,6 +53,7 @@ struct RunOptions {
   /// twentieth of the analysis.
   std::string checkpoint;
   double checkpoint_every = 0;
+  int threads = 1;            ///< that a sweep may use
   PoseSink* poses = nullptr;  ///< told where the bodies are (results/pose_sink.hpp), if anybody draws
   std::string restart;  ///< file from which a run is taken up again, or empty; checkpoint_every is then the file's
 };

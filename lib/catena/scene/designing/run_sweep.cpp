@@ -5,15 +5,16 @@
 // status and no numbers. Memory holds the rows of a few designs a thread.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <condition_variable>
-#include <deque>
+#include <exception>
 #include <limits>
 #include <map>
 #include <mutex>
 #include <thread>
 
 #include "catena/analysis/design/sweep_plan.hpp"
-#include "catena/scene/running/measured_design.hpp"
+#include "catena/scene/designing/measured_design.hpp"
 
 namespace catena {
 namespace {
@@ -63,20 +64,14 @@ SweptDesign Sweep::analyse(std::int64_t k) const {
   SweptDesign design;
   design.row.assign(2 + width_ + measures_, std::numeric_limits<double>::quiet_NaN());
   design.row[0] = static_cast<double>(k + 1);
-  const std::span<double> values = std::span(design.row).subspan(1, width_);
+  const auto values = std::span(design.row).subspan(1, width_);
   plan_.values(k, values);
   ParameterSeeds seeds = context_.seeds;
   for (std::size_t p = 0; p < width_; ++p) seeds.push_back({context_.task.sweep.over[p].parameter, values[p]});
-  std::vector<MeasuredDesign> measured;
-  design.status = measure_design(context_, seeds, measured);
-  std::size_t column = 1 + width_;
-  for (const MeasuredDesign& one : measured) {
-    if (design.status == Status::ok || one.complete) design.row[column] = one.value;
-    ++column;
-  }
-  if (design.status != Status::ok) {
-    for (std::size_t m = 0; m < measures_; ++m) design.row[1 + width_ + m] = std::numeric_limits<double>::quiet_NaN();
-  }
+  std::vector<double> measures;
+  design.status = measure_design(context_, seeds, measures);
+  if (design.status == Status::ok)
+    std::copy(measures.begin(), measures.end(), design.row.begin() + static_cast<std::ptrdiff_t>(1 + width_));
   design.row.back() = static_cast<double>(design.status);
   return design;
 }

@@ -1,0 +1,129 @@
+// Sweeps: designs of every plan, failures as rows, the same rows whatever the number of threads.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "catena/analysis/design/sweep_plan.hpp"
+#include "scene/run_text.hpp"
+
+namespace catena::testing {
+namespace {
+
+std::vector<std::vector<double>> designs(const SweepRequest& request) {
+  const SweepPlan plan(request);
+  std::vector<std::vector<double>> all(static_cast<std::size_t>(plan.designs()),
+                                       std::vector<double>(request.over.size()));
+  for (std::int64_t k = 0; k < plan.designs(); ++k) plan.values(k, all[static_cast<std::size_t>(k)]);
+  return all;
+}
+
+SweepRange list(std::vector<double> values) {
+  SweepRange range;
+  range.values = std::move(values);
+  return range;
+}
+
+TEST(SweepPlan, GridsCombineEverything) {
+  const auto all = designs({{list({1, 2}), list({5, 6, 7})}, SweepKind::grid});
+  EXPECT_EQ(all, (std::vector<std::vector<double>>{{1, 5}, {1, 6}, {1, 7}, {2, 5}, {2, 6}, {2, 7}}));
+}
+
+TEST(SweepPlan, TogetherGoesInStep) {
+  const auto all = designs({{list({1, 2, 3}), list({9}), list({4, 5, 6})}, SweepKind::together});
+  EXPECT_EQ(all, (std::vector<std::vector<double>>{{1, 9, 4}, {2, 9, 5}, {3, 9, 6}}));
+  EXPECT_TRUE(SweepPlan::trouble({{list({1, 2}), list({4, 5, 6})}, SweepKind::together}));
+}
+
+TEST(SweepPlan, SamplesHaveTheirDistribution) {
+  SweepRange normal;
+  normal.kind = SweepRange::Kind::normal;
+  normal.first = 3;
+  normal.second = 0.5;
+  for (const SweepKind kind : {SweepKind::sobol, SweepKind::latin, SweepKind::random}) {
+    const auto all = designs({{normal, list({-1, 4})}, kind, 20000, 7});
+    double mean = 0, square = 0, least = 9, most = -9;
+    for (const auto& d : all) {
+      mean += d[0] / 20000;
+      square += (d[0] - 3) * (d[0] - 3) / 20000;
+      least = std::min(least, d[1]);
+      most = std::max(most, d[1]);
+    }
+    // Four deviations of the mean, and of the mean square, of independent samples.
+    EXPECT_NEAR(mean, 3, 4 * 0.5 / std::sqrt(20000.0));
+    EXPECT_NEAR(square, 0.25, 4 * 0.25 * std::sqrt(2 / 20000.0));
+    EXPECT_GT(least, -1);
+    EXPECT_LT(most, 4);
+    EXPECT_LT(least, -0.99);
+  }
+}
+
+TEST(SweepPlan, TellsWhatIsNone) {
+  EXPECT_TRUE(SweepPlan::trouble({{}, SweepKind::grid}));
+  SweepRange uniform;
+  uniform.kind = SweepRange::Kind::uniform;
+  uniform.second = 1;
+  EXPECT_TRUE(SweepPlan::trouble({{uniform}, SweepKind::grid}));
+  const std::vector<double> many(40000, 1.0);
+  EXPECT_TRUE(SweepPlan::trouble({{list(many), list(many)}, SweepKind::grid}));
+  EXPECT_THROW(SweepPlan({{list({})}, SweepKind::grid}), std::invalid_argument);
+}
+
+// A slider-crank of crank a and rod b: the stroke is 2 a, and it locks where b < a.
+const std::string slider = R"({"catena": 1, "parameters": {"a": 0.1, "b": 0.3},
+  "bodies": {"crank": {"rod": {"from": [0,0], "to": ["a", 0]}}, "rod": {"rod": {"from": ["a", 0], "to": ["=a+b", 0]}},
+             "slide": {"position": ["=a+b", 0]}},
+  "constraints": [{"type": "revolute", "i": "ground", "j": "crank.from"}, {"type": "revolute", "i": "crank.to", "j": "rod.from"},
+    {"type": "revolute", "i": "rod.to", "j": "slide"},
+    {"type": "translational", "i": "ground", "j": "slide", "axis_i": [1, 0]}],
+  "drivers": [{"type": "absolute_angle", "i": "crank", "value": {"polynomial": [0.1, 1]}}],
+  "outputs": ["slide.x"], "analyses": [{"type": "sweep", "of": {"type": "kinematics", "until": 7, "every": 0.1,
+    "measures": {"stroke": {"range": "slide.x"}}}, )";
+
+TEST(Sweep, GivesARowADesignAndItsStatus) {
+  const TextRun run = run_text(slider + R"("over": {"a": [0.1, 0.2], "b": {"from": 0.15, "to": 0.45, "count": 3}}}]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+  const std::vector<double> a = run.column("a"), b = run.column("b"), stroke = run.column("stroke"),
+                            status = run.column("status");
+  ASSERT_EQ(stroke.size(), 6u);
+  for (std::size_t k = 0; k < 6; ++k) {
+    SCOPED_TRACE(k);
+    EXPECT_EQ(run.column("design")[k], static_cast<double>(k + 1));
+    if (a[k] < b[k]) {
+      EXPECT_EQ(status[k], static_cast<double>(Status::ok));
+      EXPECT_NEAR(stroke[k], 2 * a[k], 1e-9);
+    } else {
+      EXPECT_NE(status[k], static_cast<double>(Status::ok));
+      EXPECT_TRUE(std::isnan(stroke[k]));
+    }
+  }
+}
+
+TEST(Sweep, ThreadsChangeNothing) {
+  const std::string scene = slider + R"("over": {"a": {"uniform": [0.05, 0.2]}, "b": {"normal": [0.3, 0.05]}},
+    "design": "latin", "samples": 60, "seed": 3}]})";
+  RunOptions several;
+  several.threads = 3;
+  const TextRun one = run_text(scene), three = run_text(scene, several);
+  ASSERT_EQ(one.outcome.exit_code, 0) << one.outcome.error_text;
+  ASSERT_EQ(one.column("stroke").size(), 60u);
+  for (const char* column : {"design", "a", "b", "stroke", "status"}) {
+    const std::vector<double> x = one.column(column), y = three.column(column);
+    ASSERT_EQ(x.size(), y.size());
+    for (std::size_t k = 0; k < x.size(); ++k) EXPECT_TRUE(x[k] == y[k] || (std::isnan(x[k]) && std::isnan(y[k])));
+  }
+}
+
+TEST(Sweep, NamesWhatIsWrong) {
+  const auto error = [](const std::string& rest) { return run_text(slider + rest + "}]}").outcome; };
+  EXPECT_EQ(error(R"("over": {"c": [1]})").exit_code, 3);
+  EXPECT_NE(error(R"("over": {"c": [1]})").error_text.find("unknown parameter"), std::string::npos);
+  EXPECT_NE(error(R"("over": {"a": {"from": 1, "to": 2}})").error_text.find("count"), std::string::npos);
+  EXPECT_NE(error(R"("over": {"a": {"normal": [1, 0.1]}})").error_text.find("sampled"), std::string::npos);
+  EXPECT_NE(error(R"("over": {"a": {"from": 0, "to": 1, "count": 1e12}})").error_text.find("more than"),
+            std::string::npos);
+  EXPECT_NE(error(R"("over": {"a": [1, 2], "b": [1, 2, 3]}, "design": "together")").error_text.find("one length"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace catena::testing
