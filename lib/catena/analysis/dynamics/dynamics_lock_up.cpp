@@ -26,7 +26,7 @@ constexpr double longest_way = 10;
 }  // namespace
 
 // Where no step can be made: the dead point ahead, if drivers ask for a motion that the constraints rule out,
-// w^T Phi_q = 0 but w^T nu != 0 (THEORY section 3).
+// w^T Phi_q = 0 but w^T nu != 0 (apps/manual/kinematics.md#singular-configurations).
 std::optional<SingularPoint> Dynamics::dead_point_ahead() {
   if (plan_->rows == 0 || !(equations_.smallest_pivot_ratio() < nearly_dependent)) return {};
   const std::size_t n = q_.size();

@@ -101,7 +101,7 @@ void Dynamics::remark_on_singularities(std::vector<std::string>& warnings) const
   }
   if (formal_rows_ > 0) {
     warnings.push_back(
-        fmt::format("{} constraints depend on each other in a way that leaves accelerations open: accelerations and "
+        fmt::format("{} constraints depend on each other and do not determine the accelerations: accelerations and "
                     "loads there solve the equations, but need not be the limit of the motion",
                     rows_at(formal_t_, formal_rows_)));
   }

@@ -1,9 +1,10 @@
-// Onto a branch from the singular configuration where several meet.
+// Entering a branch from the singular configuration where several meet.
 //
 // Along a branch q = q* + s z + O(s^2), z its tangent; s is the time since then, or, where the drivers rest (so that z
-// is made for a driver of speed 1), how far the fastest driver has come. A little way along it the equations tell the
-// branch from the others; from there it is as smooth as elsewhere, back through the singular configuration, so that a
-// bridge (kinematics_bridge.hpp) of instants on both sides stands for the stretch in between.
+// is made for a driver of speed 1), how far the fastest driver has come. A little way along it the equations
+// distinguish the branch from the others. The branch itself is as smooth there as elsewhere, also back through the
+// singular configuration, so that a bridge (kinematics_bridge.hpp) of instants on both sides interpolates the stretch
+// in between.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -68,9 +69,9 @@ Report Kinematics::take_branch(const SingularPoint& point, int branch, double di
   for (double entry : entries) {
     const double h = direction * (rests ? time_to_depart(evaluator_, point.t, direction, entry / rate) : entry / rate);
     if (!std::isfinite(h)) continue;
-    // Near the tangent: as little off as tells the branch from the others.
+    // Near the tangent: the deviation must be small enough to tell the branch from the others.
     const auto add_along_tangent = [&](MotionBridge& bridge, double t) {
-      // Tangents are velocities: backwards in time the drivers leave against them.
+      // Tangents are velocities: backwards in time the motion leaves against them.
       const double s = rests ? direction * departure.at(t) : t - point.t;
       for (std::size_t k = 0; k < trial_.size(); ++k) trial_[k] = point.q[k] + s * tangent[k];
       return add_node(bridge, t, entry_allowance * std::abs(s) * std::min(apart, rate));

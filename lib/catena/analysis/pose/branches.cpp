@@ -81,7 +81,7 @@ Quadratics make_quadratics(Evaluator& evaluator, const NullSpaces& spaces, std::
       largest = std::max(largest, std::abs(linear[j]));
     }
     for (double value : mixed[i]) largest = std::max(largest, std::abs(value));
-    // Rows that repeat others ask for nothing.
+    // Redundant equations add no condition.
     if (!(largest > vanishing * size[i])) continue;
     all.constant.push_back((centre[i] - still[i]) / largest);
     for (double& value : linear) value /= largest;
@@ -168,7 +168,7 @@ SingularPoint find_branches(Evaluator& evaluator, std::span<const double> q, std
   const NullSpaces spaces = find_null_spaces(evaluator, q, threshold);
   point.nullity = plan.columns - spaces.rank.rank;
   point.name_bodies(evaluator, spaces.z);
-  // A particular velocity, the least, if none is known.
+  // A particular velocity: the least one if none is known.
   std::vector<double> nu(at(plan.rows)), qd0(at(plan.coordinates()), 0.0);
   evaluator.nu(nu);
   const Opposed opposed = most_opposed(evaluator, spaces.rank, nu);
@@ -203,7 +203,7 @@ SingularPoint find_branches(Evaluator& evaluator, std::span<const double> q, std
   }
   double largest_nu = 0;
   for (double value : nu) largest_nu = std::max(largest_nu, std::abs(value));
-  // Drivers that rest but do not stay may leave a dead point at once: w^T gamma = 0 then asks for a velocity.
+  // Drivers that rest only for an instant may leave a dead point at once: w^T gamma = 0 then requires a velocity.
   const bool starts = along.empty() && largest_nu == 0 && drivers == Drivers::moving &&
                       most_opposed(evaluator, spaces.rank, own).part > clear_disagreement;
   if (starts) {

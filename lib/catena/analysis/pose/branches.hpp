@@ -1,4 +1,5 @@
-// Branches at a singular configuration: which velocities the mechanism may go on with (THEORY section 3).
+// Branches at a singular configuration: which velocities the mechanism may go on with
+// (apps/manual/kinematics.md#singular-configurations).
 //
 //   Phi_q qd = nu  has the solutions  qd = qd0 + sum_j a_j z_j,  z_j the right null vectors of Phi_q;
 //   a motion goes on along qd only if  Phi_q qdd = gamma(q, qd)  can be solved as well:

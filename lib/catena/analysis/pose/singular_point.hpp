@@ -22,7 +22,7 @@ struct SingularPoint {
     branch_point,  ///< branches with different velocities meet
     tangency,      ///< branches touch with the same velocity, or the configuration is regular again to second order
     rest,          ///< the drivers rest there, and the motion goes through or turns back
-    isolated,      ///< no velocity goes on from here
+    isolated,      ///< no velocity continues the motion from here
     lock_up,       ///< the drivers ask for a motion that is not possible
   };
   Kind kind = Kind::branch_point;
@@ -35,12 +35,12 @@ struct SingularPoint {
   std::vector<std::string> bodies;            ///< those that take part in the null vectors, the most mobile first
   int driver = -1;                            ///< the one concerned: whose row weighs most, else the first; -1: none
   double driver_value = 0;                    ///< its value there, m or rad
-  /// Whether positions near this one are only reached by moving the drivers: a null vector that cannot be followed.
+  /// Whether positions near this one are reached only by moving the drivers: no null vector can be followed.
   bool held_to_second_order = false;
 
   /// Names the bodies that take part in motions, given by coordinate.
   void name_bodies(const Evaluator& evaluator, std::span<const std::vector<double>> motions);
-  /// Finds the driver concerned, at the evaluator's time; `w`: weights of the rows in a combination that vanishes.
+  /// Finds the driver concerned, at the evaluator's time; `w`: weights of the equations in a vanishing combination.
   void find_driver(const Evaluator& evaluator, std::span<const double> w, std::span<const double> nu);
   /// Makes branch k, counted from zero, the first one.
   void put_first(std::size_t k);
@@ -76,10 +76,10 @@ Opposed most_opposed(const Evaluator& evaluator, const RankReport& rank, std::sp
 /// Bodies ordered by `share`, those with less than a thousandth of the largest left out.
 std::vector<int> most_concerned(std::span<const double> share, std::size_t most);
 
-/// |w^T b| / (|w| |b|) in length scales and rad. Where rows depend on each other, w^T Phi_q = 0, it tells whether they
-/// agree: b = nu for velocities, gamma for accelerations. 0 where b vanishes.
+/// |w^T b| / (|w| |b|) in length scales and rad. Where equations depend on each other, w^T Phi_q = 0, it tells whether
+/// they agree: b = nu for velocities, gamma for accelerations. 0 where b vanishes.
 double disagreement(const Evaluator& evaluator, std::span<const double> w, std::span<const double> b);
-/// Above this one it is none of rounding: configurations are given to some 1e-7, and so are their null vectors.
+/// A value above this one is not rounding: configurations, and hence their null vectors, are given to some 1e-7.
 inline constexpr double clear_disagreement = 1e-6;
 
 }  // namespace catena
