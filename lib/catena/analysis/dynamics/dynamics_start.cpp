@@ -84,9 +84,9 @@ bool Dynamics::know_start_from_rest() {
     const Taylor<double> s = departure->rates(t, later);
     for (std::size_t k = 0; k < z.size(); ++k) out[k] = s.dd * z[k];
     if (!account_) return;
-    std::vector<double> qd(z), loads(z.size(), 0.0);
+    std::vector<double> qd(z);
     for (double& rate : qd) rate *= s.d;
-    evaluator_.applied_forces(qd, loads);
+    const std::span<const double> loads = equations_.applied_forces();
     const std::vector<double>& mass = equations_.masses().mass;
     double power = 0;
     for (std::size_t k = 0; k < mass.size(); ++k) power += (mass[k] * out[k] - loads[k]) * qd[k];

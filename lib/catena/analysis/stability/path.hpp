@@ -4,7 +4,8 @@
 // along the tangent and corrected by Newton's method; shortened where that fails or the path bends. Whenever the number
 // of negative modes changes, the critical points between are located, told apart and given a row of their own. At a
 // branch point the path continues straight on or, on request, along the branch that leaves it to one side or the other.
-// Ends at the wanted value of the parameter, exactly, or after the largest number of steps.
+// Ends at the wanted value of the parameter, exactly; with `not_converged` after the largest number of steps, `refused`
+// where the parameter may not go on. A start where paths cross wants a branch (`bifurcation`, path_start.hpp).
 // Limits: two critical points within one step whose modes cancel (one becomes stable while another turns unstable) are
 // not seen; a path that only touches the wanted value between two points goes on; and where constraints lose rank (a
 // rope pulled straight) multipliers pass through infinity while positions, and the path, continue smoothly.
