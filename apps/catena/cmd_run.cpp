@@ -99,6 +99,15 @@ std::string option_name(std::string_view key) {
   return dashed == name ? name : dashed + "," + name;
 }
 
+/// A verb that runs those analyses of the scene's own list that have its type.
+struct ListVerb {
+  const char* command;
+  const char* description;
+};
+constexpr ListVerb list_verbs[] = {
+    {"sensitivity", "Derivatives of rows and measures: the scene's sensitivity analyses"},
+    {"optimise", "Search for the best parameters: the scene's optimise analyses"}};
+
 struct Parsed {
   RunCommand run;
   std::vector<std::string> outputs;  // of a whole scene
@@ -177,6 +186,20 @@ RunCommand complete(const Parsed& parsed, const std::string& analysis) {
   return run;
 }
 
+void add_list_command(CLI::App& app, Action& chosen, const ListVerb& verb) {
+  CLI::App* command = app.add_subcommand(verb.command, verb.description);
+  const auto parsed = std::make_shared<Parsed>();
+  add_common_options(*command, *parsed);
+  parsed->run.options.only = verb.command;
+  if (std::string_view(verb.command) == "optimise") {
+    command
+        ->add_option("--save", parsed->run.options.save,
+                     "write the scene with the values found to this file, comments and layout kept")
+        ->type_name("FILE");
+  }
+  command->callback([parsed, &chosen] { chosen = [run = complete(*parsed, "")] { return execute(run); }; });
+}
+
 void add_command(CLI::App& app, Action& chosen, const Verb& verb) {
   CLI::App* command = app.add_subcommand(verb.command, verb.description);
   const auto parsed = std::make_shared<Parsed>();
@@ -212,6 +235,7 @@ void add_command(CLI::App& app, Action& chosen, const Verb& verb) {
 void add_run_commands(CLI::App& app, Action& chosen) {
   add_command(app, chosen, {"run", "", "Run the analyses of a scene, in order", {}});
   for (const Verb& verb : verbs()) add_command(app, chosen, verb);
+  for (const ListVerb& verb : list_verbs) add_list_command(app, chosen, verb);
 }
 
 }  // namespace catena::cli

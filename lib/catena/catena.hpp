@@ -3,14 +3,21 @@
 //   Model model = ...                       model/model.hpp, model/model_add.hpp, elements/all.hpp
 //   Kinematics, Dynamics, Assembler ...     analysis/
 //   ColumnSet, ResultStorage, RowSink       columns/, results/
+//   KinematicDerivatives, StaticDerivatives, MotionDerivatives    analysis/sensitivity/: of models over DesignScalar
+//   MeasureSet, optimise_design             analysis/measures/, analysis/design/
 //   run_scene(path, options, sink)          scene/scene_runner.hpp
 //
 // Units SI, radians. Numerical outcomes are values (base/status.hpp); exceptions are for misuse and bad scenes.
 #pragma once
 
+#include "catena/analysis/design/design_problem.hpp"
 #include "catena/analysis/dynamics/dynamics.hpp"
 #include "catena/analysis/kinematics/kinematics.hpp"
+#include "catena/analysis/measures/measure_set.hpp"
 #include "catena/analysis/pose/mobility.hpp"
+#include "catena/analysis/sensitivity/kinematic_derivatives.hpp"
+#include "catena/analysis/sensitivity/motion_derivatives.hpp"
+#include "catena/analysis/sensitivity/static_derivatives.hpp"
 #include "catena/columns/column_set.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/model_add.hpp"

@@ -7,7 +7,8 @@
 # layer; a folder that is not listed there is an error, and so is one of more than 30 files:
 #
 #   analysis  run <- pose <- motion <- {kinematics, dynamics};  pose <- balance <- spectrum <- statics <- stability
-#   scene     json <- numbers <- describing <- reading <- building <- running <- explaining
+#             run <- measures;  motion <- sensitivity;  minimiser <- {statics, design}
+#   scene     json <- numbers <- describing <- reading <- building <- running <- designing <- explaining
 
 BEGIN {
   may["base"] = " base "
@@ -27,14 +28,19 @@ BEGIN {
   after("analysis", "dynamics", "run pose motion dynamics/integrators")
   after("analysis", "balance", "run pose")
   after("analysis", "spectrum", "run pose balance")
-  after("analysis", "statics", "run pose balance spectrum")
+  after("analysis", "minimiser", "")
+  after("analysis", "statics", "run pose balance spectrum minimiser")
   after("analysis", "stability", "run pose motion balance spectrum statics")
-  chain("scene", "json numbers describing reading building running explaining")
+  after("analysis", "measures", "run")
+  after("analysis", "sensitivity", "run motion")
+  after("analysis", "design", "minimiser")
+  chain("scene", "json numbers describing reading building running designing explaining")
   chain("linalg", "patterns kernels")
   after("linalg", "factorization", "patterns kernels")
   after("linalg", "block", "patterns kernels")
   after("linalg", "rank", "patterns kernels factorization")
   after("assembly", "systems", ".")
+  after("assembly", "design", ".")
   after("elements", "constraints", ".")
   after("elements", "forces", ".")
   part["elements/."] = " . constraints forces "

@@ -13,6 +13,10 @@ namespace catena {
 struct ColumnInfo {
   std::string name;
   UnitKind unit = UnitKind::none;
+  std::string own_unit = {};  ///< with UnitKind::own: SI, in the syntax of scenes; empty: not known
+
+  /// "m/s"; "1" of a pure number, empty where the unit is not known.
+  std::string_view unit_text() const;
 };
 
 class RowSink {

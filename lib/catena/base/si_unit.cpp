@@ -1,6 +1,12 @@
 #include "catena/base/si_unit.hpp"
 
+#include "catena/base/row_sink.hpp"
+
 namespace catena {
+
+std::string_view ColumnInfo::unit_text() const {
+  return unit == UnitKind::own ? std::string_view(own_unit) : si_unit(unit);
+}
 
 std::string_view si_unit(UnitKind kind) {
   switch (kind) {
@@ -46,6 +52,8 @@ std::string_view si_unit(UnitKind kind) {
       return "N m/rad";
     case UnitKind::torsion_damping:
       return "N m s/rad";
+    case UnitKind::own:
+      return "";
   }
   return "1";
 }

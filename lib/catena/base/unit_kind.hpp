@@ -25,6 +25,7 @@ enum class UnitKind {
   damping,               ///< N s/m
   torsion_stiffness,     ///< N m/rad
   torsion_damping,       ///< N m s/rad
+  own,                   ///< what the author of a column says, or nothing known
 };
 
 }  // namespace catena

@@ -10,28 +10,31 @@
 
 namespace catena {
 
-struct Attachment {
+template <class S>
+struct BasicAttachment {
   int bodies = 0;              ///< 1: absolute, only i counts
   int i = ground, j = ground;  ///< bodies of the model
-  Vec2<double> point_i, point_j;
-  Vec2<double> axis_i{1, 0};  ///< the frame's own axis where the element has none
+  Vec2<S> point_i, point_j;
+  Vec2<S> axis_i{S(1.0), S(0.0)};  ///< the frame's own axis where the element has none
   bool has_axis = false;
 };
+using Attachment = BasicAttachment<double>;
 
 template <class Entry>
-Attachment attachment_of(const Entry& entry) {
+auto attachment_of(const Entry& entry) {
   using E = typename Entry::Element;
-  Attachment a;
+  using S = typename Entry::Scalar;
+  BasicAttachment<S> a;
   a.bodies = E::bodies;
   a.i = entry.i;
   a.j = entry.j;
   const auto take = [&]<class Field>(const Field& field) {
     constexpr bool attaches = requires(Entry & e) {
-      e.element.*field.member = Vec2<double>{};
+      e.element.*field.member = Vec2<S>{};
       field.body;
     };
     if constexpr (attaches) {
-      const Vec2<double>& value = entry.element.*field.member;
+      const Vec2<S>& value = entry.element.*field.member;
       if constexpr (requires { field.required; }) {
         if (field.body == 0) {
           a.axis_i = value;
@@ -46,7 +49,8 @@ Attachment attachment_of(const Entry& entry) {
   return a;
 }
 
-/// The same for an element of the model's list.
-Attachment attachment_of(const Model& model, int element);
+/// The same for an element of the model's list, be it a constraint or a force; S is double or DesignScalar.
+template <class S>
+BasicAttachment<S> attachment_of(const BasicModel<S>& model, int element);
 
 }  // namespace catena

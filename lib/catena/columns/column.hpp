@@ -10,6 +10,7 @@ namespace catena {
 enum class ColumnKind : unsigned char {
   time,      ///< t, s
   residual,  ///< largest constraint residual, m (angles times the length scale); rad if all are angles
+  own,       ///< index = own column of the model: a formula over other columns
 
   // index = plan body (the ground: plan.bodies), detail = point of the model or -1
   x,

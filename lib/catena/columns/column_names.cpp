@@ -4,6 +4,7 @@
 #include <array>
 
 #include "catena/columns/element_columns.hpp"
+#include "catena/columns/own_columns.hpp"
 
 namespace catena {
 namespace {
@@ -65,6 +66,11 @@ class Lookup {
 
   std::optional<UnknownColumn> run() {
     if (name_ == "t") return take("t", UnitKind::time, {ColumnKind::time});
+    if (const int own = model_.find_own_column(name_); own >= 0) {
+      const std::string& unit = model_.own_columns[static_cast<std::size_t>(own)].unit;
+      out_.push_back({{std::string(name_), UnitKind::own, unit}, {ColumnKind::own, own}});
+      return {};
+    }
     // In radians if the plan turns out to have rows of angles alone; see ColumnSet::resolve.
     if (name_ == "residual") return take("residual", UnitKind::length, {ColumnKind::residual});
     if (head_ == "energy") return group(energy_columns);
@@ -164,6 +170,7 @@ class Lookup {
     };
     for (const std::string_view known : {"t", "residual", "energy", "momentum", "ground"}) consider(known);
     for (int k = 0; k < model_.names.size(); ++k) consider(model_.names[k]);
+    for (const OwnColumn<double>& column : model_.own_columns) consider(column.name);
     return unknown;
   }
 
@@ -204,11 +211,15 @@ std::vector<UnknownColumn> unknown_columns(const Model& model, std::span<const s
 std::vector<int> elements_with_reactions(const Model& model, std::span<const std::string> names) {
   std::vector<int> elements;
   std::vector<NamedColumn> found;
+  OwnInputs inputs(model.own_columns.size());
   for (const std::string& name : names) {
     found.clear();
     find_columns(model, name, found);
     for (const NamedColumn& named : found) {
-      if (is_reaction(named.column.kind)) elements.push_back(named.column.index);
+      if (named.column.kind == ColumnKind::own && find_own_inputs(model, named.column.index, inputs)) continue;
+      visit_read_columns(inputs, named.column, [&](const Column& column) {
+        if (is_reaction(column.kind)) elements.push_back(column.index);
+      });
     }
   }
   std::sort(elements.begin(), elements.end());

@@ -92,7 +92,21 @@ class Resolver {
   Resolver(const Model& model, const Plan& plan, const ColumnSources& sources)
       : model_(model), plan_(plan), sources_(sources), without_mass_(body_without_mass(model, plan)) {}
 
+  /// Looks up what an own column is made of; throws for what cannot be.
+  void read(const Column& column) {
+    if (column.kind != ColumnKind::own) return;
+    if (auto unknown = find_own_inputs(model_, column.index, own_inputs_)) throw ColumnError(std::move(*unknown));
+  }
+  const OwnInputs& own_inputs() const { return own_inputs_; }
+
   std::optional<Lack> lack_of(const Column& column) const {
+    std::optional<Lack> lack;
+    visit_read_columns(own_inputs_, column, [&](const Column& read) {
+      if (!lack) lack = lack_of_read(read);
+    });
+    return lack;
+  }
+  std::optional<Lack> lack_of_read(const Column& column) const {
     const Needs needs = needs_of(column.kind);
     if (needs.acceleration && !sources_.acceleration) return no_acceleration;
     if (needs.velocity && !sources_.velocity) return no_velocity;
@@ -119,6 +133,14 @@ class Resolver {
     return column;
   }
 
+  OwnInputs own_inputs_in_plan() const {
+    OwnInputs inputs = own_inputs_;
+    for (std::vector<Column>& columns : inputs) {
+      for (Column& column : columns) column = in_plan(column);
+    }
+    return inputs;
+  }
+
   std::vector<std::string> notes() const {
     std::vector<std::string> notes;
     for (int lack = 0; lack < lacks; ++lack) {
@@ -134,6 +156,7 @@ class Resolver {
   const Plan& plan_;
   const ColumnSources& sources_;
   int without_mass_;
+  OwnInputs own_inputs_ = OwnInputs(model_.own_columns.size());
   std::array<LeftOut, lacks> left_out_;
 };
 
@@ -171,16 +194,18 @@ ColumnSet ColumnSet::resolve(const Model& model, const Plan& plan, std::span<con
   set.info_.reserve(named.size());
   set.columns_.reserve(named.size());
   for (NamedColumn& column : named) {
+    resolver.read(column.column);
     if (!resolver.gives(column)) continue;
-    const Needs needs = needs_of(column.column.kind);
-    set.needs_.velocity |= needs.velocity || (sources.velocity && uses_velocity(column.column.kind));
-    set.needs_.acceleration |= needs.acceleration;
-    set.needs_.multipliers |= needs.multipliers;
-    set.needs_.work |= needs.work;
+    visit_read_columns(resolver.own_inputs(), column.column, [&](const Column& read) {
+      const Needs needs = needs_of(read.kind);
+      set.needs_ |= needs;
+      set.needs_.velocity |= sources.velocity && uses_velocity(read.kind);
+    });
     set.columns_.push_back(resolver.in_plan(column.column));
     if (set.only_angles_ && column.column.kind == ColumnKind::residual) column.info.unit = UnitKind::angle;
     set.info_.push_back(std::move(column.info));
   }
+  set.own_inputs_ = resolver.own_inputs_in_plan();
   set.notes_ = resolver.notes();
   return set;
 }

@@ -3,9 +3,9 @@
 //   names -> resolve() -> info() for the sink, needs() for the analysis -> evaluate(snapshot) -> one value a column
 //
 // A column that the analysis cannot give is left out, and a note says so; an unknown name is an error. Changed
-// parameter values keep the set: points, masses and axes are read from the evaluator's model. evaluate() does not
-// allocate; sums over all bodies (energies, momenta) are formed once a row, reactions once an element in a run of
-// columns.
+// parameter values keep the set: points, masses, axes and the constants of formulas are read from the evaluator's
+// model. evaluate() does not allocate; own columns are evaluated with the row that shows them; sums over all bodies
+// (energies, momenta) are formed once a row, reactions once an element in a run of columns.
 #pragma once
 
 #include <span>
@@ -14,10 +14,13 @@
 #include <string_view>
 #include <vector>
 
-#include "catena/columns/column_names.hpp"
+#include "catena/base/design_scalar.hpp"
+#include "catena/columns/own_columns.hpp"
 #include "catena/columns/snapshot.hpp"
 
 namespace catena {
+
+class DesignState;
 
 /// Thrown for a name that is no column; what() is a sentence with the name in it.
 struct ColumnError : std::invalid_argument {
@@ -53,10 +56,14 @@ class ColumnSet {
   /// out[k] = value of column k; `out` has size() values. The snapshot must hold what needs() says, and be of the same
   /// model: else std::invalid_argument.
   void evaluate(const Snapshot& snapshot, std::span<double> out) const;
+  /// The same with derivatives by design parameters, which the state carries. Those of integrals over time, which no
+  /// state holds, are not numbers.
+  void differentiate(const DesignState& state, std::span<DesignScalar> out) const;
 
  private:
   std::vector<ColumnInfo> info_;
   std::vector<Column> columns_;
+  OwnInputs own_inputs_;
   Needs needs_;
   std::vector<std::string> notes_;
   std::size_t coordinates_ = 0;  // of the plan

@@ -1,5 +1,6 @@
 #include "catena/columns/element_columns.hpp"
 
+#include "catena/base/design_scalar.hpp"
 #include "catena/columns/attachment.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/elements/gap_element.hpp"
@@ -98,8 +99,8 @@ void add_loads(const Entry& entry, std::vector<ElementColumn>& out) {
 }
 
 /// Calls f(entry) for an element of the model, be it a constraint or a force.
-template <class F>
-void with_entry(const Model& model, int element, F&& f) {
+template <class S, class F>
+void with_entry(const BasicModel<S>& model, int element, F&& f) {
   const ElementRecord& record = model.elements[static_cast<std::size_t>(element)];
   const auto take = [&](const auto& list) { f(list[static_cast<std::size_t>(record.index)]); };
   if (record.kind == ElementKind::force) {
@@ -129,10 +130,14 @@ std::vector<ElementColumn> columns_of_element(const Model& model, int element) {
   return out;
 }
 
-Attachment attachment_of(const Model& model, int element) {
-  Attachment attachment;
+template <class S>
+BasicAttachment<S> attachment_of(const BasicModel<S>& model, int element) {
+  BasicAttachment<S> attachment;
   with_entry(model, element, [&](const auto& entry) { attachment = attachment_of(entry); });
   return attachment;
 }
+
+template BasicAttachment<double> attachment_of(const BasicModel<double>&, int);
+template BasicAttachment<DesignScalar> attachment_of(const BasicModel<DesignScalar>&, int);
 
 }  // namespace catena

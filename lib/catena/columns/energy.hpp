@@ -11,10 +11,12 @@
 
 namespace catena {
 
-struct Momentum {
-  Vec2<double> linear;
-  double angular = 0;
+template <class S>
+struct BasicMomentum {
+  Vec2<S> linear;
+  S angular{};
 };
+using Momentum = BasicMomentum<double>;
 
 double kinetic_energy(const Snapshot& snapshot);  ///< needs qd
 double total_energy(const Snapshot& snapshot);    ///< needs qd

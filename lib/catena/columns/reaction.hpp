@@ -11,16 +11,21 @@
 
 namespace catena {
 
-struct Reaction {
-  Vec2<double> force;
-  double torque = 0;
+template <class S>
+struct BasicReaction {
+  Vec2<S> force;
+  S torque{};
 };
 
-struct ElementReactions {
-  Reaction on_i, on_j;     ///< equal for absolute constraints, which act on one body
-  Vec2<double> joint_x;    ///< unit vector of the joint's first axis, in the ground frame
-  double multiplier[3]{};  ///< of THEORY's forms, one a row
+template <class S>
+struct BasicElementReactions {
+  BasicReaction<S> on_i, on_j;  ///< equal for absolute constraints, which act on one body
+  Vec2<S> joint_x;              ///< unit vector of the joint's first axis, in the ground frame
+  S multiplier[3]{};            ///< of THEORY's forms, one a row
 };
+
+using Reaction = BasicReaction<double>;
+using ElementReactions = BasicElementReactions<double>;
 
 /// Needs snapshot.lambda; the element must have rows in the plan, or be released: then there are none.
 ElementReactions element_reactions(const Snapshot& snapshot, int element);

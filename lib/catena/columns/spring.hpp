@@ -11,12 +11,14 @@
 
 namespace catena {
 
-struct SpringLoads {
-  double tension = 0, torque = 0, slack = 0;
-  Vec2<double> force_on_j, force_on_j_in_i;
-  double torque_on_j = 0;
-  Vec2<double> offset;
+template <class S>
+struct BasicSpringLoads {
+  S tension{}, torque{}, slack{};
+  Vec2<S> force_on_j, force_on_j_in_i;
+  S torque_on_j{};
+  Vec2<S> offset;
 };
+using SpringLoads = BasicSpringLoads<double>;
 
 SpringLoads spring_loads(const Snapshot& snapshot, int element);
 

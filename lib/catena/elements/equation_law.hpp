@@ -11,16 +11,20 @@
 #include <memory>
 #include <utility>
 
-#include "catena/base/dual.hpp"
+#include "catena/base/design_scalar.hpp"
 #include "catena/base/frame.hpp"
 #include "catena/base/taylor.hpp"
 
-/// The scalars a law is evaluated in: numbers, time series, first and second derivatives by six coordinates.
+/// The scalars a law is evaluated in: numbers, time series, first and second derivatives by six coordinates; and, with
+/// derivatives by design parameters, numbers, time series and first derivatives.
 #define CATENA_LAW_SCALARS(X) \
   X(double)                   \
   X(Taylor<double>)           \
   X(Gradient)                 \
-  X(Second)
+  X(Second)                   \
+  X(DesignScalar)             \
+  X(Taylor<DesignScalar>)     \
+  X(DesignGradient)
 
 namespace catena {
 
@@ -28,6 +32,7 @@ class EquationLaw {
  public:
   using Gradient = Dual<double, 6>;
   using Second = Dual<Gradient, 6>;
+  using DesignGradient = Dual<DesignScalar, 6>;
 
   virtual ~EquationLaw() = default;
 #define CATENA_DECLARE(T) virtual T measure(const Frame<T>& i, const Frame<T>& j) const = 0;

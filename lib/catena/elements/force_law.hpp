@@ -11,14 +11,18 @@
 #include <memory>
 #include <utility>
 
-#include "catena/base/dual.hpp"
+#include "catena/base/design_scalar.hpp"
+#include "catena/base/taylor.hpp"
 #include "catena/elements/force_element.hpp"
 
-/// The scalars a law is evaluated in: numbers, rates along a motion, derivatives with respect to six coordinates.
+/// The scalars a law is evaluated in: numbers, rates along a motion, derivatives with respect to six coordinates; and,
+/// with derivatives by design parameters, numbers and series along a line.
 #define CATENA_LAW_SCALARS(X) \
   X(double)                   \
   X(Rate)                     \
-  X(Gradient)
+  X(Gradient)                 \
+  X(DesignScalar)             \
+  X(Taylor<DesignScalar>)
 
 namespace catena {
 

@@ -23,6 +23,7 @@ struct FunctionValue {
 template <class E, class S>
 struct ElementEntry {
   using Element = E;
+  using Scalar = S;
   E element{};
   int i = ground, j = ground;
   int id = -1;  ///< number in the model's list of elements, file order

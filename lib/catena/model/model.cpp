@@ -170,6 +170,14 @@ int BasicModel<S>::find_element(std::string_view name) const {
   return -1;
 }
 
+template <class S>
+int BasicModel<S>::find_own_column(std::string_view name) const {
+  for (std::size_t k = 0; k < own_columns.size(); ++k) {
+    if (own_columns[k].name == name) return static_cast<int>(k);
+  }
+  return -1;
+}
+
 template class BasicModel<double>;
 template class BasicModel<Dual<double, 4>>;
 

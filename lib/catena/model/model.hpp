@@ -17,6 +17,7 @@
 #include "catena/base/time_function.hpp"
 #include "catena/model/element_lists.hpp"
 #include "catena/model/name_table.hpp"
+#include "catena/model/own_column.hpp"
 
 namespace catena {
 
@@ -60,6 +61,7 @@ class BasicModel {
   NameTable names;                      ///< of bodies, constraints, drivers, forces
   NameTable point_names;
   std::vector<int> name_target;  ///< per name: body b >= 0, or -2 - (number in `elements`)
+  std::vector<OwnColumn<S>> own_columns;
 
   /// New body; its number is returned. The frame's origin is put at `position`.
   int add_body(std::string_view name, const BodyValues& values);
@@ -106,6 +108,8 @@ class BasicModel {
   /// Number of the body or -2; of the element or -1.
   int find_body(std::string_view name) const;
   int find_element(std::string_view name) const;
+  /// Number of the own column of this name, or -1.
+  int find_own_column(std::string_view name) const;
 
  private:
   void require_body(int body) const {

@@ -8,8 +8,9 @@
 #include <variant>
 #include <vector>
 
+#include "catena/analysis/measures/measure.hpp"
 #include "catena/analysis/run/analysis_report.hpp"
-#include "catena/base/row_sink.hpp"
+#include "catena/results/column_extremes.hpp"
 
 namespace catena {
 
@@ -19,7 +20,7 @@ using FieldScalar = std::variant<bool, std::int64_t, double, std::string, std::v
 using FieldRecord = std::vector<std::pair<std::string, FieldScalar>>;
 
 using FieldValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<std::string>,
-                                std::vector<FieldRecord>>;
+                                std::vector<FieldRecord>, FieldRecord>;
 
 /// A result that is no row: "stable", "iterations", "events". Names and meanings: SCENES.md, section Results.
 struct NamedField {
@@ -35,6 +36,10 @@ struct AnalysisResult {
   std::int64_t rows = 0;                              ///< how many went to the sink
   std::vector<NamedField> fields;                     ///< in the order in which they are written
   std::vector<std::pair<std::string, double>> set{};  ///< parameters that it had a value of its own for
+  std::vector<MeasureResult> measures{};
+  std::vector<std::string> gradient_parameters{};  ///< of the measures' gradients; empty: there are none
+  std::vector<ColumnExtreme> extremes{};
+  bool extremes_have_time = false;  ///< else their instants are numbers of rows
 };
 
 }  // namespace catena

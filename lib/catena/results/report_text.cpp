@@ -55,7 +55,47 @@ struct ValueText : ScalarText {
     }
     return text.empty() ? "none" : text;
   }
+  std::string operator()(const FieldRecord& record) const {
+    return enumerate(record,
+                     [](const auto& entry) { return entry.first + " " + std::visit(ScalarText{}, entry.second); });
+  }
 };
+
+std::string with_unit(double value, const std::string& unit) {
+  return format_number(value) + (unit.empty() || unit == "1" ? "" : " " + unit);
+}
+
+/// Name, value, unit, instant; the gradient below.
+std::string measures_text(const AnalysisResult& result) {
+  std::string text;
+  for (const MeasureResult& measure : result.measures) {
+    text += "  " + measure.name + ": ";
+    text += measure.value ? with_unit(*measure.value, measure.unit) : "none";
+    if (measure.t) text += " at t = " + format_number(*measure.t) + " s";
+    if (!measure.trouble.empty()) text += " (" + measure.trouble + ")";
+    text += "\n";
+    for (std::size_t p = 0; p < result.gradient_parameters.size() && p < measure.gradient.size(); ++p)
+      text += "    d/d(" + result.gradient_parameters[p] + ") " + format_number(measure.gradient[p]) + "\n";
+  }
+  return text;
+}
+
+/// Least and largest value of every column, under its table.
+std::string extremes_text(const AnalysisResult& result) {
+  std::string text;
+  std::size_t shown = 0;
+  const char* const instant = result.extremes_have_time ? " at t = " : " in row ";
+  for (const ColumnExtreme& column : result.extremes) {
+    if (shown++ == longest_list) {
+      text += "    ... " + std::to_string(result.extremes.size() - longest_list) + " more columns\n";
+      break;
+    }
+    text += "    " + column.name + ": " + with_unit(column.least, column.unit) + instant +
+            format_number(column.least_t) + " ... " + with_unit(column.largest, column.unit) + instant +
+            format_number(column.largest_t) + "\n";
+  }
+  return text.empty() ? text : "  least and largest:\n" + text;
+}
 
 /// Rows, rank and freedoms as sentences.
 std::string structure_text(const AnalysisReport& report) {
@@ -122,6 +162,8 @@ std::string report_text(const AnalysisResult& result) {
   if ((!result.has_rows && counted) || report.status == Status::under_driven) text += structure_text(report);
   if (!result.has_rows && report.rank && report.redundant.empty()) text += "  no redundant constraints\n";
   text += redundancy_text(report);
+  text += extremes_text(result);
+  text += measures_text(result);
   for (const NamedField& field : result.fields)
     text += "  " + field.name + ": " + std::visit(ValueText{}, field.value) + "\n";
   return text;

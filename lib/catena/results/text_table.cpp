@@ -4,7 +4,6 @@
 #include <limits>
 #include <map>
 
-#include "catena/base/si_unit.hpp"
 #include "catena/results/number_format.hpp"
 
 namespace catena {
@@ -16,6 +15,11 @@ constexpr std::size_t narrowest_column = 4;  // one digit, the gap, and a name
 /// Characters, not bytes: bytes that continue a UTF-8 character don't count.
 std::size_t width_of(std::string_view text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
+/// Pure numbers need none.
+std::string_view shown_unit(const ColumnInfo& column) {
+  return column.unit == UnitKind::none ? std::string_view() : column.unit_text();
 }
 
 void append_right(std::string& out, std::string_view text, std::size_t width) {
@@ -101,7 +105,7 @@ TextTable::Text TextTable::list() const {
     out += "  ";
     append_left(out, columns_[k].name, name_width + 2);
     append_right(out, numbers[k], number_width);
-    if (columns_[k].unit != UnitKind::none) out += ' ' + std::string(si_unit(columns_[k].unit));
+    if (!shown_unit(columns_[k]).empty()) out += ' ' + std::string(shown_unit(columns_[k]));
     out += '\n';
   }
   const bool shortened = all_columns_ > lines;
@@ -113,8 +117,7 @@ TextTable::Text TextTable::grid() const {
   std::vector<TableColumn> table;
   std::size_t width = 0;
   for (std::size_t k = 0; k < kept_columns_; ++k) {
-    TableColumn column{columns_[k].name, columns_[k].unit == UnitKind::none ? "" : si_unit(columns_[k].unit),
-                       format_column(shown(k)), 0};
+    TableColumn column{columns_[k].name, shown_unit(columns_[k]), format_column(shown(k)), 0};
     column.width = std::max(width_of(column.name), width_of(column.unit));
     for (const std::string& cell : column.cells) column.width = std::max(column.width, cell.size());
     width += column.width + 2;

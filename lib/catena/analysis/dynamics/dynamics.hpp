@@ -103,6 +103,7 @@ class Dynamics {
   std::optional<Snapshot> state_at(double t);
   Report check_curve_ends(double from, RowObserver& observer);
   Report find_events(double from, RowObserver& observer);
+  Report show(double from, double to, RowObserver& observer);
   void find_multipliers();
   void describe_mobility(AnalysisReport& report);
   Report stuck();

@@ -152,10 +152,17 @@ Report Dynamics::stuck() {
   return report;
 }
 
+// A part of the last step to whoever wants to look between rows.
+Report Dynamics::show(double from, double to, RowObserver& observer) {
+  if (!observer.wants_stretches() || !(to > from)) return {};
+  return observer.cover({from, to, [this](double t) { return state_at(t); }}) ? Report{} : cancelled(to);
+}
+
 // Events within the last step, in order: rows before each, then its own.
 Report Dynamics::find_events(double from, RowObserver& observer) {
   const auto state = [&](double t) { return state_at(t); };
   while (const std::optional<FoundEvent> found = events_->find(from, t_, state)) {
+    if (const Report shown = show(from, found->t, observer); !shown.ok()) return shown;
     while (next_row_ < grid_.size() && grid_[next_row_] < found->t) {
       if (const Report given = give_row(grid_[next_row_++], observer); !given.ok()) return given;
     }
@@ -167,7 +174,7 @@ Report Dynamics::find_events(double from, RowObserver& observer) {
     t_ = found->t;
     return {};
   }
-  return {};
+  return show(from, t_, observer);
 }
 
 WorkSoFar Dynamics::work_so_far() const {

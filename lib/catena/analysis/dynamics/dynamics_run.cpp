@@ -165,6 +165,8 @@ Report Dynamics::step(RowObserver& observer) {
   if (events_) {
     const Report found = find_events(before, observer);
     if (!found.ok() || stopped_by_ >= 0) return found;
+  } else if (const Report shown = show(before, t_, observer); !shown.ok()) {
+    return shown;
   }
   at_jump_ = t_ == limit && limit < grid_.last();
   return {};

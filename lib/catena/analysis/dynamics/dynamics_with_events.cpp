@@ -26,6 +26,8 @@ class CountingObserver final : public RowObserver {
     return target_.observe(snapshot);
   }
   bool proceed(double t) override { return target_.proceed(t); }
+  bool wants_stretches() const override { return target_.wants_stretches(); }
+  bool cover(const MotionStretch& stretch) override { return target_.cover(stretch); }
   std::int64_t rows() const { return rows_; }
 
  private:

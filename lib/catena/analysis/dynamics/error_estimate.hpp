@@ -46,6 +46,8 @@ class ErrorComparison final : public RowObserver {
 
   bool observe(const Snapshot& snapshot) override;
   bool proceed(double t) override;
+  bool wants_stretches() const override { return target_.wants_stretches(); }
+  bool cover(const MotionStretch& stretch) override { return target_.cover(stretch); }
   const EstimatedError& error() const { return error_; }
 
  private:

@@ -1,9 +1,20 @@
-// Who looks at a mechanism at the instants an analysis was asked for.
+// Who looks at a mechanism at the instants an analysis was asked for, and, if it wants to, anywhere between them.
 #pragma once
+
+#include <functional>
+#include <optional>
 
 #include "catena/columns/snapshot.hpp"
 
 namespace catena {
+
+/// A stretch of a motion, from one instant to a later one, in which the motion is smooth: one step of an integrator, or
+/// a part of it. at(t): the mechanism at an instant of it; valid until the next one is asked for; nothing where it
+/// cannot be had.
+struct MotionStretch {
+  double from = 0, to = 0;
+  std::function<std::optional<Snapshot>(double)> at;
+};
 
 class RowObserver {
  public:
@@ -13,6 +24,13 @@ class RowObserver {
   /// Called now and then between rows that are far apart, with the time reached. Returning false cancels.
   virtual bool proceed(double t) {
     static_cast<void>(t);
+    return true;
+  }
+  /// Whether it wants to see the stretches between rows as well.
+  virtual bool wants_stretches() const { return false; }
+  /// One after the other and without gaps, each before the rows that lie in it. Returning false cancels.
+  virtual bool cover(const MotionStretch& stretch) {
+    static_cast<void>(stretch);
     return true;
   }
 };

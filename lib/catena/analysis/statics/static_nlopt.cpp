@@ -1,12 +1,7 @@
 #include "catena/analysis/statics/static_nlopt.hpp"
 
-#if CATENA_HAS_NLOPT
-
-#include <nlopt.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <vector>
 
 namespace catena {
@@ -17,7 +12,7 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 // An energy this far below the start, in units of force times length, has no bottom.
 constexpr double bottomless = 1e9;
 
-class Problem {
+class Problem final : public MinimisationProblem {
  public:
   Problem(StaticSystem& system, std::span<const double> q) : system_(system), trial_(q.begin(), q.end()) {
     const Plan& plan = system.plan();
@@ -33,125 +28,111 @@ class Problem {
       for (int r : system.matrix().dependent_rows()) dropped[at(r)] = system.side(r) == RowSide::both;
     }
     for (int r = 0; r < plan.rows; ++r) {
-      if (!dropped[at(r)]) (system.side(r) == RowSide::both ? equations : inequalities).push_back(r);
+      if (!dropped[at(r)]) (system.side(r) == RowSide::both ? equations_ : inequalities_).push_back(r);
     }
   }
 
-  std::vector<double> x;                     // scaled coordinates
-  std::vector<int> equations, inequalities;  // rows of the plan
+  std::vector<double> x;  // scaled coordinates
+  int evaluations = 0;
 
-  const std::vector<double>& configuration(const double* scaled) {
+  const std::vector<double>& configuration(std::span<const double> scaled) {
     for (std::size_t c = 0; c < unit_.size(); ++c) trial_[at(system_.plan().coordinate[c])] = scaled[c] * unit_[c];
     return trial_;
   }
 
-  static double objective(unsigned n, const double* scaled, double* gradient, void* self) {
-    Problem& p = *static_cast<Problem*>(self);
-    p.system_.move_to(p.configuration(scaled));
-    p.system_.evaluator().counters.iterations += 1;
-    ++p.evaluations;
-    if (p.optimiser && p.system_.is_cancelled()) nlopt_force_stop(p.optimiser);
-    for (unsigned c = 0; gradient && c < n; ++c) gradient[c] = p.system_.gradient()[c] * p.unit_[c] / p.energy_;
-    return p.system_.energy() / p.energy_;
+  int variables() const override { return static_cast<int>(x.size()); }
+  int inequalities() const override { return static_cast<int>(inequalities_.size()); }
+  int equations() const override { return static_cast<int>(equations_.size()); }
+  double objective(std::span<const double> scaled, std::span<double> gradient) override {
+    system_.move_to(configuration(scaled));
+    system_.evaluator().counters.iterations += 1;
+    ++evaluations;
+    for (std::size_t c = 0; c < gradient.size(); ++c) gradient[c] = system_.gradient()[c] * unit_[c] / energy_;
+    return system_.energy() / energy_;
   }
-  static void equal(unsigned m, double* result, unsigned n, const double* scaled, double* gradient, void* self) {
-    Problem& p = *static_cast<Problem*>(self);
-    p.rows_at(p.equations, m, result, n, scaled, gradient);
+  void equal(std::span<const double> scaled, std::span<double> h, std::span<double> jacobian) override {
+    rows_at(equations_, scaled, h, jacobian);
   }
-  // NLopt wants g <= 0.
-  static void unequal(unsigned m, double* result, unsigned n, const double* scaled, double* gradient, void* self) {
-    Problem& p = *static_cast<Problem*>(self);
-    p.rows_at(p.inequalities, m, result, n, scaled, gradient);
-    for (unsigned k = 0; k < m; ++k) {
-      if (p.system_.side(p.inequalities[k]) == RowSide::at_most) continue;
-      result[k] = -result[k];
-      for (unsigned c = 0; gradient && c < n; ++c) gradient[k * n + c] = -gradient[k * n + c];
+  // What is to be g <= 0.
+  void unequal(std::span<const double> scaled, std::span<double> g, std::span<double> jacobian) override {
+    rows_at(inequalities_, scaled, g, jacobian);
+    for (std::size_t k = 0; k < g.size(); ++k) {
+      if (system_.side(inequalities_[k]) == RowSide::at_most) continue;
+      g[k] = -g[k];
+      for (std::size_t c = 0; !jacobian.empty() && c < scaled.size(); ++c)
+        jacobian[k * scaled.size() + c] = -jacobian[k * scaled.size() + c];
     }
   }
-
-  int evaluations = 0;
-  nlopt_opt optimiser = nullptr;  // to be stopped where the user cancels
+  bool go_on() override { return !system_.is_cancelled(); }
 
  private:
-  void rows_at(const std::vector<int>& rows, unsigned m, double* result, unsigned n, const double* scaled,
-               double* gradient) {
+  void rows_at(const std::vector<int>& rows, std::span<const double> scaled, std::span<double> result,
+               std::span<double> gradient) {
     const Plan& plan = system_.plan();
     system_.move_to(configuration(scaled));
     std::vector<int> place(at(plan.rows), -1);
-    for (unsigned k = 0; k < m; ++k) {
+    for (std::size_t k = 0; k < rows.size(); ++k) {
       place[at(rows[k])] = static_cast<int>(k);
       result[k] = system_.phi()[at(rows[k])] / row_unit(rows[k]);
     }
-    if (!gradient) return;
-    std::fill(gradient, gradient + std::size_t{m} * n, 0.0);
+    if (gradient.empty()) return;
+    std::fill(gradient.begin(), gradient.end(), 0.0);
     for (int c = 0; c < plan.columns; ++c) {
       for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k) {
         const int row = plan.jacobian.row_index[at(k)], kept = place[at(row)];
-        if (kept >= 0) gradient[at(kept) * n + at(c)] += system_.jacobian()[at(k)] * unit_[at(c)] / row_unit(row);
+        if (kept >= 0)
+          gradient[at(kept) * scaled.size() + at(c)] += system_.jacobian()[at(k)] * unit_[at(c)] / row_unit(row);
       }
     }
   }
   double row_unit(int row) const { return system_.plan().row_is_angle[at(row)] ? 1.0 : system_.length(); }
 
   StaticSystem& system_;
+  std::vector<int> equations_, inequalities_;  // rows of the plan
   std::vector<double> trial_, unit_;
   double energy_ = 1;
 };
 
-StaticEnd ending(nlopt_result result) {
-  switch (result) {
-    case NLOPT_STOPVAL_REACHED:
+StaticEnd ending(MinimiserEnd end) {
+  switch (end) {
+    case MinimiserEnd::enough:
       return StaticEnd::unbounded;
-    case NLOPT_MAXEVAL_REACHED:
+    case MinimiserEnd::slow:
       return StaticEnd::slow;
-    case NLOPT_FORCED_STOP:
+    case MinimiserEnd::stopped:
       return StaticEnd::cancelled;
     // Where rounding ends the progress, the point is as good as it gets.
-    case NLOPT_ROUNDOFF_LIMITED:
+    case MinimiserEnd::rounding:
+    case MinimiserEnd::converged:
       return StaticEnd::stationary;
-    default:
-      return result > 0 ? StaticEnd::stationary : StaticEnd::diverged;
+    case MinimiserEnd::failed:
+      break;
   }
+  return StaticEnd::diverged;
 }
 
 }  // namespace
 
-bool nlopt_is_built_in() { return true; }
-
 StaticOutcome solve_by_nlopt(StaticSystem& system, std::span<double> q, std::span<double> lambda,
                              const StaticNloptOptions& options) {
-  Problem problem(system, q);
-  const auto n = static_cast<unsigned>(problem.x.size());
   StaticOutcome outcome;
-  if (n == 0) {
+  if (!nlopt_is_built_in()) {
+    outcome.end = StaticEnd::singular;
+    return outcome;
+  }
+  Problem problem(system, q);
+  if (problem.x.empty()) {
     outcome.end = StaticEnd::stationary;
     return outcome;
   }
-  struct Destroy {
-    void operator()(nlopt_opt_s* o) const { nlopt_destroy(o); }
-  };
-  const std::unique_ptr<nlopt_opt_s, Destroy> optimiser(
-      nlopt_create(options.derivatives ? NLOPT_LD_SLSQP : NLOPT_LN_COBYLA, n));
-  nlopt_opt o = optimiser.get();
-  problem.optimiser = o;
-  nlopt_set_min_objective(o, &Problem::objective, &problem);
-  const std::vector<double> close(std::max(problem.equations.size(), problem.inequalities.size()), options.tolerance);
-  if (!problem.equations.empty()) {
-    nlopt_add_equality_mconstraint(o, static_cast<unsigned>(problem.equations.size()), &Problem::equal, &problem,
-                                   close.data());
-  }
-  if (!problem.inequalities.empty()) {
-    nlopt_add_inequality_mconstraint(o, static_cast<unsigned>(problem.inequalities.size()), &Problem::unequal, &problem,
-                                     close.data());
-  }
-  const std::vector<double> small(n, options.tolerance);
-  nlopt_set_xtol_abs(o, small.data());
-  nlopt_set_maxeval(o, options.max_evaluations);
-  double energy = Problem::objective(n, problem.x.data(), nullptr, &problem);
-  nlopt_set_stopval(o, energy - bottomless);
-  outcome.end = ending(nlopt_optimize(o, problem.x.data(), &energy));
+  MinimiserOptions wanted{.method = options.derivatives ? MinimiserMethod::slsqp : MinimiserMethod::cobyla,
+                          .x_tolerance = options.tolerance,
+                          .constraint_tolerance = options.tolerance,
+                          .max_evaluations = options.max_evaluations};
+  wanted.enough = problem.objective(problem.x, {}) - bottomless;
+  outcome.end = ending(minimise(problem, wanted, problem.x));
   outcome.iterations = problem.evaluations;
-  const std::vector<double>& found = problem.configuration(problem.x.data());
+  const std::vector<double>& found = problem.configuration(problem.x);
   std::copy(found.begin(), found.end(), q.begin());
   system.move_to(q);
   if (outcome.converged() && !first_multipliers(system, lambda)) outcome.end = StaticEnd::singular;
@@ -162,17 +143,3 @@ StaticOutcome solve_by_nlopt(StaticSystem& system, std::span<double> q, std::spa
 }
 
 }  // namespace catena
-
-#else
-
-namespace catena {
-
-bool nlopt_is_built_in() { return false; }
-
-StaticOutcome solve_by_nlopt(StaticSystem&, std::span<double>, std::span<double>, const StaticNloptOptions&) {
-  return {.end = StaticEnd::singular};
-}
-
-}  // namespace catena
-
-#endif

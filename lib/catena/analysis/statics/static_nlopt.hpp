@@ -9,6 +9,7 @@
 
 #include <span>
 
+#include "catena/analysis/minimiser/minimiser.hpp"
 #include "catena/analysis/statics/static_newton.hpp"
 
 namespace catena {
@@ -20,9 +21,6 @@ struct StaticNloptOptions {
   /// Larger scenes are refused by the analysis: dense steps would take minutes.
   static constexpr int most_columns = 100;
 };
-
-/// Whether the library was built with NLopt (CATENA_WITH_NLOPT).
-bool nlopt_is_built_in();
 
 /// Iterates q (size coordinates()) and lambda (rows) in place. Misuse where nlopt_is_built_in() is false: singular.
 StaticOutcome solve_by_nlopt(StaticSystem& system, std::span<double> q, std::span<double> lambda,

@@ -16,6 +16,11 @@ BasicModel<S> ModelBuilder<S>::build() {
   visit(scene_.root, Pass::bodies);
   visit(scene_.root, Pass::elements);
   if (has_stops_) visit(scene_.root, Pass::stops);
+  for (const OwnColumnTemplate& source : scene_.own_columns) {
+    OwnColumn<S> column{source.name, source.unit, source.expression.template formula<S>(parameters_), {}};
+    for (const NamedInput& input : source.inputs) column.inputs.push_back(input.name);
+    model_.own_columns.push_back(std::move(column));
+  }
   return std::move(model_);
 }
 

@@ -20,6 +20,7 @@ class ModelBuilder {
       : scene_(scene),
         options_(options),
         diagnostics_(diagnostics),
+        parameters_(parameters),
         evaluation_(*scene.source, scene.expressions, parameters, diagnostics) {}
 
   BasicModel<S> build();
@@ -73,6 +74,7 @@ class ModelBuilder {
   const SceneTemplate& scene_;
   const BuildOptions& options_;
   Diagnostics& diagnostics_;
+  std::span<const S> parameters_;
   Evaluation<S> evaluation_;
   BasicModel<S> model_;
   std::vector<std::uint32_t> name_offset_;  // of every name in the model's table

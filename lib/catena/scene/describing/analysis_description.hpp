@@ -20,6 +20,12 @@ enum class KeyKind {
   parameter,  ///< the name of a parameter
   set,        ///< parameters and their values
   events,     ///< a list of events
+  measures,   ///< names and measures
+  analysis,   ///< an analysis, or a list of them
+  names,      ///< a list of parameters
+  variables,  ///< parameters with bounds and starts
+  objective,  ///< a measure or an expression over measures and parameters
+  relations,  ///< a list of expressions with <=, >= or ==
 };
 
 struct AnalysisKey {

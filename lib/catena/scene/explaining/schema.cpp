@@ -132,6 +132,22 @@ json key_schema(const AnalysisKey& key) {
       return described(map_of(reference("number")), key.doc);
     case KeyKind::events:
       return described(list_of(event_schema()), key.doc);
+    case KeyKind::measures:
+      return described(map_of(reference("measure")), key.doc);
+    case KeyKind::analysis:
+      return {{"anyOf", json::array({reference("analysis"), list_of(reference("analysis"))})},
+              {"description", key.doc}};
+    case KeyKind::names:
+      return described(list_of({{"type", "string"}}), key.doc);
+    case KeyKind::variables:
+      return described(
+          map_of(
+              object_of({{"min", reference("number")}, {"max", reference("number")}, {"start", reference("number")}})),
+          key.doc);
+    case KeyKind::objective:
+      return {{"type", "string"}, {"minLength", 1}, {"description", key.doc}};
+    case KeyKind::relations:
+      return described(list_of({{"type", "string"}, {"pattern", "^="}}), key.doc);
   }
   return {};
 }
@@ -242,6 +258,11 @@ std::string schema_json() {
   properties.update(sections());
   properties["analyses"] = described(list_of(reference("analysis")), "run in order by catena run");
   properties["outputs"] = described(reference("outputs"), "columns of results (default: x, y, angle of every body)");
+  const json expression{{"type", "string"}, {"pattern", "^="}};
+  properties["columns"] = described(
+      map_of({{"anyOf", json::array({expression,
+                                     object_of({{"value", expression}, {"unit", {{"type", "string"}}}}, {"value"})})}}),
+      "name -> expression over columns, parameters and t");
   json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
               {"title", "catena scene, version 1"},
               {"description", "Planar multibody systems: SI units, radians."}};

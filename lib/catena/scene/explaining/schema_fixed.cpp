@@ -16,6 +16,17 @@ std::string_view fixed_definitions() {
   {"type": "object", "additionalProperties": false, "required": ["points"], "properties": {
     "points": {"type": "array", "items": {"$ref": "#/$defs/pair"}}, "beyond": {"$ref": "#/$defs/beyond"}}}
 ]},
+"measure": {"anyOf": [
+  {"type": "object", "additionalProperties": false, "minProperties": 1, "maxProperties": 1, "properties": {
+    "max": {"type": "string"}, "min": {"type": "string"}, "range": {"type": "string"}, "first": {"type": "string"},
+    "final": {"type": "string"}, "mean": {"type": "string"}, "rms": {"type": "string"},
+    "integral": {"type": "string"}, "field": {"type": "string"}}},
+  {"type": "object", "additionalProperties": false, "required": ["at", "of"], "properties": {
+    "at": {"$ref": "#/$defs/number"}, "of": {"type": "string"}}},
+  {"type": "object", "additionalProperties": false, "required": ["path", "to"], "properties": {
+    "path": {"type": "array", "items": {"type": "string"}, "minItems": 2, "maxItems": 2},
+    "to": {"type": "array", "items": {"$ref": "#/$defs/pair"}, "minItems": 1}, "timed": {"type": "boolean"}}}
+], "description": "an extreme, value, mean or integral of a column or expression, a distance from a path, a field"},
 "outputs": {"type": "array", "items": {"type": "string"}},
 "parameter": {"anyOf": [
   {"$ref": "#/$defs/number"},

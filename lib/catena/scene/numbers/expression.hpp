@@ -18,7 +18,7 @@
 #include <string_view>
 #include <vector>
 
-#include "catena/base/dual.hpp"
+#include "catena/base/formula.hpp"
 #include "catena/scene/json/text_error.hpp"
 #include "catena/scene/numbers/parameter_names.hpp"
 
@@ -31,35 +31,19 @@ struct ExpressionError : std::runtime_error {
   std::size_t position;  ///< byte in the expression's text
 };
 
+/// A column that an expression names, and the byte of its text at which it does so first.
+struct NamedInput {
+  std::string name;
+  std::size_t position = 0;
+};
+
 /// What names mean in an expression.
 struct ExpressionScope {
   const ParameterNames* parameters = nullptr;
   std::span<const std::string> loop_variables = {};  ///< outermost first
-};
-
-enum class Operation : std::uint8_t {
-  constant,
-  parameter,
-  loop_variable,
-  add,
-  subtract,
-  multiply,
-  divide,
-  power,
-  atan2,
-  min,
-  max,
-  negate,
-  sin,
-  cos,
-  tan,
-  asin,
-  acos,
-  atan,
-  sqrt,
-  exp,
-  log,
-  abs
+  /// Where columns may be named: the list that takes them up, each once, numbered as the instructions have them. A name
+  /// is then a column unless it is a parameter's; one that is no plain identifier stands in single quotes.
+  std::vector<NamedInput>* columns = nullptr;
 };
 
 struct Instruction {
@@ -67,7 +51,7 @@ struct Instruction {
   std::uint32_t position;  // byte in the text, for errors
   union {
     double number;        // constant
-    std::uint32_t index;  // parameter, loop_variable
+    std::uint32_t index;  // parameter, loop_variable, column
   };
 };
 
@@ -80,11 +64,15 @@ class Expression {
   template <class S>
   S evaluate(std::span<const S> parameters, std::span<const double> loop_variables) const;
 
+  /// The same as a formula over the columns that were named, with the parameters' values in it.
+  template <class S>
+  Formula<S> formula(std::span<const S> parameters) const;
+
   std::span<const Instruction> code() const { return code_; }
 
  private:
   friend class ExpressionParser;
-  static constexpr std::size_t deepest_stack = 32;
+  static constexpr std::size_t deepest_stack = Formula<double>::deepest_stack;
 
   [[noreturn]] static void fail(const Instruction& instruction, double a, double b);
 
@@ -98,92 +86,51 @@ bool is_identifier(std::string_view name);
 
 template <class S>
 S Expression::evaluate(std::span<const S> parameters, std::span<const double> loop_variables) const {
-  using std::abs, std::acos, std::asin, std::atan, std::atan2, std::cos, std::exp, std::log, std::pow, std::sin,
-      std::sqrt, std::tan;
   std::array<S, deepest_stack> stack;
   S* top = stack.data();  // one after the last value; parsing has made sure that it stays inside
   for (const Instruction& instruction : code_) {
-    S result{};
-    double a = 0, b = 0;  // the operands, for the message
-    const auto one = [&]() -> const S& { return a = value_of(*--top), *top; };
-    const auto two = [&](auto&& function) {
-      top -= 2;
-      a = value_of(top[0]);
-      b = value_of(top[1]);
-      return function(top[0], top[1]);
-    };
-    switch (instruction.operation) {
-      case Operation::constant:
-        *top++ = S(instruction.number);
-        continue;
-      case Operation::parameter:
-        *top++ = parameters[instruction.index];
-        continue;
-      case Operation::loop_variable:
-        *top++ = S(loop_variables[instruction.index]);
-        continue;
-      case Operation::add:
-        result = two([](const S& x, const S& y) -> S { return x + y; });
+    switch (operands(instruction.operation)) {
+      case 0:
+        if (instruction.operation == Operation::constant) {
+          *top++ = S(instruction.number);
+        } else if (instruction.operation == Operation::parameter) {
+          *top++ = parameters[instruction.index];
+        } else {
+          *top++ = S(loop_variables[instruction.index]);
+        }
         break;
-      case Operation::subtract:
-        result = two([](const S& x, const S& y) -> S { return x - y; });
+      case 1: {
+        const double a = value_of(top[-1]);  // the operand, for the message
+        top[-1] = apply(instruction.operation, top[-1]);
+        if (!std::isfinite(value_of(top[-1])) && !std::isnan(a)) fail(instruction, a, 0);
         break;
-      case Operation::multiply:
-        result = two([](const S& x, const S& y) -> S { return x * y; });
-        break;
-      case Operation::divide:
-        result = two([](const S& x, const S& y) -> S { return x / y; });
-        break;
-      case Operation::power:
-        result = two([](const S& x, const S& y) -> S { return pow(x, y); });
-        break;
-      case Operation::atan2:
-        result = two([](const S& y, const S& x) -> S { return atan2(y, x); });
-        break;
-      case Operation::min:
-        result = two([](const S& x, const S& y) -> S { return y < x ? y : x; });
-        break;
-      case Operation::max:
-        result = two([](const S& x, const S& y) -> S { return x < y ? y : x; });
-        break;
-      case Operation::negate:
-        result = -one();
-        break;
-      case Operation::sin:
-        result = sin(one());
-        break;
-      case Operation::cos:
-        result = cos(one());
-        break;
-      case Operation::tan:
-        result = tan(one());
-        break;
-      case Operation::asin:
-        result = asin(one());
-        break;
-      case Operation::acos:
-        result = acos(one());
-        break;
-      case Operation::atan:
-        result = atan(one());
-        break;
-      case Operation::sqrt:
-        result = sqrt(one());
-        break;
-      case Operation::exp:
-        result = exp(one());
-        break;
-      case Operation::log:
-        result = log(one());
-        break;
-      case Operation::abs:
-        result = abs(one());
-        break;
+      }
+      default: {
+        --top;
+        const double a = value_of(top[-1]), b = value_of(top[0]);
+        top[-1] = apply(instruction.operation, top[-1], top[0]);
+        if (!std::isfinite(value_of(top[-1])) && !std::isnan(a) && !std::isnan(b)) fail(instruction, a, b);
+      }
     }
-    if (!std::isfinite(value_of(result)) && !std::isnan(a) && !std::isnan(b)) fail(instruction, a, b);
-    *top++ = result;
   }
   return stack[0];
+}
+
+template <class S>
+Formula<S> Expression::formula(std::span<const S> parameters) const {
+  Formula<S> formula;
+  for (const Instruction& instruction : code_) {
+    if (instruction.operation == Operation::constant) {
+      formula.push_constant(S(instruction.number));
+    } else if (instruction.operation == Operation::parameter) {
+      formula.push_constant(parameters[instruction.index]);
+    } else if (instruction.operation == Operation::column) {
+      formula.push_input(instruction.index);
+    } else {
+      formula.push(instruction.operation);
+    }
+  }
+  return formula;
 }
 
 }  // namespace catena

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "catena/scene/json/diagnostic.hpp"
@@ -108,7 +109,38 @@ class ExpressionParser {
     if (take('(')) return sum() && (take(')') || missing_bracket(begin));
     if (is_digit(text_[at_]) || text_[at_] == '.') return number();
     if (starts_name(text_[at_])) return name();
+    if (text_[at_] == '\'' && scope_.columns) return column(begin);
     return unexpected();
+  }
+
+  /// The rest of a column's name, whose first part was read or stands here: parts between dots, each an identifier or
+  /// anything in single quotes.
+  bool column(std::size_t begin, std::string name = {}) {
+    while (name.empty() || take_dot()) {
+      if (!name.empty()) name += '.';
+      if (at_ < text_.size() && text_[at_] == '\'') {
+        const std::size_t end = text_.find('\'', at_ + 1);
+        if (end == std::string_view::npos) return fail(at_, "this quote is not closed");
+        if (end == at_ + 1) return fail(at_, "a name is missing between these quotes");
+        name += text_.substr(at_ + 1, end - at_ - 1);
+        at_ = end + 1;
+      } else if (at_ < text_.size() && starts_name(text_[at_])) {
+        name += word();
+      } else {
+        return fail(at_, "a name is missing after the dot");
+      }
+    }
+    std::vector<NamedInput>& columns = *scope_.columns;
+    const auto known = std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.name == name; });
+    Instruction load{Operation::column, static_cast<std::uint32_t>(begin), {}};
+    load.index = static_cast<std::uint32_t>(known - columns.begin());
+    if (known == columns.end()) columns.push_back({std::move(name), begin});
+    return emit(load, 1);
+  }
+  bool take_dot() {
+    const bool there = at_ < text_.size() && text_[at_] == '.';
+    if (there) ++at_;
+    return there;
   }
 
   bool number() {
@@ -129,6 +161,8 @@ class ExpressionParser {
   bool name() {
     const std::size_t begin = at_;
     const std::string_view found = word();
+    const bool dotted = at_ < text_.size() && text_[at_] == '.';
+    if (scope_.columns && dotted) return column(begin, std::string(found));
     if (const ExpressionFunction* function = find_function(found)) return call(*function, begin);
     if (found == "pi") return emit(Operation::constant, begin, 1, std::numbers::pi);
     Instruction load{Operation::loop_variable, static_cast<std::uint32_t>(begin), {}};
@@ -138,6 +172,7 @@ class ExpressionParser {
       return emit(load, 1);
     }
     const int parameter = scope_.parameters ? scope_.parameters->find(found) : -1;
+    if (scope_.columns && parameter < 0 && next_after_blanks() != '(') return column(begin, std::string(found));
     if (parameter < 0) return fail(begin, unknown_name(found));
     load.operation = Operation::parameter;
     load.index = static_cast<std::uint32_t>(parameter);

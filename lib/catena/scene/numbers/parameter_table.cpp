@@ -161,6 +161,20 @@ void ParameterTable::report_circle(std::span<const int> circle, Diagnostics& dia
       "parameters depend on each other in a circle: " + chain + names_.all()[static_cast<std::size_t>(circle[0])]);
 }
 
+std::pair<double, double> ParameterTable::limits(int index, const ExpressionPool& pool,
+                                                 std::span<const double> values) const {
+  const Definition& definition = definitions_[static_cast<std::size_t>(index)];
+  const auto limit = [&](const std::optional<NumberValue>& number, double none) {
+    try {
+      return number ? catena::evaluate<double>(*number, pool, values, {}) : none;
+    } catch (const ExpressionError&) {
+      return none;  // reported where the values were checked
+    }
+  };
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  return {limit(definition.least, -infinity), limit(definition.greatest, infinity)};
+}
+
 bool ParameterTable::check_limits(int index, double value, std::span<const double> values, const ExpressionPool& pool,
                                   Diagnostics& diagnostics) const {
   const Definition& definition = definitions_[static_cast<std::size_t>(index)];

@@ -34,6 +34,10 @@ class ParameterTable {
   void set(const JsonValue& object, ExpressionPool& pool, Diagnostics& diagnostics);
 
   const ParameterNames& names() const { return names_; }
+  /// What a parameter is given as.
+  const NumberValue& definition(int index) const { return definitions_[static_cast<std::size_t>(index)].value; }
+  /// min and max of a parameter at these values of all; infinite where it has none.
+  std::pair<double, double> limits(int index, const ExpressionPool& pool, std::span<const double> values) const;
 
   /// All values, in the order of names(). Values that do not exist or lie outside min and max are reported and NaN.
   template <class S>

@@ -29,6 +29,7 @@ constexpr Dimension dimension_of(UnitKind kind) {
   constexpr Dimension force{1, 1, -2, 0};
   switch (kind) {
     case UnitKind::none:
+    case UnitKind::own:
       return {};
     case UnitKind::length:
       return length;

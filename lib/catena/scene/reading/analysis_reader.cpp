@@ -7,6 +7,7 @@
 #include "catena/scene/json/near_miss.hpp"
 #include "catena/scene/numbers/evaluation.hpp"
 #include "catena/scene/numbers/number_domain.hpp"
+#include "catena/scene/reading/own_column_reader.hpp"
 
 namespace catena {
 namespace {
@@ -39,7 +40,10 @@ std::vector<PlacedName> AnalysisReader::names(const JsonValue& list, const Field
     const std::string_view text = read_string(value, field, diagnostics_);
     if (!value.is(JsonKind::string)) return;
     PlacedName placed{std::string(text), value};
-    if (NameTemplate::has_braces(text)) {
+    if (text.starts_with('=')) {
+      placed.name = column_name(value, scene_, diagnostics_);
+      if (placed.name.empty()) return;
+    } else if (NameTemplate::has_braces(text)) {
       const NameText pattern = reading_.name(value);
       placed.name.clear();
       if (pattern.pattern < 0) return;
@@ -77,14 +81,19 @@ double AnalysisReader::number(const AnalysisKey& key, const JsonValue& value, co
 }
 
 void AnalysisReader::read_parameters(const JsonValue& set, AnalysisTask& task) {
-  if (!set) {
-    task.parameters = parameters_.evaluate<double>(scene_.expressions, diagnostics_);
-    return;
+  auto table = std::make_shared<ParameterTable>(parameters_);
+  if (set) {
+    table->set(set, scene_.expressions, diagnostics_);
+    task.changes_parameters = true;
+    if (set.is(JsonKind::object)) {
+      for (const JsonMember member : set.members()) {
+        const int parameter = parameters_.names().find(member.name());
+        if (parameter >= 0) task.set_parameters.push_back(parameter);
+      }
+    }
   }
-  ParameterTable changed = parameters_;
-  changed.set(set, scene_.expressions, diagnostics_);
-  task.parameters = changed.evaluate<double>(scene_.expressions, diagnostics_);
-  task.changes_parameters = true;
+  task.parameters = table->evaluate<double>(scene_.expressions, diagnostics_);
+  task.table = std::move(table);
 }
 
 void AnalysisReader::read_key(const AnalysisKey& key, const JsonValue& value, AnalysisTask& task) {
@@ -130,6 +139,25 @@ void AnalysisReader::read_key(const AnalysisKey& key, const JsonValue& value, An
     case KeyKind::events:
       read_events(value, task);
       break;
+    case KeyKind::measures:
+      read_measures(value, task);
+      break;
+    case KeyKind::analysis:
+      read_inner_analyses(value, task);
+      break;
+    case KeyKind::names:
+      read_parameter_names(value, task);
+      break;
+    case KeyKind::variables:
+      read_variables(value, task);
+      break;
+    case KeyKind::objective:
+      task.goal.maximise = key.name == "maximise";
+      read_objective(value, task);
+      break;
+    case KeyKind::relations:
+      read_relations(value, task);
+      break;
   }
 }
 
@@ -157,6 +185,7 @@ std::optional<AnalysisTask> AnalysisReader::read(const JsonValue& object, const 
     error(object, fmt::format("an analysis must be an object {{...}}; this is {}", describe(object.kind())));
     return {};
   }
+  scene_outputs_ = scene_outputs;
   AnalysisTask task;
   task.description = read_type(object);
   if (!task.description) return {};
@@ -189,6 +218,7 @@ std::optional<AnalysisTask> AnalysisReader::read(const JsonValue& object, const 
   }
   task.from_initial = task.word("from") == 1;
   check_times(values, task);
+  if (task.type() == "optimise") check_design(object);
   if (!own_outputs && scene_outputs && task.description->find("outputs")) {
     task.outputs = names(scene_outputs, {"outputs"}, task.parameters);
   }
@@ -200,6 +230,21 @@ std::vector<std::string> AnalysisTask::output_names() const {
   names.reserve(outputs.size());
   for (const PlacedName& placed : outputs) names.push_back(placed.name);
   return names;
+}
+
+std::vector<std::string> AnalysisTask::column_names() const {
+  std::vector<std::string> names = output_names();
+  if (measures.empty()) return names;
+  for (const PlacedMeasure& measure : measures) {
+    for (const PlacedName& placed : measure.columns) names.push_back(placed.name);
+  }
+  return names;
+}
+
+std::vector<MeasureRequest> AnalysisTask::measure_requests() const {
+  std::vector<MeasureRequest> requests;
+  for (const PlacedMeasure& measure : measures) requests.push_back(measure.request);
+  return requests;
 }
 
 std::optional<AnalysisTask> read_analysis(const JsonValue& object, const JsonValue& outputs, SceneTemplate& scene,

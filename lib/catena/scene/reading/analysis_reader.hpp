@@ -25,6 +25,23 @@ class AnalysisReader {
   double number(const AnalysisKey& key, const JsonValue& value, const FieldName& field);
   void read_parameters(const JsonValue& set, AnalysisTask& task);
   void read_events(const JsonValue& list, AnalysisTask& task);
+  // measure_reader.cpp
+  void read_measures(const JsonValue& object, AnalysisTask& task);
+  void read_measure(const JsonMember& member, AnalysisTask& task);
+  void read_path(const JsonValue& object, PlacedMeasure& measure);
+  bool read_measured_column(const JsonValue& value, PlacedMeasure& measure);
+  void read_field_name(const JsonValue& value, PlacedMeasure& measure);
+  // design_reader.cpp
+  void read_inner_analyses(const JsonValue& value, AnalysisTask& task);
+  void read_parameter_names(const JsonValue& list, AnalysisTask& task);
+  void read_variables(const JsonValue& object, AnalysisTask& task);
+  void read_variable(const JsonMember& member, AnalysisTask& task);
+  bool read_formula(const JsonValue& value, std::size_t from, std::size_t to, const AnalysisTask& task,
+                    DesignFormula& formula);
+  void read_objective(const JsonValue& value, AnalysisTask& task);
+  void read_relations(const JsonValue& list, AnalysisTask& task);
+  void read_relation(const JsonValue& value, AnalysisTask& task);
+  void check_design(const JsonValue& object);
   void read_event(const JsonValue& object, AnalysisTask& task);
   void check_times(const std::vector<JsonValue>& values, const AnalysisTask& task);
   void error(const JsonValue& value, std::string message) { report(value, std::move(message), diagnostics_); }
@@ -34,6 +51,7 @@ class AnalysisReader {
   Diagnostics& diagnostics_;
   SceneReading reading_;
   std::span<const double> values_;  // of the parameters, for the analysis that is read
+  JsonValue scene_outputs_;
 };
 
 }  // namespace catena

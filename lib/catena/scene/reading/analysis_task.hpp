@@ -2,11 +2,13 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "catena/analysis/measures/measure.hpp"
 #include "catena/scene/describing/analysis_description.hpp"
 #include "catena/scene/reading/scene_template.hpp"
 
@@ -27,6 +29,40 @@ struct PlacedName {
   JsonValue place;
 };
 
+/// A measure, and where it and the columns that it names stand.
+struct PlacedMeasure {
+  MeasureRequest request;
+  JsonValue place;
+  std::vector<PlacedName> columns;
+};
+
+/// A parameter that an optimisation may change.
+struct DesignVariable {
+  int parameter = -1;
+  double least = 0, greatest = 0, start = 0;
+};
+
+/// An expression over measures (its inputs, by number among the task's) and parameters.
+struct DesignFormula {
+  Expression expression;
+  std::vector<int> measures;
+};
+
+/// A constraint: left - right is at most zero, or zero.
+struct DesignRelation {
+  std::string text;
+  DesignFormula left, right;
+  bool equality = false;
+};
+
+/// What an optimisation is to make of the analyses that it runs.
+struct DesignGoal {
+  std::vector<DesignVariable> variables;
+  DesignFormula objective;
+  bool maximise = false;
+  std::vector<DesignRelation> relations;
+};
+
 struct AnalysisTask {
   const AnalysisDescription* description = nullptr;
   JsonValue place;  ///< the object
@@ -37,6 +73,12 @@ struct AnalysisTask {
   std::map<std::string_view, double> numbers;  ///< numbers, flags (0 or 1), positions of words and parameters
   std::optional<std::vector<double>> at;
   std::vector<EventRequest> events;
+  std::vector<PlacedMeasure> measures;
+  std::shared_ptr<const ParameterTable> table;  ///< the scene's parameters with `set` applied
+  std::vector<int> set_parameters;              ///< those that `set` names
+  std::vector<AnalysisTask> of;                 ///< the analyses that it differentiates or optimises
+  std::vector<int> design_parameters;           ///< by which it differentiates
+  DesignGoal goal;
 
   std::string_view type() const { return description->type; }
   bool has(std::string_view key) const { return numbers.contains(key); }
@@ -47,6 +89,9 @@ struct AnalysisTask {
   /// The position of a key's word among its words; 0, the default, where it is not given.
   int word(std::string_view key) const { return static_cast<int>(number(key, 0)); }
   std::vector<std::string> output_names() const;
+  /// The names of outputs, and those of the columns that measures are taken of.
+  std::vector<std::string> column_names() const;
+  std::vector<MeasureRequest> measure_requests() const;
 };
 
 /// Reads the analyses of a list. `parameters` are those of the scene; `outputs` its outputs, or absent. Tasks that are

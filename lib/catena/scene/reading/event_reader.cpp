@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "catena/scene/reading/analysis_reader.hpp"
+#include "catena/scene/reading/own_column_reader.hpp"
 
 namespace catena {
 
@@ -24,7 +25,7 @@ void AnalysisReader::read_event(const JsonValue& object, AnalysisTask& task) {
     return v[k] ? std::string(read_string(v[k], {keys[k], "an event"}, diagnostics_)) : std::string();
   };
   event.name = text(0);
-  event.column = text(1);
+  if (v[1]) event.column = column_name(v[1], scene_, diagnostics_);
   if (!v[1]) error(object, "an event needs \"when\", the column that is watched");
   event.place = v[1];
   if (v[2]) event.value = number(words[2], v[2], {keys[2], "an event"});

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "catena/scene/numbers/name_rules.hpp"
+#include "catena/scene/reading/own_column_reader.hpp"
 #include "catena/scene/reading/scene_reading.hpp"
 
 namespace catena {
@@ -103,6 +104,7 @@ std::unique_ptr<SceneTemplate> read_scene(SourceText source, Diagnostics& diagno
   scene->analyses = v[10];
   scene->outputs = v[11];
 
+  if (v[13]) read_own_columns(v[13], *scene, diagnostics);
   SceneReading reading(*scene, diagnostics);
   scene->gravity[0] = scene->gravity[1] = NumberValue::constant(0);
   if (v[3]) {

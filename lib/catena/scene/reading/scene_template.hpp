@@ -142,6 +142,14 @@ struct BlockTemplate {
   std::vector<Section> sections;  ///< in the order of the text
 };
 
+/// A column of the scene's own, or an expression that stands where a column may: its name is then its text, "=a.x-b.x".
+struct OwnColumnTemplate {
+  std::string name, unit;
+  Expression expression;
+  std::vector<NamedInput> inputs;
+  JsonValue place;  ///< the text of the expression
+};
+
 struct SceneTemplate {
   std::unique_ptr<SourceText> source;
   std::unique_ptr<JsonDocument> document;  ///< names are views into it
@@ -159,6 +167,7 @@ struct SceneTemplate {
   std::vector<FunctionTemplate> functions;
   std::vector<CurveTemplate> curves;
   std::vector<TableTemplate> tables;
+  std::vector<OwnColumnTemplate> own_columns;
 
   JsonValue analyses, outputs;  ///< read by analysis_reader.hpp
   bool may_lack_parts = false;  ///< a key of the scene is none: what is in it is missing, and names in it are unknown

@@ -20,7 +20,8 @@ constexpr Runner entries[] = {{"check", run_check},           {"assemble", run_a
                               {"kinematics", run_kinematics}, {"inverse_dynamics", run_inverse_dynamics},
                               {"dynamics", run_dynamics},     {"equilibrium", run_equilibrium},
                               {"modes", run_modes},           {"path", run_path},
-                              {"buckling", run_buckling}};
+                              {"buckling", run_buckling},     {"sensitivity", run_sensitivity},
+                              {"optimise", run_optimise}};
 
 Report refuse(std::string message) {
   Report report;
@@ -36,6 +37,20 @@ AnalysisFunction analysis_function(std::string_view type) {
     if (entry.type == type) return entry.run;
   }
   return nullptr;
+}
+
+std::shared_ptr<const Model> model_at(const AnalysisContext& context, int parameter, double value) {
+  ParameterSeeds seeds = context.seeds;  // the last one of a parameter counts
+  seeds.push_back({parameter, value});
+  return context.models->model(*context.task.table, seeds);
+}
+
+DesignModels designs_of(const AnalysisContext& context, int last, std::optional<ParameterSeed<double>> at) {
+  ParameterSeeds seeds = context.seeds;
+  if (at) seeds.push_back(*at);
+  std::vector<int> parameters = context.design->parameters;
+  if (last >= 0) parameters.push_back(last);
+  return context.models->designs(*context.task.table, seeds, parameters);
 }
 
 double frozen_time(const AnalysisContext& context) {

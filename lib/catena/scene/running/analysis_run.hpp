@@ -13,12 +13,20 @@
 #include "catena/analysis/run/time_grid.hpp"
 #include "catena/columns/column_set.hpp"
 #include "catena/results/analysis_result.hpp"
-#include "catena/results/column_rows.hpp"
 #include "catena/scene/reading/analysis_task.hpp"
+#include "catena/scene/running/analysis_rows.hpp"
 #include "catena/scene/running/gear_check.hpp"
 #include "catena/scene/running/scene_checkpoints.hpp"
+#include "catena/scene/running/scene_models.hpp"
 
 namespace catena {
+
+/// Derivatives that are wanted of an analysis.
+struct DesignRequest {
+  std::vector<int> parameters;
+  std::vector<std::string> names;  ///< of these
+  bool rows = true;                ///< of rows as well, not of measures alone
+};
 
 struct AnalysisContext {
   const AnalysisTask& task;
@@ -26,18 +34,26 @@ struct AnalysisContext {
   SystemState& state;  ///< where the analysis starts; it leaves behind where it ended
   RowSink& rows;
   const std::atomic<bool>* cancel = nullptr;
-  std::function<void(double)> progress;  ///< fraction done
-  bool verbose = false;                  ///< solvers print their own logs to standard error
-  IterationTrace trace{};                ///< told of iterations for a configuration; may be empty
-  /// The model with another value of parameter number `parameter`, all else as in `model`; nullptr if the scene does
-  /// not allow it.
-  std::function<std::shared_ptr<const Model>(int parameter, double value)> model_at{};
-  std::string_view parameter_name{};  ///< of the task's parameter
+  std::function<void(double)> progress;   ///< fraction done
+  bool verbose = false;                   ///< solvers print their own logs to standard error
+  IterationTrace trace{};                 ///< told of iterations for a configuration; may be empty
+  const SceneModels* models = nullptr;    ///< of the scene, for other values of parameters
+  ParameterSeeds seeds{};                 ///< values of parameters besides those of the task's table
+  const DesignRequest* design = nullptr;  ///< nullptr: no derivatives
+  std::string_view parameter_name{};      ///< of the task's parameter
   /// The value of that parameter with which the analysis ended, and with which the next one begins.
   std::optional<double> parameter_at_end{};
+  ParameterSeeds values_at_end{};           ///< values that an optimisation found, with which the next one begins
   bool estimate_error = false;              ///< of dynamics
   CheckpointRequest* checkpoint = nullptr;  ///< nullptr: no analysis has to pause
 };
+
+/// The model with another value of parameter number `parameter`, all else as in the context; nullptr if the scene does
+/// not allow it.
+std::shared_ptr<const Model> model_at(const AnalysisContext& context, int parameter, double value);
+/// Models with derivatives by the parameters of the context's design request, and by one more, `last` >= 0; parameter
+/// `at` with another value where one is given.
+DesignModels designs_of(const AnalysisContext& context, int last = -1, std::optional<ParameterSeed<double>> at = {});
 
 using AnalysisFunction = void (*)(AnalysisContext& context, AnalysisResult& result);
 
@@ -50,6 +66,8 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result);
 void run_modes(AnalysisContext& context, AnalysisResult& result);
 void run_path(AnalysisContext& context, AnalysisResult& result);
 void run_buckling(AnalysisContext& context, AnalysisResult& result);
+void run_sensitivity(AnalysisContext& context, AnalysisResult& result);
+void run_optimise(AnalysisContext& context, AnalysisResult& result);
 
 /// What runs an analysis of this type; nullptr if nothing does yet.
 AnalysisFunction analysis_function(std::string_view type);
@@ -59,34 +77,6 @@ AnalysisFunction analysis_function(std::string_view type);
 std::optional<TimeGrid> time_grid(const AnalysisContext& context, Report& report);
 /// The instant at which a static analysis is made.
 double frozen_time(const AnalysisContext& context);
-
-/// Sends rows on and tells how far the analysis has come.
-class ReportingRows final : public RowObserver {
- public:
-  /// `last`: the instant at which the analysis ends, or the present one.
-  ReportingRows(const ColumnSet& columns, AnalysisContext& context, double last)
-      : rows_(columns, context.rows, context.cancel), context_(context), first_(context.state.t), last_(last) {}
-
-  bool observe(const Snapshot& snapshot) override {
-    tell(snapshot.t);
-    return rows_.observe(snapshot);
-  }
-  bool proceed(double t) override {
-    tell(t);
-    return !(context_.cancel && context_.cancel->load(std::memory_order_relaxed));
-  }
-  std::int64_t rows() const { return rows_.rows(); }
-
- private:
-  void tell(double t) const {
-    if (context_.progress)
-      context_.progress(last_ == first_ ? 1 : std::clamp((t - first_) / (last_ - first_), 0.0, 1.0));
-  }
-
-  ColumnRows rows_;
-  AnalysisContext& context_;
-  double first_, last_;
-};
 
 /// Ends an analysis that was asked for what cannot be done.
 inline void refuse(AnalysisResult& result, std::string message) {
@@ -100,18 +90,23 @@ PlanOptions plan_options(const Model& model, const std::vector<std::string>& out
 /// Takes over what an analysis said, in the order: outcome, columns, notes.
 void take_report(AnalysisResult& result, AnalysisReport report, const ColumnSet* columns, std::int64_t rows);
 
-/// Runs an analysis that goes through time, from the present state, and leaves the state where it ended.
-template <class Analysis>
+/// Runs an analysis that goes through time, from the present state, and leaves the state where it ended. `prepare` gets
+/// the rows before the run.
+template <class Analysis, class Prepare>
 void run_over_time(AnalysisContext& context, AnalysisResult& result, Analysis& analysis, const TimeGrid& grid,
-                   const std::vector<std::string>& outputs, const ColumnSources& sources) {
+                   const std::vector<std::string>& outputs, const ColumnSources& sources, Prepare&& prepare) {
   const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), outputs, sources);
   analysis.start_from(context.state);
   if (context.trace) analysis.evaluator().trace = &context.trace;
-  ReportingRows rows(columns, context, grid.last());
-  AnalysisReport report = analysis.run(grid, columns.needs(), rows);
+  AnalysisRows rows(columns, context, analysis.plan(), sources,
+                    {std::min(context.state.t, grid.earliest()), grid.last()});
+  prepare(rows);
+  rows.begin();
+  AnalysisReport report = analysis.run(grid, rows.needs(), rows);
   for (std::string& doubt : gears_that_do_not_fit(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
   context.state = analysis.state();
   take_report(result, std::move(report), &columns, rows.rows());
+  rows.finish(result);
 }
 
 }  // namespace catena

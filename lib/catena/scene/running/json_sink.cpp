@@ -1,7 +1,7 @@
 // The result document, written as results come: nothing but the row at hand is kept.
+#include <limits>
 #include <optional>
 
-#include "catena/base/si_unit.hpp"
 #include "catena/scene/json/json_text.hpp"
 #include "catena/scene/running/scene_runner.hpp"
 
@@ -57,20 +57,69 @@ struct FieldWriter {
     append_list(out, list, [&](const std::string& value) { append_json(out, value); });
   }
   void operator()(const std::vector<FieldRecord>& records) const {
-    append_list(out, records, [&](const FieldRecord& record) {
-      out += '{';
-      bool first = true;
-      for (const auto& [name, value] : record) {
-        if (!first) out += ", ";
-        first = false;
-        append_json(out, name);
-        out += ": ";
-        std::visit(*this, value);
-      }
-      out += '}';
-    });
+    append_list(out, records, [&](const FieldRecord& record) { (*this)(record); });
+  }
+  void operator()(const FieldRecord& record) const {
+    out += '{';
+    bool first = true;
+    for (const auto& [name, value] : record) {
+      if (!first) out += ", ";
+      first = false;
+      append_json(out, name);
+      out += ": ";
+      std::visit(*this, value);
+    }
+    out += '}';
   }
 };
+
+double value_or_none(const std::optional<double>& value) {
+  return value.value_or(std::numeric_limits<double>::quiet_NaN());  // written as null
+}
+
+/// "measures": {"peak": {"value": 3.2, "unit": "N m", "t": 0.31}}, and "gradients": {"peak": {"a": 0.7}}.
+void append_measures(std::string& out, const AnalysisResult& result) {
+  if (result.measures.empty()) return;
+  std::string gradients;
+  append_key(out, "measures");
+  for (const MeasureResult& measure : result.measures) {
+    const bool first = &measure == &result.measures.front();
+    for (std::string* text : {&out, &gradients}) {
+      *text += first ? "{" : ", ";
+      append_json(*text, measure.name);
+    }
+    FieldRecord record{{"value", value_or_none(measure.value)}, {"unit", measure.unit}};
+    if (measure.t) record.emplace_back("t", *measure.t);
+    out += ": ";
+    FieldWriter{out}(record);
+    gradients += ": ";
+    std::vector<std::pair<std::string, double>> gradient;
+    for (std::size_t p = 0; p < result.gradient_parameters.size() && p < measure.gradient.size(); ++p)
+      gradient.emplace_back(result.gradient_parameters[p], measure.gradient[p]);
+    append_object(gradients, gradient);
+  }
+  out += '}';
+  if (result.gradient_parameters.empty()) return;
+  append_key(out, "gradients");
+  out += gradients + '}';
+}
+
+/// "extremes": {"crank.x": {"least": 0, "least_t": 0.1, "largest": 1, "largest_t": 0.3}}.
+void append_extremes(std::string& out, const AnalysisResult& result) {
+  if (result.extremes.empty()) return;
+  append_key(out, "extremes");
+  const std::string_view kind = result.extremes_have_time ? "_t" : "_row";
+  for (const ColumnExtreme& column : result.extremes) {
+    out += &column == &result.extremes.front() ? "{" : ", ";
+    append_json(out, column.name);
+    out += ": ";
+    FieldWriter{out}(FieldRecord{{"least", column.least},
+                                 {"least" + std::string(kind), column.least_t},
+                                 {"largest", column.largest},
+                                 {"largest" + std::string(kind), column.largest_t}});
+  }
+  out += '}';
+}
 
 void append_counters(std::string& out, const Counters& c) {
   const std::pair<std::string_view, std::int64_t> all[] = {{"symbolic", c.symbolic},
@@ -137,6 +186,8 @@ class JsonSink final : public ResultSink, private RowSink {
       append_key(text_, "set");
       append_object(text_, result.set);
     }
+    append_measures(text_, result);
+    append_extremes(text_, result);
     for (const NamedField& field : result.fields) {
       append_key(text_, field.name);
       std::visit(FieldWriter{text_}, field.value);
@@ -156,7 +207,7 @@ class JsonSink final : public ResultSink, private RowSink {
     append_key(text_, "columns");
     append_list(text_, columns, [&](const ColumnInfo& column) { append_json(text_, column.name); });
     append_key(text_, "units");
-    append_list(text_, columns, [&](const ColumnInfo& column) { catena::append_json(text_, si_unit(column.unit)); });
+    append_list(text_, columns, [&](const ColumnInfo& column) { catena::append_json(text_, column.unit_text()); });
     append_key(text_, "rows");
     text_ += '[';
     rows_ = 0;

@@ -91,10 +91,11 @@ void run_assemble(AnalysisContext& context, AnalysisResult& result) {
   PlanOptions options = plan_options(*context.model, names);
   options.released_elements = context.model->gaps();
   Kinematics analysis(context.model, options);
-  const ColumnSet columns =
-      ColumnSet::resolve(*context.model, analysis.plan(), names, {.analysis = context.task.type()});
+  const ColumnSources sources{.analysis = context.task.type()};
+  const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), names, sources);
   start(analysis, context);
-  ReportingRows rows(columns, context, context.state.t);
+  AnalysisRows rows(columns, context, analysis.plan(), sources, {context.state.t, context.state.t});
+  rows.begin();
   const AssemblyOutcome outcome = analysis.assemble();
   AnalysisReport report;
   take_outcome(report, outcome, analysis);

@@ -1,10 +1,60 @@
 // buckling: values of a load parameter at which the current equilibrium loses its stability; one row a value, with the
 // shape in which it does if outputs are named.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "catena/analysis/sensitivity/spectrum_derivatives.hpp"
 #include "catena/analysis/stability/buckling.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 #include "catena/scene/running/shape_columns.hpp"
 
 namespace catena {
+namespace {
+
+// Loads nearer to each other than this part count as double: their shapes, known to 1e-8, turn into each other.
+constexpr double apart = 1e-6;
+
+/// dP/dp = -h_p / h_P, h = v^T K v on the null space; see spectrum_derivatives.hpp. The configuration is that of the
+/// present equilibrium, which moves with every parameter but the load.
+void differentiate(const AnalysisContext& context, Buckling& analysis, const BucklingReport& report,
+                   AnalysisResult& result) {
+  const int parameter = context.task.word("parameter");
+  const std::size_t count = context.design->names.size();
+  Evaluator& present = analysis.evaluator();
+  const std::vector<double> held = balancing_multipliers(present, analysis.time(), analysis.q());
+  StaticDerivatives equilibrium(present, designs_of(context, parameter), static_cast<int>(count) + 1);
+  const bool moves = equilibrium.find({.evaluator = present, .t = analysis.time(), .q = analysis.q(), .lambda = held});
+  for (std::size_t k = 0; k < report.loads.size(); ++k) {
+    const double load = report.loads[k];
+    std::vector<double> gradient(count, std::numeric_limits<double>::quiet_NaN());
+    std::string trouble = moves ? std::string() : equilibrium.why();
+    for (std::size_t other = 0; other < report.loads.size(); ++other) {
+      if (other != k && std::abs(load - report.loads[other]) <= apart * std::abs(load))
+        trouble = fmt::format("load {} is double: it has no derivative", k + 1);
+    }
+    const std::shared_ptr<const Model> model = model_at(context, parameter, load);
+    if (!model) trouble = "the scene allows no model at this load";
+    if (trouble.empty()) {
+      Evaluator evaluator(analysis.evaluator().shared_plan(), *model);
+      const std::vector<double> lambda = balancing_multipliers(evaluator, analysis.time(), analysis.q());
+      SpectrumDerivatives derivatives(evaluator, designs_of(context, parameter, ParameterSeed<double>{parameter, load}),
+                                      static_cast<int>(count) + 1);
+      if (derivatives.find_held({.evaluator = evaluator, .t = analysis.time(), .q = analysis.q(), .lambda = lambda},
+                                equilibrium)) {
+        const std::vector<double> h = derivatives.stiffness_gradient(report.shapes[k]);
+        for (std::size_t p = 0; p < count; ++p)
+          gradient[p] = context.design->parameters[p] == parameter ? 0 : -h[p] / h[count];
+      } else {
+        trouble = derivatives.why();
+      }
+    }
+    set_field_gradient(context, result, "loads", static_cast<int>(k) + 1, gradient, trouble);
+  }
+}
+
+}  // namespace
 
 void run_buckling(AnalysisContext& context, AnalysisResult& result) {
   const AnalysisTask& task = context.task;
@@ -13,7 +63,7 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result) {
   options.present = task.parameters.at(static_cast<std::size_t>(parameter));
   options.count = static_cast<int>(task.number("count", 1));
   Buckling analysis(
-      context.model, [&](double value) { return context.model_at(parameter, value); }, options);
+      context.model, [&](double value) { return model_at(context, parameter, value); }, options);
   SystemState start = context.state;
   start.t = frozen_time(context);
   analysis.start_from(start);
@@ -38,10 +88,13 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result) {
   // Places alone change hands: velocities and time stay those of the motion so far.
   if (report.ok()) context.state.q = analysis.state().q;
   result.fields = {{"loads", report.loads}};
+  const BucklingReport found = report;
   take_report(result, std::move(report), nullptr, 0);
   result.has_rows = true;
   result.columns = std::move(info);
   result.rows = rows;
+  add_field_measures(context, result);
+  if (context.design && found.ok()) differentiate(context, analysis, found, result);
 }
 
 }  // namespace catena

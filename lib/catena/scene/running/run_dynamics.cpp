@@ -7,6 +7,7 @@
 #include "catena/analysis/dynamics/dynamics_with_events.hpp"
 #include "catena/analysis/dynamics/error_estimate.hpp"
 #include "catena/analysis/dynamics/paces.hpp"
+#include "catena/analysis/sensitivity/motion_derivatives.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 
 namespace catena {
@@ -83,6 +84,7 @@ class DynamicsTask {
   template <class Analysis>
   void run_or_estimate(Analysis& analysis, const PlanOptions& plan);
   void run_with_events_or_pauses();
+  void differentiate(AnalysisRows& rows, const Evaluator& evaluator) const;
   /// Has the motion saved now and then; where it cannot be, `failure` says why.
   Pauses pauses(std::string& failure) const;
   void run_apart(const std::vector<std::vector<int>>& classes);
@@ -106,6 +108,10 @@ std::string DynamicsTask::conflict() const {
     return "the error cannot be estimated where events release or engage a constraint: they would happen at other "
            "instants in the second run";
   }
+  if (context_.design && acts) {
+    return "derivatives are not carried through events that release or engage a constraint";
+  }
+  if (context_.design && context_.checkpoint) return "derivatives and checkpoints do not go together";
   if (context_.checkpoint && estimates_) return "an estimate of the error and checkpoints do not go together";
   return {};
 }
@@ -113,12 +119,20 @@ std::string DynamicsTask::conflict() const {
 template <class Analysis>
 void DynamicsTask::run_or_estimate(Analysis& analysis, const PlanOptions& plan) {
   if (!estimates_) {
-    run_over_time(context_, result_, analysis, *grid_, names_, sources);
+    run_over_time(context_, result_, analysis, *grid_, names_, sources,
+                  [&](AnalysisRows& rows) { differentiate(rows, analysis.evaluator()); });
     return;
   }
   WithErrorEstimate both(analysis, model_, plan, options_);
-  run_over_time(context_, result_, both, *grid_, names_, sources);
+  run_over_time(context_, result_, both, *grid_, names_, sources,
+                [&](AnalysisRows& rows) { differentiate(rows, analysis.evaluator()); });
   result_.fields.push_back({"estimated_error", records_of(both.error(), *model_)});
+}
+
+void DynamicsTask::differentiate(AnalysisRows& rows, const Evaluator& evaluator) const {
+  if (!context_.design) return;
+  rows.differentiate(std::make_unique<MotionDerivatives>(
+      evaluator, designs_of(context_), static_cast<int>(context_.design->names.size()), context_.state.q.empty()));
 }
 
 Pauses DynamicsTask::pauses(std::string& failure) const {
@@ -136,7 +150,7 @@ Pauses DynamicsTask::pauses(std::string& failure) const {
 }
 
 void DynamicsTask::run_with_events_or_pauses() {
-  std::vector<std::string> reactions = names_;
+  std::vector<std::string> reactions = context_.task.column_names();
   for (const EventRequest& request : context_.task.events) reactions.push_back(request.column);
   const PlanOptions plan = plan_options(*model_, reactions);
   DynamicsWithEvents analysis(model_, plan, used_options_, events_of(context_.task, *model_), sources);
@@ -164,7 +178,7 @@ void DynamicsTask::run_with_events_or_pauses() {
 /// Mechanisms that have nothing to do with each other, and differ in pace.
 void DynamicsTask::run_apart(const std::vector<std::vector<int>>& classes) {
   DynamicsOfIslands analysis(model_, plan_options(*model_, names_), used_options_, classes);
-  run_over_time(context_, result_, analysis, *grid_, names_, sources);
+  run_over_time(context_, result_, analysis, *grid_, names_, sources, [](AnalysisRows&) {});
   std::string methods;
   for (const IntegrationMethod method : analysis.methods()) {
     const std::string_view name = to_string(method);
@@ -183,10 +197,11 @@ void DynamicsTask::run() {
   if (estimates_) used_options_ = finer_options(options_);
   if (!context_.task.events.empty() || context_.checkpoint) return run_with_events_or_pauses();
   // A fixed step is the same for all; two runs that are compared must be divided alike.
-  if (!estimates_ && options_.step == 0) {
+  const bool looked_at = context_.design || !context_.task.measures.empty();
+  if (!estimates_ && options_.step == 0 && !looked_at) {
     if (const auto classes = classes_of_pace(model_); classes.size() > 1) return run_apart(classes);
   }
-  const PlanOptions plan = plan_options(*model_, names_);
+  const PlanOptions plan = plan_options(*model_, context_.task.column_names());
   Dynamics analysis(model_, plan, used_options_);
   run_or_estimate(analysis, plan);
   result_.fields.push_back({"method", std::string(to_string(analysis.method()))});

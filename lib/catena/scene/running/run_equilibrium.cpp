@@ -1,6 +1,7 @@
 // equilibrium: the configuration at rest, certified.
 #include <fmt/format.h>
 
+#include "catena/analysis/sensitivity/static_derivatives.hpp"
 #include "catena/analysis/statics/equilibrium.hpp"
 #include "catena/analysis/statics/static_ipopt.hpp"
 #include "catena/analysis/statics/static_nlopt.hpp"
@@ -29,7 +30,7 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   options.tolerance = task.number("tolerance", options.tolerance);
   options.accept = task.word("accept") == 0 ? Accept::stable : Accept::stationary;
   const std::vector<std::string> names = task.output_names();
-  Equilibrium analysis(context.model, plan_options(*context.model, names), options);
+  Equilibrium analysis(context.model, plan_options(*context.model, task.column_names()), options);
   const bool conservative = analysis.evaluator().conservative();
   if (!conservative && (options.solver == StaticSolver::ipopt || options.solver == StaticSolver::nlopt)) {
     return refuse(result,
@@ -42,14 +43,24 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
                   fmt::format("the solver nlopt is dense and made for at most {} coordinates; this scene has {}",
                               StaticNloptOptions::most_columns, analysis.plan().columns));
   }
-  const ColumnSet columns =
-      ColumnSet::resolve(*context.model, analysis.plan(), names, {.analysis = task.type(), .multipliers = true});
+  const ColumnSources sources{.analysis = task.type(), .multipliers = true};
+  const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), names, sources);
   SystemState start = context.state;
   start.t = frozen_time(context);
   analysis.start_from(start);
   if (context.trace) analysis.evaluator().trace = &context.trace;
-  ReportingRows rows(columns, context, start.t);
-  const EquilibriumReport report = analysis.run(TimeGrid::instant(start.t), columns.needs(), rows);
+  AnalysisRows rows(columns, context, analysis.plan(), sources, {start.t, start.t});
+  StaticDerivatives* derivatives = nullptr;
+  if (context.design) {
+    auto found = std::make_unique<StaticDerivatives>(analysis.evaluator(), designs_of(context),
+                                                     static_cast<int>(context.design->names.size()));
+    derivatives = found.get();
+    rows.differentiate(std::move(found));
+  }
+  rows.begin();
+  Needs needs = rows.needs();
+  needs.multipliers = needs.multipliers || derivatives;
+  const EquilibriumReport report = analysis.run(TimeGrid::instant(start.t), needs, rows);
   context.state = analysis.state();
   if (report.certified) {
     result.fields = {{"energy", report.energy},
@@ -78,6 +89,12 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
     result.fields.push_back({"equilibria", std::move(list)});
   }
   take_report(result, report, &columns, rows.rows());
+  rows.finish(result);
+  add_field_measures(context, result);
+  if (!derivatives || !report.certified || !report.ok()) return;
+  const Snapshot snapshot{
+      .evaluator = analysis.evaluator(), .t = analysis.time(), .q = analysis.q(), .lambda = analysis.lambda()};
+  if (derivatives->find(snapshot)) set_field_gradient(context, result, "energy", 0, derivatives->energy_gradient());
 }
 
 }  // namespace catena

@@ -1,6 +1,7 @@
 // kinematics and inverse_dynamics: a driven mechanism over time.
-#include "catena/analysis/kinematics/kinematics.hpp"
+#include "catena/analysis/kinematics/kinematic_look.hpp"
 #include "catena/analysis/kinematics/minimum_norm_motion.hpp"
+#include "catena/analysis/sensitivity/kinematic_derivatives.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 
 namespace catena {
@@ -45,6 +46,7 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
   const std::optional<TimeGrid> grid = time_grid(context, result.report);
   if (!grid) return;
   const std::vector<std::string> names = task.output_names();
+  const PlanOptions plan = plan_options(*context.model, task.column_names());
   KinematicsOptions options;
   options.inverse_dynamics = inverse_dynamics;
   if (task.has("branch")) {
@@ -63,12 +65,27 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
                     "\"minimum_norm\" is for kinematics alone: motions that nothing drives would need forces of their "
                     "own; add drivers");
     }
-    MinimumNormMotion analysis(context.model, plan_options(*context.model, names));
-    run_over_time(context, result, analysis, *grid, names, sources);
+    if (context.design)
+      return refuse(result, "motions that nothing drives have no derivatives yet: leave \"free\" out, or add drivers");
+    MinimumNormMotion analysis(context.model, plan);
+    run_over_time(context, result, analysis, *grid, names, sources, [](AnalysisRows& rows) { rows.take_rows_alone(); });
     return add_singular_points(result, analysis.singular_points(), *context.model);
   }
-  Kinematics analysis(context.model, plan_options(*context.model, names), options);
-  run_over_time(context, result, analysis, *grid, names, sources);
+  Kinematics analysis(context.model, plan, options);
+  std::optional<KinematicLook> look;
+  const auto prepare = [&](AnalysisRows& rows) {
+    if (!task.measures.empty()) {
+      look.emplace(context.model, plan, options, rows.needs());
+      rows.look_by([&](const Snapshot& snapshot) {
+        look->start_from(snapshot);
+        return AnalysisRows::Look([&](double t) { return look->at(t); });
+      });
+    }
+    if (!context.design) return;
+    rows.differentiate(std::make_unique<KinematicDerivatives>(analysis.evaluator(), designs_of(context),
+                                                              static_cast<int>(context.design->names.size())));
+  };
+  run_over_time(context, result, analysis, *grid, names, sources, prepare);
   add_singular_points(result, analysis.singular_points(), *context.model);
 }
 

@@ -1,9 +1,52 @@
 // modes: small oscillations about the current configuration; one row a mode.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "catena/analysis/sensitivity/spectrum_derivatives.hpp"
 #include "catena/analysis/stability/modes.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 #include "catena/scene/running/shape_columns.hpp"
 
 namespace catena {
+namespace {
+
+// Frequencies nearer to each other than this part count as double: their vectors, known to 1e-8, turn into each other.
+constexpr double apart = 1e-6;
+
+bool is_double(const std::vector<double>& omega2, std::size_t k) {
+  for (std::size_t other = 0; other < omega2.size(); ++other) {
+    const double size = std::max(std::abs(omega2[k]), std::abs(omega2[other]));
+    if (other != k && std::abs(omega2[k] - omega2[other]) <= apart * size) return true;
+  }
+  return false;
+}
+
+void differentiate(const AnalysisContext& context, Modes& analysis, const ModesReport& report, AnalysisResult& result) {
+  Evaluator& evaluator = analysis.evaluator();
+  const std::vector<double> lambda = balancing_multipliers(evaluator, analysis.time(), analysis.q());
+  SpectrumDerivatives derivatives(evaluator, designs_of(context), static_cast<int>(context.design->names.size()));
+  const bool found =
+      derivatives.find({.evaluator = evaluator, .t = analysis.time(), .q = analysis.q(), .lambda = lambda});
+  for (std::size_t k = 0; k < report.omega2.size(); ++k) {
+    const int number = static_cast<int>(k) + 1;
+    std::vector<double> gradient(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
+    std::string trouble = derivatives.why();
+    if (found && is_double(report.omega2, k)) {
+      trouble = fmt::format("mode {} is one of two or more with the same frequency, which has no derivative", number);
+    } else if (found) {
+      gradient = derivatives.frequency_gradient(report.omega2[k], report.shapes[k]);
+    }
+    set_field_gradient(context, result, "omega2", number, gradient, trouble);
+    // omega = sqrt |omega2|
+    const double factor = (report.omega2[k] < 0 ? -0.5 : 0.5) / report.omega[k];
+    for (double& derivative : gradient) derivative *= factor;
+    set_field_gradient(context, result, "omega", number, gradient, trouble);
+  }
+}
+
+}  // namespace
 
 void run_modes(AnalysisContext& context, AnalysisResult& result) {
   const AnalysisTask& task = context.task;
@@ -43,10 +86,13 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
     result.fields.push_back({"free_motions", static_cast<std::int64_t>(report.free_motions)});
     result.fields.push_back({"moving_freely", report.free_bodies});
   }
+  const ModesReport found = report;
   take_report(result, std::move(report), nullptr, 0);
   result.has_rows = true;
   result.columns = std::move(info);
   result.rows = rows;
+  add_field_measures(context, result);
+  if (context.design && found.ok()) differentiate(context, analysis, found, result);
 }
 
 }  // namespace catena

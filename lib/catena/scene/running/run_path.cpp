@@ -1,10 +1,39 @@
 // path: static equilibria as a parameter changes; one row a point, the parameter first.
 #include <algorithm>
+#include <limits>
 
+#include "catena/analysis/measures/measure_set.hpp"
+#include "catena/analysis/sensitivity/spectrum_derivatives.hpp"
 #include "catena/analysis/stability/path.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 
 namespace catena {
+namespace {
+
+/// A row of the path, kept for derivatives.
+struct PathPlace {
+  double value;
+  std::vector<double> q, lambda;
+};
+
+std::vector<double> to_vector(std::span<const double> values) { return {values.begin(), values.end()}; }
+
+/// Of the value of the path's parameter at a critical point; not numbers, and why, where there is none.
+std::vector<double> critical_gradient(const AnalysisContext& context, const std::shared_ptr<const Plan>& plan,
+                                      const PathPlace& place, double t, std::string& trouble) {
+  const int parameter = context.task.word("parameter");
+  const std::size_t count = context.design->names.size();
+  std::vector<double> none(count, std::numeric_limits<double>::quiet_NaN());
+  const std::shared_ptr<const Model> model = model_at(context, parameter, place.value);
+  if (!model) return none;
+  const Evaluator evaluator(plan, *model);
+  const DesignModels models = designs_of(context, parameter, ParameterSeed<double>{parameter, place.value});
+  const auto gradient =
+      limit_load_gradient(evaluator, models, static_cast<int>(count) + 1, {t, place.q, place.lambda}, trouble);
+  return gradient ? *gradient : none;
+}
+
+}  // namespace
 
 void run_path(AnalysisContext& context, AnalysisResult& result) {
   const AnalysisTask& task = context.task;
@@ -20,10 +49,10 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
   }
   const std::vector<std::string> names = task.output_names();
   Path analysis(
-      context.model, [&](double value) { return context.model_at(parameter, value); }, options,
-      plan_options(*context.model, names));
-  const ColumnSet columns =
-      ColumnSet::resolve(*context.model, analysis.plan(), names, {.analysis = task.type(), .multipliers = true});
+      context.model, [&](double value) { return model_at(context, parameter, value); }, options,
+      plan_options(*context.model, task.column_names()));
+  const ColumnSources sources{.analysis = task.type(), .multipliers = true};
+  const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), names, sources);
   SystemState start = context.state;
   start.t = frozen_time(context);
   analysis.start_from(start);
@@ -33,7 +62,11 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
   context.rows.begin(info);
   std::vector<double> row(info.size());
   std::int64_t rows = 0;
+  MeasureSet measures(task.measure_requests(), *context.model, analysis.plan(), sources, {start.t, start.t});
+  std::vector<PathPlace> places;
   PathReport report = analysis.run([&](double value, const Snapshot& snapshot) {
+    measures.take_row(snapshot, true);
+    if (context.design) places.push_back({value, to_vector(snapshot.q), to_vector(snapshot.lambda)});
     row[0] = value;
     context.parameter_at_end = value;
     columns.evaluate(snapshot, std::span<double>(row).subspan(1));
@@ -53,8 +86,20 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
   result.fields = {{"critical", std::move(critical)},
                    {"negative_modes", report.negative_modes},
                    {"steps", static_cast<std::int64_t>(report.steps)}};
+  const std::vector<PathCritical> points = report.critical;
   take_report(result, std::move(report), &columns, rows);
   result.columns = std::move(info);
+  for (MeasureResult& measure : measures.results()) {
+    measure.t.reset();
+    result.measures.push_back(std::move(measure));
+  }
+  add_field_measures(context, result);
+  for (std::size_t k = 0; context.design && k < points.size(); ++k) {
+    std::string trouble;
+    const std::vector<double> gradient = critical_gradient(
+        context, analysis.evaluator().shared_plan(), places[static_cast<std::size_t>(points[k].row)], start.t, trouble);
+    set_field_gradient(context, result, "critical", static_cast<int>(k) + 1, gradient, trouble);
+  }
 }
 
 }  // namespace catena

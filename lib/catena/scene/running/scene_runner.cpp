@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "catena/columns/own_columns.hpp"
 #include "catena/scene/building/build_model.hpp"
 #include "catena/scene/json/near_miss.hpp"
 #include "catena/scene/reading/scene_reader.hpp"
@@ -13,6 +14,8 @@
 #include "catena/scene/running/analysis_run.hpp"
 #include "catena/scene/running/command_text.hpp"
 #include "catena/scene/running/scene_checkpoints.hpp"
+#include "catena/scene/running/scene_models.hpp"
+#include "catena/scene/running/scene_saving.hpp"
 
 namespace catena {
 namespace {
@@ -50,16 +53,16 @@ class SceneRun {
   bool prepare(SourceText source);
   void read_tasks();
   void check_columns(const std::vector<PlacedName>& names, const Model& model);
+  void check_own_columns();
   void check_task(const AnalysisTask& task);
   void check_event(const EventRequest& event, const Model& model);
+  void check_measure(const PlacedMeasure& measure, const Model& model);
   std::shared_ptr<const Model> build(std::span<const double> parameters);
   void run_all();
-  /// Builds models in which one parameter of the task has another value.
-  std::function<std::shared_ptr<const Model>(int, double)> builder_of(const AnalysisTask& task);
+  void save();
   /// The task with the parameters that earlier paths left behind, unless it sets them itself.
   AnalysisTask with_handed_on(AnalysisTask task, Diagnostics& diagnostics);
-  ParameterTable table_of(const AnalysisTask& task);
-  std::vector<ParameterSeed<double>> handed_on_to(const AnalysisTask& task) const;
+  ParameterSeeds handed_on_to(const AnalysisTask& task) const;
   AnalysisResult run_task(const AnalysisTask& read, int number, SystemState& state, RowSink& rows);
   std::vector<std::pair<std::string, double>> named_parameters(std::span<const double> values) const;
   void finish_errors();
@@ -76,7 +79,8 @@ class SceneRun {
   ParameterTable parameters_;
   std::shared_ptr<const Model> model_;
   std::vector<AnalysisTask> tasks_;
-  std::vector<ParameterSeed<double>> handed_on_;  // values of parameters that paths left behind
+  std::optional<SceneModels> models_;
+  ParameterSeeds handed_on_;  // values of parameters that paths and optimisations left behind
   SceneCheckpoints checkpoints_{options_};
 };
 
@@ -98,6 +102,44 @@ void SceneRun::check_columns(const std::vector<PlacedName>& names, const Model& 
   }
 }
 
+// Formulas name columns, and may do so in a circle.
+void SceneRun::check_own_columns() {
+  std::vector<NamedColumn> found;
+  const auto in_text = [](const JsonValue& text, std::size_t position) {
+    return text.source().offset_in_string(text.offset(), position + 1);  // one byte for the "=" before it
+  };
+  for (const OwnColumnTemplate& column : scene_->own_columns) {
+    if (model_->names.find(column.name) >= 0) {
+      report(column.place, fmt::format("the name {} is used twice: a body or element has it", in_quotes(column.name)),
+             diagnostics_);
+    }
+    for (const NamedInput& input : column.inputs) {
+      found.clear();
+      const std::optional<UnknownColumn> unknown = find_columns(*model_, input.name, found);
+      if (!unknown && found.size() == 1) continue;
+      std::string message = unknown
+                                ? fmt::format("unknown column {}: {}{}", in_quotes(input.name), unknown->message,
+                                              NearMiss(input.name).consider_all(unknown->candidates).hint())
+                                : fmt::format("{} stands for {} columns; an expression wants one, such as {}",
+                                              in_quotes(input.name), found.size(), in_quotes(found.front().info.name));
+      if (unknown && input.name.find('.') == std::string::npos) {
+        const std::string hint = NearMiss(input.name).consider_all(parameters_.names().all()).hint();
+        message = fmt::format("there is no column or parameter {}{}", in_quotes(input.name),
+                              hint.empty() ? NearMiss(input.name).consider_all(unknown->candidates).hint() : hint);
+      }
+      diagnostics_.error(column.place.source(), in_text(column.place, input.position), std::move(message));
+    }
+  }
+  if (!diagnostics_.ok()) return;
+  OwnInputs inputs(model_->own_columns.size());
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    const std::optional<UnknownColumn> circle = find_own_inputs(*model_, static_cast<int>(k), inputs);
+    if (!circle) continue;
+    report(scene_->own_columns[k].place, circle->message, diagnostics_);
+    return;
+  }
+}
+
 void SceneRun::check_task(const AnalysisTask& task) {
   std::shared_ptr<const Model> model = model_;
   if (task.changes_parameters) {
@@ -106,6 +148,21 @@ void SceneRun::check_task(const AnalysisTask& task) {
   }
   check_columns(task.outputs, *model);
   for (const EventRequest& event : task.events) check_event(event, *model);
+  for (const PlacedMeasure& measure : task.measures) check_measure(measure, *model);
+  for (const AnalysisTask& inner : task.of) check_task(inner);
+}
+
+void SceneRun::check_measure(const PlacedMeasure& measure, const Model& model) {
+  check_columns(measure.columns, model);
+  std::vector<NamedColumn> found;
+  for (const PlacedName& column : measure.columns) {
+    found.clear();
+    if (find_columns(model, column.name, found) || found.size() == 1) continue;
+    report(column.place,
+           fmt::format("a measure wants one column; {} stands for {} of them, such as {}", in_quotes(column.name),
+                       found.size(), in_quotes(found.front().info.name)),
+           diagnostics_);
+  }
 }
 
 void SceneRun::check_event(const EventRequest& event, const Model& model) {
@@ -143,6 +200,7 @@ void SceneRun::read_tasks() {
       if (task.description->find("outputs")) task.outputs = outputs;
     }
   }
+  if (!options_.only.empty()) std::erase_if(tasks_, [&](const auto& task) { return task.type() != options_.only; });
   if (options_.verb.empty()) return;
   // The scene's own analyses were checked, but one from the command line is run in their place.
   tasks_.clear();
@@ -156,11 +214,14 @@ bool SceneRun::prepare(SourceText source) {
   if (!scene_ || scene_->may_lack_parts) return false;
   parameters_ = scene_->parameters;
   if (command_.read_set(options_.set, diagnostics_)) parameters_.set(command_.set(), scene_->expressions, diagnostics_);
+  models_.emplace(*scene_, options_.max_elements);
   const std::vector<double> values = parameters_.evaluate<double>(scene_->expressions, diagnostics_);
+  const bool scene_is_sound = diagnostics_.ok();
+  read_tasks();  // first: expressions in them become columns of the model
+  const std::size_t errors = diagnostics_.count();
   model_ = build(values);
-  const bool model_is_sound = diagnostics_.ok();
-  read_tasks();
-  if (model_is_sound) {
+  if (scene_is_sound && diagnostics_.count() == errors) {
+    check_own_columns();
     for (const AnalysisTask& task : tasks_) check_task(task);
     if (scene_->outputs && tasks_.empty())
       check_columns(read_outputs(scene_->outputs, *scene_, values, diagnostics_), *model_);
@@ -189,25 +250,19 @@ void SceneRun::finish_errors() {
   }
 }
 
-ParameterTable SceneRun::table_of(const AnalysisTask& task) {
-  ParameterTable table = parameters_;
-  if (const JsonValue set = task.place.find("set")) table.set(set, scene_->expressions, diagnostics_);
-  return table;
-}
-
-std::vector<ParameterSeed<double>> SceneRun::handed_on_to(const AnalysisTask& task) const {
-  std::vector<ParameterSeed<double>> seeds;
-  const JsonValue set = task.place.find("set");
+ParameterSeeds SceneRun::handed_on_to(const AnalysisTask& task) const {
+  ParameterSeeds seeds;
   for (const ParameterSeed<double>& seed : handed_on_) {
-    if (!set || !set.find(parameters_.names().all()[static_cast<std::size_t>(seed.index)])) seeds.push_back(seed);
+    const std::vector<int>& set = task.set_parameters;
+    if (std::find(set.begin(), set.end(), seed.index) == set.end()) seeds.push_back(seed);
   }
   return seeds;
 }
 
 AnalysisTask SceneRun::with_handed_on(AnalysisTask task, Diagnostics& diagnostics) {
-  const std::vector<ParameterSeed<double>> seeds = handed_on_to(task);
+  const ParameterSeeds seeds = handed_on_to(task);
   if (seeds.empty()) return task;
-  task.parameters = table_of(task).evaluate<double>(scene_->expressions, diagnostics, seeds);
+  task.parameters = task.table->evaluate<double>(scene_->expressions, diagnostics, seeds);
   task.changes_parameters = true;
   return task;
 }
@@ -217,19 +272,6 @@ std::vector<std::pair<std::string, double>> SceneRun::named_parameters(std::span
   const auto& names = parameters_.names().all();
   for (std::size_t k = 0; k < names.size() && k < values.size(); ++k) named.emplace_back(names[k], values[k]);
   return named;
-}
-
-std::function<std::shared_ptr<const Model>(int, double)> SceneRun::builder_of(const AnalysisTask& task) {
-  auto table = std::make_shared<ParameterTable>(table_of(task));
-  return [this, table, handed_on = handed_on_to(task)](int parameter, double value) -> std::shared_ptr<const Model> {
-    Diagnostics diagnostics(1);
-    std::vector<ParameterSeed<double>> seeds = handed_on;  // the last one of a parameter counts
-    seeds.push_back({parameter, value});
-    const std::vector<double> values = table->evaluate<double>(scene_->expressions, diagnostics, seeds);
-    if (!diagnostics.ok()) return nullptr;
-    auto model = std::make_shared<Model>(build_model<double>(*scene_, values, {options_.max_elements}, diagnostics));
-    return diagnostics.ok() ? model : nullptr;
-  };
 }
 
 AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemState& state, RowSink& rows) {
@@ -244,7 +286,10 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
     return result;
   }
   // Elsewhere a gap would have to open and close in time.
-  const bool one_sided = task.type() == "equilibrium" || task.type() == "check" || task.type() == "assemble";
+  const auto allows_gaps = [](const AnalysisTask& one) {
+    return one.type() == "equilibrium" || one.type() == "check" || one.type() == "assemble";
+  };
+  const bool one_sided = task.of.empty() ? allows_gaps(task) : std::all_of(task.of.begin(), task.of.end(), allows_gaps);
   if (const std::vector<int> gaps = model_->gaps(); !gaps.empty() && !one_sided) {
     result.report.status = Status::refused;
     result.report.message =
@@ -274,7 +319,8 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
                           .progress = {},
                           .verbose = options_.verbose,
                           .trace = options_.verbose ? IterationTrace(print_iteration) : IterationTrace(),
-                          .model_at = {},
+                          .models = &*models_,
+                          .seeds = handed_on_to(read),
                           .parameter_name = {},
                           .estimate_error = options_.estimate_error,
                           .checkpoint = checkpoints_.wanted() ? &checkpoint : nullptr};
@@ -287,10 +333,8 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
       if ((set && set.find(own[k].first)) || own[k].second != before[k].second) result.set.push_back(own[k]);
     }
   }
-  if (task.has("parameter")) {
-    context.model_at = builder_of(task);
+  if (task.has("parameter"))
     context.parameter_name = parameters_.names().all()[static_cast<std::size_t>(task.word("parameter"))];
-  }
   if (options_.progress) {
     context.progress = [&, number](double fraction) {
       options_.progress({task.type(), number, static_cast<int>(tasks_.size()), fraction});
@@ -304,10 +348,11 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
     result.report.status = Status::refused;
     result.report.message = error.what();
   }
-  if (context.parameter_at_end && result.report.ok()) {
-    const int parameter = task.word("parameter");
-    std::erase_if(handed_on_, [&](const auto& seed) { return seed.index == parameter; });
-    handed_on_.push_back({parameter, *context.parameter_at_end});
+  if (context.parameter_at_end && result.report.ok())
+    context.values_at_end = {{task.word("parameter"), *context.parameter_at_end}};
+  for (const ParameterSeed<double>& value : context.values_at_end) {
+    std::erase_if(handed_on_, [&](const auto& seed) { return seed.index == value.index; });
+    handed_on_.push_back(value);
   }
   return result;
 }
@@ -333,8 +378,10 @@ void SceneRun::run_all() {
     } else if (k > first && !outcome_.analyses.back().report.ok()) {
       break;  // there is no state to go on from
     }
-    RowSink& rows = sink_.begin_analysis(task.type());
+    ColumnExtremes rows(sink_.begin_analysis(task.type()));
     outcome_.analyses.push_back(run_task(task, static_cast<int>(k), state, rows));
+    outcome_.analyses.back().extremes = rows.extremes();
+    outcome_.analyses.back().extremes_have_time = rows.timed();
     sink_.end_analysis(outcome_.analyses.back());
     if (!outcome_.analyses.back().report.ok()) outcome_.exit_code = 1;
   }
@@ -378,8 +425,19 @@ void SceneRun::run(const std::string& path) {
     return;
   }
   if (!check_dynamics_options()) return;
+  if (tasks_.empty() && !options_.only.empty())
+    return refuse(2, fmt::format("the scene lists no {} in its analyses", options_.only));
   if (!scene_->name.empty()) outcome_.scene = scene_->name;
   run_all();
+  if (!options_.save.empty()) save();
+}
+
+// The scene with the values that optimisations left behind; nothing where one of them failed.
+void SceneRun::save() {
+  if (outcome_.exit_code != 0) return;
+  TextOutput file = TextOutput::file(options_.save);
+  file.write(text_with_values(*scene_, handed_on_));
+  if (!file.commit()) refuse(4, file.error());
 }
 
 }  // namespace

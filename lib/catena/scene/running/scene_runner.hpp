@@ -34,6 +34,10 @@ struct RunOptions {
   std::string verb;
   /// Keys of that analysis as text, as on the command line; a list is the same key several times.
   std::vector<std::pair<std::string, std::string>> verb_options;
+  /// Run only those analyses of the scene's list that have this type; empty: all.
+  std::string only;
+  /// File to which the scene is written with the values that its optimisations found; empty: none.
+  std::string save;
   /// Parameters to change: name, and a value in the syntax of scenes (a number, "30 deg", "=2*a").
   std::vector<std::pair<std::string, std::string>> set;
   /// Columns in place of all outputs that the scene names; empty: the scene's.

@@ -1,0 +1,208 @@
+#include "catena/analysis/design/design_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace catena {
+namespace {
+
+// How often the way to a failed design is halved before its border counts as found.
+constexpr int halvings = 6;
+// Designs around a start that fails: corners of a cube of half the range, and its middle.
+constexpr double around[] = {0.5, 0.25, 0.75};
+// Of the objective's size, on the square of the distance beyond a border in parts of the ranges.
+constexpr double steepness = 10;
+
+double size_of(double value, std::span<const double> gradient, const std::vector<double>& range) {
+  double sum = 0;
+  for (std::size_t v = 0; v < gradient.size(); ++v) sum += gradient[v] * range[v] * gradient[v] * range[v];
+  const double size = std::max(std::abs(value), std::sqrt(sum));
+  return size > 0 && std::isfinite(size) ? size : 1;
+}
+
+}  // namespace
+
+DesignSearch::DesignSearch(const DesignProblem& problem, const DesignOptions& options, DesignOutcome& outcome)
+    : problem_(problem),
+      options_(options),
+      outcome_(outcome),
+      unequal_size_(static_cast<std::size_t>(problem.inequalities), 1.0),
+      equal_size_(static_cast<std::size_t>(problem.equations), 1.0) {}
+
+std::vector<double> DesignSearch::design(std::span<const double> u) const {
+  std::vector<double> x(u.size());
+  for (std::size_t v = 0; v < u.size(); ++v) {
+    // The ends exactly: rounding must not lead out of the bounds.
+    x[v] = u[v] <= 0   ? problem_.lower[v]
+           : u[v] >= 1 ? problem_.upper[v]
+                       : problem_.lower[v] + u[v] * (problem_.upper[v] - problem_.lower[v]);
+  }
+  return x;
+}
+
+bool DesignSearch::go_on() {
+  cancelled_ = cancelled_ || (options_.go_on && !options_.go_on());
+  return !cancelled_ && outcome_.evaluations < options_.max_evaluations;
+}
+
+bool DesignSearch::analyse(std::span<const double> u, bool gradients, Point& point) {
+  ++outcome_.evaluations;
+  DesignEvaluation evaluation = problem_.evaluate(design(u), gradients);
+  if (!evaluation.failure.empty()) {
+    ++outcome_.failed[evaluation.failure];
+    return false;
+  }
+  point.u.assign(u.begin(), u.end());
+  point.values = std::move(evaluation.values);
+  point.gradients = gradients;
+  return true;
+}
+
+double DesignSearch::violation_of(const DesignValues& values) const {
+  double worst = 0;
+  for (std::size_t k = 0; k < values.unequal.size(); ++k) worst = std::max(worst, values.unequal[k] / unequal_size_[k]);
+  for (std::size_t k = 0; k < values.equal.size(); ++k)
+    worst = std::max(worst, std::abs(values.equal[k]) / equal_size_[k]);
+  return worst;
+}
+
+// Of two designs the one that meets the constraints is better, then the one with the smaller objective; of two that do
+// not, the one that misses them by less.
+void DesignSearch::compare(const Point& point) {
+  const double allowed = 10 * options_.tolerance, violation = violation_of(point.values);
+  if (has_best_) {
+    const bool good = violation <= allowed, best_good = outcome_.violation <= allowed;
+    const bool better = good && best_good ? point.values.objective < outcome_.values.objective
+                                          : good || (!best_good && violation < outcome_.violation);
+    const bool same = point.gradients && !best_has_gradients_ && design(point.u) == outcome_.x;
+    if (!better && !same) return;
+    if (same) {
+      outcome_.values = point.values;
+      best_has_gradients_ = true;
+      return;
+    }
+  }
+  has_best_ = true;
+  best_has_gradients_ = point.gradients;
+  outcome_.x = design(point.u);
+  outcome_.values = point.values;
+  outcome_.violation = violation;
+  if (options_.improved) options_.improved(outcome_.x, outcome_.values);
+}
+
+void DesignSearch::complete_best() {
+  if (!has_best_ || best_has_gradients_) return;
+  DesignEvaluation evaluation = problem_.evaluate(outcome_.x, true);
+  if (evaluation.failure.empty()) outcome_.values = std::move(evaluation.values);
+}
+
+bool DesignSearch::begin(std::vector<double>& u) {
+  const std::size_t n = u.size();
+  std::vector<double> range(n);
+  for (std::size_t v = 0; v < n; ++v) range[v] = problem_.upper[v] - problem_.lower[v];
+  const bool gradients = uses_gradients(options_.method);
+  bool found = analyse(u, gradients, now_);
+  for (std::size_t k = 0; !found && k < std::size(around) && go_on(); ++k) {
+    std::fill(u.begin(), u.end(), around[k]);
+    found = analyse(u, gradients, now_);
+  }
+  if (!found) return false;
+  has_now_ = has_good_ = true;
+  const auto row = [&](const std::vector<double>& all, std::size_t k) {
+    return all.size() >= (k + 1) * n ? std::span<const double>(all).subspan(k * n, n) : std::span<const double>();
+  };
+  if (!has_best_) {
+    const DesignValues& values = now_.values;
+    objective_size_ = size_of(values.objective, values.gradient, range);
+    gradient_size_ = values.gradient.empty() ? 0 : size_of(0, values.gradient, range);
+    for (std::size_t k = 0; k < unequal_size_.size(); ++k)
+      unequal_size_[k] = size_of(values.unequal[k], row(values.unequal_gradient, k), range);
+    for (std::size_t k = 0; k < equal_size_.size(); ++k)
+      equal_size_[k] = size_of(values.equal[k], row(values.equal_gradient, k), range);
+  }
+  good_ = now_;
+  compare(now_);
+  return true;
+}
+
+// See the header.
+void DesignSearch::replace_failed(std::span<const double> u, bool gradients) {
+  const std::size_t n = u.size();
+  Point border = good_, trial;
+  double reached = 0, failed = 1;
+  for (int k = 0; k < halvings && outcome_.evaluations < options_.max_evaluations; ++k) {
+    const double part = (reached + failed) / 2;
+    std::vector<double> between(n);
+    for (std::size_t v = 0; v < n; ++v) between[v] = good_.u[v] + part * (u[v] - good_.u[v]);
+    if (analyse(between, gradients, trial)) {
+      border = trial;
+      reached = part;
+      compare(border);
+    } else {
+      failed = part;
+    }
+  }
+  if (gradients && !border.gradients) analyse(std::vector<double>(border.u), true, border);
+  now_ = border;
+  now_.u.assign(u.begin(), u.end());
+  DesignValues& values = now_.values;
+  double beyond = 0;
+  const double weight = steepness * std::max(objective_size_, std::abs(values.objective));
+  for (std::size_t v = 0; v < n; ++v) {
+    const double d = u[v] - border.u[v], range = problem_.upper[v] - problem_.lower[v];
+    beyond += d * d;
+    if (!values.gradient.empty()) {
+      values.objective += values.gradient[v] * range * d;
+      values.gradient[v] += 2 * weight * d / range;
+    }
+    for (std::size_t k = 0; k < values.unequal.size() && !values.unequal_gradient.empty(); ++k)
+      values.unequal[k] += values.unequal_gradient[k * n + v] * range * d;
+    for (std::size_t k = 0; k < values.equal.size() && !values.equal_gradient.empty(); ++k)
+      values.equal[k] += values.equal_gradient[k * n + v] * range * d;
+  }
+  values.objective += weight * beyond;
+}
+
+const DesignSearch::Point& DesignSearch::look(std::span<const double> u, bool gradients) {
+  const bool here = has_now_ && std::equal(u.begin(), u.end(), now_.u.begin());
+  if (here && (now_.gradients || !gradients)) return now_;
+  // Methods that use gradients want them at almost every design: they come with its values.
+  const bool all = gradients || uses_gradients(options_.method);
+  if (here) --outcome_.evaluations;  // the same design once more
+  Point point;
+  has_now_ = true;
+  if (analyse(u, all, point)) {
+    now_ = good_ = std::move(point);
+    compare(now_);
+  } else {
+    replace_failed(u, all);
+  }
+  return now_;
+}
+
+double DesignSearch::objective(std::span<const double> u, std::span<double> gradient) {
+  const Point& point = look(u, !gradient.empty());
+  for (std::size_t v = 0; v < gradient.size(); ++v)
+    gradient[v] = point.values.gradient[v] * (problem_.upper[v] - problem_.lower[v]) / objective_size_;
+  return point.values.objective / objective_size_;
+}
+
+void DesignSearch::unequal(std::span<const double> u, std::span<double> g, std::span<double> jacobian) {
+  const DesignValues& values = look(u, !jacobian.empty()).values;
+  for (std::size_t k = 0; k < g.size(); ++k) g[k] = values.unequal[k] / unequal_size_[k];
+  for (std::size_t k = 0; k < jacobian.size(); ++k) {
+    const std::size_t v = k % u.size();
+    jacobian[k] = values.unequal_gradient[k] * (problem_.upper[v] - problem_.lower[v]) / unequal_size_[k / u.size()];
+  }
+}
+
+void DesignSearch::equal(std::span<const double> u, std::span<double> h, std::span<double> jacobian) {
+  const DesignValues& values = look(u, !jacobian.empty()).values;
+  for (std::size_t k = 0; k < h.size(); ++k) h[k] = values.equal[k] / equal_size_[k];
+  for (std::size_t k = 0; k < jacobian.size(); ++k) {
+    const std::size_t v = k % u.size();
+    jacobian[k] = values.equal_gradient[k] * (problem_.upper[v] - problem_.lower[v]) / equal_size_[k / u.size()];
+  }
+}
+
+}  // namespace catena

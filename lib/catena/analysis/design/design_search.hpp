@@ -1,0 +1,58 @@
+// One search for a design, as the minimiser sees it: variables in parts of their ranges, objective and constraints in
+// their sizes at the start, failed designs replaced. Private to design.
+//
+// A design that cannot be analysed lies beyond some border. On the line from the last design that could, the border is
+// approached by halving; values beyond it are those on this side continued straight, and the square of the distance
+// added with a weight of ten times the objective's size, so that the search turns back without a jump.
+#pragma once
+
+#include "catena/analysis/design/design_problem.hpp"
+
+namespace catena {
+
+class DesignSearch final : public MinimisationProblem {
+ public:
+  DesignSearch(const DesignProblem& problem, const DesignOptions& options, DesignOutcome& outcome);
+
+  int variables() const override { return static_cast<int>(problem_.lower.size()); }
+  int inequalities() const override { return problem_.inequalities; }
+  int equations() const override { return problem_.equations; }
+  double objective(std::span<const double> u, std::span<double> gradient) override;
+  void unequal(std::span<const double> u, std::span<double> g, std::span<double> jacobian) override;
+  void equal(std::span<const double> u, std::span<double> h, std::span<double> jacobian) override;
+  bool go_on() override;
+
+  /// Analyses the start of a search and takes sizes from it; false where it cannot be analysed, nor any of some designs
+  /// around it.
+  bool begin(std::vector<double>& u);
+  std::span<const double> unequal_sizes() const { return unequal_size_; }
+  double gradient_size() const { return gradient_size_; }
+  bool was_cancelled() const { return cancelled_; }
+  /// The best design with gradients, if it has none yet.
+  void complete_best();
+
+ private:
+  struct Point {
+    std::vector<double> u;
+    DesignValues values;
+    bool gradients = false;
+  };
+  std::vector<double> design(std::span<const double> u) const;
+  /// Analyses a design; false, and counted, where it fails.
+  bool analyse(std::span<const double> u, bool gradients, Point& point);
+  /// The values at u, continued from the nearest good design where u fails.
+  const Point& look(std::span<const double> u, bool gradients);
+  void replace_failed(std::span<const double> u, bool gradients);
+  void compare(const Point& point);
+  double violation_of(const DesignValues& values) const;
+
+  const DesignProblem& problem_;
+  const DesignOptions& options_;
+  DesignOutcome& outcome_;
+  Point now_, good_;
+  bool has_now_ = false, has_good_ = false, has_best_ = false, best_has_gradients_ = false, cancelled_ = false;
+  double objective_size_ = 1, gradient_size_ = 0;
+  std::vector<double> unequal_size_, equal_size_;
+};
+
+}  // namespace catena

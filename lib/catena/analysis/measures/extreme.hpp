@@ -1,0 +1,52 @@
+// The largest value of a quantity along a motion, located between samples.
+//
+// Where a sample is larger than its neighbours, or the parabola through the first or last three of a part has its top
+// inside, and that top would be the largest so far, the top is located: by parabolas until it is known to a fiftieth of
+// the part, then by the polynomial of degree six through seven instants around it, whose derivative vanishes there. Its
+// error is of the order (1/50)^6 of what the part's own quartic leaves, so that the derivative of the value at this
+// fixed instant is that of the largest value (the instant's own change counts to second order). At kinks, where no
+// polynomial serves, the golden section is halved on.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "catena/analysis/measures/motion_samples.hpp"
+
+namespace catena {
+
+class Extreme {
+ public:
+  /// quantity(values of the columns): what is to be largest.
+  using Quantity = std::function<double(std::span<const double>)>;
+  explicit Extreme(Quantity quantity) : quantity_(std::move(quantity)) {}
+
+  void add(const MotionSamples& samples, const MotionSamples::Part& part, const MotionStretch& stretch,
+           bool with_derivative);
+  /// An instant by itself.
+  void add(const MotionSample& sample);
+
+  bool empty() const { return !best_; }
+  /// Its value is quantity(best().value).
+  const MotionSample& best() const { return *best_; }
+  double value() const { return largest_; }
+  /// Other instants where the quantity is as large to 1e-9 of its size: ties.
+  const std::vector<MotionSample>& others() const { return others_; }
+
+ private:
+  struct Peak {
+    double t, value;
+  };
+  using At = std::function<std::optional<double>(double)>;
+  std::optional<Peak> locate(double a, double middle, double b, double length, const MotionStretch& stretch,
+                             const At& at) const;
+  void consider(MotionSample sample, double value);
+
+  Quantity quantity_;
+  std::optional<MotionSample> best_;
+  double largest_ = 0, size_ = 0;
+  std::vector<MotionSample> others_;
+};
+
+}  // namespace catena

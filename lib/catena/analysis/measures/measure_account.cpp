@@ -1,0 +1,199 @@
+#include "catena/analysis/measures/measure_account.hpp"
+
+#include <fmt/format.h>
+
+namespace catena {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+// Gradients of two instants of a tie that differ by less than this part of their size are the same.
+constexpr double same_gradient = 1e-6;
+
+}  // namespace
+
+void MeasureSet::Account::prepare_path() {
+  const std::size_t n = request_.points.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec2<double> point = request_.points[k];
+    if (request_.timed) {
+      const double part = n > 1 ? static_cast<double>(k) / static_cast<double>(n - 1) : 0;
+      instants_.push_back({k + 1 == n && n > 1 ? run_.last : run_.first + part * (run_.last - run_.first), {}});
+    } else {
+      extremes_.emplace_back([=, x = column_, y = second_](std::span<const double> v) {
+        return -(v[x] - point.x) * (v[x] - point.x) - (v[y] - point.y) * (v[y] - point.y);
+      });
+    }
+  }
+}
+
+void MeasureSet::Account::add(const MotionSamples& samples, const MotionSamples::Part& part,
+                              const MotionStretch& stretch) {
+  for (Extreme& extreme : extremes_) extreme.add(samples, part, stretch, parameters_ > 0);
+  if (!is_integral()) return;
+  const double length = part.back().t - part.front().t;
+  sum_gradient_.resize(parameters_, 0.0);
+  squares_gradient_.resize(parameters_, 0.0);
+  duration_ += length;
+  for (std::size_t k = 0; k < MotionSamples::nodes; ++k) {
+    const MotionSample& sample = part[k + 1];
+    const double weight = length * MotionSamples::weights()[k], v = sample.value[column_];
+    sum_ += weight * v;
+    squares_ += weight * v * v;
+    for (std::size_t p = 0; p < parameters_; ++p) {
+      const double gradient = gradient_of(sample, column_, p);
+      sum_gradient_[p] += weight * gradient;
+      squares_gradient_[p] += weight * 2 * v * gradient;
+    }
+  }
+}
+
+void MeasureSet::Account::look_at_instants(const MotionSamples& samples, const MotionStretch& stretch) {
+  for (Instant& instant : instants_) {
+    if (instant.sample || instant.t < stretch.from || instant.t > stretch.to) continue;
+    instant.sample = samples.look(stretch, instant.t, parameters_ > 0);
+  }
+}
+
+void MeasureSet::Account::add_row(const MotionSample& sample, bool only_rows) {
+  if (!first_) first_ = sample;
+  last_ = sample;
+  for (Instant& instant : instants_) {
+    if (!instant.sample && instant.t == sample.t) instant.sample = sample;
+  }
+  if (!only_rows) return;
+  for (Extreme& extreme : extremes_) extreme.add(sample);
+  ++rows_;
+  sum_gradient_.resize(parameters_, 0.0);
+  squares_gradient_.resize(parameters_, 0.0);
+  const double v = sample.value[column_];
+  sum_ += v;
+  squares_ += v * v;
+  for (std::size_t p = 0; p < parameters_; ++p) {
+    sum_gradient_[p] += gradient_of(sample, column_, p);
+    squares_gradient_[p] += 2 * v * gradient_of(sample, column_, p);
+  }
+}
+
+void MeasureSet::Account::give(MeasureResult& result, const MotionSample& sample) const {
+  result.value = sample.value[column_];
+  result.t = sample.t;
+  for (std::size_t p = 0; p < parameters_; ++p) result.gradient[p] = gradient_of(sample, column_, p);
+}
+
+// Which of several instants is the largest changes with the parameters: where their gradients differ there is none.
+void MeasureSet::Account::check_ties(MeasureResult& result, const Extreme& extreme) const {
+  for (const MotionSample& other : extreme.others()) {
+    for (std::size_t p = 0; p < parameters_; ++p) {
+      const double here = gradient_of(extreme.best(), column_, p), there = gradient_of(other, column_, p);
+      if (std::abs(here - there) <= same_gradient * std::max(std::abs(here), std::abs(there))) continue;
+      result.gradient[p] = none;
+      result.trouble = fmt::format(
+          "its extreme is reached at t = {:.9g} s and at t = {:.9g} s with different derivatives: which of them counts "
+          "changes with the parameters",
+          extreme.best().t, other.t);
+    }
+  }
+}
+
+void MeasureSet::Account::give_extreme(MeasureResult& result, const Extreme& extreme, double factor) const {
+  if (extreme.empty()) return;
+  result.value = result.value.value_or(0) + factor * extreme.best().value[column_];
+  result.t = extreme.best().t;
+  for (std::size_t p = 0; p < parameters_; ++p) result.gradient[p] += factor * gradient_of(extreme.best(), column_, p);
+  check_ties(result, extreme);
+}
+
+void MeasureSet::Account::give_integral(MeasureResult& result) const {
+  const double duration = rows_ > 0 ? static_cast<double>(rows_) : duration_;
+  if (request_.kind == MeasureKind::integral) {
+    result.value = rows_ > 0 ? 0 : sum_;
+    if (rows_ == 0 && !sum_gradient_.empty()) result.gradient = sum_gradient_;
+    return;
+  }
+  if (!(duration > 0)) {
+    if (last_) give(result, *last_);  // of an instant the value itself
+    result.t.reset();
+    return;
+  }
+  const bool mean = request_.kind == MeasureKind::mean;
+  const double value = mean ? sum_ / duration : std::sqrt(std::max(0.0, squares_ / duration));
+  result.value = value;
+  for (std::size_t p = 0; p < parameters_ && p < sum_gradient_.size(); ++p) {
+    result.gradient[p] = mean ? sum_gradient_[p] / duration : squares_gradient_[p] / (2 * value * duration);
+  }
+}
+
+void MeasureSet::Account::give_path(MeasureResult& result) const {
+  const double n = static_cast<double>(request_.points.size());
+  double squares = 0;
+  std::vector<double> gradient(parameters_, 0.0);
+  for (std::size_t k = 0; k < request_.points.size(); ++k) {
+    if (request_.timed ? !instants_[k].sample : extremes_[k].empty()) {
+      result.trouble = fmt::format("the motion ended before its point number {}", k + 1);
+      return;
+    }
+    const MotionSample& sample = request_.timed ? *instants_[k].sample : extremes_[k].best();
+    const double x = sample.value[column_] - request_.points[k].x, y = sample.value[second_] - request_.points[k].y;
+    squares += x * x + y * y;
+    for (std::size_t p = 0; p < parameters_; ++p)
+      gradient[p] += x * gradient_of(sample, column_, p) + y * gradient_of(sample, second_, p);
+  }
+  result.value = std::sqrt(squares / n);
+  for (std::size_t p = 0; p < parameters_; ++p) result.gradient[p] = gradient[p] / (n * *result.value);
+  if (*result.value == 0 && parameters_ > 0)
+    result.trouble = "all its points are met exactly: a distance has a kink there";
+}
+
+MeasureResult MeasureSet::Account::result(const ColumnInfo& column, bool gradient_at_last) const {
+  MeasureResult result{request_.name,
+                       std::string(column.unit_text()),
+                       request_.kind == MeasureKind::integral,
+                       {},
+                       {},
+                       std::vector<double>(parameters_, 0.0),
+                       {}};
+  switch (request_.kind) {
+    case MeasureKind::maximum:
+    case MeasureKind::minimum:
+      give_extreme(result, extremes_[0], 1);
+      break;
+    case MeasureKind::range:
+      give_extreme(result, extremes_[0], 1);
+      give_extreme(result, extremes_[1], -1);
+      result.t.reset();
+      break;
+    case MeasureKind::first:
+      if (first_) give(result, *first_);
+      break;
+    case MeasureKind::final:
+      if (last_) give(result, *last_);
+      if (!gradient_at_last && parameters_ > 0) {
+        std::fill(result.gradient.begin(), result.gradient.end(), none);
+        result.trouble = "the run ended early, at an instant that changes with the parameters";
+      }
+      break;
+    case MeasureKind::at:
+      if (instants_[0].sample)
+        give(result, *instants_[0].sample);
+      else
+        result.trouble = fmt::format("t = {:.9g} s is not within the motion", instants_[0].t);
+      break;
+    case MeasureKind::path:
+      give_path(result);
+      break;
+    case MeasureKind::mean:
+    case MeasureKind::rms:
+    case MeasureKind::integral:
+      give_integral(result);
+      break;
+    case MeasureKind::field:
+      break;
+  }
+  if (!result.value) {
+    std::fill(result.gradient.begin(), result.gradient.end(), none);
+    if (result.trouble.empty()) result.trouble = "the run ended before there was anything to measure";
+  }
+  return result;
+}
+
+}  // namespace catena

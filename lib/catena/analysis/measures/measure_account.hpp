@@ -1,0 +1,80 @@
+// What one measure has come to so far. Private to measures.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "catena/analysis/measures/measure_set.hpp"
+
+namespace catena {
+
+class MeasureSet::Account {
+ public:
+  /// `column`: place of the measure's first column in the set; a path's second one is `second`.
+  Account(const MeasureRequest& request, std::size_t column, std::size_t second, const TimeRange& run)
+      : request_(request), column_(column), second_(second), run_(run) {
+    const double sign = request.kind == MeasureKind::minimum ? -1 : 1;
+    const auto signed_value = [column](double s) { return [=](std::span<const double> v) { return s * v[column]; }; };
+    switch (request.kind) {
+      case MeasureKind::maximum:
+      case MeasureKind::minimum:
+        extremes_.emplace_back(signed_value(sign));
+        break;
+      case MeasureKind::range:
+        extremes_.emplace_back(signed_value(1));
+        extremes_.emplace_back(signed_value(-1));
+        break;
+      case MeasureKind::path:
+        prepare_path();
+        break;
+      case MeasureKind::at:
+        instants_.push_back({request.at, {}});
+        break;
+      default:
+        break;
+    }
+  }
+
+  bool is_integral() const {
+    return request_.kind == MeasureKind::integral || request_.kind == MeasureKind::mean ||
+           request_.kind == MeasureKind::rms;
+  }
+  /// Whether derivatives are wanted at the last row.
+  bool wants_last() const { return request_.kind == MeasureKind::final; }
+
+  void set_parameters(int parameters) { parameters_ = static_cast<std::size_t>(parameters); }
+  void add(const MotionSamples& samples, const MotionSamples::Part& part, const MotionStretch& stretch);
+  void look_at_instants(const MotionSamples& samples, const MotionStretch& stretch);
+  void add_row(const MotionSample& sample, bool only_rows);
+  MeasureResult result(const ColumnInfo& column, bool gradient_at_last) const;
+
+ private:
+  struct Instant {
+    double t;
+    std::optional<MotionSample> sample;
+  };
+  void prepare_path();
+  double gradient_of(const MotionSample& sample, std::size_t column, std::size_t p) const {
+    return sample.derivative.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                     : sample.derivative[column * parameters_ + p];
+  }
+  void give(MeasureResult& result, const MotionSample& sample) const;
+  void give_extreme(MeasureResult& result, const Extreme& extreme, double factor) const;
+  void give_integral(MeasureResult& result) const;
+  void give_path(MeasureResult& result) const;
+  void check_ties(MeasureResult& result, const Extreme& extreme) const;
+
+  MeasureRequest request_;
+  std::size_t column_, second_, parameters_ = 0;
+  TimeRange run_;
+  std::vector<Extreme> extremes_;
+  std::vector<Instant> instants_;
+  std::optional<MotionSample> first_, last_;
+  // Integrals of v and v^2 and of their gradients; of rows where there is no time: sums.
+  double sum_ = 0, squares_ = 0, duration_ = 0;
+  std::vector<double> sum_gradient_, squares_gradient_;
+  std::int64_t rows_ = 0;
+};
+
+}  // namespace catena

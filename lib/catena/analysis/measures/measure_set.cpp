@@ -1,0 +1,99 @@
+#include "catena/analysis/measures/measure_set.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "catena/analysis/measures/measure_account.hpp"
+
+namespace catena {
+namespace {
+
+/// The names of all columns, each once; their places in it by request.
+struct ColumnPlaces {
+  std::vector<std::string> names;
+  std::vector<std::array<std::size_t, 2>> of_request;
+};
+
+ColumnPlaces places_of(const std::vector<MeasureRequest>& requests) {
+  ColumnPlaces places;
+  for (const MeasureRequest& request : requests) {
+    std::array<std::size_t, 2> own{};
+    for (std::size_t k = 0; k < request.columns.size() && k < 2; ++k) {
+      const auto known = std::find(places.names.begin(), places.names.end(), request.columns[k]);
+      own[k] = static_cast<std::size_t>(known - places.names.begin());
+      if (known == places.names.end()) places.names.push_back(request.columns[k]);
+    }
+    places.of_request.push_back(own);
+  }
+  return places;
+}
+
+}  // namespace
+
+MeasureSet::~MeasureSet() = default;
+
+MeasureSet::MeasureSet(std::vector<MeasureRequest> requests, const Model& model, const Plan& plan,
+                       const ColumnSources& sources, const TimeRange& run)
+    : run_(run), requests_(std::move(requests)) {
+  std::erase_if(requests_, [](const MeasureRequest& request) { return request.kind == MeasureKind::field; });
+  if (requests_.empty()) return;
+  const ColumnPlaces places = places_of(requests_);
+  ColumnSources untimed = sources;
+  untimed.timed = false;
+  columns_ = std::make_unique<ColumnSet>(ColumnSet::resolve(model, plan, places.names, untimed));
+  if (!columns_->notes().empty()) throw std::invalid_argument("measures: " + columns_->notes().front());
+  if (columns_->size() != places.names.size())
+    throw std::invalid_argument("measures: a name stands for more than one column");
+  samples_ = std::make_unique<MotionSamples>(*columns_);
+  for (std::size_t k = 0; k < requests_.size(); ++k) {
+    if (needs_time(requests_[k].kind) && !sources.timed)
+      throw std::invalid_argument(
+          fmt::format("measure \"{}\" is taken over time, which {} has not", requests_[k].name, sources.analysis));
+    const auto [first, second] = places.of_request[k];
+    accounts_.push_back(std::make_unique<Account>(requests_[k], first, second, run_));
+  }
+}
+
+void MeasureSet::differentiate(int parameters, DifferentiateColumns derivatives) {
+  if (empty()) return;
+  parameters_ = parameters;
+  bool integrals = false;
+  for (const auto& account : accounts_) {
+    account->set_parameters(parameters);
+    integrals = integrals || account->is_integral();
+  }
+  samples_->differentiate(parameters, std::move(derivatives), integrals);
+}
+
+void MeasureSet::cover(const MotionStretch& stretch) {
+  if (empty()) return;
+  for (const auto& account : accounts_) account->look_at_instants(*samples_, stretch);
+  looked_ = samples_->cover(stretch, [&](const MotionSamples::Part& part, const MotionStretch& within) {
+    for (const auto& account : accounts_) account->add(*samples_, part, within);
+  }) && looked_;
+}
+
+void MeasureSet::take_row(const Snapshot& snapshot, bool only_rows) {
+  if (empty()) return;
+  const bool last = only_rows || snapshot.t == run_.last;
+  const bool derivative = parameters_ > 0 && (last || snapshot.t == run_.first);
+  const MotionSample sample = samples_->take(snapshot, derivative);
+  gradient_at_last_ = last;
+  for (const auto& account : accounts_) account->add_row(sample, only_rows);
+}
+
+std::vector<MeasureResult> MeasureSet::results() const {
+  std::vector<MeasureResult> results;
+  for (std::size_t k = 0; k < accounts_.size(); ++k) {
+    const auto& names = requests_[k].columns;
+    const auto info = std::find_if(columns_->info().begin(), columns_->info().end(),
+                                   [&](const ColumnInfo& column) { return column.name == names.front(); });
+    results.push_back(accounts_[k]->result(info == columns_->info().end() ? ColumnInfo{} : *info, gradient_at_last_));
+    if (!looked_ && results.back().trouble.empty())
+      results.back().trouble = "the motion could not be looked at everywhere between its rows";
+  }
+  return results;
+}
+
+}  // namespace catena

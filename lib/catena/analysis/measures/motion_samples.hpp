@@ -1,0 +1,66 @@
+// Samples of columns along a motion, as dense as the columns ask for: what integrals and extremes are taken from.
+//
+// A stretch [a, b] is looked at at its ends and at the seven nodes of the Gauss-Kronrod rule between them. The quartic
+// through five of these samples must foretell the other four to 1e-5 of the column's size; else the stretch is halved.
+// The quartic's error falls with the fifth power of the length, that of the rule of seven nodes with the eleventh or
+// twelfth: where the one is 1e-5 the other is about 1e-11 of the integral. Halving ends after twelve times, at kinks.
+// Source: R. Piessens et al., QUADPACK (1983), for the rule.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "catena/analysis/run/row_observer.hpp"
+#include "catena/columns/column_set.hpp"
+
+namespace catena {
+
+/// Columns at one instant, and, where derivatives are wanted, those of column c by parameter p at c x parameters + p.
+struct MotionSample {
+  double t = 0;
+  std::vector<double> value, derivative;
+};
+
+/// Writes the derivatives of all columns at a snapshot, column after column; not a number where there is none.
+using DifferentiateColumns = std::function<void(const Snapshot&, std::span<double>)>;
+
+class MotionSamples {
+ public:
+  static constexpr int nodes = 7;
+  /// One part of a stretch: the ends and the nodes between them in order, and the weights for its length.
+  using Part = std::array<MotionSample, nodes + 2>;
+  static const std::array<double, nodes>& weights();  ///< of a part of length 1, nodes 1 ... 7 of a Part
+
+  /// `columns` must outlive this object.
+  explicit MotionSamples(const ColumnSet& columns) : columns_(columns), size_(columns.size(), 0.0) {}
+  /// Derivatives by so many parameters are taken as well: at every node (`always`), or where ask() says so.
+  void differentiate(int parameters, DifferentiateColumns derivatives, bool always) {
+    parameters_ = parameters;
+    derivatives_ = std::move(derivatives);
+    always_ = always;
+  }
+
+  /// Calls use(part, stretch) for parts that cover the stretch; false where the motion could not be looked at.
+  bool cover(const MotionStretch& stretch, const std::function<void(const Part&, const MotionStretch&)>& use);
+  /// The columns at a snapshot, or at an instant of a stretch.
+  MotionSample take(const Snapshot& snapshot, bool with_derivative) const;
+  std::optional<MotionSample> look(const MotionStretch& stretch, double t, bool with_derivative) const;
+  /// Largest magnitude of every column so far.
+  std::span<const double> sizes() const { return size_; }
+
+ private:
+  bool cover_part(const MotionStretch& stretch, const MotionSample& a, const MotionSample& b, int depth,
+                  const std::function<void(const Part&, const MotionStretch&)>& use);
+  bool is_resolved(const Part& part) const;
+
+  const ColumnSet& columns_;
+  std::vector<double> size_;
+  int parameters_ = 0;
+  DifferentiateColumns derivatives_;
+  bool always_ = false;
+};
+
+}  // namespace catena

@@ -1,0 +1,32 @@
+// Derivatives of a driven mechanism's positions, velocities, accelerations and multipliers.
+//
+//   Phi_q q_p = -Phi_p        Phi_q qd_p = nu_p - (Phi_q qd)_p        Phi_q qdd_p = gamma_p - (Phi_q qdd)_p
+//   Phi_q^T lambda_p = Q_p - (M qdd)_p - (Phi_q^T)_p lambda
+//
+// The right-hand sides are minus the derivatives of the rows Phi, Phi', Phi'' and of the balance M qdd + Phi_q^T lambda
+// - Q along what is known of q_p, qd_p, qdd_p, by one evaluation in dual numbers each. One factorization an instant
+// and, for each parameter, one solve a level. Singular at singular configurations; multipliers of rows that depend on
+// others have no derivative: of many, the least are shown, and which these are depends on the parameters. Source:
+// THEORY section 6.
+#pragma once
+
+#include "catena/analysis/sensitivity/saddle_system.hpp"
+#include "catena/analysis/sensitivity/state_derivatives.hpp"
+
+namespace catena {
+
+class KinematicDerivatives final : public StateDerivatives {
+ public:
+  KinematicDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters);
+
+  bool find(const Snapshot& snapshot) override;
+
+ private:
+  /// Series coefficient `level` of the rows (0: Phi, 1, 2) to the derivatives of q, qd or qdd.
+  bool solve_level(Group& group, int level, std::vector<DesignScalar>& target);
+  bool solve_multipliers(Group& group);
+
+  SaddleSystem system_;
+};
+
+}  // namespace catena

@@ -1,0 +1,64 @@
+// Derivatives of a motion under forces, carried forward with it: the variational equations of its steps.
+//
+//   y = [q, qd]    y_p' = [qd_p, qdd_p]
+//   [ M      Phi_q^T ] [ qdd_p    ]   [ (Q - M qdd - Phi_q^T lambda)_p ]
+//   [ Phi_q  0       ] [ lambda_p ] = [ gamma_p - (Phi_q qdd)_p        ]      partials along q_p, qd_p
+//
+// by the method of Dormand and Prince of order 8 over the very steps that the motion took, in dual numbers: every stage
+// is recomputed from the state at the step's start. At the step's end positions and velocities are those of the motion,
+// and their derivatives are projected as these were: Phi_q q_p = -Phi_p, and the same for velocities, changed least in
+// the metric of the masses. What a projection's own bending adds is of the size of the drift that it removes, that is
+// of the tolerance. Between ends of steps derivatives follow from the interpolant of order 7 of their stages. Limits: a
+// breakpoint of a function of time that moves with a parameter, where accelerations jump and the motion is free to
+// follow, lacks the part of that jump; so does an instant at which an event acts. Source: THEORY section 6; E. Hairer,
+// S. Norsett, G. Wanner, Solving Ordinary Differential Equations I, section I.14.
+#pragma once
+
+#include "catena/analysis/motion/tableau.hpp"
+#include "catena/analysis/sensitivity/saddle_system.hpp"
+#include "catena/analysis/sensitivity/start_derivatives.hpp"
+#include "catena/analysis/sensitivity/state_derivatives.hpp"
+
+namespace catena {
+
+class MotionDerivatives final : public StateDerivatives {
+ public:
+  /// `from_model`: see StartDerivatives.
+  MotionDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters, bool from_model);
+
+  bool cover(const MotionStretch& stretch) override;
+  bool find(const Snapshot& snapshot) override;
+
+ private:
+  using Vector = std::vector<DesignScalar>;
+  /// Of one group: y = [q, qd] where the present step begins, where it ends, its stages and interpolant.
+  struct Track {
+    Vector begin, end;
+    std::vector<Vector> stage, interpolant;
+  };
+
+  bool start(double t, std::span<const double> q, std::span<const double> qd);
+  /// Positions and velocities of the motion at t to the ends of the tracks; `jumped`: the velocities had.
+  bool take_values(const MotionStretch& stretch, double t, bool& jumped);
+  bool project_end(double t, Side side);
+  bool make_step(double h);
+  /// y' at stage (or end) `y` of a group.
+  bool derivative(Group& group, double t, Side side, const Vector& y, Vector& slope);
+  void combine(const StageSum& sum, double h, const Vector& from, const std::vector<Vector>& stages, Vector& out) const;
+  bool prepare_interpolant(Group& group, Track& track);
+  void interpolate(const Track& track, double t, Vector& y) const;
+  /// Projects the derivatives in y onto the constraints at its values.
+  bool project(Group& group, double t, Side side, Vector& y);
+  bool factorize(double t, Side side, std::span<const DesignScalar> q);
+  bool singular(double t);
+
+  std::size_t n_;  // coordinates
+  SaddleSystem system_;
+  bool from_model_, started_ = false, has_step_ = false, interpolant_ready_ = false;
+  double from_ = 0, to_ = 0;
+  std::vector<Track> tracks_;
+  std::vector<double> values_;
+  Vector stage_, y_;
+};
+
+}  // namespace catena

@@ -1,0 +1,70 @@
+// The equations that derivatives of states solve, whatever the analysis: symmetric or not, direct, with the true
+// matrix.
+//
+//   [ A      Phi_q^T ] [ x      ]   [ f ]        A = 0         driven kinematics: two solves with Phi_q in one
+//   [ Phi_q  0       ] [ lambda ] = [ b ]        A = M         accelerations and multipliers of a motion
+//                                                A = K         equilibrium; W, the metric of a projection
+//
+// over the columns of the plan and a maximal independent set of those rows that hold: multipliers of the other rows are
+// zero, and what they ask of x follows from the rest. Singular where A is, on the null space of Phi_q: the equilibrium
+// is neutral, the mechanism under-driven. Factors of other analyses are regularised or of other matrices; one more
+// factorization an instant is the price for derivatives that are exact to rounding x condition.
+// Source: THEORY section 6.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "catena/assembly/evaluate.hpp"
+#include "catena/linalg/factorization/factorization.hpp"
+
+namespace catena {
+
+/// What of A may differ from zero.
+enum class SaddleBlock { none, diagonal, elements };
+
+class SaddleSystem {
+ public:
+  SaddleSystem(std::shared_ptr<const Plan> plan, SaddleBlock block);
+
+  /// Rows that do not hold, ascending; the next begin() chooses independent ones anew if they are others.
+  void leave_out(std::vector<int> rows);
+  /// Independent rows are chosen anew by the next begin().
+  void forget_rows() { rows_known_ = false; }
+  /// Takes these values of Phi_q (size entries), and A = 0; false where no pattern of this kind can be solved.
+  bool begin(std::span<const double> jacobian);
+  /// Adds `value` to the diagonal at a coordinate.
+  void add_diagonal(int coordinate, double value);
+  /// Adds an element's 6 x 6 matrix over [x_i y_i phi_i x_j y_j phi_j]; bodies are plan bodies.
+  void add_element(int body_i, int body_j, const ElementMatrix& matrix);
+  /// Factors what was filled in; false where the matrix is singular or not finite.
+  bool factorize();
+
+  /// Solves in place: f over coordinates, b over all rows of the plan; x and lambda take their places. Sizes
+  /// coordinates() and rows; what is no unknown is left alone in f and zero in lambda. False where that fails.
+  bool solve(std::span<double> f, std::span<double> b);
+  /// Rows that depend on others: their multipliers are not determined.
+  const std::vector<int>& dependent_rows() const { return dependent_; }
+  const Counters& counters() const { return counters_; }
+
+ private:
+  void choose_rows(std::span<const double> jacobian);
+  bool make_pattern();
+  int block_of(int body_i, int body_j) const;
+
+  std::shared_ptr<const Plan> plan_;
+  SaddleBlock block_;
+  std::vector<int> left_out_, rows_, dependent_, place_of_row_;
+  bool rows_known_ = false, analyzed_ = false;
+  SparsePattern pattern_;
+  std::vector<double> values_, solution_;
+  std::vector<int> diagonal_slot_;                    // per column
+  std::vector<int> jacobian_slot_, transposed_slot_;  // per entry of Phi_q; -1: the row is not solved with
+  std::vector<std::pair<int, int>> pairs_;            // of bodies i <= j that share an element, sorted
+  std::vector<int> pair_slot_;                        // 9 a pair, and 9 for its transpose
+  Factorization factorization_;
+  Counters counters_;
+};
+
+}  // namespace catena

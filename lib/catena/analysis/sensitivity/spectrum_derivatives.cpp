@@ -1,0 +1,188 @@
+#include "catena/analysis/sensitivity/spectrum_derivatives.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "catena/analysis/sensitivity/start_derivatives.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// Forces are in balance if what is left of them is at most this part: what modes take for balance, see modes.cpp.
+constexpr double balanced = 1e-6;
+
+/// Fills the metric (1, 1, radius^2) and Phi_q, and factors.
+bool factor_metric(Evaluator& evaluator, SaddleSystem& system, std::span<double> jacobian) {
+  const Plan& plan = evaluator.plan();
+  const std::vector<double> radius = evaluator.attachment_radii();
+  evaluator.start_jacobian(jacobian);
+  evaluator.jacobian(jacobian);
+  if (!system.begin(std::span<const double>(jacobian).first(at(plan.trash_slot())))) return false;
+  for (int c = 0; c < 3 * plan.moving; ++c)
+    system.add_diagonal(c, c % 3 == 2 ? radius[at(c / 3)] * radius[at(c / 3)] : 1);
+  return system.factorize();
+}
+
+}  // namespace
+
+std::vector<double> balancing_multipliers(Evaluator& evaluator, double t, std::span<const double> q) {
+  const Plan& plan = evaluator.plan();
+  evaluator.set_time(t);
+  evaluator.set_configuration(q);
+  SaddleSystem system(evaluator.shared_plan(), SaddleBlock::diagonal);
+  std::vector<double> jacobian(at(plan.trash_slot()) + 1), f(at(plan.coordinates())), b(at(plan.rows), 0.0);
+  if (!factor_metric(evaluator, system, jacobian)) return b;
+  evaluator.applied_forces(std::vector<double>(f.size(), 0.0), f);
+  if (!system.solve(f, b)) std::fill(b.begin(), b.end(), 0.0);
+  return b;
+}
+
+SpectrumDerivatives::SpectrumDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters)
+    : StateDerivatives(evaluator, models, parameters),
+      metric_(evaluator.shared_plan(), SaddleBlock::diagonal),
+      rest_(at(plan().coordinates()), 0.0),
+      values_(at(plan().trash_slot()) + 1) {}
+
+// What the forces leave at the place, as a part of them.
+bool SpectrumDerivatives::is_in_balance() {
+  std::vector<double> loads(rest_.size());
+  evaluator().applied_forces(rest_, loads);
+  std::vector<double> held(at(plan().columns), 0.0);
+  multiply_transposed_add(plan().jacobian, jacobian(), lambda_, held);
+  double size = 0, left = 0;
+  for (int c = 0; c < plan().columns; ++c) {
+    const double load = loads[at(plan().coordinate[at(c)])];
+    size = std::max(size, std::abs(load));
+    left = std::max(left, std::abs(load - held[at(c)]));
+  }
+  return left <= balanced * size;
+}
+
+// The place is an equilibrium, which moves with the parameters.
+bool SpectrumDerivatives::find_as_equilibrium(const Snapshot& snapshot) {
+  SaddleSystem system(evaluator().shared_plan(), SaddleBlock::elements);
+  if (!system.begin(jacobian())) return false;
+  const auto add = [&](int i, int j, const ElementMatrix& m) { system.add_element(i, j, m); };
+  evaluator().visit_stiffness(rest_, add);
+  evaluator().visit_constraint_hessians(lambda_, add);
+  if (!system.factorize()) return false;
+  std::vector<double> f(rest_.size()), b(lambda_.size());
+  for (Group& group : groups()) {
+    lift_state(group, snapshot);
+    fill_residual(group, snapshot.t);
+    for (std::size_t p = 0; p < at(group.count); ++p) {
+      for (std::size_t c = 0; c < f.size(); ++c) f[c] = -group.loads[c].d[p];
+      for (std::size_t r = 0; r < b.size(); ++r) b[r] = -group.rows[r].f.d[p];
+      if (!system.solve(f, b)) return false;
+      for (const int c : plan().coordinate) group.q[at(c)].d[p] = f[at(c)];
+      for (std::size_t r = 0; r < b.size(); ++r) group.lambda[r].d[p] = b[r];
+    }
+  }
+  return true;
+}
+
+void SpectrumDerivatives::fill_residual(Group& group, double t) {
+  group.mechanism.freeze_time(t);
+  group.mechanism.set_state(group.q);
+  group.mechanism.rows(group.rows);
+  group.mechanism.applied_forces(group.loads);
+  for (DesignScalar& load : group.loads) load = -load;
+  group.mechanism.add_constraint_loads(group.lambda, group.loads);
+}
+
+// Multipliers balance the forces best wherever the place moves to.
+bool SpectrumDerivatives::find_multipliers(Group& group, double t) {
+  fill_residual(group, t);
+  std::vector<double> f(rest_.size()), b(lambda_.size());
+  if (!factor_metric(evaluator(), metric_, values_)) return fail("constraints are singular");
+  for (std::size_t p = 0; p < at(group.count); ++p) {
+    for (std::size_t c = 0; c < f.size(); ++c) f[c] = -group.loads[c].d[p];
+    std::fill(b.begin(), b.end(), 0.0);
+    if (!metric_.solve(f, b)) return fail("constraints are singular");
+    for (std::size_t r = 0; r < b.size(); ++r) group.lambda[r].d[p] = b[r];
+  }
+  return true;
+}
+
+bool SpectrumDerivatives::find(const Snapshot& snapshot) {
+  lambda_.assign(snapshot.lambda.begin(), snapshot.lambda.end());
+  evaluator().set_time(snapshot.t);
+  evaluator().set_configuration(snapshot.q);
+  if (is_in_balance() && find_as_equilibrium(snapshot)) return true;
+  // No balance, or one that nothing holds: the place follows the given configuration.
+  StartDerivatives start(evaluator(), true);
+  for (Group& group : groups()) {
+    lift_state(group, snapshot);
+    std::vector<DesignScalar> qd(group.q.size());
+    if (!start.find(group.mechanism, group.count, group.q, qd)) return fail("the place has no derivative");
+    if (!find_multipliers(group, snapshot.t)) return false;
+  }
+  return true;
+}
+
+bool SpectrumDerivatives::find_held(const Snapshot& snapshot, const StateDerivatives& equilibrium) {
+  lambda_.assign(snapshot.lambda.begin(), snapshot.lambda.end());
+  evaluator().set_time(snapshot.t);
+  evaluator().set_configuration(snapshot.q);
+  for (std::size_t g = 0; g < groups().size(); ++g) {
+    Group& group = groups()[g];
+    lift_state(group, snapshot);
+    const std::span<const DesignScalar> moved = equilibrium.configuration(g);
+    const bool last = g + 1 == groups().size();
+    for (std::size_t c = 0; c < moved.size(); ++c) {
+      group.q[c].d = moved[c].d;
+      if (last) group.q[c].d[at(group.count - 1)] = 0;
+    }
+    if (!find_multipliers(group, snapshot.t)) return false;
+  }
+  return true;
+}
+
+std::vector<double> SpectrumDerivatives::holding_multipliers(double omega2, std::span<const double> v) {
+  std::vector<double> f(v.size(), 0.0), b(at(plan().rows), 0.0);
+  const auto subtract = [&](int i, int j, const ElementMatrix& m) {
+    const int body[2] = {i, j};
+    for (std::size_t r = 0; r < 6; ++r) {
+      for (std::size_t c = 0; c < 6; ++c) {
+        const int row = body[r / 3], column = body[c / 3];
+        if (row < plan().moving && column < plan().moving)
+          f[at(3 * row) + r % 3] -= m[6 * r + c] * v[at(3 * column) + c % 3];
+      }
+    }
+  };
+  evaluator().visit_stiffness(rest_, subtract);
+  evaluator().visit_constraint_hessians(lambda_, subtract);
+  for (int c = 0; c < 3 * plan().moving; ++c) f[at(c)] += omega2 * groups().front().mechanism.mass(c).v * v[at(c)];
+  if (factor_metric(evaluator(), metric_, values_)) metric_.solve(f, b);
+  return b;
+}
+
+std::vector<double> SpectrumDerivatives::quadratic_gradient(double omega2, std::span<const double> shape) {
+  std::vector<double> v(at(plan().coordinates()), 0.0), gradient;
+  for (int c = 0; c < plan().columns; ++c) v[at(plan().coordinate[at(c)])] = shape[at(c)];
+  const std::vector<double> mu = holding_multipliers(omega2, v);
+  std::vector<DesignScalar> along(v.begin(), v.end());
+  for (Group& group : groups()) {
+    group.mechanism.set_state(group.q, along);
+    group.mechanism.rows(group.rows);
+    DesignScalar sum = group.mechanism.potential().dd;
+    for (std::size_t r = 0; r < mu.size(); ++r)
+      sum += group.lambda[r] * group.rows[r].dd + DesignScalar(2 * mu[r]) * group.rows[r].d;
+    for (int c = 0; c < 3 * plan().moving; ++c)
+      sum -= DesignScalar(omega2 * v[at(c)] * v[at(c)]) * group.mechanism.mass(c);
+    for (std::size_t p = 0; p < at(group.count); ++p) gradient.push_back(sum.d[p]);
+  }
+  return gradient;
+}
+
+std::vector<double> SpectrumDerivatives::frequency_gradient(double omega2, std::span<const double> shape) {
+  return quadratic_gradient(omega2, shape);
+}
+
+std::vector<double> SpectrumDerivatives::stiffness_gradient(std::span<const double> shape) {
+  return quadratic_gradient(0, shape);
+}
+
+}  // namespace catena

@@ -1,0 +1,64 @@
+// Derivatives of frequencies and of critical loads.
+//
+//   frequency       K v + Phi_q^T mu = omega2 M v, Phi_q v = 0, v^T M v = 1
+//                   d omega2 = v^T (K_p - omega2 M_p) v + 2 mu^T (Phi_q)_p v
+//   buckling load   K(P) v + Phi_q^T mu = 0:    dP = -(v^T K_p v + 2 mu^T (Phi_q)_p v) / (the same by P)
+//   limit load      F(q, lambda, P) = 0 with the left null vector w of its matrix:   dP = -(w^T F_p) / (w^T F_P)
+//
+// K_p is taken along q_p and lambda_p. v^T K v is the second derivative of V + lambda^T Phi along v: one evaluation as
+// a series in dual numbers has all of it. Refused: double frequencies and loads, whose vectors turn into each other;
+// branch points, where w^T F_P vanishes. Source: THEORY section 6; R. Nelson, AIAA J. 14 (1976), for simple vectors.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "catena/analysis/sensitivity/static_derivatives.hpp"
+
+namespace catena {
+
+/// An equilibrium, or a place that is none, with multipliers of the solver's rows; spans as in Snapshot.
+struct StaticPlace {
+  double t = 0;
+  std::span<const double> q, lambda;
+};
+
+/// Multipliers that balance the forces at a place best, in the metric (1, 1, radius^2); size rows.
+std::vector<double> balancing_multipliers(Evaluator& evaluator, double t, std::span<const double> q);
+
+class SpectrumDerivatives final : public StateDerivatives {
+ public:
+  SpectrumDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters);
+
+  /// Takes the place's derivatives: those of the equilibrium that it is, or of assembly where forces are not in
+  /// balance.
+  bool find(const Snapshot& snapshot) override;
+  /// Takes those of a place at which another load acts than the one that it is the equilibrium of: its configuration
+  /// moves as `equilibrium` found it, but not with the last parameter, the load.
+  bool find_held(const Snapshot& snapshot, const StateDerivatives& equilibrium);
+  /// Derivatives of omega2 of the mode `shape` (over columns, v^T M v = 1) at the place of the last find().
+  std::vector<double> frequency_gradient(double omega2, std::span<const double> shape);
+  /// v^T K v + 2 mu^T Phi_q v by every parameter, v and mu fixed, at a place that does not move; K v + Phi_q^T mu = 0.
+  std::vector<double> stiffness_gradient(std::span<const double> shape);
+
+ private:
+  bool is_in_balance();
+  bool find_as_equilibrium(const Snapshot& snapshot);
+  /// [Phi_q^T lambda - Q] and Phi at the group's q and lambda.
+  void fill_residual(Group& group, double t);
+  bool find_multipliers(Group& group, double t);
+  /// mu with K v + Phi_q^T mu = omega2 M v.
+  std::vector<double> holding_multipliers(double omega2, std::span<const double> v);
+  std::vector<double> quadratic_gradient(double omega2, std::span<const double> shape);
+
+  SaddleSystem metric_;
+  std::vector<double> lambda_, rest_, values_;
+};
+
+/// dP/dp of a limit load at its place, `models` with P as their last parameter; nothing, and why, at a branch point.
+std::optional<std::vector<double>> limit_load_gradient(const Evaluator& evaluator, const DesignModels& models,
+                                                       int parameters, const StaticPlace& place, std::string& why);
+
+}  // namespace catena

@@ -1,0 +1,45 @@
+// Derivatives of where a motion starts: of the assembled configuration and of velocities that the constraints allow.
+//
+//   assembly     min 1/2 (q - e)^T W (q - e),  Phi(q) = 0       =>  W (q - e) + Phi_q^T mu = 0
+//                [ W + sum mu Phi_qq  Phi_q^T; Phi_q  0 ] [q_p; mu_p] = [ W e_p - (Phi_q^T)_p mu; -Phi_p ]
+//   velocities   given ones kept, omitted ones of least kinetic energy:  M v + Phi_q^T mu = 0 for the latter
+//                M v_p + Phi_q^T mu_p = -M_p v - (Phi_q^T)_p mu,   Phi_q v_p = nu_p - (Phi_q v)_p
+//
+// e is the given estimate, W = diag(1, 1, rho^2) as in assembly, rho a constant. Given velocities are held as there by
+// a weight of 10^4 masses and by adding what is missing to what is asked for, until nothing is. Starts that an earlier
+// analysis left are constants. Source: THEORY sections 3 and 6; analysis/motion/initial_velocities.hpp.
+#pragma once
+
+#include "catena/analysis/sensitivity/saddle_system.hpp"
+#include "catena/assembly/design/design_mechanism.hpp"
+
+namespace catena {
+
+class StartDerivatives {
+ public:
+  /// `from_model`: the motion starts from what the model gives, not from where an earlier analysis ended.
+  StartDerivatives(Evaluator& evaluator, bool from_model);
+
+  /// Derivatives into q and qd, which hold the values of the start at the evaluator's time; false where there are none.
+  /// `count`: how many of the scalar's derivatives are in use.
+  bool find(DesignMechanism& mechanism, int count, std::span<DesignScalar> q, std::span<DesignScalar> qd);
+
+ private:
+  bool find_configuration(DesignMechanism& mechanism, int count, std::span<DesignScalar> q);
+  bool find_velocities(DesignMechanism& mechanism, int count, std::span<const DesignScalar> q,
+                       std::span<DesignScalar> qd);
+  /// What is asked of the velocity of a coordinate, if anything.
+  bool given_velocity(const DesignMechanism& mechanism, int coordinate, DesignScalar& velocity) const;
+  /// Solves for velocities with what is missing of given ones added until nothing is; `asked` and `b` in, v out.
+  bool solve_keeping(std::span<const double> wanted, std::span<const double> load, std::span<const double> rows,
+                     std::span<double> v, std::span<double> multipliers);
+
+  Evaluator& evaluator_;
+  const Plan& plan_;
+  bool from_model_;
+  SaddleSystem assembly_, velocities_;
+  std::vector<double> jacobian_, weight_;
+  std::vector<char> given_;  // by coordinate
+};
+
+}  // namespace catena

@@ -1,0 +1,90 @@
+// Derivatives of a mechanism's state by design parameters, at the instants at which an analysis looks at it.
+//
+//   find(snapshot)                q_p, qd_p, qdd_p, lambda_p of that state: each analysis has its own way (THEORY
+//   section differentiate(columns, ...)   6); then, of any columns, dO/dp = O_q q_p + O_qd qd_p + ... + O_p at fixed t
+//
+// Parameters come in groups of four (base/design_scalar.hpp), each with a model that carries derivatives by its own.
+// The state of the analysis is only read: evaluators and factors here are copies of their own.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "catena/analysis/run/row_observer.hpp"
+#include "catena/assembly/design/design_mechanism.hpp"
+#include "catena/columns/column_set.hpp"
+
+namespace catena {
+
+/// The models with derivatives: parameter k belongs to group k / 4, its derivative number k % 4.
+using DesignModels = std::vector<std::shared_ptr<const DesignModel>>;
+
+class StateDerivatives {
+ public:
+  /// `evaluator` is copied; `parameters`: how many, at least four times as many as models less three.
+  StateDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters);
+  virtual ~StateDerivatives();
+  StateDerivatives(const StateDerivatives&) = delete;
+  StateDerivatives& operator=(const StateDerivatives&) = delete;
+
+  int parameters() const { return parameters_; }
+  /// What the columns that are differentiated need; before the first find().
+  void need(const Needs& needs) { needs_ |= needs; }
+  /// Derivatives of this state; false where there are none, and why() says it.
+  virtual bool find(const Snapshot& snapshot) = 0;
+  /// A stretch of the motion that find() may ask about from now on, if the motion has a memory.
+  virtual bool cover(const MotionStretch& stretch) {
+    static_cast<void>(stretch);
+    return true;
+  }
+  /// A sentence without full stop; empty where nothing went wrong so far.
+  const std::string& why() const { return why_; }
+
+  /// q of the last find() with derivatives, by the parameters of a group.
+  std::span<const DesignScalar> configuration(std::size_t group) const { return groups_[group].q; }
+
+  /// out[k x parameters + p]: derivative of column k by parameter p at the state of the last find(), which was that of
+  /// this snapshot.
+  void differentiate(const ColumnSet& columns, const Snapshot& snapshot, std::span<double> out);
+
+ protected:
+  /// A group of parameters: the mechanism with derivatives by them, and the state.
+  struct Group {
+    explicit Group(DesignMechanism design) : mechanism(std::move(design)) {}
+    DesignMechanism mechanism;
+    std::vector<DesignScalar> q, qd, qdd, lambda, loads;
+    std::vector<Taylor<DesignScalar>> rows;
+    int count = 0;  ///< of parameters
+  };
+
+  Evaluator& evaluator() { return evaluator_; }
+  const Plan& plan() const { return evaluator_.plan(); }
+  const Needs& needs() const { return needs_; }
+  std::vector<Group>& groups() { return groups_; }
+  bool fail(std::string why) {
+    if (why_.empty()) why_ = std::move(why);
+    return false;
+  }
+  /// Phi_q at the evaluator's configuration, size entries.
+  std::span<const double> jacobian();
+  /// Values without derivatives.
+  static void lift(std::span<const double> values, std::vector<DesignScalar>& out);
+  /// Lifts q (with what is given of coordinates that are no unknowns), qd and qdd of the snapshot.
+  void lift_state(Group& group, const Snapshot& snapshot);
+  /// Scratch over coordinates and rows, for right-hand sides and solutions.
+  std::span<double> loads_scratch() { return f_; }
+  std::span<double> rows_scratch() { return b_; }
+
+ private:
+  Evaluator evaluator_;
+  int parameters_;
+  Needs needs_;
+  std::vector<Group> groups_;
+  std::vector<double> jacobian_, f_, b_;
+  std::vector<DesignScalar> values_;
+  std::string why_;
+};
+
+}  // namespace catena

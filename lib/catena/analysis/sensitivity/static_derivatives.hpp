@@ -1,0 +1,33 @@
+// Derivatives of an equilibrium: of its configuration, multipliers and energy.
+//
+//   [ K      Phi_q^T ] [ q_p      ]     [ (Phi_q^T lambda - Q)_p ]
+//   [ Phi_q  0       ] [ lambda_p ] = - [ Phi_p                  ]      K = -Q_q + (Phi_q^T lambda)_q
+//
+// partials at fixed q and lambda. K is that of the certificate, symmetric where forces have an energy. Closed gaps
+// count as equations, open ones not at all; a gap that touches without a force opens one way and closes the other: no
+// derivative. Singular where the equilibrium is neutral (folds, branch points, motions that nothing resists). Functions
+// of time are frozen. dV/dp = L_p, L = V + lambda^T Phi, needs no solve. Source: THEORY section 6.
+#pragma once
+
+#include "catena/analysis/sensitivity/saddle_system.hpp"
+#include "catena/analysis/sensitivity/state_derivatives.hpp"
+
+namespace catena {
+
+class StaticDerivatives final : public StateDerivatives {
+ public:
+  StaticDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters);
+
+  /// The snapshot must have multipliers.
+  bool find(const Snapshot& snapshot) override;
+  /// dV/dp at the state of the last find(), by parameter.
+  std::vector<double> energy_gradient();
+
+ private:
+  bool leave_open_gaps_out(const Snapshot& snapshot);
+
+  SaddleSystem system_;
+  std::vector<double> rest_;
+};
+
+}  // namespace catena

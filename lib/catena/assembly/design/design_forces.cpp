@@ -1,0 +1,85 @@
+// DesignMechanism: forces and energy with derivatives.
+#include "catena/assembly/design/element_motion.hpp"
+
+namespace catena {
+namespace {
+
+using detail::DesignSeries;
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+/// Values of an element's functions of time, one more than there are so that there is always one.
+template <class T, class Entry>
+std::array<T, Entry::Element::functions + 1> function_values(const Entry& entry,
+                                                             const std::vector<DesignSeries>& functions) {
+  std::array<T, Entry::Element::functions + 1> f;
+  for (std::size_t k = 0; k < entry.values.size(); ++k) {
+    const auto& value = entry.values[k];
+    f[k] = value.function < 0 ? T(value.constant) : T(functions[at(value.function)].f);
+  }
+  return f;
+}
+
+}  // namespace
+
+void DesignMechanism::applied_forces(std::span<DesignScalar> Q) const {
+  for (DesignScalar& load : Q) load = DesignScalar();
+  for (int p = 0; p < plan_->moving; ++p) {
+    Q[at(3 * p)] = mass(3 * p) * model_->gravity.x;
+    Q[at(3 * p + 1)] = mass(3 * p) * model_->gravity.y;
+  }
+  const auto twist = [&](int body) {
+    const Frame<DesignSeries>& m = motion_[at(body)];
+    return Twist<DesignScalar>{m.x.d, m.y.d, m.phi.d};
+  };
+  for_each_list(plan_->forces, [&](const auto& block, int type) {
+    with_list(model_->forces, type, [&](const auto& list) {
+      using E = ElementOf<decltype(list)>;
+      for (int e = 0; e < block.size(); ++e) {
+        const auto& entry = list[at(block.entry[at(e)])];
+        const auto f = detail::design_frames<DesignScalar>(
+            block, e, plan_->moving, origin_, [&](int body) { return detail::present(motion_[at(body)]); });
+        const auto values = function_values<DesignScalar>(entry, function_);
+        const int body_i = block.body_i[at(e)], body_j = E::bodies == 2 ? block.body_j[at(e)] : plan_->bodies;
+        const Twist<DesignScalar> u = twist(body_i), v = twist(body_j);
+        Wrench<DesignScalar> on_i, on_j;
+        entry.element.force(ForceArguments<DesignScalar>{f.i, f.j, u, v, values.data(), f.ground}, on_i, on_j);
+        const auto add = [&](int body, const Wrench<DesignScalar>& wrench) {
+          Q[at(3 * body)] += wrench.fx;
+          Q[at(3 * body + 1)] += wrench.fy;
+          Q[at(3 * body + 2)] += wrench.moment;
+        };
+        add(body_i, on_i);
+        if constexpr (E::bodies == 2) add(body_j, on_j);
+      }
+    });
+  });
+}
+
+Taylor<DesignScalar> DesignMechanism::potential() const {
+  DesignSeries sum;
+  for (int p = 0; p < plan_->bodies; ++p) {
+    const auto& body = model_->bodies[at(plan_->model_body[at(p)])];
+    const Frame<DesignSeries> m = detail::moved_by(motion_[at(p)], origin_[at(p)]);
+    sum -= DesignSeries(body.mass) * (DesignSeries(model_->gravity.x) * m.x + DesignSeries(model_->gravity.y) * m.y);
+  }
+  const Twist<DesignSeries> rest;
+  for_each_list(plan_->forces, [&](const auto& block, int type) {
+    with_list(model_->forces, type, [&](const auto& list) {
+      for (int e = 0; e < block.size(); ++e) {
+        const auto& entry = list[at(block.entry[at(e)])];
+        const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_,
+                                                           [&](int body) { return motion_[at(body)]; });
+        const auto values = function_values<DesignSeries>(entry, function_);
+        if constexpr (requires(const ForceArguments<DesignSeries>& a) { entry.element.potential(a); }) {
+          if (is_conservative(entry.element)) {
+            sum += entry.element.potential(ForceArguments<DesignSeries>{f.i, f.j, rest, rest, values.data(), f.ground});
+          }
+        }
+      }
+    });
+  });
+  return sum;
+}
+
+}  // namespace catena

@@ -1,0 +1,126 @@
+// DesignMechanism: constraints, their loads and what they measure, with derivatives.
+#include "catena/assembly/design/element_motion.hpp"
+
+namespace catena {
+namespace {
+
+using detail::DesignSeries;
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+/// c(t) of an element's entry.
+template <class Entry>
+DesignSeries value_of_entry([[maybe_unused]] const Entry& entry,
+                            [[maybe_unused]] const std::vector<DesignSeries>& functions) {
+  if constexpr (Entry::Element::functions > 0) {
+    const auto& value = entry.values[0];
+    return value.function < 0 ? DesignSeries(value.constant) : functions[at(value.function)];
+  } else {
+    return {};
+  }
+}
+
+/// Phi_q of an element with derivatives, in THEORY's form, row-major with six columns.
+template <class E>
+void derive(const E& element, const detail::DesignFrames<DesignScalar>& f, const DesignScalar& c,
+            DesignScalar* entries) {
+  constexpr int columns = 3 * E::bodies;
+  using D = Dual<DesignScalar, columns>;
+  const Frame<D> i = seed<DesignScalar, columns>(f.i, 0);
+  Frame<D> j;
+  if constexpr (E::bodies == 2) j = seed<DesignScalar, columns>(f.j, 3);
+  D rows[E::rows];
+  element.phi(Arguments<D>{i, j, D(c), f.ground}, rows);
+  for (int r = 0; r < E::rows; ++r) {
+    for (int k = 0; k < columns; ++k) entries[6 * r + k] = rows[r].d[static_cast<std::size_t>(k)];
+  }
+}
+
+}  // namespace
+
+void DesignMechanism::rows(std::span<Taylor<DesignScalar>> out) const {
+  for_each_list(plan_->blocks, [&](const auto& block, int type) {
+    with_list(model_->constraints, type, [&](const auto& list) {
+      using E = ElementOf<decltype(list)>;
+      for (int e = 0; e < block.size(); ++e) {
+        const auto& entry = list[at(block.entry[at(e)])];
+        const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_,
+                                                           [&](int body) { return motion_[at(body)]; });
+        DesignSeries* row = out.data() + block.row(e);
+        entry.element.phi(Arguments<DesignSeries>{f.i, f.j, value_of_entry(entry, function_), f.ground}, row);
+        if constexpr (HasSquaredValue<E>) row[0] *= DesignSeries(scale_[at(entry.id)]);
+      }
+    });
+  });
+}
+
+void DesignMechanism::add_constraint_loads(std::span<const DesignScalar> lambda, std::span<DesignScalar> Q) const {
+  for_each_list(plan_->blocks, [&](const auto& block, int type) {
+    with_list(model_->constraints, type, [&](const auto& list) {
+      using E = ElementOf<decltype(list)>;
+      for (int e = 0; e < block.size(); ++e) {
+        const auto& entry = list[at(block.entry[at(e)])];
+        const auto f = detail::design_frames<DesignScalar>(
+            block, e, plan_->moving, origin_, [&](int body) { return detail::present(motion_[at(body)]); });
+        DesignScalar entries[6 * E::rows];
+        derive(entry.element, f, value_of_entry(entry, function_).f, entries);
+        for (int r = 0; r < E::rows; ++r) {
+          const DesignScalar weight = DesignScalar(scale_[at(entry.id)]) * lambda[at(block.row(e) + r)];
+          for (int k = 0; k < 3 * E::bodies; ++k) {
+            const int body = k < 3 ? block.body_i[at(e)] : block.body_j[at(e)];
+            Q[at(3 * body + k % 3)] += entries[6 * r + k] * weight;
+          }
+        }
+      }
+    });
+  });
+}
+
+DesignElementJacobian DesignMechanism::element_jacobian(int element) const {
+  DesignElementJacobian result;
+  const int e = place_[at(element)];
+  const ElementRecord& record = model_->elements[at(element)];
+  if (e < 0 || record.kind == ElementKind::force) return result;
+  for_each_list(plan_->blocks, [&](const auto& block, int type) {
+    if (type != record.type) return;
+    with_list(model_->constraints, type, [&](const auto& list) {
+      using E = ElementOf<decltype(list)>;
+      const auto& entry = list[at(record.index)];
+      const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_,
+                                                         [&](int body) { return detail::present(motion_[at(body)]); });
+      derive(entry.element, f, value_of_entry(entry, function_).f, result.entries);
+      result.rows = E::rows;
+      result.bodies = E::bodies;
+      result.body_i = block.body_i[at(e)];
+      if (E::bodies == 2) result.body_j = block.body_j[at(e)];
+      result.scale = scale_[at(element)];
+    });
+  });
+  return result;
+}
+
+Taylor<DesignScalar> DesignMechanism::measure(int element) const {
+  DesignSeries measured;
+  const ElementRecord& record = model_->elements[at(element)];
+  const auto frame = [&](int body) {
+    const int p = body < 0 ? plan_->bodies : plan_->plan_body[at(body)];
+    return detail::moved_by(motion_[at(p)], origin_[at(p)]);
+  };
+  with_list(model_->constraints, record.type, [&](const auto& list) {
+    const auto& entry = list[at(record.index)];
+    if constexpr (requires { entry.element.measure(frame(entry.i), frame(entry.j)); }) {
+      measured = entry.element.measure(frame(entry.i), frame(entry.j));
+    }
+  });
+  return measured;
+}
+
+Taylor<DesignScalar> DesignMechanism::element_value(int element) const {
+  DesignSeries value;
+  const ElementRecord& record = model_->elements[at(element)];
+  with_list(model_->constraints, record.type,
+            [&](const auto& list) { value = value_of_entry(list[at(record.index)], function_); });
+  return value;
+}
+
+}  // namespace catena

@@ -1,0 +1,55 @@
+// What elements see of a mechanism in motion with derivatives: frames shifted to a common origin, values of functions.
+// For the source files of DesignMechanism.
+#pragma once
+
+#include "catena/assembly/design/design_mechanism.hpp"
+#include "catena/elements/all.hpp"
+
+namespace catena::detail {
+
+using DesignSeries = Taylor<DesignScalar>;
+
+/// f relative to another origin.
+template <class T>
+Frame<T> moved_by(Frame<T> f, const Vec2<double>& by) {
+  f.x = f.x + T(by.x);
+  f.y = f.y + T(by.y);
+  return f;
+}
+
+/// The value of a series' frame at the instant itself.
+inline Frame<DesignScalar> present(const Frame<DesignSeries>& f) { return {f.x.f, f.y.f, f.phi.f, f.c.f, f.s.f}; }
+
+/// The frames of element e of a block as it wants them: relative to the origin of the body that moves, for one-body
+/// elements with that origin's place in the ground.
+template <class T>
+struct DesignFrames {
+  Frame<T> i, j;
+  Vec2<double> ground{};
+};
+
+template <class T, class Block, class FrameOf>
+DesignFrames<T> design_frames(const Block& block, int e, int moving, std::span<const Vec2<double>> origin,
+                              FrameOf&& frame_of) {
+  using E = typename Block::Element;
+  const auto k = static_cast<std::size_t>(e);
+  const int body_i = block.body_i[k];
+  DesignFrames<T> f;
+  f.i = frame_of(body_i);
+  const Vec2<double> origin_i = origin[static_cast<std::size_t>(body_i)];
+  if constexpr (E::bodies == 1) {
+    f.ground = origin_i;
+  } else {
+    const int body_j = block.body_j[k];
+    f.j = frame_of(body_j);
+    const Vec2<double> apart = origin[static_cast<std::size_t>(body_j)] - origin_i;
+    if (body_i >= moving) {
+      f.i = moved_by(f.i, -apart);
+    } else {
+      f.j = moved_by(f.j, apart);
+    }
+  }
+  return f;
+}
+
+}  // namespace catena::detail

@@ -1,0 +1,238 @@
+// The value of every kind of column, for any scalar: one switch serves plain numbers and derivatives.
+//
+// A State is what is known of a mechanism at one instant: SnapshotState in plain numbers, DesignState with derivatives
+// by design parameters. It gives, besides what snapshot_state.hpp says,
+//
+//   residual(), work(), dissipated(), initial_energy(), driver_work(element)      what an analysis sums up
+//   measured(element)      the quantity of a scalar constraint or gap: f and d     prescribed(element)  c, c', c''
+//   reactions(element)     spring_loads(element)      potential()
+//
+// Source files alone include it: this is where templates meet every element.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "catena/columns/attachment.hpp"
+#include "catena/columns/column.hpp"
+#include "catena/columns/energy_of.hpp"
+#include "catena/columns/own_columns.hpp"
+#include "catena/columns/reaction.hpp"
+#include "catena/columns/spring.hpp"
+#include "catena/elements/all.hpp"
+
+namespace catena {
+
+/// Values of one row. Neighbouring columns mostly show the same element: what was computed last is kept.
+template <class State>
+class RowValues {
+ public:
+  using S = typename State::Scalar;
+
+  /// Both must outlive this object.
+  RowValues(const State& state, const OwnInputs& own_inputs) : s_(state), own_inputs_(own_inputs) {}
+
+  S value(const Column& column) {
+    switch (column.kind) {
+      case ColumnKind::time:
+        return s_.time();
+      case ColumnKind::residual:
+        return s_.residual();
+      case ColumnKind::own:
+        return own(column.index);
+      case ColumnKind::x:
+        return position(column).x;
+      case ColumnKind::y:
+        return position(column).y;
+      case ColumnKind::angle:
+        return frame(column).phi;
+      case ColumnKind::vx:
+        return velocity(column).x;
+      case ColumnKind::vy:
+        return velocity(column).y;
+      case ColumnKind::omega:
+        return s_.twist(column.index).omega;
+      case ColumnKind::ax:
+        return acceleration(column).x;
+      case ColumnKind::ay:
+        return acceleration(column).y;
+      case ColumnKind::alpha:
+        return s_.acceleration(column.index).omega;
+      case ColumnKind::reaction_x:
+        return force(column).x;
+      case ColumnKind::reaction_y:
+        return force(column).y;
+      case ColumnKind::reaction_torque:
+        return column.detail == on_i ? reactions(column).on_i.torque : reactions(column).on_j.torque;
+      case ColumnKind::multiplier:
+        return reactions(column).multiplier[column.detail];
+      case ColumnKind::push:
+        return S(0.0) - reactions(column).multiplier[0];
+      case ColumnKind::gap:
+        return s_.measured(column.index).f;
+      case ColumnKind::slack:
+        return s_.spring_loads(column.index).slack;
+      case ColumnKind::value:
+        return s_.measured(column.index).f;
+      case ColumnKind::rate:
+        return s_.measured(column.index).d;
+      case ColumnKind::joint_angle:
+        return joint(column).angle.f;
+      case ColumnKind::joint_omega:
+        return joint(column).angle.d;
+      case ColumnKind::slide:
+        return joint(column).slide.f;
+      case ColumnKind::slide_rate:
+        return joint(column).slide.d;
+      case ColumnKind::load:
+        return load(column);
+      case ColumnKind::power:
+        return load(column) * s_.prescribed(column.index).d;
+      case ColumnKind::work:
+        return s_.driver_work(column.index);
+      case ColumnKind::length:
+        return joint(column).length.f;
+      case ColumnKind::length_rate:
+        return joint(column).length.d;
+      case ColumnKind::turn:
+        return joint(column).angle.f;
+      case ColumnKind::tension:
+        return s_.spring_loads(column.index).tension;
+      case ColumnKind::spring_torque:
+        return s_.spring_loads(column.index).torque;
+      case ColumnKind::offset_x:
+        return s_.spring_loads(column.index).offset.x;
+      case ColumnKind::offset_y:
+        return s_.spring_loads(column.index).offset.y;
+      case ColumnKind::exerted_x:
+        return exerted(column).x;
+      case ColumnKind::exerted_y:
+        return exerted(column).y;
+      case ColumnKind::exerted_torque:
+        return s_.spring_loads(column.index).torque_on_j;
+      case ColumnKind::kinetic:
+        return kinetic();
+      case ColumnKind::potential:
+        return potential();
+      case ColumnKind::total:
+        return total();
+      case ColumnKind::dissipated:
+        return s_.dissipated();
+      case ColumnKind::balance:
+        return total() - s_.initial_energy() - s_.work() + s_.dissipated();
+      case ColumnKind::momentum_x:
+        return sums().linear.x;
+      case ColumnKind::momentum_y:
+        return sums().linear.y;
+      case ColumnKind::angular_momentum:
+        return sums().angular;
+    }
+    return S(0.0);
+  }
+
+ private:
+  struct Joint {
+    Taylor<S> angle, slide, length;
+  };
+
+  Frame<S> frame(const Column& column) const { return s_.frame(column.index); }
+
+  /// The value of an own column, from the columns that its formula reads.
+  S own(int number) {
+    const auto k = static_cast<std::size_t>(number);
+    return s_.model().own_columns[k].formula.evaluate(
+        [&](std::uint32_t input) { return value(own_inputs_[k][static_cast<std::size_t>(input)]); });
+  }
+
+  /// The point's place in the centroidal frame: a named one, or the origin of the author's frame.
+  Vec2<S> local(const Column& column) const {
+    const auto& model = s_.model();
+    if (column.detail >= 0) return model.points[static_cast<std::size_t>(column.detail)].local;
+    const Plan& plan = s_.plan();
+    if (column.index == plan.bodies) return {};
+    return model.bodies[static_cast<std::size_t>(plan.model_body[static_cast<std::size_t>(column.index)])].origin;
+  }
+  Vec2<S> arm(const Column& column) const { return frame(column).axis(local(column)); }
+
+  Vec2<S> position(const Column& column) const { return frame(column).point(local(column)); }
+  Vec2<S> velocity(const Column& column) const {
+    const Twist<S> v = s_.twist(column.index);
+    return Vec2<S>{v.vx, v.vy} + v.omega * perpendicular(arm(column));
+  }
+  Vec2<S> acceleration(const Column& column) const {
+    const S omega = s_.twist(column.index).omega;
+    const Twist<S> a = s_.acceleration(column.index);
+    const Vec2<S> s = arm(column);
+    return Vec2<S>{a.vx, a.vy} + a.omega * perpendicular(s) - (omega * omega) * s;
+  }
+
+  const BasicElementReactions<S>& reactions(const Column& column) {
+    if (column.index != reactions_of_) reactions_ = s_.reactions(reactions_of_ = column.index);
+    return reactions_;
+  }
+  Vec2<S> force(const Column& column) {
+    const BasicElementReactions<S>& r = reactions(column);
+    if (column.detail == on_i) return r.on_i.force;
+    if (column.detail == on_j) return r.on_j.force;
+    return {dot(r.joint_x, r.on_j.force), cross(r.joint_x, r.on_j.force)};
+  }
+
+  Vec2<S> exerted(const Column& column) const {
+    const BasicSpringLoads<S> loads = s_.spring_loads(column.index);
+    return column.detail == on_j_in_joint ? loads.force_on_j_in_i : loads.force_on_j;
+  }
+
+  /// lambda dPhi/dc: Phi contains -c, or -c^2 where distances are squared.
+  S load(const Column& column) {
+    const S multiplier = reactions(column).multiplier[0];
+    const ElementRecord& record = s_.model().elements[static_cast<std::size_t>(column.index)];
+    bool squared = false;
+    with_list(s_.model().constraints, record.type,
+              [&](const auto& list) { squared = HasSquaredValue<ElementOf<decltype(list)>>; });
+    return squared ? S(-2.0) * s_.prescribed(column.index).f * multiplier : -multiplier;
+  }
+
+  Frame<Taylor<S>> motion(int body) const {
+    const Plan& plan = s_.plan();
+    const int p = body < 0 ? plan.bodies : plan.plan_body[static_cast<std::size_t>(body)];
+    const Twist<S> v = s_.twist(p);
+    return moving(s_.frame(p), v.vx, v.vy, v.omega);
+  }
+  const Joint& joint(const Column& column) {
+    if (column.index == joint_of_) return joint_;
+    joint_of_ = column.index;
+    const BasicAttachment<S> a = attachment_of(s_.model(), column.index);
+    const Frame<Taylor<S>> i = motion(a.i), j = motion(a.j);
+    joint_.angle = j.phi - i.phi;
+    const Vec2<Taylor<S>> h = j.point(a.point_j) - i.point(a.point_i);
+    joint_.slide = dot(i.axis(a.axis_i), h);
+    // Where the points meet the length has no derivative.
+    const bool apart = value_of(squared_norm(h)) > 0;
+    joint_.length = apart ? norm(h) : Taylor<S>(S(0.0));
+    return joint_;
+  }
+
+  S potential() {
+    if (!potential_) potential_ = s_.potential();
+    return *potential_;
+  }
+  S kinetic() {
+    if (!kinetic_) kinetic_ = kinetic_energy_of(s_);
+    return *kinetic_;
+  }
+  S total() { return kinetic() + potential(); }
+  const BasicMomentum<S>& sums() {
+    if (!momentum_) momentum_ = momentum_of(s_);
+    return *momentum_;
+  }
+
+  const State& s_;
+  const OwnInputs& own_inputs_;
+  int reactions_of_ = -1, joint_of_ = -1;
+  BasicElementReactions<S> reactions_;
+  Joint joint_;
+  std::optional<S> kinetic_, potential_;
+  std::optional<BasicMomentum<S>> momentum_;
+};
+
+}  // namespace catena

@@ -1,0 +1,52 @@
+// What one force element exerts, for any scalar: what spring.hpp says in numbers, and with derivatives where these are
+// dual.
+#pragma once
+
+#include "catena/columns/attachment.hpp"
+#include "catena/columns/spring.hpp"
+#include "catena/elements/all.hpp"
+
+namespace catena {
+
+/// `state` gives model(), plan(), time(), frame(plan body) in the ground and twist(plan body).
+template <class State, class S = typename State::Scalar>
+BasicSpringLoads<S> spring_loads_of(const State& state, int element) {
+  const BasicModel<S>& model = state.model();
+  const Plan& plan = state.plan();
+  const auto plan_body = [&](int body) {
+    return body < 0 ? plan.bodies : plan.plan_body[static_cast<std::size_t>(body)];
+  };
+  const ElementRecord& record = model.elements[static_cast<std::size_t>(element)];
+  BasicSpringLoads<S> loads;
+  with_list(model.forces, record.type, [&](const auto& list) {
+    const auto& entry = list[static_cast<std::size_t>(record.index)];
+    constexpr int functions = ElementOf<decltype(list)>::functions;
+    S f[functions + 1] = {};  // one more, so that it is never empty
+    for (std::size_t k = 0; k < entry.values.size(); ++k) {
+      const auto& value = entry.values[k];
+      f[k] = value.function < 0
+                 ? value.constant
+                 : model.functions[static_cast<std::size_t>(value.function)].evaluate(value_of(state.time())).f;
+    }
+    const Frame<S> i = state.frame(plan_body(entry.i)), j = state.frame(plan_body(entry.j));
+    const Twist<S> u = state.twist(plan_body(entry.i)), v = state.twist(plan_body(entry.j));
+    Wrench<S> on_i, on_j;
+    entry.element.force(ForceArguments<S>{i, j, u, v, f, {}}, on_i, on_j);
+    const BasicAttachment<S> attachment = attachment_of(entry);
+    const Vec2<S> h = j.point(attachment.point_j) - i.point(attachment.point_i);
+    // Where the points meet the direction is lost.
+    if (value_of(squared_norm(h)) > 0) loads.tension = dot(Vec2<S>{on_i.fx, on_i.fy}, h) / norm(h);
+    loads.torque = on_i.moment;
+    const auto in_i = [&](const Vec2<S>& vector) { return i.to_local(vector); };
+    loads.force_on_j = {on_j.fx, on_j.fy};
+    loads.force_on_j_in_i = in_i(loads.force_on_j);
+    loads.torque_on_j = on_j.moment - cross(j.axis(attachment.point_j), loads.force_on_j);
+    loads.offset = in_i(h);
+    if constexpr (requires { entry.element.slack(i, j); }) {
+      loads.slack = entry.element.slack(i, j);
+    }
+  });
+  return loads;
+}
+
+}  // namespace catena

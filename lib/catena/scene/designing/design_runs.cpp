@@ -1,0 +1,142 @@
+#include "catena/scene/designing/design_runs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace catena {
+namespace {
+
+/// Rows of analyses inside of an optimisation: nobody wants them.
+class NoRows final : public RowSink {
+ public:
+  void begin(std::span<const ColumnInfo>) override {}
+  bool row(std::span<const double>) override { return true; }
+};
+
+}  // namespace
+
+DesignRuns::DesignRuns(const AnalysisContext& context)
+    : context_(context), goal_(context.task.goal), start_(context.state) {
+  request_.rows = false;
+  for (const DesignVariable& variable : goal_.variables) {
+    request_.parameters.push_back(variable.parameter);
+    request_.names.push_back(context.models->names().all()[static_cast<std::size_t>(variable.parameter)]);
+  }
+}
+
+ParameterSeeds DesignRuns::seeds_of(std::span<const double> x) const {
+  ParameterSeeds seeds = context_.seeds;
+  for (std::size_t v = 0; v < x.size(); ++v) seeds.push_back({goal_.variables[v].parameter, x[v]});
+  return seeds;
+}
+
+std::string DesignRuns::take_measures(const AnalysisTask& inner, const AnalysisResult& result, bool gradients,
+                                      std::vector<Measured>& measures) {
+  for (const PlacedMeasure& placed : inner.measures) {
+    const auto found = std::find_if(result.measures.begin(), result.measures.end(),
+                                    [&](const MeasureResult& m) { return m.name == placed.request.name; });
+    if (found == result.measures.end() || !found->value) return "not_measured";
+    Measured measured{*found->value, std::vector<double>(request_.names.size(), 0.0)};
+    for (std::size_t p = 0; gradients && p < measured.gradient.size(); ++p) {
+      const double derivative = p < found->gradient.size() ? found->gradient[p] : std::nan("");
+      if (std::isfinite(derivative)) {
+        measured.gradient[p] = derivative;
+        continue;
+      }
+      const std::string doubt =
+          fmt::format("measure \"{}\" had no derivative in some designs, which were searched as if it were zero: {}",
+                      found->name, found->trouble.empty() ? "see the analysis by itself" : found->trouble);
+      if (doubts_.empty() || std::none_of(doubts_.begin(), doubts_.end(), [&](const std::string& known) {
+            return known.starts_with(fmt::format("measure \"{}\"", found->name));
+          }))
+        doubts_.push_back(doubt);
+    }
+    measures.push_back(std::move(measured));
+  }
+  return {};
+}
+
+std::string DesignRuns::measure(const ParameterSeeds& seeds, bool gradients, std::vector<Measured>& measures) {
+  SystemState state = start_;
+  NoRows rows;
+  for (const AnalysisTask& read : context_.task.of) {
+    AnalysisTask inner = read;
+    inner.parameters = context_.models->values(*read.table, seeds);
+    if (inner.from_initial) state = {};
+    AnalysisContext within{.task = inner,
+                           .model = context_.models->model(*inner.table, seeds),
+                           .state = state,
+                           .rows = rows,
+                           .cancel = context_.cancel,
+                           .progress = {},
+                           .models = context_.models,
+                           .seeds = seeds,
+                           .design = gradients ? &request_ : nullptr};
+    if (!within.model) return "invalid";
+    if (inner.has("parameter"))
+      within.parameter_name = context_.models->names().all()[static_cast<std::size_t>(inner.word("parameter"))];
+    AnalysisResult result;
+    try {
+      analysis_function(inner.type())(within, result);
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception&) {
+      return std::string(to_string(Status::refused));
+    }
+    if (!result.report.ok()) return std::string(to_string(result.report.status));
+    if (std::string reason = take_measures(inner, result, gradients, measures); !reason.empty()) return reason;
+  }
+  return {};
+}
+
+std::vector<DesignScalar> DesignRuns::evaluate_formula(const DesignFormula& formula,
+                                                       const std::vector<std::vector<DesignScalar>>& parameters,
+                                                       const std::vector<Measured>& measures) const {
+  std::vector<DesignScalar> values;
+  for (std::size_t g = 0; g < parameters.size(); ++g) {
+    const Formula<DesignScalar> bound =
+        formula.expression.formula<DesignScalar>(std::span<const DesignScalar>(parameters[g]));
+    values.push_back(bound.evaluate([&](std::uint32_t input) {
+      const Measured& measured = measures[static_cast<std::size_t>(formula.measures[input])];
+      DesignScalar value(measured.value);
+      for (std::size_t k = 0; k < parameters_at_once; ++k) {
+        const std::size_t p = parameters_at_once * g + k;
+        if (p < measured.gradient.size()) value.d[k] = measured.gradient[p];
+      }
+      return value;
+    }));
+  }
+  return values;
+}
+
+DesignEvaluation DesignRuns::evaluate(std::span<const double> x, bool gradients) {
+  DesignEvaluation evaluation;
+  const ParameterSeeds seeds = seeds_of(x);
+  std::vector<Measured> measures;
+  evaluation.failure = measure(seeds, gradients, measures);
+  if (!evaluation.failure.empty()) return evaluation;
+  const auto parameters = context_.models->dual_values(*context_.task.table, seeds, request_.parameters);
+  DesignValues& values = evaluation.values;
+  bool finite = true;
+  const auto take = [&](const std::vector<DesignScalar>& groups, double sign, std::vector<double>& gradient) {
+    finite = finite && std::isfinite(groups.front().v);
+    for (std::size_t p = 0; gradients && p < x.size(); ++p)
+      gradient.push_back(sign * groups[p / parameters_at_once].d[p % parameters_at_once]);
+    return sign * groups.front().v;
+  };
+  values.objective =
+      take(evaluate_formula(goal_.objective, parameters, measures), goal_.maximise ? -1 : 1, values.gradient);
+  for (const DesignRelation& relation : goal_.relations) {
+    std::vector<DesignScalar> left = evaluate_formula(relation.left, parameters, measures);
+    const std::vector<DesignScalar> right = evaluate_formula(relation.right, parameters, measures);
+    for (std::size_t g = 0; g < left.size(); ++g) left[g] = left[g] - right[g];
+    auto& target = relation.equality ? values.equal : values.unequal;
+    target.push_back(take(left, 1, relation.equality ? values.equal_gradient : values.unequal_gradient));
+  }
+  if (!finite) evaluation.failure = "not_finite";
+  return evaluation;
+}
+
+}  // namespace catena

@@ -1,0 +1,42 @@
+// The analyses of one design, run for an optimisation: measures and their gradients, or why there are none.
+#pragma once
+
+#include "catena/analysis/design/design_problem.hpp"
+#include "catena/scene/running/analysis_run.hpp"
+
+namespace catena {
+
+class DesignRuns {
+ public:
+  /// `context` is that of the optimisation, whose task has the analyses and the goal; it must outlive this object.
+  explicit DesignRuns(const AnalysisContext& context);
+
+  /// Objective and constraints of a design, the values of the variables in the order of the goal.
+  DesignEvaluation evaluate(std::span<const double> x, bool gradients);
+  /// The values of all parameters of a design: the context's, with the variables put in.
+  ParameterSeeds seeds_of(std::span<const double> x) const;
+  /// Measures whose derivatives were missing in some design, each once, with the reason.
+  const std::vector<std::string>& doubts() const { return doubts_; }
+
+ private:
+  struct Measured {
+    double value;
+    std::vector<double> gradient;
+  };
+  /// Runs all analyses in order; a reason where one fails.
+  std::string measure(const ParameterSeeds& seeds, bool gradients, std::vector<Measured>& measures);
+  std::string take_measures(const AnalysisTask& inner, const AnalysisResult& result, bool gradients,
+                            std::vector<Measured>& measures);
+  /// A formula's value with derivatives by the variables of every group.
+  std::vector<DesignScalar> evaluate_formula(const DesignFormula& formula,
+                                             const std::vector<std::vector<DesignScalar>>& parameters,
+                                             const std::vector<Measured>& measures) const;
+
+  const AnalysisContext& context_;
+  const DesignGoal& goal_;
+  DesignRequest request_;
+  SystemState start_;
+  std::vector<std::string> doubts_;
+};
+
+}  // namespace catena

@@ -1,0 +1,152 @@
+// optimise: parameters that make an objective least under constraints; one row a design that is better than all before.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "catena/scene/designing/design_runs.hpp"
+
+namespace catena {
+namespace {
+
+// In the order of the key's words after auto, slsqp, mma, ipopt.
+constexpr MinimiserMethod methods[] = {MinimiserMethod::slsqp, MinimiserMethod::slsqp,  MinimiserMethod::mma,
+                                       MinimiserMethod::slsqp, MinimiserMethod::bobyqa, MinimiserMethod::cobyla,
+                                       MinimiserMethod::crs2,  MinimiserMethod::isres,  MinimiserMethod::direct};
+constexpr int ipopt_word = 3;
+constexpr std::string_view names[] = {"slsqp", "mma", "bobyqa", "cobyla", "crs2", "isres", "direct"};
+
+DesignOptions options_of(const AnalysisContext& context) {
+  const AnalysisTask& task = context.task;
+  DesignOptions options;
+  options.method = methods[task.word("solver")];
+  options.starts = static_cast<int>(task.number("starts", 1));
+  options.seed = static_cast<std::uint64_t>(task.number("seed", 1));
+  options.tolerance = task.number("tolerance", options.tolerance);
+  options.max_evaluations = static_cast<int>(task.number("max_evaluations", options.max_evaluations));
+  options.go_on = [&context] { return !(context.cancel && context.cancel->load(std::memory_order_relaxed)); };
+  return options;
+}
+
+/// Values of relations in the order of the scene: left less right.
+std::vector<double> relation_values(const DesignGoal& goal, const DesignValues& values) {
+  std::vector<double> all;
+  std::size_t unequal = 0, equal = 0;
+  for (const DesignRelation& relation : goal.relations)
+    all.push_back(relation.equality ? values.equal[equal++] : values.unequal[unequal++]);
+  return all;
+}
+
+/// The relations and bounds that hold the design, by name.
+std::vector<std::string> active_limits(const DesignGoal& goal, const DesignOutcome& outcome,
+                                       const std::vector<std::string>& variables) {
+  std::vector<std::string> active;
+  int unequal = 0;
+  for (const DesignRelation& relation : goal.relations) {
+    const auto& held = outcome.active_unequal;
+    if (relation.equality || std::find(held.begin(), held.end(), unequal) != held.end())
+      active.push_back(relation.text);
+    if (!relation.equality) ++unequal;
+  }
+  for (const int v : outcome.at_lower) active.push_back(variables[static_cast<std::size_t>(v)] + " >= min");
+  for (const int v : outcome.at_upper) active.push_back(variables[static_cast<std::size_t>(v)] + " <= max");
+  return active;
+}
+
+Report report_of(const DesignOutcome& outcome, int max_evaluations) {
+  Report report;
+  switch (outcome.end) {
+    case DesignEnd::converged:
+      break;
+    case DesignEnd::slow:
+      report.status = Status::not_converged;
+      report.message =
+          fmt::format("{} designs did not lead to an optimum (max_evaluations = {}); the best so far is given",
+                      outcome.evaluations, max_evaluations);
+      break;
+    case DesignEnd::cancelled:
+      report.status = Status::cancelled;
+      report.message = "stopped; the best design so far is given";
+      break;
+    case DesignEnd::infeasible:
+      report.status = Status::inconsistent;
+      report.message = fmt::format(
+          "the constraints cannot be met: the least infeasible design misses them by {:.3g} of "
+          "their size; likely cause: relations that exclude each other within the bounds",
+          outcome.violation);
+      break;
+    case DesignEnd::failed:
+      report.status = Status::not_converged;
+      report.message = "no design could be analysed, neither the start nor others within the bounds:";
+      for (const auto& [reason, count] : outcome.failed) report.message += fmt::format(" {} ({})", reason, count);
+      break;
+  }
+  return report;
+}
+
+/// What came of it, as fields of the result.
+void add_fields(AnalysisResult& result, const DesignGoal& goal, const DesignOutcome& outcome,
+                const std::vector<std::string>& variables, MinimiserMethod method) {
+  FieldRecord values, constraints, failed;
+  for (std::size_t v = 0; v < outcome.x.size(); ++v) values.emplace_back(variables[v], outcome.x[v]);
+  for (const auto& [reason, count] : outcome.failed) failed.emplace_back(reason, std::int64_t{count});
+  if (!outcome.x.empty()) {
+    const std::vector<double> relations = relation_values(goal, outcome.values);
+    for (std::size_t k = 0; k < relations.size(); ++k) constraints.emplace_back(goal.relations[k].text, relations[k]);
+    result.fields.push_back({"variables", std::move(values)});
+    result.fields.push_back({"objective", goal.maximise ? -outcome.values.objective : outcome.values.objective});
+    result.fields.push_back({"constraints", std::move(constraints)});
+    result.fields.push_back({"active", active_limits(goal, outcome, variables)});
+    result.fields.push_back({"optimality", outcome.optimality});
+  }
+  result.fields.push_back({"evaluations", std::int64_t{outcome.evaluations}});
+  result.fields.push_back({"failed", std::move(failed)});
+  result.fields.push_back({"solver", std::string(names[static_cast<std::size_t>(method)])});
+}
+
+}  // namespace
+
+void run_optimise(AnalysisContext& context, AnalysisResult& result) {
+  const AnalysisTask& task = context.task;
+  if (!nlopt_is_built_in())
+    return refuse(result, "this catena was built without NLopt (CATENA_WITH_NLOPT=OFF), which optimises");
+  if (task.word("solver") == ipopt_word)
+    return refuse(result, "optimise does not use Ipopt yet; leave \"solver\" out, or take \"slsqp\" or \"mma\"");
+  DesignRuns runs(context);
+  std::vector<std::string> variables;
+  std::vector<ColumnInfo> info;
+  DesignProblem problem;
+  for (const DesignVariable& variable : task.goal.variables) {
+    variables.push_back(context.models->names().all()[static_cast<std::size_t>(variable.parameter)]);
+    info.push_back({variables.back(), UnitKind::own});
+    problem.lower.push_back(variable.least);
+    problem.upper.push_back(variable.greatest);
+    problem.start.push_back(variable.start);
+  }
+  info.push_back({"objective", UnitKind::own});
+  for (const DesignRelation& relation : task.goal.relations) {
+    info.push_back({relation.text, UnitKind::own});
+    (relation.equality ? problem.equations : problem.inequalities) += 1;
+  }
+  problem.evaluate = [&](std::span<const double> x, bool gradients) { return runs.evaluate(x, gradients); };
+  context.rows.begin(info);
+  DesignOptions options = options_of(context);
+  std::int64_t rows = 0;
+  options.improved = [&](std::span<const double> x, const DesignValues& values) {
+    std::vector<double> row(x.begin(), x.end());
+    row.push_back(task.goal.maximise ? -values.objective : values.objective);
+    for (const double value : relation_values(task.goal, values)) row.push_back(value);
+    context.rows.row(row);
+    ++rows;
+  };
+  const DesignOutcome outcome = optimise_design(problem, options);
+  static_cast<Report&>(result.report) = report_of(outcome, options.max_evaluations);
+  for (const std::string& doubt : runs.doubts()) result.report.warnings.push_back(doubt);
+  result.has_rows = true;
+  result.columns = std::move(info);
+  result.rows = rows;
+  add_fields(result, task.goal, outcome, variables, options.method);
+  for (std::size_t v = 0; v < outcome.x.size(); ++v)
+    context.values_at_end.push_back({task.goal.variables[v].parameter, outcome.x[v]});
+}
+
+}  // namespace catena

@@ -1,0 +1,154 @@
+// sensitivity: an analysis with derivatives of its rows and measures by parameters.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "catena/results/result_storage.hpp"
+#include "catena/scene/running/analysis_run.hpp"
+
+namespace catena {
+namespace {
+
+// Differences of second order: the step that balances rounding (1e-12 of a run) with the cube of the step.
+constexpr double part_of_parameter = 1e-4;
+
+/// Passes rows on and keeps them.
+class KeptRows final : public RowSink {
+ public:
+  explicit KeptRows(RowSink* target) : target_(target) {}
+  void begin(std::span<const ColumnInfo> columns) override {
+    kept.begin(columns);
+    if (target_) target_->begin(columns);
+  }
+  bool row(std::span<const double> values) override {
+    kept.row(values);
+    return !target_ || target_->row(values);
+  }
+  ResultStorage kept;
+
+ private:
+  RowSink* target_;
+};
+
+/// The inner analysis at other values of parameters, from the same start.
+AnalysisResult run_at(const AnalysisContext& outer, const SystemState& start, ParameterSeeds seeds, RowSink& rows) {
+  SystemState state = start;
+  AnalysisResult result;
+  AnalysisTask inner = outer.task.of.front();
+  inner.parameters = outer.models->values(*inner.table, seeds);
+  AnalysisContext context{.task = inner,
+                          .model = outer.models->model(*inner.table, seeds),
+                          .state = state,
+                          .rows = rows,
+                          .cancel = outer.cancel,
+                          .progress = {},
+                          .models = outer.models,
+                          .seeds = seeds};
+  if (!context.model) {
+    result.report.status = Status::refused;
+    return result;
+  }
+  if (inner.has("parameter"))
+    context.parameter_name = outer.models->names().all()[static_cast<std::size_t>(inner.word("parameter"))];
+  analysis_function(inner.type())(context, result);
+  return result;
+}
+
+/// Derivatives by one parameter against central differences: the largest deviation relative to the larger of the
+/// derivative and the size of the output over that of the parameter.
+class Comparison {
+ public:
+  Comparison(const AnalysisContext& context, const SystemState& start, const AnalysisResult& result,
+             const ResultStorage& rows)
+      : context_(context), start_(start), result_(result), rows_(rows) {}
+
+  double deviation() {
+    double largest = 0;
+    const std::vector<double> values = context_.models->values(*context_.task.of.front().table, context_.seeds);
+    for (std::size_t p = 0; p < context_.task.design_parameters.size(); ++p) {
+      const double value = values[static_cast<std::size_t>(context_.task.design_parameters[p])];
+      largest = std::max(largest, compare(p, value));
+    }
+    return largest;
+  }
+
+ private:
+  double compare(std::size_t p, double value) {
+    const double size = value != 0 ? std::abs(value) : 1, step = part_of_parameter * size;
+    KeptRows rows[2] = {KeptRows(nullptr), KeptRows(nullptr)};
+    AnalysisResult shifted[2];
+    for (int side = 0; side < 2; ++side) {
+      ParameterSeeds seeds = context_.seeds;
+      seeds.push_back({context_.task.design_parameters[p], value + (side == 0 ? -step : step)});
+      shifted[side] = run_at(context_, start_, std::move(seeds), rows[side]);
+    }
+    double largest = 0;
+    const auto take = [&](double derivative, double below, double above, double scale) {
+      const double difference = (above - below) / (2 * step);
+      if (!std::isfinite(derivative) || !std::isfinite(difference)) return;
+      const double unit = std::max(std::abs(derivative), scale / size);
+      if (unit > 0) largest = std::max(largest, std::abs(derivative - difference) / unit);
+    };
+    for (std::size_t m = 0; m < result_.measures.size(); ++m) {
+      if (m >= shifted[0].measures.size() || m >= shifted[1].measures.size()) break;
+      const auto &below = shifted[0].measures[m].value, &above = shifted[1].measures[m].value;
+      if (below && above && result_.measures[m].value && p < result_.measures[m].gradient.size())
+        take(result_.measures[m].gradient[p], *below, *above, std::abs(*result_.measures[m].value));
+    }
+    compare_rows(p, rows[0].kept, rows[1].kept, take);
+    return largest;
+  }
+
+  template <class Take>
+  void compare_rows(std::size_t p, const ResultStorage& below, const ResultStorage& above, Take&& take) const {
+    const std::string& parameter = result_.gradient_parameters[p];
+    for (std::size_t c = 0; c < below.columns().size(); ++c) {
+      const std::string& name = below.columns()[c].name;
+      const auto column = rows_.find(fmt::format("d({})/d({})", name, parameter)), plain = rows_.find(name);
+      const auto other = above.find(name);
+      if (!column || !plain || !other || below.rows() != rows_.rows() || above.rows() != rows_.rows()) continue;
+      double scale = 0;
+      for (std::size_t r = 0; r < rows_.rows(); ++r) scale = std::max(scale, std::abs(rows_.at(r, *plain)));
+      for (std::size_t r = 0; r < rows_.rows(); ++r)
+        take(rows_.at(r, *column), below.at(r, c), above.at(r, *other), scale);
+    }
+  }
+
+  const AnalysisContext& context_;
+  const SystemState& start_;
+  const AnalysisResult& result_;
+  const ResultStorage& rows_;
+};
+
+}  // namespace
+
+void run_sensitivity(AnalysisContext& context, AnalysisResult& result) {
+  AnalysisTask inner = context.task.of.front();
+  inner.parameters = context.models->values(*inner.table, context.seeds);
+  DesignRequest design{context.task.design_parameters, {}, context.task.word("mode") != 2};
+  for (const int parameter : design.parameters)
+    design.names.push_back(context.models->names().all()[static_cast<std::size_t>(parameter)]);
+  const SystemState start = context.state;
+  const bool verify = context.task.number("verify", 0) != 0;
+  KeptRows kept(&context.rows);
+  AnalysisContext within{.task = inner,
+                         .model = context.models->model(*inner.table, context.seeds),
+                         .state = context.state,
+                         .rows = verify ? static_cast<RowSink&>(kept) : context.rows,
+                         .cancel = context.cancel,
+                         .progress = context.progress,
+                         .verbose = context.verbose,
+                         .trace = context.trace,
+                         .models = context.models,
+                         .seeds = context.seeds,
+                         .design = &design};
+  if (!within.model) return refuse(result, "the scene allows no model for the analysis inside");
+  if (inner.has("parameter"))
+    within.parameter_name = context.models->names().all()[static_cast<std::size_t>(inner.word("parameter"))];
+  analysis_function(inner.type())(within, result);
+  if (!verify || !result.report.ok()) return;
+  result.fields.push_back({"deviation", Comparison(context, start, result, kept.kept).deviation()});
+}
+
+}  // namespace catena

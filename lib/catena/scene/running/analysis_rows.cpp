@@ -1,0 +1,187 @@
+#include "catena/scene/running/analysis_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "catena/scene/numbers/quantity.hpp"
+#include "catena/scene/running/analysis_run.hpp"
+
+namespace catena {
+namespace {
+
+/// The unit of an integral over time of what has this unit; empty where that is not known.
+std::string times_second(const std::string& unit) {
+  if (unit.empty()) return {};
+  const Parsed<Quantity> quantity = parse_quantity(unit == "1" ? "1 s" : "1 " + unit);
+  if (!quantity) return {};
+  return si_unit(unit == "1" ? quantity->dimension : quantity->dimension * dimension_of(UnitKind::time));
+}
+
+/// The number that a measure of the kind `field` names, if the result has it.
+std::optional<double> reported(const AnalysisResult& result, const MeasureRequest& request) {
+  for (const NamedField& field : result.fields) {
+    if (field.name != request.field) continue;
+    const auto place = static_cast<std::size_t>(request.number) - 1;
+    if (const auto* number = std::get_if<double>(&field.value); number && request.number == 0) return *number;
+    if (const auto* count = std::get_if<std::int64_t>(&field.value); count && request.number == 0)
+      return static_cast<double>(*count);
+    if (const auto* list = std::get_if<std::vector<double>>(&field.value); list && place < list->size())
+      return (*list)[place];
+    if (const auto* records = std::get_if<std::vector<FieldRecord>>(&field.value); records && place < records->size()) {
+      for (const auto& [name, value] : (*records)[place]) {
+        if (name != request.part) continue;
+        if (const auto* number = std::get_if<double>(&value)) return *number;
+        if (const auto* count = std::get_if<std::int64_t>(&value)) return static_cast<double>(*count);
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+AnalysisRows::~AnalysisRows() = default;
+
+AnalysisRows::AnalysisRows(const ColumnSet& columns, AnalysisContext& context, const Plan& plan,
+                           const ColumnSources& sources, const TimeRange& run)
+    : columns_(columns),
+      context_(context),
+      measures_(context.task.measure_requests(), *context.model, plan, sources, run),
+      info_(columns.info().begin(), columns.info().end()),
+      timed_(sources.timed),
+      first_(run.first),
+      last_(run.last) {}
+
+void AnalysisRows::differentiate(std::unique_ptr<StateDerivatives> derivatives) {
+  derivatives_ = std::move(derivatives);
+  derivatives_->need(needs());
+  row_derivatives_ = context_.design->rows;
+  if (measures_.empty()) return;
+  measures_.differentiate(derivatives_->parameters(), [this](const Snapshot& snapshot, std::span<double> out) {
+    if (derivatives_->find(snapshot)) derivatives_->differentiate(measures_.columns(), snapshot, out);
+  });
+}
+
+void AnalysisRows::begin() {
+  if (row_derivatives_) {
+    const std::size_t plain = info_.size();
+    for (std::size_t k = 0; k < plain; ++k) {
+      if (info_[k].unit == UnitKind::time) continue;
+      for (const std::string& parameter : context_.design->names)
+        info_.push_back({fmt::format("d({})/d({})", info_[k].name, parameter), UnitKind::own});
+    }
+  }
+  values_.resize(info_.size());
+  context_.rows.begin(info_);
+}
+
+Needs AnalysisRows::needs() const {
+  Needs needs = columns_.needs();
+  if (!measures_.empty()) needs |= measures_.needs();
+  return needs;
+}
+
+void AnalysisRows::tell(double t) const {
+  if (context_.progress) context_.progress(last_ == first_ ? 1 : std::clamp((t - first_) / (last_ - first_), 0.0, 1.0));
+}
+
+bool AnalysisRows::proceed(double t) {
+  tell(t);
+  return !(context_.cancel && context_.cancel->load(std::memory_order_relaxed));
+}
+
+bool AnalysisRows::cover(const MotionStretch& stretch) {
+  if (derivatives_) derivatives_->cover(stretch);
+  measures_.cover(stretch);
+  return true;
+}
+
+void AnalysisRows::look_since_last_row(const Snapshot& snapshot) {
+  if (!make_look_ || measures_.empty()) return;
+  if (!look_) look_ = make_look_(snapshot);
+  if (rows_ > 0 && snapshot.t > row_before_) measures_.cover({row_before_, snapshot.t, look_});
+  row_before_ = snapshot.t;
+}
+
+bool AnalysisRows::observe(const Snapshot& snapshot) {
+  tell(snapshot.t);
+  look_since_last_row(snapshot);
+  measures_.take_row(snapshot, !timed_ || rows_alone_);
+  columns_.evaluate(snapshot, values_);
+  if (row_derivatives_) {
+    const std::size_t plain = columns_.size(), first = plain > 0 && info_[0].unit == UnitKind::time ? 1 : 0;
+    const auto parameters = static_cast<std::size_t>(derivatives_->parameters());
+    std::vector<double> derivatives(plain * parameters, std::numeric_limits<double>::quiet_NaN());
+    if (derivatives_->find(snapshot))
+      derivatives_->differentiate(columns_, snapshot, derivatives);
+    else
+      ++missing_;
+    std::copy(derivatives.begin() + static_cast<std::ptrdiff_t>(first * parameters), derivatives.end(),
+              values_.begin() + static_cast<std::ptrdiff_t>(plain));
+  }
+  ++rows_;
+  return context_.rows.row(values_) && proceed(snapshot.t);
+}
+
+void AnalysisRows::finish(AnalysisResult& result) {
+  result.has_rows = true;
+  result.columns = info_;
+  result.rows = rows_;
+  for (MeasureResult& measure : measures_.results()) {
+    if (timed_ && rows_alone_ && measure.trouble.empty())
+      measure.trouble = "taken from the rows alone: this motion is not looked at between them";
+    if (measure.times_second) measure.unit = times_second(measure.unit);
+    if (!measure.trouble.empty())
+      result.report.warnings.push_back(fmt::format("measure \"{}\": {}", measure.name, measure.trouble));
+    result.measures.push_back(std::move(measure));
+  }
+  if (context_.design) result.gradient_parameters = context_.design->names;
+  if (derivatives_ && !derivatives_->why().empty())
+    result.report.warnings.push_back("derivatives: " + derivatives_->why());
+  if (missing_ > 0) result.report.warnings.push_back(fmt::format("{} rows have no derivatives", missing_));
+}
+
+void add_field_measures(const AnalysisContext& context, AnalysisResult& result) {
+  for (const PlacedMeasure& placed : context.task.measures) {
+    const MeasureRequest& request = placed.request;
+    if (request.kind != MeasureKind::field) continue;
+    MeasureResult measure;
+    measure.name = request.name;
+    measure.value = reported(result, request);
+    if (context.design) {
+      measure.gradient.assign(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
+      result.gradient_parameters = context.design->names;
+    }
+    if (!measure.value) {
+      std::string names;
+      for (const NamedField& field : result.fields) names += (names.empty() ? "" : ", ") + field.name;
+      measure.trouble = fmt::format("{} reports no number {}{} (it has {})", context.task.type(), request.field,
+                                    request.number > 0 ? fmt::format("[{}]", request.number) : "", names);
+      result.report.warnings.push_back(fmt::format("measure \"{}\": {}", request.name, measure.trouble));
+    }
+    measure.unit = request.field == "energy"   ? "J"
+                   : request.field == "omega"  ? "rad/s"
+                   : request.field == "omega2" ? "rad^2/s^2"
+                                               : "";
+    result.measures.push_back(std::move(measure));
+  }
+}
+
+void set_field_gradient(const AnalysisContext& context, AnalysisResult& result, std::string_view field, int number,
+                        const std::vector<double>& gradient, const std::string& trouble) {
+  for (const PlacedMeasure& placed : context.task.measures) {
+    const MeasureRequest& request = placed.request;
+    const bool meant = request.kind == MeasureKind::field && request.field == field && request.number == number;
+    if (!meant || (number > 0 && !request.part.empty() && request.part != "value")) continue;
+    for (MeasureResult& measure : result.measures) {
+      if (measure.name != request.name || !measure.value) continue;
+      measure.gradient = gradient;
+      measure.trouble = trouble;
+      if (!trouble.empty()) result.report.warnings.push_back(fmt::format("measure \"{}\": {}", measure.name, trouble));
+    }
+  }
+}
+
+}  // namespace catena

@@ -1,0 +1,72 @@
+// What an analysis of a scene gives at its rows: columns to the sink, derivatives of them where they are asked for,
+// measures of the motion between them, and how far it has come.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "catena/analysis/measures/measure_set.hpp"
+#include "catena/analysis/run/row_observer.hpp"
+#include "catena/analysis/sensitivity/state_derivatives.hpp"
+#include "catena/results/analysis_result.hpp"
+
+namespace catena {
+
+struct AnalysisContext;
+
+class AnalysisRows final : public RowObserver {
+ public:
+  /// `run`: the first and the last instant. `columns` and `context` must outlive this object.
+  AnalysisRows(const ColumnSet& columns, AnalysisContext& context, const Plan& plan, const ColumnSources& sources,
+               const TimeRange& run);
+  ~AnalysisRows() override;
+
+  /// Derivatives of rows and measures are wanted, and this is how they are found; before begin().
+  void differentiate(std::unique_ptr<StateDerivatives> derivatives);
+  /// How the mechanism is looked at between rows, where the analysis does not show it by itself; before begin(). It is
+  /// made at the first row, from its snapshot.
+  using Look = std::function<std::optional<Snapshot>(double)>;
+  void look_by(std::function<Look(const Snapshot&)> make) { make_look_ = std::move(make); }
+  /// Nobody can look between rows: measures are those of the rows, and say so.
+  void take_rows_alone() { rows_alone_ = true; }
+  /// Announces the columns to the sink.
+  void begin();
+
+  /// Of the columns, and of what measures look at.
+  Needs needs() const;
+  bool observe(const Snapshot& snapshot) override;
+  bool proceed(double t) override;
+  bool wants_stretches() const override {
+    return timed_ && !rows_alone_ && !make_look_ && (!measures_.empty() || derivatives_);
+  }
+  bool cover(const MotionStretch& stretch) override;
+
+  std::int64_t rows() const { return rows_; }
+  StateDerivatives* derivatives() { return derivatives_.get(); }
+  /// Columns, rows, measures and what is to be said of them.
+  void finish(AnalysisResult& result);
+
+ private:
+  void tell(double t) const;
+  void look_since_last_row(const Snapshot& snapshot);
+
+  const ColumnSet& columns_;
+  AnalysisContext& context_;
+  MeasureSet measures_;
+  std::unique_ptr<StateDerivatives> derivatives_;
+  std::function<Look(const Snapshot&)> make_look_;
+  Look look_;
+  std::vector<ColumnInfo> info_;
+  std::vector<double> values_;
+  bool timed_, row_derivatives_ = false, rows_alone_ = false;
+  double first_, last_, row_before_ = 0;
+  std::int64_t rows_ = 0, missing_ = 0;  // missing_: rows without derivatives
+};
+
+/// Measures of the kind `field`, from the fields of the result; those that it has not are told as such.
+void add_field_measures(const AnalysisContext& context, AnalysisResult& result);
+/// The gradient of the measures of a field, after add_field_measures(); number 0: it is no list.
+void set_field_gradient(const AnalysisContext& context, AnalysisResult& result, std::string_view field, int number,
+                        const std::vector<double>& gradient, const std::string& trouble = {});
+
+}  // namespace catena

@@ -1,0 +1,69 @@
+#include "catena/scene/running/scene_models.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "catena/elements/all.hpp"
+#include "catena/scene/building/build_model.hpp"
+
+namespace catena {
+namespace {
+
+void tell(const Diagnostics& diagnostics, std::string* why) {
+  if (why && !diagnostics.items().empty()) *why = diagnostics.items().front().message;
+}
+
+}  // namespace
+
+std::vector<double> SceneModels::values(const ParameterTable& table, const ParameterSeeds& seeds,
+                                        std::string* why) const {
+  Diagnostics diagnostics(1);
+  std::vector<double> values = table.evaluate<double>(scene_.expressions, diagnostics, seeds);
+  if (diagnostics.ok()) return values;
+  tell(diagnostics, why);
+  return {};
+}
+
+std::shared_ptr<const Model> SceneModels::model(const ParameterTable& table, const ParameterSeeds& seeds,
+                                                std::string* why) const {
+  const std::vector<double> values = this->values(table, seeds, why);
+  if (values.empty() && names().size() > 0) return nullptr;
+  Diagnostics diagnostics(1);
+  auto model = std::make_shared<Model>(build_model<double>(scene_, values, {max_elements_}, diagnostics));
+  if (diagnostics.ok()) return model;
+  tell(diagnostics, why);
+  return nullptr;
+}
+
+std::vector<std::vector<DesignScalar>> SceneModels::dual_values(const ParameterTable& table,
+                                                                const ParameterSeeds& seeds,
+                                                                std::span<const int> parameters) const {
+  Diagnostics diagnostics(1);
+  const std::vector<double> plain = table.evaluate<double>(scene_.expressions, diagnostics, seeds);
+  std::vector<std::vector<DesignScalar>> groups;
+  for (std::size_t first = 0; first < parameters.size(); first += parameters_at_once) {
+    std::vector<ParameterSeed<DesignScalar>> dual;
+    for (const ParameterSeed<double>& seed : seeds) dual.push_back({seed.index, DesignScalar(seed.value)});
+    const std::size_t count = std::min<std::size_t>(parameters_at_once, parameters.size() - first);
+    for (std::size_t k = 0; k < count; ++k) {
+      const int index = parameters[first + k];
+      dual.push_back({index, DesignScalar::variable(plain[static_cast<std::size_t>(index)], static_cast<int>(k))});
+    }
+    groups.push_back(table.evaluate<DesignScalar>(scene_.expressions, diagnostics, dual));
+  }
+  return groups;
+}
+
+DesignModels SceneModels::designs(const ParameterTable& table, const ParameterSeeds& seeds,
+                                  std::span<const int> parameters) const {
+  DesignModels models;
+  for (const std::vector<DesignScalar>& values : dual_values(table, seeds, parameters)) {
+    Diagnostics diagnostics(1);
+    auto model = std::make_shared<DesignModel>(build_model<DesignScalar>(scene_, values, {max_elements_}, diagnostics));
+    if (!diagnostics.ok()) throw std::invalid_argument(diagnostics.items().front().message);
+    models.push_back(std::move(model));
+  }
+  return models;
+}
+
+}  // namespace catena

@@ -1,0 +1,84 @@
+// Facts about scenes that look for designs, or for derivatives.
+#include "scene/data_facts.hpp"
+
+namespace catena::testing {
+namespace {
+
+double number_of(const FieldRecord& record, const std::string& name) {
+  for (const auto& [key, value] : record) {
+    if (key == name) return std::get<double>(value);
+  }
+  return std::nan("");
+}
+
+const FieldValue& field_of(const AnalysisResult& result, const std::string& name) {
+  static const FieldValue missing = 0.0;
+  for (const NamedField& field : result.fields) {
+    if (field.name == name) return field.value;
+  }
+  ADD_FAILURE() << "no field " << name;
+  return missing;
+}
+
+double variable(const TextRun& run, const std::string& name) {
+  return number_of(std::get<FieldRecord>(field_of(run.analysis(), "variables")), name);
+}
+
+const MeasureResult& measure_of(const AnalysisResult& result, const std::string& name) {
+  for (const MeasureResult& measure : result.measures) {
+    if (measure.name == name) return measure;
+  }
+  static const MeasureResult missing;
+  ADD_FAILURE() << "no measure " << name;
+  return missing;
+}
+
+/// d(angle)/d(side) of a triangle with the sides x, y beside the angle and z opposite to it.
+double by_opposite(double x, double y, double z) {
+  const double cosine = (x * x + y * y - z * z) / (2 * x * y);
+  return z / (x * y * std::sqrt(1 - cosine * cosine));
+}
+
+}  // namespace
+
+SceneFacts design_facts() {
+  return {
+      {"balanced_lamp.json",
+       [](const TextRun& run) {
+         EXPECT_NEAR(variable(run, "k"), 1.8 * 9.81 * 0.45 / (2 * 0.15 * 0.2), 1e-5);
+         EXPECT_NEAR(*measure_of(run.analysis(1), "worst").value, 0, 1e-6);
+       }},
+      {"two_bar_truss.json",
+       [](const TextRun& run) {
+         const double height = std::sqrt(0.5) * 0.8;
+         EXPECT_NEAR(variable(run, "height"), height, 1e-5);
+         // At the optimum the bars are at their buckling load.
+         const double l2 = 0.64 + height * height, push = 2500 * std::sqrt(l2) / height;
+         const double section = std::sqrt(4 * l2 * push / (std::numbers::pi * 70e9)) * 1e4;
+         EXPECT_NEAR(variable(run, "section"), section, 1e-5 * section);
+         EXPECT_EQ(std::get<std::vector<std::string>>(field_of(run.analysis(), "active")).size(), 1u);
+         EXPECT_LT(std::get<double>(field_of(run.analysis(), "optimality")), 1e-5);
+       }},
+      {"path_generation.json",
+       [](const TextRun& run) {
+         EXPECT_NEAR(variable(run, "crank"), 0.4, 1e-5);
+         EXPECT_NEAR(variable(run, "coupler"), 1.1, 1e-5);
+         EXPECT_NEAR(variable(run, "rocker"), 0.9, 1e-5);
+         EXPECT_NEAR(variable(run, "ground"), 1.2, 1e-5);
+       }},
+      {"four_bar_gradients.json",
+       [](const TextRun& run) {
+         // The rocker's angle there is pi less that of the triangle (rocker, ground, coupler -+ crank) at its pivot.
+         const MeasureResult &nearest = measure_of(run.analysis(), "nearest"),
+                             &furthest = measure_of(run.analysis(), "furthest");
+         const double folded = by_opposite(0.2, 0.3, 0.15), stretched = by_opposite(0.2, 0.3, 0.35);
+         EXPECT_NEAR(nearest.gradient[0], folded, 1e-8 * folded);
+         EXPECT_NEAR(nearest.gradient[1], -folded, 1e-8 * folded);
+         EXPECT_NEAR(furthest.gradient[0], -stretched, 1e-8 * stretched);
+         EXPECT_NEAR(furthest.gradient[1], -stretched, 1e-8 * stretched);
+         EXPECT_LT(std::get<double>(field_of(run.analysis(), "deviation")), 1e-5);
+       }},
+  };
+}
+
+}  // namespace catena::testing
