@@ -217,7 +217,7 @@ const BadScene elements[] = {
     {"CableStiffness", force(R"({"type": "cable", "i": "crank", "j": "rod", "k": §0})"), "must be above zero"},
     {"CableLength", force(R"({"type": "cable", "i": "crank", "j": "rod", "length": §0})"), "must be above zero"},
     {"CableOfNoLength", force(R"(§{"type": "cable", "i": "crank", "j": ["rod", [-0.4, 0]]})"), "length above zero"},
-    {"NotBuiltYet", force(R"({"type": §"friction", "joint": "A", "mu": 0.2})"), "is not built yet"},
+    {"NotBuiltYet", force(R"({"type": §"rope", "length": 2})"), "is not built yet"},
     {"OnlyInCpp", force(R"({"type": §"custom_force", "i": "crank", "j": "rod"})"), "unknown type"},
 };
 

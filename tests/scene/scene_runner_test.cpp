@@ -87,14 +87,6 @@ TEST(SceneRunner, DynamicsFollowsFromForces) {
   EXPECT_NEAR(run.last("energy.balance"), 0, 1e-8);
 }
 
-TEST(SceneRunner, WhatIsNotBuiltYetIsRefusedNotSkipped) {
-  const TextRun run = run_text(crank(R"({"type": "optimise", "objective": "crank.x"})"));
-  EXPECT_EQ(run.outcome.exit_code, 1);
-  ASSERT_EQ(run.outcome.analyses.size(), 1u);
-  EXPECT_EQ(run.analysis().report.status, Status::refused);
-  EXPECT_NE(run.analysis().report.message.find("optimise is not built yet"), std::string::npos);
-}
-
 TEST(SceneRunner, CheckCountsAndNamesWhatIsRedundant) {
   const TextRun run =
       run_text(R"({"catena": 1, "bodies": {"a": {}, "b": {"position": [1, 0]}, "free": {"position": [5, 0]}},

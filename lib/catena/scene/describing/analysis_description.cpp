@@ -37,14 +37,9 @@ const AnalysisKey parameter{
 
 AnalysisDescription make(std::string_view name, std::string_view summary, std::string_view results, bool timed,
                          Keys keys) {
-  AnalysisDescription d{name, summary, results, timed, false, {type, set, from}};
+  AnalysisDescription d{name, summary, results, timed, {type, set, from}};
   d.keys.insert(d.keys.end(), keys.begin(), keys.end());
   return d;
-}
-
-/// An analysis whose keys are not known yet.
-AnalysisDescription announce(std::string_view name, std::string_view summary) {
-  return {name, summary, "", false, true, {type, outputs, set, from}};
 }
 
 std::vector<AnalysisDescription> describe_all() {

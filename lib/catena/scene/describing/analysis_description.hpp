@@ -43,7 +43,6 @@ struct AnalysisDescription {
   std::string_view type, summary;
   std::string_view results;  ///< its result fields besides rows, for explain
   bool timed = false;        ///< rows at instants of time
-  bool announced = false;    ///< not built yet: refused whatever its keys, and not offered
   std::vector<AnalysisKey> keys;
 
   const AnalysisKey* find(std::string_view key) const;

@@ -149,7 +149,7 @@ std::string explain_analysis(const AnalysisDescription& type) {
 
 std::optional<std::string> explain(std::string_view name) {
   if (const ElementDescription* type = find_element_type(name)) return explain_element(*type);
-  if (const AnalysisDescription* type = find_analysis_type(name); type && !type->announced)
+  if (const AnalysisDescription* type = find_analysis_type(name); type)
     return explain_analysis(*type);
   for (const ExplainedTopic& topic : explained_topics()) {
     for (const std::string_view known : topic.names) {
@@ -163,7 +163,7 @@ std::vector<std::string> explained_names() {
   std::vector<std::string> names;
   for (const ElementDescription& type : element_descriptions()) names.emplace_back(type.type);
   for (const AnalysisDescription& type : analysis_descriptions()) {
-    if (!type.announced) names.emplace_back(type.type);
+    names.emplace_back(type.type);
   }
   for (const ExplainedTopic& topic : explained_topics())
     names.insert(names.end(), topic.names.begin(), topic.names.end());

@@ -244,7 +244,7 @@ json definitions() {
     if (type.can_be_driven()) drivers.push_back(element_schema(type, true));
   }
   for (const AnalysisDescription& type : analysis_descriptions()) {
-    if (!type.announced) analyses.push_back(analysis_schema(type));
+    analyses.push_back(analysis_schema(type));
   }
   json block = sections();
   block["count"] = described(reference("number"), "how often the block is repeated");

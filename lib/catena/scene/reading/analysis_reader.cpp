@@ -197,11 +197,7 @@ std::optional<AnalysisTask> AnalysisReader::read(const JsonValue& object, const 
   std::vector<std::string_view> keys;
   for (const AnalysisKey& key : known) keys.push_back(key.name);
   std::vector<JsonValue> values(keys.size());
-  if (task.description->announced) {
-    for (std::size_t k = 0; k < keys.size(); ++k) values[k] = object.find(keys[k]);
-  } else {
-    read_members(object, keys, task.type(), values, diagnostics_);
-  }
+  read_members(object, keys, task.type(), values, diagnostics_);
 
   JsonValue set;
   for (std::size_t k = 0; k < keys.size(); ++k) {

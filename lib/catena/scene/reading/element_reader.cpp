@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t most_keys = 32;
 // Types that the format has, but this version does not know.
-constexpr std::array<std::string_view, 1> announced{"friction"};
+constexpr std::array<std::string_view, 1> announced{"rope"};
 
 /// `revolute "A"`, or the type alone for an element without a name.
 std::string owner_text(std::string_view type, const JsonValue& name) {

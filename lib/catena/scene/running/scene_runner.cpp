@@ -280,11 +280,6 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
   const AnalysisTask task = with_handed_on(read, unfit);
   result.type = task.type();
   const AnalysisFunction function = analysis_function(task.type());
-  if (!function) {
-    result.report.status = Status::refused;
-    result.report.message = fmt::format("{} is not built yet", task.type());
-    return result;
-  }
   // Elsewhere a gap would have to be part of the equilibrium whose stability is asked for.
   const auto allows_gaps = [](const AnalysisTask& one) {
     return one.type() != "modes" && one.type() != "path" && one.type() != "buckling";
