@@ -78,8 +78,8 @@ struct Saturating {
   double strength, reach, grain;
   template <class T>
   void force(const ForceArguments<T>& a, Wrench<T>& on_i, Wrench<T>& on_j) const {
-    using std::atan;
-    const Vec2<T> pull{T(strength) * atan((a.j.x - a.i.x) / T(reach)), T(0.0)};
+    using std::atan2;
+    const Vec2<T> pull{T(strength) * atan2((a.j.x - a.i.x) / T(reach), T(1.0)), T(0.0)};
     add_force_at(Vec2<T>{}, pull, on_i);
     add_force_at(Vec2<T>{}, -pull, on_j);
   }

@@ -168,7 +168,9 @@ Report Dynamics::find_events(double from, RowObserver& observer) {
       if (const Report given = give_row(grid_[next_row_++], observer); !given.ok()) return given;
     }
     if (events_->is_transition(*found)) {
-      if (!state_at(found->t)) return stuck();
+      const std::optional<Snapshot> end = state_at(found->t);
+      if (!end) return stuck();
+      if (balance_) balance_->observe(*end);
       stopped_by_ = found->event;
       t_ = found->t;
       return {};

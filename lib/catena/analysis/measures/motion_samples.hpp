@@ -3,8 +3,8 @@
 // A stretch [a, b] is looked at at its ends and at the seven nodes of the Gauss-Kronrod rule between them. The quartic
 // through five of these samples must foretell the other four to 1e-5 of the column's size; else the stretch is halved.
 // The quartic's error falls with the fifth power of the length, that of the rule of seven nodes with the eleventh or
-// twelfth: where the one is 1e-5 the other is about 1e-11 of the integral. Halving ends after twelve times, at kinks.
-// Source: R. Piessens et al., QUADPACK (1983), for the rule.
+// twelfth: where the one is 1e-5 the other is about 1e-11 of the integral. Halving ends after twelve times, at kinks,
+// and earlier where it meets nothing but rounding. Source: R. Piessens et al., QUADPACK (1983), for the rule.
 #pragma once
 
 #include <array>
@@ -52,9 +52,12 @@ class MotionSamples {
   std::span<const double> sizes() const { return size_; }
 
  private:
-  bool cover_part(const MotionStretch& stretch, const MotionSample& a, const MotionSample& b, int depth,
+  /// Takes the samples between a and b; false where the motion could not be looked at.
+  bool fill(const MotionStretch& stretch, const MotionSample& a, const MotionSample& b, Part& part);
+  bool cover_part(const MotionStretch& stretch, const Part& part, int depth,
                   const std::function<void(const Part&, const MotionStretch&)>& use);
-  bool is_resolved(const Part& part) const;
+  /// By how much the quartic misses the samples that it must foretell, in parts of the columns' sizes.
+  double misfit(const Part& part) const;
 
   const ColumnSet& columns_;
   std::vector<double> size_;
