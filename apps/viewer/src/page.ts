@@ -86,6 +86,7 @@ export class Page {
     makeStageTools(this);
     const bad = analysis.status !== "ok";
     byId("status").textContent = bad ? `${analysis.status}: ${analysis.message}` : analysis.status;
+    byId("status").title = analysis.message;
     byId("status").className = bad ? "bad" : "";
     this.player.show(this.motion);
     this.makeMarks();
