@@ -16,7 +16,7 @@ while read -r _ arguments; do
   commands=$((commands + 1))
   # shellcheck disable=SC2086  # the words of the line are the arguments
   "$program" $arguments
-done < <(grep -E '^catena (draw|plot) .*--svg [a-z_]+\.svg$' "$source_dir/README.md")
+done < <(grep -E '^catena (draw|plot) .*--svg [a-z_]+\.svg$' "$source_dir"/README.md)
 
 differences=0
 for figure in *.svg; do

@@ -1,5 +1,4 @@
-// What an analysis says of its own outcome. Numerical outcomes are values, never exceptions; the names are those of
-// the result files.
+// The outcome of an analysis. Numerical outcomes are values, never exceptions; the names are those of the result files.
 #pragma once
 
 #include <string>

@@ -52,7 +52,12 @@ class RowValues {
       case ColumnKind::multiplier:
         return reactions(column).multiplier[column.detail];
       case ColumnKind::push:
+        if (!s_.contact_force.empty()) return s_.contact_force[static_cast<std::size_t>(column.index)];
         return 0 - reactions(column).multiplier[0];
+      case ColumnKind::friction:
+        return s_.contact_friction.empty() ? 0 : s_.contact_friction[static_cast<std::size_t>(column.index)];
+      case ColumnKind::slip:
+        return s_.contact_slip.empty() ? 0 : s_.contact_slip[static_cast<std::size_t>(column.index)];
       case ColumnKind::gap:
         return evaluator_.measure(column.index, {}, {}).value;
       case ColumnKind::slack:
@@ -193,7 +198,7 @@ class RowValues {
   }
 
   double potential() {
-    if (!potential_) potential_ = evaluator_.potential_energy();
+    if (!potential_) potential_ = evaluator_.potential_energy() + s_.contact_energy;
     return *potential_;
   }
   double kinetic() {
@@ -224,7 +229,8 @@ void ColumnSet::evaluate(const Snapshot& snapshot, std::span<double> out) const 
     throw std::invalid_argument("columns: the row is of another model than the one they were resolved for");
   const auto require = [](bool needed, std::span<const double> values, std::size_t size, const char* what) {
     if (needed && values.size() < size)
-      throw std::invalid_argument(std::string("columns: the row has no ") + what + "; an analysis wants needs()");
+      throw std::invalid_argument(std::string("columns: the row has no ") + what +
+                                  "; an analysis must compute needs()");
   };
   require(needs_.velocity, snapshot.qd, coordinates_, "velocities");
   require(needs_.acceleration, snapshot.qdd, coordinates_, "accelerations");

@@ -26,7 +26,7 @@ double kinetic_energy(const Snapshot& snapshot) {
 }
 
 double total_energy(const Snapshot& snapshot) {
-  return kinetic_energy(snapshot) + snapshot.evaluator.potential_energy();
+  return kinetic_energy(snapshot) + snapshot.evaluator.potential_energy() + snapshot.contact_energy;
 }
 
 Momentum momentum(const Snapshot& snapshot) {

@@ -1,4 +1,4 @@
-// What a constraint exerts on its bodies, from its multipliers: THEORY section 4.
+// What a constraint exerts on its bodies, from its multipliers (apps/manual/dynamics.md#reactions).
 //
 //   force F = -Phi_r^T lambda        torque T = -(Phi_phi^T - (R A s'P)^T Phi_r^T) lambda
 //
@@ -19,7 +19,7 @@ struct Reaction {
 struct ElementReactions {
   Reaction on_i, on_j;     ///< equal for absolute constraints, which act on one body
   Vec2<double> joint_x;    ///< unit vector of the joint's first axis, in the ground frame
-  double multiplier[3]{};  ///< of THEORY's forms, one a row
+  double multiplier[3]{};  ///< of the published equations
 };
 
 /// Needs snapshot.lambda; the element must have rows in the plan, or be released: then there are none.

@@ -4,8 +4,8 @@
 //   |x| = max_k |x_k| u_k        u_k = 1 / length scale for x, y and residuals in metres, 1 for angles
 //
 // A large scene does not fit into the caches, so that a pass over a vector costs memory traffic, not arithmetic: `scan`
-// measures vectors in the same pass that computes or moves them, and reads no units where they repeat. Norms of vectors
-// with an entry that is not finite are NaN.
+// measures vectors in the same pass that computes or moves them, and skips the units where they repeat. Norms of
+// vectors with an entry that is not finite are NaN.
 #pragma once
 
 #include <array>

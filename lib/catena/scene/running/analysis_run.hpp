@@ -1,4 +1,4 @@
-// One analysis of a scene at work: what it gets, what it gives back; the table from types to functions that run them.
+// One analysis of a scene: its input and output, and the table from types to functions that run them.
 #pragma once
 
 #include <algorithm>
@@ -16,6 +16,7 @@
 #include "catena/results/column_rows.hpp"
 #include "catena/results/pose_sink.hpp"
 #include "catena/scene/reading/analysis_task.hpp"
+#include "catena/scene/running/gap_watch.hpp"
 #include "catena/scene/running/gear_check.hpp"
 #include "catena/scene/running/scene_checkpoints.hpp"
 
@@ -53,7 +54,7 @@ void run_modes(AnalysisContext& context, AnalysisResult& result);
 void run_path(AnalysisContext& context, AnalysisResult& result);
 void run_buckling(AnalysisContext& context, AnalysisResult& result);
 
-/// What runs an analysis of this type; nullptr if nothing does yet.
+/// The function that runs an analysis of this type; nullptr if none does.
 AnalysisFunction analysis_function(std::string_view type);
 
 /// The instants at which the task wants rows, or nothing, with the report refused: before the present time, or outside
@@ -62,7 +63,7 @@ std::optional<TimeGrid> time_grid(const AnalysisContext& context, Report& report
 /// The instant at which a static analysis is made.
 double frozen_time(const AnalysisContext& context);
 
-/// Sends rows on and tells how far the analysis has come.
+/// Passes rows on and reports the progress of the analysis.
 class ReportingRows final : public RowObserver {
  public:
   /// `last`: the instant at which the analysis ends, or the present one.
@@ -72,6 +73,7 @@ class ReportingRows final : public RowObserver {
   bool observe(const Snapshot& snapshot) override {
     tell(snapshot.t);
     if (context_.poses) context_.poses->pose(snapshot);
+    if (gaps) gaps->observe(snapshot);
     return rows_.observe(snapshot);
   }
   bool proceed(double t) override {
@@ -79,6 +81,7 @@ class ReportingRows final : public RowObserver {
     return !(context_.cancel && context_.cancel->load(std::memory_order_relaxed));
   }
   std::int64_t rows() const { return rows_.rows(); }
+  GapWatch* gaps = nullptr;  ///< looks at the rows too; may be none
 
  private:
   void tell(double t) const {
@@ -91,7 +94,7 @@ class ReportingRows final : public RowObserver {
   double first_, last_;
 };
 
-/// Ends an analysis that was asked for what cannot be done.
+/// Ends an analysis whose request cannot be met.
 inline void refuse(AnalysisResult& result, std::string message) {
   result.report.status = Status::refused;
   result.report.message = std::move(message);
@@ -103,18 +106,22 @@ Needs needs_of(const AnalysisContext& context, const ColumnSet& columns, const C
 /// The names whose reactions must be solved for, as plan options.
 PlanOptions plan_options(const Model& model, const std::vector<std::string>& outputs);
 
-/// Takes over what an analysis said, in the order: outcome, columns, notes.
+/// Takes over the report of an analysis, in the order: outcome, columns, notes.
 void take_report(AnalysisResult& result, AnalysisReport report, const ColumnSet* columns, std::int64_t rows);
 
 /// Runs an analysis that goes through time, from the present state, and leaves the state where it ended.
 template <class Analysis>
 void run_over_time(AnalysisContext& context, AnalysisResult& result, Analysis& analysis, const TimeGrid& grid,
                    const std::vector<std::string>& outputs, const ColumnSources& sources) {
-  const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), outputs, sources);
+  // Of the model that is analysed: motion with friction adds equations to that of the scene.
+  const ColumnSet columns = ColumnSet::resolve(analysis.evaluator().model(), analysis.plan(), outputs, sources);
   analysis.start_from(context.state);
   if (context.trace) analysis.evaluator().trace = &context.trace;
   ReportingRows rows(columns, context, grid.last());
+  GapWatch gaps(*context.model);
+  if (sources.analysis != "dynamics") rows.gaps = &gaps;
   AnalysisReport report = analysis.run(grid, needs_of(context, columns, sources), rows);
+  for (std::string& doubt : gaps.warnings()) report.warnings.push_back(std::move(doubt));
   for (std::string& doubt : gears_that_do_not_fit(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
   context.state = analysis.state();
   take_report(result, std::move(report), &columns, rows.rows());

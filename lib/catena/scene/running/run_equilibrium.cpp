@@ -1,6 +1,10 @@
 // equilibrium: the configuration at rest, certified.
 #include <fmt/format.h>
 
+#include "catena/analysis/contact/contact_points.hpp"
+#include "catena/analysis/contact/holding.hpp"
+#include "catena/analysis/run/process_time.hpp"
+#include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/statics/equilibrium.hpp"
 #include "catena/analysis/statics/static_ipopt.hpp"
 #include "catena/analysis/statics/static_nlopt.hpp"
@@ -8,9 +12,54 @@
 #include "catena/scene/running/drawn_shapes.hpp"
 
 namespace catena {
+namespace {
+
+/// Whether friction can hold the position that there is.
+void run_holding(AnalysisContext& context, AnalysisResult& result) {
+  const ProcessTimer timer;
+  const std::vector<std::string> names = context.task.output_names();
+  ContactHolding analysis(context.model);
+  Evaluator& evaluator = analysis.evaluator();
+  const ColumnSet columns =
+      ColumnSet::resolve(evaluator.model(), evaluator.plan(), names, {.analysis = context.task.type()});
+  SystemState start = context.state;
+  start.t = frozen_time(context);
+  ReportingRows rows(columns, context, start.t);
+  std::vector<double> q;
+  const Holding holding = analysis.find(start, q);
+  AnalysisReport report;
+  report.status = holding.status;
+  report.message = holding.message;
+  if (holding.ok()) {
+    rows.observe({.evaluator = evaluator, .t = start.t, .q = q});
+    context.state.q = state_of(evaluator, start.t, q).q;
+    result.fields = {{"held", holding.held()}};
+    if (holding.utilisation) result.fields.push_back({"utilisation", *holding.utilisation});
+    if (!holding.utilisation) report.warnings.push_back("no friction, however large, can hold this position");
+  }
+  report.counters = evaluator.counters;
+  report.seconds = timer.seconds();
+  take_report(result, std::move(report), &columns, rows.rows());
+}
+
+/// What equilibrium leaves out, in words; nothing if there is no friction.
+std::string friction_left_out(const Model& model) {
+  const ContactModel contacts = contact_points(std::shared_ptr<const Model>(&model, [](const Model*) {}));
+  for (const ContactPoint& point : contacts.points) {
+    if (!point.has_friction()) continue;
+    return fmt::format(
+        "dry friction (\"{}\") is left out: the position is that without any; \"friction\": \"hold\" asks whether it "
+        "holds the given one",
+        model.element_name(point.element));
+  }
+  return {};
+}
+
+}  // namespace
 
 void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   const AnalysisTask& task = context.task;
+  if (task.word("friction") == 1) return run_holding(context, result);
   // In the order of the keys' words.
   constexpr StaticSolver solvers[] = {StaticSolver::automatic, StaticSolver::newton, StaticSolver::ipopt,
                                       StaticSolver::nlopt};
@@ -50,8 +99,10 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   analysis.start_from(start);
   if (context.trace) analysis.evaluator().trace = &context.trace;
   ReportingRows rows(columns, context, start.t);
-  const EquilibriumReport report = analysis.run(TimeGrid::instant(start.t), needs_of(context, columns, sources), rows);
+  EquilibriumReport report = analysis.run(TimeGrid::instant(start.t), needs_of(context, columns, sources), rows);
   context.state = analysis.state();
+  if (std::string left_out = friction_left_out(*context.model); !left_out.empty())
+    report.warnings.push_back(std::move(left_out));
   if (report.certified) {
     result.fields = {{"energy", report.energy},
                      {"stable", report.stable},

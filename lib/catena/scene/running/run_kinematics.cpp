@@ -32,9 +32,16 @@ void add_singular_points(AnalysisResult& result, const std::vector<SingularPoint
   result.fields.push_back({"singular", std::move(records)});
 }
 
+/// One-sided elements do not take part: they are watched.
+PlanOptions plan_without_gaps(const Model& model, const std::vector<std::string>& outputs) {
+  PlanOptions options = plan_options(model, outputs);
+  options.released_elements = model.gaps();
+  return options;
+}
+
 /// Whether constraints and drivers determine the motion where the analysis starts.
 bool is_driven(const AnalysisContext& context) {
-  Kinematics analysis(context.model);
+  Kinematics analysis(context.model, plan_without_gaps(*context.model, {}));
   analysis.start_from(context.state);
   RowFunction nothing([](const Snapshot&) { return true; });
   return analysis.run(TimeGrid::instant(context.state.t), {}, nothing).status != Status::under_driven;
@@ -63,11 +70,11 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
                     "\"minimum_norm\" is for kinematics alone: motions that nothing drives would need forces of their "
                     "own; add drivers");
     }
-    MinimumNormMotion analysis(context.model, plan_options(*context.model, names));
+    MinimumNormMotion analysis(context.model, plan_without_gaps(*context.model, names));
     run_over_time(context, result, analysis, *grid, names, sources);
     return add_singular_points(result, analysis.singular_points(), *context.model);
   }
-  Kinematics analysis(context.model, plan_options(*context.model, names), options);
+  Kinematics analysis(context.model, plan_without_gaps(*context.model, names), options);
   run_over_time(context, result, analysis, *grid, names, sources);
   add_singular_points(result, analysis.singular_points(), *context.model);
 }
