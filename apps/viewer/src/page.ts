@@ -117,7 +117,8 @@ export class Page {
       for (const record of records as Record<string, unknown>[]) {
         const t = typeof record.t === "number" ? record.t : undefined;
         const row = typeof record.row === "number" ? record.row : t === undefined ? 0 : this.rowAtTime(t);
-        marks.push({ row, t, label: String(record.name ?? record.kind ?? key) });
+        const words = [record.name, record.kind].filter((word) => typeof word === "string");
+        marks.push({ row, t, label: words.join(" ").replace(/_/g, " ") || key });
       }
     }
     return marks;
