@@ -1,5 +1,7 @@
 // Pages of all kinds of analyses, of scenes that go wrong, and of names that look like markup.
 
+import { readFileSync, writeFileSync } from "node:fs";
+
 import { check, equal, makePage, near, outputFolder, settle, test, writeScene } from "./page_test.mjs";
 
 const markup = "<script>window.broken = true</script><img src=x onerror='window.broken = true'>";
@@ -90,6 +92,22 @@ await test({}, async (page) => {
 
   await page.run(`catena.showAnalysis(${types.indexOf("dynamics")})`);
   check((await page.run("return document.querySelectorAll('#marks button').length")) > 0, "events on the time bar");
+
+  // Analyses that no page knows yet: rows of a sweep, and of something without a name here.
+  for (const type of ["sweep", "other"]) {
+    const unknown = `${outputFolder}/${type}.html`;
+    const text = readFileSync(pages.rods.page, "utf8");
+    check(text.includes('"type":"path"'), "the data name the type of an analysis");
+    writeFileSync(unknown, text.replace('"type":"path"', `"type":"${type}"`));
+    await page.open(unknown);
+    await page.run(`catena.showAnalysis(${types.indexOf("path")}); catena.showTab("plots")`);
+    await settle(page);
+    check((await page.run("return document.querySelectorAll('.plot canvas').length")) > 0, `plots of ${type}`);
+    equal(await page.run("return catena.plots.parallel !== null"), type === "sweep", `parallel axes of ${type}`);
+    await page.screenshot(`${outputFolder}/${type}.png`);
+    await page.run('catena.showTab("table")');
+    check((await page.run("return document.querySelectorAll('#panel tr').length")) > 3, `table of ${type}`);
+  }
 
   for (const name of ["empty", "single", "stuck"]) {
     await page.open(pages[name].page);

@@ -5,8 +5,11 @@
 
 #include <cmath>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <set>
 
 #include "catena/scene/viewing/packed_numbers.hpp"
 #include "catena/scene/viewing/viewer_page.hpp"
@@ -105,6 +108,30 @@ TEST(ViewDocument, HasTheFieldsOfItsVersion) {
   }
   EXPECT_EQ(page.at("analyses")[1].at("shapes").size(), 1u) << "a pendulum has one mode";
   EXPECT_EQ(page.at("analyses")[2].at("poses").at("count"), 1) << "check shows the mechanism as it was assembled";
+}
+
+/// Names of all fields of an object and of the objects in it, but for those that scenes and analyses name themselves.
+void collect_fields(const json& value, std::set<std::string>& names) {
+  if (value.is_array() && !value.empty()) collect_fields(value[0], names);
+  if (!value.is_object()) return;
+  for (const auto& [name, member] : value.items()) {
+    names.insert(name);
+    if (name != "fields" && name != "parameters" && name != "set") collect_fields(member, names);
+  }
+}
+
+TEST(ViewDocument, EveryFieldIsInTheManual) {
+  std::ifstream in(CATENA_DATA_DIR "/../apps/manual/viewer.md");
+  const std::string manual((std::istreambuf_iterator<char>(in)), {});
+  ASSERT_FALSE(manual.empty());
+  std::set<std::string> names;
+  collect_fields(json::parse(view_document(record_text(pendulum).record())), names);
+  EXPECT_GT(names.size(), 40u);
+  for (const std::string& name : names) {
+    const bool told =
+        manual.find("`" + name + "`") != std::string::npos || manual.find("\"" + name + "\"") != std::string::npos;
+    EXPECT_TRUE(told) << name;
+  }
 }
 
 // The columns of the run give the author's frames; of these bodies that is the centroid.

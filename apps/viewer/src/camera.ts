@@ -25,16 +25,17 @@ export class Camera {
     return (this.height / 2 - py) / this.scale + this.y;
   }
 
-  fit(low: [number, number], high: [number, number], room: number): void {
+  /** `top`: px at the upper edge that stay free, for buttons. */
+  fit(low: [number, number], high: [number, number], room: number, top: number): void {
     const wide = Math.max(1, this.width - 2 * room);
-    const tall = Math.max(1, this.height - 2 * room);
+    const tall = Math.max(1, this.height - top - 2 * room);
     const dx = high[0] - low[0];
     const dy = high[1] - low[1];
     this.scale = Math.min(dx > 0 ? wide / dx : Infinity, dy > 0 ? tall / dy : Infinity);
     if (!isFinite(this.scale)) this.scale = 100;
     this.fitted = this.scale;
     this.x = (low[0] + high[0]) / 2;
-    this.y = (low[1] + high[1]) / 2;
+    this.y = (low[1] + high[1]) / 2 + top / 2 / this.scale;
   }
 
   /** Zooms so that the place under the pixel stays where it is. */

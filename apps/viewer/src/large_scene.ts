@@ -39,7 +39,7 @@ function compile(gl: WebGLRenderingContext): WebGLProgram | null {
   return gl.getProgramParameter(program, gl.LINK_STATUS) ? program : null;
 }
 
-/** Whether WebGL is computed by the processor: smooth edges then cost half of the pictures (4.4 a second in place of 9.5
+/** Whether WebGL is computed by the processor: smooth edges then cost half of the pictures (4.4 a second, not 9.5,
  * with 10^5 links on two shared cores). */
 function isSoftware(): boolean {
   const gl = document.createElement("canvas").getContext("webgl");

@@ -86,6 +86,7 @@ export class Page {
     makeStageTools(this);
     const bad = analysis.status !== "ok";
     byId("status").textContent = bad ? `${analysis.status}: ${analysis.message}` : analysis.status;
+    byId("status").title = analysis.message;
     byId("status").className = bad ? "bad" : "";
     this.player.show(this.motion);
     this.makeMarks();
@@ -116,7 +117,8 @@ export class Page {
       for (const record of records as Record<string, unknown>[]) {
         const t = typeof record.t === "number" ? record.t : undefined;
         const row = typeof record.row === "number" ? record.row : t === undefined ? 0 : this.rowAtTime(t);
-        marks.push({ row, t, label: String(record.name ?? record.kind ?? key) });
+        const words = [record.name, record.kind].filter((word) => typeof word === "string");
+        marks.push({ row, t, label: words.join(" ").replace(/_/g, " ") || key });
       }
     }
     return marks;

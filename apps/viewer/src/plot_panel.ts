@@ -1,13 +1,13 @@
 // The tab with the plots: which columns, zoom, files.
 
+import { columnChooser, mostListed } from "./column_chooser";
 import { button, make } from "./dom";
 import { save, saveCanvas } from "./files";
 import { CanvasPainter, SvgPainter } from "./painter";
+import { ParallelPlot } from "./parallel_plot";
 import { Plot, PlotMark } from "./plot";
 import { Table } from "./table";
 import { css, Theme } from "./theme";
-
-const mostListed = 400;
 
 interface View {
   plot: Plot;
@@ -21,6 +21,7 @@ export class PlotPanel {
   private marks: PlotMark[] = [];
   private unstable: boolean[] | null = null;
   private cursor = -1;
+  private parallel: { plot: ParallelPlot; canvas: HTMLCanvasElement } | null = null;
 
   constructor(private readonly root: HTMLElement, public theme: Theme,
               private readonly chosen: (row: number) => void) {}
@@ -37,7 +38,20 @@ export class PlotPanel {
     }
     const adder = button("+ plot", "add a plot", () => this.add(0, [Math.min(1, table.names.length - 1)], true));
     this.root.append(make("div", {}, adder));
+    this.parallel = table.analysis.type === "sweep" ? this.addParallel() : null;
     for (const { x, ys } of this.firstPlots()) this.add(x, ys, false);
+  }
+
+  private addParallel() {
+    const plot = new ParallelPlot(this.table);
+    if (!plot.worthwhile) return null;
+    const canvas = make("canvas", { role: "img", "aria-label": "parallel coordinates" });
+    canvas.addEventListener("click", (event) => {
+      const box = canvas.getBoundingClientRect();
+      this.chosen(this.table.numberOf(plot.rowNear(event.clientX - box.left, event.clientY - box.top)));
+    });
+    this.root.append(make("div", { class: "plot" }, canvas));
+    return { plot, canvas };
   }
 
   /** Columns of one unit together, at most three plots; of a path the load over the first displacement. */
@@ -112,7 +126,7 @@ export class PlotPanel {
     const columns = button("columns", "which columns", () => {
       const open = box.querySelector(".chooser");
       if (open) open.remove();
-      else box.append(this.chooser(view));
+      else box.append(columnChooser(plot, () => (plot.resetZoom(), this.draw())));
     });
     return make("div", { class: "tools" }, x, columns,
                 toggle("log x", "logarithmic horizontal axis", () => (plot.logX = !plot.logX)),
@@ -126,34 +140,6 @@ export class PlotPanel {
                   this.views = this.views.filter((other) => other !== view);
                   box.remove();
                 }));
-  }
-
-  private chooser(view: View): HTMLElement {
-    const list = make("div", { class: "chooser" });
-    const search = make("input", { type: "search", placeholder: "search columns", "aria-label": "search columns" });
-    const items = make("div");
-    const fill = () => {
-      items.replaceChildren();
-      const wanted = search.value.toLowerCase();
-      const found = this.table.names.map((name, k) => ({ name, k }))
-          .filter(({ name }) => name.toLowerCase().includes(wanted));
-      for (const { name, k } of found.slice(0, mostListed)) {
-        const box = make("input", { type: "checkbox" });
-        box.checked = view.plot.ys.includes(k);
-        box.addEventListener("change", () => {
-          view.plot.ys = box.checked ? [...view.plot.ys, k] : view.plot.ys.filter((y) => y !== k);
-          view.plot.resetZoom();
-          this.draw();
-        });
-        items.append(make("label", {}, box, " ", name));
-      }
-      const more = found.length - mostListed;
-      if (more > 0) items.append(make("p", { class: "note" }, `${more} more: search`));
-    };
-    search.addEventListener("input", fill);
-    fill();
-    list.append(search, items);
-    return list;
   }
 
   private listen(view: View): void {
@@ -208,6 +194,10 @@ export class PlotPanel {
 
   draw(): void {
     for (const view of this.views) this.drawView(view);
+    if (!this.parallel) return;
+    const { plot, canvas } = this.parallel;
+    if (canvas.isConnected && canvas.clientWidth > 0) plot.width = canvas.clientWidth;
+    this.drawOn(canvas, plot, false);
   }
 
   private drawView(view: View): void {
@@ -222,7 +212,7 @@ export class PlotPanel {
     }));
   }
 
-  private drawOn(canvas: HTMLCanvasElement, plot: Plot, onPaper: boolean): void {
+  private drawOn(canvas: HTMLCanvasElement, plot: Plot | ParallelPlot, onPaper: boolean): void {
     const ratio = window.devicePixelRatio || 1;
     canvas.width = Math.round(plot.width * ratio);
     canvas.height = Math.round(plot.height * ratio);

@@ -34,13 +34,15 @@ function recordTable(records: FieldRecord[], chosen: (record: FieldRecord) => vo
 function modeTable(analysis: Analysis, present: number, chosen: (mode: number) => void): HTMLElement {
   const omega2 = (analysis.fields.omega2 ?? []) as number[];
   const loads = (analysis.fields.loads ?? []) as number[];
-  const head = loads.length > 0 ? ["shape", "load"] : ["mode", "omega² [1/s²]", "frequency [Hz]"];
+  const head = loads.length > 0    ? ["shape", "load"]
+               : omega2.length > 0 ? ["mode", "omega² [1/s²]", "frequency [Hz]"]
+                                   : ["mode"];
   const rows = analysis.shapes.map((_, k) => {
     const squared = omega2[k];
     const frequency = squared === undefined ? "" : squared >= 0 ? short(Math.sqrt(squared) / (2 * Math.PI)) : "grows";
     const cells = loads.length > 0 ? [String(k + 1), show(loads[k])] : [String(k + 1), show(squared), frequency];
     const row = make("tr", { tabindex: "0", class: k === present ? "chosen" : "" },
-                     ...cells.map((c) => make("td", {}, c)));
+                     ...cells.slice(0, head.length).map((c) => make("td", {}, c)));
     row.addEventListener("click", () => chosen(k));
     row.addEventListener("keydown", (event) => event.key === "Enter" && chosen(k));
     return row;

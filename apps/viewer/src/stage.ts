@@ -94,7 +94,8 @@ export class Stage {
 
   fit(): void {
     this.resize();
-    this.camera.fit(this.extentLow, this.extentHigh, Math.min(room, this.camera.width / 6));
+    const buttons = Math.min(byId("stage-tools").offsetHeight, this.camera.height / 4);
+    this.camera.fit(this.extentLow, this.extentHigh, Math.min(room, this.camera.width / 6), buttons);
     this.changed();
   }
 

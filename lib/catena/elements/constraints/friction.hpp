@@ -51,6 +51,10 @@ struct Friction {
                     "of the guide of a translational joint (default: its moment presses nothing)"});
   }
 
+  /// No picture of its own: that of its joint.
+  template <class Pen>
+  void draw(Pen&) const {}
+
   bool in_angle() const { return turns; }
   void complete(const Frame<S>&, const Frame<S>&) { normalise(axis_i); }
   const char* check() const {

@@ -20,7 +20,7 @@ struct RecordLimits {
   std::size_t pose_values = 18'000'000;
   std::size_t column_values = 1'500'000;
   std::size_t columns = 600;       ///< kept of an analysis, the first ones
-  std::size_t arrow_bodies = 400;  ///< scenes with more bodies and elements get no arrows
+  std::size_t arrow_bodies = 400;  ///< bodies and elements of scenes with arrows: more arrows hide what they point at
 };
 
 /// Where the parts of a pose stand in its row.
