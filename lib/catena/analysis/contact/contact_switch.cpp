@@ -224,7 +224,7 @@ Report ContactSwitch::choose(double t, std::span<const double> q, std::span<cons
     if (points_[k].has_friction()) {
       problem.b[2 * a + 1] = slide_[k].bend + product(slide_[k], qdd_);
       place.slip = sign(slide_[k].rate, none);
-      if (static_cast<int>(k) == cause.place && cause.rests) place.slip = 0;
+      if (static_cast<int>(k) == cause.place && cause.rests) place.slip = cause.leaves;
     }
   }
   // What presses a joint depends on the forces themselves.

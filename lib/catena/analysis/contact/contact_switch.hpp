@@ -46,6 +46,7 @@ class ContactSwitch {
   struct Cause {
     int place = -1;      ///< the one that changed; -1: something else did
     bool rests = false;  ///< its slide is at rest, to rounding
+    int leaves = 0;      ///< sign of the slip with which it leaves a state of sticking: friction has reached its limit
     bool tell = true;    ///< changes of places are events; impacts always are
   };
   /// Changes qd by impacts, and `states` to what holds from t on.

@@ -152,7 +152,10 @@ Report ContactPhases::change(int transition, SystemState& state) {
     states_[watched.place].direction = 0;
   }
   switch_->know_speed(loads_->speed());
-  return decide(state, {.place = static_cast<int>(watched.place), .rests = watched.ends == End::slide});
+  ContactSwitch::Cause cause{.place = static_cast<int>(watched.place), .rests = watched.ends == End::slide};
+  // What stuck goes the way that friction no longer prevents; by rounding alone the limit might seem not to be reached.
+  if (cause.rests && states_[watched.place].direction == 0) cause.leaves = loads_->friction(watched.place) > 0 ? -1 : 1;
+  return decide(state, cause);
 }
 
 void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std::vector<Transition>& transitions) {
