@@ -213,6 +213,10 @@ Report ContactSwitch::choose(double t, std::span<const double> q, std::span<cons
   equations_.attach(nullptr);
   if (!finite) return wedged(t);
   std::erase_if(active_, [&](std::size_t k) { return points_[k].kind == ContactKind::rigid && gap_[k].rate > none; });
+  if (cause.opens) {
+    states[static_cast<std::size_t>(cause.place)] = {};
+    std::erase(active_, static_cast<std::size_t>(cause.place));
+  }
   if (active_.empty()) return {};
   find_responses();
   ContactProblem problem(active_.size());

@@ -45,6 +45,7 @@ class ContactSwitch {
   /// Why contacts are decided about.
   struct Cause {
     int place = -1;      ///< the one that changed; -1: something else did
+    bool opens = false;  ///< nothing presses it any more, to rounding
     bool rests = false;  ///< its slide is at rest, to rounding
     int leaves = 0;      ///< sign of the slip with which it leaves a state of sticking: friction has reached its limit
     bool tell = true;    ///< changes of places are events; impacts always are

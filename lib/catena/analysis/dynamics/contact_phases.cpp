@@ -153,6 +153,7 @@ Report ContactPhases::change(int transition, SystemState& state) {
   }
   switch_->know_speed(loads_->speed());
   ContactSwitch::Cause cause{.place = static_cast<int>(watched.place), .rests = watched.ends == End::slide};
+  cause.opens = watched.ends == End::contact && states_[watched.place].closed;
   // What stuck goes the way that friction no longer prevents; by rounding alone the limit might seem not to be reached.
   if (cause.rests && states_[watched.place].direction == 0) cause.leaves = loads_->friction(watched.place) > 0 ? -1 : 1;
   return decide(state, cause);
