@@ -308,5 +308,67 @@ TEST(ContactMotion, PinsRubWheelsToAStop) {
   }
 }
 
+// A block that a belt carries along: it comes loose where the spring pulls mu_static N, slips, and sticks again where
+// it has the belt's speed; over and over, at instants in closed form.
+TEST(ContactMotion, BlocksStickAndSlipOnBelts) {
+  for (unsigned seed = 1; seed <= 25; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    const double mass = random(0.5, 2), k = random(30, 150), mu = random(0.1, 0.3),
+                 more = seed % 5 == 0 ? 1 : random(1.1, 2);
+    const double speed = random(0.05, 0.4), omega = std::sqrt(k / mass), centre = mu * mass * g / k;
+    const double loose = more * centre, first = loose / speed;
+    const double angle = 2 * M_PI - 2 * std::atan((loose - centre) * omega / speed);
+    const double second = first + angle / omega, stuck_at = 2 * centre - loose,
+                 third = second + (loose - stuck_at) / speed;
+    const bool sticks = more > 1;
+    const double end = third + 0.3 / omega;
+    const TextRun run = run_text(
+        R"({"catena":1, "gravity":[0,-9.81], "bodies": {"belt": {"mass": 1, "inertia": 1, "velocity": )" +
+        pair_of(speed, 0) + R"(}, "block": {"particle": true, "mass": )" + text_of(mass) + R"(, "velocity": )" +
+        pair_of(speed, 0) + R"(}}, "constraints": [{"type": "absolute_y", "i": "belt", "value": 0},
+        {"type": "absolute_angle", "i": "belt", "value": 0}], "drivers": [{"type": "absolute_x", "i": "belt",
+        "value": {"polynomial": [0, )" +
+        text_of(speed) + R"(]}}], "forces": [{"type": "contact", "name": "rub",
+        "i": "belt", "j": "block", "mu": )" +
+        text_of(mu) + R"(, "mu_static": )" + text_of(more * mu) + "," + ground_line(0) +
+        R"(}, {"type": "spring_damper", "i": ["ground", [-1,0]], "j": "block", "length": 1, "k": )" + text_of(k) +
+        R"(}], "outputs": ["block.x", "energy.balance"],)" + dynamics({end}));
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+    ASSERT_FALSE(instants(run, "slip").empty());
+    EXPECT_NEAR(instants(run, "slip")[0], first, 1e-9);
+    EXPECT_NEAR(run.last("energy.balance"), 0, 1e-8);
+    if (!sticks) continue;
+    ASSERT_FALSE(instants(run, "stick").empty());
+    EXPECT_NEAR(instants(run, "stick")[0], second, 1e-8);
+    ASSERT_GE(instants(run, "slip").size(), 2u);
+    EXPECT_NEAR(instants(run, "slip")[1], third, 1e-8);
+    const double later = end - third;
+    EXPECT_NEAR(run.last("block.x"),
+                centre + (loose - centre) * std::cos(omega * later) + speed / omega * std::sin(omega * later), 1e-8);
+  }
+}
+
+// A mass that rests on a stop is lifted by a growing force: it leaves where that is its weight.
+TEST(ContactMotion, StopsLetGo) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    // m y'' = f t - m g from t = m g / f on.
+    const double mass = random(0.5, 3), rate = random(5, 40), leave = mass * g / rate, later = random(0.1, 0.5);
+    const double end = leave + later;
+    const TextRun run = run_text(
+        R"({"catena":1, "gravity":[0,-9.81], "bodies": {"ball": {"particle": true, "mass": )" + text_of(mass) +
+        R"(}}, "constraints": [{"type": "absolute_x", "i": "ball", "value": 0}], "forces": [{"type": "stop", "name": "bed",
+        "column": "ball.y", "min": 0}, {"type": "point_force", "i": "ball", "force": [0, {"polynomial": [0, )" +
+        text_of(rate) + R"(]}]}], "outputs": ["ball.y", "bed.force"],)" + dynamics({leave / 2, end}));
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+    ASSERT_EQ(instants(run, "release").size(), 1u);
+    EXPECT_NEAR(instants(run, "release")[0], leave, 1e-9);
+    EXPECT_NEAR(run.first("bed.force"), mass * g / 2, 1e-9);
+    EXPECT_NEAR(run.last("ball.y"), rate / mass * std::pow(later, 3) / 6, 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace catena::testing
