@@ -3,7 +3,8 @@
 // A stretch [a, b] is looked at at its ends and at the seven nodes of the Gauss-Kronrod rule between them. The quartic
 // through five of these samples must foretell the other four to 1e-5 of the column's size; else the stretch is halved.
 // The quartic's error falls with the fifth power of the length, that of the rule of seven nodes with the eleventh or
-// twelfth: where the one is 1e-5 the other is about 1e-11 of the integral. Halving ends after twelve times, at kinks.
+// twelfth: where the one is 1e-5 the other is about 1e-11 of the integral. Halving ends after twelve times, at kinks,
+// and where it does not bring the two nearer: what is left is then the rounding of a column that ought to be zero.
 // Source: R. Piessens et al., QUADPACK (1983), for the rule.
 #pragma once
 
@@ -52,9 +53,10 @@ class MotionSamples {
   std::span<const double> sizes() const { return size_; }
 
  private:
-  bool cover_part(const MotionStretch& stretch, const MotionSample& a, const MotionSample& b, int depth,
+  bool cover_part(const MotionStretch& stretch, const MotionSample& a, const MotionSample& b, int depth, double before,
                   const std::function<void(const Part&, const MotionStretch&)>& use);
-  bool is_resolved(const Part& part) const;
+  /// By how much the quartic misses the samples that it must foretell: the largest part of a column's size.
+  double miss(const Part& part) const;
 
   const ColumnSet& columns_;
   std::vector<double> size_;
