@@ -59,7 +59,11 @@ DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions&
     const MinimiserEnd end = minimise(search, wanted, u);
     converged = converged || end == MinimiserEnd::converged || end == MinimiserEnd::rounding;
   }
-  if (!analysed) return outcome;
+  if (!analysed) {
+    search.go_on();
+    if (search.was_cancelled()) outcome.end = DesignEnd::cancelled;
+    return outcome;
+  }
   search.complete_best();
   if (!outcome.values.gradient.empty()) {
     Stationarity found =
