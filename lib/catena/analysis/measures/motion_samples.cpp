@@ -23,8 +23,10 @@ constexpr std::array<std::size_t, 4> foretold = {1, 3, 5, 7};
 // See the header.
 constexpr double allowed_part = 1e-5;
 constexpr int deepest = 12;
-// Half of the length halves the miss at a kink, and divides it by 32 where the column is smooth; rounding stays.
-constexpr double no_nearer = 0.8;
+// From so many halvings on, enough for sixteen swings between two rows, a misfit that halving leaves as large in both
+// halves is taken for noise: that of a smooth column falls to 1/32, that of a kink stays in one half alone.
+constexpr int noise_depth = 4;
+constexpr double no_progress = 0.5;
 
 double place_of(std::size_t sample) { return sample == 0 ? -1 : sample == 8 ? 1 : places[sample - 1]; }
 
@@ -65,22 +67,20 @@ std::optional<MotionSample> MotionSamples::look(const MotionStretch& stretch, do
   return take(*snapshot, with_derivative);
 }
 
-double MotionSamples::miss(const Part& part) const {
+double MotionSamples::misfit(const Part& part) const {
   static const auto weights = foretelling_weights();
   double largest = 0;
   for (std::size_t c = 0; c < size_.size(); ++c) {
-    for (std::size_t f = 0; f < foretold.size(); ++f) {
+    for (std::size_t f = 0; f < foretold.size() && size_[c] > 0; ++f) {
       double value = 0;
       for (std::size_t k = 0; k < known.size(); ++k) value += weights[f][k] * part[known[k]].value[c];
-      if (size_[c] > 0) largest = std::max(largest, std::abs(value - part[foretold[f]].value[c]) / size_[c]);
+      largest = std::max(largest, std::abs(value - part[foretold[f]].value[c]) / size_[c]);
     }
   }
   return largest;
 }
 
-bool MotionSamples::cover_part(const MotionStretch& stretch, const MotionSample& a, const MotionSample& b, int depth,
-                               double before, const std::function<void(const Part&, const MotionStretch&)>& use) {
-  Part part;
+bool MotionSamples::fill(const MotionStretch& stretch, const MotionSample& a, const MotionSample& b, Part& part) {
   part.front() = a;
   part.back() = b;
   for (std::size_t k = 0; k < places.size(); ++k) {
@@ -92,14 +92,24 @@ bool MotionSamples::cover_part(const MotionStretch& stretch, const MotionSample&
   for (const MotionSample& sample : part) {
     for (std::size_t c = 0; c < size_.size(); ++c) size_[c] = std::max(size_[c], std::abs(sample.value[c]));
   }
-  const double missed = miss(part);
-  if (missed <= allowed_part || depth == deepest || missed > no_nearer * before) {
+  return true;
+}
+
+bool MotionSamples::cover_part(const MotionStretch& stretch, const Part& part, int depth,
+                               const std::function<void(const Part&, const MotionStretch&)>& use) {
+  const double off = misfit(part);
+  if (off <= allowed_part || depth == deepest) {
     use(part, stretch);
     return true;
   }
-  const MotionSample middle = part[4];
-  return cover_part(stretch, a, middle, depth + 1, missed, use) &&
-         cover_part(stretch, middle, b, depth + 1, missed, use);
+  Part first, second;
+  if (!fill(stretch, part.front(), part[4], first) || !fill(stretch, part[4], part.back(), second)) return false;
+  if (depth >= noise_depth && misfit(first) > no_progress * off && misfit(second) > no_progress * off) {
+    use(first, stretch);
+    use(second, stretch);
+    return true;
+  }
+  return cover_part(stretch, first, depth + 1, use) && cover_part(stretch, second, depth + 1, use);
 }
 
 bool MotionSamples::cover(const MotionStretch& stretch,
@@ -107,7 +117,8 @@ bool MotionSamples::cover(const MotionStretch& stretch,
   const std::optional<MotionSample> a = look(stretch, stretch.from, false);
   if (!a) return false;
   const std::optional<MotionSample> b = look(stretch, stretch.to, false);
-  return b && cover_part(stretch, *a, *b, 0, std::numeric_limits<double>::infinity(), use);
+  Part whole;
+  return b && fill(stretch, *a, *b, whole) && cover_part(stretch, whole, 0, use);
 }
 
 }  // namespace catena

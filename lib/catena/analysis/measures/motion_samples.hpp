@@ -4,8 +4,7 @@
 // through five of these samples must foretell the other four to 1e-5 of the column's size; else the stretch is halved.
 // The quartic's error falls with the fifth power of the length, that of the rule of seven nodes with the eleventh or
 // twelfth: where the one is 1e-5 the other is about 1e-11 of the integral. Halving ends after twelve times, at kinks,
-// and where it does not bring the two nearer: what is left is then the rounding of a column that ought to be zero.
-// Source: R. Piessens et al., QUADPACK (1983), for the rule.
+// and earlier where it meets nothing but rounding. Source: R. Piessens et al., QUADPACK (1983), for the rule.
 #pragma once
 
 #include <array>
@@ -53,10 +52,12 @@ class MotionSamples {
   std::span<const double> sizes() const { return size_; }
 
  private:
-  bool cover_part(const MotionStretch& stretch, const MotionSample& a, const MotionSample& b, int depth, double before,
+  /// Takes the samples between a and b; false where the motion could not be looked at.
+  bool fill(const MotionStretch& stretch, const MotionSample& a, const MotionSample& b, Part& part);
+  bool cover_part(const MotionStretch& stretch, const Part& part, int depth,
                   const std::function<void(const Part&, const MotionStretch&)>& use);
-  /// By how much the quartic misses the samples that it must foretell: the largest part of a column's size.
-  double miss(const Part& part) const;
+  /// By how much the quartic misses the samples that it must foretell, in parts of the columns' sizes.
+  double misfit(const Part& part) const;
 
   const ColumnSet& columns_;
   std::vector<double> size_;
