@@ -32,20 +32,17 @@ const MeasureResult& measure(const TextRun& run, const std::string& name) {
 double value(const TextRun& run, const std::string& name) { return measure(run, name).value.value_or(std::nan("")); }
 
 TEST(Measures, ExtremesLieBetweenRows) {
-  const TextRun run = run_text(crank(R"({"least": {"min": "crank.to.x"}, "most": {"max": "crank.to.y"},
-    "span": {"range": "crank.to.x"}, "kink": {"min": "=abs(crank.to.x)"}, "latest": {
-  "max" : "t"
-}
-})"));
+  const TextRun run = run_text(crank(R"--({"least": {"min": "crank.to.x"}, "most": {"max": "crank.to.y"},
+    "span": {"range": "crank.to.x"}, "kink": {"min": "=abs(crank.to.x)"}, "latest": {"max": "t"}})--"));
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
-EXPECT_NEAR(value(run, "least"), -1, 1e-15);
-EXPECT_NEAR(*measure(run, "least").t, pi - 0.3, 1e-9);
-EXPECT_NEAR(value(run, "most"), 1, 1e-15);
-EXPECT_NEAR(*measure(run, "most").t, pi / 2 - 0.3, 1e-9);
-EXPECT_NEAR(value(run, "span"), 1 + std::cos(0.3), 1e-14);
-EXPECT_NEAR(value(run, "kink"), 0, 1e-8);
-EXPECT_EQ(value(run, "latest"), 5);
-EXPECT_EQ(measure(run, "least").unit, "m");
+  EXPECT_NEAR(value(run, "least"), -1, 1e-15);
+  EXPECT_NEAR(*measure(run, "least").t, pi - 0.3, 1e-9);
+  EXPECT_NEAR(value(run, "most"), 1, 1e-15);
+  EXPECT_NEAR(*measure(run, "most").t, pi / 2 - 0.3, 1e-9);
+  EXPECT_NEAR(value(run, "span"), 1 + std::cos(0.3), 1e-14);
+  EXPECT_NEAR(value(run, "kink"), 0, 1e-8);
+  EXPECT_EQ(value(run, "latest"), 5);
+  EXPECT_EQ(measure(run, "least").unit, "m");
 }
 
 TEST(Measures, IntegralsAreOverTimeNotRows) {
