@@ -81,7 +81,7 @@ TEST_P(RandomFourBars, HaveExactDerivatives) {
       const bool second = std::string(name) == "rocker.alpha";
       for (std::size_t k = 0; k < t.size(); ++k) {
         const long double expected = differentiate(
-            [&](long double h) {
+            [&, member = member](long double h) {
               FourBar moved = f;
               moved.*member += h;
               return output(moved, name, t[k]);
