@@ -28,7 +28,10 @@ test_packages=(
   pkgconf               # the installed package is used through pkg-config too
   ccache                # the library is built several times over, mostly alike
 )
-all_packages=(clang clang-format)
+all_packages=(
+  clang clang-format
+  libclang-rt-dev       # the sanitizers of clang
+)
 
 case "${1:-}" in
   "") ;;

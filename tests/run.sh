@@ -2,8 +2,8 @@
 # Builds catena and runs its tests.
 #
 #   tests/run.sh           Release build, every test but the long ones (stress, fuzz, bench, browser)
-#   tests/run.sh --all     also: the clang build, the tests labelled quick under AddressSanitizer and
-#                          UndefinedBehaviorSanitizer, and the format of the sources
+#   tests/run.sh --all     also: a build by clang with AddressSanitizer and UndefinedBehaviorSanitizer in which the tests
+#                          labelled quick run, and the format of the sources
 #   tests/run.sh --long    only the long tests
 #
 # Installs what is missing (apps/setup.sh). A stage that fails does not keep the later ones from running; the exit code
@@ -56,7 +56,6 @@ run_ctest() {
 release_build() { build release -DCATENA_BUILD_TESTS=ON -DCATENA_BUILD_BENCH=ON; }
 release_tests() { run_ctest release --label-exclude '^(stress|fuzz|bench|browser)$'; }
 long_tests() { run_ctest release --label-regex '^(stress|fuzz|bench|browser)$'; }
-clang_build() { build clang; }
 sanitized_build() { build sanitize; }
 sanitized_tests() {
   ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1 run_ctest sanitize --label-regex '^quick$'
@@ -73,8 +72,7 @@ if [[ "$mode" == --long ]]; then
 else
   if [[ "$mode" == --all ]]; then
     stage "format" format
-    stage "clang build" clang_build
-    stage "sanitized build" sanitized_build
+    stage "sanitized build by clang" sanitized_build
     stage "sanitized tests (label quick)" sanitized_tests
   fi
   stage "Release build" release_build

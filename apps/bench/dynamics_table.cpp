@@ -16,7 +16,7 @@ using namespace catena;
 
 namespace {
 
-/// What a run is measured by: rows of some of its coordinates.
+/// The measured quantities of a run: rows of some of its coordinates.
 using Measure = std::function<void(const Snapshot&, std::vector<double>&)>;
 
 void places(const Snapshot& s, std::vector<double>& row) {

@@ -1,4 +1,4 @@
-// Tables of dynamics: what an evaluation of accelerations costs, and run time against error.
+// Tables of dynamics: cost of an evaluation of accelerations, and run time against error.
 #pragma once
 
 namespace bench {

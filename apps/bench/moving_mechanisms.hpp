@@ -1,4 +1,4 @@
-// Mechanisms that move under forces, with answers that are known independently.
+// Mechanisms that move under forces, with independently known solutions.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// Processor time, and the least of several repetitions: what a noisy machine can say about speed.
+// Processor time, and the least of several repetitions: a measure of speed that depends little on other programs.
 #pragma once
 
 #include <algorithm>

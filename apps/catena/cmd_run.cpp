@@ -143,7 +143,7 @@ void add_dynamics_options(CLI::App& command, RunOptions& options) {
                    "run every dynamics analysis a second time, at a tenth of the tolerance or half the step: "
                    "estimated_error is the largest difference of the two, and the rows are those of the finer run");
   CLI::Option* checkpoint = command.add_option("--checkpoint", options.checkpoint,
-                                               "save where a dynamics analysis is, now and then, to this file");
+                                               "save the state of a dynamics analysis to this file at intervals");
   checkpoint->type_name("FILE");
   CLI::Option* interval =
       command.add_option("--checkpoint-every", options.checkpoint_every,
@@ -152,7 +152,7 @@ void add_dynamics_options(CLI::App& command, RunOptions& options) {
   interval->type_name("S")->check(CLI::PositiveNumber)->needs(checkpoint);
   command
       .add_option("--restart", options.restart,
-                  "go on from a checkpoint: the rows that are left, equal bit for bit to those of the run that made it")
+                  "continue from a checkpoint: the remaining rows, equal bit for bit to those of the run that made it")
       ->type_name("FILE")
       ->excludes(interval);
 }

@@ -16,16 +16,16 @@ namespace catena::cli {
 
 enum ExitCode : int { solved = 0, not_solved = 1, usage = 2, wrong_scene = 3, no_file = 4 };
 
-/// What to do once the command line has been read; returns the exit code.
+/// The action after the command line has been read; returns the exit code.
 using Action = std::function<int()>;
 
 void add_run_commands(CLI::App& app, Action& chosen);  ///< run, and the verbs that run one analysis
 void add_explain_command(CLI::App& app, Action& chosen);
 void add_schema_command(CLI::App& app, Action& chosen);
 
-/// Prints text to the standard output; the exit code says whether that worked.
+/// Prints text to the standard output; returns the exit code.
 int print(const std::string& text);
-/// Prints a message to the standard error. Where that cannot be written to nothing can be said, and nothing is thrown.
+/// Prints a message to the standard error. A failure to write there is ignored.
 void complain(std::string_view message);
 
 }  // namespace catena::cli

@@ -34,7 +34,7 @@ std::vector<std::string> command_names(const CLI::App& app) {
   return names;
 }
 
-/// The first word is no command: what was meant?
+/// The first word is no command: suggests the nearest one.
 int unknown_command(const CLI::App& app, const std::string& word) {
   std::string hint = NearMiss(word).consider_all(command_names(app)).hint();
   std::error_code ignored;
@@ -43,8 +43,8 @@ int unknown_command(const CLI::App& app, const std::string& word) {
   return usage;
 }
 
-/// Says what is wrong with arguments that no option took; false if there are none. After an unknown option the plain
-/// words may have been meant as its values, so they are not mentioned.
+/// Reports arguments that no option accepted; false if there are none. After an unknown option plain words may be its
+/// values, so they are not mentioned.
 bool report_unexpected(const CLI::App& app) {
   std::vector<std::string> options, words;
   for (const std::string& argument : app.remaining(true))
@@ -88,7 +88,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& asked_for) {  // --help, --version
     return app.exit(asked_for);
   } catch (const CLI::ParseError& error) {
-    // What is unknown is told rather than what is missing because of it.
+    // Unknown arguments are reported rather than missing ones that follow from them.
     if (argc == 1) {
       complain(app.help());
     } else if (!report_unexpected(app)) {
@@ -103,7 +103,7 @@ int run(int argc, char** argv) {
 }  // namespace catena::cli
 
 int main(int argc, char** argv) {
-  // Whoever started the program may have had SIGPIPE ignored; results for a reader that is gone would then never end.
+  // The parent process may have had SIGPIPE ignored; output to a closed pipe would then never end.
   std::signal(SIGPIPE, SIG_DFL);
   try {
     return catena::cli::run(argc, argv);

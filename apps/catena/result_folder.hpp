@@ -21,11 +21,11 @@ class ResultFolder final : public ResultSink {
   void end_analysis(const AnalysisResult& result) override { tee_.end_analysis(result); }
   void end_run() override;
 
-  /// Why nothing can be written to the folder, or to where it would be made; empty if something can. Makes nothing.
+  /// Why the folder, or the folder in which it would be made, cannot be written to; empty if it can. Creates nothing.
   static std::string obstacle(const std::string& path);
   /// Paths of the files that are complete.
   const std::vector<std::string>& files() const { return files_; }
-  /// What could not be written; empty if everything was.
+  /// The first failure to write; empty if there was none.
   const std::string& error() const { return error_; }
 
  private:

@@ -76,7 +76,7 @@ bool finish_output(const TextOutput& output, const ResultFolder* folder, bool qu
 }  // namespace
 
 int execute(const RunCommand& command) {
-  // A reader that goes away ends the program, as it ends any other in a pipe; files are completed before.
+  // A reader that closes the pipe ends the program, as it ends any other; files are completed before.
   if (!command.directory.empty()) std::signal(SIGPIPE, SIG_IGN);
 
   ProgressBar bar(!command.quiet);
@@ -94,7 +94,7 @@ int execute(const RunCommand& command) {
     sinks.add(text);
   }
   if (!command.directory.empty()) {
-    // Hours of results are not to be lost at their end.
+    // Checked first, so that hours of results are not lost at their end.
     if (const std::string obstacle = ResultFolder::obstacle(command.directory); !obstacle.empty()) {
       complain(fmt::format("catena: {}\n", obstacle));
       return no_file;
@@ -121,7 +121,8 @@ int execute(const RunCommand& command) {
     std::signal(SIGPIPE, SIG_DFL);
     std::raise(SIGPIPE);
   }
-  // Lost results weigh more than an analysis that went wrong, but a scene that was never run has none to lose.
+  // A failure to write results takes precedence over a failed analysis, but not over errors of a scene that was never
+  // run.
   return written || outcome.exit_code >= usage ? outcome.exit_code : static_cast<int>(no_file);
 }
 

@@ -1,4 +1,4 @@
-// Runs a scene for a person or a program: chooses where results go, and turns the outcome into messages and an exit
+// Runs a scene from the command line: chooses the sinks of results, and turns the outcome into messages and an exit
 // code.
 #pragma once
 

@@ -73,7 +73,7 @@ TEST(Handover, NewtonGoesOnDownhillInALatticeOfSprings) {
 }
 
 // A spring whose force saturates, strength x atan(x / reach), along x. Its energy is told in steps of `grain`, as from
-// a coarse table: whoever goes by the energy is led astray.
+// a coarse table: a search that follows the energy is misled.
 struct Saturating {
   double strength, reach, grain;
   template <class T>

@@ -1,4 +1,4 @@
-// Reactions against THEORY section 4, by hand and by virtual work.
+// Reactions (apps/manual/dynamics.md#reactions) against values by hand and against virtual work.
 #include <gtest/gtest.h>
 
 #include "catena/elements/constraints/gear.hpp"

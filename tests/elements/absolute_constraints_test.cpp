@@ -1,4 +1,5 @@
-// The absolute constraints against THEORY's table, written out here in 50-digit arithmetic: Phi, Phi_q, nu, gamma.
+// The absolute constraints against the published table (apps/manual/constraints.md#absolute-constraints), written out
+// here in 50-digit arithmetic: Phi, Phi_q, nu, gamma.
 #if __has_include(<boost/multiprecision/cpp_dec_float.hpp>)
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Forces and equations of the user's own making against what they imitate, and against known motions.
+// User-defined forces and equations against the elements that they imitate, and against known motions.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -6,10 +6,13 @@
 # - includes go only towards the lower layers (rules.awk has the order)
 # - each outside library stays in the folder that is there for it
 # - every header opens with a comment that says what it is, and has #pragma once
+# - what sources and the manual cite is there: page and heading (citations.awk)
 # - the top level holds nothing but what is listed here
 set -euo pipefail
 root="$(cd "$1" && pwd)"
-rules="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/rules.awk"
+here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
+rules="$here/rules.awk"
+citations="$here/citations.awk"
 cd "$root"
 
 status=0
@@ -19,6 +22,12 @@ if [[ ${#files[@]} -eq 0 ]]; then
   exit 1
 fi
 awk -f "$rules" "${files[@]}" || status=1
+
+# The rules themselves name what they forbid.
+mapfile -t pages < <(ls README.md apps/manual/*.md 2>/dev/null)
+mapfile -t citing < <(find lib apps tests -path tests/layering -prune -o -type f \( -name '*.hpp' -o -name '*.cpp' \
+  -o -name '*.sh' -o -name '*.cmake' -o -name '*.in' -o -name CMakeLists.txt \) -print 2>/dev/null | LC_ALL=C sort)
+awk -f "$citations" "${pages[@]}" cited=1 "${pages[@]}" "${citing[@]}" || status=1
 
 # In a checkout the files under version control count; elsewhere (an unpacked archive) all but what builds leave.
 if [[ "$(git rev-parse --show-toplevel 2>/dev/null)" == "$root" ]]; then

@@ -59,7 +59,10 @@ put lib/catena/catena.hpp '#include "catena/scene/reader.hpp"'
 put apps/catena/main.cpp '#include "catena/catena.hpp"' '#include "verbs.hpp"' '#include <iostream>'
 put tests/base/vec2_test.cpp '#include "catena/base/vec2.hpp"' '#include <nlohmann/json.hpp>' '#include "matrices.hpp"'
 mkdir -p data .ci build out
-touch CMakeLists.txt CMakePresets.json README.md LICENSE .gitignore
+touch CMakeLists.txt CMakePresets.json LICENSE .gitignore
+put README.md '[the manual](apps/manual/motion.md#equations-of-motion)'
+put apps/manual/motion.md '# Motion' '## Equations of motion' 'see [above](motion.md#motion)' '```' '# no heading' '```'
+put lib/catena/base/cited.hpp '// apps/manual/motion.md#equations-of-motion, README.md'
 clean "a tree in order"
 
 violates "base may not include elements" lib/catena/base/a.hpp '#include "catena/elements/revolute.hpp"'
@@ -77,6 +80,13 @@ violates "is no known folder" lib/catena/analysis/odds/a.cpp 'int a;'
 for i in $(seq 30); do put lib/catena/columns/c$i.cpp 'int c;'; done
 violates "more than 30 files" lib/catena/columns/d.cpp 'int d;'
 rm lib/catena/columns/c*.cpp
+violates "cites theory.md, which is not in the repository" lib/catena/base/a.cpp '// see theory.md'
+violates "cites THEORY, which is not in the repository" lib/catena/base/a.hpp '// (THEORY section 4)'
+violates "cites NUMERICS, which is not in the repository" tests/base/a.cpp '// Source: NUMERICS'
+violates "no such heading" lib/catena/base/a.hpp '// apps/manual/motion.md#reactions'
+violates "no such heading" apps/catena/a.cpp '// apps/manual/motion.md#no-heading'
+violates "cites rest.md#rest, which is not in the repository" apps/manual/more.md '[rest](rest.md#rest)'
+violates "no such heading" apps/manual/more.md '[motion](motion.md#rest)'
 violates "in no known layer" lib/catena/results/a.cpp '#include "catena/util/a.hpp"'
 violates "is no known layer" lib/catena/util/a.cpp 'int a;'
 violates "not catena.hpp" lib/catena/scene/a.cpp '#include "catena/catena.hpp"'

@@ -143,7 +143,7 @@ const BadScene elements[] = {
     {"AtAndPoint", constraint(R"({"type": "revolute", "i": §"crank.tip", "j": "rod", "at": [0, 0]})"), "\"at\""},
     {"AttachmentNumber", constraint(R"({"type": "revolute", "i": §3, "j": "rod"})"), "\"body.point\""},
     {"AttachmentPointInList", constraint(R"({"type": "revolute", "i": [§"crank.tip", [0, 0]], "j": "rod"})"),
-     "a body alone"},
+     "must name a body without a point"},
     {"NotPositive", constraint(R"({"type": "gear", "i": "crank", "j": "rod", "radius_i": §-1, "radius_j": 1})"),
      "must be above zero; it is -1"},
     {"RequiredNumber", constraint(R"(§{"type": "gear", "i": "crank", "j": "rod", "radius_i": 1})"),

@@ -25,6 +25,7 @@ SceneFacts gear_and_cam_facts();  ///< planetary set, rolling pinion, belts, cam
 SceneFacts force_facts();         ///< nonlinear springs, bushings, events
 SceneFacts gap_facts();           ///< contacts, stops, cables
 SceneFacts design_facts();        ///< optimisations and sensitivities
+SceneFacts contact_facts();       ///< motion with contact and friction, motion laws
 
 /// Where the run's kinematics is in the list of analyses: after `check`.
 constexpr std::size_t kinematic = 1;

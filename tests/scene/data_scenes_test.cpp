@@ -12,7 +12,7 @@ const SceneFacts& facts() {
   static const SceneFacts all = [] {
     SceneFacts joined;
     for (const auto& part : {absolute_facts(), slider_facts(), four_bar_facts(), leg_facts(), machine_facts(),
-                             gear_and_cam_facts(), force_facts(), gap_facts(), design_facts()})
+                             gear_and_cam_facts(), force_facts(), gap_facts(), contact_facts(), design_facts()})
       joined.insert(part.begin(), part.end());
     return joined;
   }();

@@ -223,7 +223,7 @@ TEST(OneSided, TouchingWithoutForceIsSaid) {
                    R"("bob.y", "floor.force")"));
   expect_ok(run);
   EXPECT_NEAR(run.last("bob.y"), -1, 1e-9);
-  EXPECT_TRUE(warns(run, "just touching")) << run.analysis().report.warnings.size();
+  EXPECT_TRUE(warns(run, "cannot be distinguished from rounding")) << run.analysis().report.warnings.size();
   EXPECT_TRUE(warns(run, "\"floor\""));
   EXPECT_TRUE(field<bool>(run, "stable"));
 }

@@ -1,4 +1,4 @@
-// Where an element is attached, by the fields that say so: local coordinates on its bodies, places in the ground.
+// Where an element is attached, read from its fields: local coordinates on its bodies, places in the ground.
 #pragma once
 
 #include <tuple>

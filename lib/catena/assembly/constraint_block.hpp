@@ -1,6 +1,6 @@
-// All constraints of one type, as evaluation wants them: sorted by body, values beside each other, slots ready.
+// All constraints of one type, arranged for evaluation: sorted by body, values beside each other, slots ready.
 //
-// The plan owns the block's structure (who, which row, which slot), an evaluator owns the values (element parameters,
+// The plan owns the block's structure (bodies, equations, slots), an evaluator owns the values (element parameters,
 // constants, functions of time), so that a change of parameters keeps the plan. The operations are instantiated once
 // per element type, in a source file of its own; see instantiate.hpp.
 #pragma once
@@ -31,7 +31,7 @@ struct ConstraintBlock {
   int row(int e) const { return first_row + e * E::rows; }
 };
 
-/// Values: what the model's numbers say of the block's elements.
+/// Values: the numbers of the block's elements, from the model.
 template <class E>
 struct ConstraintData {
   /// Frames are relative to each body's own origin; these shifts bring those of i and j to a common one.
@@ -49,7 +49,7 @@ struct ConstraintData {
   std::vector<Timed> timed;           ///< elements whose value is a function of time
 };
 
-/// What the rows of one element are made of, dense, for reactions: Phi_qi and Phi_qj in THEORY's forms.
+/// Phi_qi and Phi_qj of one element's published equations, dense, for reactions.
 template <class E>
 struct LocalJacobian {
   std::array<double, jacobian_size<E>> entries{};  ///< row-major, 3 columns a body
@@ -82,9 +82,9 @@ struct ConstraintOperations {
   /// The second derivatives of all elements, weighted with lambda, added to their slots; see hessian_slots.hpp.
   static void add_hessians(const Block&, const Data&, const Frame<double>* frames, const double* lambda, bool convex,
                            const int* slot, double* values);
-  /// nullptr, or why the rows of one element mean nothing at this configuration, as a phrase.
+  /// nullptr, or why the equations of one element are undefined at this configuration, as a phrase.
   static const char* trouble(const Block&, const Data&, const Frame<double>* frames, int e);
-  /// Where on a curve that ends one element stands.
+  /// The place of one element on its curve, if that has ends.
   static std::optional<CurveUse> curve_use(const Block&, const Data&, const Frame<double>* frames, int e);
   /// Phi_q of one element.
   static LocalJacobian<E> local_jacobian(const Block&, const Data&, const Frame<double>* frames, int e);

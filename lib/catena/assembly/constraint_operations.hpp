@@ -1,4 +1,4 @@
-// The operations on a block of constraints, derived from the element's phi unless it brings a closed form.
+// The operations on a block of constraints, derived from the element's phi unless it provides a closed form.
 //
 //   Phi_q   dual numbers with the 3 or 6 coordinates of the element's bodies as variables
 //   nu      -dPhi/dt with the bodies at rest                          (Taylor series of phi)

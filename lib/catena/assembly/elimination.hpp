@@ -16,7 +16,7 @@ struct Elimination {
   std::vector<char> weld_eliminated;  ///< per weld of the model
 };
 
-/// `keep_weld[k]`: weld k stays a constraint because its reaction is asked for (empty: none). Linear time.
+/// `keep_weld[k]`: weld k stays a constraint because its reaction is needed (empty: none). Linear time.
 Elimination eliminate_bodies(const Model& model, const std::vector<char>& keep_weld);
 
 }  // namespace catena

@@ -58,12 +58,13 @@ void require_same(std::size_t plan, std::size_t model, const char* what) {
                               ", but the analysis was made for a model with " + std::to_string(plan));
 }
 
-/// Throws where elements of `model` are others, or tie other bodies, than the same ones of `known`.
+/// Throws where the elements of `model` differ in type or bodies from those of `known`.
 void require_same_structure(const Model& known, const Model& model) {
   require_same(known.bodies.size(), model.bodies.size(), "bodies");
   require_same(known.elements.size(), model.elements.size(), "elements");
   const auto differs = [&](const std::string& who) {
-    throw std::invalid_argument("\"" + who + "\" is not what it was in the model that the analysis was made for");
+    throw std::invalid_argument(
+        "\"" + who + "\" differs from the element of this number in the model that the analysis was made for");
   };
   for (std::size_t b = 0; b < known.bodies.size(); ++b) {
     const auto &was = known.bodies[b], &is = model.bodies[b];
@@ -123,7 +124,7 @@ void Evaluator::set_model(const Model& model) {
 
 void Evaluator::load_values() {
   const Plan& plan = *plan_;
-  // Where everything is given: origins of the relative coordinates, poses of the immobile bodies.
+  // The given configuration: origins of the relative coordinates, poses of the immobile bodies.
   std::vector<char> keep_weld;
   for (const auto& weld : std::get<std::vector<ElementEntry<Weld<double>, double>>>(model_->constraints)) {
     keep_weld.push_back(plan.element_row[at(weld.id)] >= 0 || plan.is_released(weld.id));
@@ -199,7 +200,7 @@ void Evaluator::load_values() {
   if (length_scale_ == 0) length_scale_ = mean_force_arm(*model_);
   if (length_scale_ == 0) length_scale_ = 1;
   function_.resize(model_->functions.size());
-  // Until an analysis says when it begins; tables that begin later give what they begin with.
+  // Until an analysis sets its time; tables that begin later give their first value.
   for (std::size_t k = 0; k < function_.size(); ++k) {
     const TimeRange domain = model_->functions[k].domain();
     function_[k] = model_->functions[k].evaluate(std::clamp(time_, domain.first, domain.last));

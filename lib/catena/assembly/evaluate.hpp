@@ -24,7 +24,7 @@ namespace catena {
 class Evaluator {
  public:
   /// The plan must be that of the model, and a model that is taken over must have the same bodies and elements:
-  /// std::invalid_argument says what differs. Spans of other sizes than said below are not checked.
+  /// std::invalid_argument names the difference. The sizes of spans are not checked.
   Evaluator(std::shared_ptr<const Plan> plan, const Model& model);
   // Defined where the element types are complete; here they are only declared.
   Evaluator(const Evaluator&);
@@ -50,24 +50,25 @@ class Evaluator {
   void set_time(double t, Side side = Side::after);
   /// The same by the pieces of the functions that hold at the instant `from`: for differences next to it.
   void set_time_along(double t, double from);
-  /// Until TimeLimit ends, functions of time are asked for nothing before or after the run: beyond its ends set_time()
-  /// goes on along the pieces that hold there.
+  /// Until TimeLimit ends, functions of time are not evaluated before or after the run: beyond its ends set_time()
+  /// continues the pieces that hold there.
   class TimeLimit;
   const TimeRange& time_limit() const { return run_; }
   double time() const { return time_; }
   void set_configuration(std::span<const double> q);
-  /// Takes whole turns out of the angles in q and remembers them: frames keep showing the full angle, but an angle of
-  /// many turns no longer costs digits in its cosine and sine.
+  /// Takes whole turns out of the angles in q and remembers them: frames keep the full angle, while cosine and sine no
+  /// longer lose digits to an angle of many turns.
   void take_turns(std::span<double> q);
   /// Puts the turns taken out so far back into q.
   void add_turns(std::span<double> q) const;
-  /// Forgets them: from now on q holds full angles again.
+  /// Sets the remembered turns to zero: from now on q holds full angles again.
   void forget_turns() { turns_.clear(); }
   std::span<const Frame<double>> frames() const { return frames_; }
   /// The frame of a plan body in the ground frame.
   Frame<double> ground_frame(int plan_body) const;
 
-  /// Rows that do not hold for the time being, ascending: phi() and jacobian() give zeros there until others are named.
+  /// Equations that do not hold for the time being, ascending: phi() and jacobian() give zeros there until other ones
+  /// are set.
   void leave_out(std::span<const int> rows);
   bool is_left_out(int row) const { return std::binary_search(left_out_.begin(), left_out_.end(), row); }
   void phi(std::span<double> out);  ///< size rows
@@ -83,7 +84,8 @@ class Evaluator {
   double potential_energy() const;
   /// Power lost to damping, W.
   double dissipation(std::span<const double> qd) const;
-  /// Power, W, of what is neither potential nor damping: functions of time in force elements, follower forces.
+  /// Power, W, of forces that have neither a potential nor damping: functions of time in force elements, follower
+  /// forces.
   double load_power(std::span<const double> qd) const;
   /// Whether every force element has a potential.
   bool conservative() const;
@@ -102,7 +104,17 @@ class Evaluator {
   /// Measured quantity of a scalar constraint with time derivatives; qd, qdd may be empty (zero). The second derivative
   /// of one that is released lacks the accelerations' part.
   Measured measure(int element, std::span<const double> qd, std::span<const double> qdd) const;
-  /// Dense Phi_q of one element in THEORY's form: rows x 6 (columns 3 ... 5 zero for absolute types), and its scale.
+  /// One scalar equation or gap along the motion, whether it has a row or not: what it measures (of a gap the distance
+  /// that is reported; else the residual), its rate, the part of its second derivative that velocities make, and its
+  /// gradient by the coordinates of its two plan bodies.
+  struct ScalarMotion {
+    double value = 0, rate = 0, bend = 0;
+    int body_i = -1, body_j = -1;
+    double gradient[6] = {};
+  };
+  ScalarMotion scalar_motion(int element, std::span<const double> qd) const;
+  /// Dense Phi_q of one element's published equations: rows x 6 (columns 3 ... 5 zero for absolute types), and its
+  /// scale.
   struct ElementJacobian {
     int rows = 0, bodies = 0;
     int body_i = -1, body_j = -1;  ///< plan bodies; `bodies` of the plan stands for the ground
@@ -110,19 +122,20 @@ class Evaluator {
     double entries[18] = {};
   };
   ElementJacobian element_jacobian(int element) const;
-  /// nullptr, or why the rows of the element mean nothing at this configuration, as a phrase ("its centres coincide").
+  /// nullptr, or why the equations of the element are undefined at this configuration, as a phrase ("its centres
+  /// coincide").
   const char* trouble(int element) const;
-  /// Where on a curve or table that ends the element stands now, its end in the ground frame; nothing for elements
-  /// without one, or where it asks nothing of it.
+  /// The place in use on a curve or table that has ends, with the nearer end in the ground frame; nothing for elements
+  /// without one, or that do not use it at present.
   std::optional<CurveUse> curve_use(int element) const;
   /// Value of the element's function of time now: c, c', c''.
   Taylor<double> element_value(int element) const;
 
   /// Per plan body: RMS distance of its attachment points from the centroid, length_scale() if none. The mean over all
-  /// attachment points goes to `mean` (THEORY's Lc).
+  /// attachment points goes to `mean` (Lc in apps/manual/dynamics.md#least-reactions).
   std::vector<double> attachment_radii(double* mean = nullptr) const;
-  /// What a residual in metres is compared with: the mean attachment distance, else the extent of the given positions,
-  /// else 1 m.
+  /// The length that residuals in metres are compared with: the mean attachment distance, else the extent of the given
+  /// positions, else 1 m.
   double length_scale() const { return length_scale_; }
   Counters counters;
   const IterationTrace* trace = nullptr;  ///< told of iterations for a configuration; may be none

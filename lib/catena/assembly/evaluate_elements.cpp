@@ -1,10 +1,12 @@
-// What the evaluator gives of single elements: measured quantities, their part of Phi_q, where they are attached.
+// Evaluation of single elements: measured quantities, their part of Phi_q, their attachment points.
 #include <algorithm>
 #include <cmath>
 
 #include "catena/assembly/attachment_points.hpp"
+#include "catena/assembly/constraint_operations.hpp"
 #include "catena/assembly/evaluate.hpp"
 #include "catena/elements/all.hpp"
+#include "catena/elements/gap_element.hpp"
 
 namespace catena {
 namespace {
@@ -24,7 +26,8 @@ void Evaluator::with_element(int element, F&& f) const {
   });
 }
 
-// A constraint that does not hold for the time being is in no block, but what it measures can be seen all the same.
+// A constraint that does not hold for the time being is in no block, but its measured quantity can be evaluated all the
+// same.
 Measured Evaluator::measure_released(int element, std::span<const double> qd) const {
   Measured result;
   const ElementRecord& record = model_->elements[at(element)];
@@ -38,6 +41,42 @@ Measured Evaluator::measure_released(int element, std::span<const double> qd) co
     if constexpr (requires { entry.element.measure(Frame<double>{}, Frame<double>{}); }) {
       const Taylor<double> m = entry.element.measure(motion(entry.i), motion(entry.j));
       result = {m.f, m.d, m.dd};
+    }
+  });
+  return result;
+}
+
+Evaluator::ScalarMotion Evaluator::scalar_motion(int element, std::span<const double> qd) const {
+  ScalarMotion result;
+  const ElementRecord& record = model_->elements[at(element)];
+  with_list(model_->constraints, record.type, [&](const auto& list) {
+    using E = ElementOf<decltype(list)>;
+    if constexpr (E::rows == 1 && E::bodies == 2) {
+      const auto& entry = list[at(record.index)];
+      const auto plan_body = [&](int body) { return body < 0 ? plan_->bodies : plan_->plan_body[at(body)]; };
+      const int i = result.body_i = plan_body(entry.i), j = result.body_j = plan_body(entry.j);
+      // About the origin of body i, so that rounding does not grow with the distance from the ground's.
+      const Frame<double> frame_i = frames_[at(i)];
+      const Frame<double> frame_j = detail::shifted(frames_[at(j)], origin_[at(j)] - origin_[at(i)]);
+      const auto measure = [&]<class T>(const Frame<T>& fi, const Frame<T>& fj) {
+        if constexpr (OneSided<E> && !Dry<E>) {
+          return entry.element.measure(fi, fj);
+        } else {
+          T row;
+          T c(0.0);
+          if constexpr (E::functions == 1) c = T(entry.values[0].constant);
+          entry.element.phi(Arguments<T>{fi, fj, c, {}}, &row);
+          return row;
+        }
+      };
+      const auto rate = [&](int body, int k) { return qd.empty() ? 0.0 : qd[at(3 * body + k)]; };
+      const Taylor<double> along = measure(moving(frame_i, rate(i, 0), rate(i, 1), rate(i, 2)),
+                                           moving(frame_j, rate(j, 0), rate(j, 1), rate(j, 2)));
+      const Dual<double, 6> by = measure(seed<double, 6>(frame_i, 0), seed<double, 6>(frame_j, 3));
+      result.value = along.f;
+      result.rate = along.d;
+      result.bend = along.dd;
+      for (std::size_t k = 0; k < 6; ++k) result.gradient[k] = by.d[k];
     }
   });
   return result;
@@ -113,8 +152,8 @@ Taylor<double> Evaluator::element_value(int element) const {
   return value;
 }
 
-// Points of constraints; where all of a body's are in its centroid those of force elements, else the length scale: no
-// length may come from anywhere but the scene.
+// Points of constraints; where all points of a body are at its centroid, those of force elements; else the length
+// scale. Every length comes from the scene.
 std::vector<double> Evaluator::attachment_radii(double* mean) const {
   struct Points {
     double squares = 0;

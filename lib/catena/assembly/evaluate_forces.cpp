@@ -1,4 +1,4 @@
-// What the evaluator gives over bodies and force elements: loads, energies, second derivatives.
+// Evaluation over bodies and force elements: loads, energies, second derivatives.
 #include <algorithm>
 
 #include "catena/assembly/evaluate.hpp"

@@ -1,4 +1,4 @@
-// All force elements of one type, as evaluation wants them; the counterpart of constraint_block.hpp.
+// All force elements of one type, arranged for evaluation; the counterpart of constraint_block.hpp.
 #pragma once
 
 #include <array>
@@ -46,7 +46,7 @@ struct ForceOperations {
   static void add_forces(const Block&, const Data&, const Frame<double>* frames, const double* qd, double* Q);
   /// Generalized forces of one element: [Q_i, Q_j].
   static std::array<double, 6> force(const Block&, const Data&, const Frame<double>* frames, const double* qd, int e);
-  /// Where in a table that ends one element stands.
+  /// The place of one element in its table, if that has ends.
   static std::optional<CurveUse> curve_use(const Block&, const Data&, const Frame<double>* frames, int e);
   /// Sum of the potentials of the conservative elements, J.
   static double potential(const Block&, const Data&, const Frame<double>* frames);

@@ -2,9 +2,9 @@
 //
 //   K = V_qq + sum_r lambda_r (Phi_r)_qq
 //
-// Elements whose second derivatives concern nothing but the angles of their bodies (pins, dead loads) do not write into
-// the matrix but into one number a body, the stiffness h against turning: equilibrium treats it on its own. Everything
-// else goes to the lower triangle over those coordinates that the element's second derivatives concern.
+// Elements whose second derivatives involve only the angles of their bodies (pins, dead loads) do not write into the
+// matrix but into one number a body, the stiffness h against turning, which equilibrium treats separately. All others
+// write to the lower triangle over the coordinates that their second derivatives involve.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // Instantiates everything the library derives from one element type. The build writes a source file per element header
-// that includes this one and names the type: an edited element recompiles its own code, not everybody's.
+// that includes this one and names the type: an edited element recompiles only its own code.
 #pragma once
 
 #include "catena/assembly/constraint_operations.hpp"

@@ -1,4 +1,4 @@
-// The order in which bodies are kept: neighbours near each other, so that evaluation and factors stay in cache.
+// The order of bodies in memory: neighbours near each other, so that evaluation and factors stay in cache.
 //
 // The given order is kept where it is already local (a chain written link by link); else bodies are numbered breadth
 // first from a body of least degree, which is what Cuthill and McKee do. Bodies that are not solved for come last.

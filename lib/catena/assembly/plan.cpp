@@ -87,7 +87,7 @@ void number_rows(const Model& model, const std::vector<ElementEntry<E, double>>&
     for (int r = 0; r < E::rows; ++r) {
       plan.row_element.push_back(id);
       plan.row_is_angle.push_back(row_in_angle(list[at(block.entry[at(e)])].element, r));
-      if constexpr (OneSided<E>) plan.gap_rows.push_back(plan.rows + r);
+      if constexpr (OneSided<E> && !Dry<E>) plan.gap_rows.push_back(plan.rows + r);
     }
     plan.rows += E::rows;
     if (model.elements[at(id)].kind == ElementKind::driver) plan.driver_rows += E::rows;
@@ -138,14 +138,19 @@ void make_slots(Plan& plan) {
 
 std::shared_ptr<const Plan> Plan::make(const Model& model, const PlanOptions& options) {
   for (const std::vector<int>* numbers : {&options.keep_elements, &options.released_elements}) {
-    for (int e : *numbers) static_cast<void>(model.element_type(e));  // throws for what is none
+    for (int e : *numbers) static_cast<void>(model.element_type(e));  // throws for an invalid number
   }
   auto plan = std::make_shared<Plan>();
   const Elimination elimination = eliminate_bodies(model, welds_to_keep(model, options));
   number_coordinates(model, elimination, *plan);
   plan->element_row.assign(model.elements.size(), -1);
-  if (!options.released_elements.empty()) plan->released.assign(model.elements.size(), 0);
-  for (int e : options.released_elements) plan->released[at(e)] = 1;
+  std::vector<int> released = options.released_elements;
+  if (!options.friction) {
+    const std::vector<int> dry = model.frictions();
+    released.insert(released.end(), dry.begin(), dry.end());
+  }
+  if (!released.empty()) plan->released.assign(model.elements.size(), 0);
+  for (int e : released) plan->released[at(e)] = 1;
   plan->row_element.reserve(2 * model.elements.size());
   plan->row_is_angle.reserve(2 * model.elements.size());
   for_each_list(model.constraints, [&](const auto& list, int type) {
@@ -153,7 +158,7 @@ std::shared_ptr<const Plan> Plan::make(const Model& model, const PlanOptions& op
     auto& block = std::get<ConstraintBlock<E>>(plan->blocks);
     const bool weld = std::is_same_v<E, Weld<double>>;
     std::vector<char> skip = weld ? elimination.weld_eliminated : std::vector<char>{};
-    for (int e : options.released_elements) {
+    for (int e : released) {
       const ElementRecord& record = model.elements[at(e)];
       if (record.kind == ElementKind::force || record.type != type) continue;
       skip.resize(list.size());

@@ -1,4 +1,4 @@
-// The assembly plan: everything about a mechanism that does not depend on its numbers, computed once.
+// The assembly plan: the structure of a mechanism, which does not depend on its numbers, computed once.
 //
 //   bodies in plan order: those solved for, then immobile ones, then (frames only) the ground
 //   coordinates [x, y, phi] of every body, positions relative to the body's own origin (its given place): differences
@@ -41,14 +41,15 @@ using ForceValues = detail::BlocksOf<ForceLists<double>>::ForceValues;
 using ConstraintValues = detail::BlocksOf<ConstraintLists<double>>::Data;
 
 struct PlanOptions {
-  /// Elements whose reactions are wanted: a weld among them is solved for instead of eliminated.
+  /// Elements whose reactions are needed: a weld among them is solved for instead of eliminated.
   std::vector<int> keep_elements = {};
-  /// Constraints that do not hold for the time being: they get no rows. Bodies are numbered as if they did, so that
-  /// plans that differ in this alone number them alike.
+  /// Constraints that do not hold for the time being: they get no equations. Bodies are numbered as if they held, so
+  /// that plans that differ only in released constraints number bodies alike.
   std::vector<int> released_elements = {};
-  /// Whether one-sided elements get rows. Where they do not, models that have some are refused unless they are
-  /// released.
+  /// Whether one-sided elements get equations. If not, models that contain some are refused unless these are released.
   bool one_sided = false;
+  /// Whether friction of joints may get rows, where it is not released: only while it sticks, in motion.
+  bool friction = false;
 };
 
 struct Plan {

@@ -155,7 +155,7 @@ S Curve<S>::search_nearest(const Vec2<S>& local) const {
   }
 
   // One Newton step in S: it carries the derivative with respect to the point and the shape. At the end of an open
-  // curve the parameter stays what it is.
+  // curve the parameter stays constant.
   const S start(best_s);
   if (!periodic_ && best_s - first_ < 1e-12 * last_) return S(first_);
   if (const auto* points = std::get_if<Points>(&shape_); !periodic_ && last_ - best_s < 1e-12 * last_) {

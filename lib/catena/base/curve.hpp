@@ -7,8 +7,8 @@
 //
 // Every curve gives p, p', p'', p''' with respect to s: tangent p' / |p'|, curvature (p' x p'') / |p'|^3 (positive
 // where the curve turns left). p''' jumps at the knots of the splines, all else is continuous. A natural spline goes on
-// as a straight line beyond its ends, so that iterations that stray there come back; the curve proper ends at first()
-// and last(), unless that line belongs to it (Beyond::line), and ends() tells so. Singular where p' = 0, which chord
+// as a straight line beyond its ends, so that iterations that stray there come back; the curve itself ends at first()
+// and last(), unless that line belongs to it (Beyond::line); ends() reports which. Singular where p' = 0, which chord
 // lengths and positive radii exclude in all but absurd tables. S (double or Dual) runs through the shape data; the
 // parameter may be any scalar that S converts to, Taylor included.
 #pragma once
@@ -50,8 +50,8 @@ class Curve {
   /// Counter-clockwise; radius > 0.
   static Curve circle(const Vec2<S>& centre, const S& radius);
   /// Through the points in their order; `end` is natural (at least 2 points) or periodic (at least 3; the first need
-  /// not be repeated at the end). Neighbours may not coincide. `beyond` the ends of a natural one: nothing; the point
-  /// at the end with its tangent (hold); the straight line along that tangent.
+  /// not be repeated at the end). Neighbours may not coincide. `beyond` the ends of a natural one: undefined (error);
+  /// the point at the end with its tangent (hold); the straight line along that tangent (line).
   static Curve spline(std::span<const Vec2<S>> points, SplineEnd end, Beyond beyond = Beyond::error);
   /// Radii > 0 at increasing angles that span at most one turn; a full turn repeats the first radius at its end.
   static Curve polar(std::span<const S> angles, std::span<const S> radii);
@@ -68,7 +68,7 @@ class Curve {
   double last() const { return last_; }
   bool periodic() const { return periodic_; }
   Beyond beyond() const { return beyond_; }
-  /// Whether the curve ends for good, so that there are places beyond it.
+  /// Whether the curve has ends beyond which it is not defined.
   bool ends() const { return !periodic_ && beyond_ == Beyond::error && std::isfinite(last_); }
 
   /// The parameters where p''' jumps, within [first(), last()].

@@ -1,7 +1,8 @@
 // While an object of this class lives, numbers too small to be normal count as zero on this thread.
 //
-// Reactions die out exponentially along a chain at rest; where they reach 1e-308 every operation on them would take
-// a hundred times as long, for nothing. x86-64 only; elsewhere nothing happens. The former mode returns at the end.
+// Reactions die out exponentially along a chain at rest; where they reach 1e-308 every operation on them would take a
+// hundred times as long and change no result. x86-64 only; elsewhere nothing happens. The destructor restores the
+// former mode.
 #pragma once
 
 #ifdef __SSE2__

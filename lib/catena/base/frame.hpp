@@ -2,8 +2,8 @@
 //
 //   A = [[c, -s], [s, c]]      r_P = r + A s'_P      v = A v'
 //
-// c and s are stored because a body's trigonometry is done once a configuration, never once an element; the seeded
-// frames below get theirs from dc = -s dphi, ds = c dphi. Units: m, m, rad. Source: Haug, sections 2.4-2.6.
+// c and s are stored so that cosine and sine are computed once per body and configuration, not once per element; the
+// seeded frames below get theirs from dc = -s dphi, ds = c dphi. Units: m, m, rad. Source: Haug, sections 2.4-2.6.
 #pragma once
 
 #include "catena/base/dual.hpp"

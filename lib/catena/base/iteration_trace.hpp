@@ -1,4 +1,5 @@
-// What the iterations for a configuration tell whoever wants to watch them: where Newton's method creeps or jumps.
+// Reports every iteration of a search for a configuration to an observer: shows where Newton's method stagnates or
+// jumps.
 #pragma once
 
 #include <functional>

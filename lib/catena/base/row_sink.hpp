@@ -9,7 +9,7 @@
 
 namespace catena {
 
-/// What a column is called and measured in.
+/// Name and unit of a column.
 struct ColumnInfo {
   std::string name;
   UnitKind unit = UnitKind::none;

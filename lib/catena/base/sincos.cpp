@@ -32,7 +32,8 @@ constexpr bool baseline_fuses = false;
 // A block stays in the L1 cache between gathering, evaluating and scattering.
 constexpr std::size_t block_size = 128;
 
-// n < 2^17 keeps n times the 33-bit parts of pi/2 exact, and what the third part adds below 1 unit of r's last place.
+// n < 2^17 keeps n times the 33-bit parts of pi/2 exact, and the error of the third part below 1 unit of r's last
+// place.
 constexpr double largest_reduced = 1e5;
 
 /// a b + c, rounded once if `fused`.

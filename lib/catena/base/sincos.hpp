@@ -29,7 +29,7 @@ void sincos(std::span<const double> angle, std::span<double> cosine, std::span<d
 /// Fills `frames[b]` from q = [x, y, phi] of body after body (length 3 frames.size()).
 void update_frames(std::span<const double> q, std::span<Frame<double>> frames);
 
-/// The instruction set in use: "avx512", "avx2" or "baseline" (what the compiler was told to assume).
+/// The instruction set in use: "avx512", "avx2" or "baseline" (the one that the compiler assumes).
 std::string_view sincos_instruction_set();
 
 /// Uses `name` from now on, in all threads; false if this machine or build does not have it. For tests and benchmarks.

@@ -4,10 +4,10 @@
 //
 // with M the second derivatives at the knots and h the distances between them. Ends: natural M = 0; clamped: slope 0;
 // periodic: value, slope and M agree. Beyond the knots a periodic spline repeats. The others hold the value at their
-// end, or go on as straight lines, which for natural ends is smooth to second order; where they are said to end, they
-// go on as lines too, for iterations that stray there to come back, and `covers` tells what is outside. The scalar S
-// (double or Dual) runs through knots and values, hence derivatives with respect to the table are exact. Source: de
-// Boor, A Practical Guide to Splines, ch. IV.
+// end, or go on as straight lines, which for natural ends is smooth to second order; splines that end there
+// (Beyond::error) also continue as lines, so that iterations that stray outside come back; `covers` tells whether x is
+// inside. The scalar S (double or Dual) runs through knots and values, hence derivatives with respect to the table are
+// exact. Source: de Boor, A Practical Guide to Splines, ch. IV.
 #pragma once
 
 #include <algorithm>
@@ -23,8 +23,8 @@ namespace catena {
 
 enum class SplineEnd { natural, clamped, periodic };
 
-/// What is beyond the ends of a table or curve that does not repeat: nothing, which makes it an error to come there;
-/// the value at the end; the straight line along the slope at the end.
+/// How a table or curve that does not repeat continues beyond its ends: not at all (leaving it is an error); with the
+/// value at the end; along the straight line with the slope at the end.
 enum class Beyond { error, hold, line };
 
 /// Value and first three derivatives.
@@ -58,7 +58,7 @@ class Spline {
   double last() const { return positions_.back(); }
   bool periodic() const { return periodic_; }
   Beyond beyond() const { return beyond_; }
-  /// Whether there is a value at x: within the table, or everywhere if it repeats, holds or goes on.
+  /// Whether there is a value at x: within the table, or everywhere if the spline repeats, holds or continues.
   bool covers(double x) const { return periodic_ || beyond_ != Beyond::error || (x >= first() && x <= last()); }
   /// The places where the third derivative jumps, increasing.
   std::span<const double> knots() const { return positions_; }
@@ -114,7 +114,7 @@ SplineValue<T> Spline<S>::evaluate(const T& x) const {
 template <class S>
 template <class T>
 SplineValue<T> Spline<S>::continue_from(double place, bool after, const T& x) const {
-  // Places are sums of steps: what rounding puts on the other side of a knot still belongs to it.
+  // x is a sum of steps: a value that rounding puts on the other side of a knot still belongs to the knot.
   const double rounding = 1e-13 * std::max({std::abs(place), std::abs(first()), std::abs(last())});
   double position = after ? place + rounding : place - rounding, cycles = 0;
   if (periodic_) {

@@ -1,5 +1,4 @@
-// What an analysis says of its own outcome. Numerical outcomes are values, never exceptions; the names are those of
-// the result files.
+// The outcome of an analysis. Numerical outcomes are values, never exceptions; the names are those of the result files.
 #pragma once
 
 #include <string>
@@ -16,6 +15,7 @@ enum class Status {
   lock_up,         ///< w^T nu != 0 at a singular configuration: no continuation
   bifurcation,     ///< branches meet and none was chosen
   inconsistent,    ///< redundant rows contradict each other
+  infeasible,      ///< no design was found that meets its constraints
   unbounded,       ///< the energy has no minimum
   not_converged,   ///< iterations exhausted
   step_too_small,  ///< the integrator could not make a step

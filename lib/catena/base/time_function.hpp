@@ -1,13 +1,14 @@
-// Functions of time: what a driver prescribes, and the magnitude of an applied force.
+// Functions of time: the value prescribed by a driver, or the magnitude of an applied force.
 //
-//   f(t), f'(t), f''(t)   constant, polynomial, harmonic, smooth step, spline through a table, sums, products, your own
+//   f(t), f'(t), f''(t)   constant, polynomial, harmonic, smooth step, motion law, spline through a table, sums,
+//   products, your own
 //
 // They are evaluated once per instant, all three derivatives together, and read by the elements. The scalar S is
 // double, or Dual where derivatives with respect to design parameters (amplitudes, table values, step times) are
 // wanted. Breakpoints are the instants where f, f', f'' or f''' jumps: integrators stop there. At the breakpoint itself
-// a step of order 3 has two second derivatives, and `Side` tells which is meant: a time step that ends there needs the
-// one before, the step that starts there the one after. Instants closer than 1e-13 |t| are the same instant. Units:
-// those of the driven quantity; times in s.
+// a step of order 3 has two second derivatives, and `Side` selects one: a time step that ends there needs the one
+// before, the step that starts there the one after. Instants closer than 1e-13 |t| are the same instant. Units: those
+// of the driven quantity; times in s.
 #pragma once
 
 #include <functional>
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "catena/base/dual.hpp"
+#include "catena/base/motion_law.hpp"
 #include "catena/base/spline.hpp"
 #include "catena/base/taylor.hpp"
 
@@ -26,7 +28,7 @@ namespace catena {
 enum class Side { before, after };
 
 /// Thrown by TimeFunction::evaluate outside of a table that ends. Analyses compare `domain()` with their
-/// time span beforehand, so that it never comes out of a running loop.
+/// time span beforehand, so that it is never thrown inside a running loop.
 struct OutsideTable : std::out_of_range {
   OutsideTable(double instant, double table_first, double table_last);
   double t, first, last;
@@ -58,24 +60,26 @@ class TimeFunction {
   /// From `from` at t0 to `to` at t1 > t0 and constant outside; with u = (t - t0) / (t1 - t0) along
   /// 3 u^2 - 2 u^3 (order 3: the velocity is continuous) or 10 u^3 - 15 u^4 + 6 u^5 (order 5: the acceleration too).
   static TimeFunction step(const S& t0, const S& t1, const S& from, const S& to, int order);
+  /// From `from` at t0 to `to` at t1 > t0 by a motion law, and constant outside.
+  static TimeFunction law(MotionLaw law, const S& t0, const S& t1, const S& from, const S& to);
   /// Cubic spline through (t[k], value[k]). Outside the table `beyond` holds, except that a periodic one repeats.
   static TimeFunction spline(std::span<const S> t, std::span<const S> value, SplineEnd end,
                              Beyond beyond = Beyond::error);
   /// There must be an instant at which all terms, or factors, are defined.
   static TimeFunction sum(std::vector<TimeFunction> terms);
   static TimeFunction product(std::vector<TimeFunction> factors);
-  /// Your own function, which returns value, first and second derivative; `breakpoints` increase. It is asked for
-  /// nothing outside `domain`.
+  /// Your own function, which returns value, first and second derivative; `breakpoints` increase. It is never called
+  /// outside `domain`.
   static TimeFunction custom(Callback function, std::vector<double> breakpoints = {}, TimeRange domain = {});
 
   /// (f, f', f'') at t. Throws OutsideTable outside `domain()`.
   Taylor<S> evaluate(double t, Side side = Side::after) const;
 
   /// (f, f', f'') at t, wherever it is, by the piece that holds at the instant `from`, on its `side`: the polynomial of
-  /// a step or of a table goes on, and your own function by its Taylor polynomial of second degree. So differences are
-  /// taken at the ends of a run, and next to breakpoints, without a look at what is on the other side.
+  /// a step or of a table goes on, and your own function by its Taylor polynomial of second degree. Differences at the
+  /// ends of a run and next to breakpoints are thus one-sided.
   Taylor<S> continue_from(double from, Side side, double t) const;
-  /// Whether it contains a function of your own, which goes on with two derivatives alone.
+  /// Whether it contains a user-defined function, of which only two derivatives are known beyond its domain.
   bool has_callback() const;
 
   /// Whether f' = f'' = 0 at all times by construction: such a driver is a plain constraint.

@@ -71,6 +71,33 @@ struct Step {
 };
 
 template <class S>
+struct Law {
+  S t0, t1, from, to;
+  MotionLawPieces pieces;
+
+  Taylor<S> evaluate(double t, Side side) const { return continue_from(t, side, t); }
+  Taylor<S> continue_from(double place, Side side, double t) const {
+    if (!is_after(place, value_of(t0), side)) return Taylor<S>(from);
+    if (is_after(place, value_of(t1), side)) return Taylor<S>(to);
+    const S width = t1 - t0;
+    std::size_t k = 0;
+    while (k + 1 < pieces.count && is_after(place, end(k), side)) ++k;
+    const Taylor<S> u((S(t) - t0) / width, S(1.0) / width, S(0.0));
+    return Taylor<S>(from) + Taylor<S>(to - from) * pieces.piece[k].rise(u);
+  }
+  /// The instant at which piece k ends and the next one begins.
+  double end(std::size_t k) const { return value_of(t0) + pieces.piece[k + 1].start * value_of(t1 - t0); }
+  TimeRange domain() const { return {}; }
+  double next_breakpoint(double t) const {
+    if (t < value_of(t0)) return value_of(t0);
+    for (std::size_t k = 0; k + 1 < pieces.count; ++k) {
+      if (t < end(k) && !same_instant(t, end(k))) return end(k);
+    }
+    return t < value_of(t1) ? value_of(t1) : never;
+  }
+};
+
+template <class S>
 struct Table {
   Spline<S> curve;
 
@@ -81,7 +108,7 @@ struct Table {
     if (ends()) {
       t = inside(t);
     } else if (!curve.periodic() && (same_instant(t, curve.first()) || same_instant(t, curve.last()))) {
-      // What holds beyond the end need not be as smooth as the spline is at its inner knots.
+      // The continuation beyond the end need not be as smooth as the spline is at its inner knots.
       return continue_from(t, side, t);
     }
     const SplineValue<S> value = curve.evaluate(S(t));
@@ -111,7 +138,7 @@ struct Table {
       return next == knots.end() ? never : *next;
     }
     const double period = curve.last() - curve.first();
-    // At times so large that a period is lost in rounding, or at none at all, there is nothing to stop at.
+    // At times so large that a period is lost in rounding, and at times that are not finite, there are no breakpoints.
     if (!std::isfinite(t) || same_instant(t, t + period)) return never;
     double cycles = std::floor((t - curve.first()) / period);
     auto next = std::upper_bound(knots.begin(), knots.end(), t - cycles * period);
@@ -170,7 +197,7 @@ struct Custom {
 
   Taylor<S> evaluate(double t, Side side) const {
     if (!range.contains(t)) throw OutsideTable(t, range.first, range.last);
-    // The callback knows of no sides: what holds before its breakpoint is what it says one rounding earlier.
+    // A callback has one value at an instant: the value before a breakpoint is taken one rounding earlier.
     const bool before = side == Side::before && t > range.first && std::binary_search(breaks.begin(), breaks.end(), t);
     const Taylor<double> value = function(before ? std::nextafter(t, -never) : t);
     return {S(value.f), S(value.d), S(value.dd)};

@@ -1,4 +1,5 @@
-// The physical kinds of quantity that fields and columns have: which unit a number is in, always SI and radians.
+// The physical kinds of quantity that fields and columns have: they determine the unit of a number, always SI and
+// radians.
 #pragma once
 
 namespace catena {

@@ -1,8 +1,8 @@
 // One column of results, resolved: what it shows, of which body or element. Eight bytes and a half dozen more, because
 // a scene of a million links has three million of them.
 //
-// The names belong to SCENES.md; the meaning of every kind is given beside it. "Body" columns refer to a point fixed in
-// the body: a named one, or the origin of its author's frame. Units SI, radians.
+// The names are listed in apps/manual/scenes.md#columns; the meaning of every kind is given beside it. "Body" columns
+// refer to a point fixed in the body: a named one, or the origin of its author's frame. Units SI, radians.
 #pragma once
 
 namespace catena {
@@ -27,7 +27,7 @@ enum class ColumnKind : unsigned char {
   reaction_x,
   reaction_y,
   reaction_torque,
-  multiplier,  ///< of THEORY's form of row `detail`
+  multiplier,  ///< of the published equation number `detail`
   push,        ///< of a gap: the force or torque that keeps it from closing, never negative
 
   // index = element
@@ -35,8 +35,10 @@ enum class ColumnKind : unsigned char {
   rate,         ///< its time derivative
   joint_angle,  ///< phi_j - phi_i
   joint_omega,
-  gap,    ///< of a one-sided element
-  slide,  ///< of P_j seen from P_i, along axis_i
+  gap,       ///< of a one-sided element
+  friction,  ///< of a contact, along the curve's direction, or in a joint; on j
+  slip,      ///< of the touching material points, j relative to i
+  slide,     ///< of P_j seen from P_i, along axis_i
   slide_rate,
   load,   ///< lambda dPhi/dc: positive pushes the value up
   power,  ///< load x dc/dt

@@ -47,7 +47,7 @@ std::string join(std::string_view a, std::string_view b) {
 
 std::string quoted(std::string_view text) { return "\"" + std::string(text) + "\""; }
 
-/// Whether `candidate` may be a misspelling of `name`: what else a distance of characters would have to exclude.
+/// Whether `candidate` may be a misspelling of `name`, judged by the lengths before any distance is computed.
 bool similar_length(std::string_view name, std::string_view candidate) {
   const std::size_t slack = 2 + name.size() / 3;
   return candidate.size() <= name.size() + slack && name.size() <= candidate.size() + slack;

@@ -1,4 +1,4 @@
-// From the names users write to columns: `crank.tip.vx`, `A.i.fx`, `drive.load`, `energy`; SCENES.md, section Columns.
+// From the names users write to columns, `crank.tip.vx`, `A.i.fx`, `drive.load`: apps/manual/scenes.md#columns.
 //
 // Needs the model only, so that a scene's names are checked where they stand, before any plan exists. A bare body,
 // point, `A.reaction`, `energy` or `momentum` stands for all of its columns. Time: one hash look-up a name, or a scan
@@ -39,13 +39,14 @@ std::vector<UnknownColumn> unknown_columns(const Model& model, std::span<const s
 /// names are passed over.
 std::vector<int> elements_with_reactions(const Model& model, std::span<const std::string> names);
 
-/// What is called so when nothing is asked for: x, y and angle of every body.
+/// The default columns: x, y and angle of every body.
 std::vector<NamedColumn> default_columns(const Model& model);
 
-/// Whether the column shows multipliers, or what is made of them.
+/// Whether the column shows multipliers, or values derived from them.
 constexpr bool is_reaction(ColumnKind kind) {
   return (kind >= ColumnKind::reaction_x && kind <= ColumnKind::push) ||
-         (kind >= ColumnKind::load && kind <= ColumnKind::work);
+         (kind >= ColumnKind::load && kind <= ColumnKind::work) || kind == ColumnKind::friction ||
+         kind == ColumnKind::slip;
 }
 
 }  // namespace catena

@@ -49,7 +49,7 @@ Needs needs_of(ColumnKind kind) {
   return needs;
 }
 
-/// Columns that are right at rest too, but need the velocities where there are any: of damping.
+/// Columns that are valid at rest too, but include damping where there are velocities.
 bool uses_velocity(ColumnKind kind) {
   return kind == ColumnKind::tension || kind == ColumnKind::spring_torque ||
          (kind >= ColumnKind::exerted_x && kind <= ColumnKind::exerted_torque);
@@ -83,7 +83,7 @@ std::string describe(Lack lack, const LeftOut& columns, const ColumnSources& sou
     case no_mass:
       return text + ": mass or inertia of body \"" + std::string(body) + "\" is not given";
     default:
-      return text + ": the joint is not solved for, what it ties cannot move";
+      return text + ": the joint is not solved for, since its bodies cannot move";
   }
 }
 

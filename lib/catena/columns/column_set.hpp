@@ -30,7 +30,7 @@ struct ColumnError : std::invalid_argument {
   UnknownColumn unknown;
 };
 
-/// What an analysis can put into a snapshot.
+/// The quantities that an analysis can put into a snapshot.
 struct ColumnSources {
   std::string_view analysis;  ///< its type, for the notes
   bool timed = false;         ///< `t` is the first column

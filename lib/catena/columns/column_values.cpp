@@ -29,9 +29,16 @@ class ColumnState : public SnapshotState {
   Taylor<double> prescribed(int element) const { return evaluator().element_value(element); }
   ElementReactions reactions(int element) const { return element_reactions(snapshot(), element); }
   SpringLoads spring_loads(int element) const { return catena::spring_loads(snapshot(), element); }
-  double potential() const { return evaluator().potential_energy(); }
+  double potential() const { return evaluator().potential_energy() + snapshot().contact_energy; }
+  std::optional<double> contact_force(int element) const { return of_contact(snapshot().contact_force, element); }
+  std::optional<double> contact_friction(int element) const { return of_contact(snapshot().contact_friction, element); }
+  std::optional<double> contact_slip(int element) const { return of_contact(snapshot().contact_slip, element); }
 
  private:
+  static std::optional<double> of_contact(std::span<const double> values, int element) {
+    if (values.empty()) return {};
+    return values[static_cast<std::size_t>(element)];
+  }
   const Evaluator& evaluator() const { return snapshot().evaluator; }
   bool only_angles_;
 };
@@ -44,7 +51,8 @@ void ColumnSet::evaluate(const Snapshot& snapshot, std::span<double> out) const 
     throw std::invalid_argument("columns: the row is of another model than the one they were resolved for");
   const auto require = [](bool needed, std::span<const double> values, std::size_t size, const char* what) {
     if (needed && values.size() < size)
-      throw std::invalid_argument(std::string("columns: the row has no ") + what + "; an analysis wants needs()");
+      throw std::invalid_argument(std::string("columns: the row has no ") + what +
+                                  "; an analysis must compute needs()");
   };
   require(needs_.velocity, snapshot.qd, coordinates_, "velocities");
   require(needs_.acceleration, snapshot.qdd, coordinates_, "accelerations");

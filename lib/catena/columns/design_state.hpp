@@ -4,6 +4,7 @@
 // that nothing that is made of them looks differentiated.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "catena/assembly/design/design_mechanism.hpp"
@@ -48,10 +49,22 @@ class DesignState {
   Taylor<DesignScalar> prescribed(int element) const { return mechanism_.element_value(element); }
   BasicElementReactions<DesignScalar> reactions(int element) const;
   BasicSpringLoads<DesignScalar> spring_loads(int element) const;
-  DesignScalar potential() const { return mechanism_.potential().f; }
+  /// Motion with contacts has no derivatives.
+  DesignScalar potential() const {
+    return snapshot_.contact_energy == 0 ? mechanism_.potential().f : without_derivative(snapshot_.contact_energy);
+  }
+  std::optional<DesignScalar> contact_force(int element) const { return of_contact(snapshot_.contact_force, element); }
+  std::optional<DesignScalar> contact_friction(int element) const {
+    return of_contact(snapshot_.contact_friction, element);
+  }
+  std::optional<DesignScalar> contact_slip(int element) const { return of_contact(snapshot_.contact_slip, element); }
 
  private:
   static DesignScalar without_derivative(double value);
+  static std::optional<DesignScalar> of_contact(std::span<const double> values, int element) {
+    if (values.empty()) return {};
+    return without_derivative(values[static_cast<std::size_t>(element)]);
+  }
 
   const DesignMechanism& mechanism_;
   const Snapshot& snapshot_;

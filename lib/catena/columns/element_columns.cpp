@@ -63,6 +63,10 @@ void add_gap(const Entry& entry, std::vector<ElementColumn>& out) {
   const bool angle = row_in_angle(entry.element, 0);
   out.push_back({"force", angle ? UnitKind::torque : UnitKind::force, ColumnKind::push});
   out.push_back({"gap", angle ? UnitKind::angle : UnitKind::length, ColumnKind::gap});
+  if constexpr (requires { entry.element.mu; }) {
+    out.push_back({"friction", UnitKind::force, ColumnKind::friction});
+    out.push_back({"slip", UnitKind::velocity, ColumnKind::slip});
+  }
 }
 
 template <class Entry>
@@ -116,7 +120,12 @@ std::vector<ElementColumn> columns_of_element(const Model& model, int element) {
   std::vector<ElementColumn> out;
   const ElementKind kind = model.elements[static_cast<std::size_t>(element)].kind;
   with_entry(model, element, [&]<class Entry>(const Entry& entry) {
-    if constexpr (OneSided<typename Entry::Element>) {
+    if constexpr (Dry<typename Entry::Element>) {
+      const bool angle = entry.element.in_angle();
+      out.push_back({"friction", angle ? UnitKind::torque : UnitKind::force, ColumnKind::friction});
+      out.push_back({"slip", angle ? UnitKind::angular_velocity : UnitKind::velocity, ColumnKind::slip});
+      out.push_back({"force", UnitKind::force, ColumnKind::push});
+    } else if constexpr (OneSided<typename Entry::Element>) {
       add_gap(entry, out);
       if (Entry::Element::type == "cable") out.push_back({"length", UnitKind::length, ColumnKind::length});
       add_reactions(entry, out);

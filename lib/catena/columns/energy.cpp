@@ -8,7 +8,7 @@ namespace catena {
 double kinetic_energy(const Snapshot& snapshot) { return kinetic_energy_of(SnapshotState(snapshot)); }
 
 double total_energy(const Snapshot& snapshot) {
-  return kinetic_energy(snapshot) + snapshot.evaluator.potential_energy();
+  return kinetic_energy(snapshot) + snapshot.evaluator.potential_energy() + snapshot.contact_energy;
 }
 
 Momentum momentum(const Snapshot& snapshot) { return momentum_of(SnapshotState(snapshot)); }

@@ -4,7 +4,7 @@
 //   momentum   sum m v                                  angular     sum m cross(r_c, v) + J omega, ground's origin
 //
 // m, J about the centroid c, whose position and velocity are r_c and v. Bodies without a mass count nothing: ask
-// body_without_mass() first. Units: J, kg m/s, kg m^2/s. Source: THEORY section 4.
+// body_without_mass() first. Units: J, kg m/s, kg m^2/s. Signs: apps/manual/dynamics.md#energy.
 #pragma once
 
 #include "catena/columns/snapshot.hpp"

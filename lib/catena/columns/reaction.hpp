@@ -1,4 +1,4 @@
-// What a constraint exerts on its bodies, from its multipliers: THEORY section 4.
+// What a constraint exerts on its bodies, from its multipliers (apps/manual/dynamics.md#reactions).
 //
 //   force F = -Phi_r^T lambda        torque T = -(Phi_phi^T - (R A s'P)^T Phi_r^T) lambda
 //
@@ -21,7 +21,7 @@ template <class S>
 struct BasicElementReactions {
   BasicReaction<S> on_i, on_j;  ///< equal for absolute constraints, which act on one body
   Vec2<S> joint_x;              ///< unit vector of the joint's first axis, in the ground frame
-  S multiplier[3]{};            ///< of THEORY's forms, one a row
+  S multiplier[3]{};            ///< of the published equations
 };
 
 using Reaction = BasicReaction<double>;

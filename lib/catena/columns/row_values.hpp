@@ -6,6 +6,8 @@
 //   residual(), work(), dissipated(), initial_energy(), driver_work(element)      what an analysis sums up
 //   measured(element)      the quantity of a scalar constraint or gap: f and d     prescribed(element)  c, c', c''
 //   reactions(element)     spring_loads(element)      potential()
+//   contact_force(element)      contact_friction(element)      contact_slip(element)     in motion with contacts, else
+//   none
 //
 // Source files alone include it: this is where templates meet every element.
 #pragma once
@@ -67,7 +69,12 @@ class RowValues {
       case ColumnKind::multiplier:
         return reactions(column).multiplier[column.detail];
       case ColumnKind::push:
+        if (const std::optional<S> force = s_.contact_force(column.index)) return *force;
         return S(0.0) - reactions(column).multiplier[0];
+      case ColumnKind::friction:
+        return s_.contact_friction(column.index).value_or(S(0.0));
+      case ColumnKind::slip:
+        return s_.contact_slip(column.index).value_or(S(0.0));
       case ColumnKind::gap:
         return s_.measured(column.index).f;
       case ColumnKind::slack:

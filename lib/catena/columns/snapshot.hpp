@@ -2,7 +2,7 @@
 //
 // Vectors are in plan order (three coordinates a body, the ground's zeros last; see assembly/evaluate.hpp). Empty spans
 // mean: not computed; the columns that need them must not be asked for. `lambda` has one multiplier a row of the plan
-// and belongs to the solver's scaled rows: THEORY's multiplier is scale x lambda.
+// and belongs to the solver's scaled equations: the published multiplier is scale x lambda.
 #pragma once
 
 #include <span>
@@ -20,9 +20,13 @@ struct Snapshot {
   double dissipated = 0;                  ///< J
   double initial_energy = 0;              ///< total_energy() at the start, J
   std::span<const double> driver_work{};  ///< by number of the element, J
+  /// In motion with contacts, by number of the element: what a contact presses with, its friction and its slip; empty:
+  /// there are none, or forces were not computed. Units: N or N m, m/s or rad/s.
+  std::span<const double> contact_force{}, contact_friction{}, contact_slip{};
+  double contact_energy = 0;  ///< stored in elastic contacts, J
 };
 
-/// What an analysis must compute for the columns asked for: nothing else is computed.
+/// The quantities that an analysis must compute for the requested columns.
 struct Needs {
   bool velocity = false;
   bool acceleration = false;

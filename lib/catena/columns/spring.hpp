@@ -1,7 +1,7 @@
 // What a force element of two bodies exerts now, for the columns of springs and bushings: tension along the line P_i
-// P_j, torque on i, and all that acts on j.
+// P_j, torque on i, and force and moment on j.
 //
-//   tension = F_i . h / |h|, h = r_Pj - r_Pi (positive pulls together)        torque n on body i, THEORY section 4
+//   tension = F_i . h / |h|, h = r_Pj - r_Pi (positive pulls together)        torque n on body i
 //   on j: force at P_j in the ground's axes and in those of body i, moment about P_j        offset A_i^T h
 //
 // At rest if the snapshot has no velocities. |h| = 0: the direction is lost, the tension reads 0. Units: N, N m.

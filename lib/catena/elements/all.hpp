@@ -1,4 +1,4 @@
-// Every element type of list.hpp, complete: for those who treat all types alike and for users of the library.
+// Definitions of all element types of list.hpp: for code that treats all types alike, and for users of the library.
 #pragma once
 
 #include "catena/elements/constraints/absolute_angle.hpp"
@@ -13,6 +13,7 @@
 #include "catena/elements/constraints/coupler.hpp"
 #include "catena/elements/constraints/custom_constraint.hpp"
 #include "catena/elements/constraints/displacement.hpp"
+#include "catena/elements/constraints/friction.hpp"
 #include "catena/elements/constraints/gear.hpp"
 #include "catena/elements/constraints/point_on_curve.hpp"
 #include "catena/elements/constraints/rack_pinion.hpp"

@@ -71,7 +71,7 @@ class BodyCurve {
     if (!shape_->periodic()) return s;
     return s - std::floor((s - shape_->first()) / range()) * range();
   }
-  /// Whether the curve has ends beyond which nothing is, and where on it a contact at s stands.
+  /// Whether the curve has ends beyond which it is not defined, and the place on it of a contact at s.
   bool ends() const { return shape_ && shape_->ends(); }
   CurveUse use_at(double s) const {
     const double middle = (shape_->first() + shape_->last()) / 2;

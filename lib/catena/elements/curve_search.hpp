@@ -10,8 +10,8 @@
 
 namespace catena {
 
-/// First and second derivative with respect to the curve parameter of what is minimal at the contact, and the size
-/// that the second one is compared with: where it is not positive against it there is no such contact.
+/// First and second derivative, with respect to the curve parameter, of the function that is minimal at the contact,
+/// and the size that the second one is compared with: where it is not positive beside that there is no such contact.
 struct Descent {
   double slope, bend, size;
 };
@@ -30,7 +30,7 @@ bool follow_minimum(const BodyCurve<S>& curve, const F& descent, double& s) {
     if (!(d.bend > singular_bend * d.size)) return false;
     const double step = -d.slope / d.bend;
     s += std::abs(step) > longest ? std::copysign(longest, step) : step;
-    // The step squared, over the range, is what is left.
+    // The remaining error is the step squared over the range.
     if (std::abs(step) <= enough) {
       s = curve.within(s);
       return true;

@@ -5,9 +5,9 @@
 //   type           its name in scene files
 //   rows, bodies   number of equations; 1 body (body-ground, absolute) or 2 (i, j; either may be the ground)
 //   functions      0, or 1 if the equation contains a value c that may be a function of time: then it can be a driver
-//   equation       the equation in words of THEORY, for `explain`
+//   equation       the equation as text, for `explain`
 //   fields()       what a scene file sets: see field.hpp
-//   phi<T>(a, out) the rows, in the published form: THEORY.md section 2; templated on the scalar T
+//   phi<T>(a, out) Phi as published (apps/manual/constraints.md); templated on the scalar T
 //
 // and from phi alone the library derives Phi_q (dual numbers), nu and gamma (Taylor series in time), second derivatives
 // and parameter derivatives. Optional members, found by their presence:
@@ -43,7 +43,7 @@
 
 namespace catena {
 
-/// What an element sees: the frames of its bodies (the ground frame where there is no body) and the value c.
+/// Arguments of an element: the frames of its bodies (the ground frame where there is no body) and the value c.
 /// Frames may be given relative to any common origin; `ground` is where that origin lies, so that absolute elements
 /// subtract it together with their constant: rounding then does not grow with the distance from the ground's origin.
 template <class T>
@@ -59,18 +59,18 @@ struct Rates {
   double vx = 0, vy = 0, omega = 0;
 };
 
-/// Where an element stands on a curve or table that ends: the parameter, m, within [first, last] where it is on it; and
-/// the nearer end of a curve, in the frame of body i (`body` 0) or j (1).
+/// The place in use on a curve or table that has ends: the parameter, m, within [first, last] unless the end is passed;
+/// and the nearer end of a curve, in the frame of body i (`body` 0) or j (1).
 struct CurveUse {
   double parameter = 0, first = 0, last = 0;
   std::optional<Vec2<double>> end = {};
   int body = 0;
 
-  /// How far it is beyond an end, in parts of the whole; negative inside.
+  /// Distance beyond an end, relative to the length of the whole; negative inside.
   double excess() const { return std::max(first - parameter, parameter - last) / (last - first); }
 };
 
-/// What is known of an entry of Phi_q before any number is.
+/// Structure of an entry of Phi_q, known before its value.
 enum class Entry : signed char { zero, plus_one, minus_one, varying };
 
 template <class E>
@@ -120,7 +120,8 @@ consteval auto hessian_pattern() {
 }
 
 /// Whether a pattern holds nothing but second derivatives with respect to one body's own angle. Where coordinates enter
-/// through A s' alone, as in pins, these form the stiffness lambda^T A s' against turning, and nothing else is left.
+/// through A s' alone, as in pins, these form the stiffness lambda^T A s' against turning, and all other second
+/// derivatives vanish.
 template <std::size_t n>
 constexpr bool only_turning(const std::array<HessianEntry, n>& pattern) {
   for (const HessianEntry& e : pattern) {
@@ -159,7 +160,7 @@ concept HasSquaredValue = requires {
   requires E::squared;
 };
 
-/// What stands for the value c of a scalar constraint that the scene leaves out.
+/// The default of the value c of a scalar constraint.
 template <class E>
 consteval Omitted when_omitted() {
   return std::apply(

@@ -1,11 +1,11 @@
-// The user's own scalar equation between two bodies, behind one virtual call; see constraints/custom_constraint.hpp.
+// A user-defined scalar equation between two bodies, behind one virtual call; see constraints/custom_constraint.hpp.
 //
 // A law is a struct with
 //
 //   template <class T> T measure(const Frame<T>& i, const Frame<T>& j) const       the quantity that is to equal c, m
 //
-// T is one of the scalars below: from these the library has the row, Phi_q, nu, gamma and second derivatives, exact to
-// rounding.
+// T is one of the scalars below: from these the library derives the equation's value, Phi_q, nu, gamma and second
+// derivatives, exact to rounding.
 #pragma once
 
 #include <memory>

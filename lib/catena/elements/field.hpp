@@ -1,6 +1,6 @@
-// Descriptions of what a scene file may set on an element: key, member, unit, doc line, default. From these the scene
-// reader, the schema and `catena explain` are derived; elements never see JSON. A field without a doc line is reserved:
-// scenes may set it, but no analysis that is built reads it, so that schema and `explain` do not offer it.
+// Descriptions of the keys that a scene may set on an element: key, member, unit, doc line, default. From these the
+// scene reader, the schema and `catena explain` are derived; elements never see JSON. A field without a doc line is
+// reserved: scenes may set it, but no analysis that is built reads it, so that schema and `explain` do not offer it.
 #pragma once
 
 #include <string_view>
@@ -110,8 +110,8 @@ struct TableField {
   std::string_view doc;
 };
 
-/// What stands for a function of time that a scene leaves out. `given`: what the element measures in the given
-/// configuration, before assembly.
+/// The default of a function of time. `given`: the value that the element measures in the given configuration, before
+/// assembly.
 enum class Omitted { refused, zero, given };
 
 /// A function of time: the element's function number `index`.

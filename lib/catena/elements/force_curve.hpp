@@ -2,8 +2,8 @@
 //
 //   f(e): natural cubic spline through (e_k, f_k)        V(e) = integral of f from 0 to e
 //
-// Beyond its ends the force holds, or goes on straight; where the table ends for good it goes on straight too, for
-// iterations to come back, and use_at() tells.
+// Beyond its ends the force keeps its value (hold) or continues along a straight line; a table that ends (error) also
+// continues straight, so that iterations come back, and use_at() reports the place.
 // Two pairs make a straight line. Smooth to second order, hence integrators keep their order. e in m, f in N (tension
 // positive), V in J. Copies share the table, which never changes.
 #pragma once
@@ -36,7 +36,7 @@ class ForceCurve {
       : ForceCurve(std::span<const Vec2<S>>(pairs), beyond) {}
 
   explicit operator bool() const { return spline_ != nullptr; }
-  /// Whether the table ends for good, and where in it an elongation lies.
+  /// Whether the table has ends beyond which it is not defined, and where in it an elongation lies.
   bool ends() const { return spline_ && spline_->beyond() == Beyond::error; }
   CurveUse use_at(double elongation) const { return {elongation, spline_->first(), spline_->last()}; }
 

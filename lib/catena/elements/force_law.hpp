@@ -1,11 +1,11 @@
-// The user's own force, behind one virtual call; see forces/custom_force.hpp for its use.
+// A user-defined force, behind one virtual call; see forces/custom_force.hpp for its use.
 //
 // A law is a struct with
 //
 //   template <class T> void force(const ForceArguments<T>& a, Wrench<T>& on_i, Wrench<T>& on_j) const   adds Q, N, N m
 //   template <class T> T potential(const ForceArguments<T>& a) const            V, J, if there is one: Q = -V_q at rest
 //
-// T is one of the scalars below: from these the library has stiffness, damping and power, exact to rounding.
+// T is one of the scalars below: from these the library derives stiffness, damping and power, exact to rounding.
 #pragma once
 
 #include <memory>

@@ -1,8 +1,8 @@
 // The list of element types: a new joint is one file in constraints/ (a new force, in forces/), its line here and its
 // include in all.hpp.
 //
-// Here the types are only declared: who stores or hands on elements compiles without them; who looks into them includes
-// the element's own file, or all.hpp. An edited element then recompiles those that know it, not everybody.
+// Here the types are only declared: code that stores or passes elements needs no more; code that uses their members
+// includes the element's own file, or all.hpp. An edited element then recompiles only the files that include it.
 //
 // Everything that treats all types alike (model storage, plan, evaluation, columns, scene reader, schema, explain,
 // derivative tests) goes through these lists at compile time: no registration, no virtual call, no switch over types.
@@ -31,10 +31,11 @@
   X(Translational)            \
   X(Weld)
 
-/// One-sided constraints (gap_element.hpp): scenes list them as forces.
+/// One-sided constraints (gap_element.hpp), and friction of joints: scenes list them as forces.
 #define CATENA_GAPS(X) \
   X(Cable)             \
   X(Contact)           \
+  X(Friction)          \
   X(Stop)
 
 /// All with rows, also those that only C++ can make; they come last.
@@ -51,7 +52,8 @@
   X(Torque)              \
   X(TorsionSpring)
 
-/// The same with those that scenes do not name: what a cable with a stiffness is, and what only C++ can make.
+/// The same with the types that scenes do not name: the elastic cable, which a scene writes as a cable with a
+/// stiffness, and those that only C++ can make.
 #define CATENA_ALL_FORCES(X) \
   CATENA_FORCES(X)           \
   X(ElasticCable)            \

@@ -1,4 +1,4 @@
-// What closed forms of constraints between two bodies are made of: the vector h between their attachment points.
+// The vector h between the attachment points of two bodies and its derivatives, from which closed forms are built.
 //
 //   h = r_Pj - r_Pi      hd = rd_Pj - rd_Pi      hdd = phid_i^2 A_i s'Pi - phid_j^2 A_j s'Pj   (no accelerations)
 //

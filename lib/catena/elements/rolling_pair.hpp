@@ -6,9 +6,9 @@
 //
 // a = R_i, and b = R_j where the wheels turn against each other (external gear, crossed belt), -R_j where they turn
 // alike (internal gear, open belt). The integer k makes |Phi| least, so that Phi is a function of q alone, whatever
-// turns were made. The row acts on both centres: only so are their pin reactions right. Units: a, b, c in m; hd, hdd as
-// in pair_motion.hpp. Singular where the centres coincide. Source: Shabana, Computational Dynamics, section 3.4; the
-// angle of the line of centres as in planetary trains.
+// turns were made. The equation acts on both centres, which makes the reactions of their pins right. Units: a, b, c in
+// m; hd, hdd as in pair_motion.hpp. Singular where the centres coincide. Source: Shabana, Computational Dynamics,
+// section 3.4; the angle of the line of centres as in planetary trains.
 #pragma once
 
 #include <cmath>
@@ -23,7 +23,7 @@ template <class S>
 struct RollingPair {
   S a, b;
 
-  /// a phi_i + b phi_j - d atan2(h): the row without c and without whole turns of the line of centres.
+  /// a phi_i + b phi_j - d atan2(h): the equation without c and without whole turns of the line of centres.
   template <class T>
   T rolled(const Frame<T>& i, const Frame<T>& j, const Vec2<T>& h) const {
     using std::atan2;

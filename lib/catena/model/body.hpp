@@ -1,7 +1,7 @@
 // A rigid body as the model keeps it: centroidal values, whatever frame its author used.
 //
-// The frame is at the centroid (THEORY section 1). If the author's origin is elsewhere, `origin` is its place in the
-// centroidal frame; every local coordinate was shifted when it was read, and columns shift back.
+// The frame is at the centroid (apps/manual/constraints.md#coordinates). If the author's origin is elsewhere, `origin`
+// is its place in the centroidal frame; every local coordinate was shifted when it was read, and columns shift back.
 // Units: kg, kg m^2, m, rad, m/s, rad/s.
 #pragma once
 
@@ -31,8 +31,8 @@ struct BasicBody {
   int first_point = -1;  ///< head of the list of its points
 };
 
-/// What an author says of a body: everything optional but the name. `centroid` is the centroid's place in the author's
-/// frame; position, velocity and all local coordinates refer to that frame's origin.
+/// A body as its author describes it: everything optional but the name. `centroid` is the centroid's place in the
+/// author's frame; position, velocity and all local coordinates refer to that frame's origin.
 struct BodyValues {
   double mass = -1, inertia = -1;  ///< negative: not given
   Vec2<double> position{};

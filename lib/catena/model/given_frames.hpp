@@ -1,7 +1,7 @@
-// The given poses of an element's bodies, as its complete() and measure() want them.
+// The given poses of an element's bodies, as its complete() and measure() need them.
 //
 // Elements between two bodies see differences of positions alone: both poses are given from the place of one of the
-// bodies, so that what is taken from the given configuration is as exact a million metres from the ground's origin as
+// bodies, so that values taken from the given configuration are as exact a million metres from the ground's origin as
 // next to it. Absolute elements measure in the ground frame. Units: m, rad.
 #pragma once
 

@@ -7,6 +7,23 @@
 #include "catena/elements/all.hpp"
 
 namespace catena {
+namespace {
+
+/// The elements of kind gap that are friction of a joint, or those that are not.
+template <class S>
+std::vector<int> of_kind_gap(const BasicModel<S>& model, bool dry) {
+  std::vector<int> found;
+  for (std::size_t e = 0; e < model.elements.size(); ++e) {
+    if (model.elements[e].kind != ElementKind::gap) continue;
+    bool is_dry = false;
+    with_list(model.constraints, model.elements[e].type,
+              [&](const auto& list) { is_dry = Dry<ElementOf<decltype(list)>>; });
+    if (is_dry == dry) found.push_back(static_cast<int>(e));
+  }
+  return found;
+}
+
+}  // namespace
 
 template <class S>
 BasicModel<S>::BasicModel() = default;
@@ -139,11 +156,12 @@ std::string BasicModel<S>::element_name(int element) const {
 
 template <class S>
 std::vector<int> BasicModel<S>::gaps() const {
-  std::vector<int> found;
-  for (std::size_t e = 0; e < elements.size(); ++e) {
-    if (elements[e].kind == ElementKind::gap) found.push_back(static_cast<int>(e));
-  }
-  return found;
+  return of_kind_gap(*this, false);
+}
+
+template <class S>
+std::vector<int> BasicModel<S>::frictions() const {
+  return of_kind_gap(*this, true);
 }
 
 template <class S>

@@ -3,7 +3,7 @@
 //
 // Templated on the scalar S of its parameters: BasicModel<double> is analysed, BasicModel<Dual> carries derivatives
 // with respect to design parameters through everything that was derived from them. Units SI, radians.
-// Errors: every add_... throws ModelError naming the culprit. Adding elements is in model_add.hpp.
+// Errors: every add_... throws ModelError, naming the body or element at fault. Adding elements is in model_add.hpp.
 #pragma once
 
 #include <initializer_list>
@@ -21,7 +21,7 @@
 
 namespace catena {
 
-/// A model that cannot be; what() names the culprit.
+/// An invalid model; what() names the body or element at fault.
 class ModelError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
@@ -73,7 +73,7 @@ class BasicModel {
   const Vec2<S>* find_point(int body, std::string_view name) const;
 
   /// New constraint; local points and axes are given in the authors' frames of the bodies. An empty name leaves it
-  /// unnamed. What the element can take from the given configuration (its value c, an angle) is taken from it.
+  /// unnamed. Values that the element can take from the given configuration (its value c, an angle) are taken from it.
   template <class E>
   int add(std::string_view name, const E& element, int i, int j = ground);
   /// The same with a value c for the equation.
@@ -92,7 +92,7 @@ class BasicModel {
   template <class E>
   int append(std::string_view name, const ElementEntry<E, S>& entry, ElementKind kind);
 
-  // A number that no body (`ground` included) or no element has: std::out_of_range, which says how many there are.
+  // An index of no body (`ground` included) or of no element throws std::out_of_range, with the number there is.
 
   /// The given pose of a body's centroid; of the ground for `ground`.
   Frame<S> frame(int body) const;
@@ -103,8 +103,9 @@ class BasicModel {
   /// The element's name, `type#n` if it has none.
   std::string element_name(int element) const;
   std::string_view element_type(int element) const;
-  /// The one-sided elements, file order.
+  /// The one-sided elements, and the friction of joints, file order.
   std::vector<int> gaps() const;
+  std::vector<int> frictions() const;
   /// Number of the body or -2; of the element or -1.
   int find_body(std::string_view name) const;
   int find_element(std::string_view name) const;
@@ -127,7 +128,7 @@ class BasicModel {
 
 using Model = BasicModel<double>;
 
-/// The model that an analysis is given; std::invalid_argument where there is none.
+/// The model given to an analysis; std::invalid_argument for a null pointer.
 const Model& required(const std::shared_ptr<const Model>& model);
 
 extern template class BasicModel<double>;

@@ -56,8 +56,7 @@ void shift_points(E& element, const Vec2<S>& origin_i, const Vec2<S>& origin_j) 
       E::fields());
 }
 
-/// Whether a member of an element is a number, or a pair of them, that no arithmetic can be done with; bounds may be
-/// infinite.
+/// Whether a member of an element is a number, or a pair of numbers, that is not finite; bounds may be infinite.
 template <class S>
 bool is_unusable(const S& number) {
   if constexpr (requires { value_of(number); }) {
@@ -69,10 +68,10 @@ bool is_unusable(const S& number) {
   }
 }
 
-/// Throws for a number that is none, naming its field.
+/// Throws for a number that is not finite, naming its field.
 template <class E>
 void check_numbers(const E& element) {
-  const E omitted{};  // a number that is none from the start says: not given
+  const E omitted{};  // an initial NaN stands for: not given
   const auto look = [&](const auto& field) {
     if constexpr (requires { element.*field.member; }) {
       if (is_unusable(element.*field.member) && !is_unusable(omitted.*field.member))
@@ -85,7 +84,7 @@ void check_numbers(const E& element) {
   }
 }
 
-/// Throws for a value of a constraint that is no number, or makes its row vanish.
+/// Throws for a value of a constraint that is not finite, or that makes its equation vanish.
 template <class E, class S>
 void check_value(const S& value) {
   if (!std::isfinite(value_of(value))) throw ModelError(std::string(E::type) + ": its value is not finite");

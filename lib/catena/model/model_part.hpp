@@ -1,6 +1,6 @@
 // Some bodies of a mechanism as a model of their own, with the elements that touch them: names and given places stay.
 //
-// Fixed bodies come along where an element ties them to the part. Functions of time that no element of the part reads
+// Fixed bodies are included where an element ties them to the part. Functions of time that no element of the part reads
 // are left out, as are points, which only columns need.
 #pragma once
 

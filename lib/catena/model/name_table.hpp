@@ -1,8 +1,8 @@
-// Names and what they stand for: one shared namespace for bodies, constraints, drivers and forces.
+// Names and their numbers: one shared namespace for bodies, constraints, drivers and forces.
 //
 // A million names must fit beside the mechanism they name, so the characters lie in one arena and the hash table holds
-// indices, each with a piece of the hash: other names are passed over without a look at their characters, which are
-// seldom in the cache. About 30 bytes a name besides its characters. Names are never removed.
+// indices, each with a part of the hash: most comparisons end there, without reading characters, which are seldom in
+// the cache. About 30 bytes a name besides its characters. Names are never removed.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,4 @@
-// What is left of an analysis when its rows have gone to a sink: its outcome, and the named results it has besides
-// rows.
+// The results of an analysis apart from its rows, which went to a sink: its outcome and its named results.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +21,7 @@ using FieldRecord = std::vector<std::pair<std::string, FieldScalar>>;
 using FieldValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<std::string>,
                                 std::vector<FieldRecord>, FieldRecord>;
 
-/// A result that is no row: "stable", "iterations", "events". Names and meanings: SCENES.md, section Results.
+/// A named result: "stable", "iterations", "events". Names and meanings: apps/manual/scenes.md#results.
 struct NamedField {
   std::string name;
   FieldValue value;

@@ -1,8 +1,8 @@
-// A file from which a motion can be taken up again, bit for bit, on the machine that wrote it.
+// A file from which a motion can be resumed, bit for bit, on the machine that wrote it.
 //
 // Text: a line with the format's version, then a line a value; floating-point numbers as the 16 hexadecimal digits of
-// their bits, so that nothing is rounded; last a sum over all that stands before (FNV-1a, 64 bits). It is written to a
-// temporary file beside it, which then takes its name: whatever happens, either the old or the new one is there.
+// their bits, so that nothing is rounded; last a checksum over all lines before (FNV-1a, 64 bits). It is written to a
+// temporary file beside it, which is then renamed: at any time either the old or the new file exists.
 #pragma once
 
 #include <span>
@@ -30,11 +30,11 @@ class CheckpointError : public std::runtime_error {
 
 /// Throws CheckpointError if it cannot be written.
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint);
-/// Throws CheckpointError if there is no such file, or it is damaged or none of this version.
+/// Throws CheckpointError if there is no such file, or it is damaged or of another version.
 Checkpoint read_checkpoint(const std::string& path);
-/// Throws CheckpointError if none can be written there. Leaves what is there as it is.
+/// Throws CheckpointError if no checkpoint can be written there. Does not change an existing file.
 void check_checkpoint_place(const std::string& path);
-/// Of several texts: equal for equal ones only, but for accidents.
+/// Hash of several texts: different for different ones, up to collisions.
 std::string fingerprint(std::span<const std::string_view> texts);
 
 }  // namespace catena

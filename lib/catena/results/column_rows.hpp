@@ -1,4 +1,4 @@
-// The bridge from an analysis that observes instants to a sink that takes rows: evaluates the columns at every instant.
+// Connects an analysis, which observes instants, with a sink, which takes rows: evaluates the columns at every instant.
 #pragma once
 
 #include <atomic>

@@ -7,7 +7,7 @@ namespace catena {
 void CsvDirectory::begin_run(const RunHeader&) {
   std::error_code failure;
   std::filesystem::create_directories(path_, failure);
-  // An existing folder is no failure; that something else is in its place shows with the first file.
+  // An existing folder is no failure; if something else has its name, opening the first file fails.
   if (failure) error_ = "cannot make the folder " + path_ + ": " + failure.message();
 }
 

@@ -1,6 +1,6 @@
 // One CSV file an analysis, in a folder: kinematics.csv, kinematics-2.csv, equilibrium.csv, in the order of the run.
 //
-// The folder is made if it is missing. What cannot be written is remembered and told at the end; the run goes on.
+// The folder is made if it is missing. A failure to write is remembered and reported at the end; the run goes on.
 #pragma once
 
 #include <map>

@@ -13,7 +13,7 @@ namespace catena {
 
 class CsvWriter final : public RowSink {
  public:
-  /// Writes to `output`, which must outlive the writer; failures show there and do not stop the analysis.
+  /// Writes to `output`, which must outlive the writer; failures are kept by it and do not stop the analysis.
   explicit CsvWriter(TextOutput& output) : output_(output) {}
 
   void begin(std::span<const ColumnInfo> columns) override;

@@ -31,8 +31,8 @@ void catch_interrupts() {
   struct sigaction action = {};
   action.sa_handler = set_interrupted;
   sigemptyset(&action.sa_mask);
-  // The default comes back after the first signal: a program that hangs can still be stopped. Files that are being
-  // written go on being written.
+  // The default action is restored after the first signal, so that a program that hangs can still be stopped. Files
+  // being written are completed.
   action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);

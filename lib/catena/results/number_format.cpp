@@ -13,7 +13,7 @@ std::string to_text(double value, std::chars_format format, int precision) {
   // Fixed format is used below 10^7 only. Adding zero takes the sign off a zero.
   char buffer[64];
   std::string text(buffer, std::to_chars(buffer, buffer + sizeof buffer, value + 0.0, format, precision).ptr);
-  // What was rounded to zero has no sign.
+  // A number rounded to zero has no sign.
   if (text[0] == '-' && text.find_first_not_of("-0.") == std::string::npos) text.erase(0, 1);
   return text;
 }

@@ -10,9 +10,8 @@ namespace catena {
 /// Appends the shortest text that reads back as the same double; nothing for a number that is not finite.
 void append_exact(std::string& out, double value);
 
-/// The numbers of a column as a person reads them: one number of decimals for all, six significant digits of the
-/// largest (rounding errors beside it then read 0), no zeros at the end that all share; "-" for a number that is not
-/// finite.
+/// The numbers of a column for readers: the same number of decimals for all, six significant digits of the largest
+/// (rounding errors beside it then read 0), common trailing zeros removed; "-" for a number that is not finite.
 std::vector<std::string> format_column(std::span<const double> values);
 
 /// One number with six significant digits.

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int width = 30;
 constexpr auto period = std::chrono::milliseconds(100);
-// What is done within the first half second needs no bar.
+// Runs that end within half a second show no bar.
 constexpr auto patience = std::chrono::milliseconds(500);
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A progress bar on the standard error: drawn ten times a second at most, and only if a person looks at a terminal.
+// A progress bar on the standard error: drawn ten times a second at most, and only on a terminal.
 #pragma once
 
 #include <chrono>

@@ -115,8 +115,7 @@ std::string structure_text(const AnalysisReport& report) {
     text += "  mobility " + std::to_string(*report.mobility) + ": ";
     text += count(*report.mobility, "degree of freedom", "degrees of freedom") + " if the drivers are taken away\n";
   }
-  if (report.islands > 1)
-    text += "  " + std::to_string(report.islands) + " groups of bodies move apart from each other\n";
+  if (report.islands > 1) text += "  " + std::to_string(report.islands) + " groups of bodies move independently\n";
   return text;
 }
 
@@ -156,8 +155,8 @@ std::string report_text(const AnalysisResult& result) {
   if (!result.set.empty()) text += "  set: " + values(result.set) + "\n";
   if (!report.message.empty()) text += "  " + report.message + "\n";
   for (const std::string& warning : report.warnings) text += "  note: " + warning + "\n";
-  // Analyses with rows speak of the structure where it is not what one expects of them; those that were refused before
-  // anything was counted, not at all.
+  // Analyses with rows report the structure only where it is unusual; analyses that were refused before it was counted
+  // do not.
   const bool counted = report.bodies > 0 || result.type == "check";
   if ((!result.has_rows && counted) || report.status == Status::under_driven) text += structure_text(report);
   if (!result.has_rows && report.rank && report.redundant.empty()) text += "  no redundant constraints\n";

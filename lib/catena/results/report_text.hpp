@@ -1,4 +1,4 @@
-// Outcomes of analyses in words, for people: what the mechanism is, what came out, what to know about it.
+// Outcomes of analyses as text for readers: the mechanism, the outcome, and warnings.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ std::string outcome_text(const AnalysisResult& result);
 /// The lines under the table: message, notes, freedoms and redundancy where they matter, named results.
 std::string report_text(const AnalysisResult& result);
 
-/// What --stats prints: counters that are not zero, and the time.
+/// The output of --stats: counters that are not zero, and the time.
 std::string counters_text(const AnalysisResult& result);
 
 }  // namespace catena

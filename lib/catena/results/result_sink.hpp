@@ -1,8 +1,9 @@
-// Where the results of a whole run go as they come: a table on the terminal, a JSON document, one file an analysis.
+// Receives the results of a whole run as they are computed: a table on the terminal, a JSON document, one file an
+// analysis.
 //
 //   begin_run   ( begin_analysis   rows into the RowSink   end_analysis )*   end_run
 //
-// Nothing keeps rows unless it wants to, so memory stays bounded however long a run is. Between begin_analysis and
+// Rows are not kept unless a sink keeps them, so memory stays bounded however long a run is. Between begin_analysis and
 // end_analysis an analysis that fails early may send no row, nor call RowSink::begin at all.
 #pragma once
 
@@ -17,7 +18,7 @@
 
 namespace catena {
 
-/// What is known of a run before its first analysis.
+/// The data of a run known before its first analysis.
 struct RunHeader {
   std::string scene;  ///< its name; that of the file if it has none
   std::string description;
@@ -40,7 +41,7 @@ class ResultSink {
   virtual void end_run() = 0;
 };
 
-/// Passes everything on to several sinks. A row sink that returns false stops the analysis for all.
+/// Passes all results to several sinks. A row sink that returns false stops the analysis for all.
 class TeeSink final : public ResultSink, private RowSink {
  public:
   void add(ResultSink& sink) { sinks_.push_back(&sink); }

@@ -1,4 +1,4 @@
-// Rows kept in memory, one after the other, for whoever wants to look at them in C++.
+// Rows kept in memory, one after the other, for use in C++.
 #pragma once
 
 #include <limits>
@@ -13,8 +13,8 @@ namespace catena {
 
 class ResultStorage final : public RowSink {
  public:
-  /// Keeps at most `limit` values (eight bytes each) and stops the analysis at the row that would be too many; what was
-  /// kept stays.
+  /// Keeps at most `limit` values (eight bytes each) and stops the analysis at the first row beyond that; the rows kept
+  /// remain.
   explicit ResultStorage(std::size_t limit = std::numeric_limits<std::size_t>::max()) : limit_(limit) {}
 
   void begin(std::span<const ColumnInfo> columns) override;
@@ -22,7 +22,7 @@ class ResultStorage final : public RowSink {
 
   std::span<const ColumnInfo> columns() const { return columns_; }
   std::size_t rows() const { return rows_; }
-  // Numbers of rows and columns that there are not throw std::out_of_range.
+  // Row and column numbers out of range throw std::out_of_range.
 
   /// Values of a row, in the order of the columns.
   std::span<const double> operator[](std::size_t row) const {

@@ -1,7 +1,7 @@
-// Text on its way out: to the standard output or to a file, buffered, with failure remembered instead of thrown.
+// Text output to the standard output or to a file, buffered, with failure remembered instead of thrown.
 //
-// A file is written beside its final place and renamed by commit(), so that a run that is stopped or runs out of disk
-// never leaves half a file under the name, nor destroys the one that was there.
+// A file is written beside its final place and renamed by commit(), so that a run that is stopped or fills the disk
+// never leaves an incomplete file under that name, nor destroys the earlier one.
 #pragma once
 
 #include <cstdio>
@@ -29,7 +29,7 @@ class TextOutput {
   bool ok() const { return error_.empty(); }
   /// Why writing failed, with the file's name; empty if it did not.
   const std::string& error() const { return error_; }
-  /// The reader of the standard output has gone (a closed pipe): no error to speak of.
+  /// The reader of the standard output has closed the pipe: not reported as an error.
   bool reader_gone() const { return reader_gone_; }
 
  private:

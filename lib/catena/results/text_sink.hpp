@@ -10,7 +10,7 @@ namespace catena {
 
 class TextSink final : public ResultSink {
  public:
-  /// `hint` is said once under the first table that shows less than everything: how to see the rest.
+  /// `hint` is printed once, under the first table that does not show everything: how to see the rest.
   TextSink(TextOutput& output, const TableLimits& limits, std::string hint)
       : output_(output), hint_(std::move(hint)), table_(limits) {}
 

@@ -1,7 +1,7 @@
 // Rows as an aligned table for people: names, units, rounded numbers. A single row is set as a list, one line a column.
 //
-// What does not fit is counted and said, never cut silently: the first and the last rows are shown, and as many columns
-// as the width allows. Only what is shown is kept, so that memory stays bounded.
+// Rows and columns that do not fit are counted in the output, never cut silently: the first and the last rows are
+// shown, and as many columns as the width allows. Only the rows shown are kept, so that memory stays bounded.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct TableLimits {
   std::size_t last_rows = 5;    ///< and from the end
   std::size_t width = 120;      ///< characters a line
   std::size_t list_lines = 45;  ///< columns shown of a single row
-  /// Shows everything, whatever the other limits say.
+  /// Shows everything, regardless of the other limits.
   static TableLimits none();
 };
 

@@ -1,8 +1,8 @@
-// How large the applied forces at every coordinate are before they cancel, at rest.
+// The sizes of the applied forces at every coordinate before they cancel, at rest.
 //
 //   all_c = sum over gravity and all force elements of |their part of Q_c|,   loads_c: gravity, forces, torques alone
 //
-// What rounding in Q is measured against, and what is left of the loads where springs balance each other. N, N m.
+// Used to measure rounding in Q, and to find the loads where springs balance each other. N, N m.
 #pragma once
 
 #include <vector>

@@ -12,7 +12,7 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// A residual above this part of the loads shows in the third digit of some force: never an equilibrium.
+// A residual above this part of the loads changes the third digit of some force: not an equilibrium.
 constexpr double shown = 1e-3;
 // Rounding of the few sums behind one number: a place is the sum of four products, a force of two differences.
 constexpr double few_roundings = 4 * std::numeric_limits<double>::epsilon();
@@ -32,7 +32,8 @@ std::vector<double> sum_terms(const StaticSystem& system, std::span<const double
   return sum;
 }
 
-// Adds, by columns, what places known to one part in one make of every element's force, constraints' included.
+// Adds, by columns, the change of every element's force (constraints included) for a relative error of one in its
+// places.
 void add_stiffness_times_places(StaticSystem& system, std::span<const double> lambda, std::span<double> sum) {
   const Plan& plan = system.plan();
   const Evaluator& evaluator = system.evaluator();
@@ -41,7 +42,7 @@ void add_stiffness_times_places(StaticSystem& system, std::span<const double> la
   const auto reach = [&](int b) { return moves(b) ? norm(frames[at(b)].origin()) + system.radius()[at(b)] : 0.0; };
   const auto place = [&](int b) { return b >= 0 ? evaluator.ground_frame(b).origin() : Vec2<double>{}; };
   const auto add = [&](int i, int j, const ElementMatrix& m) {
-    // How far two bodies are apart, or a body and the ground's origin, from where places in the ground are given.
+    // The distance of two bodies, or of a body from the ground's origin, to which places in the ground refer.
     const double length = std::max(norm(place(i) - place(j)), system.length()) + reach(i) + reach(j);
     for (int row = 0; row < 6; ++row) {
       const int body = row < 3 ? i : j;
@@ -86,7 +87,7 @@ StaticAccuracy judge_balance(StaticSystem& system, std::span<const double> lambd
   if (result.balanced || !finite) return result;
   std::vector<double> floor = terms;
   add_stiffness_times_places(system, lambda, floor);
-  // Without loads, springs at their lengths: all that there is are the roundings themselves.
+  // Without loads, with springs at their free lengths, all forces are rounding.
   bool rounded = true, nothing = !loaded;
   double worst = -1;
   for (int c = 0; c < plan.columns; ++c) {

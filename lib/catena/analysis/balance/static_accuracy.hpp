@@ -1,14 +1,15 @@
-// How well the forces balance at a point, judged by the forces themselves and by what rounding can leave of them.
+// The accuracy of a balance of forces at a point: compared with the forces themselves, and with the rounding that they
+// contain.
 //
 //   r = V_q + Phi_q^T lambda          moments divided by the body's radius, so that all are N
 //   forces_c = sum of |terms of r_c|: every element's force, gravity, every constraint's part
 //   rounding_c = 4 eps (forces_c + sum over elements, j of |K_cj| s_j)
 //
 // K an element's stiffness, of constraints lambda Phi_qq, s_j the size of the numbers from which its places are formed
-// (m; 1 rad and the angle): a place is known to eps s, so that a spring of k N/m is known to no better than eps k s,
-// whatever is done. Balanced: max |r| <= tolerance x max forces_c. Rounded: |r_c| <= rounding_c everywhere. Neither
-// counts where a part of the loads is left that would show (`shown`): forces of springs under prestress, or rounding of
-// very stiff ones, may be larger than all that they carry. Source: Higham, Accuracy and Stability of Numerical
+// (m; 1 rad and the angle): a place is known to eps s, so that the force of a spring of k N/m is known to eps k s at
+// best. Balanced: max |r| <= tolerance x max forces_c. Rounded: |r_c| <= rounding_c everywhere. Neither is accepted
+// where the residual is a visible part of the loads (`shown`): forces of springs under prestress, or rounding of very
+// stiff ones, may be larger than the loads that they carry. Source: Higham, Accuracy and Stability of Numerical
 // Algorithms, section 3.1 (running error).
 #pragma once
 

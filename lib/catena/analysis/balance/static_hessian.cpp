@@ -19,7 +19,7 @@ StaticHessian::StaticHessian(StaticSystem& system) : system_(system) {
   for (const auto& list : structure.hessian.forces) {
     for (int s : list) written[at(s)] = 1;
   }
-  // What concerns turning alone is kept by body and belongs on the diagonal.
+  // The stiffness against turning is kept by body and belongs on the diagonal.
   for (int b = 0; b < plan.moving; ++b) {
     const int c = plan.column[at(3 * b + 2)];
     if (c >= 0 && written[at(structure.turning(b))]) written[at(structure.diagonal[at(c)])] = 1;

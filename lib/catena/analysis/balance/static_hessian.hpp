@@ -1,6 +1,6 @@
-// The Hessian of the Lagrangian, factor V_qq + sum lambda Phi_qq, as a list of entries: for optimisers that want the
-// true second derivatives without what a factorization of our own adds. Lower triangle over columns; places that no
-// element writes are left out. Nothing allocates after construction.
+// The Hessian of the Lagrangian, factor V_qq + sum lambda Phi_qq, as a list of entries: for optimisers, which need the
+// true second derivatives without the augmentation of the library's own factorization. Lower triangle over columns;
+// entries that no element writes are left out. Nothing allocates after construction.
 #pragma once
 
 #include <span>

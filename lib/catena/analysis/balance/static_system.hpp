@@ -1,10 +1,11 @@
-// The equations of static equilibrium at one configuration: what all its solvers and the certificate share.
+// The equations of static equilibrium at one configuration, shared by all solvers and the certificate.
 //
-//   V_q + Phi_q^T lambda = 0,   Phi = 0        V_q = -Q, Q the applied forces at rest (THEORY section 5)
+//   V_q + Phi_q^T lambda = 0,   Phi = 0        V_q = -Q, Q the applied forces at rest
+//   (apps/manual/statics.md#equilibrium)
 //
-// Rows of one-sided elements are gaps, Psi >= 0 with lambda <= 0. Either all of them are seen as such (use_gaps: what
-// optimisers want; phi() and jacobian() hold them all, phi_norm() what is below zero), or some hold as equations and
-// the others not at all (close_gaps: phi() and jacobian() hold zeros there, and lambda stays zero).
+// Rows of one-sided elements are gaps, Psi >= 0 with lambda <= 0. Either all of them are inequalities (use_gaps, for
+// optimisers: phi() and jacobian() hold them all, phi_norm() the part below zero), or some hold as equations and the
+// others not at all (close_gaps: phi() and jacobian() hold zeros there, and lambda stays zero).
 //
 // Functions of time are frozen at the evaluator's time. Vectors over columns (forces, N or N m; changes, m or rad) and
 // rows (lambda, Phi); configurations are in plan order. Nothing allocates after construction.
@@ -28,21 +29,22 @@ struct StaticStep {
   double residual = 0;             ///< relative one that refinement left
 };
 
-/// What a constraint row asks for: Phi = 0, Phi >= 0, Phi <= 0.
+/// The kind of a constraint row: Phi = 0, Phi >= 0, Phi <= 0.
 enum class RowSide : signed char { both, at_least, at_most };
 
 class StaticSystem {
  public:
   explicit StaticSystem(Evaluator& evaluator);
 
-  /// Takes over what depends on the numbers of the evaluator's model after they changed.
+  /// Updates all values that depend on the evaluator's model after it changed.
   void take_over_model();
-  /// Asked between steps of every search: whether to go on. Nothing: always.
+  /// Called between steps of every search: whether to continue. Empty: always.
   void watch(std::function<bool()> proceed) { proceed_ = std::move(proceed); }
   bool is_cancelled() const { return proceed_ && !proceed_(); }
   /// Evaluates forces, constraints and Phi_q at q (size coordinates()).
   void move_to(std::span<const double> q);
-  /// Whether the constraints have no second derivatives, as bodies held at their centroids: asked once, where it is.
+  /// Whether the constraints have no second derivatives, as bodies held at their centroids: determined once, at the
+  /// first configuration.
   bool has_linear_constraints();
   bool has_gaps() const { return !plan_.gap_rows.empty(); }
   RowSide side(int row) const { return is_gap_.empty() || !is_gap_[at(row)] ? RowSide::both : RowSide::at_least; }
@@ -69,14 +71,14 @@ class StaticSystem {
   /// Largest force in the mechanism: of V_q and of the constraints' parts of Phi_q^T lambda, N.
   double force_scale(std::span<const double> lambda) const;
 
-  /// What residual forces are compared with: force_scale at the last fill, N.
+  /// The force that residuals are compared with: force_scale at the last fill, N.
   double force_size() const { return force_; }
   /// Largest applied force so far, N.
   double load_size() const { return load_; }
-  /// Largest sum of all applied forces' sizes so far, N: what may pass through one joint.
+  /// Largest sum of all applied forces' sizes so far, N: an upper bound of the force through one joint.
   double total_load() const { return total_load_; }
-  /// Largest sum, over one coordinate, of what gravity, forces and torques do, N: at the place and time where it was
-  /// first asked for since the model or the time changed.
+  /// Largest sum, over one coordinate, of gravity, forces and torques, N: at the configuration of the first call since
+  /// the model or the time changed.
   double dead_load();
   bool has_springs() const { return springs_.any(); }
 
@@ -86,10 +88,10 @@ class StaticSystem {
   /// Residual forces below this may be rounding: a stiff spring's length is known to so many digits only, N.
   double rounding_force() const { return 1e-14 * matrix_.largest_stiffness() * extent_; }
 
-  /// Stiff springs on a long way, as links of a chain: a step turns them, which lengthens them to second order, and
-  /// what that does to k (l - l0) hides the forces that they will carry. fill() takes their stiffness, along the
-  /// present line, at the length that this change (columns, as advance() makes it) leads to to first order, as if
-  /// tensions were unknowns of their own; without one at the free length. To be told before the step is made.
+  /// Stiff springs that turn in a step, as links of a chain, lengthen to second order, and the resulting change of k (l
+  /// - l0) exceeds the forces that they will carry. fill() takes their stiffness, along the present line, at the length
+  /// to which this change (columns, as in advance()) leads to first order, as if tensions were unknowns of their own;
+  /// without a change at the free length. Call it before the step is made.
   void foresee(std::span<const double> change = {}, double factor = 1, double largest_turn = 0);
   /// Back to present lengths: the exact K of the energy.
   void forget_lengths() { springs_.forget(); }
@@ -97,7 +99,7 @@ class StaticSystem {
   /// Fills the matrix at the present configuration: K exact, or convex with h against turning made sqrt(h^2 + r^2), r
   /// the residual torque. `shift` N/m.
   void fill(std::span<const double> lambda, Curvature curvature, double shift);
-  /// Fills the matrix with force / length x (1, 1, radius^2) in the place of K.
+  /// Fills the matrix with force / length x (1, 1, radius^2) instead of K.
   void fill_weights();
   FactorResult factorize();
   /// Whether the last factorize() left factors to solve with.

@@ -16,7 +16,7 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double turn = 2 * std::numbers::pi;
 
-// Elements that know how often one body has turned against the other.
+// Elements that count the turns of one body relative to the other.
 template <class E>
 constexpr bool counts_turns =
     std::is_same_v<E, AbsoluteAngle<double>> || std::is_same_v<E, RelativeAngle<double>> ||

@@ -1,10 +1,10 @@
-// Whole turns that a search has made and nothing in the mechanism counts.
+// Removes whole turns that a search has made and that no element of the mechanism counts.
 //
-//   phi_b - n 2 pi,  n = round((phi_b - start) / 2 pi)        for all bodies tied by what counts their turns alike
+//   phi_b - n 2 pi,  n = round((phi_b - start) / 2 pi)        for all bodies whose turns are counted together
 //
-// Optimisers and shaken starts come to an equilibrium over many turns; the pose is the same without them. Bodies tied
-// by angle rows, welds, gears, belts, racks, stops and springs against turning are taken back together, by the turns of
-// the first of them; those that are tied to the ground so have wound something up and stay.
+// Optimisers and displaced starts may reach an equilibrium after many turns; the pose is the same without them. Bodies
+// tied by angle rows, welds, gears, belts, racks, stops and springs against turning are turned back together, by the
+// turns of the first of them; those tied to the ground in this way keep their turns.
 #pragma once
 
 #include <span>

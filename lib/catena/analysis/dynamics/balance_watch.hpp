@@ -1,12 +1,14 @@
-// Whether a motion keeps its energy: what an integration may be trusted for, told by the motion itself.
+// Checks the balance of energy of a motion: detects wrong integrations from the motion itself.
 //
 //   missing = T + V - (T0 + V0) - work of drivers and loads + dissipated
 //   allowed = permitted x tolerance x (largest T + range of V) + rounding of V
 //
-// Errors of positions and velocities of `tolerance` (of the scale of the motion) change energy by a few times tolerance
-// x (T + V): what is well beyond that is no error of integration any more, but a wrong motion. Where forces without a
-// potential act and their work is not summed up nothing can be told. Units: J.
+// Errors of positions and velocities of `tolerance` (of the scale of the motion) change the energy by a few times
+// tolerance x (T + V); a motion with a much larger error of energy is wrong. No check is possible where forces without
+// a potential act and their work is not summed up. Units: J.
 #pragma once
+
+#include <algorithm>
 
 #include "catena/base/status.hpp"
 #include "catena/columns/snapshot.hpp"
@@ -20,13 +22,18 @@ class BalanceWatch {
 
   /// `work_known`: snapshots carry work and dissipation. Evaluates energies at the start.
   void begin(const Snapshot& start, double tolerance, bool work_known);
-  /// Takes note of a state of the motion; whose evaluator stands there.
+  /// Energy of what came before, in phases of one motion: a part of its errors is that of the whole.
+  void know_energy(double energy) { earlier_ = energy; }
+  /// Largest kinetic energy and range of the potential, so far.
+  double energy() const { return std::max(earlier_, largest_kinetic_ + largest_potential_ - least_potential_); }
+  /// Records the energy of a state of the motion, at the configuration of its evaluator.
   void observe(const Snapshot& state);
   /// not_converged, with figures, where energy was lost or gained at the last state by more than is allowed.
   Report check(double t) const;
 
  private:
   double tolerance_ = 0, initial_ = 0, missing_ = 0, largest_kinetic_ = 0, least_potential_ = 0, largest_potential_ = 0;
+  double earlier_ = 0;
   bool work_known_ = false;
 };
 

@@ -30,6 +30,15 @@ void Dynamics::start_from(const SystemState& state) {
   given_qd_ = velocities_of(evaluator_, state);
 }
 
+void Dynamics::attach(ContactLoads* contacts) {
+  contacts_ = contacts;
+  equations_.attach(contacts);
+  const std::size_t elements = contacts ? model_->elements.size() : 0;
+  contact_force_.assign(elements, 0.0);
+  contact_friction_.assign(elements, 0.0);
+  contact_slip_.assign(elements, 0.0);
+}
+
 SystemState Dynamics::state() const { return state_of(evaluator_, t_, q_, qd_); }
 
 Report Dynamics::prepare(std::vector<std::string>& warnings) {

@@ -1,4 +1,4 @@
-// Forward dynamics: the motion that follows from forces, constraints and drivers (THEORY section 4).
+// Forward dynamics: the motion that follows from forces, constraints and drivers (apps/manual/dynamics.md).
 //
 // The start is assembled, its velocities made consistent; then an integrator steps through time, stopping where a
 // function of time has a breakpoint, and rows are interpolated between its steps and projected onto the constraints, so
@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 
+#include "catena/analysis/contact/contact_loads.hpp"
 #include "catena/analysis/dynamics/balance_watch.hpp"
 #include "catena/analysis/dynamics/dynamics_options.hpp"
 #include "catena/analysis/dynamics/event_watch.hpp"
@@ -38,7 +39,7 @@ class Dynamics {
                     const DynamicsOptions& options = {});
 
   const Plan& plan() const { return *plan_; }
-  /// The method at work: what was asked for, or what was chosen.
+  /// The method in use: the requested one, or the one chosen automatically.
   IntegrationMethod method() const { return method_; }
   Evaluator& evaluator() { return evaluator_; }
 
@@ -58,17 +59,22 @@ class Dynamics {
   /// position, after its rows.
   void pause_after(double t) { pause_after_ = t; }
   bool paused() const { return paused_; }
-  /// What the motion goes on from where the last run paused.
+  /// The state of the motion where the last run paused.
   const MotionMemory& memory() const { return memory_; }
   /// Takes up a motion of the same model and options that paused: the next run() begins there, on the rest of its grid.
   void resume(const MotionMemory& memory);
 
+  /// Forces of contacts from now on, made for evaluator(); nullptr: none.
+  void attach(ContactLoads* contacts);
   /// Looks for events during run(): a row is given at each, and one that acts ends the run there. nullptr: none.
   void watch(EventWatch* events) { events_ = events; }
   /// The event at which the last run ended before the end of its grid, or -1; and the row of the grid that was next.
   int stopped_by() const { return stopped_by_; }
   std::int64_t next_row() const { return next_row_; }
   WorkSoFar work_so_far() const;
+  /// What moved in the last run, J, and in those before it of the same motion: errors are compared with the whole.
+  double energy_in_motion() const { return balance_ ? balance_->energy() : earlier_motion_; }
+  void know_energy(double energy) { earlier_motion_ = energy; }
   /// Counts work from an earlier start; energy that is missing against then counts as dissipated (an impact).
   void carry_on(WorkSoFar work) { earlier_ = std::move(work); }
 
@@ -149,8 +155,10 @@ class Dynamics {
   double pace_time_ = 0;                         // ... this, s
   std::vector<double> q_, qd_, given_qd_, driver_work_;
   std::vector<double> y_row_, slope_row_, lambda_row_, loads_row_;
-  double row_residual_ = 0;
+  double row_residual_ = 0, earlier_motion_ = 0;
   EventWatch* events_ = nullptr;
+  ContactLoads* contacts_ = nullptr;
+  std::vector<double> contact_force_, contact_friction_, contact_slip_;  // of the row, by element
   int stopped_by_ = -1;
   std::int64_t next_row_ = 0;
   WorkSoFar earlier_;

@@ -6,13 +6,13 @@
 namespace catena {
 namespace {
 
-// Places within a step that are looked at, its end among them: what leaves a curve and comes back within less than a
-// quarter of a step has turned faster than the step's error allows.
+// Places within a step that are checked, its end among them: a point that leaves a curve and returns within a quarter
+// of a step moves faster than the step's error allows.
 constexpr int samples = 4;
 
 }  // namespace
 
-// Looks along the last step, which began at `from`.
+// Checks the last step, which began at `from`.
 Report Dynamics::check_curve_ends(double from, RowObserver& observer) {
   const auto left_at = [&](double t) {
     if (t == integrator_->time()) {

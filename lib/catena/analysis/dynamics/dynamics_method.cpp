@@ -1,4 +1,4 @@
-// Which method integrates a motion, how exact its steps are, and when a run has no prospect of ending.
+// The choice of the method of integration, the accuracy of its steps, and the end of runs that would take too long.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,10 +13,10 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// What a step may contribute to the error that was asked for; see the calibration in tests/oracles.
+// Part of the tolerance that a step may contribute; see the calibration in tests/oracles.
 constexpr double step_part = 0.002;
-// The same for methods whose errors of steps add up more: those that do not project, and those with a memory; but not
-// less than rounding leaves.
+// The same for methods whose errors of steps add up more: those that do not project, and multistep methods; but not
+// below rounding.
 constexpr double finer_part = 0.2, least_step_tolerance = 2e-14;
 constexpr double least_multistep_tolerance = 1e-11;
 constexpr int least_multistep_bodies = 10;
@@ -34,7 +34,7 @@ bool has_closed_loops(const Plan& plan) {
   bool closed = false;
   for_each_list(plan.blocks, [&](const auto& block, int) {
     for (int e = 0; e < block.size(); ++e) {
-      // What does not move is the ground.
+      // Bodies that do not move count as the ground.
       const int i = find(std::min(block.body_i[at(e)], plan.moving)),
                 j = find(std::min(block.body_j[at(e)], plan.moving));
       closed = closed || i == j;
@@ -84,7 +84,7 @@ Report Dynamics::check_freedoms() const {
 }
 
 // Multistep methods save evaluations in smooth motions of many bodies; in closed loops, which may come to singular
-// positions, and where hardly a digit is to spare, Runge-Kutta is the safer choice.
+// positions, and at tolerances near rounding, Runge-Kutta is the safer choice.
 void Dynamics::choose_method() {
   method_ = options_.method;
   if (method_ != IntegrationMethod::automatic) return;
@@ -121,7 +121,7 @@ std::unique_ptr<Integrator> Dynamics::make_integrator(const Motion& motion, doub
   return std::make_unique<RungeKutta>(motion, options);
 }
 
-// Ends a run that would take hours, where it is rather than then.
+// Ends a run at once if at its present pace it would take hours.
 Report Dynamics::check_pace(double last) {
   Report report;
   if (options_.step > 0) return report;
@@ -135,7 +135,7 @@ Report Dynamics::check_pace(double last) {
     pace_time_ = t_;
   }
   if (!used_up && !hopeless) return report;
-  // Steps that lead nowhere are too small; a bound that is reached is another matter.
+  // At a hopeless pace the steps are too small; otherwise the bound was reached.
   report.status = hopeless ? Status::step_too_small : Status::not_converged;
   std::string culprit;
   if (integrator_->culprit() >= 0) {

@@ -70,7 +70,7 @@ class DynamicsOfIslands::Part final : public RowObserver {
     }
     dynamics_.start_from(own);
   }
-  /// Who watches is told of times that go from `from` to `to` once for all mechanisms.
+  /// Reports the progress of all mechanisms to the observer as times between `from` and `to`.
   void go_through(double from, double to, RowObserver& watcher) {
     from_ = from;
     to_ = to;

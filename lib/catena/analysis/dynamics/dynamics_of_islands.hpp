@@ -2,7 +2,7 @@
 // pace (paces.hpp) are integrated apart, with steps of their own size, each class by the method that `auto` chooses for
 // it, and they meet at the rows.
 //
-// A stiff or fast one then no longer makes a slow and large one go in its steps: instead of
+// A stiff or fast mechanism then does not force its steps on a slow and large one: instead of
 //   (most steps of any) x (bodies of all)      the cost is      sum over the classes of steps x bodies.
 // Errors are compared with the sizes of each class, not with those of the whole scene: the same tolerance asks for more
 // where a small mechanism stands beside a large one.

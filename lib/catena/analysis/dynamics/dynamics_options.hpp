@@ -25,15 +25,15 @@ inline std::string_view to_string(IntegrationMethod method) {
 }
 
 struct DynamicsOptions {
-  /// What double precision can hold.
+  /// The least tolerance that double precision allows.
   static constexpr double least_tolerance = 1e-14;
   IntegrationMethod method = IntegrationMethod::automatic;
   /// Of the state: positions relative to the scene's length scale, angles to 1 rad, velocities to the fastest so far.
   double tolerance = 1e-8;
   /// Fixed step, s; 0: chosen by the integrator.
   double step = 0;
-  /// Largest number of steps of a run, rejected ones included; it ends when they are used up, or will be ten times over
-  /// at its present pace. Does not count for a fixed step.
+  /// Largest number of steps of a run, rejected ones included; the run ends when they are used up, or as soon as ten
+  /// times as many would be needed at its present pace. Ignored for a fixed step.
   std::int64_t max_steps = 10'000'000;
 };
 

@@ -1,4 +1,4 @@
-// Rows of Dynamics: the mechanism at an instant of the last step, events, and what is said where no step can be made.
+// Rows of Dynamics: the mechanism at an instant of the last step, events, and the report where no step can be made.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,6 +30,12 @@ Snapshot Dynamics::snapshot(double t, std::span<const double> y, const Needs& ne
   if (needs.acceleration || needs.multipliers) s.qdd = std::span<const double>(slope_row_).subspan(n, n);
   if (needs.multipliers) s.lambda = lambda_row_;
   s.residual = row_residual_ * evaluator_.length_scale();
+  if (contacts_) {
+    s.contact_force = contact_force_;
+    s.contact_friction = contact_friction_;
+    s.contact_slip = contact_slip_;
+    s.contact_energy = contacts_->energy();
+  }
   if (account_) {
     const std::span<const double> work = y.subspan(2 * n);
     s.work = earlier_.supplied + EnergyAccount::supplied(work);
@@ -69,13 +75,14 @@ std::optional<Snapshot> Dynamics::state_at(double t) {
     const std::span<double> slope(slope_row_);
     if (!equations_.accelerations(t, Side::after, y.first(n), y.subspan(n, n), slope.subspan(n, n))) return {};
     look_for_singularity(t);
+    if (contacts_) contacts_->scatter(contact_force_, contact_friction_, contact_slip_);
     if (needs_.multipliers) find_multipliers();
   } else {
     evaluator_.set_time(t);
     evaluator_.set_configuration(y.first(n));
   }
   if (account_) {
-    // Drivers that are released have no part in the present run, but what they did before it.
+    // Released drivers do no work in the present run, but their earlier work is kept.
     std::fill(driver_work_.begin(), driver_work_.end(), 0.0);
     account_->driver_work(y.subspan(2 * n), driver_work_);
     for (std::size_t e = 0; e < earlier_.by_driver.size(); ++e) driver_work_[e] += earlier_.by_driver[e];
@@ -127,7 +134,7 @@ Report Dynamics::stuck() {
         integrator_->time(), model_->element_type(driver), model_->element_name(driver));
     return report;
   }
-  // What means nothing in kinematics means nothing here.
+  // An element that is undefined in kinematics is undefined here as well.
   evaluator_.set_time(integrator_->time());
   evaluator_.set_configuration(integrator_->state().first(q_.size()));
   if (Report sound = watched_.check(); !sound.ok()) return sound;
@@ -165,6 +172,12 @@ Report Dynamics::find_events(double from, RowObserver& observer) {
     if (const Report shown = show(from, found->t, observer); !shown.ok()) return shown;
     while (next_row_ < grid_.size() && grid_[next_row_] < found->t) {
       if (const Report given = give_row(grid_[next_row_++], observer); !given.ok()) return given;
+    }
+    if (events_->is_transition(*found)) {
+      if (!state_at(found->t)) return stuck();
+      stopped_by_ = found->event;
+      t_ = found->t;
+      return {};
     }
     if (next_row_ < grid_.size() && grid_[next_row_] == found->t) ++next_row_;
     if (const Report given = give_row(found->t, observer); !given.ok()) return given;

@@ -54,9 +54,10 @@ Report Dynamics::start() {
     if (const Report freedoms = check_freedoms(); !freedoms.ok()) return freedoms;
   }
   account_.reset();
-  const bool conserves = BalanceWatch::conserves(evaluator_);
-  // Where constraints are redundant or parts massless the work is summed up for the check alone.
-  const bool delicate = redundant_.count() > 0 || !equations_.masses().massless.empty();
+  // Where constraints are redundant, parts massless or contacts rub the work is summed up for the check alone.
+  const bool rubs = contacts_ && contacts_->dissipates();
+  const bool conserves = BalanceWatch::conserves(evaluator_) && !rubs;
+  const bool delicate = redundant_.count() > 0 || !equations_.masses().massless.empty() || rubs;
   if (needs_.work || (!conserves && delicate)) account_.emplace(evaluator_);
   balance_.reset();
   if ((account_ || conserves) && options_.step == 0) balance_.emplace();
@@ -77,6 +78,7 @@ Report Dynamics::start() {
   if (balance_) {
     evaluator_.set_time(t_);
     evaluator_.set_configuration(std::span<const double>(y_row_).first(q_.size()));
+    balance_->know_energy(earlier_motion_);
     balance_->begin(snapshot(t_, y_row_, {}), options_.tolerance, account_.has_value());
   }
   if (!watched_.has_ends()) return {};

@@ -93,8 +93,8 @@ Report Dynamics::check_redundant_rows() {
   return report;
 }
 
-// Where no step can be made: the driver that asks most for a motion that the constraints rule out, w^T Phi_q = 0 but
-// w^T nu != 0 (THEORY section 3); -1: none does.
+// Where no step can be made: the driver with the largest part in a motion that the constraints exclude, w^T Phi_q = 0
+// but w^T nu != 0 (apps/manual/kinematics.md#singular-configurations); -1: none does.
 int Dynamics::locked_driver() {
   if (plan_->rows == 0 || !(equations_.smallest_pivot_ratio() < nearly_dependent)) return -1;
   evaluator_.set_time(integrator_->time());
@@ -141,7 +141,7 @@ void Dynamics::remark_on_singularities(std::vector<std::string>& warnings) const
   }
   if (formal_rows_ > 0) {
     warnings.push_back(
-        fmt::format("{} constraints depend on each other in a way that leaves accelerations open: accelerations and "
+        fmt::format("{} constraints depend on each other and do not determine the accelerations: accelerations and "
                     "loads there solve the equations, but need not be the limit of the motion",
                     rows_at(formal_t_, formal_rows_)));
   }

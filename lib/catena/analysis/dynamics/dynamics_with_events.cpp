@@ -40,7 +40,11 @@ class CountingObserver final : public RowObserver {
 DynamicsWithEvents::DynamicsWithEvents(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
                                        const DynamicsOptions& options, std::vector<Event> events,
                                        const ColumnSources& sources)
-    : given_model_(std::move(model)), model_(given_model_), plan_options_(plan_options), options_(options) {
+    : contacts_(model),
+      given_model_(std::move(model)),
+      model_(given_model_),
+      plan_options_(plan_options),
+      options_(options) {
   for (const Event& event : events) {
     if (event.action != EventAction::release && event.action != EventAction::engage) continue;
     plan_options_.keep_elements.push_back(event.element);
@@ -62,18 +66,46 @@ DynamicsWithEvents::DynamicsWithEvents(std::shared_ptr<const Model> model, const
 
 void DynamicsWithEvents::make_dynamics() {
   model_ = given_model_;
+  PlanOptions plan = plan_options_;
+  if (contacts_.any()) {
+    model_ = contacts_.model();
+    contacts_.add_rows(plan);
+  }
   if (!turned_.empty()) {
-    const auto turned = std::make_shared<Model>(*given_model_);
+    const auto turned = std::make_shared<Model>(*model_);
     for (std::size_t e = 0; e < turned_.size(); ++e) {
       if (turned_[e] != 0) turn_value(*turned, static_cast<int>(e), turned_[e]);
     }
     model_ = turned;
   }
-  dynamics_ = std::make_unique<Dynamics>(model_, plan_options_, options_);
+  dynamics_ = std::make_unique<Dynamics>(model_, plan, options_);
+  if (contacts_.started()) contacts_.attach(*dynamics_, *watch_);
 }
 
 void DynamicsWithEvents::start_from(const SystemState& state) {
-  if (!resumed_) dynamics_->start_from(state);
+  if (resumed_) return;
+  start_ = state;
+  dynamics_->start_from(state);
+}
+
+Report DynamicsWithEvents::start_contacts() {
+  SystemState state = start_ ? *start_ : SystemState{};
+  if (Report started = contacts_.start(state, plan_options_); !started.ok()) return started;
+  make_dynamics();
+  dynamics_->start_from(state);
+  return {};
+}
+
+Report DynamicsWithEvents::change_contacts(int transition, bool sum_up_work) {
+  SystemState state = dynamics_->state();
+  WorkSoFar work = dynamics_->work_so_far();
+  const double energy = dynamics_->energy_in_motion();
+  if (Report changed = contacts_.change(transition, state); !changed.ok()) return changed;
+  make_dynamics();
+  dynamics_->start_from(state);
+  dynamics_->know_energy(energy);
+  if (sum_up_work) dynamics_->carry_on(std::move(work));
+  return {};
 }
 
 void DynamicsWithEvents::resume(const MotionMemory& memory) {
@@ -144,10 +176,15 @@ Report DynamicsWithEvents::act(const Event& event, bool sum_up_work) {
   const bool engage = event.action == EventAction::engage;
   std::erase(released, event.element);
   if (!engage) released.push_back(event.element);
-  const SystemState state = dynamics_->state();
+  SystemState state = dynamics_->state();
   WorkSoFar work = dynamics_->work_so_far();
+  if (contacts_.any()) {
+    if (Report changed = contacts_.change_constraints(plan_options_, state); !changed.ok()) return changed;
+  }
+  const double energy = dynamics_->energy_in_motion();
   make_dynamics();
   dynamics_->start_from(state);
+  dynamics_->know_energy(energy);
   if (engage) turn_value_to_bodies(event.element, state);
   if (sum_up_work) dynamics_->carry_on(std::move(work));
   return engage ? check_fit(event.element) : Report{};
@@ -160,10 +197,17 @@ AnalysisReport DynamicsWithEvents::run(const TimeGrid& grid, const Needs& needs,
   total.warnings = inactive_;
   std::int64_t next_row = first_row_;
   TimeGrid rest = grid.from_row(next_row);
+  if (contacts_.any()) {
+    if (const Report started = start_contacts(); !started.ok()) {
+      total.status = started.status;
+      total.message = started.message;
+      return total;
+    }
+  }
   double last_action = -1;
   int at_once = 0;
   for (;;) {
-    if (!watch_->events().empty()) dynamics_->watch(watch_.get());
+    if (!watch_->events().empty() || contacts_.any()) dynamics_->watch(watch_.get());
     // The next multiple that lies clearly ahead.
     dynamics_->pause_after((std::floor(dynamics_->time() / pauses_.every * (1 + 1e-12)) + 1) * pauses_.every);
     add_part(total, dynamics_->run(rest, needs, rows));
@@ -174,7 +218,27 @@ AnalysisReport DynamicsWithEvents::run(const TimeGrid& grid, const Needs& needs,
       save_and_resume(rows.rows(), next_row);
       continue;
     }
+    if (!total.ok() && !contacts_.trouble().empty()) {
+      total.status = Status::inconsistent;
+      total.message = fmt::format("at t = {:.12g} s: {}", dynamics_->time(), contacts_.trouble());
+    }
     if (!total.ok() || stopped_by < 0) return total;
+    if (watch_->is_transition({stopped_by, 0})) {
+      at_once = dynamics_->time() > last_action ? 1 : at_once + 1;
+      last_action = dynamics_->time();
+      Report changed = change_contacts(watch_->transition(stopped_by), needs.work || watch_->needs().work);
+      if (changed.ok() && at_once > most_at_once) {
+        changed.status = Status::step_too_small;
+        changed.message = fmt::format("contacts change without end at t = {:.12g} s", last_action);
+      }
+      if (!changed.ok()) {
+        total.status = changed.status;
+        total.message = changed.message;
+        return total;
+      }
+      if (rest.size() == 0) return total;
+      continue;
+    }
     const Event& event = watch_->events()[static_cast<std::size_t>(stopped_by)];
     if (event.action == EventAction::stop) {
       if (rest.size() > 0)

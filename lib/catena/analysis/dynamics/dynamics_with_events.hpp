@@ -2,15 +2,18 @@
 //
 // Between events it is Dynamics. At an event that releases or engages a constraint, the motion goes on from there with
 // a plan of the same bodies and other rows. Positions and, on a release, velocities are continuous; on engagement
-// velocities change as little as the constraint asks for in the mass metric (a plastic impact), and the energy lost
+// velocities get the least change in the mass metric that meets the constraint (a plastic impact), and the energy lost
 // counts as dissipated. A constraint that an event engages does not hold before. Angles are continuous everywhere: what
 // is engaged after some turns takes its value with it (engaged_turns.hpp). Units as in dynamics.hpp.
 //
-// It can also pause now and then to save what it goes on from. At the end of the first step that reaches a multiple of
-// `every` after the last pause the integrator and all it holds are given up, and a new one goes on from the numbers
-// that were saved: in the run that goes on as in one that is taken up from them, which are thus equal bit for bit.
-// Pauses depend on simulated time alone. A run with pauses is as exact as one without, but may differ from it within
-// its tolerance; adams starts with short steps after each.
+// Contacts, stops and cables are phases of the same kind (contact_phases.hpp): rows that come and go by themselves,
+// with impacts where they close.
+//
+// It can also pause at intervals to save its state. At the end of the first step that reaches a multiple of `every`
+// after the last pause the integrator is discarded, and a new one continues from the saved numbers, in the same run as
+// in one that is resumed from them: both are thus equal bit for bit. Pauses depend on simulated time alone. A run with
+// pauses is as exact as one without, but may differ from it within its tolerance; adams starts with short steps after
+// each.
 #pragma once
 
 #include <functional>
@@ -18,6 +21,7 @@
 #include <memory>
 #include <vector>
 
+#include "catena/analysis/dynamics/contact_phases.hpp"
 #include "catena/analysis/dynamics/dynamics.hpp"
 
 namespace catena {
@@ -45,9 +49,15 @@ class DynamicsWithEvents {
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
   SystemState state() const { return dynamics_->state(); }
   const std::vector<EventRecord>& records() const { return watch_->records(); }
+  /// Changes of contacts, in order of their instants but for accumulated bounces.
+  const std::vector<ContactEvent>& contact_events() const { return contacts_.events(); }
+  bool has_contacts() const { return contacts_.any(); }
 
  private:
   void make_dynamics();
+  Report start_contacts();
+  /// Ends a phase at a transition, and begins the next one from the state that it leaves behind.
+  Report change_contacts(int transition, bool sum_up_work);
   std::vector<double> residuals_of(int element);
   /// Saves the motion where it paused and goes on from what was saved.
   void save_and_resume(std::int64_t rows_given, std::int64_t next_row);
@@ -56,6 +66,8 @@ class DynamicsWithEvents {
   void turn_value_to_bodies(int element, const SystemState& state);
   Report check_fit(int element);
 
+  ContactPhases contacts_;
+  std::optional<SystemState> start_;  // of the first phase
   std::shared_ptr<const Model> given_model_;
   std::shared_ptr<const Model> model_;  // with values moved by whole turns
   PlanOptions plan_options_;

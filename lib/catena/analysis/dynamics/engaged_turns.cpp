@@ -12,7 +12,8 @@ namespace {
 
 constexpr double turn = 2 * std::numbers::pi;
 
-/// Calls f(entry, row, period) for a constraint whose row counts turns of one angle: what a turn adds to its residual.
+/// Calls f(entry, row, period) for a constraint whose row counts turns of one angle: the change of its residual per
+/// turn.
 template <class M, class F>
 void with_turning_row(M& model, int element, F&& f) {
   const ElementRecord& record = model.elements[static_cast<std::size_t>(element)];
@@ -37,7 +38,7 @@ int whole_turns_of(const Model& model, int element, std::span<const double> phi)
   with_turning_row(model, element, [&](const auto&, std::size_t row, double period) {
     turns = row < phi.size() ? std::round(phi[row] / period) : 0;
   });
-  // More turns than an int holds are no pose that a double knows.
+  // With more turns than an int holds, a double no longer resolves the angle.
   return std::abs(turns) < std::numeric_limits<int>::max() ? static_cast<int>(turns) : 0;
 }
 

@@ -1,5 +1,5 @@
-// Whole turns at the engagement of a constraint: a clutch that closes after some turns holds the pose it finds, not the
-// angle that was once given.
+// Whole turns at the engagement of a constraint: a clutch that closes after some turns holds the present pose, not the
+// angle given at the start.
 //
 //   Phi = angle - c        engaged where Phi = 2 pi k + misfit:   c -> c + 2 pi k, so that no angle jumps
 //

@@ -12,9 +12,9 @@ namespace {
 constexpr double finer_part = 0.1;       // of the tolerance
 constexpr double largest_multiple = 10;  // of the tolerance that an error may come to, as it is calibrated
 
-/// Takes note of a difference and of the size of what differs.
+/// Records a difference and the size of the quantity.
 void note(ErrorOfMotion& kind, double difference, int body, double t) {
-  // A difference that is not a number must not go unnoticed.
+  // A difference that is not a number must be kept.
   if (difference <= kind.error) return;
   kind.error = difference;
   kind.body = body;
@@ -61,7 +61,7 @@ bool ErrorComparison::Other::observe(const Snapshot& snapshot) {
   return true;
 }
 
-// Whoever watches sees one run, the finer one; the other one only has to end when it is cancelled.
+// Observers see one run, the finer one; the other one only ends when cancelled.
 bool ErrorComparison::Other::proceed(double) { return owner_.proceed(owner_.t_); }
 
 bool ErrorComparison::observe(const Snapshot& snapshot) {

@@ -1,14 +1,13 @@
-// How large the error of a motion is: from two runs, side by side, of which one is finer.
+// Estimates the error of a motion from two runs, made together, of which one is finer.
 //
 //   asked    the run that was asked for: tolerance, or fixed step
 //   finer    tolerance / 10, or half the step; its rows are those that are given
 //
 // error = largest difference of the two at the instants of rows, of positions, angles, velocities and angular
-// velocities of the bodies, at their centroids. It is the error of the run that was asked for, up to that of the finer
-// one; the rows that are given are better. It holds for motions on which small errors have small effects: where they
-// have not, as after long times in chaotic ones, the difference says so by its size, but is no bound. What both runs
-// get wrong alike, such as a too coarse table of a function of time, does not show. Units: m, rad, s; nothing is stored
-// by row.
+// velocities of the bodies, at their centroids. It is the error of the requested run, up to that of the finer one; the
+// rows given are more accurate. It is valid where small errors have small effects: in chaotic motions after long times
+// the difference is large, but no bound. Errors common to both runs, such as a too coarse table of a function of time,
+// are not included. Units: m, rad, s; nothing is stored by row.
 #pragma once
 
 #include <memory>
@@ -70,11 +69,11 @@ class ErrorComparison final : public RowObserver {
   EstimatedError error_;
   std::int64_t row_ = 0;
   double t_ = 0;                // reached by the finer run
-  bool proceeding_ = true;      // nobody cancelled
+  bool proceeding_ = true;      // not cancelled
   std::vector<double> q_, qd_;  // of the run that was asked for
 };
 
-/// Says in the report of the finer run what came of the comparison, and adds what it cost.
+/// Adds the result of the comparison and its cost to the report of the finer run.
 void add_estimate(AnalysisReport& report, const AnalysisReport& asked, const EstimatedError& error,
                   const DynamicsOptions& options);
 

@@ -10,7 +10,7 @@ namespace {
 // Samples of a step: at least so many, and one for each turn of a body by this angle, rad.
 constexpr double fewest_samples = 8, most_samples = 1e6;
 constexpr double turn_between_samples = 0.25;
-// A distance from the value below this part of the column's size, or below this number, cannot be told from none.
+// A distance from the value below this part of the column's size, or below this number, counts as zero.
 constexpr double rounding = 1e-13;
 constexpr double smallest = 1e-14;
 constexpr int most_iterations = 80;
@@ -57,30 +57,48 @@ EventWatch::EventWatch(std::vector<Event> events, const Model& model, const Plan
 }
 
 int EventWatch::side(std::size_t k, double g) const {
-  const double tiny = std::max(smallest, rounding * std::max(largest_[k], std::abs(events_[k].value)));
+  const double tiny = std::max(smallest, rounding * std::max(largest_[k], std::abs(target(k))));
   return g > tiny ? 1 : g < -tiny ? -1 : 0;
 }
 
 /// Whether a passage from the side last seen to the other one is in the direction that is watched.
 bool EventWatch::counts(std::size_t k) const {
+  if (k >= events_.size()) return side_[k] == transitions_[k - events_.size()].side;
   return events_[k].direction == EventDirection::any || (events_[k].direction == EventDirection::up) == (side_[k] < 0);
 }
 
 void EventWatch::sample(const Snapshot& state, std::span<double> g) {
-  for (std::size_t k = 0; k < events_.size(); ++k) {
-    double value = 0;
-    columns_[k].evaluate(state, {&value, 1});
+  for (std::size_t k = 0; k < side_.size(); ++k) {
+    const double value = value_of(k, state);
     largest_[k] = std::max(largest_[k], std::abs(value));
-    g[k] = value - events_[k].value;
+    g[k] = value - target(k);
   }
+}
+
+double EventWatch::value_of(std::size_t k, const Snapshot& state) const {
+  if (k >= events_.size()) return transitions_[k - events_.size()].value(state);
+  double value = 0;
+  columns_[k].evaluate(state, {&value, 1});
+  return value;
+}
+
+void EventWatch::watch(std::vector<Transition> transitions, const Needs& needs) {
+  transitions_ = std::move(transitions);
+  transition_needs_ = needs;
+  const std::size_t size = events_.size() + transitions_.size();
+  side_.resize(events_.size());
+  for (const Transition& transition : transitions_) side_.push_back(transition.side);
+  largest_.resize(events_.size());
+  largest_.resize(size, 0.0);
+  found_at_.resize(events_.size());
+  found_at_.resize(size, -std::numeric_limits<double>::infinity());
+  for (std::vector<double>& g : g_) g.resize(size);
 }
 
 double EventWatch::watched(std::size_t k, double t, const StateAt& state_at) {
   const std::optional<Snapshot> state = state_at(t);
   if (!state) return std::numeric_limits<double>::quiet_NaN();
-  double value = 0;
-  columns_[k].evaluate(*state, {&value, 1});
-  return value - events_[k].value;
+  return value_of(k, *state) - target(k);
 }
 
 // The root between an instant on the old side and one on the new side: the secant through the ends, the older end's
@@ -143,7 +161,7 @@ std::optional<double> EventWatch::passage(std::size_t k, bool three, const State
   return {};
 }
 
-// How many samples show what happens in (from, to]: bodies that turn carry columns to and fro. Leaves the first sample.
+// Number of samples needed in (from, to], since columns oscillate with turning bodies. Leaves the first sample.
 int EventWatch::samples(double from, double to, const StateAt& state_at) {
   double turn = 0;
   const auto look = [&](double t, bool last) {
@@ -165,6 +183,7 @@ std::optional<FoundEvent> EventWatch::find(double from, double to, const StateAt
   if (!(from < to)) return {};
   const int parts = samples(from, to, state_at);
   times_[2] = from;
+  // A transition knows the side on which it begins, whatever rounding says at once.
   for (std::size_t k = 0; parts > 0 && k < events_.size(); ++k) {
     const int now = side(k, g_[2][k]);
     if (now != 0) side_[k] = now;
@@ -178,7 +197,7 @@ std::optional<FoundEvent> EventWatch::find(double from, double to, const StateAt
     if (!state) return {};
     sample(*state, g_[2]);
     std::optional<FoundEvent> first;
-    for (std::size_t k = 0; k < events_.size(); ++k) {
+    for (std::size_t k = 0; k < side_.size(); ++k) {
       if (side_[k] == 0) {
         side_[k] = side(k, g_[2][k]);
         continue;
@@ -187,7 +206,7 @@ std::optional<FoundEvent> EventWatch::find(double from, double to, const StateAt
       if (!beyond) continue;
       double start = *beyond > times_[1] ? times_[1] : times_[0], end = *beyond;
       if (!counts(k)) {
-        // A passage that is not watched; out of a dip the way back is.
+        // A passage in a direction that is not watched; the return from a dip is watched.
         side_[k] = -side_[k];
         if (*beyond == times_[2]) continue;
         start = *beyond;

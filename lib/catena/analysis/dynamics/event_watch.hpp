@@ -5,8 +5,8 @@
 // Within a step of the integrator g is sampled on the dense output, at eight instants or more: a quarter of a radian of
 // the fastest body's turn apart at most. A change of sign, or a dip towards zero that a parabola through three samples
 // takes beyond it, is enclosed and the root found to rounding in t on states that meet the constraints, hence as exact
-// as the rows of the run. A column that starts at its value has no event there. What passes to and fro between two
-// samples without a visible dip goes unnoticed. Units: those of the columns, s.
+// as the rows of the run. A column that starts at its value has no event there. A column that crosses its value twice
+// between two samples without a visible dip is missed. Units: those of the columns, s.
 #pragma once
 
 #include <array>
@@ -40,6 +40,12 @@ struct Event {
   int element = -1;  ///< what is released or engaged, in the model's list
 };
 
+/// A change of the mechanism itself: where `value` passes from the side on which it begins to the other one.
+struct Transition {
+  std::function<double(const Snapshot&)> value;
+  int side = 1;  ///< on which it begins: -1 or 1
+};
+
 struct FoundEvent {
   int event = 0;
   double t = 0;
@@ -50,21 +56,32 @@ class EventWatch {
   using StateAt = std::function<std::optional<Snapshot>(double)>;
 
   /// Throws ColumnError for an unknown column; std::invalid_argument for one that stands for several, or that the
-  /// analysis cannot give, and for a value that is not finite; std::out_of_range for an element that there is not.
+  /// analysis cannot give, and for a value that is not finite; std::out_of_range for an element that does not exist.
   EventWatch(std::vector<Event> events, const Model& model, const Plan& plan, const ColumnSources& sources);
 
   const std::vector<Event>& events() const { return events_; }
-  const Needs& needs() const { return needs_; }
+  Needs needs() const {
+    Needs all = needs_;
+    return all |= transition_needs_;
+  }
+  /// Watches these beside the events, in place of those before; `needs`: what their values are made of.
+  void watch(std::vector<Transition> transitions, const Needs& needs);
+  /// Whether what was found is a transition, and which.
+  bool is_transition(const FoundEvent& found) const { return found.event >= static_cast<int>(events_.size()); }
+  int transition(int found) const { return found - static_cast<int>(events_.size()); }
   /// The first event in (from, to]; `state_at` gives the mechanism at an instant of that interval.
   std::optional<FoundEvent> find(double from, double to, const StateAt& state_at);
-  /// Keeps a record of an event that was found and whose row was given. True if it acts: the motion may not go on as
-  /// before.
+  /// Keeps a record of an event that was found and whose row was given. True if it acts: the motion must not continue
+  /// unchanged.
   bool take(const FoundEvent& found);
   /// Counts rows: called with the number of those given so far.
   std::function<std::int64_t()> rows_given;
   const std::vector<EventRecord>& records() const { return records_; }
-  /// What it has seen, without `released` and `turned`; and takes over what another one had.
-  EventMemory memory() const { return {{}, {}, side_, largest_, records_}; }
+  /// Its state, without `released` and `turned`; and takes over the state of another one.
+  EventMemory memory() const {
+    const auto events = static_cast<std::ptrdiff_t>(events_.size());
+    return {{}, {}, {side_.begin(), side_.begin() + events}, {largest_.begin(), largest_.begin() + events}, records_};
+  }
   void remember(const EventMemory& memory) {
     side_ = memory.sides;
     largest_ = memory.largest;
@@ -79,9 +96,13 @@ class EventWatch {
   double locate(std::size_t k, double before, double after, const StateAt& state_at);
   int side(std::size_t k, double g) const;
   bool counts(std::size_t k) const;
+  double target(std::size_t k) const { return k < events_.size() ? events_[k].value : 0; }
+  double value_of(std::size_t k, const Snapshot& state) const;
 
   std::vector<Event> events_;
   std::vector<ColumnSet> columns_;
+  std::vector<Transition> transitions_;
+  Needs transition_needs_;
   Needs needs_;
   std::vector<int> side_;                 // of its value on which each column was last seen: -1, 1; 0: not yet
   std::vector<double> largest_;           // |column| so far: what rounding is measured against

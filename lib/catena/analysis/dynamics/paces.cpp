@@ -84,7 +84,7 @@ std::vector<std::vector<int>> classes_of_pace(const std::shared_ptr<const Model>
     }
     classes.back().insert(classes.back().end(), groups[k].begin(), groups[k].end());
   }
-  // In the order of the model bodies keep their neighbours, and what moves alone the order it has alone.
+  // The order of the model keeps neighbouring bodies together, and a mechanism keeps the order it has on its own.
   for (std::vector<int>& bodies : classes) std::sort(bodies.begin(), bodies.end());
   return classes;
 }

@@ -1,11 +1,12 @@
-// Which mechanisms of a scene want steps of their own: those whose pace differs from that of the others.
+// Finds the mechanisms of a scene that should have steps of their own: those whose pace differs from that of the
+// others.
 //
 // The pace of a mechanism, rad/s, is estimated from its given configuration and velocities as the largest of
 //   |v| / L   |omega|   sqrt(|F| / (m L))   sqrt(|n| / J)   sqrt(k / m)   sqrt(k_t / J)   |c'| (/ L)   sqrt(|c''|) (/
 //   L)
 // over its bodies and drivers: L the scene's length scale, F and n gravity and applied loads, k and k_t diagonal
-// entries of the stiffness, c the drivers' values. It need not be right: any division gives right results, and this one
-// decides only what they cost. Mechanisms of one pace share their steps, since each evaluation then serves all of them.
+// entries of the stiffness, c the drivers' values. It need not be accurate: any division gives right results; only the
+// cost depends on it. Mechanisms of one pace share their steps, since each evaluation then serves all of them.
 #pragma once
 
 #include <memory>

@@ -14,7 +14,7 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 constexpr int max_iterations = 25;
 constexpr int max_refinements = 10;
 // All in length scales or rad. A residual of `rounding` is zero; corrections below `rounding_floor` need not shrink any
-// more; what is predicted to change by less than `negligible` is not computed.
+// more; a correction predicted to be below `negligible` is not computed.
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double rounding = 1e-16;
 constexpr double rounding_floor = 1e-12;
@@ -27,7 +27,7 @@ constexpr double part_of_extent = 0.01;
 constexpr double keep_distance = 1e-4;
 // Refinement that leaves more than this of an error takes longer than new factors.
 constexpr double keep_rate = 1e-2;
-// Old factors do not show a determinant that changes its sign: they are kept only where no pivot is near zero.
+// Old factors hide a change of the determinant's sign: they are kept only where no pivot is near zero.
 constexpr double keep_rcond = 1e-2;
 // A ratio of successive corrections above this asks for new factors.
 constexpr double poor_contraction = 0.1;
@@ -211,7 +211,7 @@ bool DrivenSolver::factors_serve() const {
   return exact || (gap_ <= keep_distance && rcond_ >= keep_rcond);
 }
 
-// What is left of an error after one refinement with factors made at a distance.
+// The part of an error that one refinement leaves with factors made at a distance.
 double DrivenSolver::refinement_rate() const { return plan_.constant_jacobian || gap_ == 0 ? 0 : gap_ / rcond_; }
 
 // A linear system needs no determinant: factors serve as long as refinement with them converges fast.
@@ -222,15 +222,17 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
   double size = 0;  // of the last correction
   double rate = 0;  // by which the next correction will be smaller
   double last_residual = std::numeric_limits<double>::infinity();
-  // Without a set of rows that determines everything there is nothing that could converge.
+  // Without a set of equations that determines all coordinates nothing can converge.
   if (!is_square()) return outcome;
   for (;; ++outcome.iterations) {
     evaluate_at(q);
     outcome.residual = gather_rows(phi_, step_);
     if (!std::isfinite(outcome.residual)) return outcome;
-    // A long structure moves its far end by many length scales: its residuals cannot be rounder than its coordinates.
+    // The far end of a long structure moves by many length scales: its residuals contain the rounding of its
+    // coordinates.
     const double attainable = std::max(tolerance, 8 * epsilon * extent_);
-    // Corrections are the residual times a condition: they need not become small, but then the residual stays.
+    // Corrections are the residual times a condition number: they need not become small, but then the residual stays
+    // constant.
     const bool small = outcome.residual <= attainable;
     const bool settled =
         rate * size <= std::max(negligible, epsilon * extent_) || outcome.residual > poor_contraction * last_residual;
@@ -293,7 +295,7 @@ bool DrivenSolver::solve_refined(std::span<double> x, bool has_start) {
     if (!factorize()) return false;
     factored_here = true;
   }
-  // At rest the solution is zero: a start would be refined towards it for ever, no digit of zero being right.
+  // At rest the solution is zero: refinement of a start would never end, since no relative accuracy of zero is reached.
   if (std::all_of(rhs_.begin(), rhs_.end(), [](double value) { return value == 0; })) {
     std::fill(x.begin(), x.end(), 0.0);
     return true;
@@ -329,8 +331,8 @@ bool DrivenSolver::solve_refined(std::span<double> x, bool has_start) {
   return size <= tolerance * all || is_solved_to_rounding(values, x);
 }
 
-// In a structure of very many parts corrections end well above the rounding of x: its own condition multiplies it. What
-// is left then is an exact solution of equations that differ from the given ones by rounding, row by row.
+// In a structure of very many parts corrections end well above the rounding of x: its own condition multiplies it. The
+// result is then the exact solution of equations that differ from the given ones by rounding, row by row.
 bool DrivenSolver::is_solved_to_rounding(std::span<const double> values, std::span<const double> x) {
   std::copy(rhs_.begin(), rhs_.end(), residual_all_.begin());
   subtract_product(values, x, residual_all_);

@@ -1,11 +1,11 @@
 // Position, velocity and acceleration of a kinematically driven mechanism: Newton-Raphson on Phi(q, t) = 0, then one
-// refined solve each with the factorization at hand (THEORY section 3).
+// refined solve each with the factorization at hand (apps/manual/kinematics.md#driven-motion).
 //
 //   Phi_q dq = -Phi        Phi_q qd = nu        Phi_q qdd = gamma
 //
-// The square matrix consists of a maximal independent set of rows, all of them where rows == columns. Singular where
-// that matrix is: the outcome then says so, the caller decides. A factorization is kept while it converges: how far the
-// configuration has moved since it was made bounds how well it still serves, and velocities and accelerations are
+// The square matrix consists of a maximal independent set of equations, all of them where rows == columns. Singular
+// where that matrix is: the outcome reports it, and the caller decides. A factorization is kept while it converges: the
+// distance of the configuration from where it was made bounds the rate of convergence. Velocities and accelerations are
 // refined against the true Jacobian, so that they are exact whichever factors were used.
 // Nothing allocates after the first solve.
 #pragma once
@@ -53,18 +53,18 @@ class DrivenSolver {
   /// Solves Phi_q^T lambda = rhs (columns) for the rows in use; lambda has one entry a row of the plan, others zero.
   bool solve_multipliers(std::span<const double> rhs, std::span<double> lambda);
 
-  /// Residuals, nu and gamma of all rows at the last evaluation: to check those that are not solved with.
+  /// Residuals, nu and gamma of all equations at the last evaluation, to check those that are not solved with.
   std::span<const double> phi() const { return phi_; }
   /// Phi_q at the last configuration, current after solve_velocity.
   std::span<const double> jacobian();
   const Factorization& factorization() const { return factorization_; }
-  /// How far from singular every block of the last factorization is (see Factorization::block_margins).
+  /// The distance of every block of the last factorization from a singular one (see Factorization::block_margins).
   std::span<const BlockMargin> block_margins();
   /// Sets the configuration and returns the largest residual of the rows in use, in length scales or rad.
   double residual_at(std::span<const double> q);
-  /// How far apart two configurations are, or how large a rate is: the larger of the largest angle, rad, and the
-  /// largest shift in length scales (of a structure much longer than these: in hundredths of its extent). `angle`: the
-  /// angle alone.
+  /// The distance of two configurations, or the size of a rate: the larger of the largest angle, rad, and the largest
+  /// shift in length scales (of a structure much longer than these: in hundredths of its extent). `angle`: the angle
+  /// alone.
   double distance(std::span<const double> a, std::span<const double> b, double* angle) const;
   /// Left and right null vector of the matrix near a singular configuration, by inverse iteration with the factors at
   /// the last configuration: over the rows of the plan and over all coordinates, Euclidean length one. False if there

@@ -1,9 +1,10 @@
-// Which rows are solved with where there are more than needed: exchanges that make their determinant larger.
+// The choice of the equations that are solved with where there are more than needed: exchanges that make their
+// determinant larger.
 //
-// Every row left over is a combination of those in use, r = sum_k c_k row_k, found by one solve with the transposed
-// matrix; taking it in for row k multiplies the determinant by c_k. With rows of length one, exchanges end in a set of
-// (locally) greatest volume: no combination then has large coefficients, and the matrix is about as well conditioned as
-// the whole of Phi_q. Source: S. Goreinov et al., "How to find a good submatrix" (2010).
+// Every equation left over is a combination of those in use, r = sum_k c_k row_k, found by one solve with the
+// transposed matrix; putting it in the place of row k multiplies the determinant by c_k. With rows of length one,
+// exchanges end in a set of (locally) greatest volume: no combination then has large coefficients, and the condition of
+// the matrix is about that of the whole Phi_q. Source: S. Goreinov et al., "How to find a good submatrix" (2010).
 #include <algorithm>
 #include <cmath>
 

@@ -24,8 +24,8 @@ constexpr double nearby = 0.1;
 constexpr double nearby_contraction = 0.25;
 // A reciprocal condition number above this leaves no doubt that all rows are independent.
 constexpr double clearly_regular = 1e-9;
-// Below this one reactions are taken from both sides of the singular configuration: there a bridge, which meets the
-// constraints to 2e-12, has them to a part of 1e-6 only.
+// Below this one reactions are taken from both sides of the singular configuration: a bridge, which meets the
+// constraints to 2e-12, gives them there with a relative error of 1e-6.
 constexpr double reactions_determined = 1e-6;
 // Part of the loads that least reactions may leave unbalanced.
 constexpr double balanced = 1e-10;
@@ -39,10 +39,10 @@ constexpr double doubtful_rates = 1e-11, contradictory_rates = 1e-6;
 // A row whose smallest pivot has fallen to this part of the most that it has been is as near to a dead point as
 // positions can tell: they meet the constraints to 1e-12, the square of the distance.
 constexpr double locked_part = 1e-5;
-// The factors at hand may be those of an iterate before: where they are no better than this the pivots are looked at.
+// The present factors may be those of an earlier iterate: below this condition the pivots are checked.
 constexpr double suspicious_part = 1e-4;
-// Rates of redundant rows are checked at the first of so many rows where nobody asks for them: they cost as much as the
-// positions, whose own residual is checked at every step.
+// Rates of redundant equations, if not needed for output, are checked at one in so many rows: they cost as much as the
+// positions, whose residual is checked at every step.
 constexpr std::int64_t rows_between_checks = 16;
 // After so much time (s) drivers that rest at the start are looked at again.
 constexpr double moments[] = {1e-6, 1e-4, 1e-2, 1, 100};
@@ -104,8 +104,8 @@ AssemblyOutcome Kinematics::assemble() {
   return outcome;
 }
 
-// A driven mechanism given near to where it belongs needs Newton alone: the configuration there is isolated, nothing
-// else could be nearer.
+// A driven mechanism given near its assembled configuration needs only Newton's method: that configuration is isolated,
+// and none is nearer.
 bool Kinematics::assemble_nearby() {
   for (const auto& body : model_->bodies) {
     if (body.hold_x || body.hold_y || body.hold_angle) return false;
@@ -122,7 +122,8 @@ bool Kinematics::assemble_nearby() {
   return true;
 }
 
-// Assembled and driven, and the solver where the mechanism is: what every step and every solve starts from.
+// Assembled and driven, with the solver at the present configuration: the state from which every step and every solve
+// starts.
 Report Kinematics::get_ready(double direction) {
   if (!assembled_ || !assembled_->ok()) {
     if (const AssemblyOutcome outcome = assemble(); !outcome.ok()) return outcome;
@@ -164,7 +165,7 @@ Report Kinematics::prepare(double direction) {
     report.message = "nothing is constrained or driven: add drivers, or fix bodies";
     return report;
   }
-  // The usual case decides itself: a factorization without a small pivot needs no rank analysis.
+  // In the usual case, a factorization without a small pivot, no rank analysis is needed.
   if (plan_->rows == plan_->columns && solver_.factor_at(q_) > clearly_regular) {
     prepared_ = true;
     return report;
@@ -190,7 +191,8 @@ Report Kinematics::prepare(double direction) {
   return report;
 }
 
-// Where the drivers rest: the branches along which the mechanism can go once they move, soon after, if they do.
+// Where the drivers rest: the branches along which the mechanism can move once the drivers move, shortly after, if they
+// do.
 void Kinematics::find_ways(SingularPoint& point, double direction) {
   std::vector<double> nu(at(plan_->rows));
   for (double later : moments) {
@@ -206,19 +208,19 @@ void Kinematics::find_ways(SingularPoint& point, double direction) {
   evaluator_.set_time(t_);
 }
 
-// The mechanism is given where branches meet: nothing says on which of them it is.
+// The mechanism is given where branches meet: the configuration does not tell which branch it is on.
 Report Kinematics::start_singular(SingularPoint point, double direction) {
   Report report;
   if (point.kind == SingularPoint::Kind::rest) find_ways(point, direction);
   singular_points_.push_back(point);
   const int count = static_cast<int>(point.tangents.size());
   const bool rests = point.kind == SingularPoint::Kind::rest;
-  // Drivers that never move ask for no direction.
+  // Drivers that never move determine no direction.
   if (count == 0 || (rests && solver_.distance(point.tangents.front(), nothing_, nullptr) == 0)) {
     report.status = Status::singular;
     report.message = fmt::format(
         "the motion starts at t = {:.12g} s in a singular configuration {}; start a little before or after it", t_,
-        rests ? "in which the drivers rest" : "from which no velocity goes on");
+        rests ? "in which the drivers rest" : "from which no motion continues");
     return report;
   }
   const int branch = count == 1 ? 1 : options_.branch;
@@ -248,7 +250,7 @@ Report Kinematics::start_singular(SingularPoint point, double direction) {
   return report;
 }
 
-// The drivers ask for a motion across a combination of rows that vanishes.
+// The drivers prescribe a velocity along a vanishing combination of equations.
 Report Kinematics::lock_up(SingularPoint point) {
   Report report;
   report.status = Status::lock_up;
@@ -262,7 +264,7 @@ Report Kinematics::lock_up(SingularPoint point) {
   return report;
 }
 
-// The present configuration, if it is a dead point to rounding, at which velocities are numbers without meaning.
+// The present configuration, if it is a dead point to rounding; velocities there are meaningless.
 std::optional<SingularPoint> Kinematics::dead_point_here() {
   if (!(solver_.factor_at(q_) > 0)) return std::nullopt;
   const auto margins = solver_.block_margins();
@@ -301,14 +303,14 @@ Report Kinematics::find_rates(const Needs& needs) {
   const bool acceleration = needs.acceleration || needs.multipliers;
   if (!needs.velocity && !acceleration) return report;
   if (on_bridge_) {
-    // The bridge has the rates; multipliers need factors of the matrix, and those tell whether it can be.
+    // The bridge gives the rates; multipliers need factors of the matrix, which show whether they can be computed.
     if (needs.multipliers && !(solver_.factor_at(q_) > reactions_determined)) {
       find_limit_of_multipliers();
       return report;
     }
     return needs.multipliers ? solve_multipliers() : report;
   }
-  // Predictions are as large as what run() was asked for.
+  // Predictions cover the quantities that run() needs.
   const bool start = predicted_ == t_ && !predicted_qd_.empty();
   const bool acceleration_start = start && !predicted_qdd_.empty();
   predicted_.reset();
@@ -345,14 +347,15 @@ Report Kinematics::solve_multipliers() {
   return report;
 }
 
-// Of all multipliers that give these accelerations, where rows depend on each other, the least; and whose they are.
+// Where equations depend on each other: the least of all multipliers that give these accelerations, and the elements
+// concerned.
 void Kinematics::choose_least_reactions() {
   if (!minimum_norm_) minimum_norm_.emplace(evaluator_);
   evaluator_.set_configuration(q_);
   if (!minimum_norm_->factorize()) return;
   for (int c = 0; c < plan_->columns; ++c) applied_[at(plan_->coordinate[at(c)])] = loads_[at(c)];
   least_lambda_.assign(lambda_.size(), 0.0);
-  // Those that would not balance the loads are none.
+  // Multipliers that do not balance the loads are rejected.
   if (!(minimum_norm_->solve(applied_, least_lambda_) <= balanced)) return;
   lambda_.swap(least_lambda_);
   ambiguity_ = minimum_norm_->ambiguity();
@@ -447,7 +450,7 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& asked, RowObse
     }
     if (const Report consistent = check_redundant_rows(); !consistent.ok()) return end(consistent);
     if (const Report sound = watched_.check(); !sound.ok()) return end(sound);
-    // Rows that repeat others must agree with them in velocities and accelerations, too, asked for or not.
+    // Redundant equations must agree in velocities and accelerations as well, whether or not these are output.
     Needs checked = needs;
     if (plan_->rows > plan_->columns && k % rows_between_checks == 0) checked.velocity = checked.acceleration = true;
     if (const Report solved = find_rates(checked); !solved.ok()) return end(solved);
@@ -455,7 +458,7 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& asked, RowObse
       if (std::optional<SingularPoint> point = dead_point_here()) return end(lock_up(std::move(*point)));
     }
     if (!check_redundant_rates(doubtful_rates, false).ok() && choose_better_rows()) {
-      // The rows in use determined something badly, others do it well.
+      // The equations in use were badly conditioned; others are well conditioned.
       solver_.solve_position(q_);
       if (const Report solved = find_rates(checked); !solved.ok()) return end(solved);
     }

@@ -1,13 +1,14 @@
-// Kinematic analysis: positions, velocities and accelerations of a driven mechanism over time (THEORY section 3).
+// Kinematic analysis: positions, velocities and accelerations of a driven mechanism over time
+// (apps/manual/kinematics.md).
 //
-// Between rows the motion is followed in steps of its own choice: a step whose prediction was far off, or on which
-// Newton contracted badly, is halved, so that no branch is jumped however coarse the rows are. Where branches meet the
-// instant is located, the branches are listed, and the one that continues the motion is taken, or the one chosen; where
-// no step can be made any more the mechanism is locked: the report says when and why, and a last row gives the place,
-// without the rates, which grow without bound there. Velocities, accelerations and multipliers are computed at rows
-// only and only if needed, or to check rows that repeat others; where work is asked for also between them. Multipliers
-// at a singular configuration are the limit of those on both sides, null where there is none. Zero allocations a step
-// after the first.
+// Between rows the motion is followed in steps of adapted length: a step whose prediction was far off, or on which
+// Newton's method contracted badly, is halved, so that no branch is jumped however coarse the rows are. Where branches
+// meet, the instant is located, the branches are listed, and the motion continues along its own branch or along the one
+// chosen. Where no step can be made any more the mechanism is locked: the report gives the instant and the cause, and a
+// last row gives the place, without the rates, which grow without bound there. Velocities, accelerations and
+// multipliers are computed only at rows and only if needed, or to check redundant equations; where work is needed also
+// between rows. Multipliers at a singular configuration are the limit of those on both sides, null where there is none.
+// Zero allocations a step after the first.
 #pragma once
 
 #include <limits>
@@ -34,8 +35,8 @@ namespace catena {
 struct KinematicsOptions {
   double tolerance = 1e-12;       ///< of constraint residuals, relative to the length scale
   bool inverse_dynamics = false;  ///< multipliers from Phi_q^T lambda = Q - M qdd
-  /// Which of the branches listed is taken wherever several meet. 0: not chosen: the motion goes on as before, which is
-  /// branch 1; where it starts at such a place it ends with the list.
+  /// Which of the branches listed is taken wherever several meet. 0: not chosen: the motion continues along its own
+  /// branch, which is branch 1; where it starts at such a place it ends with the list.
   int branch = 0;
 };
 
@@ -147,14 +148,14 @@ class Kinematics {
   std::optional<AssemblyOutcome> assembled_;
   bool prepared_ = false, placed_ = false;  // the constraints drive it; the solver is where q_ is
   bool has_velocity_ = false, has_acceleration_ = false;
-  RowObserver* observer_ = nullptr;                             // during run(): asked between rows too whether to go on
-  double earliest_ = -std::numeric_limits<double>::infinity();  // rows of run(): what lies beyond is not reported
+  RowObserver* observer_ = nullptr;                             // in run(): decides between rows whether to go on
+  double earliest_ = -std::numeric_limits<double>::infinity();  // rows of run(): instants outside are not reported
   double latest_ = std::numeric_limits<double>::infinity();
   double t_ = 0;
   std::vector<double> q_, qd_, qdd_, lambda_, least_lambda_, trial_, loads_, applied_, nothing_;
   std::vector<double> rest_, rates_;  // of redundant rows, by row; of a check, by column
-  // How far from singular the blocks of Phi_q are at q_, signed; by how much the magnitudes of their determinants
-  // change in unit time; and the most that each pivot has been.
+  // The signed distance of the blocks of Phi_q from singular ones at q_; the rate of change of their determinants'
+  // magnitudes; and the largest value of each pivot so far.
   std::vector<BlockMargin> margins_;
   std::vector<double> margin_rates_, largest_margins_;
   double margins_t_ = 0;
@@ -164,7 +165,8 @@ class Kinematics {
   std::vector<std::string> redundant_;
   std::optional<MinimumNorm> minimum_norm_;  // of multipliers, where rows depend on each other
   std::string ambiguity_;                    // in words: the elements whose reactions are not unique
-  // Rows at singular configurations whose multipliers are limits: how many, the first, and what has none, in words.
+  // Rows at singular configurations whose multipliers are limits: how many, the first instant, and the elements without
+  // a limit, in words.
   std::int64_t limit_rows_ = 0;
   double limit_t_ = 0;
   std::string without_limit_;

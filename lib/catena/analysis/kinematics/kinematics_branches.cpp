@@ -16,7 +16,7 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double vanishing = Quadratics::vanishing;
 
-/// What the search works on: Phi_q at the singular configuration and its null spaces.
+/// Input of the search: Phi_q at the singular configuration and its null spaces.
 struct NullSpaces {
   RankReport rank;
   std::vector<double> values;
@@ -46,7 +46,8 @@ NullSpaces find_null_spaces(Evaluator& evaluator, std::span<const double> q, dou
   return spaces;
 }
 
-/// w_i^T (gamma(qd0 + rate sum a_j z_j) - own) / rate^2; `own`: what is no condition on the direction, empty: nothing.
+/// w_i^T (gamma(qd0 + rate sum a_j z_j) - own) / rate^2; `own`: the part of gamma that does not depend on the
+/// direction; empty: zero.
 Quadratics make_quadratics(Evaluator& evaluator, const NullSpaces& spaces, std::span<const double> qd0, double rate,
                            std::span<const double> own) {
   const Plan& plan = evaluator.plan();
@@ -112,7 +113,7 @@ Quadratics make_quadratics(Evaluator& evaluator, const NullSpaces& spaces, std::
       largest = std::max(largest, std::abs(linear[j]));
     }
     for (double value : mixed[i]) largest = std::max(largest, std::abs(value));
-    // Rows that repeat others ask for nothing.
+    // Redundant equations add no condition.
     if (!(largest > vanishing * size[i])) continue;
     all.constant.push_back((centre[i] - still[i]) / largest);
     for (double& value : linear) value /= largest;
@@ -189,13 +190,13 @@ void put_into_words(const Evaluator& evaluator, SingularPoint& point) {
   }
 }
 
-/// A combination of rows that vanishes, and its part of b: |w^T b| / (|w| |b|) as in disagreement().
+/// A vanishing combination of equations, and its part of b: |w^T b| / (|w| |b|) as in disagreement().
 struct Opposed {
   std::vector<double> w;
   double part = 0;
 };
 
-/// Of the left null vectors the one that b disagrees with most.
+/// The left null vector with the largest part of b.
 Opposed most_opposed(const Evaluator& evaluator, const RankReport& rank, std::span<const double> b) {
   const Plan& plan = evaluator.plan();
   const auto unit = [&](int r) { return plan.row_is_angle[at(r)] ? 1 : evaluator.length_scale(); };
@@ -315,7 +316,7 @@ SingularPoint find_branches(Evaluator& evaluator, std::span<const double> q, std
   const NullSpaces spaces = find_null_spaces(evaluator, q, threshold);
   point.nullity = plan.columns - spaces.rank.rank;
   point.name_bodies(evaluator, spaces.z);
-  // A particular velocity, the least, if none is known.
+  // A particular velocity: the least one if none is known.
   std::vector<double> nu(at(plan.rows)), qd0(at(plan.coordinates()), 0.0);
   evaluator.nu(nu);
   const Opposed opposed = most_opposed(evaluator, spaces.rank, nu);
@@ -350,7 +351,7 @@ SingularPoint find_branches(Evaluator& evaluator, std::span<const double> q, std
   }
   double largest_nu = 0;
   for (double value : nu) largest_nu = std::max(largest_nu, std::abs(value));
-  // Drivers that rest but do not stay may leave a dead point at once: w^T gamma = 0 then asks for a velocity.
+  // Drivers that rest only for an instant may leave a dead point at once: w^T gamma = 0 then requires a velocity.
   const bool starts = along.empty() && largest_nu == 0 && drivers == Drivers::moving &&
                       most_opposed(evaluator, spaces.rank, own).part > clear_disagreement;
   if (starts) {

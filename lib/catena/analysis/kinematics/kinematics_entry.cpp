@@ -1,9 +1,10 @@
-// Onto a branch from the singular configuration where several meet.
+// Entering a branch from the singular configuration where several meet.
 //
 // Along a branch q = q* + s z + O(s^2), z its tangent; s is the time since then, or, where the drivers rest (so that z
-// is made for a driver of speed 1), how far the fastest driver has come. A little way along it the equations tell the
-// branch from the others; from there it is as smooth as elsewhere, back through the singular configuration, so that a
-// bridge (kinematics_bridge.hpp) of instants on both sides stands for the stretch in between.
+// is made for a driver of speed 1), how far the fastest driver has come. A little way along it the equations
+// distinguish the branch from the others. The branch itself is as smooth there as elsewhere, also back through the
+// singular configuration, so that a bridge (kinematics_bridge.hpp) of instants on both sides interpolates the stretch
+// in between.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,10 +22,10 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 // of its distance from the nearest other branch. Further nodes may be off by this part of the motion.
 constexpr double entries[] = {0.02, 0.01, 0.005, 0.002, 0.001, 3e-4};
 constexpr double entry_allowance = 0.2;
-// Times (s) between which drivers at rest come as far as that.
+// Times (s) between which drivers at rest move by this much.
 constexpr double shortest = 1e-9, longest = 1e9;
 
-/// How far the drivers that rest at an instant have come after it, in the direction in which they leave.
+/// The distance that drivers at rest at an instant have moved after it, in the direction in which they leave.
 class Departure {
  public:
   Departure(Evaluator& evaluator, double rest, double direction)
@@ -37,7 +38,7 @@ class Departure {
     for (int e : drivers_) start_.push_back(evaluator_.element_value(e));
   }
 
-  /// Of the driver that has come furthest after |t - rest|; negative where it lies on the other side at t.
+  /// Of the driver that has moved furthest after |t - rest|; negative where it lies on the other side at t.
   double at(double t) const {
     const Fastest fastest = fastest_at(t);
     evaluator_.set_time(t);
@@ -101,7 +102,7 @@ MotionBridge anchor(const MotionBridge& bridge, const SingularPoint& point, std:
 
 }  // namespace
 
-// The time after which the drivers have come by `way`; infinite: they do not, or nothing is known of them then.
+// The time after which the drivers have moved by `way`; infinite: they do not, or they are not defined then.
 double Kinematics::time_to_depart(double rest, double direction, double way) {
   const Departure departure(evaluator_, rest, direction);
   const auto beyond = [&](double h) { return departure.at(rest + direction * h) >= way; };
@@ -115,7 +116,8 @@ double Kinematics::time_to_depart(double rest, double direction, double way) {
   return high;
 }
 
-// Leaves the branch that came for the one chosen, a little beyond the branch point, and bridges the way there.
+// Changes from the branch of the motion to the one chosen, a little beyond the branch point, and bridges the stretch to
+// it.
 Report Kinematics::take_branch(const SingularPoint& point, int branch, double direction) {
   Report report;
   choice_.reset();
@@ -131,9 +133,9 @@ Report Kinematics::take_branch(const SingularPoint& point, int branch, double di
   for (double entry : entries) {
     const double h = direction * (rests ? time_to_depart(point.t, direction, entry / rate) : entry / rate);
     if (!std::isfinite(h)) continue;
-    // Near the tangent: as little off as tells the branch from the others.
+    // Near the tangent: the deviation must be small enough to tell the branch from the others.
     const auto add_along_tangent = [&](MotionBridge& bridge, double t) {
-      // Tangents are velocities: backwards in time the drivers leave against them.
+      // Tangents are velocities: backwards in time the motion leaves against them.
       const double s = rests ? direction * departure.at(t) : t - point.t;
       for (std::size_t k = 0; k < trial_.size(); ++k) trial_[k] = point.q[k] + s * tangent[k];
       return add_node(bridge, t, entry_allowance * std::abs(s) * std::min(apart, rate));

@@ -1,4 +1,4 @@
-// The instants at which a motion is singular, on a bridge that stands for it (kinematics_bridge.hpp).
+// The instants at which a motion is singular, located on the bridge that interpolates it (kinematics_bridge.hpp).
 //
 // Along the bridge the smallest pivots of the blocks are smooth, without the rounding that Newton's method suffers near
 // a singular matrix: the instant at which one vanishes, with or without a change of its sign, is found to some 1e-13 of
@@ -15,10 +15,10 @@ namespace {
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr int samples = 9;
-// A pivot whose least size is this part of what it is at the ends vanishes.
+// A pivot whose least size is below this part of its size at the ends vanishes.
 constexpr double vanishing = 1e-6;
-// Drivers that move less than the first part of what they do at the ends of the bridge may rest nearby; they do if less
-// than the second part is left.
+// Drivers slower than the first part of their speed at the ends of the bridge may rest nearby; they rest if less than
+// the second part is left.
 constexpr double slow = 1e-3, resting = 1e-6;
 
 }  // namespace
@@ -87,7 +87,7 @@ std::vector<double> Kinematics::singular_instants(const MotionBridge& bridge, do
   for (int k = 0; k < samples; ++k) {
     double t = from + (to - from) * k / (samples - 1);
     std::vector<BlockMargin> found;
-    // A sample that falls on the singular instant itself is moved off it.
+    // A sample that falls on the singular instant itself is moved away from it.
     for (int nudge = 0; nudge < 3 && !margins_on(bridge, t, found); ++nudge) t += 1e-9 * (to - from);
     if (found.empty()) continue;
     times.push_back(t);
@@ -102,7 +102,7 @@ std::vector<double> Kinematics::singular_instants(const MotionBridge& bridge, do
       if (explained[b] || (margins[k][b].pivot < 0) == (margins[k + 1][b].pivot < 0)) continue;
       const double t = refine_instant(bridge, b, times[k], times[k + 1]);
       instants.push_back(t);
-      // What changes at the same instant is explained by it.
+      // Other changes at the same instant have the same cause.
       const double near = 1e-7 * (to - from);
       if (!margins_on(bridge, t - near, before) || !margins_on(bridge, t + near, after)) continue;
       for (std::size_t other = b; other < blocks; ++other) {

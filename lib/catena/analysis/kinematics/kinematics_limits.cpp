@@ -4,8 +4,9 @@
 //
 // A vanishes where z^T f does. The motion is known on the bridge (kinematics_bridge.hpp), and a little away from t* the
 // equations determine lambda: B and A are the values at t* of the polynomials through lambda and (t - t*) lambda at
-// instants around, or on one side only where the run or a table ends. Rows with A != 0 have no limit: NaN. Where other
-// rows repeat these the least multipliers are taken, as elsewhere. What has a limit everywhere must balance f.
+// instants around, or on one side only where the run or a table ends. Rows with A != 0 have no limit: NaN. Where
+// equations are redundant the least multipliers are taken, as elsewhere. Multipliers that all have a limit must balance
+// f.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,15 +34,15 @@ constexpr Stencil after{{1, 2, 3, 4, 5, 6}, {6, -15, 20, -15, 6, -1}};
 constexpr double step_of_bridge = 1.0 / 16;
 // Of the largest (t - t*) lambda: more than the errors of the polynomial and of the bridge can make.
 constexpr double unbounded = 1e-7;
-// Of the loads: what limits may leave unbalanced.
+// Part of the loads that limits may leave unbalanced.
 constexpr double unbalanced = 1e-6;
-// The same as elsewhere, of least reactions a little away from t*.
+// The same for least reactions a little away from t*.
 constexpr double balanced = 1e-9;
 constexpr std::size_t most_names = 6;
 
 }  // namespace
 
-// At an instant of the bridge; loads_ are those that they balance.
+// Multipliers at an instant of the bridge; loads_ are the loads that they balance.
 bool Kinematics::multipliers_on_bridge(double t, std::span<double> lambda) {
   std::vector<double> q(q_.size()), qd(q_.size()), qdd(q_.size());
   evaluator_.set_time(t);

@@ -1,4 +1,4 @@
-// Following the motion of a driven mechanism between two instants: steps, branches, what stops it.
+// Following the motion of a driven mechanism between two instants: steps, branches, causes that stop it.
 //
 // A step is made if its prediction was close, if Newton contracted well, if no body turned far, and if no diagonal
 // block of Phi_q came near to a singular one or changed the sign of its determinant: branches that meet differ by that
@@ -25,32 +25,33 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 // one before: Newton's iteration then stays where it contracts.
 constexpr double largest_turn = 0.1;
 constexpr double largest_contraction = 0.25;
-// No body may turn further than this in a step: a singular configuration in between would not show.
+// No body may turn further than this in a step: a singular configuration in between could be missed.
 constexpr double longest_step = 0.5;
-// Steps below this part of the span, or of the time itself, cannot be told from none.
+// Steps below this part of the span, or of the time itself, are rounding.
 constexpr double smallest_step = 1e-13;
-// A block whose determinant falls below the first part of what it was a step before may be on its way through a
-// singular matrix: it does so if it vanishes linearly, whichever way steps of equal length fall around that instant.
-// (Its smallest pivot may be another one than that which vanishes.) Where there is no determinant the pivot is taken,
-// and must also fall below the second part of the most that it has been.
+// A block whose determinant falls below the first part of its value one step before may pass through a singular matrix:
+// this holds if it vanishes linearly, for any position of steps of equal length about that instant. (Its smallest pivot
+// may be another one than that which vanishes.) Where there is no determinant the pivot is used, and must also fall
+// below the second part of its largest value so far.
 constexpr double sudden_part = 0.6, small_part = 0.3;
-// The same from the step before: as much as this must be left of it if it goes on as it did.
+// The same by extrapolation from the step before: at least this part must be left of it.
 constexpr double remaining_part = 0.3;
 // Passages are tried over stretches of this much motion (rad, length scales), one after the other.
 constexpr std::array<double, 6> reaches = {0.2, 0.1, 0.05, 0.015, 0.004, 0.001};
-// They are tried anew once steps have become this part of what they were at the first trial.
+// They are tried again once steps have become this part of their length at the first trial.
 constexpr double try_again = 1.0 / 32;
-// Rows are chosen anew where their reciprocal condition number has fallen to this part of what it was.
+// Equations are chosen again where their reciprocal condition number has fallen to this part of its value.
 constexpr double drifted = 0.01;
-// A step fails where it is more than about half of what is left of the way to a dead point.
+// A step fails where it is longer than about half of the remaining way to a dead point.
 constexpr double most_steps_left = 4;
-// A zero of a determinant further away than so many times the way that the rates show is another one.
+// A zero of a determinant further away than so many times the distance estimated from the rates is a different one.
 constexpr double longest_way = 1e3;
 // Steps made after one that failed before their length may grow again.
 constexpr int patience = 2;
 // Least number of steps between rows where the ends of curves are watched.
 constexpr double steps_to_a_row = 32;
-// Of the place on such a curve within a step, in parts of the curve: more is too coarse, less needs no closer look.
+// Curvature of the place on such a curve over a step, in parts of the curve: above the first the step is too long,
+// below the second no closer check is needed.
 constexpr double largest_bend = 0.05, smallest_bend = 1e-9;
 
 }  // namespace
@@ -71,7 +72,7 @@ void Kinematics::remember_margins() {
   }
 }
 
-// Whether a block that goes on as in the step before is nearly singular at t, or was before.
+// Whether a block, extrapolated from the step before, is nearly singular at t, or was so before.
 bool Kinematics::heads_for_singularity(double t) const {
   const double h = std::abs(t - t_);
   bool heads = false;
@@ -113,8 +114,8 @@ Kinematics::StepOutcome Kinematics::try_step(double t, bool ignore_dips) {
   return dipped && !ignore_dips ? StepOutcome::dipped : StepOutcome::made;
 }
 
-// Whether a curve or table is left at (t, trial_) or on the way there, or might be: the parabola through the places at
-// the step's ends and halfway tells, and is trusted to a part of its bend.
+// Whether a curve or table is left at (t, trial_) or on the way there, or might be: judged by the parabola through the
+// places at the step's ends and halfway, within a part of its curvature.
 bool Kinematics::leaves_curve(double t) {
   evaluator_.set_configuration(trial_);
   if (!watched_.check().ok()) return true;
@@ -200,7 +201,7 @@ Report Kinematics::follow_to(double t) {
   }
   on_bridge_ = false;
   while (t_ != t) {
-    // Curves that end are not to be left and come back to within a step.
+    // A curve that ends must not be left and reached again within a step.
     if (watched_.has_ends()) step = std::min(step, span / steps_to_a_row);
     if (!bridge_.empty()) {
       if (choice_ && direction * (t - choice_->t) > 0) {
@@ -280,7 +281,8 @@ Report Kinematics::follow_to(double t) {
   return report;
 }
 
-// No step can be made: says whether the drivers ask for the impossible (w^T nu != 0) or branches meet here.
+// No step can be made: determines whether the drivers prescribe an impossible motion (w^T nu != 0) or branches meet
+// here.
 Report Kinematics::stuck(double next, double target) {
   evaluator_.set_time(t_);
   trial_ = q_;
@@ -320,10 +322,10 @@ Report Kinematics::stuck(double next, double target) {
 }
 
 // Towards a dead point q = q* - a sqrt(t* - t), so that  t* - t = |qd|^2 / (2 qd . qdd)  and  q* = q + 2 (t* - t) qd,
-// but for terms of t* - t. Whatever rounding makes of the rates, it is no further than the step that failed says:
-// point.t is in the middle of that. On this short way the determinant of the singular block vanishes linearly: its zero
-// is q*, off the constraints by the square of the way; and the instant follows from w^T Phi(q*, t*) = 0, which the last
-// bit of the way does not change. False: no velocity leads there.
+// but for terms of t* - t. However large the rounding of the rates, it is no further away than the failed step: point.t
+// is in the middle of that step. On this short distance the determinant of the singular block vanishes linearly: its
+// zero is q*, off the constraints by the square of the distance; and the instant follows from w^T Phi(q*, t*) = 0,
+// which this last distance does not change. False: no velocity leads there.
 bool Kinematics::locate_lock_up(double target, SingularPoint& point) {
   std::vector<double> qd(q_.size(), 0.0), qdd(q_.size(), 0.0);
   if (!solver_.solve_velocity(qd, false)) return false;
@@ -336,7 +338,7 @@ bool Kinematics::locate_lock_up(double target, SingularPoint& point) {
   }
   const double furthest = std::min(2 * most_steps_left * std::abs(point.t - t_), std::abs(target - t_));
   double rest = square / (2 * product);
-  // So near that rounding decides about the sign: the way is as long as it can be.
+  // So near that rounding determines the sign: the distance is taken as the largest possible.
   if (!(rest * (target - t_) > 0)) rest = furthest;
   rest = std::copysign(std::min(std::abs(rest), furthest), target - t_);
   solver_.factor_at(q_);
@@ -368,7 +370,7 @@ bool Kinematics::locate_lock_up(double target, SingularPoint& point) {
   return true;
 }
 
-// The mechanism where it locks: places and times are known, rates and loads grow without bound.
+// A row at the lock-up: places and times are known, rates and loads grow without bound.
 void Kinematics::give_row_at_lock_up(const Needs& needs, RowObserver& observer) {
   const SingularPoint& point = singular_points_.back();
   const std::vector<double> none(std::max(q_.size(), at(plan_->rows)), std::numeric_limits<double>::quiet_NaN());

@@ -1,9 +1,10 @@
-// Across singular configurations: which branches meet there, and on which one the motion goes on.
+// Passing singular configurations: the branches that meet there, and the one on which the motion goes on.
 //
 // The branch is extrapolated from two instants before the suspected one to two behind it and solved for there, where
 // the equations determine it again. Hermite's polynomial through the four (kinematics_bridge.hpp) must then meet the
-// constraints all the way: with links that only nearly align it does not, since the true branch turns away. Along it
-// the singular instants are found (kinematics_instants.cpp), and there the null spaces and the branches are taken.
+// constraints along the whole bridge: with links that only nearly align it does not, since the true branch turns away.
+// Along it the singular instants are found (kinematics_instants.cpp), and there the null spaces and the branches are
+// taken.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,18 +20,19 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// A node's prediction may be off by this part of the bridge's motion. Whether the nodes lie on one branch is judged by
-// the constraints along the polynomial.
+// The prediction of a node may be off by this part of the bridge's motion. Whether the nodes lie on one branch is
+// tested by the constraints along the polynomial.
 constexpr double allowance = 0.2;
-// Residual of the polynomial, in length scales or rad, beyond what rounding explains.
+// Residual of the polynomial, in length scales or rad, above rounding.
 constexpr double bridge_tolerance = 2e-12;
 constexpr double rounded_place = 16 * std::numeric_limits<double>::epsilon();
 constexpr int samples = 9;
-// So much of a bridge is a moment: drivers that rest move a moment later, and the mechanism is still there.
+// Part of a bridge after which drivers that rest at the singular instant are evaluated again: they have begun to move,
+// while the mechanism has not moved visibly.
 constexpr double moment = 2e-3;
-// Part of a bridge to which instants on it are known for certain.
+// Accuracy of instants on a bridge, relative to its length.
 constexpr double same_instant = 1e-9;
-// Length below which rows count as dependent at a singular configuration found to rounding.
+// Length below which equations count as dependent at a singular configuration that was located to rounding.
 constexpr double dependence = 1e-7;
 
 }  // namespace
@@ -48,7 +50,7 @@ bool Kinematics::add_node(MotionBridge& bridge, double t, double allowed) {
   restore_fixed(trial_, {}, {});
   newton_ = solver_.solve_position(trial_);
   if (!newton_.converged || newton_.first_correction > allowed) return false;
-  // Once more: rounding in a node is enlarged on the bridge.
+  // A second solve, since the bridge magnifies rounding in a node.
   if (!solver_.solve_position(trial_).converged) return false;
   std::vector<double> rates(q_.size(), 0.0), accelerations(q_.size(), 0.0);
   if (!solver_.solve_velocity(rates, false) || !solver_.solve_acceleration(rates, accelerations, false)) return false;
@@ -56,9 +58,9 @@ bool Kinematics::add_node(MotionBridge& bridge, double t, double allowed) {
   return true;
 }
 
-// Nodes at centre + {-2, -1, 1, 2} h (h is negative when time runs backwards). Those behind are predicted from four
-// before, so sharply that it is the same branch even where others lie near; where the run ends too early for them and
-// with it what is known of a driver, the four before make the bridge.
+// Nodes at centre + {-2, -1, 1, 2} h (h is negative when time runs backwards). The nodes behind the centre are
+// predicted from four before it, accurately enough to stay on the branch even where others lie near. Where the run, and
+// with it a driver, ends too early for them, the four nodes before the centre form the bridge.
 bool Kinematics::build_bridge(MotionBridge& bridge, double centre, double h, double reach) {
   MotionBridge before;
   for (int k = 1; k <= MotionBridge::capacity; ++k) {
@@ -91,8 +93,8 @@ bool Kinematics::follows_constraints(const MotionBridge& bridge, double from, do
     const Vec2<double> origin = evaluator_.origin(p);
     place = std::max({place, std::abs(origin.x), std::abs(origin.y)});
   }
-  // Lengths of a mechanism that is described far from the origin are rounded like its places: links that repeat each
-  // other do so no better.
+  // Lengths of a mechanism described far from the origin carry the rounding of its places: redundant links agree no
+  // better than that.
   const double tolerance = bridge_tolerance + 1e-14 * extent + rounded_place * place / evaluator_.length_scale();
   for (int k = 0; k < samples; ++k) {
     const double t = from + (to - from) * k / (samples - 1);
@@ -110,7 +112,7 @@ SingularPoint Kinematics::look_at(const MotionBridge& bridge, double t, double f
   evaluator_.set_time(t);
   SingularPoint point = find_branches(evaluator_, q, qd, dependence);
   if (!rests || point.nullity == 0) return point;
-  // Where the drivers rest the velocity says nothing; a moment later it does.
+  // Where the drivers rest the velocity is zero; it is evaluated a moment later.
   const double later = t + std::copysign(moment * (to - from), t - t_);
   bridge.evaluate(later, {}, qd, {});
   evaluator_.set_time(later);
@@ -143,7 +145,7 @@ void Kinematics::announce(const SingularPoint& point, Report& report) {
       if (point.tangents.size() > 1 && options_.branch > 1) {
         text += fmt::format("the motion takes branch {}: {}", options_.branch, point.describe_ways());
       } else {
-        text += "the motion goes on as smoothly as it came";
+        text += "the motion continues smoothly";
         if (point.tangents.size() > 1) text += ", along branch 1: " + point.describe_ways();
       }
       break;
@@ -158,7 +160,7 @@ void Kinematics::announce(const SingularPoint& point, Report& report) {
 }
 
 // The time in which the mechanism moves by `reach`, at the greatest speed that the drivers have within twice that time:
-// where they come to rest the present speed says nothing. 0: it does not move.
+// where they come to rest the present speed gives no estimate. 0: it does not move.
 double Kinematics::bridge_length(double centre, double reach) {
   const double rate = largest_rate();
   std::vector<double> nu(at(plan_->rows));
@@ -185,7 +187,7 @@ Kinematics::Passage Kinematics::pass_singular(double next, double target, double
   const double middle = t_ + (next - t_) / 2, length = bridge_length(middle, reach);
   if (!(length > 0)) return Passage::none;
   const double h = target > t_ ? length : -length;
-  // A node that falls on the singular instant spoils the first bridge, not the second.
+  // A node that falls on the singular instant makes the first bridge useless, not the second.
   MotionBridge bridge;
   double from = 0, to = 0;
   bool built = false;
@@ -198,11 +200,11 @@ Kinematics::Passage Kinematics::pass_singular(double next, double target, double
     bridge.clear();
   }
   if (!built) return Passage::none;
-  // Those behind have been dealt with.
+  // Instants before the present one were handled already.
   std::vector<double> instants = singular_instants(bridge, from, to);
   std::erase_if(instants, [&](double instant) { return (instant - t_) * h <= 0; });
   if (instants.empty()) return follow_bridge(bridge, h > 0 ? std::min(to, target) : std::max(from, target));
-  // Around the singular instant itself the nodes lie where rounding is least.
+  // Nodes placed about the singular instant itself have the least rounding.
   const double first = h > 0 ? instants.front() : instants.back();
   MotionBridge centred;
   bool moved = functions_go_on(first - 2 * h) && functions_go_on(first + 2 * h);
@@ -218,13 +220,13 @@ Kinematics::Passage Kinematics::pass_singular(double next, double target, double
   }
   for (double instant : instants) {
     if (instant > latest_ + same_instant * length || instant < earliest_ - same_instant * length) continue;
-    // Instants closer than they are known are one.
+    // Instants closer than their accuracy count as one.
     if (!singular_points_.empty() && instant != first &&
         std::abs(instant - singular_points_.back().t) < same_instant * (to - from)) {
       continue;
     }
     SingularPoint point = look_at(bridge, instant, from, to);
-    // Only the rows in use depend on each other, others take their place.
+    // Only the equations in use depend on each other; others replace them.
     if (point.nullity == 0) continue;
     const bool branches = point.kind == SingularPoint::Kind::branch_point ||
                           (point.kind == SingularPoint::Kind::rest && point.tangents.size() > 1);
@@ -251,7 +253,7 @@ Kinematics::Passage Kinematics::pass_singular(double next, double target, double
   return Passage::passed;
 }
 
-// Nothing is singular about the stretch after all: the bridge shows the way across it.
+// The stretch is not singular after all: the bridge crosses it.
 Kinematics::Passage Kinematics::follow_bridge(const MotionBridge& bridge, double t) {
   evaluator_.set_time(t);
   bridge.evaluate(t, trial_, {}, {});

@@ -1,4 +1,5 @@
-// Kinematics with more rows than coordinates: which rows are solved with, and whether the others follow from them.
+// Kinematics with more equations than coordinates: the choice of those that are solved with, and the check of the
+// others.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// Residual of redundant rows, in length scales or rad, above which they contradict the others.
+// Residual of redundant equations, in length scales or rad, above which they contradict the others.
 constexpr double contradiction = 1e-8;
 // Pivots of blocks above this part of the largest that they have been determine rates to that accuracy.
 constexpr double well_determined = 1e-3;
@@ -20,7 +21,7 @@ constexpr std::size_t most_names = 6;  // in a message
 
 }  // namespace
 
-// Of more rows than needed an independent set, then the best one.
+// Of more equations than needed an independent set, then the best one.
 bool Kinematics::choose_rows(std::span<const double> q) {
   const std::vector<double> values = jacobian_values(evaluator_, q);
   RankOptions options;
@@ -32,7 +33,7 @@ bool Kinematics::choose_rows(std::span<const double> q) {
   return true;
 }
 
-// Where the rows in use come near to depending on each other others may do better. False: they would not.
+// Where the equations in use come near to dependence, others may be better conditioned. False: they are not.
 bool Kinematics::choose_better_rows() {
   if (plan_->rows == plan_->columns) return false;
   evaluator_.set_time(t_);
@@ -46,7 +47,8 @@ bool Kinematics::choose_better_rows() {
   return better;
 }
 
-// Rows that are not solved with must follow from the others at every instant, not only where they were found redundant.
+// Equations that are not solved with must follow from the others at every instant, not only where they were found
+// redundant.
 Report Kinematics::check_redundant_rows() {
   int worst = -1;
   if (!(solver_.redundant_residual(solver_.phi(), &worst) > contradiction)) return {};
@@ -54,11 +56,11 @@ Report Kinematics::check_redundant_rows() {
                                         plan_->row_is_angle[at(worst)] ? "rad" : "m"));
 }
 
-// The same of velocities and accelerations: drivers may agree in place and differ in speed. `allowed`: part of the
-// largest rates. Without words the status is all that is said.
+// The same for velocities and accelerations: drivers may agree in place and differ in speed. `allowed`: part of the
+// largest rates. Unless `in_words`, only the status is set.
 Report Kinematics::check_redundant_rates(double allowed, bool in_words) {
   if (plan_->rows == plan_->columns || on_bridge_) return {};
-  // Near a singular configuration rates are as good as the rows in use allow, and that may be no digit.
+  // Near a singular configuration rates are as accurate as the equations in use allow, which may be no digit at all.
   for (std::size_t k = 0; k < margins_.size() && k < largest_margins_.size(); ++k) {
     if (std::abs(margins_[k].pivot) < well_determined * largest_margins_[k]) return {};
   }
@@ -89,7 +91,7 @@ Report Kinematics::check_redundant_rates(double allowed, bool in_words) {
   return check(qdd_, speed * speed, "acceleration", "s^2");
 }
 
-// `inconsistent`: names the element of a row and what it is at odds with.
+// `inconsistent`: names the element of an equation and the elements that it contradicts.
 Report Kinematics::contradicts(int row, const std::string& how) {
   const int element = plan_->row_element[at(row)];
   const MobilityReport mobility = analyse_mobility(evaluator_, q_);
@@ -98,7 +100,7 @@ Report Kinematics::contradicts(int row, const std::string& how) {
     std::vector<int> all = mobility.dependent_on[k];
     all.push_back(mobility.redundant_elements[k]);
     if (std::find(all.begin(), all.end(), element) == all.end()) continue;
-    // Drivers first: they are what most likely contradicts.
+    // Drivers first: they are the most likely cause of a contradiction.
     std::stable_partition(all.begin(), all.end(),
                           [&](int e) { return model_->elements[at(e)].kind == ElementKind::driver; });
     std::erase(all, element);

@@ -2,10 +2,10 @@
 //
 //   W(t) = integral of -lambda nu (drivers), of the loads' power, and of what dampers dissipate
 //
-// by Gauss's rule of four points (order 8), which never asks for a power where one may jump: stretches end at
-// breakpoints of functions of time, and no body moves further in one than a fifth of a radian or length scale. The
-// error of all integrals together is known: energy.balance, the energy that the sums do not account for. Stretches are
-// shortened until it, and what a load sways within a stretch, is 1e-10 of the energy exchanged.
+// by Gauss's rule of four points (order 8), which evaluates no power where one may jump: stretches end at breakpoints
+// of functions of time, and no body moves further in one than a fifth of a radian or length scale. The error of all
+// integrals together is known: energy.balance, the energy that the sums do not account for. Stretches are shortened
+// until it, and the variation of a load within a stretch, is below 1e-10 of the energy exchanged.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,8 +21,8 @@ namespace {
 
 // Of a stretch: rad, length scales.
 constexpr double longest_stretch = 0.2;
-// Parts of the energy exchanged so far: what a stretch may be wrong by, else it is made anew in shorter ones; and what
-// all may be wrong by before the results say so. Rounding of energies is part of these.
+// Parts of the energy exchanged so far: the error allowed in a stretch, above which it is repeated in shorter ones; and
+// the total error above which results carry a warning. Both include rounding of energies.
 constexpr double allowed_error = 1e-10, doubtful_error = 1e-6, rounding = 1e-13;
 constexpr double shortest_part = 1.0 / 4096;
 // The cubic part of the powers in a stretch, of the largest of them.
@@ -33,7 +33,7 @@ constexpr std::array<double, 4> places = {0.069431844202973712, 0.33000947820757
                                           0.93056815579702629};
 constexpr std::array<double, 4> weights = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
                                            0.17392742256872693};
-// What takes the cubic part of a power out of its four values; absolute sum one.
+// Weights that extract the cubic part of a power from its four values; absolute sum one.
 constexpr std::array<double, 4> cubic = {-0.14153, 0.35847, -0.35847, 0.14153};
 
 }  // namespace
@@ -63,23 +63,23 @@ double Kinematics::energy_gap() const {
   return total_energy(snapshot()) - initial_energy_ - EnergyAccount::supplied(work_) + EnergyAccount::dissipated(work_);
 }
 
-// What energies are rounded at.
+// The size at which energies are rounded.
 double Kinematics::energy_scale() const {
   return kinetic_energy(snapshot()) + std::abs(evaluator_.potential_energy()) + std::abs(initial_energy_);
 }
 
-// How long no body moves further than a stretch of at most `limit` should.
+// The time in which no body moves further than a stretch of at most `limit` may.
 double Kinematics::stretch(double limit) const {
   const double speed = solver_.distance(qd_, nothing_, nullptr), gain = solver_.distance(qdd_, nothing_, nullptr);
-  // From rest the rates say nothing: the whole way is tried first.
+  // From rest the rates give no estimate: the whole way is tried first.
   double length = limit;
   if (speed > 0) length = std::min(length, longest_stretch / speed);
   if (gain > 0) length = std::min(length, std::sqrt(longest_stretch / gain));
   return stretch_part_ * length;
 }
 
-// One stretch further, to t: the powers inside, then the rates there. Returns how wrong the sums may be, J: the energy
-// that they do not account for, and what the cubic part of a power is worth that four points cannot follow.
+// One stretch further, to t: the powers inside, then the rates there. Returns an estimate of the error of the sums, J:
+// the energy that they do not account for, and the cubic part of the powers, which four points do not resolve.
 Report Kinematics::sum_up_stretch(double t, double& error, std::vector<std::string>& warnings) {
   const double from = t_, gap = energy_gap();
   const auto visit = [&](double instant, const Needs& needs) -> Report {
@@ -126,7 +126,7 @@ Report Kinematics::move_and_sum_up(double t) {
   ends.push_back(t);
   for (double end : ends) {
     while (t_ != end) {
-      // Equal stretches, none of them a crumb.
+      // Equal stretches, none of them very short.
       const double from = t_, count = std::ceil(std::abs(end - from) / stretch(std::abs(end - from)) * (1 - 1e-9));
       const double to = count > 1 ? from + (end - from) / count : end;
       if (to == from) break;
@@ -136,7 +136,7 @@ Report Kinematics::move_and_sum_up(double t) {
       if (Report summed = sum_up_stretch(to, error, total.warnings); !summed.ok()) return summed;
       const double allowed = allowed_error * exchanged_ + rounding * energy_scale();
       if (error > allowed && stretch_part_ > shortest_part && bridge_.empty()) {
-        // Again, in shorter ones; but not across a singular configuration, which is passed once.
+        // Repeated in shorter stretches; but not across a singular configuration, which is passed only once.
         if (Report moved = follow_to(from); !moved.ok()) return moved;
         if (Report solved = find_rates({.velocity = true, .acceleration = true}); !solved.ok()) return solved;
         work_ = work_before;
@@ -151,11 +151,11 @@ Report Kinematics::move_and_sum_up(double t) {
   return total;
 }
 
-// What the results must say of the work.
+// The warning about the accuracy of the work.
 std::string Kinematics::doubt_of_work() const {
   if (!account_ || !(unsure_ > doubtful_error * exchanged_)) return {};
   return fmt::format(
-      "work is summed up no better than to {:.2g} J, of {:.3g} J exchanged: loads change too fast for the motion, or "
+      "work is accurate to {:.2g} J only, of {:.3g} J exchanged: loads change too fast for the motion, or "
       "grow near a singular configuration",
       unsure_, exchanged_);
 }

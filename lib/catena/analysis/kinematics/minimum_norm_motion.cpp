@@ -24,7 +24,7 @@ constexpr double largest_residual = 1e-11;  // of positions after a step
 constexpr double longest_step = 0.5;        // rad, length scales
 constexpr double smallest_step = 1e-13;     // part of the time, or of the time a motion of 1 takes
 constexpr double safety = 0.9, largest_growth = 4, largest_cut = 0.1;
-// Velocities this much larger than they were on average are on their way to infinity.
+// Velocities larger than this multiple of their average are taken to grow without bound.
 constexpr double runaway = 30;
 constexpr std::size_t most_names = 4;  // in a message
 // Steps that would have to be shorter than this (rad, length scales) may be near a place where branches meet: it is
@@ -95,7 +95,7 @@ Report MinimumNormMotion::no_velocity() const {
   report.status = Status::inconsistent;
   report.message = fmt::format(
       "no velocities meet all constraints and drivers at t = {:.12g} s; most concerned: {}; likely cause: drivers that "
-      "contradict each other or what the mechanism can do",
+      "contradict each other, or a motion that the mechanism cannot make",
       t_, names);
   return report;
 }
@@ -129,8 +129,8 @@ Report MinimumNormMotion::stuck(double target) {
     }
     report.status = Status::lock_up;
     report.message = fmt::format(
-        "lock-up at t = {:.12g} s: the drivers ask for a motion that the mechanism cannot make, however its free "
-        "motions help{}",
+        "lock-up at t = {:.12g} s: the drivers ask for a motion that the mechanism cannot make, whatever its free "
+        "motions do{}",
         point.t, where);
   } else {
     point.kind = SingularPoint::Kind::isolated;
@@ -147,7 +147,7 @@ Report MinimumNormMotion::stuck(double target) {
   return report;
 }
 
-// The mechanism where it locks: places and times are known, rates grow without bound.
+// A row at the lock-up: places and times are known, rates grow without bound.
 void MinimumNormMotion::give_row_at_lock_up(const Needs& needs, RowObserver& observer) {
   const SingularPoint& point = singular_points_.back();
   const std::vector<double> unknown(q_.size(), std::numeric_limits<double>::quiet_NaN());
@@ -328,7 +328,8 @@ AnalysisReport MinimumNormMotion::run(const TimeGrid& grid, const Needs& needs, 
                             .residual = residual_ * evaluator_.length_scale()};
     if (!observer.observe(snapshot)) return end(cancelled());
   }
-  // What goes on from here goes on with the velocities, asked for or not: nothing drives all of them.
+  // A later analysis continues with the velocities, whether or not they are output, since drivers do not determine
+  // them.
   if (!has_velocity_) {
     if (const Report solved = solve_rates({.velocity = true}); !solved.ok()) return end(solved);
   }

@@ -3,12 +3,12 @@
 //   q' = v(t, q),   v = least_velocity.hpp's qd
 //
 // integrated by the method of order 8 of Dormand and Prince (tableau.hpp), every step ending on the constraints by the
-// least change: the path does not depend on how far apart rows are. What nothing drives stays where it is. The path
-// depends on the metric, and after a closed motion of the drivers the mechanism need not be where it began. No loads:
-// free motions would need forces of their own.
-// Where branches meet the motion goes on along its own: steps that would have to be short there are replaced by one
-// across the place, its stages put on the constraints. Such places are passed, not located.
-// Singular where the drivers ask for a motion that no velocity can make (lock-up: an arm stretched out), reported with
+// least change: the path does not depend on how far apart rows are. Bodies that no driver moves stay where they are.
+// The path depends on the metric, and after a closed motion of the drivers the mechanism need not be where it began. No
+// loads: free motions would need forces of their own.
+// Where branches meet the motion continues along its own branch: instead of very short steps one step is made across
+// the place, with its stages projected onto the constraints. Such places are passed, not located.
+// Singular where the drivers prescribe a motion that no velocity meets (lock-up: an arm stretched out), reported with
 // its instant and a last row for the place; where rows become dependent without that, steps shrink and the report says
 // `singular`.
 #pragma once

@@ -97,7 +97,7 @@ bool Predictor::predict(double t, std::span<double> q, std::span<double> qd, std
   const auto sum = [&](const Weights& w, std::size_t i) {
     return w[0] * a[i] + w[1] * b[i] + w[2] * c[i] + w[3] * d[i] + w[4] * e[i] + w[5] * f[i];
   };
-  // In one pass if all are wanted: what a large scene pays for is reading the data.
+  // In one pass if all are needed: the cost in a large scene is that of reading the data.
   double *position = q.data(), *velocity = qd.data(), *acceleration = qdd.data();
   if (!q.empty() && !qd.empty() && !qdd.empty()) {
     for (std::size_t i = 0; i < q.size(); ++i) {

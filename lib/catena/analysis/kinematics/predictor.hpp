@@ -1,4 +1,4 @@
-// Where the coordinates will be next, from where they were: the start of a Newton iteration.
+// Predicts the coordinates of the next instant from earlier ones: the start of a Newton iteration.
 //
 //   q, qd, qdd known at the last two instants   quintic Hermite extrapolation, error of order h^6
 //   q, qd known                                 cubic Hermite, h^4
@@ -18,7 +18,7 @@ class Predictor {
  public:
   explicit Predictor(std::size_t size);
 
-  /// Forgets everything: after a jump, or where a function of time has a break.
+  /// Clears the history: after a jump, or at a breakpoint of a function of time.
   void clear() { count_ = 0; }
   /// Records the solution at t; qd and qdd may be empty.
   void push(double t, std::span<const double> q, std::span<const double> qd, std::span<const double> qdd);

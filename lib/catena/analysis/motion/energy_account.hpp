@@ -1,10 +1,10 @@
-// Where the energy goes: integrals of power that are integrated along with the motion, when somebody asks for them.
+// Integrals of power, integrated along with the motion where columns or the balance check need them.
 //
 //   dissipated   of dampers
 //   loads        work of the applied loads that have no potential: functions of time, follower forces
-//   driver k     -lambda nu of its row, THEORY's load x dc/dt
+//   driver k     -lambda nu of its equation: load x dc/dt (apps/manual/dynamics.md#driver-loads)
 //
-// The balance T + V - (T0 + V0) - (loads + drivers) + dissipated is zero but for the error of integration. Units: J, W.
+// The balance T + V - (T0 + V0) - (loads + drivers) + dissipated is zero up to the error of integration. Units: J, W.
 #pragma once
 
 #include <span>
@@ -23,6 +23,7 @@ class EnergyAccount {
   void powers(std::span<const double> qd, std::span<const double> lambda, std::span<double> out);
 
   static double dissipated(std::span<const double> work) { return work[0]; }
+  static double& dissipated(std::span<double> work) { return work[0]; }
   /// Of loads and drivers together.
   static double supplied(std::span<const double> work);
   /// Scatters the drivers' work to `by_element`, which has one entry an element of the model.

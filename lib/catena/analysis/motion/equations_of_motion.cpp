@@ -13,14 +13,14 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// The part of what resists a massless coordinate that stands for its mass: four rounds of refinement then come to
-// rounding, at four digits of every single solve; up to a hundred times as much may be found for another eight rounds.
+// The mass that replaces zero, as a part of the constrained mass r: four rounds of refinement then reach rounding, at
+// the cost of four digits in every solve; a ratio up to a hundred times larger is accepted and takes eight rounds more.
 constexpr double small_part = 1e-4, largest_part = 1e-2;
-// Small masses are reduced by this factor at most, and so often: over 18 powers of ten beyond the first guess.
+// Largest reduction of the small masses in one pass, and number of passes: 18 powers of ten beyond the first guess.
 constexpr double most_reduction = 1e-3;
 constexpr int most_weighings = 6;
-// Part of the forces on massless coordinates that may stay unresisted; rounding leaves 1e-15, and nothing resists where
-// all of it stays.
+// Part of the forces on massless coordinates that may stay unbalanced: rounding leaves 1e-15, and a coordinate without
+// constrained mass leaves all of it.
 constexpr double unresisted = 1e-9;
 
 }  // namespace
@@ -56,7 +56,7 @@ void EquationsOfMotion::weigh_massless(std::span<const double> q) {
   if (plan_.rows > 0) evaluator_.jacobian(jacobian_);
   const std::vector<double> seen = seen_masses(plan_, masses_.mass, jacobian_);
   for (int c : masses_.massless) {
-    // What no row leads to is held by rows to the ground, or by nothing.
+    // A coordinate that no equation reaches is held by equations to the ground, or not at all.
     if (seen[at(c)] > 0) masses_.substitute[at(c)] = small_part * seen[at(c)];
   }
   for (int round = 0;; ++round) {
@@ -78,11 +78,11 @@ std::string EquationsOfMotion::undetermined() const {
   if (masses_.massless.empty() || !(system_.massless_residual() > unresisted)) return {};
   const int worst = system_.worst_massless();
   return fmt::format(
-      "the motion of body \"{}\" is not determined: its {} is zero and the constraints tie it to nothing that has mass",
+      "the motion of body \"{}\" is not determined: its {} is zero and no constraint ties it to a body with mass",
       evaluator_.model().body_name(plan_.model_body[at(worst / 3)]), worst % 3 == 2 ? "inertia" : "mass");
 }
 
-// Loads on the massless coordinates, none of them special: what has mass must resist all of them.
+// Loads on the massless coordinates, of no special ratio: coordinates with mass must resist all of them.
 Report EquationsOfMotion::check_massless(std::span<const double> q) {
   Report report;
   if (masses_.massless.empty()) return report;
@@ -118,16 +118,18 @@ bool EquationsOfMotion::accelerations(double t, Side side, std::span<const doubl
                                       std::span<double> qdd, double stabilisation) {
   if (!evaluate_jacobian(t, side, q)) return false;
   evaluator_.applied_forces(qd, loads_);
+  if (state_loads_) state_loads_->add(qd, loads_);
   if (plan_.rows > 0) evaluator_.gamma(qd, gamma_);
   if (plan_.rows > 0 && stabilisation > 0) stabilise(qd, stabilisation);
   system_.solve_motion(loads_, gamma_, qdd, lambda_, evaluator_.counters);
   if (system_.massless_residual() > unresisted) {
-    // What resists has become so much less that the small masses no longer are small.
+    // The constrained masses have become so small that the substitutes are no longer small beside them.
     weigh_massless(q);
     if (!evaluate_jacobian(t, side, q)) return false;
     system_.solve_motion(loads_, gamma_, qdd, lambda_, evaluator_.counters);
     if (system_.massless_residual() > unresisted) return false;
   }
+  if (state_loads_ && !state_loads_->complete(*this, gamma_, loads_, qdd, lambda_)) return false;
   double sum = 0;
   for (std::size_t c = 0; c < change_.size(); ++c) sum += qdd[c];
   return std::isfinite(sum);

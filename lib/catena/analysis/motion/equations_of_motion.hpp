@@ -1,5 +1,5 @@
 // The equations of motion of a mechanism as a right-hand side: accelerations from positions and velocities, and the
-// projections that keep both on the constraints (THEORY section 4).
+// projections that keep both on the constraints (apps/manual/dynamics.md#equations-of-motion).
 //
 //   accelerations   [M, Phi_q^T; Phi_q, 0] [qdd; lambda] = [Q; gamma]
 //   positions       q -= M^-1 Phi_q^T S^-1 Phi(q), repeated with the factors at hand until Phi is rounding
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "catena/analysis/motion/mass_matrix.hpp"
+#include "catena/analysis/motion/state_loads.hpp"
 #include "catena/analysis/pose/scaling.hpp"
 #include "catena/assembly/evaluate.hpp"
 #include "catena/assembly/systems/schur_system.hpp"
@@ -26,10 +27,10 @@ class EquationsOfMotion {
  public:
   explicit EquationsOfMotion(Evaluator& evaluator);
 
-  /// Takes over the masses, or says which body lacks what.
+  /// Takes over the masses; a report naming the body if a mass or inertia is missing.
   Report use_masses();
-  /// Chooses the small masses that stand for zero ones as what resists at q and the evaluator's time asks for.
-  /// Allocates; nothing without massless coordinates.
+  /// Chooses the small masses that replace zero ones from the constrained masses at q and the evaluator's time.
+  /// Allocates; does nothing without massless coordinates.
   void weigh_massless(std::span<const double> q);
   /// Whether accelerations at q and the evaluator's time are unique in spite of massless coordinates: whether M is
   /// positive definite where the constraints leave freedom.
@@ -41,13 +42,21 @@ class EquationsOfMotion {
   /// in 1/s: constraints that are not met return to zero by Phi'' + 2 s Phi' + s^2 Phi = 0.
   bool accelerations(double t, Side side, std::span<const double> q, std::span<const double> qd, std::span<double> qdd,
                      double stabilisation = 0);
+  /// Forces beside those of the model's elements, from now on; nullptr: none.
+  void attach(StateLoads* loads) { state_loads_ = loads; }
+  const StateLoads* state_loads() const { return state_loads_; }
+  /// Solves [M, Phi_q^T; Phi_q, 0] [qdd; lambda] = [loads; gamma] with the factors at hand.
+  void solve_motion(std::span<const double> loads, std::span<const double> gamma, std::span<double> qdd,
+                    std::span<double> lambda) {
+    system_.solve_motion(loads, gamma, qdd, lambda, evaluator_.counters);
+  }
   /// Multipliers of the solver's rows at the last accelerations().
   std::span<const double> multipliers() const { return lambda_; }
 
   /// Generalized forces of gravity and force elements at the last accelerations().
   std::span<const double> applied_forces() const { return loads_; }
 
-  // The rest uses the factors, the configuration and the time of the last accelerations() or factorize().
+  // The following functions use the factors, the configuration and the time of the last accelerations() or factorize().
 
   /// Factors at (t, q) without computing accelerations.
   bool factorize(double t, Side side, std::span<const double> q);
@@ -55,10 +64,12 @@ class EquationsOfMotion {
   double position_residual(std::span<const double> q);
   /// Moves q onto the constraints. Returns the largest residual left, in length scales or rad.
   double project_position(std::span<double> q, int max_iterations);
-  /// Changes qd to what the constraints allow at the configuration that project_position() left, until the residual is
-  /// rounding compared with the velocities `rate` (1/s), at most twice. Returns the residual of qd as it was.
+  /// Projects qd onto the velocities that the constraints allow at the configuration left by project_position(), until
+  /// the residual is rounding compared with the velocities `rate` (1/s), at most twice. Returns the residual of qd as
+  /// it was.
   double project_velocity(std::span<double> qd, double rate);
-  /// Directions among the rows that are not solved for, see SchurSystem and RedundantRows. The next use factors anew.
+  /// Directions among the equations that are not solved for, see SchurSystem and RedundantRows. The next use factors
+  /// again.
   void leave_out(SparseVectors directions) {
     system_.leave_out(std::move(directions));
     factored_ = false;
@@ -66,7 +77,7 @@ class EquationsOfMotion {
   const SparseVectors& left_out() const { return system_.left_out(); }
   std::vector<double> row_sizes() const { return system_.row_sizes(); }
   void solve_rows(std::span<double> x) { system_.solve_rows(x, evaluator_.counters); }
-  /// Removes from x the part that the constraints do not allow, roughly: for estimates of errors.
+  /// Removes from x approximately the part that the constraints do not allow, for estimates of errors.
   void remove_forbidden(std::span<double> x);
   /// See SchurSystem: near zero where constraints depend on each other.
   double smallest_pivot_ratio() const { return plan_.rows > 0 ? system_.smallest_pivot_ratio() : 1; }
@@ -91,6 +102,7 @@ class EquationsOfMotion {
   MassMatrix masses_;
   Scaling scaling_;
   SchurSystem system_;
+  StateLoads* state_loads_ = nullptr;
   bool factored_ = false, weighed_ = false;
   std::vector<double> jacobian_, gamma_, lambda_, loads_, residual_, multipliers_, change_;
 };

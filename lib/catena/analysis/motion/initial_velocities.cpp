@@ -16,12 +16,13 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double given_weight = 1e4;
 constexpr int most_rounds = 12;
-// One that is massless counts with its small mass, 1e-4 of what resists, which the author's word raises above that.
+// A massless component counts with its small mass, 1e-4 of the constrained mass; a given one thus weighs more than that
+// mass.
 constexpr double given_massless_weight = 1e8;
-// Velocities are corrected until the constraints' residual no longer shrinks, so often at most.
+// Velocities are corrected until the constraints' residual no longer shrinks, at most so many times.
 constexpr int most_corrections = 4;
 
-/// What the model, or an earlier analysis, says of the velocities, by column.
+/// The velocities given by the model or by an earlier analysis, by column.
 struct Wanted {
   std::vector<double> velocity, weight;
   std::vector<char> given, follows;  // massless and not given: it follows what has mass
@@ -95,7 +96,7 @@ VelocityOutcome find_initial_velocities(EquationsOfMotion& equations, std::span<
         size = std::max(size, std::abs(next));
         velocity[c] = next;
         if (wanted.given[c]) asked[c] += wanted.velocity[c] - next;
-        // So that its small mass counts for nothing in the end.
+        // This removes the effect of its small mass.
         if (wanted.follows[c]) asked[c] = next;
       }
       if (round > 0 && change <= 1e-15 * size) break;

@@ -16,7 +16,7 @@ std::string lacks(std::string_view body, bool inertia) {
       "body \"{}\" has a mass but no inertia: give its inertia about the centroid, or make it a particle", body);
 }
 
-// A thousandth of the least mass, but not so little that rounding in what it is added to would drown everything.
+// A thousandth of the least mass, but not so small that rounding in the sums it enters would dominate.
 double small_mass(const std::vector<double>& mass) {
   double least = std::numeric_limits<double>::infinity(), largest = 0;
   for (std::size_t c = 0; c < mass.size(); ++c) {

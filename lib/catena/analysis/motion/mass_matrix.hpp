@@ -1,4 +1,4 @@
-// The mass matrix M = diag(m, m, J) of the bodies that are solved for, and what may be missing in it.
+// The mass matrix M = diag(m, m, J) of the bodies that are solved for, and the check that it is complete.
 //
 // A particle needs no inertia: its angle does not move. mass: 0 or inertia: 0 is a massless coordinate, which the
 // equations of motion must determine otherwise; a mass or inertia that is not given is refused. Units: kg, kg m^2.
@@ -19,7 +19,7 @@ struct MassMatrix {
   std::vector<double> substitute;
   std::vector<int> massless;  ///< coordinates that can move and have no mass
 
-  /// Takes the masses from the evaluator's model, or says of which body something is missing.
+  /// Takes the masses from the evaluator's model; a report naming the body if a mass or inertia is missing.
   Report load(const Evaluator& evaluator);
 };
 

@@ -1,8 +1,9 @@
-// What a motion under way goes on from: all that a fresh Dynamics of the same model, or one in another process on the
-// same machine, needs to make the very same steps and rows, bit for bit, as any other that starts from these numbers.
+// The numbers from which a motion continues: everything that a new Dynamics object of the same model, also in another
+// process on the same machine, needs to make the same steps and rows, bit for bit, as any other that starts from these
+// numbers.
 //
-// It holds no history of an integrator. A run that is to be taken up again later drops its own history where it pauses,
-// and goes on from these numbers as well: see Pauses in dynamics_with_events.hpp. Units: SI.
+// It holds no history of an integrator. A run that can be resumed later drops its own history where it pauses and
+// continues from these numbers as well: see Pauses in dynamics_with_events.hpp. Units: SI.
 #pragma once
 
 #include <cstdint>
@@ -20,21 +21,21 @@ struct WorkSoFar {
   std::vector<double> by_driver;  ///< by number of the element; empty: nothing was summed up
 };
 
-/// What an integrator has learnt about the motion.
+/// Quantities that an integrator has observed along the motion.
 struct IntegratorMemory {
   double step = 0;                                ///< proposed for the next one, s
   double rate = 0, root_energy = 0, radians = 0;  ///< see ErrorScale
   double usual_ratio = 1e-300;                    ///< largest pivot ratio so far
 };
 
-/// What happened at an event: `row` is the number of the row given at that instant, from 0.
+/// Record of an event: `row` is the number of the row given at that instant, from 0.
 struct EventRecord {
   std::string name;
   double t = 0;
   std::int64_t row = 0;
 };
 
-/// What those who watch for events have seen.
+/// State of the search for events.
 struct EventMemory {
   std::vector<int> released;  ///< constraints that do not hold, by number of the element
   std::vector<int> turned;    ///< by element: turns by which a value was moved when it was engaged; empty: none

@@ -16,18 +16,18 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 // Rows whose smallest pivot ratio is above this need no rank analysis: rounding leaves ratios of 1e-16, and assembled
 // places that miss the constraints by 1e-12 ones of 1e-24.
 constexpr double independent_ratio = 1e-8;
-// How far a probe goes, rad or length scales: far enough that a rank found there is not that of a singular position
+// Length of the probe, rad or length scales: far enough that a rank found there is not that of a singular position
 // nearby (sine 0.1), near enough to be assembled.
 constexpr double probe_distance = 0.1;
 constexpr int most_probes = 4;
-// Volumes are raised until an exchange would gain less than this.
+// Exchanges are made until the volume would grow by less than this factor.
 constexpr double worthwhile = 1.1;
 // A choice is made anew when bodies have moved this far, rad or length scales: directions that turned away from their w
-// by so much keep nine tenths of the pivot. As many solves as this cost less than a step; where there are more
-// directions the choice also waits until pivots have become half as large.
+// by this angle keep nine tenths of the pivot. So many solves cost less than a step; where there are more directions
+// the choice is also delayed until pivots have become half as large.
 constexpr double noticeable_move = 0.3, worse = 0.5;
 constexpr int few = 16;
-// Entries of W below this part of the largest are rounding. A choice that misses them is as good.
+// Entries of W below this part of the largest are rounding and do not affect the choice.
 constexpr double nothing = 1e-9;
 
 /// W as p columns over the rows, in units in which S has a diagonal of ones, and the direction that belongs to each.
@@ -166,7 +166,7 @@ std::vector<int> RedundantRows::dependent_rows(std::span<const double> q) {
   return rank.ok() ? rank.dependent_rows : std::vector<int>{};
 }
 
-// Leaves out single rows, at the place of the equations' factors.
+// Leaves out single equations, at the configuration of the factors.
 void RedundantRows::leave_out(const std::vector<int>& rows) {
   const Vector sizes = equations_.row_sizes();
   SparseVectors directions;
@@ -208,8 +208,8 @@ void RedundantRows::take_up(SparseVectors directions, std::span<const double> q)
   chosen_at_.assign(q.begin(), q.end());
 }
 
-// A place some way along the motion that drivers ask for, with the evaluator at its time; else along a free motion, any
-// one: with random velocities.
+// A configuration further along the motion that drivers prescribe, with the evaluator at its time; else along a free
+// motion with random velocities.
 bool RedundantRows::probe(std::span<const double> q, std::span<double> place) {
   Evaluator& evaluator = equations_.evaluator();
   const double length = evaluator.length_scale(), t = evaluator.time();
@@ -259,7 +259,7 @@ void RedundantRows::follow(std::span<const double> q) {
   choose();
 }
 
-// Directions at the place of the equations' factors.
+// Directions at the configuration of the factors.
 void RedundantRows::choose() {
   ++choices_;
   const Vector sizes = equations_.row_sizes();

@@ -1,15 +1,16 @@
-// Which rows a motion is integrated without, where constraints always depend on each other (redundant constraints).
+// The choice of equations that are left out of a motion, where constraints always depend on each other (redundant
+// constraints).
 //
 // Phi_q loses p ranks along the motion: w^T Phi_q = 0 for p independent w. SchurSystem leaves out p directions c among
-// its rows, and has the exact solution as long as no combination of them is orthogonal to all w. The choice here makes
-// them as far from that as a choice within single elements can be: with the dual basis
+// its equations, and its solution is exact as long as no combination of them is orthogonal to all w. The choice here
+// keeps them as far from that case as a choice within single elements can: with the dual basis
 //
 //   W = (S + C)^-1 [c_1 ... c_p],   c_j^T w_k = (j = k),   rows counted by sqrt(S_rr)
 //
 // the volume |det c^T w| grows by the length of w_k at an element when c_k moves there, along w_k; this is repeated
-// until no length exceeds 1.1 (a pivoted elimination whose pivots are blocks). Nothing but a factorization and p solves
-// is needed, at any place on the constraints. In exact arithmetic no result depends on the choice, so that a new one
-// needs no restart; it is due when bodies have moved by 0.3 rad or length scales and W has grown.
+// until no length exceeds 1.1 (a pivoted elimination whose pivots are blocks). It needs a factorization and p solves,
+// at any place on the constraints. In exact arithmetic no result depends on the choice, so that a new one needs no
+// restart; it is made when bodies have moved by 0.3 rad or length scales and W has grown.
 //
 // p is the rank deficiency at a place where the mechanism is not singular by accident: a start in a flat position shows
 // too low a rank, so that the rank is also taken 0.1 rad along the drivers' or a free motion, and the larger one
@@ -28,12 +29,12 @@ class RedundantRows {
  public:
   explicit RedundantRows(EquationsOfMotion& equations);
 
-  /// Finds p and the directions, at q (assembled) and the evaluator's time; the equations are left without factors if
-  /// there are any. Allocates.
+  /// Finds p and the directions, at q (assembled) and the evaluator's time; if there are any, the equations hold no
+  /// factors afterwards. Allocates.
   void find(std::span<const double> q);
-  /// Goes on with directions that were chosen before, at q.
+  /// Continues with directions that were chosen before, at q.
   void take_up(SparseVectors directions, std::span<const double> q);
-  /// After a step to q, the place of the equations' factors: makes a new choice where it is due.
+  /// After a step to q, the place of the equations' factors: makes a new choice where one is needed.
   void follow(std::span<const double> q);
   /// The number of directions left out: p.
   int count() const { return equations_.left_out().count(); }

@@ -11,11 +11,12 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// Rows this near to dependence (sine) count as dependent; what that leaves out of the accelerations is as small.
+// Equations this near to dependence (sine) count as dependent; the resulting error of accelerations is of the same
+// size.
 constexpr double dependent = 3e-4;
-// Of the terms of w^T gamma: more than that does not vanish.
+// Part of the terms of w^T gamma above which the sum does not vanish.
 constexpr double vanishing = 1e-2;
-// Rows of the completed system that are this near to dependence say nothing new.
+// Equations of the completed system that are this near to dependence are dropped.
 constexpr double says_nothing = 1e-6;
 // Displacement over which derivatives are taken, rad or length scales.
 constexpr double small_move = 1e-5;
@@ -61,7 +62,7 @@ SingularInstant::Outcome SingularInstant::solve(double t, std::span<const double
   const int extra = static_cast<int>(rank.dependent_rows.size());
   if (!rank.ok() || extra == 0 || rank.left_null_vectors.count() != extra) return Outcome::not_found;
 
-  // Rows of the completed system: what of each goes into it, by row of the plan.
+  // Equations of the completed system: the weight of each equation of the plan in them.
   const int size = rank.rank + extra;
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(size, plan.columns);
   Eigen::MatrixXd terms_of_rate = Eigen::MatrixXd::Zero(extra, plan.columns);
@@ -104,7 +105,7 @@ SingularInstant::Outcome SingularInstant::solve(double t, std::span<const double
   terms_of_rate = terms_of_rate * root.cwiseInverse().asDiagonal();
   for (int r = 0; r < size; ++r) {
     const double length = rows.row(r).norm();
-    // Of a dependence that lasts the terms cancel, but for what differences over a small move leave.
+    // For a lasting dependence the terms cancel up to the error of the differences.
     const double terms = r < rank.rank ? length : terms_of_rate.row(r - rank.rank).norm();
     if (!(length > says_nothing * terms)) {
       rows.row(r).setZero();

@@ -1,8 +1,8 @@
 // Accelerations and loads of a motion at an instant at which its constraints depend on each other.
 //
-// There w^T Phi_q = 0 for some w, and of the equations of motion less is left than determines the accelerations: what
-// solves them formally is not what the motion comes to on either side. But w^T Phi = 0 holds along the motion, and its
-// third derivative (its second is w^T gamma = 0) brings the missing equations,
+// There w^T Phi_q = 0 for some w, and the equations of motion no longer determine the accelerations: their formal
+// solution is not the limit of the motion from either side. But w^T Phi = 0 holds along the motion, and its third
+// derivative (its second is w^T gamma = 0) brings the missing equations,
 //
 //   w^T (Phi_q qdddot + 3 Phi_q' qdd - gamma') = 0,   b qdd = w^T gamma' / 3,   b = w^T Phi_q'
 //
@@ -11,7 +11,7 @@
 //
 //   M qdd + Phi_q^T lambda + b^T beta = Q
 //
-// Where constraints always depend on each other, and at rest, b says nothing new. Singular: where w^T gamma does not
+// Where constraints always depend on each other, and at rest, b adds no equation. Singular: where w^T gamma does not
 // vanish (accelerations grow without bound): no answer. Dense algebra, for up to `most_rows` rows.
 #pragma once
 
@@ -35,11 +35,11 @@ class SingularInstant {
   };
   /// Finds the accelerations at (t, q, qd), of plan.coordinates() entries. The evaluator is left at t and q. Allocates.
   Outcome solve(double t, std::span<const double> q, std::span<const double> qd, std::span<double> qdd);
-  /// What the constraints carry with bounded multipliers, Q - M qdd - b^T beta, by coordinate.
+  /// The load of the constraints with bounded multipliers, Q - M qdd - b^T beta, by coordinate.
   std::span<const double> loads() const { return loads_; }
   /// The time over which derivatives were taken, s: in it bodies move by 1e-5 rad or length scales.
   double moment() const { return moment_; }
-  /// Whether multipliers grow without bound towards the instant, by a load that matters.
+  /// Whether multipliers grow without bound towards the instant, by a load that is not rounding.
   bool unbounded() const { return unbounded_; }
 
  private:

@@ -16,37 +16,38 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr int max_iterations = 200;
 constexpr int max_approach_iterations = 60;
-// Back onto the constraints from a short way off: what takes longer was too long a way.
+// Iterations for a return to the constraints from nearby: if more are needed, the step was too long.
 constexpr int max_return_iterations = 12;
-// A body may turn at most this far in one step: beyond it the linearisation says nothing, and linkages flip.
+// A body may turn at most this far in one step: beyond it the linearisation is useless, and linkages change their
+// assembly mode.
 constexpr double largest_turn = 0.5;
-// Steps that turn bodies by more than this many times that are long along combinations of rows that hardly move
-// anything; scaled down as a whole they would leave the others unmet, so it is these that damping shortens.
+// Steps that turn bodies by more than this multiple are long along nearly dependent combinations of equations. Scaling
+// the whole step would leave the other equations unmet, so damping shortens only these parts.
 constexpr double far_too_long = 4;
-// Residuals from here on overflow as soon as they are squared.
+// Residuals above this overflow when they are squared.
 constexpr double largest_residual = 1e120;
 constexpr double smallest_factor = 1e-4;
-/// Where a search sets out again: beside the place where the last one ended, or beside the estimate, every coordinate
-/// displaced by up to so much (rad, attachment distances).
+/// Start of a repeated search: near the end of the last one, or near the estimate, every coordinate displaced by at
+/// most `displacement` (rad, attachment distances).
 struct Start {
   bool from_estimate;
   double displacement;
 };
 // The first ones leave a symmetric sketch and hardly change which assembly is nearest; the others are for sketches that
-// lead into a misfit that is least all around: of 96 six-bars drawn in one line four did.
+// lead to a local minimum of the misfit: of 96 six-bars drawn in one line four did.
 constexpr Start starts[] = {{false, 1e-3}, {false, 0.03}, {false, 0.3}, {false, 1.0}, {true, 0.3}, {true, 1.0},
                             {true, 1.0},   {true, 2.0},   {true, 2.0},  {true, 3.0},  {true, 3.0}, {true, 3.0}};
-// No further one is tried after so many iterations times rows: a factorization costs a microsecond a row.
+// No further start is tried after so many iterations times equations: a factorization costs a microsecond a row.
 constexpr double most_work = 4e6;
-// Coordinates of a body that has moved by many length scales cannot be rounder than this many of their last digits.
+// Rounding of the coordinates of a body that has moved by many length scales, relative to their size.
 constexpr double attainable_digits = 8 * std::numeric_limits<double>::epsilon();
 
-// But no residual above this one is rounding, however far away a mechanism is: redundant rows contradict each other
-// then.
+// No residual above this is taken for rounding, however far away a mechanism is: redundant equations then contradict
+// each other.
 constexpr double most_rounding = 1e-8;
 
-/// What the rounding of places far from the origin leaves of lengths between them, in length scales: constraints that
-/// repeat each other there meet no better.
+/// The rounding of lengths between places far from the origin, in length scales: redundant constraints there agree no
+/// better.
 double rounding_of_places(const Evaluator& evaluator) {
   double place = 0;
   for (int p = 0; p < evaluator.plan().bodies; ++p) {
@@ -145,7 +146,7 @@ bool Assembler::restore(std::span<double> q, double tolerance, int most_iteratio
       if (then < (1 - 1e-4 * factor) * now) break;
     }
     if (factor < smallest_factor) {
-      // The direction is no use: dependent rows made it long. Shorten it where it is long, or give up.
+      // The direction fails because nearly dependent equations made it long: damping shortens it, or the search ends.
       merit(q);
       damping = std::max(100 * damping, 1e-6);
       if (damping > 1e6) break;
@@ -201,8 +202,8 @@ void Assembler::approach_estimate(std::span<double> q, std::span<const double> e
 }
 
 // The misfit of a sketch drawn in one line, or as its own mirror image, has no slope across that symmetry: steps stay
-// within it and end where the misfit is least there, a saddle. So the search sets out again from beside it, every
-// coordinate displaced by a number of its own, the same ones every time.
+// within it and end where the misfit is least there, a saddle. So the search is repeated from near it, every coordinate
+// displaced by a different amount, the same amounts every time.
 bool Assembler::restore_from_beside(std::span<double> q, std::span<const double> estimate, double tolerance,
                                     AssemblyOutcome& outcome) {
   const std::vector<double> saddle(q.begin(), q.end());
@@ -240,7 +241,7 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
   }
   bool met = restore(q, tolerance, max_iterations, outcome);
   if (!met) {
-    // Where all of this fails too, what stands in the way is looked for from where the estimate led.
+    // If all repetitions fail, the conflicting constraints are determined from the end of the first search.
     std::vector<double> beside(q.begin(), q.end());
     const double residual = outcome.residual;
     met = restore_from_beside(beside, estimate, tolerance, outcome);
@@ -260,7 +261,7 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
       std::copy(given.begin(), given.end(), q.begin());
       return outcome;
     }
-    // The best configuration found may differ a lot from what was given without being any use: keep what was given.
+    // The best configuration found may differ a lot from the given one without being of use: keep the given one.
     const Conflict conflict = find_conflict(evaluator_, *projector_, q);
     outcome.misfits = conflict.unmet;
     outcome.status = Status::not_assembled;

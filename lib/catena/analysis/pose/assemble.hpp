@@ -1,12 +1,13 @@
-// Assembly: the configuration nearest to a given estimate that meets all constraints (THEORY section 3).
+// Assembly: the configuration nearest to a given estimate that meets all constraints
+// (apps/manual/kinematics.md#assembly).
 //
 //   min sum_b |dr_b|^2 + rho_b^2 dphi_b^2   subject to   Phi(q, t) = 0        rho: RMS attachment distance of the body
 //
 // Whole turns are moved first; then damped Gauss-Newton steps of least weighted size, none of which may enlarge the
 // residual; then, where freedom is left, sliding along the constraints towards the estimate. Sketches from which steps
-// lead into a saddle of the misfit, as links drawn in one line, are displaced a little from it. Never returns a worse
-// configuration than it was given and never reports success above the tolerance, or the rounding of the coordinates.
-// Where constraints cannot be met those that stand in the way are named (misfits.hpp).
+// lead to a saddle of the misfit, as links drawn in one line, are displaced a little from it. Never returns a worse
+// configuration than the given one and never reports success above the tolerance, or the rounding of the coordinates.
+// Where constraints cannot be met the conflicting ones are named (misfits.hpp).
 #pragma once
 
 #include <optional>
@@ -47,7 +48,7 @@ class Assembler {
   /// An element whose residual at q overflows when it is squared, or -1.
   int element_out_of_range(std::span<const double> q);
   double merit(std::span<const double> q);
-  /// Largest coordinate relative to the bodies' origins, length scales; angles in rad.
+  /// Largest coordinate relative to the bodies' origins, in length scales; angles in rad.
   double extent(std::span<const double> q) const;
   void advance(std::span<const double> from, double factor, std::span<double> to) const;
   double weighted_distance(std::span<const double> a, std::span<const double> b) const;

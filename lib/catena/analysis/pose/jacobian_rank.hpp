@@ -1,4 +1,4 @@
-// Rank of the constraint Jacobian in units that no scene chooses.
+// Rank of the constraint Jacobian, independent of the units of the scene.
 //
 //   Phi_q D y = ...,   D = length scale on the columns of x and y, 1 on those of angles
 //

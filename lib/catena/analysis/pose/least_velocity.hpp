@@ -3,13 +3,14 @@
 //   min qd^T W qd  subject to  Phi_q qd = nu       =>   qd = W^-1 Phi_q^T mu,   (Phi_q W^-1 Phi_q^T) mu = nu
 //
 // W: the masses and inertias if every moving body has them (then the kinetic energy is least), else [1, 1, rho^2], rho
-// the body's RMS attachment distance (THEORY section 3). Accelerations are the time derivative of these velocities:
+// the body's RMS attachment distance (apps/manual/kinematics.md#motion-of-least-velocity). Accelerations are the time
+// derivative of these velocities:
 //
 //   Phi_q qdd = gamma,   qdd nearest (in W) to  w = W^-1 (sum_r mu_r d2Phi_r/dq2) qd
 //
-// d(W^-1 Phi_q^T mu)/dt being w plus what the rows themselves span. Of rows that depend on each other mu is not unique,
-// but qd and qdd are, as long as the rows do not contradict each other. Singular where nu asks for a motion across the
-// constraints: velocity() then says so. Nothing allocates after the first call.
+// since d(W^-1 Phi_q^T mu)/dt is w plus a vector in the span of W^-1 Phi_q^T. Where equations depend on each other mu
+// is not unique, but qd and qdd are, as long as the rows do not contradict each other. Singular where nu prescribes a
+// motion that the constraints exclude: velocity() then returns false. Nothing allocates after the first call.
 #pragma once
 
 #include <span>
@@ -39,12 +40,12 @@ class LeastVelocity {
   double growth(std::span<const double> qd, std::span<const double> x) const;
   /// Largest entry of a rate in length scales or rad.
   double size(std::span<const double> rate) const;
-  /// After velocity() failed, or where velocities are about to: the row that carries most of the solution.
+  /// After velocity() failed, or where velocities grow without bound: the equation that carries most of the solution.
   int heaviest_row() const;
   /// mu of the last velocity(), by row.
   std::span<const double> multipliers() const { return mu_; }
-  /// After velocity() or acceleration(): the elements whose rows are met worst, the worst first; some of them
-  /// contradict each other, so that each gets a part of what is asked for.
+  /// After velocity() or acceleration(): the elements with the largest residuals, the worst first; some of them
+  /// contradict each other, and the least-squares solution meets each of them in part.
   std::vector<int> worst_elements() const;
 
  private:

@@ -141,7 +141,7 @@ double MinimumNorm::solve(std::span<const double> loads, std::span<double> lambd
     right_hand_side_[c] = loads[at(plan.coordinate[c])];
     size = std::max(size, std::abs(right_hand_side_[c]));
   }
-  // lambda of THEORY's forms from y, into the solver's rows; and Phi_q^T lambda taken off r.
+  // lambda of the published equations from y, into the solver's; and Phi_q^T lambda subtracted from r.
   const auto spread = [&](std::span<const double> y, std::span<double> r) {
     for (const Block& block : blocks_) {
       double stretched[3] = {}, multiplier[3] = {};

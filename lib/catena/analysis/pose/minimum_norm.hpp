@@ -1,10 +1,10 @@
-// The least of all multipliers that hold a mechanism together where redundant constraints leave a choice:
+// The least of all multipliers that balance the same loads, where redundant constraints leave a choice:
 //
 //   min sum_k |F_k|^2 + (T_k / Lc)^2   subject to   Phi_q^T lambda = Q - M qdd
 //
-// F_k, T_k: what constraint k exerts on its body j about the attachment point there (THEORY section 4), Lc the mean
-// attachment distance, so that units do not matter. Per constraint lambda_k^T W_k lambda_k with the small matrix W_k,
-// so
+// F_k, T_k: what constraint k exerts on its body j about the attachment point there
+// (apps/manual/dynamics.md#reactions), Lc the mean attachment distance, so that units do not matter. Per constraint
+// lambda_k^T W_k lambda_k with the small matrix W_k, so
 //
 //   lambda_k = W_k^-1 Phi_k y,   (sum_k Phi_k^T W_k^-1 Phi_k) y = Q - M qdd
 //
@@ -41,9 +41,9 @@ class MinimumNorm {
   struct Block {
     int element = 0, first_row = 0, rows = 0, columns = 0;
     int column[6] = {};        ///< of the plan; -1: cannot move
-    double jacobian[18] = {};  ///< THEORY's rows x 6
+    double jacobian[18] = {};  ///< of the published equations, rows x 6
     double inverse_metric[9] = {};
-    double scale = 1;    ///< THEORY's multiplier = scale x the solver's
+    double scale = 1;    ///< published multiplier = scale x the solver's
     int first_slot = 0;  ///< of the lower triangle of its products
   };
   void load(Block& block) const;

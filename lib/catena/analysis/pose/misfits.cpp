@@ -15,7 +15,7 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 constexpr std::size_t most_misfits = 10;
 // A large scene gets fewer steps: each costs a factorization.
 constexpr int most_steps = 600, least_steps = 60, steps_times_rows = 4000000;
-// eps as a part of the largest misfit at the start: first, by what it falls, last.
+// eps as a part of the largest misfit at the start: first value, factor, last value.
 constexpr double first_smoothing = 0.1, smoothing_fall = 0.3, last_smoothing = 1e-6;
 constexpr double enough_progress = 1e-6;  // of the sum in one step: else eps falls
 constexpr double largest_turn = 0.3;      // rad, in one step
@@ -65,7 +65,7 @@ class MisfitSearch {
     std::vector<Misfit> misfits;
     for_each_element([&](int first, int last) {
       Misfit misfit{plan_.row_element[at(first)], 0, true};
-      // An element with both kinds of rows, a weld, is ranked by what weighs more.
+      // An element with both kinds of equations, a weld, is ranked by the larger one.
       double square[2] = {0, 0}, worst[2] = {0, 0};
       for (int r = first; r < last; ++r) {
         const bool angle = plan_.row_is_angle[at(r)];
@@ -227,7 +227,8 @@ std::string describe_cause(const Model& model, const Conflict& conflict) {
     return fmt::format("the drivers {} contradict each other, or an estimate too far off", list(drivers));
   }
   if (drivers.size() == 1) {
-    return fmt::format("driver {} asks for what lengths do not allow, or an estimate too far off", list(drivers));
+    return fmt::format("driver {} asks for a position that the lengths do not allow, or an estimate too far off",
+                       list(drivers));
   }
   return fmt::format("lengths that do not fit among {}, or an estimate too far off", list(others));
 }

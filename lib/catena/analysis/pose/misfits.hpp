@@ -1,13 +1,13 @@
-// Which constraints stand in the way where not all of them can be met.
+// Finds the conflicting constraints where not all of them can be met.
 //
 //   min over q of  sum_k sqrt(|Phi_k|^2 + eps^2)        Phi_k: the rows of constraint k, in length scales or rad
 //
 // A sum of sizes, unlike one of squares, leaves as few constraints unmet as it can: one wrong length among others that
-// agree with each other ends as the one misfit, where least squares would spread it over all. Where no constraint can
-// be told from others, as the pins of one loop that does not close, all of them share it. What is at odds with the
-// unmet ones are the constraints that carry multipliers at the minimum. Found by damped Gauss-Newton steps on squares
-// weighted with 1 / sqrt(|Phi_k|^2 + eps^2), eps falling, from the configuration given: a local minimum. Source:
-// iteratively reweighted least squares, e.g. D. O'Leary (1990).
+// agree with each other ends as the one misfit, where least squares would spread it over all. Where constraints cannot
+// be distinguished, as the pins of one loop that does not close, all of them share the misfit. The constraints in
+// conflict with the unmet ones are those that carry multipliers at the minimum. Found by damped Gauss-Newton steps on
+// squares weighted with 1 / sqrt(|Phi_k|^2 + eps^2), eps falling, from the configuration given: a local minimum.
+// Source: iteratively reweighted least squares, e.g. D. O'Leary (1990).
 #pragma once
 
 #include <span>
@@ -36,8 +36,8 @@ Conflict find_conflict(Evaluator& evaluator, ConstraintProjector& projector, std
 
 /// "revolute "B" misses by 0.12 m, ..." in one line, worst first.
 std::string describe_misfits(const Model& model, std::span<const Misfit> misfits);
-/// What may be the matter, in words: drivers against each other, a loop that does not close.
-/// What bodies hold, which may be why constraints are not met, before the other causes; empty if none does.
+/// The likely cause, in words: drivers that contradict each other, a loop that does not close.
+/// Bodies with `hold`, which may be the reason why constraints are not met; empty if there are none.
 std::string describe_held(const Model& model);
 std::string describe_cause(const Model& model, const Conflict& conflict);
 

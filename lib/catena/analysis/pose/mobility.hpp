@@ -1,9 +1,9 @@
-// How much a mechanism can move: degrees of freedom by count and by rank, redundant constraints, islands.
+// Mobility of a mechanism: degrees of freedom by count and by rank, redundant constraints, islands.
 //
 //   DOF = n - rank(Phi_q)        mobility: the same without the drivers        Grübler: n - rows
 //
 // The rank is that of Phi_q at one configuration, by sparse QR with rows and columns in comparable units; redundant
-// rows are named, and told apart: consistent (their residual vanishes with the others') or contradictory.
+// equations are named, as consistent (their residual vanishes with the others') or contradictory.
 #pragma once
 
 #include <span>

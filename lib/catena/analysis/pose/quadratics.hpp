@@ -3,8 +3,8 @@
 //   F_i(a) = c_i + L_i a + a^T Q_i a = 0,  i = 1 ... m, in k unknowns
 //
 // Found by Levenberg and Marquardt's method from many starts, the same ones every time: all roots with great
-// probability for k up to six or so, none for certain. Coefficients should be of size one. Roots closer than a
-// thousandth of their size count as one: double roots are found no sharper.
+// probability, though not with certainty, for k up to about six. Coefficients should be of size one. Roots closer than
+// a thousandth of their size count as one: double roots are found no sharper.
 #pragma once
 
 #include <span>

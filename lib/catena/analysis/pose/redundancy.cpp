@@ -8,11 +8,11 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// Elimination among more rows than this would fill up for names that nobody reads.
+// Elimination among more rows than this would fill the matrix, for a list of names too long to read.
 constexpr int most_rows = 200;
-// Of the largest weight of a combination: below it a row does not take part for certain.
+// Part of the largest weight of a combination below which a row may not take part.
 constexpr double certain = 1e-4, rounding = 1e-11;
-// Of the sum of sizes: a right-hand side beyond it is no rounding.
+// Part of the sum of sizes above which a right-hand side is not rounding.
 constexpr double disagreement = 1e-7;
 
 /// Rows of the element that a row belongs to.

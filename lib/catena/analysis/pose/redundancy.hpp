@@ -1,9 +1,9 @@
-// Which constraints to call redundant, where rows of Phi_q depend on each other.
+// The constraints that are called redundant, where rows of Phi_q depend on each other.
 //
 // Any row of a vanishing combination  sum_r w_r row_r = 0  may be left out. Reports name the one that an engineer would
-// take away: of the elements with the fewest rows (a gear rather than a pin, a driver rather than a slide) the one that
-// comes last in the scene. The others of its combination are what it follows from; Gauss-Jordan elimination makes every
-// combination contain one redundant row only. Whether right-hand sides agree is seen by the same weights:
+// remove: of the elements with the fewest rows (a gear rather than a pin, a driver rather than a slide) the one that
+// comes last in the scene. It follows from the others of its combination; Gauss-Jordan elimination leaves one redundant
+// row in every combination. The same weights test whether right-hand sides agree:
 // w^T nu = 0, else the drivers of the combination contradict each other.
 #pragma once
 

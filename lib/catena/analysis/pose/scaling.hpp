@@ -4,8 +4,8 @@
 //   |x| = max_k |x_k| u_k        u_k = 1 / length scale for x, y and residuals in metres, 1 for angles
 //
 // A large scene does not fit into the caches, so that a pass over a vector costs memory traffic, not arithmetic: `scan`
-// measures vectors in the same pass that computes or moves them, and reads no units where they repeat. Norms of vectors
-// with an entry that is not finite are NaN.
+// measures vectors in the same pass that computes or moves them, and skips the units where they repeat. Norms of
+// vectors with an entry that is not finite are NaN.
 #pragma once
 
 #include <array>
@@ -78,43 +78,58 @@ class Scaling {
 
   template <std::size_t N, class Entry>
   static std::array<Size, N> scan(const Units& units, std::size_t n, Entry&& entry) {
-    double most[N][lanes] = {}, sum[N][lanes] = {};
-    std::array<Size, N> result{};
-    double total[N] = {};
+    Sums<N> sums;
+    // Setting up the lanes costs more than the few bodies of a small mechanism.
     std::size_t k = 0;
-    if (units.repeat) {
-      double unit[lanes];
-      for (std::size_t l = 0; l < lanes; ++l) unit[l] = units.unit[l];
-      for (; k + lanes <= n; k += lanes) {
-        for (std::size_t l = 0; l < lanes; ++l) {
-          const std::array<double, N> x = entry(k + l);
-          for (std::size_t v = 0; v < N; ++v) {
-            const double size = std::abs(x[v]) * unit[l];
-            most[v][l] = size > most[v][l] ? size : most[v][l];
-            sum[v][l] += size;
-          }
-        }
-      }
-    }
+    if (units.repeat && n >= lanes) k = scan_lanes(units, n, entry, sums);
     for (; k < n; ++k) {
-      const std::size_t l = units.repeat ? k % lanes : 0, u = units.repeat ? l : k;
+      const std::size_t u = units.repeat ? k % lanes : k;
       const std::array<double, N> x = entry(k);
       for (std::size_t v = 0; v < N; ++v) {
         const double size = std::abs(x[v]) * units.unit[u], angle = size * units.angle[u];
-        result[v].all = size > result[v].all ? size : result[v].all;
-        result[v].angle = angle > result[v].angle ? angle : result[v].angle;
-        total[v] += size;
+        sums.size[v].all = size > sums.size[v].all ? size : sums.size[v].all;
+        sums.size[v].angle = angle > sums.size[v].angle ? angle : sums.size[v].angle;
+        sums.total[v] += size;
+      }
+    }
+    for (std::size_t v = 0; v < N; ++v) {
+      const double total = sums.total[v];
+      if (!std::isfinite(total)) sums.size[v].all = sums.size[v].angle = total - total;  // infinite - infinite: NaN
+    }
+    return sums.size;
+  }
+
+  template <std::size_t N>
+  struct Sums {
+    std::array<Size, N> size{};
+    std::array<double, N> total{};
+  };
+
+  /// Measures all entries but those of the last, incomplete pass over the lanes; returns the number of the first left.
+  template <std::size_t N, class Entry>
+  static std::size_t scan_lanes(const Units& units, std::size_t n, Entry&& entry, Sums<N>& sums) {
+    double most[N][lanes] = {}, sum[N][lanes] = {}, unit[lanes];
+    for (std::size_t l = 0; l < lanes; ++l) unit[l] = units.unit[l];
+    std::size_t k = 0;
+    for (; k + lanes <= n; k += lanes) {
+      for (std::size_t l = 0; l < lanes; ++l) {
+        const std::array<double, N> x = entry(k + l);
+        for (std::size_t v = 0; v < N; ++v) {
+          const double size = std::abs(x[v]) * unit[l];
+          most[v][l] = size > most[v][l] ? size : most[v][l];
+          sum[v][l] += size;
+        }
       }
     }
     for (std::size_t v = 0; v < N; ++v) {
       for (std::size_t l = 0; l < lanes; ++l) {
-        result[v].all = most[v][l] > result[v].all ? most[v][l] : result[v].all;
-        if (units.repeat && units.angle[l] != 0 && most[v][l] > result[v].angle) result[v].angle = most[v][l];
-        total[v] += sum[v][l];
+        Size& size = sums.size[v];
+        size.all = most[v][l] > size.all ? most[v][l] : size.all;
+        if (units.angle[l] != 0 && most[v][l] > size.angle) size.angle = most[v][l];
+        sums.total[v] += sum[v][l];
       }
-      if (!std::isfinite(total[v])) result[v].all = result[v].angle = total[v] - total[v];  // infinite - infinite: NaN
     }
-    return result;
+    return k;
   }
 
   Units columns_, rows_;

@@ -17,14 +17,14 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 /// A body whose angle follows that of another: by the same turns, or with a
 /// turn + b other = 0 in a pair that rolls, up to whole periods 2 pi (a + b),
-/// which its row does not see (gear.hpp).
+/// on which its equation does not depend (gear.hpp).
 struct Tie {
   int body;
   double a, b;
   bool rolls;
 };
 
-/// How far the other body of a rolling pair turns with one that turns by `by`:
+/// The turn of the other body of a rolling pair if one turns by `by`:
 /// of all possible turns the one that changes its pose least, and of these the
 /// smallest.
 double least_turn(const Tie& tie, double by) {

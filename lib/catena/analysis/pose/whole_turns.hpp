@@ -2,8 +2,8 @@
 //
 // A driver may say 370 degrees where the estimate says 10: the same pose, a turn apart. Before anything is solved the
 // body is turned by those whole turns, and with it every body whose angle is tied to its own: through angle constraints
-// and welds by the same turns, through gears and belts by the turn that their row asks for and that changes the pose
-// least, no turn at all where the row does not see it. Constraints that are released ask for nothing.
+// and welds by the same turns, through gears and belts by the turn that meets their equation and changes the pose
+// least, by none where the equation does not depend on it. Released constraints are ignored.
 #pragma once
 
 #include <span>

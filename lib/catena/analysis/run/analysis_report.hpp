@@ -1,4 +1,4 @@
-// What an analysis says when it ends: outcome in words, counts, and the facts about the mechanism it came across.
+// The report of an analysis: outcome in words, counts, and facts about the mechanism.
 #pragma once
 
 #include <optional>

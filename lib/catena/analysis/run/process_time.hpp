@@ -1,4 +1,5 @@
-// Processor time of this process: what run times are reported in, since the machines people share are noisy.
+// Processor time of this process: used for reported run times, since it depends less on other programs than wall-clock
+// time.
 #pragma once
 
 #include <ctime>

@@ -1,4 +1,4 @@
-// Who looks at a mechanism at the instants an analysis was asked for, and, if it wants to, anywhere between them.
+// Receives the state of a mechanism at the instants of an analysis and, if it wants to, anywhere between them.
 #pragma once
 
 #include <functional>
@@ -19,7 +19,7 @@ struct MotionStretch {
 class RowObserver {
  public:
   virtual ~RowObserver() = default;
-  /// Called at every row; what was not needed is an empty span. Returning false cancels the analysis.
+  /// Called at every row; quantities that were not needed are empty spans. Returning false cancels the analysis.
   virtual bool observe(const Snapshot& snapshot) = 0;
   /// Called now and then between rows that are far apart, with the time reached. Returning false cancels.
   virtual bool proceed(double t) {

@@ -43,7 +43,7 @@ void take_over_places(const Evaluator& evaluator, const SystemState& state, std:
 
 Frame<double> frame_of(const Evaluator& evaluator, std::span<const double> q, int body) {
   const Model& model = evaluator.model();
-  static_cast<void>(model.body_name(body));  // throws for what is none
+  static_cast<void>(model.body_name(body));  // throws for an invalid number
   if (body < 0) return {};
   const int p = evaluator.plan().plan_body[at(body)];
   const Vec2<double> centre = evaluator.origin(p) + Vec2<double>{q[3 * at(p)], q[3 * at(p) + 1]};

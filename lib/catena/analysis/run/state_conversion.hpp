@@ -1,4 +1,4 @@
-// Between states as analyses hand them on (absolute, model order) and configurations as they compute with them (plan
+// Converts between states that analyses pass on (absolute, model order) and configurations that they compute with (plan
 // order, positions relative to the bodies' origins; see assembly/plan.hpp). Lengths m, angles rad.
 #pragma once
 

@@ -1,5 +1,5 @@
-// Where a mechanism is, handed from one analysis of a scene to the next: absolute, in model order, so that it outlives
-// plans and changes of parameters.
+// The state of a mechanism, passed from one analysis of a scene to the next: absolute, in model order, so that it stays
+// valid for other plans and parameters.
 #pragma once
 
 #include <vector>

@@ -1,6 +1,6 @@
-// Whether a model's functions of time are defined all the way through a run: tables and functions of one's own end.
+// Checks that a model's functions of time are defined for a whole run: tables and user-defined functions may end.
 //
-// Asked once before a run, so that nothing throws inside it. Units: s.
+// Called once before a run, so that nothing throws inside it. Units: s.
 #pragma once
 
 #include "catena/base/status.hpp"

@@ -1,8 +1,8 @@
 // The instants at which an analysis gives rows.
 //
-// Instants that are not finite, and steps that do not advance, throw std::invalid_argument; numbers of rows that there
-// are not, std::out_of_range. Row k is at first + k every (multiplied, never accumulated), one more at `until` if that
-// is no multiple; or the instants are listed. Units: s.
+// Instants that are not finite, and steps that do not advance, throw std::invalid_argument; row numbers out of range
+// throw std::out_of_range. Row k is at first + k every (multiplied, never accumulated), one more at `until` if that is
+// no multiple; or the instants are listed. Units: s.
 #pragma once
 
 #include <algorithm>

@@ -35,7 +35,7 @@ Report WatchedElements::check() const {
     if (!trouble) continue;
     const Model& model = evaluator_.model();
     report.status = Status::singular;
-    report.message = fmt::format("{} \"{}\" determines nothing at t = {:.12g} s: {}", model.element_type(element),
+    report.message = fmt::format("{} \"{}\" is undefined at t = {:.12g} s: {}", model.element_type(element),
                                  model.element_name(element), evaluator_.time(), trouble);
     break;
   }
@@ -64,7 +64,7 @@ Report WatchedElements::check_ends() const {
             : fmt::format("its table ends at an elongation of {:.9g} m, which is passed", low ? use->first : use->last);
     report.status = Status::singular;
     report.message = fmt::format(
-        "{} \"{}\" determines nothing at t = {:.9g} s: {}; end the analysis before, make the {} longer, or say with "
+        "{} \"{}\" is undefined at t = {:.9g} s: {}; end the analysis before, make the {} longer, or say with "
         "\"beyond\" what lies there",
         model.element_type(element), model.element_name(element), evaluator_.time(), why, use->end ? "curve" : "table");
     break;

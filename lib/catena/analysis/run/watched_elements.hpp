@@ -1,8 +1,8 @@
-// Elements whose rows or forces mean nothing at some configurations: contacts off their curve, gears whose centres
-// coincide, springs stretched beyond their table.
+// Watches elements whose equations or forces are undefined at some configurations: contacts off their curve, gears
+// whose centres coincide, springs stretched beyond their table.
 //
-// The place on a curve is found to 1e-9 of the curve (curve_search.hpp): what is further beyond the end than that has
-// left it.
+// The place on a curve is found to 1e-9 of the curve (curve_search.hpp): a place further beyond the end than that is
+// off the curve.
 #pragma once
 
 #include <vector>
@@ -16,17 +16,17 @@ class WatchedElements {
  public:
   explicit WatchedElements(const Evaluator& evaluator);
 
-  /// `singular`, naming the first element that means nothing at the evaluator's configuration and time, and why; or
-  /// where one has left its curve or table, at which end.
+  /// `singular`, naming the first element that is undefined at the evaluator's configuration and time, and why; or one
+  /// that has left its curve or table, and at which end.
   Report check() const;
   /// The part of it about curves and tables that end.
   Report check_ends() const;
   /// Whether any element could leave a curve.
   bool has_ends() const { return !ending_.empty(); }
-  /// Where each of these is at the evaluator's configuration: 0 and 1 are the ends of its curve; NaN where it asks
-  /// nothing of it.
+  /// The place of each of these on its curve at the evaluator's configuration: 0 and 1 are the ends; NaN where it does
+  /// not use the curve.
   void find_places(std::vector<double>& out) const;
-  /// An excess above this one is no rounding.
+  /// An excess above this one is not rounding.
   static constexpr double allowed_excess = 2e-9;
 
  private:

@@ -6,8 +6,7 @@
 // The right-hand sides are minus the derivatives of the rows Phi, Phi', Phi'' and of the balance M qdd + Phi_q^T lambda
 // - Q along what is known of q_p, qd_p, qdd_p, by one evaluation in dual numbers each. One factorization an instant
 // and, for each parameter, one solve a level. Singular at singular configurations; multipliers of rows that depend on
-// others have no derivative: of many, the least are shown, and which these are depends on the parameters. Source:
-// THEORY section 6.
+// others have no derivative: of many, the least are shown, and which these are depends on the parameters.
 #pragma once
 
 #include "catena/analysis/sensitivity/saddle_system.hpp"

@@ -10,7 +10,7 @@
 // the metric of the masses. What a projection's own bending adds is of the size of the drift that it removes, that is
 // of the tolerance. Between ends of steps derivatives follow from the interpolant of order 7 of their stages. Limits: a
 // breakpoint of a function of time that moves with a parameter, where accelerations jump and the motion is free to
-// follow, lacks the part of that jump; so does an instant at which an event acts. Source: THEORY section 6; E. Hairer,
+// follow, lacks the part of that jump; so does an instant at which an event acts. Source: E. Hairer,
 // S. Norsett, G. Wanner, Solving Ordinary Differential Equations I, section I.14.
 #pragma once
 

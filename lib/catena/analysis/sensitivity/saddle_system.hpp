@@ -9,7 +9,6 @@
 // zero, and what they ask of x follows from the rest. Singular where A is, on the null space of Phi_q: the equilibrium
 // is neutral, the mechanism under-driven. Factors of other analyses are regularised or of other matrices; one more
 // factorization an instant is the price for derivatives that are exact to rounding x condition.
-// Source: THEORY section 6.
 #pragma once
 
 #include <memory>

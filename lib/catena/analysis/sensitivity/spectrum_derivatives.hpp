@@ -7,7 +7,7 @@
 //
 // K_p is taken along q_p and lambda_p. v^T K v is the second derivative of V + lambda^T Phi along v: one evaluation as
 // a series in dual numbers has all of it. Refused: double frequencies and loads, whose vectors turn into each other;
-// branch points, where w^T F_P vanishes. Source: THEORY section 6; R. Nelson, AIAA J. 14 (1976), for simple vectors.
+// branch points, where w^T F_P vanishes. Source: R. Nelson, AIAA J. 14 (1976), for simple vectors.
 #pragma once
 
 #include <optional>

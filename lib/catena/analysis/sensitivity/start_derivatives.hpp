@@ -7,7 +7,7 @@
 //
 // e is the given estimate, W = diag(1, 1, rho^2) as in assembly, rho a constant. Given velocities are held as there by
 // a weight of 10^4 masses and by adding what is missing to what is asked for, until nothing is. Starts that an earlier
-// analysis left are constants. Source: THEORY sections 3 and 6; analysis/motion/initial_velocities.hpp.
+// analysis left are constants. See analysis/motion/initial_velocities.hpp.
 #pragma once
 
 #include "catena/analysis/sensitivity/saddle_system.hpp"

@@ -1,7 +1,7 @@
 // Derivatives of a mechanism's state by design parameters, at the instants at which an analysis looks at it.
 //
-//   find(snapshot)                q_p, qd_p, qdd_p, lambda_p of that state: each analysis has its own way (THEORY
-//   section differentiate(columns, ...)   6); then, of any columns, dO/dp = O_q q_p + O_qd qd_p + ... + O_p at fixed t
+//   find(snapshot)                q_p, qd_p, qdd_p, lambda_p of that state: each analysis has its own way
+//   differentiate(columns, ...)   then, of any columns, dO/dp = O_q q_p + O_qd qd_p + ... + O_p at fixed t
 //
 // Parameters come in groups of four (base/design_scalar.hpp), each with a model that carries derivatives by its own.
 // The state of the analysis is only read: evaluators and factors here are copies of their own.

@@ -6,7 +6,7 @@
 // partials at fixed q and lambda. K is that of the certificate, symmetric where forces have an energy. Closed gaps
 // count as equations, open ones not at all; a gap that touches without a force opens one way and closes the other: no
 // derivative. Singular where the equilibrium is neutral (folds, branch points, motions that nothing resists). Functions
-// of time are frozen. dV/dp = L_p, L = V + lambda^T Phi, needs no solve. Source: THEORY section 6.
+// of time are frozen. dV/dp = L_p, L = V + lambda^T Phi, needs no solve.
 #pragma once
 
 #include "catena/analysis/sensitivity/saddle_system.hpp"

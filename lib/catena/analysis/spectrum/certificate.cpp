@@ -17,13 +17,14 @@ namespace {
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double neutral_part = 1e-10;
-// Modes softer than this part of the stiffest are asked whether they are rounding: far more than rounding can leave.
+// Modes softer than this part of the stiffest are tested for rounding: far above any rounding.
 constexpr double suspicious_part = 1e-6;
-// Stiffnesses below this are none, N/m.
+// Stiffnesses below this count as zero, N/m.
 constexpr double no_stiffness = 1e-100;
 constexpr double rigid_part = 1e6;
-// What regularised rows can make of a stiffness, beside what rounding can: they give way by 1e-10 of what the bodies
-// around them do, and StiffnessFloor counts 2e-13 of the same terms. Measured on balanced arms: up to 10.
+// The effect of regularised equations on a stiffness, as a multiple of that of rounding: they yield by 1e-10 of the
+// flexibility of the bodies around them, while StiffnessFloor counts 2e-13 of the same terms. Measured on balanced
+// arms: up to 10.
 constexpr double most_bias = 500;
 constexpr int usual_steps = 8, most_steps = 40;
 
@@ -32,11 +33,12 @@ class InverseLanczos {
  public:
   InverseLanczos(StaticSystem& system, const std::vector<double>& weights) : system_(system), weights_(weights) {}
 
-  // Lowest k found after at most `steps` steps, and its vector; stops where it settles. `negative`: wants k < 0.
+  // Lowest k found after at most `steps` steps, and its vector; stops when it has converged. `negative`: searches for k
+  // < 0.
   double lowest(int steps, bool negative, std::vector<double>& mode) {
     const std::size_t n = weights_.size();
     std::vector<double> v(n);
-    // A start without structure; anything fixed will do.
+    // A fixed start without structure.
     unsigned seed = 12345;
     for (double& x : v) {
       seed = seed * 1664525u + 1013904223u;
@@ -71,7 +73,7 @@ class InverseLanczos {
     return best;
   }
 
-  // Of what was found, the smallest |k|, with its sign, and its vector.
+  // The smallest |k| found, with its sign, and its vector.
   double softest(std::vector<double>& mode) const {
     const auto solver = spectrum();
     Eigen::Index largest = 0;
@@ -154,15 +156,15 @@ void normalise(const std::vector<double>& weights, std::vector<double>& v) {
   for (double& x : v) x /= std::sqrt(square);
 }
 
-// The factors of K project a motion that K does not resist to where rows of compliance eps let it go under the forces
-// mu, K v + Phi_q^T mu = 0: v^T K v = -eps mu^2 < 0, always. Those of W leave nothing. The matrix holds the exact K
-// afterwards, and factors with this shift.
+// The factors of K project a motion that K does not resist onto constraint equations with the compliance eps, which
+// yield under the forces mu, K v + Phi_q^T mu = 0: v^T K v = -eps mu^2 < 0, always. The factors of W have no such
+// error. The matrix holds the exact K afterwards, and factors with this shift.
 void keep_to_constraints(StaticSystem& system, std::span<const double> lambda, double shift, std::vector<double>& v) {
   std::vector<double> work(v.size() + at(system.plan().rows));
   system.fill_weights();
   if (system.factorize().ok()) project_to_null_space(system, v, work);
   system.fill(lambda, Curvature::exact, shift);
-  // A pivot that vanishes now would have vanished before: the same numbers had factors.
+  // A pivot cannot vanish here: the same numbers were factored before.
   static_cast<void>(system.factorize());
   if (shift != 0) system.fill(lambda, Curvature::exact, 0);
 }
@@ -186,7 +188,8 @@ Certificate certify(StaticSystem& system, std::span<const double> lambda) {
   system.fill(lambda, Curvature::exact, 0);
   bool factored = system.factorize().ok();
   const double stiffest = std::max(matrix.largest_stiffness(), system.force_size() / system.length());
-  // Where nothing resists and nothing pulls, any motion is free: found with a stiffness of 1 N/m in the place of none.
+  // Where there are neither stiffnesses nor forces, any motion is free: found with a stiffness of 1 N/m in place of
+  // zero.
   const bool nothing = !(stiffest > no_stiffness);
   const double floor = nothing ? 1 : neutral_part * stiffest;
   const bool shifted = !factored || nothing;
@@ -201,20 +204,20 @@ Certificate certify(StaticSystem& system, std::span<const double> lambda) {
   const bool unstable = result.negative_modes > 0;
   InverseLanczos lanczos(system, weights);
   const double lowest = lanczos.lowest(unstable ? most_steps : usual_steps, unstable, result.mode);
-  // Where the constraints leave no freedom the inverse is what eps made it: far stiffer than anything in K.
+  // Where the constraints leave no freedom the inverse contains only eps: far stiffer than K.
   if (lowest == 0 || std::abs(lowest) > rigid_part * (nothing ? floor : stiffest)) {
     result.mode.clear();
     result.stable = result.negative_modes == 0;
     return result;
   }
-  // Whether the softest of all, beside negative ones too, is more than regularised rows and rounding make it.
+  // Whether the softest mode, negative ones included, is larger than the effect of regularised equations and rounding.
   std::vector<double> softest;
   const double biased = std::abs(lanczos.softest(softest) - (shifted ? floor : 0));
   std::optional<StiffnessFloor> rounding;
   if (biased <= suspicious_part * stiffest) rounding.emplace(system, lambda, 0);
   const bool doubtful = rounding && !nothing && plan.rows > 0 && biased <= most_bias * (*rounding)(softest);
-  // The Rayleigh quotient with the true matrix, and what rounding leaves of it. The vector must keep to the constraints
-  // exactly: what the regularised factors let it leave them by counts with the whole stiffness.
+  // The Rayleigh quotient with the true matrix, and its rounding. The vector must meet the constraints exactly: the
+  // deviation that the regularised factors allow would count with the whole stiffness.
   if (doubtful) {
     result.mode = std::move(softest);
     keep_to_constraints(system, lambda, shifted ? floor : 0, result.mode);
@@ -229,7 +232,8 @@ Certificate certify(StaticSystem& system, std::span<const double> lambda) {
   if (rounding) result.curvature_floor = std::max(result.curvature_floor, (*rounding)(result.mode));
   result.neutral = std::abs(quotient) <= result.curvature_floor;
   result.neutral_modes = result.neutral ? 1 : 0;
-  // The inertia counts what regularised rows or rounding made negative: counted again without.
+  // The inertia may count modes made negative by regularised equations or rounding: they are counted again without
+  // these.
   if (result.neutral || doubtful) {
     if (std::optional<FreeMotions> free = find_free_motions(system, lambda, neutral_part)) {
       result.negative_modes = free->negative;

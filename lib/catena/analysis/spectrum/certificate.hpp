@@ -1,12 +1,12 @@
-// What a stationary point is: stable, unstable or neutral, from the true matrix of equilibrium without any shift.
+// Certifies a stationary point as stable, unstable or neutral, by the true matrix of equilibrium without any shift.
 //
 //   K v = k W v on the null space of Phi_q,   W = (1, 1, radius^2):   k, N/m, the stiffness of mode v
 //
-// The number p of negative k comes from the inertia of one factorization (THEORY section 5), whatever the size; the
-// softest mode from a few Lanczos steps with its inverse. Both see rows that give way a little, by the eps of the
-// regularisation, which takes eps mu^2 from every stiffness, mu the reactions that the motion changes: where that could
-// be what is left, the mode is projected to the null space by factors that have no K in them, and p counted anew by
-// dense algebra. Where k then cannot be told from rounding of the terms that make it up, before they cancel
+// The number p of negative k comes from the inertia of one factorization (apps/manual/statics.md#certificate), whatever
+// the size; the softest mode from a few Lanczos steps with its inverse. In both, constraint equations yield a little by
+// the eps of the regularisation, which lowers every stiffness by eps mu^2, mu the reactions that the motion changes.
+// Where that could decide the sign, the mode is projected to the null space by factors that do not contain K, and p is
+// counted again by dense algebra. Where k then cannot be distinguished from rounding of its terms before they cancel
 // (motion_groups.hpp), or |v^T K v| <= 1e-10 sum |v_i K_ij v_j|, the place itself being known no better, the point is
 // neutral to second order: all motions that nothing resists are found (free_motions.hpp), and p counts the modes that
 // are negative beside them.

@@ -16,13 +16,13 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Part of the largest travel in a motion that a body must have to take part in it: rounding of shapes is far below.
 constexpr double least_share = 1e-8;
-// Part of the forces' largest work that a motion may do and count as moved by none.
+// Part of the forces' largest work below which a motion counts as unloaded.
 constexpr double no_work = 1e-9;
 
-// Columns of a model beyond which a check, which is to stay quick, does not ask.
+// Columns of a model above which `check`, which must stay quick, does not search.
 constexpr int most_checked_columns = 20000;
 
-// Takes out of orthonormal motions (metric W) the one along which the unbalanced forces work, if they do.
+// Removes from orthonormal motions (metric W) the one along which the unbalanced forces do work, if there is one.
 void drop_driven(const StaticSystem& system, std::span<const double> residual, double force,
                  std::vector<std::vector<double>>& shapes) {
   std::vector<double> work;
@@ -60,7 +60,7 @@ std::optional<FreeMotions> find_free_motions(StaticSystem& system, std::span<con
   if (!groups.are_small()) return {};
   std::vector<double> residual(at(system.plan().columns));
   system.residual(lambda, residual);
-  // Where forces balance only to rounding, stiffnesses are known no better.
+  // Where forces balance only to rounding, stiffnesses are no more accurate.
   const double force = system.force_scale(lambda), left = system.force_norm(residual);
   const StiffnessFloor floor(system, lambda, left <= no_work * force ? left : 0, &groups);
   const std::vector<double> arms = body_arms(system, lambda);
@@ -70,7 +70,7 @@ std::optional<FreeMotions> find_free_motions(StaticSystem& system, std::span<con
   }
   const DenseModes dense(system, groups, weight);
   FreeMotions result;
-  // Groups move without each other: what drives one does not hold another.
+  // Groups move independently: a force on one does not hold another.
   std::vector<int> group_of(at(system.plan().columns));
   for (std::size_t g = 0; g < groups.groups().size(); ++g) {
     for (int c : groups.groups()[g].columns) group_of[at(c)] = static_cast<int>(g);

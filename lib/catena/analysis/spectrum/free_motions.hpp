@@ -1,4 +1,5 @@
-// Motions that neither constraints nor forces resist, to second order: what equilibrium, modes and check call free.
+// Motions that neither constraints nor forces resist, to second order: the free motions in results of equilibrium,
+// modes and check.
 //
 //   Phi_q v = 0,   v^T (V_q + Phi_q^T lambda) = 0,   K v = 0 but for rounding       v over columns, m and rad
 //

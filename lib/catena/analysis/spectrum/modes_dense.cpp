@@ -25,7 +25,7 @@ bool lower(const Mode& a, const Mode& b) { return a.omega2 < b.omega2; }
 
 DenseModes::DenseModes(StaticSystem& system, MotionGroups& groups, std::span<const double> mass)
     : system_(system), groups_(groups) {
-  // Coordinates without mass get a length's weight of no importance; their groups are made orthonormal in M below.
+  // Coordinates without mass get the weight of a length; their groups are made orthonormal in M below.
   std::vector<double> weight(mass.begin(), mass.end());
   for (const MotionGroup& group : groups_.groups()) {
     const bool complete =
@@ -61,7 +61,7 @@ bool DenseModes::use_masses(MotionGroup& group, std::span<const double> mass) {
   geometry.setThreshold(least_part);
   geometry.compute(moved);
   if (geometry.rank() < z.cols()) {
-    // The motion that pivoting found last moves nothing that has mass: of what has none in it, the largest.
+    // The motion that pivoting found last moves no mass: its largest massless coordinate.
     const Eigen::Index rank = geometry.rank();
     Eigen::VectorXd y = Eigen::VectorXd::Zero(z.cols());
     if (rank > 0) {

@@ -3,10 +3,9 @@
 //   Z^T K Z y = omega^2 y,   v = Z y,   Z^T M Z = I        Z as in motion_groups.hpp, with the masses as its metric
 //
 // The standard symmetric problem in mass-weighted coordinates: complete by construction, equal eigenvalues as often as
-// they are there, each to rounding of its group's largest. Coordinates without mass take part through a metric of their
-// own first; singular where a motion of them moves no mass at all. Values are Rayleigh quotients of the shapes with the
-// sparse K, wrong by the square of the shapes' errors only; one that cannot be told from rounding (StiffnessFloor) is
-// 0.
+// they are there, each to rounding of its group's largest. Coordinates without mass first get a substitute metric;
+// singular where a motion of them moves no mass at all. Values are Rayleigh quotients of the shapes with the sparse K,
+// wrong by the square of the shapes' errors only; one that cannot be distinguished from rounding (StiffnessFloor) is 0.
 #pragma once
 
 #include <optional>
@@ -27,7 +26,7 @@ class DenseModes {
   /// The matrix must hold K; `mass`: per column.
   DenseModes(StaticSystem& system, MotionGroups& groups, std::span<const double> mass);
 
-  /// A column of the motion that moves no mass, if there is one: then nothing else can be asked.
+  /// A column of the motion that moves no mass, if there is one: then there are no other results.
   std::optional<int> massless_column() const { return massless_; }
   /// False where the iteration of the dense solver did not end: with numbers that are not finite.
   bool ok() const { return ok_; }

@@ -12,7 +12,7 @@ constexpr double settled_part = 1e-11, rounding_part = 1e-14;
 // A vector that lost all but this of its length to orthogonality is rounding; one that lost much is put back into the
 // null space, where its own rounding may have left it.
 constexpr double lost_part = 1e-13, polluted_part = 1e-3;
-// A start vector that has no more than this outside the space found so far: there is nothing else.
+// A start vector with no more than this outside the space found so far: the space is complete.
 constexpr double nothing_new = 1e-7;
 constexpr int steps_between_looks = 4;
 

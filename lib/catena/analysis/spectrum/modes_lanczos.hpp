@@ -15,7 +15,7 @@
 
 namespace catena {
 
-/// What Lanczos needs of the problem; vectors over the columns of Phi_q.
+/// The problem as Lanczos' method needs it; vectors over the columns of Phi_q.
 class SpectralOperator {
  public:
   virtual ~SpectralOperator() = default;
@@ -37,8 +37,8 @@ class Lanczos {
   /// `locked`: eigenvectors known already, orthonormal in the metric; all others are orthogonal to them.
   Lanczos(SpectralOperator& op, std::vector<std::vector<double>> locked = {});
 
-  /// Goes on until the chosen eigenvalues have settled, the space is exhausted or `most` vectors are reached.
-  /// True if what was chosen has settled. False from `go_on` stops.
+  /// Iterates until the chosen eigenvalues have settled, the space is exhausted or `most` vectors are reached.
+  /// True if the chosen eigenvalues have settled. False from `go_on` stops.
   bool run(const Choice& choose, int most, const std::function<bool()>& go_on = {});
 
   /// Whether every direction of the null space was found: then the spectrum is complete.

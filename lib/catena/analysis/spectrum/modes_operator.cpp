@@ -9,7 +9,7 @@ namespace {
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr int most_corrections = 30, projections = 3;
-// A correction that is not below this part of the one before is noise.
+// A correction that is not below this part of the one before is rounding.
 constexpr double least_gain = 0.5;
 // Corrections below this part of the solution are rounding.
 constexpr double rounding = 1e-16;
@@ -57,7 +57,7 @@ void solve_to_rounding(StaticSystem& system, std::span<const double> weight, std
     const double now = size_of(weight, correction);
     if (!(now < least_gain * before)) return;
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += correction[i];
-    // What the next one would be, going by the last two.
+    // The next correction, extrapolated from the last two.
     if (now * (now / before) <= rounding * size_of(weight, x)) return;
     before = now;
   }
@@ -82,7 +82,7 @@ ModeOperator::ModeOperator(StaticSystem& system, std::vector<double> mass)
     sum += mass_[c] / weight_[c];
     count += mass_[c] > 0;
   }
-  // What has no mass takes part like what has.
+  // Coordinates without mass are included like the others.
   const double mean = count > 0 ? sum / count : 1;
   for (std::size_t c = 0; c < mass_.size(); ++c) {
     typical_[c] = 1 / std::sqrt(mass_[c] > 0 ? mass_[c] : mean * weight_[c]);

@@ -1,4 +1,4 @@
-// The inverse of a shifted stiffness on the null space of Phi_q: what Lanczos' method is applied to.
+// The inverse of a shifted stiffness on the null space of Phi_q: the operator of Lanczos' method.
 //
 //   [ K - sigma M  Phi_q^T ] [ x  ]   [ M v ]
 //   [ Phi_q          0     ] [ mu ] = [ 0   ]        v := x
@@ -38,8 +38,8 @@ class ModeOperator final : public SpectralOperator {
 /// Weights (1, 1, radius^2) of the columns.
 std::vector<double> length_weights(const StaticSystem& system);
 
-/// The component that decides about the sense of a shape, either being as good: the largest angle or, where nothing
-/// turns, the largest displacement.
+/// The component that determines the sign of a shape, which is arbitrary: the largest angle or, where nothing turns,
+/// the largest displacement.
 double decisive_component(const Plan& plan, std::span<const double> shape);
 
 /// Solves with the factors of the system's matrix for the right-hand side `given` = [columns; rows] and refines with

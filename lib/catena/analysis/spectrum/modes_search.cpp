@@ -11,14 +11,14 @@ namespace {
 
 // First sigma, relative to the upper end of the spectrum.
 constexpr double first_shift = 1e-8;
-// How far, as a factor, sigma may be from the lowest omega^2 that is not zero.
+// Largest ratio of sigma to the lowest omega^2 that is not zero.
 constexpr double shift_window = 1e4;
-// Vectors that Lanczos' method may always take.
+// Vectors that are always allowed for Lanczos' method.
 constexpr int least_vectors = 300;
 // Where modes are counted: this far below the highest one, relative to it and to the upper end; where the highest is
 // zero, below what rounding of the stiffnesses makes of zeros.
 constexpr double count_margin = 1e-8, count_rounding = 1e-15, zero_rounding = 1e-12;
-// How closely the lowest omega^2 is bracketed, as a factor.
+// Accuracy of the bracket of the lowest omega^2, as a factor.
 constexpr double bracket = 1.05;
 
 // All of the negative thetas, at least `below`, and the `above` largest ones.
@@ -40,7 +40,7 @@ bool lower(const Mode& a, const Mode& b) { return a.omega2 < b.omega2; }
 ModeSearch::ModeSearch(StaticSystem& system, std::span<const double> lambda, std::vector<double> mass,
                        const StiffnessFloor& floor, const std::function<bool()>& go_on)
     : system_(system), lambda_(lambda), mass_(std::move(mass)), floor_(floor), go_on_(go_on), op_(system, mass_) {
-  // What K does to a vector in which every mass takes part: the root mean square of omega^2, about.
+  // K applied to a vector in which every mass takes part: about the root mean square of omega^2.
   system_.fill(lambda_, Curvature::exact, 0);
   std::vector<double> v(mass_.size()), product(mass_.size());
   // Signs without any order: in a regular pattern neighbours may move together, and nothing is stretched.
@@ -133,7 +133,7 @@ Report ModeSearch::find(int count, std::vector<Mode>& modes) {
     Lanczos again(op_);
     Lanczos* found = &lanczos;
     if (!settled && !lanczos.exhausted() && negative > 0) {
-      // Unstable modes far from zero: from their own end.
+      // Unstable modes far from zero: searched with a shift at their end of the spectrum.
       sigma = lowest_shift(sigma);
       if (!factorize(sigma, 0.618 * std::abs(sigma))) return no_factors();
       negative = 0;

@@ -1,12 +1,12 @@
-// The search for the lowest eigenvalues of K v = omega^2 M v: which shift, how many vectors, and the proof that none is
-// missing.
+// The search for the lowest eigenvalues of K v = omega^2 M v: choice of the shift and the number of vectors, and the
+// proof that none is missing.
 //
 //   nothing unstable        sigma a little below zero; the largest theta = 1 / (omega^2 - sigma) are the lowest omega^2
 //   a few unstable modes    the same sigma; the unstable ones are the negative theta
 //   more than are wanted    sigma just below the lowest omega^2, found by bisection with the inertia
 //
-// The lowest omega^2 is accurate to about 1e-16 (|sigma| / |omega^2| + omega^2 / |sigma|) with motions that nothing
-// resists: where the first sigma turns out far from the lowest omega^2 that is not zero, one nearer to it is taken.
+// With motions that nothing resists the lowest omega^2 is accurate to about 1e-16 (|sigma| / |omega^2| + omega^2 /
+// |sigma|): where the first sigma turns out far from the lowest omega^2 that is not zero, one nearer to it is taken.
 #pragma once
 
 #include <functional>
@@ -21,13 +21,14 @@ namespace catena {
 
 class ModeSearch {
  public:
-  /// `lambda`: multipliers at the system's configuration; `mass`: per column; `floor`: what is no stiffness there.
+  /// `lambda`: multipliers at the system's configuration; `mass`: per column; `floor`: stiffnesses below it count as
+  /// zero.
   ModeSearch(StaticSystem& system, std::span<const double> lambda, std::vector<double> mass,
              const StiffnessFloor& floor, const std::function<bool()>& go_on);
 
   /// The `count` lowest modes, ascending; fewer if there are no more.
   Report find(int count, std::vector<Mode>& modes);
-  /// How many omega^2 lie below zero in all; those that cannot be told from zero do not count.
+  /// How many omega^2 lie below zero in all; those that cannot be distinguished from zero do not count.
   int unstable() const { return unstable_; }
 
  private:

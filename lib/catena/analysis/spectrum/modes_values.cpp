@@ -24,8 +24,8 @@ std::vector<Mode> ModeSearch::modes_of(Lanczos& lanczos, double sigma, int count
 }
 
 // Values come as sigma + 1 / theta, whose rounding grows with the square of the distance from sigma. The Rayleigh
-// quotient of the true matrices is wrong by the square of the shape's error and by its own rounding alone. What cannot
-// be told from zero is zero.
+// quotient of the true matrices is wrong by the square of the shape's error and by its own rounding alone. A value that
+// cannot be distinguished from zero is set to zero.
 void ModeSearch::refine_values(std::vector<Mode>& modes, double sigma) {
   if (modes.empty()) return;
   system_.fill(lambda_, Curvature::exact, 0);

@@ -16,8 +16,8 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 // Columns up to which dense algebra takes about a second whatever the freedoms.
 constexpr int most_columns = 2000;
 // Parts of the uncancelled stiffness that rounding may leave. Multipliers come from solutions refined to 1e-15 or so of
-// the largest; a few hundred of these stand between them and what cannot be told from zero. Of coordinates far from the
-// origin the last digits are unknown.
+// the largest; a value below a few hundred of these roundings cannot be distinguished from zero. Of coordinates far
+// from the origin the last digits are unknown.
 constexpr double stiffness_rounding = 2e-13, place_rounding = 4 * std::numeric_limits<double>::epsilon();
 
 class Union {
@@ -124,7 +124,7 @@ void reduce_stiffness(const KktMatrix& matrix, const MotionGroup& group, std::ve
   const SparsePattern& pattern = structure.pattern;
   const auto n = static_cast<Eigen::Index>(group.columns.size()), f = static_cast<Eigen::Index>(group.freedoms());
   const Eigen::Map<const Eigen::MatrixXd> z(group.basis.data(), n, f);
-  // By rows of Z: entries of K then work on what lies side by side.
+  // By rows of Z: entries of K then multiply neighbouring values.
   const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = z;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> product(n, f);
   product.setZero();
@@ -168,7 +168,7 @@ void visit_entries(const Evaluator& evaluator, std::span<const double> lambda, F
 std::vector<double> body_arms(StaticSystem& system, std::span<const double> lambda) {
   const Plan& plan = system.plan();
   std::vector<double> travel(at(plan.rows), 0.0), turning(at(plan.moving), 0.0), pushing(turning), arms(turning);
-  // Constraints: how far the point they hold travels when the body turns.
+  // Constraints: the distance from the body's origin to the point that they hold.
   for (const bool turns : {false, true}) {
     for (int c = 0; c < plan.columns; ++c) {
       const int coordinate = plan.coordinate[at(c)];
@@ -181,7 +181,7 @@ std::vector<double> body_arms(StaticSystem& system, std::span<const double> lamb
       }
     }
   }
-  // Forces: the same, by what resists both.
+  // Forces: the same, from the stiffness against both.
   visit_entries(system.evaluator(), lambda, [&](int row, int column, double value) {
     if (row != column) return;
     double& most = (row % 3 == 2 ? turning : pushing)[at(row / 3)];
@@ -210,7 +210,7 @@ StiffnessFloor::StiffnessFloor(StaticSystem& system, std::span<const double> lam
       travel[b] += size / (column % 3 == 2 ? arms[d] : 1);
     }
   });
-  // Of a pin's force only what stands across the body's arm is seen in K, and its own rounding is that of all of it.
+  // Only the part of a pin's force across the arm enters K, but its rounding is that of the whole force.
   for (int c = 0; c < plan.columns; ++c) {
     const int coordinate = plan.coordinate[at(c)];
     if (coordinate % 3 == 2) continue;
@@ -225,7 +225,7 @@ StiffnessFloor::StiffnessFloor(StaticSystem& system, std::span<const double> lam
     farthest = std::max({farthest, std::abs(frame.x), std::abs(frame.y)});
   }
   const double part = stiffness_rounding + place_rounding * farthest / system.length();
-  // Shapes are wrong by rounding too: a little turning stands in every travel, and the other way round.
+  // Shapes contain rounding too: every travel includes a little turning, and the other way round.
   for (std::size_t b = 0; b < arms.size(); ++b) travel[b] += turning[b] / (arms[b] * arms[b]);
   for (int coordinate : plan.coordinate) {
     const std::size_t b = at(coordinate / 3);

@@ -2,10 +2,10 @@
 //
 //   Phi_q Z = 0,   Z^T W Z = I,   W = diag(weight) > 0        any allowed motion: v = Z y
 //
-// A group holds the coordinates that entries of K and Phi_q tie together. Groups are treated apart: what is stiff in
-// one cannot cost digits in another, and many small problems are cheaper than a large one. The rank is that of the
-// analysis of mobility (jacobian_rank.hpp), judged in length scales; only then an independent set of rows is
-// orthogonalised in the metric W (Householder), so that masses over many orders do not decide about the rank.
+// A group holds the coordinates that entries of K and Phi_q tie together. Groups are treated separately: a large
+// stiffness in one costs no digits in another, and many small problems are cheaper than a large one. The rank is that
+// of the analysis of mobility (jacobian_rank.hpp), judged in length scales; only then an independent set of rows is
+// orthogonalised in the metric W (Householder), so that masses over many orders of magnitude do not affect the rank.
 // Units: those of the coordinates, m and rad. Source: G. Golub, C. Van Loan, Matrix Computations, 4th ed., 5.2 and 8.7.
 #pragma once
 
@@ -49,16 +49,16 @@ class MotionGroups {
 /// Z^T K Z of a group, freedoms() x freedoms(), with the K that the matrix holds.
 void reduce_stiffness(const KktMatrix& matrix, const MotionGroup& group, std::vector<double>& reduced);
 
-/// Per body of the plan, m: how far from its origin constraints and forces take hold of it, the scene's length where
-/// all do at the origin: what makes turning and travel comparable whatever the units.
+/// Per body of the plan, m: the distance from its origin at which constraints and forces act on it, the scene's length
+/// where all act at the origin. It makes turning and travel comparable in any units.
 std::vector<double> body_arms(StaticSystem& system, std::span<const double> lambda);
 
-/// What of v^T K v cannot be told from zero, N m (v over columns): rounding of all the stiffnesses that act on the
-/// bodies that move, before any of them cancel, of their places far from the origin, of the stiffest body that they are
-/// tied to, and the force left unbalanced there.
+/// The part of v^T K v that cannot be distinguished from zero, N m (v over columns): rounding of all the stiffnesses
+/// that act on the bodies that move, before any of them cancel, of their places far from the origin, of the stiffest
+/// body that they are tied to, and the force left unbalanced there.
 class StiffnessFloor {
  public:
-  /// `residual`, N: the unbalanced force; without `groups` nobody is tied to anybody.
+  /// `residual`, N: the unbalanced force; without `groups` no body is tied to another.
   StiffnessFloor(StaticSystem& system, std::span<const double> lambda, double residual,
                  const MotionGroups* groups = nullptr);
   double operator()(std::span<const double> v) const;

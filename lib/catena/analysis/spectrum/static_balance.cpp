@@ -38,7 +38,7 @@ Imbalance balance_loads(StaticSystem& system, std::span<double> lambda) {
   if (plan.rows > 0) {
     system.fill_weights();
     if (system.factorize().ok()) {
-      // Refined until the multipliers no longer change: a long chain passes its load on through every joint.
+      // Refined until the multipliers no longer change: in a long chain the load passes through every joint.
       std::vector<double> weight(columns, 0.0), given(columns + lambda.size(), 0.0), x(given.size()),
           correction(given.size());
       for (char angle : plan.row_is_angle) weight.push_back(angle ? 1 / (system.length() * system.length()) : 1);
@@ -52,7 +52,7 @@ Imbalance balance_loads(StaticSystem& system, std::span<double> lambda) {
   // Forces and moments over the arms at which the body is held, whatever the units.
   const std::vector<double> arms = body_arms(system, lambda);
   const auto arm = [&](int c) { return plan.coordinate[at(c)] % 3 == 2 ? arms[at(plan.coordinate[at(c)] / 3)] : 1.0; };
-  // What K does to places that are off by one extent each, in no particular pattern.
+  // K applied to places that are off by one extent each, without a pattern.
   std::vector<double> places(columns), forces(columns);
   for (int c = 0; c < plan.columns; ++c) places[at(c)] = (c % 2 ? 1.0 : -1.0) / arm(c);
   system.matrix().multiply_stiffness(places, forces);

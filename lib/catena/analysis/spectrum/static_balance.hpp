@@ -1,8 +1,8 @@
-// The forces at a configuration that is taken as it is: assembled, and the multipliers that balance its loads best.
+// The forces at a given configuration: it is assembled, and the multipliers that balance its loads best are computed.
 //
 //   min |V_q + Phi_q^T lambda|   in the weights (1, 1, radius^2)^-1
 //
-// At an equilibrium nothing is left; what is left elsewhere is the force that would set the mechanism in motion. Where
+// At an equilibrium the residual is zero; elsewhere it is the force that would set the mechanism in motion. Where
 // constraints depend on each other the least multipliers in the same sense are taken. One factorization. N, N m.
 #pragma once
 
@@ -17,7 +17,7 @@ namespace catena {
 /// Assembles q (plan order) unless it meets the constraints already, and moves the system there.
 Report assemble_for_statics(StaticSystem& system, std::vector<double>& q);
 
-/// What is left unbalanced: the largest force, N, also relative to the largest force in the mechanism, and where.
+/// The unbalanced force: the largest one, N, also relative to the largest force in the mechanism, and where.
 struct Imbalance {
   double force = 0, relative = 0;
   int column = -1;      ///< where it is largest

@@ -19,15 +19,15 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// Steps of the parameter that are tried until its effect on K stands out from rounding.
+// Steps of the parameter that are tried until its effect on K exceeds rounding.
 constexpr double steps[] = {1, 1e6, 1e12};
 constexpr double visible_effect = 1e-6, smallest_effect = 1e-12;
 constexpr int most_vectors = 300, most_refinements = 20;
 constexpr double refined = 1e-12, linear_part = 1e-9;
-// Constraints met to this, in length scales or rad, where the parameter leaves them alone.
+// Constraints met to this, in length scales or rad, do not depend on the parameter.
 constexpr double kept_place = 1e-9;
 
-// K0^-1 (K0 - K1) in the metric K0, K0 what the system's matrix holds and has factored.
+// K0^-1 (K0 - K1) in the metric K0, K0 the factored K of the system's matrix.
 class BucklingOperator final : public SpectralOperator {
  public:
   BucklingOperator(StaticSystem& system, const KktMatrix& loaded)
@@ -94,8 +94,8 @@ void Buckling::start_from(const SystemState& state) {
 
 Report Buckling::not_stable() const {
   return {Status::refused,
-          fmt::format("the equilibrium is not stable at the present value {:.6g} of the parameter: nothing is left to "
-                      "lose; begin with a smaller load",
+          fmt::format("the equilibrium is not stable at the present value {:.6g} of the parameter; begin "
+                      "with a smaller load",
                       options_.present),
           {}};
 }
@@ -115,7 +115,7 @@ Report Buckling::stiffness_at(double p, KktMatrix& matrix) {
             "follows it",
             {}};
   }
-  // The multipliers are needed whether or not it is known already that the load moves the equilibrium.
+  // The multipliers are needed even if the load is already known to move the equilibrium.
   const bool moves = !balance_loads(system_, loaded.lambda).negligible();
   moves_ = moves_ || moves;
   matrix.set_hessian(evaluator_, loaded.lambda, Curvature::exact);
@@ -198,7 +198,7 @@ Report Buckling::find_by_lanczos(std::vector<Load>& loads, const std::function<b
   std::vector<Load> again;
   for (std::size_t k = 0; k < loads.size(); ++k) {
     bool linear = k == 0;
-    // A step that is the load itself gives itself back: the secant rule for that.
+    // A step equal to the load returns itself: solved for by the secant rule.
     double step = loads[k].distance, step_before = 0, gap_before = 0;
     for (int round = 0; round < most_refinements; ++round) {
       if (Report pass = find_with(step, static_cast<int>(loads.size()), again, effect, go_on); !pass.ok()) return pass;

@@ -6,7 +6,7 @@
 // p, whatever the load's dependence on it (buckling_dense.cpp). Larger ones: K0^-1 (K0 - K(p1)) v = theta v by Lanczos'
 // method, p = p0 + (p1 - p0) / theta: exact for loads that enter K linearly, iterated with p1 = p for others.
 // Multipliers belong to each value of the parameter, the configuration to the present one: where the load moves the
-// equilibrium, a warning says so, and what is found is the estimate of linear buckling theory; a path finds the true
+// equilibrium, the results are estimates of linear buckling theory, and a warning is given; a path finds the true
 // critical points. The values nearest to the present one come first. Refused: an equilibrium that is not stable, a
 // parameter that moves constraints.
 #pragma once
@@ -77,7 +77,7 @@ class Buckling {
   std::optional<MotionGroups> groups_;
   double t_ = 0;
   bool moves_ = false;    // the load moves the equilibrium
-  bool outside_ = false;  // the value asked for last is none that the scene allows
+  bool outside_ = false;  // the scene does not allow the last value
 };
 
 }  // namespace catena

@@ -28,15 +28,16 @@ constexpr double coarse = 1e3, fine = 4;
 constexpr int most_tries = 100;
 // Rounding of a stiffness with its multipliers, in parts of the largest.
 constexpr double stiffness_rounding = 64 * std::numeric_limits<double>::epsilon();
-// Deviation from a straight line that is none, and the part of the largest rate of change that is no change.
+// Deviation from a straight line that counts as rounding, and the part of the largest rate of change that counts as
+// none.
 constexpr double straight = 1e-10, no_change = 1e-11;
-// The search outwards: samples an octave, and how far, in first steps. Beyond, a load would be 1e8 times what already
-// changes the stiffness visibly.
+// The search outwards: samples an octave, and how far, in first steps. A load beyond that would be 1e8 times a value
+// that already changes the stiffness visibly.
 constexpr int samples = 6;
 constexpr double farthest = 1e8;
-// How closely a load is found, in parts of its distance.
+// Accuracy of a load, relative to its distance.
 constexpr double located = 1e-14;
-// Loads in closed form are known to 1e-16 of the steepest rate of change: up to here, in parts of its inverse, well.
+// Loads in closed form are accurate to 1e-16 of the steepest rate of change: used up to this multiple of its inverse.
 constexpr double well_known = 1e3;
 // Half width, in parts of the distance, of the bracket that confirms a load in closed form.
 constexpr double confirming = 1e-5;
@@ -102,7 +103,7 @@ class Buckling::Spectrum {
     return false;
   }
   const Eigen::MatrixXd& now() const { return now_; }
-  /// What rounding of the stiffest makes of it in the metric of the softest.
+  /// The effect of rounding of the stiffest mode in the metric of the softest.
   double rounding() const { return rounding_; }
   Report& report() { return report_; }
 
@@ -237,14 +238,14 @@ Report Buckling::find_by_dense(std::vector<Load>& loads, const std::function<boo
     } else if (std::isfinite(too_large)) {
       step /= fine;
     } else {
-      // No further than the change so far promises: a load that swings must not be stepped over.
+      // No further than the change so far allows: an oscillating dependence must not be stepped over.
       step *= std::clamp(std::sqrt(least_change * most_change) / change, fine, coarse);
     }
   }
   if (!(change > no_change)) return {};
   if (go_on && !go_on()) return {Status::cancelled, "stopped while loads were looked for", {}};
 
-  // Linear, going by one more place: the loads in closed form, confirmed one by one.
+  // Linear, as one more sample confirms: the loads in closed form, confirmed one by one.
   Search search(spectrum, present);
   const Eigen::MatrixXd slope = (spectrum.now() - unit) / (side * step);
   const double none = straight * change + spectrum.rounding();
@@ -317,7 +318,7 @@ Report Buckling::find_by_dense(std::vector<Load>& loads, const std::function<boo
           const double a = s.place[last - 1], b = s.place[last];
           if (const auto low = search.dip(a, b, x, s.mu[last - 1], s.mu[last], mu)) {
             const Eigen::VectorXd mu_low = spectrum.values(present + *low);
-            // The two that the samples hide, next to the one they show.
+            // The two roots between samples, beside the one that the samples show.
             const bool before = std::abs(*low) < std::abs(b);
             search.between(before ? a : b, before ? s.mu[last - 1] : s.mu[last], *low, mu_low);
             search.between(*low, mu_low, before ? b : x, before ? s.mu[last] : mu);
@@ -334,7 +335,7 @@ Report Buckling::find_by_dense(std::vector<Load>& loads, const std::function<boo
       if (search.roots.size() >= at(options_.count)) break;
     }
   }
-  // Of two that are as far, the one above.
+  // Of two at the same distance, the one above.
   std::sort(search.roots.begin(), search.roots.end(), [](const Search::Root& a, const Search::Root& b) {
     const double near = std::abs(std::abs(a.distance) - std::abs(b.distance));
     if (near <= 1e-12 * std::abs(a.distance)) return a.distance > b.distance;

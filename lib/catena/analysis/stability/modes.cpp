@@ -23,7 +23,8 @@ namespace {
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr int default_count = 10;
-// Freedoms up to which all modes are computed at once where a third of them or more are wanted: some ten seconds.
+// Degrees of freedom up to which all modes are computed at once where a third of them or more are wanted: some ten
+// seconds.
 constexpr int most_complete_freedoms = 1500;
 
 // Whether any motion loses power to damping.
@@ -58,15 +59,15 @@ Report Modes::find_modes(const MassMatrix& masses, std::span<const double> mass,
   const auto undetermined = [&](int coordinate) {
     return Report{
         Status::refused,
-        fmt::format("the motion of body \"{}\" is not determined: its {} is zero and the constraints tie it to "
-                    "nothing that has mass",
+        fmt::format("the motion of body \"{}\" is not determined: its {} is zero and no constraint ties it to "
+                    "a body with mass",
                     model_->body_name(plan_->model_body[at(coordinate / 3)]), coordinate % 3 == 2 ? "inertia" : "mass"),
         {}};
   };
   system_.fill(lambda, Curvature::exact, 0);
   MotionGroups groups(system_, true);
   const StiffnessFloor floor(system_, lambda, residual, &groups);
-  // Nearly all modes of a larger mechanism cost less this way too.
+  // For nearly all modes of a larger mechanism dense algebra is faster as well.
   const bool most_of_all = 3 * static_cast<std::int64_t>(count) >= groups.freedoms();
   if (groups.are_small(most_of_all ? most_complete_freedoms : MotionGroups::usual_freedoms)) {
     const DenseModes dense(system_, groups, mass);

@@ -1,14 +1,14 @@
-// Small oscillations about the current configuration: natural frequencies and shapes (THEORY section 5).
+// Small oscillations about the current configuration: natural frequencies and shapes (apps/manual/statics.md#modes).
 //
 //   K v = omega^2 M v   on the null space of Phi_q,   K = V_qq + sum lambda Phi_qq,   M = diag(m, m, J)
 //
 // The lowest omega^2 in 1/s^2, ascending: negative ones (growth rates) first, zero for motions that nothing resists.
 // Up to 500 degrees of freedom that are tied together dense algebra finds all of them (modes_dense.hpp); beyond,
-// Lanczos' method the lowest (modes_search.hpp), and that none was missed is certain: the inertia of K - mu M just
-// below the highest one counts those that there must be. Functions of time, drivers among them, are frozen; damping and
-// gyroscopic terms are left out, and warnings say so. Where forces are not in balance there are no small oscillations
-// about that place: done all the same, with a warning. Refused: bodies without mass where the constraints tie them to
-// nothing that has mass; forces without an energy.
+// Lanczos' method the lowest (modes_search.hpp), and the inertia of K - mu M just below the highest one proves that
+// none is missing. Functions of time, drivers among them, are frozen; damping and gyroscopic terms are left out, and
+// warnings say so. Where forces are not in balance there are no small oscillations about that place: modes are given
+// all the same, with a warning. Refused: bodies without mass that the constraints tie to no mass; forces without a
+// potential.
 #pragma once
 
 #include <functional>

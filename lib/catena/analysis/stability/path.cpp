@@ -28,10 +28,10 @@ constexpr double unlocated_step = 1e-4;
 constexpr int many_iterations = 7, few_iterations = 4;
 // The cosine between the directions at both ends of a step, at least.
 constexpr double largest_bend = 0.9;
-// Rad: what a path may turn to one side and back between two points without being looked at more closely.
+// Angle, rad, by which a path may turn to one side and back between two points without closer inspection.
 constexpr double unseen_turn = 1e-3;
 constexpr int most_end_trials = 60;
-// How far the end may be from where the tangent meets it, in parts of the way.
+// Distance of the end from its prediction along the tangent, relative to the step.
 constexpr double largest_miss = 0.3;
 
 }  // namespace
@@ -124,8 +124,8 @@ class Path::March {
 
   bool passes_end(double before, double after) const { return (before - to_) * (after - to_) <= 0 && before != to_; }
 
-  // Whether one smooth path leads from the present point to the next one: it leaves its tangent by no more of its way
-  // than its direction turns. A path that ends, and another that begins beside it, do not meet.
+  // Whether one smooth path leads from the present point to the next one: its relative deviation from the tangent is no
+  // larger than the turn of its direction. A path that ends and another that begins beside it do not satisfy this.
   bool is_smooth(const PathPoint& next, const PathPoint& direction) const {
     PathPoint travel{std::vector<double>(at(path_.plan_->columns)), {}, next.p - x_.p};
     for (int c = 0; c < path_.plan_->columns; ++c) {
@@ -221,7 +221,7 @@ class Path::March {
         const std::vector<CriticalPoint> critical =
             find_critical_points(system_, {x_, direction_, s, modes_, modes}, complete);
         if (!complete && length_ > unlocated_step * options_.arc) {
-          // Modes that change without a critical point in between: the step went astray, onto another path.
+          // Modes that change without a critical point in between: the step has jumped to another path.
           length_ *= 0.5;
           continue;
         }
@@ -262,7 +262,7 @@ class Path::March {
     return true;
   }
 
-  // Onto the branch that crosses at the critical point, to the side asked for.
+  // Onto the branch that crosses at the critical point, to the requested side.
   bool leave(const CriticalPoint& critical) {
     const int columns = path_.plan_->columns;
     PathPoint side{critical.mode, std::vector<double>(at(path_.plan_->rows), 0.0), 0};

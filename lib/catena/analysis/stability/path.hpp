@@ -3,11 +3,11 @@
 // From the equilibrium at the present value, in steps of a given length along the path (path_system.hpp), predicted
 // along the tangent and corrected by Newton's method; shortened where that fails or the path bends. Whenever the number
 // of negative modes changes, the critical points between are located, told apart and given a row of their own. At a
-// branch point the path goes on as it came, or, on request, on the branch that leaves it to one side or the other.
+// branch point the path continues straight on or, on request, along the branch that leaves it to one side or the other.
 // Ends at the wanted value of the parameter, exactly, or after the largest number of steps.
 // Limits: two critical points within one step whose modes cancel (one becomes stable while another turns unstable) are
 // not seen; a path that only touches the wanted value between two points goes on; and where constraints lose rank (a
-// rope pulled straight) multipliers pass through infinity while positions go on smoothly, and so does the path.
+// rope pulled straight) multipliers pass through infinity while positions, and the path, continue smoothly.
 #pragma once
 
 #include <memory>

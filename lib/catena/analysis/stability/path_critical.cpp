@@ -10,15 +10,15 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// Of s: how closely a critical point is located, and how far beyond it the search goes on.
+// Parts of s: accuracy of a critical point, and the distance beyond it at which the search continues.
 constexpr double located = 1e-11, beyond = 1e-6;
 constexpr int most_trials = 80, power_steps = 3;
-// Part of |v_i d_i| that <v, d> must have at a limit point, and part of |v| |d| below which nothing of d is in v.
+// Part of |v_i d_i| that <v, d> must have at a limit point, and part of |v| |d| below which d has no component along v.
 constexpr double limit_part = 1e-5, no_overlap = 1e-9;
 // Below this part of the mechanism's forces a change of the residual over the parameter's range is rounding.
 constexpr double no_change = 1e-9;
 
-// What is known at one place of the step.
+// The quantities at one place of the step.
 struct Trial {
   double s = 0;
   bool found = false, singular = false;
@@ -79,9 +79,9 @@ class Locator {
     return system_.product(system_.tangent(point, step_.tangent), system_.along_parameter(1));
   }
 
-  /// Whether another path crosses at a critical point: certainly where the parameter goes on in the same sense behind
-  /// it. Where it turns back, as on the branches of a pitchfork too, what the derivative by p has of the null vector
-  /// decides.
+  /// Whether another path crosses at a critical point: certainly where the parameter continues in the same sense behind
+  /// it. Where it turns back, which also happens on the branches of a pitchfork, the component of the derivative by p
+  /// along the null vector decides.
   bool is_branch(const PathPoint& point, double part_before, double part_after) {
     if (part_before * part_after > 0) return true;
     std::vector<double> derivative;
@@ -153,7 +153,7 @@ std::vector<CriticalPoint> find_critical_points(PathSystem& system, const PathSt
     CriticalPoint critical;
     critical.s = place->s;
     critical.point = place->point;
-    // Beside the point the factors exist whatever rounding makes of the point itself.
+    // Near the point the factors exist, even if rounding makes the matrix singular at the point itself.
     const Trial before = locator.try_at(std::max(place->s - beyond * step.s, low.s));
     const double part_before = before.found && !before.singular ? locator.parameter_part(before.point) : 0;
     Trial after = locator.try_at(std::min(place->s + beyond * step.s, step.s));

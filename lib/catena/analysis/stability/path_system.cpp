@@ -13,9 +13,9 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 constexpr int most_iterations = 12;
 // Solved: residual forces in parts of the largest force, constraints in length scales, the place on the path.
 constexpr double solved = 1e-13, place_solved = 1e-12;
-// Good enough where rounding lets it get no better.
+// Accepted where rounding prevents a smaller residual.
 constexpr double nearly_solved = 1e-9;
-// Steps beyond this are astray: parts of the mechanism's extent, or rad.
+// Steps larger than this have left the path: parts of the mechanism's extent, or rad.
 constexpr double astray = 3;
 constexpr double difference = 1e-5;
 
@@ -67,7 +67,7 @@ bool PathSystem::set_parameter(double p) {
 
 bool PathSystem::move_to(const PathPoint& x) {
   if (!set_parameter(x.p)) return false;
-  // Bodies that do not move stay where their model puts them.
+  // Bodies that do not move keep the pose of their model.
   const std::vector<double> given = evaluator_.given_configuration();
   std::copy(given.begin() + 3 * plan_.moving, given.end(), placed_.begin() + 3 * plan_.moving);
   for (int b = 0; b < plan_.moving; ++b) {
@@ -163,7 +163,7 @@ int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t,
     if (!std::isfinite(error)) return -1;
     before = error;
     if (k == most_iterations) break;
-    // One-sided: it steers the iteration only.
+    // One-sided: it affects the convergence only.
     PathPoint beside = x;
     beside.p += difference * std::max(scale_, std::abs(x.p));
     if (move_to(beside)) {
@@ -176,7 +176,7 @@ int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t,
     }
     system_.fill(x.lambda, Curvature::exact, 0);
     if (!system_.factorize().ok()) {
-      // Exactly singular: a little beside it will do for a step.
+      // Exactly singular: a matrix slightly away from it serves for a step.
       system_.fill(x.lambda, Curvature::exact, 1e-10 * system_.matrix().largest_stiffness());
       if (!system_.factorize().ok()) return -1;
     }
@@ -195,7 +195,7 @@ int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t,
       const double unit = plan_.coordinate[at(c)] % 3 == 2 ? 1 : extent_;
       if (!(std::abs(newton_[at(c)]) < astray * unit)) return -1;
     }
-    // What may be rounding beside the stiffest spring is so only if nothing would move.
+    // A residual that may be rounding of the stiffest spring counts as such only if a step would move nothing.
     if (error <= noise && system_.change_norm({newton_.data(), at(plan_.columns)}) <= nearly_solved) return k;
     for (int c = 0; c < plan_.columns; ++c) x.q[at(plan_.coordinate[at(c)])] += newton_[at(c)];
     for (int r = 0; r < plan_.rows; ++r) x.lambda[at(r)] += newton_[at(plan_.columns + r)];

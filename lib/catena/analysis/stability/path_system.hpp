@@ -1,5 +1,5 @@
 // The equations of static equilibrium with a parameter of the scene as one more unknown, and one more equation that
-// says where on the path the point is wanted (Keller's pseudo-arc-length).
+// determines the place of the point on the path (Keller's pseudo-arc-length).
 //
 //   V_q + Phi_q^T lambda = 0,   Phi = 0,   <t, x - x0> = s        x = (q, lambda, p)
 //   <a, b> = mean_bodies (a_r . b_r / extent^2 + radius^2 a_phi b_phi / length^2) + a_p b_p / scale^2
@@ -7,9 +7,9 @@
 // so that s is a number: root mean square travel of the bodies in parts of the mechanism's extent (RMS distance of the
 // given places from their middle, or the length scale where that is more), the parameter in parts of its range. Solved
 // by Newton's method with the factorization of equilibrium, two solutions an iteration. The derivative by p is a
-// difference of the residual over 1e-5 of the parameter's range: it steers the iteration, while what counts as solved
-// is the residual itself. A parameter may change anything but the structure: loads, stiffnesses, lengths,
-// places. Source: H. Keller, Lectures on Numerical Methods in Bifurcation Problems, 1987, chapters 4 and 5.
+// difference of the residual over 1e-5 of the parameter's range: it affects the convergence only, since the residual
+// itself decides whether a point is solved. A parameter may change anything but the structure: loads, stiffnesses,
+// lengths, places. Source: H. Keller, Lectures on Numerical Methods in Bifurcation Problems, 1987, chapters 4 and 5.
 #pragma once
 
 #include <array>
@@ -41,7 +41,7 @@ class PathSystem {
   void set_time(double t) { time_ = t; }
   /// Takes the model at x.p and moves the system to x. False, and nothing done, if there is no model at x.p.
   bool move_to(const PathPoint& x);
-  /// The configuration of a point with the origins of its own model, as evaluator and columns want it: after move_to.
+  /// The configuration of a point with the origins of its own model, as evaluator and columns need it: after move_to.
   std::span<const double> q() const { return placed_; }
   /// Factors the exact matrix at x, to which it moves. False where a pivot vanishes or there is no model.
   bool factorize(const PathPoint& x);

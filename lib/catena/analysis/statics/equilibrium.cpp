@@ -18,7 +18,7 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// Reactions balance the loads if nothing more than this part of them is left.
+// Reactions balance the loads if no more than this part of them is left.
 constexpr double balanced = 1e-9;
 
 PlanOptions with_gaps(PlanOptions options) {
@@ -63,13 +63,13 @@ void Equilibrium::set_model(std::shared_ptr<const Model> model) {
 
 SystemState Equilibrium::state() const { return state_of(evaluator_, t_, q_); }
 
-// Where rows depend on each other many multipliers balance the loads: the least of them are given, and that is said.
+// Where equations depend on each other many multipliers balance the loads: the least of them are given, with a warning.
 void Equilibrium::choose_least_reactions(Report& report) {
   MinimumNorm least(evaluator_);
   if (!least.factorize()) return;
   std::vector<double> loads(at(plan_->coordinates())), multipliers(lambda_.size());
   evaluator_.applied_forces(std::vector<double>(loads.size(), 0.0), loads);
-  // Least reactions that do not balance the loads would be none.
+  // Least reactions that do not balance the loads are rejected.
   if (!(least.solve(loads, multipliers) <= balanced)) return;
   // One-sided elements only push: where the least reactions would pull, those found are kept.
   for (int r : plan_->gap_rows) {

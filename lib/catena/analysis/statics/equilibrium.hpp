@@ -1,13 +1,14 @@
-// Static equilibrium: the minimum of the potential energy under the constraints, with a certificate (THEORY section 5).
+// Static equilibrium: the minimum of the potential energy under the constraints, with a certificate
+// (apps/manual/statics.md#equilibrium).
 //
 //   min V(q)   subject to   Phi(q, t) = 0      functions of time frozen at t
 //
-// Solvers: Newton of our own from anywhere (StaticNewton), downhill on the constraints where few degrees of freedom
-// make the valley of the start worth keeping (StaticDescent), Ipopt, NLopt; `automatic` tries them in this order and
-// polishes what the last two find. Forces that follow a body have no energy: their balance is found by settling. Every
-// result is certified; a stationary point that is no minimum is left along its most negative mode, and minimising goes
-// on, unless stationary points were asked for. Refused, with the motion named: what nothing holds; energies without a
-// minimum.
+// Solvers: Newton's method from any start (StaticNewton), descent on the constraints with few degrees of freedom, which
+// finds the minimum nearest downhill from the start (StaticDescent), Ipopt, NLopt. `automatic` tries them one after the
+// other and refines results of the last two by Newton's method. Forces that follow a body have no potential: their
+// balance is found by settling. Every result is certified; a stationary point that is no minimum is left along its most
+// negative mode, and minimising goes on, unless stationary points were asked for. Refused, with the motion named:
+// bodies that nothing holds; energies without a minimum.
 #pragma once
 
 #include <memory>
@@ -44,7 +45,7 @@ struct FoundEquilibrium {
   double residual = 0;  ///< N
 };
 
-/// Outcome of the last equilibrium computed; see SCENES.md, Results.
+/// Outcome of the last equilibrium computed; see apps/manual/scenes.md#analyses.
 struct EquilibriumReport : AnalysisReport {
   double energy = 0;       ///< potential energy, J
   bool certified = false;  ///< false where there is no energy (follower forces): then the next four say nothing

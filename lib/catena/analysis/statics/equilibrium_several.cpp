@@ -14,7 +14,7 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Starts: some for every scene, more for every equilibrium wanted.
 constexpr int least_starts = 30, starts_each = 15;
-// Places are shaken by this part of angles times the length scale, where nothing turns: else by the usual part.
+// Displacement of places as a part of that of angles times the length scale, where nothing turns; else the usual part.
 constexpr double shaken_places = 0.5, shaken_beside_angles = 0.1;
 // Places closer than this, in extents or rad (whole turns aside), are the same, if their energies are.
 constexpr double same_place = 1e-6, same_energy = 1e-9;
@@ -48,14 +48,14 @@ EquilibriumReport Equilibrium::find_several(const Needs& needs, RowObserver& obs
   for (; used < starts && static_cast<int>(found.size()) < options_.find; ++used) {
     q_ = start;
     solved_ = false;
-    // In turn: close to the start, everywhere, and between.
+    // In turn: close to the start, far from it, and in between.
     constexpr double angles[] = {std::numbers::pi, 0.3, 1.0};
     if (used > 0) search.shake(q_, static_cast<unsigned>(used), angles[at(used % 3)], place);
     Candidate candidate;
     candidate.report = solve();
     if (used == 0) first = candidate.report;
     if (candidate.report.status == Status::cancelled) return candidate.report;
-    // What is loose or without a bottom is so from every start.
+    // A loose body or an energy without a minimum is the same from every start.
     if (used == 0 && !first.ok() && first.status != Status::not_converged && first.status != Status::not_assembled)
       break;
     if (!candidate.report.ok()) continue;

@@ -15,7 +15,7 @@ constexpr int most_sets = 200, most_sets_at_once = 15;
 // Forces below this part of the largest one, and gaps below this many length scales, may be rounding.
 constexpr double weak_force = 1e-9, weak_gap = 1e-9;
 
-// How wrong the state of every gap is: a pull of a closed one, the overlap of an open one, in their units.
+// The violation of every gap: the pull of a closed one, the overlap of an open one, in their units.
 std::vector<double> faults(StaticSystem& system, std::span<const double> lambda, std::span<const char> closed,
                            double force) {
   const std::vector<double> gap = gap_values(system);

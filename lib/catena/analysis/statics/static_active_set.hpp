@@ -1,4 +1,4 @@
-// What the two parts of static_gaps.hpp share: the units in which gaps and their forces are compared.
+// Shared by the two parts of static_gaps.hpp: the units in which gaps and their forces are compared.
 //
 // A gap counts in a length L or in radians, its force in F or F L, F a force that is typical of the mechanism, N.
 #pragma once
@@ -17,8 +17,8 @@ inline GapUnits units_of(const StaticSystem& system, int row, const GapUnits& sc
   return angle ? GapUnits{1, scale.force * scale.gap} : scale;
 }
 
-/// The largest dead load (springs on the way to their places may hold any force); where there is none, what one
-/// thousandth of a length scale makes of the stiffest spring; 1 N where there is neither.
+/// The largest dead load (springs may carry any force during the iteration); without loads, the force of the stiffest
+/// spring at one thousandth of a length scale; without springs, 1 N.
 double typical_force(StaticSystem& system);
 
 }  // namespace catena

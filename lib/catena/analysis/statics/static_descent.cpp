@@ -13,10 +13,10 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double largest_turn = 0.7;
 constexpr double smallest_factor = 1e-4;
-// Shifts of K: the first is beside rounding of the largest stiffness or beside force / extent, the last beside the
-// largest stiffness. Between them what softly holds a stiff part must be told from no stiffness at all.
+// Shifts of K: the first relative to rounding of the largest stiffness or to force / extent, the last relative to the
+// largest stiffness. Between them a soft support of a stiff part must be distinguished from no support.
 constexpr double first_of_rounding = 1e-15, first_of_force = 1e-6, largest_shift = 1e6;
-// How a shift grows where the inertia is not that of a minimum, and where the energy did not fall.
+// Growth of the shift where the inertia is not that of a minimum, and where the energy did not decrease.
 constexpr double stiffening = 32, shortening = 8;
 // A short step ends the search if it is exact, or leaves no more than this part of the forces.
 constexpr double stationary_part = 1e-7;
@@ -24,9 +24,9 @@ constexpr double sufficient_decrease = 1e-4;
 constexpr double polishing_change = 1e-6;
 // Constraints are met to this, in length scales or rad, between steps.
 constexpr double restored = 1e-10;
-// Curvature along a step below this part of what its terms would add up to without their signs is rounding.
+// Curvature along a step below this part of the sum of its terms' magnitudes is rounding.
 constexpr double neutral_part = 1e-10;
-// A mechanism that travelled this many extents, or turned this many radians, downhill is held by nothing.
+// A mechanism that has moved this many extents, or turned this many radians, downhill is not held.
 constexpr double lost_extents = 1e5, lost_turns = 1e4;
 
 struct Travel {
@@ -65,9 +65,10 @@ bool restore_constraints(StaticSystem& system, std::span<double> q) {
   const std::vector<double> no_force(at(plan.columns), 0.0), predicted(q.begin(), q.end());
   std::vector<double> gap(at(plan.rows));
   const double enough = std::max(restored, 10 * system.rounding_change());
-  // With the factors at hand as long as they serve; then, as beyond a singular position, with new ones at every step.
+  // With the present factors as long as they converge; then, as beyond a singular position, with new ones at every
+  // step.
   for (const bool anew : {false, true}) {
-    // A trial further on may have come where nothing can be factored (centres of gears that coincide).
+    // A trial further on may have reached a configuration that cannot be factored (coinciding centres of gears).
     if (!anew && !system.has_factors()) continue;
     double before = system.phi_norm();
     for (int k = 0; k < 12; ++k) {
@@ -165,11 +166,11 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
       std::copy(system.gradient().begin(), system.gradient().end(), gradient.begin());
       const double slope = dot(gradient, change);
       // On the constraints the slope is minus the curvature along the step. Where both are rounding the motion is
-      // neutral and the step means nothing: forces that balance are left as they are, else the shift holds the motion.
+      // neutral and the step has no meaning: if forces balance the point is kept, else the shift limits the motion.
       bool neutral = used == 0 && -slope <= neutral_part * system.matrix().absolute_quadratic(change);
       if (used == 0 && balanced && !neutral) {
-        // Terms that cancel within K, as those of a counterweight, are not seen there, and a balanced slope is rounding
-        // itself.
+        // Terms that cancel within K, as those of a counterweight, do not appear there, and a balanced slope is itself
+        // rounding.
         system.matrix().multiply_stiffness(change, product);
         neutral = dot(change, product) <= StiffnessFloor(system, lambda, 0)(change);
       }
@@ -181,7 +182,7 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
       const Travel travel = travel_of(plan, change);
       double factor = std::min({1.0, reach * largest_turn / travel.turn, reach * extent / travel.length});
       const bool clipped = factor < 1;
-      // The energy is a sum of large terms: less than this cannot be told from rounding.
+      // The energy is a sum of large terms: a smaller change is rounding.
       const double noise = 1e-14 * (energy_size + system.force_size() * extent);
       for (; factor > smallest_factor; factor /= 2) {
         std::copy(q.begin(), q.end(), trial.begin());
@@ -193,7 +194,7 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
           energy_size = std::max(energy_size, std::abs(then));
           accepted = true;
           last_shift = used;
-          // Whoever goes on downhill at the limit may take longer strides: slopes without a bottom show soon.
+          // Steps that reach the limit double it: an energy without a minimum is then recognised after few steps.
           if (clipped) reach *= 2;
           break;
         }

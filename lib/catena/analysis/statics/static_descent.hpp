@@ -1,13 +1,15 @@
-// Downhill on the constraints: a minimum of the energy in the valley of the start, which must meet the constraints.
+// Descent on the constraints: finds the minimum of the energy that is reached downhill from the start, which must meet
+// the constraints.
 //
-// Every step follows Newton's direction on the null space of Phi_q, K shifted where its inertia is not a minimum's:
-// only the exact K gives the energy's own curvature there, whatever the multipliers, which grow without limit near
+// Every step follows Newton's direction on the null space of Phi_q, K shifted where its inertia is not that of a
+// minimum: only the exact K gives the curvature of the energy there for all multipliers, which grow without bound near
 // singular positions. A step turns no angle by more than 0.7 rad, is brought back onto the constraints by corrections,
-// with the same factors where they serve, and is kept only if the energy fell by a part of what its slope promised;
-// else it is halved. Whoever goes on downhill at the limit gets twice the limit: slopes without a bottom show soon. The
-// energy never rises, configurations are assembled throughout, and the end is the resting place of the mechanism let go
-// gently, which matters where there are several (snap-through, toggles). At a point that is stationary but no minimum
-// it stops and says so. Source: Nocedal and Wright, Numerical Optimization, sections 3.1 and 15.6 (reduced gradients).
+// with the same factors where they serve, and is accepted only if the energy decreases by a part of the decrease that
+// its slope predicts; else it is halved. The limit on steps doubles while successive steps reach it, so that an energy
+// without a minimum is recognised after few steps. The energy never rises, configurations are assembled throughout, and
+// the result is the place at which the mechanism comes to rest when released slowly, which matters where there are
+// several equilibria (snap-through, toggles). At a stationary point that is no minimum the search stops with a report.
+// Source: Nocedal and Wright, Numerical Optimization, sections 3.1 and 15.6 (reduced gradients).
 #pragma once
 
 #include "catena/analysis/statics/static_newton.hpp"
@@ -23,8 +25,8 @@ struct StaticDescentOptions {
 StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::span<double> lambda,
                                const StaticDescentOptions& options);
 
-/// Brings q back onto the constraints by corrections with the factors at hand, or new ones; the system is left at q.
-/// False if that does not converge; q is then of no use.
+/// Returns q to the constraints by corrections with the present factors, or new ones; the system is left at q. False if
+/// that does not converge; q is then undefined.
 bool restore_constraints(StaticSystem& system, std::span<double> q);
 
 }  // namespace catena

@@ -13,17 +13,17 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 constexpr double largest_turn = 1;
 // Changes below this, length scales or rad, are followed by the exact K.
 constexpr double near_change = 0.3;
-// No step is longer than this many sizes of the mechanism; one that went so many away is held by nothing.
+// No step is longer than this many sizes of the mechanism; one that has moved so many away is not held.
 constexpr double largest_stride = 1, lost_sizes = 1e5;
 // The smoothing begins with one of these, L being the size of the mechanism: where many gaps share a load a large t
-// makes them carry the mechanism from afar, a small one lets them flicker. It ends where the active set is plain.
+// makes them act from a distance, with a small t their state alternates. It ends when the active set is certain.
 constexpr double first_smoothings[] = {0.1, 0.03, 0.3};
 constexpr double last_smoothing = 1e-8;
 // Steps of t: the first factor, and the one that ends the search.
 constexpr double first_cooling = 0.2, least_cooling = 0.97;
-// A point has arrived at a t with a change below this, length scales or rad, and this part of t left of the equations.
+// A point is solved for a t when the change is below this, length scales or rad, and the residual below this part of t.
 constexpr double arrived_change = 0.02, arrived_part = 0.1;
-// Newton steps for it at all but the first t; so few that t may fall faster.
+// Newton steps for it at all but the first t; if fewer than the second are needed, t decreases faster.
 constexpr int most_steps = 8, quick_steps = 3;
 
 // The smoothed complementarity of all gaps, in units.
@@ -44,7 +44,7 @@ class SmoothedGaps {
       gap[at(r)] = (b * p - w - p + root) * u.gap / a;
     }
   }
-  /// What is left of the equations, in units.
+  /// The residual of the equations, in units.
   double left_over(std::span<const double> lambda, double t) const {
     double most = 0;
     for (int r : system_.plan().gap_rows) {
@@ -86,7 +86,7 @@ double farthest(std::span<const double> q, std::span<const double> start) {
   return most;
 }
 
-// Fills and factors the matrix, exact if it may be and then is that of a minimum; `exact` tells.
+// Fills and factors the matrix, exact if allowed and if its inertia is that of a minimum; `exact` reports which.
 bool factorize(StaticSystem& system, std::span<const double> lambda, bool may_be_exact, bool& exact) {
   exact = false;
   if (may_be_exact) {
@@ -123,7 +123,7 @@ StaticOutcome follow_smoothing(StaticSystem& system, std::span<double> q, std::s
   const SmoothedGaps gaps(system, {size, typical_force(system)});
   double t = first_smoothing;
   for (int r : plan.gap_rows) lambda[at(r)] = gaps.fitting(r, t);
-  // The last point that arrived, and how it is left.
+  // The last point that was solved, and the factor of t from there.
   std::vector<double> q_before(q.begin(), q.end()), lambda_before(lambda.begin(), lambda.end());
   double t_before = t, cooling = first_cooling;
   bool near = false;
@@ -137,7 +137,7 @@ StaticOutcome follow_smoothing(StaticSystem& system, std::span<double> q, std::s
     for (std::size_t r = 0; r < gap.size(); ++r) gap[r] = -system.phi()[r];
     gaps.linearise(lambda, t, compliance, gap);
     system.matrix().set_compliance(compliance);
-    // A force below what fits its gap, or a pull, is on the way only: K is not to suffer.
+    // A force below the one that fits its gap, or a pull, is temporary and must not enter K.
     bent.assign(lambda.begin(), lambda.end());
     for (int r : plan.gap_rows) bent[at(r)] = std::min(bent[at(r)], gaps.fitting(r, t));
     if (!factorize(system, bent, near, outcome.exact)) {
@@ -147,7 +147,7 @@ StaticOutcome follow_smoothing(StaticSystem& system, std::span<double> q, std::s
     for (std::size_t c = 0; c < force.size(); ++c) force[c] = -system.gradient()[c];
     const StaticStep step = system.solve(force, gap, near ? 1e-13 : 1e-9);
     const double change = system.change_norm(step.change);
-    // Where next to nothing resists a step says little but its direction.
+    // Where almost nothing resists only the direction of a step is useful.
     const double factor =
         std::isfinite(change) ? std::min(1.0, largest_stride * size / (system.length() * change)) : 0.0;
     if (factor > 0) {
@@ -181,7 +181,7 @@ StaticOutcome follow_smoothing(StaticSystem& system, std::span<double> q, std::s
     } else if (factor > 0 && steps < (first ? options.first_steps : most_steps)) {
       continue;
     } else {
-      // Too far at once.
+      // The step was too long.
       cooling = std::sqrt(cooling);
       if (first || cooling > least_cooling) break;
       std::copy(q_before.begin(), q_before.end(), q.begin());

@@ -6,13 +6,14 @@
 //
 //   w + p - sqrt((w - p)^2 + 4 t^2) = 0        w, p: gap and force in the units L and F (F L against angles), mu = t^2
 //
-// which full Newton steps may leave on any side, other than an interior point's. Linearised it is one row of the matrix
-// of equilibrium, Psi_q dq - d lambda = ..., d > 0 a compliance (kkt_matrix.hpp): stiff where the gap is about to
-// close, soft where it is open, and the inertia says the same as without gaps. K and clipped turns are those of
-// static_newton.hpp; t falls as fast as the steps become short. Then exactly: the gaps with p > w hold as equations,
-// the others not at all; solved to rounding by Newton; those with p < 0 are released, those with Psi < 0 are added, all
-// at once at first, one by one, the worst first, where a set comes back. Source: Chen and Harker, SIAM J. Matrix Anal.
-// Appl. 14 (1993), for the smoothing; Nocedal and Wright, Numerical Optimization, chapter 16, for active sets.
+// which, unlike the conditions of an interior-point method, full Newton steps may violate on either side. Linearised it
+// is one row of the matrix of equilibrium, Psi_q dq - d lambda = ..., d > 0 a compliance (kkt_matrix.hpp): stiff where
+// the gap is about to close, soft where it is open, and the inertia says the same as without gaps. K and the limit on
+// turns are those of static_newton.hpp; t decreases as fast as the steps become short. Then exactly: the gaps with p >
+// w hold as equations, the others not at all; solved to rounding by Newton's method; gaps with p < 0 are released and
+// gaps with Psi < 0 added, all at once at first, then, if a set recurs, one by one with the worst first. Source: Chen
+// and Harker, SIAM J. Matrix Anal. Appl. 14 (1993), for the smoothing; Nocedal and Wright, Numerical Optimization,
+// chapter 16, for active sets.
 #pragma once
 
 #include <span>

@@ -20,20 +20,20 @@ using Ipopt::Number;
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// Ipopt takes anything beyond 1e19 for no bound.
+// Ipopt takes any value beyond 1e19 as no bound.
 constexpr double no_bound = 2e19;
 // Of the complementarity at a warm start.
 constexpr double near_barrier = 1e-9;
 // Of a start at a singular position: length scales or rad.
 constexpr double smallest_disturbance = 1e-3;
-// What Ipopt calls solved must balance to this part of the forces, and meet the constraints to it.
+// Solutions of Ipopt must balance to this part of the forces, and meet the constraints to it.
 constexpr double rough = 1e-5;
 std::mutex& only_one() {
   static std::mutex mutex;
   return mutex;
 }
 
-// The scaled problem as Ipopt asks for it. Vectors x over columns, g over the rows that are kept.
+// The scaled problem in Ipopt's interface. Vectors x over columns, g over the equations that are kept.
 class Problem final : public Ipopt::TNLP {
  public:
   Problem(StaticSystem& system, std::span<double> q, std::span<double> lambda, bool warm)
@@ -159,8 +159,8 @@ class Problem final : public Ipopt::TNLP {
     int row, column, slot;
   };
 
-  // Equalities that follow from others wherever the mechanism is are dropped: those that still do beside the start. A
-  // start at which more of them depend on each other, as a straight chain's, is left by a little.
+  // Equations that follow from others at every configuration are dropped: those that still do near the start. A start
+  // at which more of them depend on each other, as of a straight chain, is displaced a little.
   void keep_independent_rows() {
     const Plan& plan = system_.plan();
     std::vector<double> first(lambda_.size()), beside = trial_, near = trial_;
@@ -264,7 +264,7 @@ StaticOutcome solve_by_ipopt(StaticSystem& system, std::span<double> q, std::spa
   set.SetStringValue("fixed_variable_treatment", "make_parameter");
   set.SetIntegerValue("max_iter", options.max_iterations);
   set.SetNumericValue("tol", options.tolerance);
-  // Beside forces in a long mechanism rounding may keep the last digits out of reach.
+  // In a long mechanism rounding of the forces may prevent the last digits.
   set.SetNumericValue("acceptable_tol", 1e4 * options.tolerance);
   set.SetIntegerValue("acceptable_iter", 8);
   if (options.warm) {
@@ -285,7 +285,7 @@ StaticOutcome solve_by_ipopt(StaticSystem& system, std::span<double> q, std::spa
   std::vector<double> residual(system.gradient().size());
   system.residual(lambda, residual);
   outcome.residual = system.force_norm(residual);
-  // Springs that balance each other leave no net force: what they held at the start counts as well.
+  // Springs that balance each other leave no net force: their forces at the start count as well.
   const double force = std::max(system.force_scale(lambda), load);
   const bool balanced = outcome.residual <= rough * force && system.phi_norm() <= rough;
   if (outcome.converged() && !balanced) outcome.end = StaticEnd::diverged;

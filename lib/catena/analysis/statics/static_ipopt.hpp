@@ -2,11 +2,11 @@
 // Lagrangian, their patterns from the plan.
 //
 // Ipopt's tolerance is absolute, so it is given a scaled problem: lengths in extents L of the scene, angles in rad,
-// forces in units of the sum F of all applied forces, energies in F L. Rows that depend on
-// others at the start are left out (their multipliers are zero): an interior-point method wants independent equations.
-// One-sided rows become bounds on them. What it cannot do: tell a minimum from another stationary point (the
-// certificate does), nor promise the valley of the start. One problem at a time runs in a process: MUMPS shares its
-// workspace. Source: Waechter, Biegler, Math. Program. 106 (2006).
+// forces in units of the sum F of all applied forces, energies in F L. Equations that depend on others at the start are
+// left out (their multipliers are zero): an interior-point method needs independent equations. One-sided equations
+// become bounds. It does not distinguish a minimum from another stationary point (the certificate does), and need not
+// find the minimum nearest to the start. One problem at a time runs in a process: MUMPS shares its workspace. Source:
+// Waechter, Biegler, Math. Program. 106 (2006).
 #pragma once
 
 #include <span>
@@ -25,7 +25,7 @@ struct StaticIpoptOptions {
 /// Whether the library was built with Ipopt (CATENA_WITH_IPOPT).
 bool ipopt_is_built_in();
 
-/// Iterates q (size coordinates()) and lambda (rows) in place. Misuse where ipopt_is_built_in() is false: singular.
+/// Iterates q (size coordinates()) and lambda (rows) in place. StaticEnd::singular where ipopt_is_built_in() is false.
 StaticOutcome solve_by_ipopt(StaticSystem& system, std::span<double> q, std::span<double> lambda,
                              const StaticIpoptOptions& options);
 

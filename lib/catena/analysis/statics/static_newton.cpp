@@ -14,22 +14,24 @@ constexpr double largest_turn = 1;
 constexpr double near_change = 0.3;
 constexpr double polishing_change = 1e-4;
 constexpr int polishing_steps = 4;
-// What a correction may leave of the residual, what rounding leaves of forces, and how many times that is rounding too.
+// Part of the residual that a correction may leave, rounding of forces, and the multiple of it that still counts as
+// rounding.
 constexpr double polishing_part = 1e-2, rounding_part = 1e-15, few_roundings = 10;
-// What the forces at a balanced start would move under the weights of the first multipliers, length scales or rad: they
-// are known to first_tolerance, and the weights are the forces over the length.
+// Motion of a balanced start under the weights of the first multipliers, length scales or rad: forces are known to
+// first_tolerance, and the weights are forces over the length.
 constexpr double still = 1e-3;
-// Stiffness that holds everything while first tensions are found, where no load tells one, beside the stiffest spring.
+// Stiffness assumed while the first tensions are found, where there is no load to derive it from, relative to the
+// stiffest spring.
 constexpr double softest_part = 1e-9;
-// A step from a balanced point that leaves more than this part of the residual follows rounding.
+// A step from a balanced point that leaves more than this part of the residual is rounding.
 constexpr double no_gain = 0.5;
-// Below this nothing more is to be had.
+// Below this no further gain is possible.
 constexpr double last_change = 1e-10;
 // Multipliers beyond this many times the largest applied force, and the sum of all, belong to rows that depend on each
 // other and contradict.
 constexpr double largest_multiplier = 1e7, largest_of_sum = 1e5;
-// Of the linearised equations, relative to the forces and the extent: what one step leaves, the next one and the
-// corrections at the end remove.
+// Of the linearised equations, relative to the forces and the extent: the error of one step is removed by the next one
+// and by the corrections at the end.
 constexpr double step_tolerance = 1e-7, first_tolerance = 1e-4;
 constexpr double largest_change = 1e14;
 
@@ -39,7 +41,7 @@ bool first_multipliers(StaticSystem& system, std::span<double> lambda, bool exac
   system.fill_weights();
   if (!system.factorize().ok()) return false;
   StaticStep step = system.newton_step(exact ? 0 : first_tolerance);
-  // Where next to nothing would move the forces may balance already, which only exact multipliers show.
+  // Where almost nothing would move the forces may balance already, which only exact multipliers show.
   if (!exact && system.change_norm(step.change) <= still) step = system.newton_step(0);
   std::copy(step.lambda.begin(), step.lambda.end(), lambda.begin());
   return true;
@@ -62,7 +64,7 @@ bool first_tensions(StaticSystem& system, std::span<double> lambda) {
 void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda, StaticOutcome& outcome) {
   std::vector<double> residual(at(system.plan().columns)), gap(at(system.plan().rows)), q_before, lambda_before;
   const double force = system.force_size(), rounding = system.rounding_change();
-  // In units of what rounding may leave.
+  // In units of the possible rounding.
   const auto size = [&] {
     system.residual(lambda, residual);
     outcome.residual = system.force_norm(residual);
@@ -83,8 +85,8 @@ void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda,
     for (std::size_t r = 0; r < lambda.size(); ++r) lambda[r] += step.lambda[r];
     system.move_to(q);
     const double then = size();
-    // Residuals of rounding's size say nothing any more. What the Newton step left in soft modes the first correction
-    // removes; further ones are worth it while they shrink.
+    // Residuals of the size of rounding carry no information. The first correction removes the error of the Newton step
+    // in soft modes; further ones are made while they shrink.
     const bool rounded = then <= std::max(4 * now, few_roundings);
     if (!(then < now || (rounded && (k == 0 || change < 0.1 * before)))) {
       std::copy(q_before.begin(), q_before.end(), q.begin());
@@ -93,7 +95,7 @@ void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda,
       size();
       return;
     }
-    // What one more correction would bring: each is shorter than the one before by the same factor.
+    // The size of one more correction: each is shorter than the one before by the same factor.
     const double next = change * std::min(change / before, 1.0);
     outcome.step = before = change;
     now = then;
@@ -179,7 +181,7 @@ StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::sp
     std::copy(step.lambda.begin(), step.lambda.end(), lambda.begin());
     system.move_to(q);
     measure();
-    // Along motions that nothing resists a step is made of rounding.
+    // Along motions that nothing resists a step consists of rounding.
     if (balanced && change > polishing_change && !(outcome.residual <= no_gain * residual_before)) {
       std::copy(q_before.begin(), q_before.end(), q.begin());
       std::copy(lambda_before.begin(), lambda_before.end(), lambda.begin());
@@ -196,7 +198,8 @@ StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::sp
       outcome.end = StaticEnd::diverged;
       return outcome;
     }
-    // What looks like rounding beside the stiffest spring may be all that a soft one holds: the step tells.
+    // A residual that looks like rounding of the stiffest spring may be the whole force of a soft one: the step shows
+    // it.
     const auto is_small = [&] { return is_balanced(outcome.step <= last_change ? system.rounding_force() : 0); };
     balanced = is_balanced(0);
     // One step ends a linear problem, whatever its length.

@@ -4,12 +4,13 @@
 //   [ Phi_q  0   ] [ lambda+ ] = [ -Phi ]
 //
 // Far from the solution K is convex (StaticSystem::fill), so that every step descends on the null space of Phi_q; steps
-// are full, only turned angles are clipped to 1 rad, and there is no merit function: a long chain's constraints are
-// met again by the next step, which is linear in positions. Near the solution K is exact as long as its inertia is that
-// of a minimum; the iteration then converges quadratically and ends with a correction by the factors at hand. At a
-// point that is stationary but no minimum it stops and says so.
-// What it cannot do: promise to stay in the valley where it started (StaticDescent does).
-// Source: NUMERICS (hanging chains by Newton); 700 starts of seven kinds at N = 100: all converged, 6 to 21 iterations.
+// are full, only turned angles are clipped to 1 rad, and there is no merit function: constraints of a long chain are
+// met by the next step, since they are linear in positions. Near the solution K is exact as long as its inertia is that
+// of a minimum; the iteration then converges quadratically and ends with a correction by the present factors. At a
+// stationary point that is no minimum it stops with a report. It need not find the minimum nearest to the start
+// (StaticDescent does).
+// Measured (apps/manual/numerics.md#hanging-chains): 700 starts of seven kinds at N = 100: all converged, 6 to 21
+// iterations.
 #pragma once
 
 #include <span>
@@ -52,8 +53,8 @@ StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::sp
                               const StaticNewtonOptions& options);
 
 /// The multipliers that balance the applied forces best: least squares in the weights (1, 1, radius^2), constraints met
-/// to first order. One factorization. False if there is none. `exact`: to rounding, for whoever takes the exact K next:
-/// K of what balances wherever it stands is the difference of large terms with lambda in them.
+/// to first order. One factorization. False if there is none. `exact`: to rounding, as needed if the exact K is used
+/// next: K of a mechanism in balance at any position is a difference of large terms that contain lambda.
 bool first_multipliers(StaticSystem& system, std::span<double> lambda, bool exact = false);
 
 /// Multipliers, and the lengths that springs will have once their tensions are those that balance the loads best (see

@@ -19,27 +19,29 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// Degrees of freedom up to which the valley of the start is followed: the work grows with them, Newton's does not.
+// Degrees of freedom up to which the energy is followed downhill from the start: the work grows with them, that of
+// Newton's method does not.
 constexpr int few_freedoms = 30;
-// Coordinates up to which it is followed, whatever the freedoms, where nothing else got anywhere.
+// Coordinates up to which it is followed, whatever the degrees of freedom, after other methods have failed.
 constexpr int most_downhill_columns = 3000;
 constexpr int most_trials = 14;
 // Steps downhill from where Newton's full steps do not settle: more where there is more to move, until that takes some
 // ten seconds.
 constexpr int least_downhill = 200, most_downhill_work = 20'000'000;
-// Starts of Newton's that fail before Ipopt is asked.
+// Starts of Newton's method that fail before Ipopt is used.
 constexpr unsigned starts_before_ipopt = 4;
-// Newton may move what another solver found by this much, length scales or rad: more is another place.
+// Newton's method may move the result of another solver by this much, length scales or rad: more is another
+// equilibrium.
 constexpr double largest_polish = 0.05;
 constexpr double rounding_tolerance = 1e-15;
-// What remains to be done where forces are known to rounding of stiff springs only, length scales or rad.
+// Largest remaining change where forces are known only to rounding of stiff springs, length scales or rad.
 constexpr double rounded_change = 1e-9;
-// Beyond this interior points only gather rounding: the rest is polished.
+// Below this interior-point iterations only accumulate rounding: Newton's method does the rest.
 constexpr double finest_barrier = 1e-10;
-// Of gaps and their forces, whatever was asked for: the last steps cost next to nothing.
+// Tolerance of gaps and their forces, whatever the option: the last steps are cheap.
 constexpr double gap_tolerance = 1e-12;
 constexpr int few_first_steps = 40, most_first_steps = 80;
-// A residual above this part of the forces is worth a remark.
+// A residual above this part of the forces is reported.
 constexpr double unsaid_rounding = 1e-9;
 // The square of this is the largest number.
 constexpr double largest_number = 1e154;
@@ -72,25 +74,25 @@ void name_weak_gaps(const Evaluator& evaluator, StaticResult& result) {
   if (count == 0) return;
   if (count > most) names += fmt::format(" and {} more", count - most);
   result.report.warnings.push_back(
-      fmt::format("just touching, without a force that could be told from rounding: {}", names));
+      fmt::format("closed gaps whose force cannot be distinguished from rounding: {}", names));
 }
 
 // Where forces balance as well as rounding allows, but not to the tolerance.
 void warn_of_rounding(const StaticAccuracy& a, Report& report) {
   if (a.balanced || a.residual <= unsaid_rounding * a.forces) return;
   report.warnings.push_back(
-      fmt::format("forces balance to {:.2g} N only, of {:.3g} N: rounding of places makes up to {:.2g} N of the "
-                  "stiffest springs, whatever the tolerance",
+      fmt::format("forces of {1:.3g} N balance to {0:.2g} N only: rounding of places changes the force of the stiffest "
+                  "springs by up to {2:.2g} N, whatever the tolerance",
                   a.residual, a.forces, a.rounding));
 }
 
 }  // namespace
 
-// What an optimiser found to its own tolerance, to rounding; kept as it is where Newton would leave the place.
+// Refines the result of an optimiser to rounding; keeps it where Newton's method would move to another equilibrium.
 StaticOutcome StaticSearch::polish_by_newton(std::vector<double>& q, std::vector<double>& lambda,
                                              StaticOutcome outcome) {
   const std::vector<double> found = q, multipliers = lambda;
-  // On to rounding, whatever was asked for: the steps cost next to nothing beside what went before.
+  // To rounding, whatever the tolerance: the steps cost little beside those before.
   const StaticOutcome polished = solve_by_newton(
       system_, q, lambda, {.max_iterations = 20, .tolerance = rounding_tolerance, .warm = true, .stationary = true});
   std::vector<double> change(at(system_.plan().columns));
@@ -113,7 +115,7 @@ StaticOutcome StaticSearch::polish_by_newton(std::vector<double>& q, std::vector
 StaticOutcome StaticSearch::minimise_with_gaps(std::vector<double>& q, std::vector<double>& lambda, bool warm, Way way,
                                                StaticResult& result) {
   StaticOutcome outcome;
-  // Steps that do not settle soon rarely do: patience is for when nothing else got anywhere.
+  // Steps that do not converge soon rarely do: more are allowed only after other methods have failed.
   const StaticGapOptions exact{.first_steps = result.iterations == 0 ? few_first_steps : most_first_steps,
                                .tolerance = std::min(options_.tolerance, gap_tolerance)};
   result.solver = way == Way::ipopt ? "ipopt" : way == Way::nlopt ? "nlopt" : "newton";
@@ -130,7 +132,7 @@ StaticOutcome StaticSearch::minimise_with_gaps(std::vector<double>& q, std::vect
     return outcome;
   }
   if (warm) {
-    // Where the closed gaps stay closed, a small change of parameters needs no more.
+    // Where the closed gaps stay closed this suffices for a small change of parameters.
     const std::vector<double> before = q, multipliers = lambda;
     outcome = finish_with_gaps(system_, q, lambda, result.gaps, exact);
     result.iterations += outcome.iterations;
@@ -195,7 +197,7 @@ StaticOutcome StaticSearch::minimise(std::vector<double>& q, std::vector<double>
                             {.tolerance = options_.tolerance, .warm = warm, .stationary = options_.stationary});
   result.iterations += outcome.iterations;
   if (outcome.end != StaticEnd::slow) return outcome;
-  // Full steps that go back and forth have come far down all the same: the energy decides about the rest of the way.
+  // Full steps that alternate have lowered the energy all the same: descent continues from their end.
   const int columns = std::max(system_.plan().columns, 1);
   const int most = std::max(least_downhill, std::min(least_downhill + 2 * columns, most_downhill_work / columns));
   outcome = solve_by_descent(system_, q, lambda, {.max_iterations = most, .tolerance = options_.tolerance});
@@ -203,9 +205,9 @@ StaticOutcome StaticSearch::minimise(std::vector<double>& q, std::vector<double>
   return outcome;
 }
 
-// Whether forces balance and constraints hold to the tolerance. What may be rounding beside the stiffest spring passes
-// only if a Newton step, by the factors of the certificate, would move nothing: it may be all that a soft spring holds.
-// Along a neutral motion a step says nothing.
+// Whether forces balance and constraints hold to the tolerance. A residual that may be rounding of the stiffest spring
+// is accepted only if a Newton step with the factors of the certificate would move nothing: it may be the whole force
+// of a soft spring. Along a neutral motion a step carries no information.
 bool StaticSearch::is_accurate(std::span<const double> lambda, const Certificate& certificate) {
   accuracy_ = judge_balance(system_, lambda, options_.tolerance);
   if (!(system_.phi_norm() <= std::max(options_.tolerance, 10 * system_.rounding_change()))) return false;
@@ -254,7 +256,7 @@ void StaticSearch::shake(std::vector<double>& q, unsigned seed, double angle, do
   }
 }
 
-// Numbers whose products with each other cannot be represented are no numbers to compute with.
+// Refuses forces and stiffnesses whose products overflow.
 std::optional<Report> StaticSearch::find_overflow(std::span<double> lambda) {
   system_.fill(lambda, Curvature::exact, 0);
   const Plan& plan = system_.plan();
@@ -266,8 +268,8 @@ std::optional<Report> StaticSearch::find_overflow(std::span<double> lambda) {
     Report report;
     report.status = Status::refused;
     report.message = fmt::format(
-        "what acts on body \"{}\" is too large to be computed with: {} beyond {:.0e} {}, and products of such numbers "
-        "cannot be represented; likely cause: a unit or an exponent mistyped",
+        "{1} on body \"{0}\" is too large to compute with: products of numbers beyond {2:.0e} {3} cannot be "
+        "represented; likely cause: a mistyped unit or exponent",
         body_of(system_.evaluator(), c), forced ? (turning ? "a torque" : "a force") : "a stiffness", largest_number,
         forced ? (turning ? "N m" : "N") : (turning ? "N m/rad" : "N/m"));
     return report;
@@ -301,7 +303,7 @@ Report StaticSearch::explain(const StaticOutcome& outcome, const std::vector<dou
     }
     report.status = Status::unbounded;
     report.message =
-        fmt::format("the energy has no minimum: body \"{}\" {} without end; what should hold it?",
+        fmt::format("the energy has no minimum: body \"{}\" {} without end; likely cause: nothing holds it",
                     body_of(evaluator, farthest), plan.coordinate[at(farthest)] % 3 == 2 ? "turns" : "moves");
     return report;
   }
@@ -320,13 +322,13 @@ Report StaticSearch::explain(const StaticOutcome& outcome, const std::vector<dou
   if (worst != gap.end() && *worst < -absent_overlap * system_.length()) {
     const int element = plan.row_element[at(plan.gap_rows[static_cast<std::size_t>(worst - gap.begin())])];
     report.message +=
-        fmt::format("; {} \"{}\" is violated by {:.3g}: can all of them be met?",
+        fmt::format("; {} \"{}\" is violated by {:.3g}: not all of the one-sided elements may be compatible",
                     evaluator.model().element_type(element), evaluator.model().element_name(element), -*worst);
   }
   return report;
 }
 
-// Why the last point that was looked at is no equilibrium, from its accuracy and certificate.
+// Describes why the last point is no equilibrium, from its accuracy and certificate.
 void StaticSearch::describe_point(const StaticResult& result, Report& report) {
   const Certificate& c = result.certificate;
   const StaticAccuracy& a = accuracy_;
@@ -339,8 +341,8 @@ void StaticSearch::describe_point(const StaticResult& result, Report& report) {
     return;
   }
   const std::string where = a.column >= 0 ? fmt::format(" at body \"{}\"", body_of(system_.evaluator(), a.column)) : "";
-  report.message = fmt::format("no equilibrium found: the forces{} are out of balance by {:.3g} N, beside {:.3g} N",
-                               where, a.residual, a.forces);
+  report.message = fmt::format("no equilibrium found: the forces{} are out of balance by {:.3g} N, of {:.3g} N", where,
+                               a.residual, a.forces);
   if (a.loads < a.forces) report.message += fmt::format(" and loads of {:.3g} N", a.loads);
   if (system_.plan().rows > static_cast<int>(system_.plan().gap_rows.size())) {
     report.message += fmt::format("; the constraints miss by {:.3g} m or rad", system_.phi_norm() * system_.length());
@@ -354,7 +356,7 @@ void StaticSearch::describe_point(const StaticResult& result, Report& report) {
             : "; likely cause: a start far off, or an energy without a minimum nearby";
 }
 
-// Forces that follow their body: the residual alone, and nothing that could certify what is found.
+// Forces that follow their body: only the residual is solved, and the result cannot be certified.
 StaticResult StaticSearch::find_without_energy(std::vector<double>& q, std::vector<double>& lambda) {
   StaticResult result;
   result.has_energy = false;
@@ -437,7 +439,7 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
       }
     }
     if (!own) break;
-    // Where following the valley does not get anywhere Newton may, and where that does not, another start or Ipopt.
+    // If descent fails Newton's method is tried, and then another start or Ipopt.
     q = start;
     if (trial + 2 == most_trials && !system_.has_gaps() && options_.solver == StaticSolver::automatic) {
       way = Way::settling;
@@ -465,7 +467,8 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
   result.dependent_rows = system_.matrix().dependent_rows();
   name_weak_gaps(evaluator, result);
   if (way == Way::valley && !few) {
-    result.report.warnings.push_back("found by going downhill from the start, after other ways had failed");
+    result.report.warnings.push_back(
+        "found by following the energy downhill from the start, after other methods had failed");
   }
   const Certificate& c = result.certificate;
   const std::string motion = c.mode.empty() ? "" : describe_mode(evaluator, c.mode, system_.radius());
@@ -479,7 +482,7 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
                                                  c.negative_modes > 1 ? "s" : "", motion));
   }
   if (pushed && result.report.ok()) {
-    result.report.warnings.push_back("the first stationary point found was no minimum and was left downhill");
+    result.report.warnings.push_back("a stationary point that is no minimum was left towards lower energy");
   }
   return result;
 }

@@ -1,14 +1,14 @@
-// The search for one static equilibrium: which solver when, what to do when one fails, and leaving points that are no
-// minimum.
+// The search for one static equilibrium: the order of solvers, repetitions after a failure, and leaving points that are
+// no minimum.
 //
-//   few degrees of freedom and a start that can be assembled nearby   downhill from there, else Newton
-//   otherwise                                                         Newton; where its full steps do not settle on
-//                                                                     downhill; else restarted from shaken angles
-//   two of them did not converge                                      downhill from the start
+//   few degrees of freedom and a start that can be assembled nearby   descent from there, else Newton
+//   otherwise                                                         Newton; where its full steps do not settle,
+//                                                                     descent; else again from displaced angles
+//   two of them did not converge                                      descent from the start
 //   automatic and several of them did not converge                    Ipopt; then Newton from other angles again
 //   automatic and nothing converged                                   damped settling (StaticSettling)
 //   forces that follow their body: no energy                          damped settling, no certificate
-//   Ipopt or NLopt converged, asked for or not                        polished by Newton
+//   Ipopt or NLopt converged, chosen or automatic                     refined by Newton
 //   stationary but no minimum                                         a push along the most negative mode, and on
 //   gaps                                                              Newton on the smoothed complementarity, else
 //                                                                     Ipopt; either ends on the exact active set

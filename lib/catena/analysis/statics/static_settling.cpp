@@ -13,11 +13,11 @@ constexpr double largest_turn = 0.5;
 constexpr double largest_travel = 0.5;
 // E times the stiffness.
 constexpr double regularisation = 1e-11;
-// What a residual may grow by in a step that is kept, and what the damping changes by from step to step.
+// Growth of the residual allowed in an accepted step, and the change of the damping from step to step.
 constexpr double tolerated_growth = 3, fastest_fading = 0.05, stiffening = 8;
 constexpr double largest_damping = 1e12, least_damping = 1e-14;
 constexpr double lost_extents = 1e5;
-// Without damping nothing more is to be had below this, length scales or rad.
+// Without damping no further gain is possible below this, length scales or rad.
 constexpr double last_change = 1e-10;
 
 // The unsymmetric matrix, its pattern from the plan.
@@ -174,7 +174,7 @@ StaticOutcome solve_by_settling(StaticSystem& system, std::span<double> q, std::
         return outcome;
       }
     }
-    // Beside the stiffest spring rounding may be all that a soft one holds: then the step decides.
+    // Rounding of the stiffest spring may be the whole force of a soft one: then the step decides.
     const double scale = std::max(system.force_scale(lambda), force);
     const double rounding = damping == 0 && outcome.step <= last_change ? system.rounding_force() : 0;
     if (outcome.residual <= options.tolerance * scale + rounding &&

@@ -6,8 +6,8 @@
 //   add_constraint_loads         Phi_q^T lambda                       applied_forces   Q
 //
 // q, qd, qdd and lambda are dual numbers as well: with the parts that are sought left at zero, the derivatives of a
-// residual are the right-hand side for them, and once they are known the same evaluation gives the next level (THEORY
-// section 6). Structure, numbering, origins of the relative coordinates and scales of rows are those of an evaluator of
+// residual are the right-hand side for them, and once they are known the same evaluation gives the next
+// level. Structure, numbering, origins of the relative coordinates and scales of rows are those of an evaluator of
 // the same model in plain numbers; origins and scales are constants. Coordinates that are no unknowns (poses of
 // immobile bodies, angles of particles) take their derivatives from the model. Units as in evaluate.hpp. Nothing
 // allocates after construction.
@@ -24,7 +24,7 @@ namespace catena {
 
 using DesignModel = BasicModel<DesignScalar>;
 
-/// Dense Phi_q of one element in THEORY's form with its derivatives; see Evaluator::ElementJacobian.
+/// Dense Phi_q of one element in its published form with its derivatives; see Evaluator::ElementJacobian.
 struct DesignElementJacobian {
   int rows = 0, bodies = 0;
   int body_i = -1, body_j = -1;

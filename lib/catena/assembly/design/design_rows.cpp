@@ -20,7 +20,7 @@ DesignSeries value_of_entry([[maybe_unused]] const Entry& entry,
   }
 }
 
-/// Phi_q of an element with derivatives, in THEORY's form, row-major with six columns.
+/// Phi_q of an element with derivatives, in the published form, row-major with six columns.
 template <class E>
 void derive(const E& element, const detail::DesignFrames<DesignScalar>& f, const DesignScalar& c,
             DesignScalar* entries) {

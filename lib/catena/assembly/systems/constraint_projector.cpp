@@ -64,7 +64,7 @@ FactorResult ConstraintProjector::factorize(std::span<const double> jacobian, Co
   compliance_ = {};
   double largest = 0;
   for (int d : diagonal_) largest = std::max(largest, values_[at(d)]);
-  // A row that touches nothing that can move has an empty diagonal; it must not stop the others.
+  // An equation between bodies that cannot move has an empty diagonal; it must not stop the others.
   for (int d : diagonal_) {
     double& value = values_[at(d)];
     value += (regularisation + damping) * value;

@@ -1,11 +1,11 @@
-// The least change, in a weighted norm, that a set of linear constraints asks for:
+// The least change, in a weighted norm, that meets a set of linear constraints:
 //
 //   min 1/2 x^T W x   subject to   Phi_q x = b        =>   x = W^-1 Phi_q^T lambda,   (Phi_q W^-1 Phi_q^T) lambda = b
 //
 // W is diagonal and positive (a mass matrix, or the weights of assembly); W^-1 = 0 holds a coordinate where it is. The
 // Schur complement is factored by Cholesky with 1e-12 of its diagonal added and the solution refined with the true
-// Phi_q: exact where rows are independent, and where they depend on each other consistently x is exact as well; of a
-// contradictory b the part that can be met is met. Source: NUMERICS (regularisation with refinement).
+// Phi_q: exact where equations are independent; where they depend on each other consistently x is exact as well; of a
+// contradictory b the part that can be met is met. Source: apps/manual/numerics.md#regularisation.
 #pragma once
 
 #include <memory>
@@ -35,7 +35,7 @@ class ConstraintProjector {
   double solve(std::span<const double> b, std::span<double> x, std::span<double> lambda, Counters& counters);
   /// Smallest pivot ratio of the last factorization: near zero where rows depend on each other.
   PivotRatio smallest_pivot_ratio() const { return schur_.smallest_pivot_ratio(); }
-  /// What elimination left of a row's diagonal entry.
+  /// The part of a row's diagonal entry that elimination left.
   double pivot(int row) const { return schur_.pivot(row); }
 
  private:

@@ -12,7 +12,7 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr int triangle = 21;
 
-// Elastic cables switch between slack and taut, which a foreseen length would follow back and forth.
+// Elastic cables are left out: a foreseen length would make them alternate between slack and taut.
 template <class E>
 constexpr bool is_spring = std::is_same_v<E, SpringDamper<double>>;
 
@@ -129,7 +129,8 @@ void ForeseenSprings::add(const Evaluator& evaluator, Curvature curvature, std::
     double turn_i = f * dot(n, geometry.arm_i), turn_j = -f * dot(n, geometry.arm_j);
     if (convex) {
       along = std::max(along, 0.0);
-      // A push on the way is mostly a tension not found yet: zero across would leave slack chains free to leap.
+      // Compression during the iteration is mostly a tension that was not found yet: without stiffness across, slack
+      // chains would make very long steps.
       across = std::abs(across);
       turn_i = std::max(turn_i, 0.0);
       turn_j = std::max(turn_j, 0.0);

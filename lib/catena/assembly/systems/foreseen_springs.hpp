@@ -1,17 +1,18 @@
-// The stiffness of springs at the length that a linearised step leads them to, in the place of their present one.
+// The stiffness of springs at the length to which a linearised step leads (the foreseen length), in place of the
+// present length.
 //
 //   h = r_Pj - r_Pi    l = |h|    n = h / l    g = dl/dq    H = dh/dq    f(l) tension
 //   K = f'(L) g g^T + f(L) / L H^T (I - n n^T) H + f(L) n . d2h/dq2          L = l0 + g0 . dq, l0 and g0 before the
 //   step
 //
-// A stiff spring that is turned by a step gets longer by the square of the turn, and k times that hides the tension
-// that it will carry: Newton's method on chains of such springs takes steps by the hundred. With f(L) in the place of
-// f(l), the step is that of the equations in which tensions are unknowns of their own, f - f(l(q)) = 0, as multipliers
-// of links are: a stiff spring converges like a link, a soft one as it always did (L = l to second order), and one
-// without free length has the same K as ever. Where K is to be convex a push f(L) < 0 counts as a pull of its size:
-// without it next to nothing would hold a chain of pushed springs across, and steps would be hundreds of chains long.
-// m, N. Singular where l = 0 or L = 0: the present K then counts. Source: Benzi, Golub, Liesen, Acta Numerica 14
-// (2005), section 1 (saddle point form of stiff terms).
+// A step that turns a stiff spring also lengthens it by the square of the turn, and k times that length is larger than
+// the tension that the spring will carry: Newton's method on chains of such springs takes steps by the hundred. With
+// f(L) in the place of f(l), the step is that of the equations in which tensions are unknowns of their own, f - f(l(q))
+// = 0, as multipliers of links are: a stiff spring converges like a link, a soft one as with its present length (L = l
+// to second order), and K of a spring without free length does not change. Where K is to be convex a compressive f(L) <
+// 0 counts as a tension of the same size: otherwise almost no stiffness would act across a chain of compressed springs,
+// and steps would be hundreds of chain lengths long. m, N. Singular where l = 0 or L = 0: the present K then counts.
+// Source: Benzi, Golub, Liesen, Acta Numerica 14 (2005), section 1 (saddle point form of stiff terms).
 #pragma once
 
 #include <span>
@@ -34,16 +35,16 @@ class ForeseenSprings {
   /// Takes over parameter values of a model with the same structure.
   void take_over_model(const Evaluator& evaluator);
 
-  /// Lengths that a change of q (all coordinates) leads to from the evaluator's configuration; without one free
+  /// Foreseen lengths for a change of q (all coordinates) from the evaluator's configuration; without a change: free
   /// lengths.
   void foresee(const Evaluator& evaluator, std::span<const double> change);
-  /// Present lengths count again.
+  /// Returns to present lengths.
   void forget() { active_ = false; }
   bool active() const { return active_; }
 
   /// Slots for everything else: springs have none.
   const HessianSlots& others() const { return others_; }
-  /// Adds K of all springs; convex: |f(L)| / L across the line, and without what is negative in the other parts.
+  /// Adds K of all springs; convex: |f(L)| / L across the line, and without negative contributions in the other parts.
   void add(const Evaluator& evaluator, Curvature curvature, std::span<double> values) const;
 
  private:

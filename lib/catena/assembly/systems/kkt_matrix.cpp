@@ -10,9 +10,9 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // rho in units of the stiffness of the bodies that a row touches.
 constexpr double augmentation = 4;
-// eps rho: small enough that two refinements remove what it does, large enough to be seen beside rounding.
+// eps rho: small enough that two refinements remove its effect, large enough to stand out from rounding.
 constexpr double regularisation = 1e-10;
-// Bodies much softer than the stiffest one count this part of it: pivots need something to divide by.
+// Bodies much softer than the stiffest one count as this part of it, so that pivots stay away from zero.
 constexpr double softest_part = 1e-9;
 
 }  // namespace
@@ -123,8 +123,7 @@ FactorResult KktMatrix::factorize(double least_stiffness, Counters& counters) {
     factorization_.analyze(structure_.factored_places(), structure_.order, structure_.node_start, counters);
     analyzed_ = true;
   }
-  // A quadratic energy under linear constraints has one matrix for ever: its factors are kept, with the augmentation
-  // that is in them.
+  // A quadratic energy under linear constraints has a constant matrix: its factors are kept, with their augmentation.
   if (keep_equal_factors_) {
     if (is_factorized() && !last_.empty() && std::equal(last_.begin(), last_.end(), values_.begin()) &&
         last_softness_ == softness_)
@@ -222,7 +221,7 @@ Refinement KktMatrix::solve(std::span<double> x, double force, double length, do
 void KktMatrix::solve_unrefined(std::span<double> x, Counters& counters) {
   const bool soft = !softness_.empty();
   const auto softening = [&](std::size_t r) { return 1 + rho_[r] * softness_[r]; };
-  // What was added to the first equation on the left, Phi_q^T R times the second one, is added on the right as well.
+  // Phi_q^T R times the second equation was added to the first one on the left, and is added on the right as well.
   const SparsePattern& phi_q = plan_->jacobian;
   const std::span<const double> second = x.subspan(at(structure_.columns));
   const bool nothing = std::all_of(second.begin(), second.end(), [](double v) { return v == 0; });

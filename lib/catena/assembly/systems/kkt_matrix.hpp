@@ -1,5 +1,5 @@
-// The matrix of static equilibrium with its numbers: filled in place, factored with an augmentation that makes the
-// factorization exist, solved and refined against the matrix itself.
+// The matrix of static equilibrium: filled in place, factored with an augmentation for which L D L^T exists, solved and
+// refined against the matrix itself.
 //
 //   true      [ K    Phi_q^T ]        factored   [ K + Phi_q^T R Phi_q   Phi_q^T ]
 //             [ Phi_q   -D   ]                   [ Phi_q                 -E      ]
@@ -7,10 +7,10 @@
 // D = 0 where constraints hold; rows of gaps may have a compliance d > 0 (set_compliance). Their part of the second
 // matrix follows from lambda = lambda' (1 + rho d): R holds rho / (1 + rho d), E holds eps + d (1 + rho d).
 // Inertia of the factored one: n_- = m + p, p the number of negative eigenvalues of K on the null space of Phi_q,
-// whatever the rank of Phi_q (THEORY section 5). rho and eps are chosen row by row from the stiffness of the bodies the
-// row touches, since a mechanism may hold springs and links over many orders of magnitude: rho comparable with K there,
-// eps = 1e-10 / rho. Where rows depend on each other eps decides between their multipliers: the least ones; a row whose
-// pivot is no larger than a few eps is reported as dependent.
+// whatever the rank of Phi_q (apps/manual/statics.md#certificate). rho and eps are chosen row by row from the stiffness
+// of the bodies the row touches, since a mechanism may hold springs and links over many orders of magnitude: rho
+// comparable with K there, eps = 1e-10 / rho. Where rows depend on each other eps decides between their multipliers:
+// the least ones; a row whose pivot is no larger than a few eps is reported as dependent.
 #pragma once
 
 #include <memory>
@@ -27,7 +27,7 @@ namespace catena {
 
 class KktMatrix {
  public:
-  /// `radius`: per plan body, what a radian is compared with in metres (Evaluator::attachment_radii).
+  /// `radius`: per plan body, the length in metres that corresponds to a radian (Evaluator::attachment_radii).
   KktMatrix(std::shared_ptr<const Plan> plan, std::span<const double> radius);
 
   void set_radius(std::span<const double> radius);
@@ -44,11 +44,11 @@ class KktMatrix {
     if (keep != keep_equal_factors_) last_.clear();
     keep_equal_factors_ = keep;
   }
-  /// Whether every K written with these multipliers is the one without: constraints without second derivatives here.
+  /// Whether K does not depend on these multipliers: constraints without second derivatives at this configuration.
   bool constraints_are_linear(Evaluator& evaluator);
 
-  /// Fills K at the evaluator's configuration, but for the stiffness against turning, which goes to turning(). Springs
-  /// at foreseen lengths where these are active.
+  /// Fills K at the evaluator's configuration, except the stiffness against turning, which goes to turning(). Springs
+  /// use foreseen lengths where these are active.
   void set_hessian(Evaluator& evaluator, std::span<const double> lambda, Curvature curvature,
                    const ForeseenSprings* springs = nullptr);
   /// Per moving body, N m: may be changed between set_hessian and complete.
@@ -63,7 +63,7 @@ class KktMatrix {
   /// The true matrix by slots of structure().pattern.
   std::span<const double> values() const { return {values_.data(), static_cast<std::size_t>(structure_.entries())}; }
 
-  /// Factors; analyses first where nothing did. `least_stiffness`, N/m: what a body counts that has none of its own.
+  /// Factors; analyses first if needed. `least_stiffness`, N/m: assumed for a body without any stiffness.
   FactorResult factorize(double least_stiffness, Counters& counters);
   /// Solves the true equations for x = [columns; rows] in place. Residuals are compared with `force`, N, and `length`,
   /// m, and refined to `tolerance` of these, if rounding allows.
@@ -80,7 +80,7 @@ class KktMatrix {
   bool is_factorized() const { return factorization_.is_factorized(); }
   /// p: negative eigenvalues of K on the null space of Phi_q.
   int negative_modes() const;
-  /// Constraint rows whose pivot vanished but for eps, ascending.
+  /// Constraint equations whose pivot vanished but for eps, ascending.
   std::vector<int> dependent_rows() const;
   /// Largest stiffness of a body, N/m.
   double largest_stiffness() const { return largest_stiffness_; }

@@ -1,13 +1,13 @@
-// The pattern of the matrix of static equilibrium, and the way of every number into it, made once from the plan.
+// The pattern of the matrix of static equilibrium and the slot of every value in it, made once from the plan.
 //
 //   [ K + Phi_q^T R Phi_q   Phi_q^T ]      K = V_qq + sum lambda Phi_qq, R = diag(rho) > 0, E = diag(eps) > 0
 //   [ Phi_q                 -E      ]      rows 0 ... columns - 1: coordinates; then the constraint rows
 //
 // Phi_q^T R Phi_q changes no solution of the equations with E = 0 but gives every body pivots that are not zero: K
-// alone has whole zero blocks (of a hanging rod nothing is left but its stiffness against turning). Elimination order:
-// bodies by minimum degree in the graph of bodies that share an element, every constraint row directly after the last
-// of its bodies. Joints before their bodies would divide by eps; joints after all bodies would fill the matrix. Source:
-// NUMERICS (kernels); Golub and Greif, SIAM J. Sci. Comput. 24 (2003), for the augmentation.
+// alone has zero blocks (a hanging rod contributes only its stiffness against turning). Elimination order: bodies by
+// minimum degree in the graph of bodies that share an element, every constraint row directly after the last of its
+// bodies. Joints before their bodies would divide by eps; joints after all bodies would fill the matrix. Source:
+// apps/manual/numerics.md#matrix-of-equilibrium; Golub and Greif, SIAM J. Sci. Comput. 24 (2003), for the augmentation.
 #pragma once
 
 #include <vector>
@@ -35,8 +35,8 @@ struct KktStructure {
   int product_count = 0;  ///< of two entries of the same row, the second not after the first, all rows in turn
 
   int entries() const { return pattern.entries(); }
-  /// Values of the pattern come first; then what is factored besides: products, and -eps of every row; then one
-  /// stiffness against turning a body, and a place for what immobile bodies would get.
+  /// Values of the pattern come first; then the further values of the factored matrix: products, and -eps of every
+  /// equation; then one stiffness against turning a body, and one place for the unused values of immobile bodies.
   int products() const { return entries(); }
   int regularisation() const { return products() + product_count; }
   int factored() const { return regularisation() + rows; }

@@ -117,7 +117,7 @@ void SchurSystem::fill(double regularised_part) {
   }
   for (std::size_t k = 0; k < diagonal_.size(); ++k) {
     double& value = values[at(diagonal_[k])];
-    // A row that touches nothing that can move must not stop the others.
+    // An equation between bodies that cannot move must not stop the others.
     if (value == 0) value = 1;
     diagonal_values_[k] = value;
     value *= 1 + regularised_part;
@@ -158,7 +158,7 @@ bool SchurSystem::factorize(std::span<const double> jacobian, Counters& counters
     assemble(constant_, constant_slot_.data(), constant_values_);
     constants_known_ = true;
   }
-  // Where rows depended on each other the last time they probably still do.
+  // Equations that depended on each other at the last factorization probably still do.
   fill(regularised_ ? regularisation : 0);
   if (!factor_values(counters)) return false;
   if (smallest_ratio_ < singular_ratio && !regularised_) {
@@ -227,7 +227,7 @@ void SchurSystem::solve_with_masses(std::span<const double> Q, std::span<const d
   }
 }
 
-// What massless coordinates lack of equilibrium, rest_Q_ there, compared with the largest force of all.
+// The unbalanced force at massless coordinates, rest_Q_, compared with the largest force of all.
 double SchurSystem::find_massless_residual(std::span<const double> Q, std::span<const double> lambda) {
   double largest = 0, left = 0;
   for (std::size_t c = 0; c < rest_Q_.size(); ++c) {
@@ -247,7 +247,7 @@ double SchurSystem::find_massless_residual(std::span<const double> Q, std::span<
   return left > 0 ? left / largest : 0;
 }
 
-// Adds the solution for what the true equations leave: Q - M qdd - Phi_q^T lambda and gamma - Phi_q qdd. One round
+// Adds the solution for the residual of the true equations: Q - M qdd - Phi_q^T lambda and gamma - Phi_q qdd. One round
 // where masses are only unequal; with massless coordinates until nothing is gained any more.
 void SchurSystem::refine_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
                                 std::span<double> lambda, Counters& counters) {
@@ -283,7 +283,7 @@ void SchurSystem::refine_motion(std::span<const double> Q, std::span<const doubl
     }
     for (std::size_t k = 0; k < extra_lambda_.size(); ++k) lambda[k] += extra_lambda_[k];
     if (round == 0) first_change = change;
-    // Every round leaves the same part of what it changed.
+    // Every round reduces its change by the same factor.
     if (massless_.empty() && (round > 2 || !(change * first_change > 1e-15 * whole * whole))) return;
   }
 }

@@ -3,31 +3,32 @@
 //   [M, Phi_q^T; Phi_q, 0] [qdd; lambda] = [Q; gamma]
 //   S lambda = Phi_q M^-1 Q - gamma        qdd = M^-1 (Q - Phi_q^T lambda)        S = Phi_q M^-1 Phi_q^T
 //
-// and the least change, in the mass metric, that constraints ask for: x = M^-1 Phi_q^T S^-1 b. M is diagonal, so that S
-// is assembled column by column of Phi_q straight into the place where it is factored; products of constant columns are
-// formed once. Vectors are in coordinates: three a moving body.
+// and the least change, in the mass metric, that meets the constraints: x = M^-1 Phi_q^T S^-1 b. M is diagonal, so that
+// S is assembled column by column of Phi_q straight into the place where it is factored; products of constant columns
+// are formed once. Vectors are in coordinates: three a moving body.
 //
 // Massless coordinates (M only positive definite where the constraints leave freedom) get a small mass s, and the
-// solution is refined with the true M until what is left at them is rounding: with r the constrained mass, that which
-// really resists, each round leaves s / (s + r). s is to be small beside r and no smaller: it costs log(r / s) digits
-// of every single solve. Residuals are measured as forces over the root of s, compared with the largest such force.
+// solution is refined with the true M until the residual at them is rounding: with r the constrained mass, which
+// resists a motion of the coordinate, each round leaves s / (s + r). s should be small beside r, but not smaller than
+// needed: it costs log(r / s) digits of every solve. Residuals are measured as forces over the root of s, compared with
+// the largest such force.
 //
-// Very unequal masses: the inverse of a light one drowns the others' in S, and accelerations as M^-1 (Q - Phi_q^T
-// lambda) are differences of large numbers. One round of refinement with the residuals of both equations brings the
-// digits back, as far as the masses that matter determine them.
+// Very unequal masses: the inverse of a light one dominates the others in S, and accelerations as M^-1 (Q - Phi_q^T
+// lambda) are differences of large numbers. One round of refinement with the residuals of both equations restores the
+// digits, as far as the masses determine them.
 //
-// Rows that always depend on others (redundant constraints) make S singular along the motion. For each dependence one
-// direction c among the rows of one element is left out: no multiplier acts along it, and its equation is not solved,
+// Equations that always depend on others (redundant constraints) make S singular along the motion. For each dependence
+// one direction c among the equations of one element is left out: no multiplier acts along it, and its equation is not
+// solved,
 //
 //   [M, Phi_q^T; Phi_q, -C] [qdd; lambda] = [Q; gamma]        C = sum c c^T,   S + C in place of S
 //
 // With as many directions as dependences, none of them orthogonal to the null space of S, the matrix is regular, and
 // on the constraints C lambda = 0 holds by itself: the solution is the exact one, with multipliers that have no part
 // along c. Off the constraints by d, where integrators evaluate their stages, the solution changes by O(d) and
-// smoothly. (Regularising the rows instead gives multipliers of O(1/d) there, and accelerations that are wrong by
-// O(1).)
+// smoothly. (Regularising S instead gives multipliers of O(1/d) there, and accelerations that are wrong by O(1).)
 //
-// Singular case: rows that depend on each other for an instant. As soon as a pivot keeps less than 1e-10 of its
+// Singular case: equations that depend on each other for an instant. As soon as a pivot keeps less than 1e-10 of its
 // diagonal, 1e-12 of the diagonal is added and solutions are refined with the true S: accelerations are then exact on
 // the constraints, multipliers one of many. Nothing allocates after the first factorization.
 #pragma once
@@ -47,8 +48,8 @@ class SchurSystem {
  public:
   explicit SchurSystem(std::shared_ptr<const Plan> plan);
 
-  /// Masses by coordinate, size 3 plan.moving, and what counts for those that are zero; zero there too holds a
-  /// coordinate where it is.
+  /// Masses by coordinate, size 3 plan.moving, and substitutes for those that are zero; where both are zero the
+  /// coordinate is held.
   void set_masses(std::span<const double> masses, std::span<const double> substitutes);
 
   /// Directions c to leave out, each within the rows of one element and of the size of sqrt(S) there; none: all rows
@@ -57,7 +58,7 @@ class SchurSystem {
   const SparseVectors& left_out() const { return left_out_; }
   /// x = (S + C)^-1 x. On the constraints the solutions for all c span the left null space of Phi_q.
   void solve_rows(std::span<double> x, Counters& counters);
-  /// sqrt(S_rr) of the last factorize(), by row: what a unit of its multiplier counts in the metric of the masses.
+  /// sqrt(S_rr) of the last factorize(), by row: the size of a unit multiplier in the metric of the masses.
   std::vector<double> row_sizes() const;
 
   /// Factors S at the given values of Phi_q (size entries + 1); they must stay where they are for the solves.
@@ -70,8 +71,8 @@ class SchurSystem {
   /// Part of M qdd - Q + Phi_q^T lambda that the last solve_motion() left at massless coordinates, relative to the
   /// forces in it; 0 without such coordinates. Near 1: nothing that has mass determines their motion.
   double massless_residual() const { return massless_residual_; }
-  /// s / (s + r) of every massless coordinate, in the order of their numbers, or somewhat more: from a few solves with
-  /// random loads. Changes what solve_motion() left.
+  /// s / (s + r) of every massless coordinate, in the order of their numbers, or a somewhat larger value: estimated by
+  /// a few solves with random loads. Overwrites the results of solve_motion().
   std::vector<double> massless_shares(Counters& counters);
   /// The coordinate where it was largest.
   int worst_massless() const { return worst_massless_; }
@@ -88,9 +89,9 @@ class SchurSystem {
   /// Smallest part of a diagonal entry of S that elimination left: sin^2 of the angle between a row and those before.
   double smallest_pivot_ratio() const { return smallest_ratio_; }
   int weakest_row() const { return weakest_row_; }
-  /// Diagonal entry of S + C that belongs to the row; 1 where nothing that it touches can move.
+  /// Diagonal entry of S + C that belongs to the row; 1 where none of its bodies can move.
   double diagonal(int row) const { return diagonal_values_[static_cast<std::size_t>(row)]; }
-  /// What elimination left of the row's diagonal entry of S + C.
+  /// The part of the row's diagonal entry of S + C that elimination left.
   double pivot(int row) const { return factors_.pivot(row); }
   bool is_regularised() const { return regularised_; }
 

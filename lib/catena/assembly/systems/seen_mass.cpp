@@ -17,7 +17,7 @@ std::vector<double> seen_masses(const Plan& plan, std::span<const double> masses
   for (std::size_t k = 0; k < value.size(); ++k) value[at(rows.slot[k])] = jacobian[k];
   std::vector<double> seen(masses.size(), 0.0), compliance(at(plan.rows), 0.0);
   std::vector<int> reached, columns;
-  // What a column with a mass adds to its rows; those that it reaches first are noted.
+  // Contributions of a column with a mass to its rows; rows reached for the first time are noted.
   const auto add = [&](int column, double mass) {
     for (int k = a.column_start[at(column)]; k < a.column_start[at(column) + 1]; ++k) {
       const double entry = jacobian[at(k)];
@@ -36,7 +36,7 @@ std::vector<double> seen_masses(const Plan& plan, std::span<const double> masses
       for (int k = rows.pattern.column_start[at(row)]; k < rows.pattern.column_start[at(row) + 1]; ++k) {
         const int column = rows.pattern.row_index[at(k)], coordinate = plan.coordinate[at(column)];
         const double entry = value[at(k)];
-        // A column that an earlier round reached keeps what it saw there.
+        // A column that an earlier round reached keeps its value.
         if (entry == 0 || masses[at(coordinate)] > 0) continue;
         double& mass = seen[at(coordinate)];
         if (mass == 0) columns.push_back(column);
@@ -44,7 +44,7 @@ std::vector<double> seen_masses(const Plan& plan, std::span<const double> masses
       }
     }
     reached.clear();
-    // A mass is that of both directions: a row across one of them sees nothing there but rounding.
+    // x and y of a body share the larger mass: a row across one direction contains only rounding there.
     for (std::size_t n = 0; n < columns.size(); ++n) {
       const int coordinate = plan.coordinate[at(columns[n])], kind = coordinate % 3;
       if (kind == 2) continue;

@@ -3,11 +3,11 @@
 //   r_c = max over rows r of  Phi_rc^2 / sum_k Phi_rk^2 / m_k        k: coordinates that have a mass, or were seen
 //   before
 //
-// It is a start for the small masses that stand for zero ones: what resists c along row r alone if nothing else moves.
-// The constrained mass itself may be less (other rows, positions near a dead centre), so that whoever uses it checks
-// what comes out. Coordinates are reached row by row, first from what has mass, then from what was reached; r_c has the
-// unit of the coordinate's mass (kg, kg m^2) and scales with the scene; x and y of a body get the larger of both. 0: no
-// row leads there. Linear time.
+// It is a first guess for the small masses that replace zero ones: the mass that resists c through equation r alone if
+// nothing else moves. The constrained mass itself may be less (other equations, positions near a dead centre), so that
+// callers check the result. Coordinates are reached equation by equation, first from coordinates with mass, then from
+// those already reached; r_c has the unit of the coordinate's mass (kg, kg m^2) and scales with the scene; x and y of a
+// body get the larger of both. 0: no equation leads there. Linear time.
 #pragma once
 
 #include <span>

@@ -3,9 +3,9 @@
 //   h = r_P - C        Phi = h^T h - c^2        Phi_q = 2 h^T [I, R A s'P]
 //   nu = 2 c c'        gamma = -2 hd^T hd + 2 h^T A s'P phid^2 + 2 c'^2 + 2 c c''
 //
-// Symbols: C = (C1, C2) and c in m, c > 0. At c = 0 the gradient vanishes with h: refused, absolute_x and absolute_y
-// say what is meant. The solver scales the row by 1/(2c), to the unit of a length; multipliers, N/m, belong to the
-// form above. Source: Haug, section 3.2.
+// Symbols: C = (C1, C2) and c in m, c > 0. At c = 0 the gradient vanishes with h: refused; absolute_x and absolute_y
+// hold a point in place. The solver scales the equation by 1/(2c), to the unit of a length; multipliers, N/m, belong to
+// the form above. Source: Haug, section 3.2.
 #pragma once
 
 #include "catena/elements/element.hpp"

@@ -26,8 +26,9 @@ struct Cable {
   static constexpr auto hessian_pattern = squared_distance_hessian_pattern;
 
   Vec2<S> s_i{}, s_j{};
-  S length{-1.0};  // negative: not given, taken from the given configuration
-  S k{};           // only the scene reader's: zero is inextensible
+  S length{-1.0};                     // negative: not given, taken from the given configuration
+  S k{};                              // only the scene reader's: zero is inextensible
+  S restitution{}, rest_speed{-1.0};  // negative: not given
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &Cable::s_i, 0, "the end P_i on body i"},
@@ -35,13 +36,20 @@ struct Cable {
                            NumberField{"length", &Cable::length, UnitKind::length, Domain::positive, false,
                                        "its length L without tension (default: the given distance)"},
                            NumberField{"k", &Cable::k, UnitKind::stiffness, Domain::positive, false,
-                                       "stiffness when taut (default: inextensible)"});
+                                       "stiffness when taut (default: inextensible)"},
+                           NumberField{"restitution", &Cable::restitution, UnitKind::none, Domain::not_negative, false,
+                                       "of the jerk when it becomes taut in motion, 0 ... 1 (default 0)"},
+                           NumberField{"rest_speed", &Cable::rest_speed, UnitKind::velocity, Domain::not_negative,
+                                       false, "a slower rebound is none (default: 1e-4 of the speed of the motion)"});
   }
 
   void complete(const Frame<S>& i, const Frame<S>& j) {
     if (value_of(length) < 0) length = norm(separation(i, j, s_i, s_j));
   }
-  const char* check() const { return value_of(length) > 0 ? nullptr : "a cable needs a length above zero"; }
+  const char* check() const {
+    if (!(value_of(length) > 0)) return "a cable needs a length above zero";
+    return check_impact_and_friction(value_of(restitution), 0, -1);
+  }
 
   template <class T>
   T measure(const Frame<T>& i, const Frame<T>& j) const {

@@ -4,11 +4,11 @@
 //   Phi = n^T (p_j - p_i), n = R p_i' / |p_i'|        N = A_i n, r_C the contact
 //   Phi_qi = [-N^T, -((r_C - r_i) x N)]      Phi_qj = [N^T, (r_C - r_j) x N]      nu = 0
 //
-// Phi is the gap along the common normal, m, positive to the left of curve i. Both parameters belong to the element
-// alone: Newton's method from the common normal found last; one more step in the scalar of the derivatives carries
+// Phi is the gap along the common normal, m, positive to the left of curve i. Both parameters are internal to the
+// element: Newton's method from the common normal found last; one more step in the scalar of the derivatives carries
 // their derivatives exactly, and as Phi is stationary in both this makes gamma and the second derivatives exact. Of
 // several common normals the shortest in the given configuration is followed; see common_normal.hpp for what kinds
-// there are. Open curves go on as straight lines; curve_use() tells where one ends for good. Singular where the
+// there are. Open curves go on as straight lines; curve_use() reports a place beyond an end. Singular where the
 // curvatures are equal, hollow against round.
 // Multiplier: minus the normal force on j along N, N. Source: Haug, section 3.4 (cam-follower).
 #pragma once
@@ -51,7 +51,7 @@ struct CamCam {
   const char* check() const {
     if (!curve_i || !curve_j) return "lacks a curve";
     if (curve_i.is_line() && curve_j.is_line()) return "two straight lines have no point of contact";
-    if (curve_i.holds() || curve_j.holds()) return "a cam that ends goes on as a line, or not at all: it cannot hold";
+    if (curve_i.holds() || curve_j.holds()) return "a cam cannot have \"beyond\": \"hold\"; use \"error\" or \"line\"";
     return contact.kind < 0 ? "the cams have no common normal in the given configuration" : nullptr;
   }
   const char* trouble(const Arguments<double>& a) const {
@@ -94,7 +94,8 @@ struct CamCam {
   }
 
  private:
-  /// The same as find_contact(), once a place of the bodies: rows and their derivatives are evaluated in turns.
+  /// find_contact(), repeated only for a new place of the bodies: equations and their derivatives are evaluated in
+  /// turns.
   bool follow_contact(const Frame<double>& relative) const {
     if (relative.x != found_for.x || relative.y != found_for.y || relative.c != found_for.c ||
         relative.s != found_for.s) {

@@ -7,10 +7,10 @@
 // of it. The contact is the point of the cam that lies farthest along N, or against it: whichever is nearer to the face
 // in the given configuration. It belongs to the element alone: Newton's method in s from the point found last, and one
 // more step in the scalar of the derivatives, as in point_on_curve. Where an open curve has no such point its end takes
-// the place: for good where the curve holds there (a corner that slides on the face), else for the row to stay finite,
-// and curve_use() tells. Singular where the cam's curvature vanishes at the contact; a straight line is
-// refused. The cam should be convex: over a hollow the followed point need not be the one that touches. Multiplier: the
-// normal force on j along N, N. Source: Haug, section 3.4 (flat-faced follower).
+// its place: as a valid contact where the curve holds there (a corner that slides on the face), else only to keep the
+// equation finite; curve_use() reports it. Singular where the cam's curvature vanishes at the contact; a straight line
+// is refused. The cam should be convex: over a hollow the followed point need not be the one that touches. Multiplier:
+// the normal force on j along N, N. Source: Haug, section 3.4 (flat-faced follower).
 #pragma once
 
 #include <type_traits>
@@ -113,7 +113,7 @@ struct CamFlat {
   Vec2<T> face_point(const Frame<T>& i, const Frame<T>& j) const {
     return i.to_local(j.point(s_j) - i.origin());
   }
-  /// The same as find_contact(), once a direction: rows and their derivatives are evaluated in turns.
+  /// find_contact(), repeated only for a new direction: equations and their derivatives are evaluated in turns.
   bool follow_contact(const Vec2<double>& n) const {
     if (n.x != found_for.x || n.y != found_for.y) {
       found = find_contact(n);

@@ -1,4 +1,4 @@
-// custom_constraint: one equation of the user's own making between body i and body j, in C++ only.
+// custom_constraint: a user-defined equation between body i and body j, in C++ only.
 //
 //   Phi = m(q_i, q_j) - c = 0         m: the law's measure, in m; c a function of time, hence it may be a driver
 //
@@ -12,8 +12,7 @@
 //   model.add("rail", custom_constraint(OnParabola{0.5}), i, j, 0.0);
 //
 // A joint of several equations is several of these. Frames are those of the centroids relative to a common origin.
-// Singular where the law's derivative vanishes. One virtual call an element and evaluation; models without one pay
-// nothing.
+// Singular where the law's derivative vanishes. Costs one virtual call per element and evaluation.
 #pragma once
 
 #include "catena/elements/element.hpp"
@@ -24,7 +23,7 @@ namespace catena {
 template <class S = double>
 struct CustomConstraint {
   static constexpr std::string_view type = "custom_constraint";
-  static constexpr std::string_view summary = "An equation of the user's own making, in C++.";
+  static constexpr std::string_view summary = "A user-defined equation, in C++.";
   static constexpr std::string_view equation = "m(q_i, q_j) - c = 0";
   static constexpr int rows = 1;
   static constexpr int bodies = 2;
@@ -35,9 +34,10 @@ struct CustomConstraint {
   Vec2<S> s_i, s_j;  // where reactions are reported
 
   static constexpr auto fields() {
-    return std::make_tuple(PointField{"i", &CustomConstraint::s_i, 0, "the point P_i of body i for reactions"},
-                           PointField{"j", &CustomConstraint::s_j, 1, "the point P_j of body j for reactions"},
-                           FunctionField{"value", 0, UnitKind::length, Omitted::given, "c, what is measured"});
+    return std::make_tuple(
+        PointField{"i", &CustomConstraint::s_i, 0, "the point P_i of body i for reactions"},
+        PointField{"j", &CustomConstraint::s_j, 1, "the point P_j of body j for reactions"},
+        FunctionField{"value", 0, UnitKind::length, Omitted::given, "c, the value of the law's measure"});
   }
 
   const char* check() const { return law ? nullptr : "needs a law"; }
@@ -52,7 +52,7 @@ struct CustomConstraint {
   }
 };
 
-/// The element for a law; see equation_law.hpp for what a law has.
+/// The element for a law; see equation_law.hpp for the members of a law.
 template <class Law>
 CustomConstraint<double> custom_constraint(Law law) {
   return {std::make_shared<const EquationLawOf<Law>>(std::move(law)), {}, {}};

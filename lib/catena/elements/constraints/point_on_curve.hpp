@@ -3,11 +3,11 @@
 //   x = A_i^T (r_Pj - r_i)        foot: (p(s) - x)^T p'(s) = 0        Phi = n(s)^T (x - p(s)), n = R p' / |p'|
 //   Phi_qi = [-N^T, -((r_Pj - r_i) x N)]      Phi_qj = [N^T, A_j s'Pj x N]      N = A_i n        nu = 0
 //
-// Phi is the distance to the left of the curve, m. The parameter s belongs to the element alone: Newton's method from
-// the foot found last (the nearest point at first) keeps the branch where a curve crosses itself; one more step in the
+// Phi is the distance to the left of the curve, m. The parameter s is internal to the element: Newton's method from the
+// foot found last (the nearest point at first) keeps the branch where a curve crosses itself; one more step in the
 // scalar of the derivatives carries ds/dq exactly, and as Phi is stationary in s this makes gamma and the second
-// derivatives exact. Beyond the ends of an open curve the row is that of the straight line along the tangent at the
-// end; curve_use() tells where the curve ends for good. Singular where x is a centre of curvature, never on the curve.
+// derivatives exact. Beyond the ends of an open curve the equation is that of the straight line along the tangent at
+// the end; curve_use() reports a place beyond an end. Singular where x is a centre of curvature, never on the curve.
 // Multiplier: minus the normal force on j, N. Source: Haug, section 3.4 (point follower).
 #pragma once
 
@@ -84,7 +84,7 @@ struct PointOnCurve {
     const double size = squared_norm(c.d1);
     return {dot(c.p - x, c.d1), size + dot(c.p - x, c.d2), size};
   }
-  /// The same as find_foot(), once a place: rows and their derivatives are evaluated in turns.
+  /// find_foot(), repeated only for a new place: equations and their derivatives are evaluated in turns.
   bool follow_foot(const Vec2<double>& x) const {
     if (x.x != found_for.x || x.y != found_for.y) {
       found = find_foot(x);

@@ -1,7 +1,7 @@
 // rack_pinion: pinion j rolls on the straight pitch line of rack i without slip.
 //
 //   u = A_i u'    h = r_Pj - r_Pi
-//   Phi = [(R u)^T h - s R_p; u^T h + s R_p (phi_j - phi_i) - c] (2 rows)
+//   Phi = [(R u)^T h - s R_p; u^T h + s R_p (phi_j - phi_i) - c] (2 equations)
 //   Phi_q and gamma: those of slot and displacement, axis_projection.hpp, and -+ s R_p for the angles        nu = 0
 //
 // Symbols: u' unit vector along the rack in its frame; P_i a point of the pitch line; P_j the pinion's centre; R_p its
@@ -19,7 +19,7 @@ struct RackPinion {
   static constexpr std::string_view type = "rack_pinion";
   static constexpr std::string_view summary = "Pinion j rolls on the straight pitch line of rack i.";
   static constexpr std::string_view equation =
-      "(R u)^T h - s R_p = 0,  u^T h + s R_p (phi_j - phi_i) - c = 0  (2 rows),  h = r_Pj - r_Pi,  u along axis_i";
+      "(R u)^T h - s R_p = 0,  u^T h + s R_p (phi_j - phi_i) - c = 0  (2 equations),  h = r_Pj - r_Pi,  u along axis_i";
   static constexpr int rows = 2;
   static constexpr int bodies = 2;
   static constexpr int functions = 0;

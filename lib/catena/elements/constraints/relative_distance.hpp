@@ -3,9 +3,9 @@
 //   h = r_Pj - r_Pi       Phi = h^T h - c^2       Phi_qi = -2 h^T [I, R A_i s'Pi]       Phi_qj = 2 h^T [I, R A_j s'Pj]
 //   nu = 2 c c'            gamma = -2 hd^T hd + 2 h^T (A_j s'Pj phid_j^2 - A_i s'Pi phid_i^2) + 2 c'^2 + 2 c c''
 //
-// Symbols: s'Pi, s'Pj in the frames of their bodies and c in m, c > 0. At c = 0 the gradient vanishes with h: refused,
-// a revolute joint says what is meant. The solver scales the row by 1/(2c), to the unit of a length; multipliers, N/m,
-// belong to the form above. Source: Haug, section 3.3.
+// Symbols: s'Pi, s'Pj in the frames of their bodies and c in m, c > 0. At c = 0 the gradient vanishes with h: refused;
+// a revolute joint takes its place. The solver scales the equation by 1/(2c), to the unit of a length; multipliers,
+// N/m, belong to the form above. Source: Haug, section 3.3.
 #pragma once
 
 #include "catena/elements/squared_distance.hpp"

@@ -1,6 +1,6 @@
 // revolute: a point of body i and a point of body j coincide; the bodies turn freely about it.
 //
-//   h = r_Pj - r_Pi = 0 (2 rows)        Phi_qi = [-I, -R A_i s'Pi]        Phi_qj = [I, R A_j s'Pj]
+//   h = r_Pj - r_Pi = 0 (2 equations)        Phi_qi = [-I, -R A_i s'Pi]        Phi_qj = [I, R A_j s'Pj]
 //   nu = 0                              gamma = A_j s'Pj phid_j^2 - A_i s'Pi phid_i^2
 //
 // Symbols: s'Pi, s'Pj in the frames of their bodies, m. Never singular by itself. Multipliers: minus the force on j, N.
@@ -15,7 +15,7 @@ template <class S = double>
 struct Revolute {
   static constexpr std::string_view type = "revolute";
   static constexpr std::string_view summary = "A point of body i and a point of body j coincide: a pin.";
-  static constexpr std::string_view equation = "r_Pj - r_Pi = 0  (2 rows)";
+  static constexpr std::string_view equation = "r_Pj - r_Pi = 0  (2 equations)";
   static constexpr int rows = 2;
   static constexpr int bodies = 2;
   static constexpr int functions = 0;

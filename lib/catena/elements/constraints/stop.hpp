@@ -5,7 +5,7 @@
 //
 // Symbols: u, min, max in rad or m. With both bounds Psi is smooth, and at either of them its slope is that of the
 // distance to it: p is then the torque, N m, or the force, N, of the bound that is reached; the reported gap is the
-// distance to the nearer one. k and c are those of the penalty that dynamics is to use; equilibrium takes the
+// distance to the nearer one. In motion it is rigid, with impacts, or compliant where k is given; equilibrium takes the
 // inequality itself. Singular: a distance |h| = 0, which has no direction. Source: gap_element.hpp.
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace catena {
 
-/// What a stop bounds.
+/// The quantity that a stop bounds.
 enum class StopQuantity : unsigned char { angle, slide, distance };
 
 template <class S = double>
@@ -32,14 +32,15 @@ struct Stop {
   Vec2<S> s_i{}, s_j{}, axis_i{1.0, 0.0};
   StopQuantity quantity = StopQuantity::angle;
   S min{-std::numeric_limits<double>::infinity()}, max{std::numeric_limits<double>::infinity()};
-  S k{}, c{};
+  S k{}, c{}, exponent{1.0};
+  S restitution{}, rest_speed{-1.0};  // negative: not given
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &Stop::s_i, 0, "the point P_i of body i"},
                            PointField{"j", &Stop::s_j, 1, "the point P_j of body j"},
                            AxisField{"axis_i", &Stop::axis_i, 0, false, "direction of a slide on body i"});
   }
-  /// What a scene sets in their place: the column says where the stop acts.
+  /// The keys of a scene in their place: the column determines where the stop acts.
   static constexpr auto keys() {
     return std::make_tuple(
         ColumnField{"column",
@@ -49,8 +50,15 @@ struct Stop {
                    "its least value (default: none)"},
         BoundField{"max", &Stop::max, UnitKind::length, UnitKind::angle, Domain::any,
                    "its largest value (default: none)"},
-        BoundField{"k", &Stop::k, UnitKind::stiffness, UnitKind::torsion_stiffness, Domain::positive, ""},
-        BoundField{"c", &Stop::c, UnitKind::damping, UnitKind::torsion_damping, Domain::not_negative, ""});
+        BoundField{"k", &Stop::k, UnitKind::stiffness, UnitKind::torsion_stiffness, Domain::positive,
+                   "stiffness in motion: k d^exponent + c d' at a depth d (default: rigid, with impacts)"},
+        BoundField{"c", &Stop::c, UnitKind::damping, UnitKind::torsion_damping, Domain::not_negative,
+                   "damping beside k (default 0)"},
+        NumberField{"exponent", &Stop::exponent, UnitKind::none, Domain::positive, false, "of the depth (default 1)"},
+        NumberField{"restitution", &Stop::restitution, UnitKind::none, Domain::not_negative, false,
+                    "of rigid impacts, 0 ... 1 (default 0): the part of the closing speed that comes back"},
+        BoundField{"rest_speed", &Stop::rest_speed, UnitKind::velocity, UnitKind::angular_velocity,
+                   Domain::not_negative, "a slower rebound is none (default: 1e-4 of the speed of the motion)"});
   }
 
   bool in_angle() const { return quantity == StopQuantity::angle; }
@@ -60,7 +68,8 @@ struct Stop {
     if (has_low() && has_high() && value_of(min) >= value_of(max)) return "\"min\" must be below \"max\"";
     if (quantity == StopQuantity::distance && has_high() && value_of(max) <= 0)
       return "a distance cannot be below zero: \"max\" must be positive";
-    return has_direction(axis_i) ? nullptr : "the axis has no direction";
+    if (!has_direction(axis_i)) return "the axis has no direction";
+    return check_impact_and_friction(value_of(restitution), 0, -1);
   }
   const char* trouble(const Arguments<double>& a) const {
     const bool lost = quantity == StopQuantity::distance && squared_norm(separation(a.i, a.j, s_i, s_j)) == 0;
@@ -91,7 +100,7 @@ struct Stop {
   }
 
  private:
-  // What could not be read is no number, and was reported: it counts as given.
+  // A bound that could not be read is NaN and was reported: it counts as given.
   bool has_low() const { return value_of(min) != -std::numeric_limits<double>::infinity(); }
   bool has_high() const { return value_of(max) != std::numeric_limits<double>::infinity(); }
 };

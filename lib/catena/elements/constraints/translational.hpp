@@ -1,7 +1,7 @@
 // translational: body j slides along a line of body i without turning against it.
 //
 //   v = A_i v'    w = A_j w'    h = r_Pj - r_Pi
-//   Phi = [(R v)^T h; (R v)^T w] (2 rows)
+//   Phi = [(R v)^T h; (R v)^T w] (2 equations)
 //   Phi_qi = [-(R v)^T, -v^T (h + A_i s'Pi); 0, 0, -v^T w]       Phi_qj = [(R v)^T, v^T A_j s'Pj; 0, 0, v^T w]
 //   nu = 0    gamma = [phid_i^2 (R v)^T h + 2 phid_i v^T hd - (R v)^T hdd; (phid_j - phid_i)^2 (R v)^T w]
 //
@@ -21,7 +21,7 @@ struct Translational {
   static constexpr std::string_view type = "translational";
   static constexpr std::string_view summary = "Body j slides along a line of body i without turning against it.";
   static constexpr std::string_view equation =
-      "(R v)^T h = 0,  (R v)^T w = 0  (2 rows),  h = r_Pj - r_Pi,  v along axis_i,  w along axis_j";
+      "(R v)^T h = 0,  (R v)^T w = 0  (2 equations),  h = r_Pj - r_Pi,  v along axis_i,  w along axis_j";
   static constexpr int rows = 2;
   static constexpr int bodies = 2;
   static constexpr int functions = 0;

@@ -1,6 +1,6 @@
 // weld: body j keeps its place and angle with respect to body i.
 //
-//   Phi = [r_Pj - r_Pi; phi_j - phi_i - c] (3 rows), c the angle between the frames in the given configuration
+//   Phi = [r_Pj - r_Pi; phi_j - phi_i - c] (3 equations), c the angle between the frames in the given configuration
 //   nu = 0        gamma = [A_j s'Pj phid_j^2 - A_i s'Pi phid_i^2; 0]
 //
 // Symbols: s'Pi, s'Pj in the frames of their bodies, m; c in rad. Never singular. A body welded to the ground is not
@@ -17,7 +17,7 @@ struct Weld {
   static constexpr std::string_view type = "weld";
   static constexpr std::string_view summary =
       "Body j is fixed to body i at a point, at the angle of the given configuration.";
-  static constexpr std::string_view equation = "r_Pj - r_Pi = 0,  phi_j - phi_i - c = 0  (3 rows)";
+  static constexpr std::string_view equation = "r_Pj - r_Pi = 0,  phi_j - phi_i - c = 0  (3 equations)";
   static constexpr int rows = 3;
   static constexpr int bodies = 2;
   static constexpr int functions = 0;

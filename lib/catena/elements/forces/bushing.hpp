@@ -4,9 +4,9 @@
 //   F = A_i [kx dx + cx dxd, ky dy + cy dyd]    n = kt theta + ct thetad        at P_j: +F, +n on i and -F, -n on j
 //   V = (kx dx^2 + ky dy^2 + kt theta^2) / 2    dissipation cx dxd^2 + cy dyd^2 + ct thetad^2
 //
-// Symbols: kx, ky N/m, kt N m/rad, cx, cy N s/m, ct N m s/rad, theta0 rad. d is what an observer on i sees, hence i's
-// axes take part in its rate and F acts on i at the place of P_j, not of P_i. Without force where the points coincide
-// and the bodies' angles differ by theta0. Never singular. Source: Haug, section 6.2 (generalised).
+// Symbols: kx, ky N/m, kt N m/rad, cx, cy N s/m, ct N m s/rad, theta0 rad. d is measured in the axes of i, hence the
+// rotation of i is part of its rate and F acts on i at the place of P_j, not of P_i. Without force where the points
+// coincide and the bodies' angles differ by theta0. Never singular. Source: Haug, section 6.2 (generalised).
 #pragma once
 
 #include "catena/elements/force_element.hpp"

@@ -1,4 +1,4 @@
-// custom_force: a force of the user's own making between body i and body j, in C++ only.
+// custom_force: a user-defined force between body i and body j, in C++ only.
 //
 //   struct Magnet {                                        // pulls two bodies together with strength / distance^2
 //     double strength;
@@ -13,7 +13,7 @@
 //
 // Frames are those of the centroids relative to a common origin: where j is the ground, positions in the ground are
 // differences to a.j. a.f[0] is a function of time handed to add_force (default 0). Units: N, N m, J. Singular where
-// the law is. One virtual call an element and evaluation; models without one pay nothing.
+// the law is. Costs one virtual call per element and evaluation.
 #pragma once
 
 #include "catena/elements/force_law.hpp"
@@ -23,8 +23,8 @@ namespace catena {
 template <class S = double>
 struct CustomForce {
   static constexpr std::string_view type = "custom_force";
-  static constexpr std::string_view summary = "A force of the user's own making, in C++.";
-  static constexpr std::string_view equation = "Q as the law says";
+  static constexpr std::string_view summary = "A user-defined force, in C++.";
+  static constexpr std::string_view equation = "Q given by the law";
   static constexpr int bodies = 2;
   static constexpr int functions = 1;
 
@@ -50,7 +50,7 @@ struct CustomForce {
   }
 };
 
-/// The element for a law; see force_law.hpp for what a law has.
+/// The element for a law; see force_law.hpp for the members of a law.
 template <class Law>
 CustomForce<double> custom_force(Law law) {
   return {std::make_shared<const ForceLawOf<Law>>(std::move(law)), {}, {}};

@@ -1,4 +1,4 @@
-// elastic_cable: what a scene's cable with a stiffness k is: a spring that pulls only.
+// elastic_cable: a spring that pulls only; a scene writes it as a cable with a stiffness k.
 //
 //   h = r_Pj - r_Pi    l = |h|    f = k max(l - L, 0)        on i +f h/l at P_i, on j -f h/l at P_j
 //   V = k max(l - L, 0)^2 / 2        gap L - l

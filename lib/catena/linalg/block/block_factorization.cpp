@@ -26,7 +26,7 @@ void BlockFactorization::analyze(std::span<const MatrixEntry> entries, std::span
   pivots_.resize(order.size());
   work_.resize(order.size());
   place_updates();
-  // What the slots say now.
+  // The present order of the slots.
   structure_.source = std::vector<int>();
   structure_.target = std::vector<int>();
 }
@@ -100,7 +100,7 @@ void BlockFactorization::place_updates() {
   column_.resize(static_cast<std::size_t>(tallest));
 }
 
-// A block of any size: its columns, then column by column what they take off later blocks.
+// A block of any size: its columns, then column by column their updates of later blocks.
 void BlockFactorization::eliminate_large(const Step& step, double* panel, const Segment* segments, int* done) {
   const int height = step.columns + step.below;
   double* const pivots = pivots_.data() + step.first;

@@ -1,9 +1,8 @@
 // A x = b for a symmetric sparse matrix by P A P^T = L D L^T without pivoting, for matrices whose rows come in small
-// nodes: the constraints of joints, the coordinates of bodies. Values of A are written straight into the place where L
-// will stand, and what the elimination of a block takes off the rest goes straight to its place there too: both are
-// known beforehand, so that nothing is searched, stacked or copied. What is done on a small block is known to the
-// compiler, loops included (small_block_kernels.hpp). Three times as fast as a factorization row by row where rows come
-// in nodes of two to six.
+// nodes: the constraints of joints, the coordinates of bodies. Values of A are written directly into the storage of L,
+// and so are the updates that the elimination of a block makes to later blocks: both places are computed beforehand, so
+// that nothing is searched, stacked or copied. The loops of small blocks have constant lengths
+// (small_block_kernels.hpp). Three times as fast as a factorization row by row where rows come in nodes of two to six.
 //
 //   analyze once;   then as often as wanted: factorize(values), or values() filled through slots() and factorize() in
 //   place;          solve() as often as wanted
@@ -68,7 +67,7 @@ class BlockFactorization {
     int height;    ///< of the later block
     int relative;  ///< where the list of its rows for first, first + 1, ... begins
   };
-  /// One block as elimination and solution go through them: panels, rows and places follow each other.
+  /// One block, in the order of elimination: panels, rows and places follow each other.
   struct Step {
     int first;           ///< place of its first column
     short shape;         ///< code of small_block_kernels.hpp; 0: a large block

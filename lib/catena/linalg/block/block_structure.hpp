@@ -1,5 +1,5 @@
-// What a factorization of a symmetric sparse matrix block by block needs to know beforehand: which rows of L belong
-// together, where every value of the matrix goes, and in which order the parts are worked off.
+// The structure of a factorization of a symmetric sparse matrix block by block: which rows of L belong together, where
+// every value of the matrix goes, and the order of elimination.
 //
 // The matrix comes in nodes: rows that are eliminated together and share their neighbours, such as the coordinates of a
 // body. Fill-in is found on the graph of nodes, several times smaller than that of rows. Nodes whose columns of L have
@@ -42,7 +42,7 @@ struct BlockStructure {
   BlockStructure() = default;
   /// Value k of the matrix belongs to entries[k], of either triangle; values of equal places add up. `order`: a
   /// permutation of the rows. Node k: the rows order[node_start[k]] ... order[node_start[k + 1] - 1]. The order of
-  /// nodes is changed only where that changes no number. Throws std::invalid_argument for what is none of this.
+  /// nodes is changed only where that changes no number. Throws std::invalid_argument for arguments that violate this.
   BlockStructure(std::span<const MatrixEntry> entries, std::span<const int> order, std::span<const int> node_start);
 
   int count() const { return static_cast<int>(blocks.size()) - 1; }

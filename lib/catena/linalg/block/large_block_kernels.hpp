@@ -1,8 +1,8 @@
 // The dense work on one large block of block_factorization.hpp: a trapezoid `panel` of `height` rows and c columns,
-// stored by columns, and what its elimination takes off the rest.
+// stored by columns, and the updates that its elimination makes to the rest.
 //
-// Columns are worked off in groups of at most `group`, whose number the compiler knows: what they do to another column
-// is one pass over it.
+// Columns are eliminated in groups of at most `group`, a constant of the compiler: their update of another column is
+// one pass over it.
 #pragma once
 
 #include <cstddef>
@@ -48,7 +48,7 @@ void update_column(const double* l, int height, const double* pivots, double* co
   }
 }
 
-/// A group of c columns of the panel, and what it does to the columns after it.
+/// A group of c columns of the panel, and its update of the columns after it.
 template <int c>
 int eliminate_group(double* panel, int height, int columns, int first, double* pivots) {
   const int done = factor_group<c>(panel, height, first, pivots);
@@ -106,8 +106,8 @@ inline void add_update(const double* panel, int height, int columns, const doubl
   }
 }
 
-/// y := L^-1 y of the block's columns, `own` being their part of y; what follows from it for the rows below, whose
-/// places in y are `rows`, is taken off there.
+/// y := L^-1 y of the block's columns, `own` being their part of y; the contributions to the rows below, whose places
+/// in y are `rows`, are subtracted there.
 inline void solve_forward(const double* panel, int height, int columns, const int* rows, double* own, double* y) {
   for (int first = 0; first < columns;) {
     first += with_group(columns - first, [&](auto c) {

@@ -13,8 +13,8 @@ constexpr int shape_code(int columns, int below) {
   return columns <= most_columns && below <= most_below ? 1 + (columns - 1) * (most_below + 1) + below : 0;
 }
 
-/// Eliminates the columns; what that takes off the rest goes to rest[slot[0]], rest[slot[1]], ... Result: c, or how
-/// many columns came before a pivot that is zero.
+/// Eliminates the columns; the updates of the rest go to rest[slot[0]], rest[slot[1]], ... Result: c, or how many
+/// columns came before a pivot that is zero.
 template <int c, int r>
 inline int eliminate(double* panel, double* pivots, double* rest, const int* slot) {
   constexpr int h = c + r;

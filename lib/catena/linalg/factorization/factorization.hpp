@@ -3,7 +3,7 @@
 // solve allocates, unless pivots have to be chosen anew or a fallback takes over.
 //
 // KLU works on the diagonal blocks of the block triangular form; their pivots tell which part of a mechanism nears a
-// singular position. What the matrix of values must be: entry k of `values` belongs to entry k of the pattern.
+// singular position. Entry k of `values` belongs to entry k of the pattern.
 // Bad values (NaN) outside the diagonal blocks are not looked for in `factorize`; they come out in the solution.
 // One object serves one thread at a time; different objects are independent.
 #pragma once
@@ -21,7 +21,7 @@
 
 namespace catena {
 
-/// When solve_checked is content.
+/// When solve_checked accepts a solution.
 struct SolveCheck {
   double tolerance = 1e-13;  ///< for max_i |b - A x|_i / (sum_j |a_ij| * max|x| + |b_i|); blind to the rows' scales
   int max_refinements = 2;   ///< for each kernel tried
@@ -81,7 +81,7 @@ class Factorization {
   int size() const { return pattern_.columns; }
   const SparsePattern& pattern() const { return pattern_; }
   bool is_factorized() const { return factorized_; }
-  /// klu or umfpack: what the next solve uses.
+  /// klu or umfpack: the kernel of the next solve.
   Kernel kernel_in_use() const { return umfpack_in_use_ ? Kernel::umfpack : Kernel::klu; }
 
   /// Smallest over largest pivot magnitude of the scaled matrix: a crude reciprocal condition number, 0 without a
@@ -106,8 +106,8 @@ class Factorization {
   PivotInfo smallest_pivot(int block) const;
 
   /// How far every diagonal block is from a singular matrix, with the sign of its determinant up to a factor that never
-  /// changes between factorizations: a sign that differs tells that a block went through a singular matrix in between.
-  /// Empty while UMFPACK is in use. No allocation after the first call.
+  /// changes between factorizations: a different sign shows that a block has passed a singular matrix in between. Empty
+  /// while UMFPACK is in use. No allocation after the first call.
   std::span<const BlockMargin> block_margins();
 
   /// A failed result in a sentence for a report.

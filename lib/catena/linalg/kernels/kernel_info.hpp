@@ -1,5 +1,5 @@
 // The direct factorizations catena knows, and which of them this build contains. UMFPACK and SPQR (both GPL) can be
-// left out of a build; what they serve then says so instead of vanishing.
+// left out of a build; requests for them are then answered by `unavailable`.
 #pragma once
 
 #include <string>

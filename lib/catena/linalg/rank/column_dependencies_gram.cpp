@@ -61,7 +61,7 @@ bool form_gram_matrix(const SparsePattern& pattern, std::span<const double> valu
 }
 
 /// Tells dependent from independent columns by their pivots. A pivot that is nothing but rounding error makes the ones
-/// after it unreliable; so what was found dependent is taken out of play, and the rest is judged again.
+/// after it unreliable; the columns found dependent are therefore removed, and the rest is judged again.
 FactorResult classify(const SparsePattern& pattern, const GramMatrix& gram, SymmetricFactorization& factors,
                       Counters& counters, ColumnDependencies& result) {
   constexpr int most_rounds = 20;

@@ -22,9 +22,10 @@ class UpperTrapezoid {
   std::span<const double> diagonal() const { return diagonal_; }  ///< of R11
 
   /// Solves R11 c = R(:, place) for a dead column with the work its sparsity asks for (a depth-first search finds the
-  /// rows that can be nonzero). What cancellation leaves of a row below `negligible` times its terms and the
-  /// column's length is taken as zero, a perturbation of R by as much: otherwise rounding errors would travel through
-  /// all that the row needs, amplified by every transmission on the way. Appends (row of R11, coefficient) pairs.
+  /// rows that can be nonzero). A result of cancellation in a row below `negligible` times its terms and the column's
+  /// length is taken as zero, a perturbation of R by as much: otherwise rounding errors would propagate through all
+  /// rows on which it depends, amplified by every transmission ratio on the way. Appends (row of R11, coefficient)
+  /// pairs.
   struct Entry {
     int row;
     double value;

@@ -17,7 +17,7 @@ namespace catena {
 template <class S>
 class BodyComposition {
  public:
-  /// Adds a part, its numbers as in PartTemplate. What is wrong with it, as a phrase, or nullptr.
+  /// Adds a part, its numbers as in PartTemplate. Returns an error as a phrase, or nullptr.
   const char* add(PartTemplate::Shape shape, const S& mass, std::span<const S> n);
 
   const S& mass() const { return mass_; }

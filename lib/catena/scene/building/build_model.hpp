@@ -1,11 +1,11 @@
-// From a compiled scene and parameter values to the model: replicate blocks expanded, names resolved, what the scene
-// leaves out taken from the given configuration.
+// Builds the model from a compiled scene and parameter values: expands replicate blocks, resolves names, and takes
+// omitted values from the given configuration.
 //
 // Templated on the scalar of the parameters: with Dual numbers the derivatives run through everything that follows from
 // them, local points from a place `at`, the inertia of a rod, spline coefficients, constants taken from the
 // configuration. Bodies first, then elements, so that blocks and lists may name each other in any order. Linear time, a
-// microsecond or two a link. Whatever is wrong is reported at its place in the text, in a repeated block for the first
-// k for which it is.
+// microsecond or two a link. Every error is reported at its place in the text, in a repeated block for the first k at
+// which it occurs.
 #pragma once
 
 #include <cstdint>

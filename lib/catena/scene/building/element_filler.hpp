@@ -18,7 +18,7 @@ namespace filling {
 inline constexpr const char* zero_distance =
     "a distance of zero makes the equation vanish; use absolute_x and absolute_y, or a revolute joint, instead";
 
-/// What fills the members of one element; false in `good` once anything was reported.
+/// Fills the members of one element; run() returns false if anything was reported.
 template <class E, class S>
 class Filler {
  public:
@@ -212,7 +212,7 @@ void fill(ModelBuilder<S>& builder, const ElementTemplate& source, const int* bo
       const auto [frame_i, frame_j] = given_frames<E>(model, entry.i, entry.j);
       measure_value<E, S>(entry, frame_i, frame_j);
     }
-    // What changes with time drives, whichever list it stands in.
+    // A constraint whose value changes with time is a driver, whichever list it is in.
     if (entry.values[0].function >= 0) kind = ElementKind::driver;
     if constexpr (HasSquaredValue<E>) {
       if (entry.values[0].function < 0 && value_of(entry.values[0].constant) <= 0) {

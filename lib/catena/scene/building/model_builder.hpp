@@ -38,17 +38,19 @@ class ModelBuilder {
   bool known_wrong(std::size_t offset) const {
     return diagnostics_.full() || (!evaluation_.loop_names().empty() && diagnostics_.reported(*scene_.source, offset));
   }
-  /// Whether anything was said of this place: what follows from a mistake that was reported is not said as well.
+  /// Whether an error at this place was reported: consequences of a reported error are not reported.
   bool reported(std::size_t offset) const { return diagnostics_.reported(*scene_.source, offset); }
   /// The element that is being built, for messages: `revolute "A"`.
   std::string owner(const ElementTemplate& element) const;
-  /// Throws std::invalid_argument for what is no function of time.
+  /// Throws std::invalid_argument for data that define no function of time.
   TimeFunction<S> function(const FunctionTemplate& source);
   /// In the author's frame of its body. Throws std::invalid_argument.
   Curve<S> curve(const CurveTemplate& source);
   std::vector<Vec2<S>> table(const TableTemplate& source);
   /// Where a stop acts, from the name of its column; false, with a report, if there is no such column.
   bool find_column(const ElementTemplate& source, ElementEntry<Stop<S>, S>& stop);
+  /// The same of the joint that rubs, from its name.
+  bool find_column(const ElementTemplate& source, ElementEntry<Friction<S>, S>& friction);
   /// Adds an element that is complete, under its name.
   template <class E>
   void append(const ElementTemplate& source, const ElementEntry<E, S>& entry, ElementKind kind);

@@ -49,7 +49,7 @@ void ModelBuilder<S>::add_body(const BodyTemplate& source) {
       using std::atan2;
       half = norm(along) * S(0.5);
       body.angle = atan2(along.y, along.x);
-      // Of a rod whose centroid is elsewhere only its author knows the inertia.
+      // The inertia of a rod with a given centroid is not known unless it is given.
       if (!body.has_inertia && !source.has(BodyNumber::centroid_x)) {
         body.inertia = body.mass * half * half / S(3.0);
         body.has_inertia = body.has_mass;
@@ -122,7 +122,7 @@ void ModelBuilder<S>::add_points(int body, const BodyTemplate& source) {
       }
       continue;
     }
-    // What is no number was reported; the name is known all the same.
+    // An invalid number was reported; the point keeps its name so that references to it are valid.
     const Vec2<S> local{value(point.x), value(point.y)};
     const bool good = std::isfinite(value_of(local.x)) && std::isfinite(value_of(local.y));
     model_.add_point(body, point_name_, good ? local : Vec2<S>{});

@@ -1,4 +1,4 @@
-// ModelBuilder: the columns that stops bound.
+// ModelBuilder: the columns that stops bound, and the joints that rub.
 #include <fmt/format.h>
 
 #include "catena/elements/all.hpp"
@@ -51,7 +51,7 @@ template <class S>
 bool ModelBuilder<S>::find_column(const ElementTemplate& source, ElementEntry<Stop<S>, S>& stop) {
   const NameText& text = source.attachment[0].body;
   std::string column;
-  // Without a form it was no text, which was reported.
+  // An attachment without a form was not a text, which was reported.
   if (source.attachment[0].form == AttachmentTemplate::Form::absent || !make_name(text, column)) return false;
   const std::size_t dot = column.find('.');
   const std::string_view head = std::string_view(column).substr(0, dot);
@@ -105,6 +105,46 @@ bool ModelBuilder<S>::find_column(const ElementTemplate& source, ElementEntry<St
                   in_quotes(column), model_.element_type(element), in_quotes(head)));
 }
 
+template <class S>
+bool ModelBuilder<S>::find_column(const ElementTemplate& source, ElementEntry<Friction<S>, S>& friction) {
+  const NameText& text = source.attachment[0].body;
+  std::string name;
+  if (source.attachment[0].form == AttachmentTemplate::Form::absent || !make_name(text, name)) return false;
+  const auto wrong = [&](const std::string& message) {
+    if (!known_wrong(text.offset)) report(text.offset, owner(source) + ": " + message);
+    return false;
+  };
+  const int element = model_.find_element(name);
+  if (element < 0) {
+    NearMiss near(name);
+    for (int k = 0; k < model_.names.size() && k < 10000; ++k) near.consider(model_.names[k]);
+    return wrong(fmt::format("there is no joint {}{}", in_quotes(name), near.hint()));
+  }
+  bool found = false;
+  const ElementRecord& record = model_.elements[static_cast<std::size_t>(element)];
+  const auto take = [&](const auto& list) {
+    using E = ElementOf<decltype(list)>;
+    const auto& entry = list[static_cast<std::size_t>(record.index)];
+    if constexpr (std::is_same_v<E, Revolute<S>> || std::is_same_v<E, Translational<S>>) {
+      friction.element.s_i = entry.element.s_i;
+      friction.element.s_j = entry.element.s_j;
+      friction.element.turns = std::is_same_v<E, Revolute<S>>;
+      if constexpr (std::is_same_v<E, Translational<S>>) friction.element.axis_i = entry.element.axis_i;
+      friction.i = entry.i;
+      friction.j = entry.j;
+      friction.element.joint = element;
+      found = true;
+    }
+  };
+  if (record.kind != ElementKind::force) with_list(model_.constraints, record.type, take);
+  if (found) return true;
+  return wrong(fmt::format("{} {} has no dry friction: a revolute or translational joint has",
+                           model_.element_type(element), in_quotes(name)));
+}
+
+template bool ModelBuilder<double>::find_column(const ElementTemplate&, ElementEntry<Friction<double>, double>&);
+template bool ModelBuilder<Dual<double, 4>>::find_column(const ElementTemplate&,
+                                                         ElementEntry<Friction<Dual<double, 4>>, Dual<double, 4>>&);
 template bool ModelBuilder<double>::find_column(const ElementTemplate&, ElementEntry<Stop<double>, double>&);
 template bool ModelBuilder<Dual<double, 4>>::find_column(const ElementTemplate&,
                                                          ElementEntry<Stop<Dual<double, 4>>, Dual<double, 4>>&);

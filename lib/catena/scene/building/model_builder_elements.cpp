@@ -1,4 +1,4 @@
-// ModelBuilder: what elements hang on.
+// ModelBuilder: the attachments of elements.
 #include <fmt/format.h>
 
 #include "catena/scene/building/model_builder.hpp"

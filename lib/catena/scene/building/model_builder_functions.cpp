@@ -10,7 +10,7 @@ TimeFunction<S> ModelBuilder<S>::function(const FunctionTemplate& source) {
   using Kind = FunctionTemplate::Kind;
   std::vector<S> n;
   for (const NumberValue& number : source.numbers) n.push_back(value(number));
-  // What could not be read or has no value was reported: any function will do.
+  // A function that could not be read or has no value was reported: any function may replace it.
   for (const S& number : n) {
     if (std::isnan(value_of(number))) return S(1.0);
   }
@@ -26,6 +26,8 @@ TimeFunction<S> ModelBuilder<S>::function(const FunctionTemplate& source) {
       return TimeFunction<S>::harmonic(n[0], n[1], n[2], n[3]);
     case Kind::step:
       return TimeFunction<S>::step(n[0], n[1], n[2], n[3], source.order);
+    case Kind::law:
+      return TimeFunction<S>::law(source.law, n[0], n[1], n[2], n[3]);
     case Kind::spline:
       return TimeFunction<S>::spline(std::span(n).first(n.size() / 2), std::span(n).last(n.size() / 2), source.end,
                                      source.beyond);
@@ -45,7 +47,7 @@ Curve<S> ModelBuilder<S>::curve(const CurveTemplate& source) {
     n.push_back(value(number));
     if (std::isnan(value_of(n.back()))) n.clear();
   }
-  // What could not be read or has no value was reported: any curve will do.
+  // A curve that could not be read or has no value was reported: any curve may replace it.
   const auto any = [] { return Curve<S>::circle({}, S(1.0)); };
   if (n.size() != source.numbers.size() || n.empty()) return any();
   switch (source.kind) {

@@ -76,7 +76,8 @@ std::vector<AnalysisDescription> describe_all() {
              {integration_methods.begin(), integration_methods.end()}},
             {"step", KeyKind::number, "fixed step, s (default: chosen by the tolerance)", UnitKind::time},
             {"max_steps", KeyKind::whole,
-             "largest number of steps, rejected ones included: the analysis ends when it will not do (default 10^7)"},
+             "largest number of steps, rejected ones included: the analysis ends when they do not suffice (default "
+             "10^7)"},
             {"estimate_error", KeyKind::flag,
              "whether to run it a second time, at a tenth of the tolerance or half the step: estimated_error is the "
              "largest difference of the two at its rows, which are those of the finer run"},
@@ -92,6 +93,13 @@ std::vector<AnalysisDescription> describe_all() {
             {"solver", KeyKind::word, "numerical method", {}, {}, {"auto", "newton", "ipopt", "nlopt"}},
             {"accept", KeyKind::word, "which equilibria count", {}, {}, {"stable", "stationary"}},
             {"find", KeyKind::whole, "how many equilibria to look for (default 1)"},
+            {"friction",
+             KeyKind::word,
+             "leave_out: as if there were none, with a warning; hold: whether friction can hold the given position "
+             "(held), and what part of it is needed (utilisation)",
+             {},
+             {},
+             {"leave_out", "hold"}},
             measures}),
       make("path", "Equilibria as a parameter changes, one row a step and one a critical point.",
            "critical, negative_modes, steps", false,

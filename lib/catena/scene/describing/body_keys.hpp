@@ -1,4 +1,4 @@
-// The keys of a body and of what is in it, in the order in which readers list them and the schema shows them.
+// The keys of a body and of its parts, in the order of readers and schema.
 #pragma once
 
 #include <array>

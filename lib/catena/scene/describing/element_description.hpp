@@ -1,8 +1,8 @@
-// What the element types say of themselves, as plain data: made once from the lists and the fields of their types, so
-// that reader, schema and explain are written once and know every type there is.
+// Descriptions of the element types as plain data, made once from the lists and the fields of the types, so that
+// reader, schema and explain are written once for all types.
 //
 // A scene's element keeps its fields as numbers in slots: one slot a number, two for a point or an axis, in the order
-// of the fields. The same layout is known at compile time to whoever fills the members of a type (element_filler.hpp).
+// of the fields. The same layout is known at compile time where the members of a type are filled (element_filler.hpp).
 #pragma once
 
 #include <span>
@@ -43,7 +43,7 @@ struct FieldDescription {
   std::string_view first_word, second_word;  ///< of a choice
   int body = 0;                              ///< of a point, axis or curve: 0 on i, 1 on j
 
-  /// Accepted, but read by nothing that is built: not to be offered.
+  /// Accepted, but used by no analysis: not offered by schema and explain.
   bool reserved() const { return doc.empty(); }
 };
 

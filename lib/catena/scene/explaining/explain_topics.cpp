@@ -61,7 +61,7 @@ Example
 )"},
       {{"function", "value"},
        R"(function: a function of time, for the value of a driver or the magnitude of a force
-  a number, or one of polynomial, harmonic, step, spline, sum, product (catena explain harmonic ...)
+  a number, or one of polynomial, harmonic, step, law, spline, sum, product (catena explain harmonic ...)
 )"},
       {{"polynomial"},
        R"(polynomial: a function of time
@@ -92,6 +92,18 @@ Example
 
 Example
   {"step": {"t0": 0, "t1": 0.5, "from": 0, "to": "90 deg", "order": 5}}
+)"},
+      {{"law"},
+       R"(law: a motion law of cams, as a function of time
+  a rise from one value to another in a given time, constant outside; dwells follow from sums
+
+  type       "cycloidal" and "poly4567": smoothest; "poly345"; "modified_trapezoid": least peak acceleration;
+             "modified_sine": little torque
+  t0, t1     s, t1 > t0
+  from, to   in the unit of the value
+
+Example
+  {"law": {"type": "modified_sine", "t0": 0, "t1": 0.5, "from": 0, "to": "90 deg"}}
 )"},
       {{"spline"},
        R"(spline: a cubic spline through a table, as a function of time
@@ -157,9 +169,11 @@ inverse_dynamics to about 1e-10 of the energy exchanged, however far apart rows 
        R"(gap: of a contact, stop or cable A, which push or pull one way only
   A.gap [m, rad]     how far it is from closing; never negative at an equilibrium, but for an elastic cable's stretch
   A.force [N, N m]   what keeps it from closing, never negative: normal force, torque of the bound, tension
-  At an equilibrium one of the two is zero. The result "active" lists those whose gap is closed. equilibrium treats
-  them; check and assemble leave them out and say which are violated; other analyses refuse a scene that has some
-  (elastic cables are springs, which every analysis knows).
+  A.friction [N], A.slip [m/s]   of a contact in motion, along the curve's direction, on j relative to i
+  At an equilibrium one of gap and force is zero. The result "active" lists those whose gap is closed. In dynamics they
+  close with impacts, or press by a stiffness k, rub and open again: "events" lists every change. kinematics, check and
+  assemble leave them out and say which are violated; modes, path and buckling refuse a scene that has some (elastic
+  cables are springs, which every analysis knows).
 )"},
       {{"energy", "momentum", "residual", "t"},
        R"(energy, momentum, residual: columns of the whole mechanism

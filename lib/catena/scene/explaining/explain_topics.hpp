@@ -1,4 +1,4 @@
-// What `catena explain` knows besides elements and analyses: functions of time, curves, columns, the parts of a scene.
+// Topics of `catena explain` besides elements and analyses: functions of time, curves, columns, the parts of a scene.
 #pragma once
 
 #include <span>

@@ -10,7 +10,7 @@ std::string_view fixed_definitions() {
 },
 "pair": {"type": "array", "items": {"$ref": "#/$defs/number"}, "minItems": 2, "maxItems": 2},
 "numbers": {"type": "array", "items": {"$ref": "#/$defs/number"}},
-"beyond": {"enum": ["error", "hold", "line"], "description": "what is beyond the ends (default: it is an error)"},
+"beyond": {"enum": ["error", "hold", "line"], "description": "continuation beyond the ends (default: leaving the table is an error)"},
 "table": {"anyOf": [
   {"type": "array", "items": {"$ref": "#/$defs/pair"}},
   {"type": "object", "additionalProperties": false, "required": ["points"], "properties": {
@@ -49,6 +49,11 @@ std::string_view fixed_definitions() {
     "step": {"type": "object", "additionalProperties": false, "required": ["t0", "t1", "from", "to"], "properties": {
       "t0": {"$ref": "#/$defs/number"}, "t1": {"$ref": "#/$defs/number"},
       "from": {"$ref": "#/$defs/number"}, "to": {"$ref": "#/$defs/number"}, "order": {"enum": [3, 5]}}},
+    "law": {"type": "object", "additionalProperties": false, "required": ["type", "t0", "t1", "from", "to"],
+      "properties": {
+      "type": {"enum": ["cycloidal", "poly345", "poly4567", "modified_trapezoid", "modified_sine"]},
+      "t0": {"$ref": "#/$defs/number"}, "t1": {"$ref": "#/$defs/number"},
+      "from": {"$ref": "#/$defs/number"}, "to": {"$ref": "#/$defs/number"}}},
     "spline": {"type": "object", "additionalProperties": false, "required": ["t", "value"], "properties": {
       "t": {"$ref": "#/$defs/numbers"}, "value": {"$ref": "#/$defs/numbers"},
       "end": {"enum": ["natural", "clamped", "periodic"]}, "beyond": {"$ref": "#/$defs/beyond"}}},

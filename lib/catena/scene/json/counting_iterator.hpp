@@ -1,6 +1,6 @@
-// Hands a text to a parser and leaves behind how far it has read.
+// Passes a text to a parser and counts how far it has read.
 //
-// nlohmann's parser tells its handler what it found, not where. It reads its input through iterators, though, and one
+// nlohmann's parser reports values to its handler, but not their places. It reads its input through iterators, one
 // character at a time: after the event of a string, a literal or a bracket the cursor stands exactly after that token;
 // after a number it stands one character further, unless the text ended.
 #pragma once

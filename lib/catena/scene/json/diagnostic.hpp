@@ -34,7 +34,7 @@ class Diagnostics {
   /// Keeps the first `limit` errors and only counts the rest: one mistake in a block may appear a million times.
   explicit Diagnostics(std::size_t limit = 50) : limit_(limit) {}
 
-  /// What was said of this place already is not said again.
+  /// A message for this place that was reported already is not repeated.
   void error(const SourceText& source, std::size_t offset, std::string message, bool leading = false);
 
   /// Whether an error at this place was kept: repeated blocks report a place once.

@@ -127,7 +127,7 @@ class JsonBuilder {
     return finish_value(end);
   }
 
-  /// The parser has taken a part of what stands there, as 0 of 01.
+  /// The parser has accepted only a part of the text there, as 0 of 01.
   bool malformed_number(std::size_t begin, std::size_t end) {
     diagnostics_.error(*document_.source_, begin, not_a_number(text_.substr(begin, end - begin)));
     return false;
@@ -199,7 +199,7 @@ class JsonBuilder {
                            std::to_string(place.line) + ", column " + std::to_string(place.column));
   }
 
-  /// Says what is wrong after the last event. Always false: the parser is to stop.
+  /// Reports the error after the last event. Always false: stops the parser.
   bool syntax_error(int library_code) {
     position_.inside = open_.empty() ? JsonKind::null : document_.nodes_[open_.back().node].kind;
     position_.opened_at = open_.empty() ? 0 : document_.nodes_[open_.back().node].offset;
@@ -228,8 +228,8 @@ std::string_view describe(JsonKind kind) {
 std::optional<JsonDocument> JsonDocument::parse(const SourceText& source, Diagnostics& diagnostics) {
   JsonBuilder builder(source, source.text(), diagnostics);
   std::optional<JsonDocument> document = builder.parse();
-  // The parser stops at a number too large for a double. So that it does not hide the other errors, the text is read
-  // again with 1 in its place; what was said of a place already is not said twice.
+  // The parser stops at a number too large for a double. To find the other errors as well, the text is parsed again
+  // with 1 in its place; errors already reported are not repeated.
   std::string patched;
   for (std::optional<std::size_t> at = builder.too_large(); at && !diagnostics.full();) {
     if (patched.empty()) patched = source.text();

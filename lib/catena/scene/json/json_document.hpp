@@ -1,4 +1,4 @@
-// A JSON text as a compact read-only tree that knows where everything stands.
+// A JSON text as a compact read-only tree with the position of every value.
 //
 // One array of 16-byte nodes in source order: a container is followed by its descendants and holds the index of the
 // node after them, a member is a string node (the key) followed by its value. Nothing is allocated per value; strings
@@ -54,7 +54,7 @@ class JsonValue {
   JsonValue() = default;
   JsonValue(const JsonDocument& document, std::uint32_t index) : document_(&document), index_(index) {}
 
-  /// False for what find() did not find; nothing else may be asked of such a value.
+  /// False for the result of an unsuccessful find(); no other function may be called on such a value.
   explicit operator bool() const { return document_ != nullptr; }
 
   JsonKind kind() const { return node().kind; }

@@ -1,7 +1,8 @@
-// What is wrong with a text that is not JSON, in words a person can act on, at the character where it is wrong.
+// Describes the error in a text that is not JSON, at the character where it occurs, so that a user can correct it.
 //
-// A parser's own message tells which token its grammar did not expect. Knowing the last sound token and what is open,
-// the usual slips can be named instead: a comma too many, a bracket or quote not closed, 'single' quotes, NaN, +1, 01.
+// A parser's own message names the token that its grammar did not expect. From the last valid token and the open
+// brackets the usual mistakes can be named instead: a comma too many, a bracket or quote not closed, 'single' quotes,
+// NaN, +1, 01.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +31,7 @@ struct SyntaxError {
 /// `out_of_range`: the text is a number too large for a double.
 SyntaxError explain_syntax_error(const SourceText& source, const JsonPosition& position, bool out_of_range);
 
-/// What is said of a word that begins like a number and is none.
+/// The message for a word that begins like a number but is not one.
 std::string not_a_number(std::string_view word);
 
 /// The offset of the first byte at or after `at` that is neither blank nor in a comment.

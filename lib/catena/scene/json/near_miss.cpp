@@ -24,7 +24,7 @@ void to_characters(std::string_view text, std::vector<char32_t>& out) {
 
 NearMiss::NearMiss(std::string_view word) {
   if (word.size() <= longest) to_characters(word, word_);
-  // One more than what is accepted.
+  // One more than the accepted distance.
   best_distance_ = std::max(1, static_cast<int>(word_.size()) / 3) + 1;
 }
 

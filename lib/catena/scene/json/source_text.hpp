@@ -27,7 +27,7 @@ struct TextPlace {
 /// Not for concurrent use: place() builds its index on demand.
 class SourceText {
  public:
-  /// A text that comes from somewhere else, `name` as messages shall show it.
+  /// A text from another source, with the name shown in messages.
   SourceText(std::string name, std::string_view text);
   /// The whole file. Throws FileError; files of 4 GB and more are refused.
   static SourceText read(const std::string& path);

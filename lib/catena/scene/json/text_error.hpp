@@ -1,4 +1,4 @@
-// The result of reading a small language inside a JSON string: a value, or what is wrong at which byte of the string.
+// The result of reading a small language inside a JSON string: a value, or an error with its byte in the string.
 #pragma once
 
 #include <cstddef>

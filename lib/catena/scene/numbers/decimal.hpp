@@ -1,5 +1,5 @@
-// A decimal number at the beginning of a text, read the same wherever a scene may have one (values, quantities,
-// expressions): what is too small for a double is 0, what is too large is no number.
+// Reads a decimal number at the beginning of a text, in the same way for values, quantities and expressions: a number
+// too small for a double is 0, one too large is an error.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// Values and names of a scene for one set of parameters and replicate variables; what has no value is reported at its
-// place, with the variables' values, and becomes NaN, so that reading can go on to the next mistake.
+// Values and names of a scene for one set of parameters and replicate variables; a number without a value is reported
+// at its place, with the values of the variables, and becomes NaN, so that later errors are found as well.
 #pragma once
 
 #include <limits>

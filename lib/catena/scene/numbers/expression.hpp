@@ -5,7 +5,7 @@
 // integer variables of the blocks (the innermost first, before a parameter of the same name). SI units and radians.
 //
 // Singular cases: a division by zero, or any operation whose value is not finite, throws ExpressionError at the
-// operation. An operand that is NaN already (a parameter found wrong before) passes silently, so that one mistake is
+// operation. An operand that is NaN already (a parameter with a reported error) passes silently, so that each error is
 // reported once. Derivatives of dual numbers may be infinite where the function has no slope (sqrt at 0).
 #pragma once
 

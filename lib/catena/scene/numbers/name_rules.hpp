@@ -1,8 +1,8 @@
-// Which names a scene may give.
+// The rules for names in a scene.
 //
 // Bodies and elements: any Unicode without dots, braces, # and control characters, no blank at either end; `ground`,
 // `t`, `energy`, `momentum` and `residual` are taken. Points: the same characters, but not the name of a body's column.
-// Parameters: what can stand in an expression.
+// Parameters: identifiers of expressions.
 #pragma once
 
 #include <string>

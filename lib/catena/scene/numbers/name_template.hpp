@@ -24,7 +24,7 @@ class NameTemplate {
   /// or none that is an integer.
   void append_to(std::string& out, std::span<const double> parameters, std::span<const double> loop_variables) const;
 
-  /// The template with 0 for every expression: what the rules for names are checked on.
+  /// The template with 0 for every expression: used to check the rules for names.
   std::string sample() const;
 
  private:

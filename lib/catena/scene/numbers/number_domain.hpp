@@ -8,7 +8,7 @@
 
 namespace catena {
 
-/// A NaN fits everywhere: what it stands for was reported already.
+/// A NaN fits every domain: its error was reported already.
 constexpr bool fits(double value, Domain domain) {
   switch (domain) {
     case Domain::any:

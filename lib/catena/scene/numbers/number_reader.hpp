@@ -19,7 +19,7 @@
 
 namespace catena {
 
-/// What a field is called in messages: `"mass" of body "crank"`.
+/// Name of a field in messages: `"mass" of body "crank"`.
 struct FieldName {
   std::string_view key;
   std::string_view owner = {};  ///< such as `body "crank"`; may be empty
@@ -41,7 +41,7 @@ class NumberReader {
   void leave_block() { loop_variables_.pop_back(); }
   ExpressionScope scope() const { return {&parameters_, loop_variables_}; }
 
-  /// Never fails: what cannot be read is reported and gives an invalid number, which evaluates to NaN.
+  /// Never fails: a value that cannot be read is reported and gives an invalid number, which evaluates to NaN.
   NumberValue read(const JsonValue& value, const ExpectedDimension& expected, const FieldName& field);
   NumberValue read(const JsonValue& value, UnitKind expected, const FieldName& field) {
     return read(value, ExpectedDimension(dimension_of(expected)), field);
@@ -52,7 +52,7 @@ class NumberReader {
   /// Any number of numbers [a, b, ...].
   std::vector<NumberValue> read_list(const JsonValue& value, const ExpectedDimension& expected, const FieldName& field);
 
-  /// The dimension that the value last read brought with it: of a quantity, or of a parameter that has one.
+  /// The dimension of the value last read: of a quantity, or of a parameter that has one.
   const std::optional<Dimension>& dimension() const { return dimension_; }
 
  private:

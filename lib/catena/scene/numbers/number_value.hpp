@@ -36,7 +36,7 @@ class NumberValue {
   }
 
   Kind kind() const { return kind_; }
-  /// False for what could not be read: the error is in the diagnostics, and the value evaluates to NaN.
+  /// False for a value that could not be read: the error is in the diagnostics, and the value evaluates to NaN.
   bool valid() const { return kind_ != Kind::invalid; }
   bool is_constant() const { return kind_ == Kind::constant; }
   double number() const { return number_; }       ///< of a constant

@@ -3,7 +3,7 @@
 //   "parameters": {"crank": 0.1, "rod": "=3*crank", "speed": {"value": "60 rpm", "min": 0, "max": "=10*pi"}}
 //
 // A circle of definitions is reported once, as the chain of names "a -> b -> a". Values are computed with any scalar:
-// a seed gives a parameter its value (and derivatives) in place of its definition, and all that depends on it follows.
+// a seed gives a parameter its value (and derivatives) in place of its definition; all dependent parameters follow.
 #pragma once
 
 #include <optional>
@@ -25,7 +25,7 @@ struct ParameterSeed {
 
 class ParameterTable {
  public:
-  /// Reads the object "parameters". What is wrong is reported; such parameters exist and are NaN, so that expressions
+  /// Reads the object "parameters". Errors are reported; parameters with errors exist and are NaN, so that expressions
   /// which use them give no further errors.
   static ParameterTable read(const JsonValue& object, ExpressionPool& pool, Diagnostics& diagnostics);
 

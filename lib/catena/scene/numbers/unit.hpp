@@ -76,7 +76,7 @@ constexpr Dimension dimension_of(UnitKind kind) {
 
 /// The SI unit, in the syntax scene files read: "kg m^2", "rad/s"; "1" for a pure number.
 std::string si_unit(const Dimension& dimension);
-/// What it is, for messages: "a length", "a torque"; for a dimension without a name "a quantity in m/s^3".
+/// Its name in messages: "a length", "a torque"; for a dimension without a name "a quantity in m/s^3".
 std::string describe(const Dimension& dimension);
 /// A quantity of this dimension as a user might write it: "120 mm", "30 deg"; 0.5 without quotes for a pure number.
 std::string example(const Dimension& dimension);

@@ -161,7 +161,7 @@ void AnalysisReader::read_key(const AnalysisKey& key, const JsonValue& value, An
   }
 }
 
-// until, every and at exclude each other in part, and should not ask for more rows than anyone can want.
+// until, every and at exclude each other in part, and must not result in an absurd number of rows.
 void AnalysisReader::check_times(const std::vector<JsonValue>& values, const AnalysisTask& task) {
   const auto given = [&](std::string_view key) {
     for (std::size_t k = 0; k < task.description->keys.size(); ++k) {

@@ -103,7 +103,7 @@ void SceneReading::attachment(const JsonValue& value, std::string_view key, std:
   auto element = value.elements().begin();
   const std::string_view text = element->text();
   if (find_dot(text) != std::string_view::npos) {
-    error(*element, field.text() + ": a body alone is wanted here, as a place in its frame follows");
+    error(*element, field.text() + " must name a body without a point, since a place in its frame follows");
   } else {
     attachment.body = name(*element);
     attachment.form = Form::local;

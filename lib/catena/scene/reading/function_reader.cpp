@@ -9,7 +9,8 @@ namespace catena {
 namespace {
 
 using Kind = FunctionTemplate::Kind;
-constexpr std::array<std::string_view, 6> function_keys{"polynomial", "harmonic", "step", "spline", "sum", "product"};
+constexpr std::array<std::string_view, 7> function_keys{"polynomial", "harmonic", "step",   "law",
+                                                        "spline",     "sum",      "product"};
 constexpr std::array<std::string_view, 3> end_words{"natural", "clamped", "periodic"};
 
 }  // namespace
@@ -98,6 +99,18 @@ FunctionTemplate SceneReading::function_object(const JsonValue& value, const Exp
         if (!good) error(v[4], fmt::format("{} must be 3 or 5", FieldName{"order", owner}.text()));
         if (good) result.order = static_cast<int>(v[4].number());
       }
+      break;
+    }
+    case Kind::law: {
+      static constexpr std::array<std::string_view, 5> keys{"type", "t0", "t1", "from", "to"};
+      std::array<JsonValue, keys.size()> v;
+      if (!read_members(data, keys, owner, v, diagnostics)) break;
+      if (!v[0]) error(data, fmt::format("{} needs \"type\"", owner));
+      if (v[0]) {
+        if (const int word = read_word(v[0], motion_laws, {"type", owner}, diagnostics); word >= 0)
+          result.law = static_cast<MotionLaw>(word);
+      }
+      for (std::size_t k = 1; k < 5; ++k) take(v[k], keys[k], k < 3 ? ExpectedDimension(second) : unit, true);
       break;
     }
     case Kind::spline: {

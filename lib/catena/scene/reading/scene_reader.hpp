@@ -1,7 +1,7 @@
-// Reads a scene's text into its compiled form (scene_template.hpp): the grammar of SCENES.md, every key checked.
+// Reads a scene's text into its compiled form (scene_template.hpp): apps/manual/scenes.md, every key checked.
 //
-// Everything that can be said without knowing parameters' values or other parts' names is said here; the rest is found
-// when the model is built. Linear in the length of the text.
+// Errors that do not depend on parameter values or on names of other parts are reported here; the others are found when
+// the model is built. Linear in the length of the text.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace catena {
 
-/// The scene, or nothing where the text is not a scene at all. It may be built even if errors were reported: what was
-/// wrong is not there, or not a number, and building finds the errors that are left.
+/// The scene, or nothing where the text is not a scene at all. It may be built even if errors were reported: parts with
+/// errors are missing or NaN, and building finds the remaining errors.
 std::unique_ptr<SceneTemplate> read_scene(SourceText source, Diagnostics& diagnostics);
 
 /// The keys of a scene, and those of a replicate block.

@@ -98,7 +98,7 @@ Beyond SceneReading::beyond(const JsonValue& value, SplineEnd end, std::string_v
   const FieldName field{"beyond", owner};
   const int word = value ? read_word(value, words, field, diagnostics) : 0;
   if (value && end == SplineEnd::periodic && word >= 0)
-    error(value, fmt::format("{}: what is periodic has no ends, and nothing beyond them", field.text()));
+    error(value, fmt::format("{}: a periodic curve or table has no ends; leave \"beyond\" out", field.text()));
   return word > 0 ? static_cast<Beyond>(word) : Beyond::error;
 }
 

@@ -1,5 +1,5 @@
-// What the readers of a scene's parts share: the scene that is made, the place for errors, and the reading of objects,
-// names, words and flags with the checks that every key has.
+// Shared by the readers of a scene's parts: the scene under construction, the place for errors, and the reading of
+// objects, names, words and flags with the checks of every key.
 #pragma once
 
 #include <optional>
@@ -15,8 +15,8 @@ namespace catena {
 /// Reports what stands at `value`.
 void report(const JsonValue& value, std::string message, Diagnostics& diagnostics);
 
-/// What becomes of a key that is none, but near to one that is not given: it is left out, or taken to be that one and
-/// reported before all else, so that nothing is reported that only follows from the misspelling.
+/// Treatment of an unknown key that is near to a known one that is not given: it is ignored, or taken for that one and
+/// reported first, so that consequences of the misspelling are not reported.
 enum class Misspelt { left_out, as_meant };
 
 /// Finds the members of an object by their keys: out[k] is the value of keys[k], absent if it is not given. Keys that
@@ -47,13 +47,13 @@ class SceneReading {
         diagnostics(all_diagnostics),
         numbers(the_scene.parameters.names(), the_scene.expressions, all_diagnostics) {}
 
-  /// What is beyond the ends of a table or curve, a word; a periodic one has none.
+  /// The word for the continuation beyond the ends of a table or curve; a periodic one has none.
   Beyond beyond(const JsonValue& value, SplineEnd end, std::string_view owner);
   void error(const JsonValue& value, std::string message) { report(value, std::move(message), diagnostics); }
 
   /// A name, or a part of one: text[from, to) of the string. Rules for names are not checked.
   NameText name(const JsonValue& string, std::size_t from = 0, std::size_t to = std::string_view::npos);
-  /// The name with 0 for every expression: what rules are checked on.
+  /// The name with 0 for every expression, on which rules are checked.
   std::string sample(const NameText& name) const;
   /// Appends numbers to the scene's array; returns the place of the first.
   std::uint32_t keep(std::span<const NumberValue> values);

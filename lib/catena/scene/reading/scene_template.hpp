@@ -1,5 +1,5 @@
-// A scene compiled: what its text says, with names and numbers ready to be evaluated, nothing expanded and no JSON
-// left.
+// A compiled scene: the content of its text without JSON, with names and numbers ready to be evaluated, nothing
+// expanded.
 //
 // A replicate block is kept once, whatever its count; names and numbers in it are made as often as it is repeated
 // (build_model.hpp). Numbers of bodies and elements lie in one array, those given only, so that a scene written out for
@@ -32,13 +32,14 @@ struct NameText {
 };
 
 struct FunctionTemplate {
-  enum class Kind : unsigned char { constant, polynomial, harmonic, step, spline, sum, product };
+  enum class Kind : unsigned char { constant, polynomial, harmonic, step, law, spline, sum, product };
   Kind kind = Kind::constant;
   SplineEnd end = SplineEnd::natural;
   Beyond beyond = Beyond::error;
   int order = 5;             // of a step
+  MotionLaw law = MotionLaw::cycloidal;
   std::uint32_t offset = 0;  // of the value in the text
-  /// constant: 1; polynomial: coefficients; harmonic: amplitude, omega, phase, offset; step: t0, t1, from, to;
+  /// constant: 1; polynomial: coefficients; harmonic: amplitude, omega, phase, offset; step, law: t0, t1, from, to;
   /// spline: all times, then all values
   std::vector<NumberValue> numbers;
   std::vector<FunctionTemplate> parts;

@@ -44,11 +44,11 @@ std::optional<double> reported(const AnalysisResult& result, const MeasureReques
 
 AnalysisRows::~AnalysisRows() = default;
 
-AnalysisRows::AnalysisRows(const ColumnSet& columns, AnalysisContext& context, const Plan& plan,
+AnalysisRows::AnalysisRows(const ColumnSet& columns, AnalysisContext& context, const Model& model, const Plan& plan,
                            const ColumnSources& sources, const TimeRange& run)
     : columns_(columns),
       context_(context),
-      measures_(context.task.measure_requests(), *context.model, plan, sources, run),
+      measures_(context.task.measure_requests(), model, plan, sources, run),
       info_(columns.info().begin(), columns.info().end()),
       timed_(sources.timed),
       first_(run.first),
@@ -107,6 +107,7 @@ void AnalysisRows::look_since_last_row(const Snapshot& snapshot) {
 
 bool AnalysisRows::observe(const Snapshot& snapshot) {
   tell(snapshot.t);
+  if (gaps) gaps->observe(snapshot);
   look_since_last_row(snapshot);
   measures_.take_row(snapshot, !timed_ || rows_alone_);
   columns_.evaluate(snapshot, values_);

@@ -9,6 +9,7 @@
 #include "catena/analysis/run/row_observer.hpp"
 #include "catena/analysis/sensitivity/state_derivatives.hpp"
 #include "catena/results/analysis_result.hpp"
+#include "catena/scene/running/gap_watch.hpp"
 
 namespace catena {
 
@@ -16,9 +17,10 @@ struct AnalysisContext;
 
 class AnalysisRows final : public RowObserver {
  public:
-  /// `run`: the first and the last instant. `columns` and `context` must outlive this object.
-  AnalysisRows(const ColumnSet& columns, AnalysisContext& context, const Plan& plan, const ColumnSources& sources,
-               const TimeRange& run);
+  /// `model` is the one that is analysed, `run` the first and the last instant. `columns` and `context` must outlive
+  /// this object.
+  AnalysisRows(const ColumnSet& columns, AnalysisContext& context, const Model& model, const Plan& plan,
+               const ColumnSources& sources, const TimeRange& run);
   ~AnalysisRows() override;
 
   /// Derivatives of rows and measures are wanted, and this is how they are found; before begin().
@@ -42,6 +44,7 @@ class AnalysisRows final : public RowObserver {
   bool cover(const MotionStretch& stretch) override;
 
   std::int64_t rows() const { return rows_; }
+  GapWatch* gaps = nullptr;  ///< looks at the rows too; may be none
   StateDerivatives* derivatives() { return derivatives_.get(); }
   /// Columns, rows, measures and what is to be said of them.
   void finish(AnalysisResult& result);

@@ -1,4 +1,4 @@
-// One analysis of a scene at work: what it gets, what it gives back; the table from types to functions that run them.
+// One analysis of a scene: its input and output, and the table from types to functions that run them.
 #pragma once
 
 #include <algorithm>
@@ -15,6 +15,7 @@
 #include "catena/results/analysis_result.hpp"
 #include "catena/scene/reading/analysis_task.hpp"
 #include "catena/scene/running/analysis_rows.hpp"
+#include "catena/scene/running/gap_watch.hpp"
 #include "catena/scene/running/gear_check.hpp"
 #include "catena/scene/running/scene_checkpoints.hpp"
 #include "catena/scene/running/scene_models.hpp"
@@ -69,7 +70,7 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result);
 void run_sensitivity(AnalysisContext& context, AnalysisResult& result);
 void run_optimise(AnalysisContext& context, AnalysisResult& result);
 
-/// What runs an analysis of this type; nullptr if nothing does yet.
+/// The function that runs an analysis of this type; nullptr if none does.
 AnalysisFunction analysis_function(std::string_view type);
 
 /// The instants at which the task wants rows, or nothing, with the report refused: before the present time, or outside
@@ -78,7 +79,7 @@ std::optional<TimeGrid> time_grid(const AnalysisContext& context, Report& report
 /// The instant at which a static analysis is made.
 double frozen_time(const AnalysisContext& context);
 
-/// Ends an analysis that was asked for what cannot be done.
+/// Ends an analysis whose request cannot be met.
 inline void refuse(AnalysisResult& result, std::string message) {
   result.report.status = Status::refused;
   result.report.message = std::move(message);
@@ -87,7 +88,7 @@ inline void refuse(AnalysisResult& result, std::string message) {
 /// The names whose reactions must be solved for, as plan options.
 PlanOptions plan_options(const Model& model, const std::vector<std::string>& outputs);
 
-/// Takes over what an analysis said, in the order: outcome, columns, notes.
+/// Takes over the report of an analysis, in the order: outcome, columns, notes.
 void take_report(AnalysisResult& result, AnalysisReport report, const ColumnSet* columns, std::int64_t rows);
 
 /// Runs an analysis that goes through time, from the present state, and leaves the state where it ended. `prepare` gets
@@ -95,14 +96,18 @@ void take_report(AnalysisResult& result, AnalysisReport report, const ColumnSet*
 template <class Analysis, class Prepare>
 void run_over_time(AnalysisContext& context, AnalysisResult& result, Analysis& analysis, const TimeGrid& grid,
                    const std::vector<std::string>& outputs, const ColumnSources& sources, Prepare&& prepare) {
-  const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), outputs, sources);
+  // Of the model that is analysed: motion with friction adds equations to that of the scene.
+  const ColumnSet columns = ColumnSet::resolve(analysis.evaluator().model(), analysis.plan(), outputs, sources);
   analysis.start_from(context.state);
   if (context.trace) analysis.evaluator().trace = &context.trace;
-  AnalysisRows rows(columns, context, analysis.plan(), sources,
+  AnalysisRows rows(columns, context, analysis.evaluator().model(), analysis.plan(), sources,
                     {std::min(context.state.t, grid.earliest()), grid.last()});
+  GapWatch gaps(*context.model);
+  if (sources.analysis != "dynamics") rows.gaps = &gaps;
   prepare(rows);
   rows.begin();
   AnalysisReport report = analysis.run(grid, rows.needs(), rows);
+  for (std::string& doubt : gaps.warnings()) report.warnings.push_back(std::move(doubt));
   for (std::string& doubt : gears_that_do_not_fit(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
   context.state = analysis.state();
   take_report(result, std::move(report), &columns, rows.rows());

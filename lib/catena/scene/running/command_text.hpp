@@ -1,4 +1,4 @@
-// What the command line says about a scene, as JSON texts of its own: the same readers check it, with messages that
+// The options of the command line that concern a scene, as JSON texts: the same readers check them, with messages that
 // name the option. An error in it is a wrong command, not a wrong scene.
 #pragma once
 

@@ -1,7 +1,7 @@
-// Whether a distance that is driven stays one: its function of time must be above zero while an analysis lasts.
+// Checks that driven distances stay positive: their functions of time must be above zero while an analysis lasts.
 //
 // Rows of distances are squared, h^T h = f(t)^2, and vanish with their derivatives where f = 0: the motion would go on
-// with a negative distance without any sign of it. So f is looked at beforehand: at evenly spread instants, and at the
+// with a negative distance without any sign of it. So f is checked beforehand: at evenly spread instants, and at the
 // minima between them, found by bisection of f'. Dips shorter than a quarter of the spacing of rows may be missed.
 #pragma once
 

@@ -2,8 +2,8 @@
 //
 //   |h| = R_i + R_j (external),  |R_i - R_j| (internal),   h = r_Pj - r_Pi, m
 //
-// The gear equation does not ask for it, other joints hold the centres; where they do otherwise a radius or a bearing
-// is wrong, and so is the motion.
+// The gear equation does not contain this condition, since other joints hold the centres; where it is violated a radius
+// or a bearing is wrong, and so is the motion.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// assemble and check: where a mechanism can be, and how much it can move from there.
+// assemble and check: the assembled configuration of a mechanism, and its mobility there.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -63,7 +63,7 @@ void warn_of_closed_gaps(const Evaluator& evaluator, AnalysisReport& report) {
   if (count > most) report.warnings.push_back(fmt::format("{} more one-sided elements are violated", count - most));
 }
 
-/// What a start of dynamics would make of the velocities that bodies are given.
+/// Checks the changes that a start of dynamics would make to the given velocities.
 void check_velocities(Kinematics& analysis, const Model& model, AnalysisReport& report) {
   const bool given = std::any_of(model.bodies.begin(), model.bodies.end(),
                                  [](const auto& body) { return body.velocity_given || body.angular_velocity_given; });
@@ -94,7 +94,7 @@ void run_assemble(AnalysisContext& context, AnalysisResult& result) {
   const ColumnSources sources{.analysis = context.task.type()};
   const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), names, sources);
   start(analysis, context);
-  AnalysisRows rows(columns, context, analysis.plan(), sources, {context.state.t, context.state.t});
+  AnalysisRows rows(columns, context, *context.model, analysis.plan(), sources, {context.state.t, context.state.t});
   rows.begin();
   const AssemblyOutcome outcome = analysis.assemble();
   AnalysisReport report;

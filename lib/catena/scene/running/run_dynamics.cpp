@@ -73,6 +73,7 @@ class DynamicsTask {
         options_(options_of(context.task)),
         used_options_(options_),
         names_(context.task.output_names()),
+        touches_(!model_->gaps().empty() || !model_->frictions().empty()),
         estimates_(context.estimate_error || context.task.number("estimate_error", 0) != 0) {}
 
   void run();
@@ -95,6 +96,7 @@ class DynamicsTask {
   DynamicsOptions options_, used_options_;  // what was asked for; those of the finer run where the error is wanted
   std::vector<std::string> names_;
   std::optional<TimeGrid> grid_;
+  bool touches_;  // it has contacts, or friction
   bool estimates_;
 };
 
@@ -111,7 +113,14 @@ std::string DynamicsTask::conflict() const {
   if (context_.design && acts) {
     return "derivatives are not carried through events that release or engage a constraint";
   }
+  if (context_.design && touches_) return "derivatives are not carried through contacts and friction yet";
   if (context_.design && context_.checkpoint) return "derivatives and checkpoints do not go together";
+  if (touches_ && estimates_) {
+    return "the error cannot be estimated where contacts open and close: they would do so at other instants in the "
+           "second run";
+  }
+  if (touches_ && context_.checkpoint)
+    return "checkpoints do not keep the state of contacts: run without --checkpoint and --restart";
   if (context_.checkpoint && estimates_) return "an estimate of the error and checkpoints do not go together";
   return {};
 }
@@ -168,10 +177,17 @@ void DynamicsTask::run_with_events_or_pauses() {
   if (!failure.empty()) warnings.push_back("a checkpoint was not saved: " + failure);
   if (!taken_up.empty()) warnings.push_back(taken_up);
   result_.fields.push_back({"method", std::string(to_string(analysis.method()))});
-  if (context_.task.events.empty()) return;
-  std::vector<FieldRecord> records;
+  if (context_.task.events.empty() && !analysis.has_contacts()) return;
+  std::vector<std::pair<double, FieldRecord>> found;
   for (const EventRecord& record : analysis.records())
-    records.push_back({{"name", record.name}, {"t", record.t}, {"row", record.row}});
+    found.push_back({record.t, {{"name", record.name}, {"t", record.t}, {"row", record.row}}});
+  for (const ContactEvent& event : analysis.contact_events()) {
+    found.push_back(
+        {event.t, {{"name", model_->element_name(event.element)}, {"kind", std::string(event.kind)}, {"t", event.t}}});
+  }
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<FieldRecord> records;
+  for (auto& [t, record] : found) records.push_back(std::move(record));
   result_.fields.push_back({"events", std::move(records)});
 }
 
@@ -195,7 +211,7 @@ void DynamicsTask::run() {
   grid_ = time_grid(context_, result_.report);
   if (!grid_) return;
   if (estimates_) used_options_ = finer_options(options_);
-  if (!context_.task.events.empty() || context_.checkpoint) return run_with_events_or_pauses();
+  if (!context_.task.events.empty() || context_.checkpoint || touches_) return run_with_events_or_pauses();
   // A fixed step is the same for all; two runs that are compared must be divided alike.
   const bool looked_at = context_.design || !context_.task.measures.empty();
   if (!estimates_ && options_.step == 0 && !looked_at) {

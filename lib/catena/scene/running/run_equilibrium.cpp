@@ -1,6 +1,10 @@
 // equilibrium: the configuration at rest, certified.
 #include <fmt/format.h>
 
+#include "catena/analysis/contact/contact_points.hpp"
+#include "catena/analysis/contact/holding.hpp"
+#include "catena/analysis/run/process_time.hpp"
+#include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/sensitivity/static_derivatives.hpp"
 #include "catena/analysis/statics/equilibrium.hpp"
 #include "catena/analysis/statics/static_ipopt.hpp"
@@ -8,9 +12,60 @@
 #include "catena/scene/running/analysis_run.hpp"
 
 namespace catena {
+namespace {
+
+/// Whether friction can hold the position that there is.
+void run_holding(AnalysisContext& context, AnalysisResult& result) {
+  const ProcessTimer timer;
+  const std::vector<std::string> names = context.task.output_names();
+  ContactHolding analysis(context.model);
+  Evaluator& evaluator = analysis.evaluator();
+  const ColumnSources sources{.analysis = context.task.type()};
+  const ColumnSet columns = ColumnSet::resolve(evaluator.model(), evaluator.plan(), names, sources);
+  SystemState start = context.state;
+  start.t = frozen_time(context);
+  AnalysisRows rows(columns, context, evaluator.model(), evaluator.plan(), sources, {start.t, start.t});
+  rows.begin();
+  std::vector<double> q;
+  const Holding holding = analysis.find(start, q);
+  AnalysisReport report;
+  report.status = holding.status;
+  report.message = holding.message;
+  if (holding.ok()) {
+    rows.observe({.evaluator = evaluator, .t = start.t, .q = q});
+    context.state.q = state_of(evaluator, start.t, q).q;
+    result.fields = {{"held", holding.held()}};
+    if (holding.utilisation) result.fields.push_back({"utilisation", *holding.utilisation});
+    if (!holding.utilisation) report.warnings.push_back("no friction, however large, can hold this position");
+  }
+  report.counters = evaluator.counters;
+  report.seconds = timer.seconds();
+  take_report(result, std::move(report), &columns, rows.rows());
+  rows.finish(result);
+  add_field_measures(context, result);
+}
+
+/// What equilibrium leaves out, in words; nothing if there is no friction.
+std::string friction_left_out(const Model& model) {
+  const ContactModel contacts = contact_points(std::shared_ptr<const Model>(&model, [](const Model*) {}));
+  for (const ContactPoint& point : contacts.points) {
+    if (!point.has_friction()) continue;
+    return fmt::format(
+        "dry friction (\"{}\") is left out: the position is that without any; \"friction\": \"hold\" asks whether it "
+        "holds the given one",
+        model.element_name(point.element));
+  }
+  return {};
+}
+
+}  // namespace
 
 void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   const AnalysisTask& task = context.task;
+  if (task.word("friction") == 1) {
+    if (context.design) return refuse(result, "what friction can hold has no derivatives yet");
+    return run_holding(context, result);
+  }
   // In the order of the keys' words.
   constexpr StaticSolver solvers[] = {StaticSolver::automatic, StaticSolver::newton, StaticSolver::ipopt,
                                       StaticSolver::nlopt};
@@ -49,7 +104,7 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   start.t = frozen_time(context);
   analysis.start_from(start);
   if (context.trace) analysis.evaluator().trace = &context.trace;
-  AnalysisRows rows(columns, context, analysis.plan(), sources, {start.t, start.t});
+  AnalysisRows rows(columns, context, *context.model, analysis.plan(), sources, {start.t, start.t});
   StaticDerivatives* derivatives = nullptr;
   if (context.design) {
     auto found = std::make_unique<StaticDerivatives>(analysis.evaluator(), designs_of(context),
@@ -60,8 +115,10 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   rows.begin();
   Needs needs = rows.needs();
   needs.multipliers = needs.multipliers || derivatives;
-  const EquilibriumReport report = analysis.run(TimeGrid::instant(start.t), needs, rows);
+  EquilibriumReport report = analysis.run(TimeGrid::instant(start.t), needs, rows);
   context.state = analysis.state();
+  if (std::string left_out = friction_left_out(*context.model); !left_out.empty())
+    report.warnings.push_back(std::move(left_out));
   if (report.certified) {
     result.fields = {{"energy", report.energy},
                      {"stable", report.stable},

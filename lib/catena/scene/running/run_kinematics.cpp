@@ -33,9 +33,16 @@ void add_singular_points(AnalysisResult& result, const std::vector<SingularPoint
   result.fields.push_back({"singular", std::move(records)});
 }
 
+/// One-sided elements do not take part: they are watched.
+PlanOptions plan_without_gaps(const Model& model, const std::vector<std::string>& outputs) {
+  PlanOptions options = plan_options(model, outputs);
+  options.released_elements = model.gaps();
+  return options;
+}
+
 /// Whether constraints and drivers determine the motion where the analysis starts.
 bool is_driven(const AnalysisContext& context) {
-  Kinematics analysis(context.model);
+  Kinematics analysis(context.model, plan_without_gaps(*context.model, {}));
   analysis.start_from(context.state);
   RowFunction nothing([](const Snapshot&) { return true; });
   return analysis.run(TimeGrid::instant(context.state.t), {}, nothing).status != Status::under_driven;
@@ -46,7 +53,7 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
   const std::optional<TimeGrid> grid = time_grid(context, result.report);
   if (!grid) return;
   const std::vector<std::string> names = task.output_names();
-  const PlanOptions plan = plan_options(*context.model, task.column_names());
+  const PlanOptions plan = plan_without_gaps(*context.model, task.column_names());
   KinematicsOptions options;
   options.inverse_dynamics = inverse_dynamics;
   if (task.has("branch")) {

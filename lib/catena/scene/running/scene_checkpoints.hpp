@@ -1,4 +1,4 @@
-// Checkpoints of a scene's run: which file, whose it is, and where a run that is taken up again begins.
+// Checkpoints of a scene's run: the file, the run it belongs to, and the state from which a run is resumed.
 //
 // A checkpoint belongs to the scene's text, the parameters and the analysis of the command line, and the number of the
 // analysis: with anything else it is refused.

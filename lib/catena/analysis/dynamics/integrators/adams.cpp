@@ -96,7 +96,7 @@ void Adams::predict(double h) {
   }
 }
 
-// What a change of the derivative by one at coordinate c counts.
+// Weight of a change of the derivative by one at coordinate c.
 double Adams::weight(std::size_t c, double h) const {
   const double v_unit = scale_.velocity_unit(c, h, y_[motion_.coordinates() + c]);
   return h * std::max(v_unit > 0 ? 1 / v_unit : 0, h / scale_.position_unit(c, h));
@@ -156,7 +156,7 @@ double Adams::error_of_step(double h) {
   return std::sqrt(largest);
 }
 
-// The error without most of what the projection at the step's end will remove.
+// The error without most of the part that the projection at the step's end will remove.
 double Adams::filtered(double h, double raw) {
   motion_.equations().remove_forbidden(std::span(change_).first(motion_.moving()));
   return std::min(raw, std::max(error_of_step(h), forbidden_part * raw));
@@ -179,7 +179,7 @@ bool Adams::finish(double h) {
   return motion_.derivative(t_new_, Side::before, y_new_, slope_);
 }
 
-// Takes slope_ at t_ + h as the newest value: differences of k + 1 points.
+// Adds slope_ at t_ + h as the newest value: differences of k + 1 points.
 void Adams::update(double h) {
   const std::size_t n = motion_.coordinates(), size = change_.size();
   for (std::size_t begin = 0; begin < size; begin += block) {

@@ -7,8 +7,8 @@
 // Shampine and Gordon's program STEP: orders k-2 ... k+1 are compared, steps are doubled, or cut when they must be, so
 // that equal steps are the rule. A start is of order 1, with steps that double while the order rises.
 //
-// A polynomial through many accelerations cannot be trusted near singular positions, where each is spoilt by its
-// distance from them: from a dip of the pivots on RungeKutta takes the steps, until the position lies behind.
+// A polynomial through many accelerations cannot be trusted near singular positions, where the error of each depends on
+// its distance from them: when the pivots fall RungeKutta takes the steps until the position is passed.
 // With a fixed step RungeKutta makes the first ones, then the order is 8.
 #pragma once
 
@@ -29,7 +29,7 @@ class Adams final : public Integrator {
   /// By the polynomial of the last step, one order above the predictor's.
   void interpolate(double t, std::span<double> y) override;
   std::vector<std::string> remarks() const override;
-  /// Its differences are not part of it: one that remembers starts with a short step of order 1.
+  /// Its differences are not included: an integrator that takes over this memory starts with a short step of order 1.
   IntegratorMemory memory() const override;
   void remember(const IntegratorMemory& memory) override;
   bool may_pause() const override { return !crossing_; }

@@ -25,7 +25,7 @@ class AdamsHistory {
     Row value{}, integral{}, twice{};
   };
 
-  /// Forgets all instants but the present one.
+  /// Removes all instants but the present one.
   void restart() { count_ = 0; }
   /// The present instant moves on by h > 0, in s.
   void push(double h) {

@@ -22,7 +22,7 @@ bool Adams::advance(double limit) {
   failures_ = 0;
   if (fixed) h_ = options_.fixed_step;
   const auto by_itself = [&] { return !crossing_ && !(fixed && k_ < fixed_order); };
-  // Runge-Kutta goes on from a state of its own, and takes the turns out of that: they must be taken once.
+  // Runge-Kutta continues from its own copy of the state and takes whole turns out of it: they must be taken only once.
   if (by_itself()) {
     motion_.equations().evaluator().take_turns(motion_.q(std::span(y_)));
     stepped_by_runge_kutta_ = false;
@@ -104,7 +104,7 @@ void Adams::fail(double h, double error, bool lower) {
     --k_;
   }
   h_ = cut * h;
-  // Differences of many points magnify what rounding makes of accelerations beside a singular position.
+  // Differences of many points magnify the rounding of accelerations near a singular position.
   if (failures_ >= 3 && motion_.equations().smallest_pivot_ratio() < near_ratio * usual_ratio_) crossing_ = true;
 }
 

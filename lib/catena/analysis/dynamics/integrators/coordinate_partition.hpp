@@ -34,7 +34,7 @@ class CoordinatePartition {
   bool solve(double t, Side side, std::span<double> q, std::span<double> qd);
   /// Whether the last solve() found the choice poor.
   bool has_worsened() const { return ratio_ < worse * ratio_of_choice_; }
-  /// The mechanism went on without solve(): the choice must be made anew.
+  /// The mechanism moved without solve(): the choice must be made again.
   void forget() { ratio_ = 0; }
   int choices() const { return choices_; }
   double position_residual() const { return position_residual_; }

@@ -1,23 +1,23 @@
-// What errors of positions and velocities are compared with, so that one number serves all coordinates.
+// The sizes that errors of positions and velocities are compared with, so that one tolerance serves all coordinates.
 //
 //   positions    tolerance x L (lengths), tolerance x 1 rad (angles)
 //   velocities   tolerance x (min(V L, sqrt(2 E / m)) + |v|), tolerance x (min(V, sqrt(2 E / J)) + |omega|)
 //
-// L: the scene's length scale. V, in 1/s: how fast the mechanism is, and what its accelerations make of a displacement
-// of L or 1 rad: max(|v|/L, |omega|, sqrt(|a|/L), sqrt(|alpha|)). An error of velocity then counts as much as the error
-// of position it grows into. A fast passage is forgotten again, but the time scale 1/V grows no faster than time goes
-// by: where a mechanism rests for an instant its velocities keep a scale.
+// L: the scene's length scale. V, in 1/s: the rate of the mechanism, by its velocities and by the time in which its
+// accelerations cause a displacement of L or 1 rad: max(|v|/L, |omega|, sqrt(|a|/L), sqrt(|alpha|)). An error of
+// velocity then counts as much as the error of position it grows into. V decreases again after a fast passage, but the
+// time scale 1/V grows no faster than time itself: where a mechanism rests for an instant its velocities keep a scale.
 //
-// E, in J: the largest kinetic energy so far, at the start also what the accelerations do over a length L. No body can
-// be faster than all of E makes it: beside a light part that rushes the velocity of a heavy one still counts.
+// E, in J: the largest kinetic energy so far, at the start also the work of the accelerations over a length L. It
+// bounds the velocity of each body, so that beside a fast light part the velocity of a heavy one still counts.
 //
 // Rounding: accelerations are not known better than to 4 eps min(A, F / m), A the largest |Q| / m, F the largest force,
-// for constraints pass it on. What that makes of velocities and positions in a step of size h counts as no error: where
-// loads are held, so that nothing moves but by rounding, no step would be short enough.
+// which constraints transmit. The resulting errors of velocities and positions in a step of size h are ignored: where
+// loads are in balance and only rounding moves the bodies, no step would be short enough otherwise.
 //
-// tolerance: `step_tolerance` of a run of up to n0 = 200 radians of V. In a longer one errors of energy turn into
-// errors of phase, so that errors of steps add up with the square of the length: they are given (n0/n)^2 of it, n =
-// integral of V so far and as long as V now is to go. Never less than what double precision holds.
+// tolerance: `step_tolerance` of a run of up to n0 = 200 radians of V. In a longer one errors of energy become errors
+// of phase, so that errors of steps add up with the square of the length: they are allowed (n0/n)^2 of it, n = integral
+// of V over the whole run, estimated with the present V. Never less than double precision allows.
 #pragma once
 
 #include <algorithm>
@@ -67,15 +67,15 @@ class ErrorScale {
     return tolerance_ * (std::min(rate_ * unit, root_energy_ * speed_[c]) + std::abs(v)) +
            std::abs(h) * rounding(c) * unit;
   }
-  /// The shortest step, s, that may be tried at t: below it time does not go on.
+  /// The shortest step, s, that may be tried at t: below it time does not advance.
   double smallest_step(double t) const {
     constexpr double part = 1e-13;
     const double moment = rate_ > 0 ? 1 / rate_ : 0;
     return part * std::max(std::abs(t), horizon > t ? std::min(moment, horizon - t) : moment);
   }
-  /// `error()` once more where velocities and accelerations at the end of a step that failed show that the mechanism is
-  /// faster than was known: at a start where forces only begin to grow nothing else has a size. What it shows is kept
-  /// if the step is good then.
+  /// Repeats `error()` where velocities and accelerations at the end of a failed step show a faster mechanism than
+  /// known before: at a start where forces only begin to grow they are the only scale. The new rates are kept if the
+  /// step is then accepted.
   template <class Error>
   double compare_with_end(std::span<const double> qd, std::span<const double> qdd, double error, Error&& again) {
     const double rate = rate_, root_energy = root_energy_;
@@ -85,8 +85,8 @@ class ErrorScale {
     return error;
   }
 
-  /// Takes note of velocities and accelerations (three a body) at t, a time `step` after the last ones; 0: at a start.
-  /// Generalized forces `loads` say how well accelerations are known.
+  /// Records velocities and accelerations (three a body) at t, a time `step` after the last ones; 0: at a start.
+  /// Generalized forces `loads` determine the rounding of accelerations.
   void observe(double t, double step, std::span<const double> qd, std::span<const double> qdd,
                std::span<const double> loads) {
     rate_ /= 1 + std::abs(step) * rate_;

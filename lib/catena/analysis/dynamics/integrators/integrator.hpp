@@ -1,4 +1,4 @@
-// What dynamics asks of a method that integrates a constrained motion step by step. One object an integration; nothing
+// The interface of methods that integrate a constrained motion step by step. One object an integration; nothing
 // allocates after the first step. Times in s, states as in motion.hpp.
 #pragma once
 
@@ -24,12 +24,12 @@ class Integrator {
   virtual bool advance(double limit) = 0;
   /// The state at t between previous_time() and time(), as exact as the steps; constraints are met no better than that.
   virtual void interpolate(double t, std::span<double> y) = 0;
-  /// What a user should know of how the run went; sentences.
+  /// Remarks on the run for the user; sentences.
   virtual std::vector<std::string> remarks() const { return {}; }
-  /// What it has learnt of the motion; and, before start(), what another one had.
+  /// Quantities observed along the motion; and, before start(), those of another integrator.
   virtual IntegratorMemory memory() const = 0;
   virtual void remember(const IntegratorMemory& memory) = 0;
-  /// Whether another one may go on from here: not across a singular position.
+  /// Whether another integrator may continue from here: not across a singular position.
   virtual bool may_pause() const = 0;
   /// Whether ends of steps lie on the constraints to rounding.
   virtual bool meets_constraints() const { return true; }

@@ -2,8 +2,8 @@
 //
 //   y = [q, qd, work]        y' = [qd, qdd, power]
 //
-// q and qd have plan.coordinates() entries each, of which those of moving bodies change; `work` are integrals that
-// ride along (see energy_account.hpp), none if no account is kept.
+// q and qd have plan.coordinates() entries each, of which those of moving bodies change; `work` are further integrals
+// (see energy_account.hpp), none if no account is kept.
 #pragma once
 
 #include <algorithm>
@@ -43,12 +43,16 @@ class Motion {
       std::copy(known_.begin(), known_.end(), a.begin());
       return true;
     }
-    if (account_) account_->powers(v, equations_.multipliers(), k.subspan(2 * coordinates_));
+    if (account_) {
+      const std::span<double> powers = k.subspan(2 * coordinates_);
+      account_->powers(v, equations_.multipliers(), powers);
+      if (const StateLoads* loads = equations_.state_loads()) EnergyAccount::dissipated(powers) += loads->dissipation();
+    }
     return true;
   }
 
-  /// Says what [qdd, power] is within `moment` of t as long as constraints depend on each other, where the equations
-  /// do not: at a start in a singular position.
+  /// Sets [qdd, power] within `moment` of t while constraints depend on each other and the equations do not determine
+  /// it: at a start in a singular position.
   void know(double t, double moment, std::span<const double> accelerations_and_powers) {
     known_t_ = t;
     known_for_ = moment;

@@ -9,13 +9,13 @@
 namespace catena {
 namespace {
 
-// The part of an error estimate that the projection will remove counts this much: stages spoil each other by it.
+// Weight of the part of an error estimate that the projection will remove: it affects the other stages.
 constexpr double forbidden_part = 0.1, forbidden_square = 1000;
 // A step with a stage whose pivot ratio is below this is repeated with all stages projected ...
 constexpr double projection_ratio = 1e-2;
 // ... if the ratio of other stages is this much larger: light parts make it small without any singularity.
 constexpr double ratio_dip = 0.3;
-// Ends of steps are kept away from positions where a pivot ratio is below this; accelerations lose ratio^1.5 there.
+// Steps must not end at positions where a pivot ratio is below this; accelerations lose ratio^1.5 there.
 constexpr double singular_end = 1e-7, lost_digits = 2e-11;
 constexpr double largest_residual = 1e-6;  // of positions after their projection, in length scales or rad
 constexpr double largest_drift = 1e-2;     // of positions that are not projected
@@ -68,8 +68,8 @@ bool RungeKutta::follow_motion() {
   return derivative(t_, Side::after, y_, slope_);
 }
 
-// Stabilised constraints would lead along any of the branches that meet at a singular position: steps across it are
-// projected, from a point on the constraints.
+// With stabilisation alone the motion could take any of the branches that meet at a singular position: steps across it
+// are projected, from a point on the constraints.
 bool RungeKutta::begin_projection() {
   EquationsOfMotion& equations = motion_.equations();
   const std::span<double> y(y_);
@@ -86,7 +86,7 @@ bool RungeKutta::begin_projection() {
 std::vector<std::string> RungeKutta::remarks() const {
   std::vector<std::string> all;
   if (low_order_steps_ > 0)
-    all.push_back(fmt::format("order 5 took over for {} steps where order 8 did not get ahead", low_order_steps_));
+    all.push_back(fmt::format("order 5 took over for {} steps where order 8 failed repeatedly", low_order_steps_));
   if (projected_steps_ > 0)
     all.push_back(fmt::format("{} steps across nearly singular positions were projected", projected_steps_));
   if (partition_ && partition_->choices() > 1)
@@ -195,7 +195,7 @@ double RungeKutta::error_size(double h) {
   double high = 0, low = 0;
   for (std::size_t c = 0; c < moving; ++c) {
     const double v_unit = scale_.velocity_unit(c, h, v[c]);
-    // Where nothing has moved yet velocities have no scale; positions then tell.
+    // Where nothing has moved yet velocities have no scale; positions are then used.
     const double q_scale = 1 / scale_.position_unit(c, h), v_scale = v_unit > 0 ? 1 / v_unit : 0;
     const double q_error = error_[c] * q_scale, v_error = error_[offset + c] * v_scale;
     const double size = q_error * q_error + v_error * v_error;
@@ -212,7 +212,7 @@ double RungeKutta::error_size(double h) {
   return denominator == 0 ? 0 : std::abs(h) * high / std::sqrt(denominator);
 }
 
-// The error without most of what the projection at the step's end will remove.
+// The error without most of the part that the projection at the step's end will remove.
 double RungeKutta::filtered_error(double h, double raw) {
   const std::size_t moving = motion_.moving(), offset = motion_.coordinates();
   EquationsOfMotion& equations = motion_.equations();
@@ -221,7 +221,7 @@ double RungeKutta::filtered_error(double h, double raw) {
     equations.remove_forbidden(std::span(*error).first(moving));
     equations.remove_forbidden(std::span(*error).subspan(offset, moving));
   }
-  // Projected stages meet each other's forbidden errors only squared.
+  // With projected stages the errors across the constraints enter only squared.
   const double spoilt = projecting_stages_ ? forbidden_square * raw * raw * scale_.tolerance() : forbidden_part * raw;
   return std::min(raw, std::max(error_size(h), spoilt));
 }

@@ -12,11 +12,11 @@
 // Partition: independent coordinates are integrated, the others solved for at every stage (coordinate_partition.hpp).
 //   Across singular positions, where no choice of independent coordinates holds, steps are projected as well.
 //
-// Passing singular positions (flat four-bars) without knowing of them takes four things, all found by experiment (see
-// NUMERICS.md): the part of an error estimate that the projection removes does not count; a step across such a position
-// is made with all its stages projected; none ends where a pivot of the Schur complement keeps less than 1e-7 of
-// itself, or what the tolerance makes of it; where order 8 does not get ahead, order 5 takes over for a while. One
-// object an integration; nothing allocates after construction.
+// Passing singular positions (flat four-bars) without knowing of them takes four things, all found by experiment
+// (apps/manual/numerics.md#singular-passages): the part of an error estimate that the projection removes does not
+// count; a step across such a position is made with all its stages projected; none ends where a pivot of the Schur
+// complement keeps less than 1e-7 of itself, or than a limit that follows from the tolerance; where order 8 fails
+// repeatedly, order 5 takes over for a while. One object an integration; nothing allocates after construction.
 #pragma once
 
 #include <cstdint>
@@ -55,14 +55,14 @@ class RungeKutta final : public Integrator {
   IntegratorMemory memory() const override;
   void remember(const IntegratorMemory& memory) override;
   bool may_pause() const override { return !crossing_ && !passing_singular_; }
-  /// Goes on with steps of size h (s) where another method came to at (t, y), with what that knows of the motion: the
-  /// scale of errors and the largest pivot ratio.
+  /// Continues with steps of size h (s) from the state (t, y) of another method, with its scale of errors and its
+  /// largest pivot ratio.
   bool take_over(double t, std::span<const double> y, double h, const ErrorScale& scale, double usual_ratio);
   std::span<const double> slope() const { return slope_; }
   const ErrorScale& scale() const { return scale_; }
   /// Smallest pivot ratio at the last evaluation, compared with the largest so far: very unequal masses make all small.
   double pivot_ratio() const;
-  /// Whether a singular position lies within the step whose stages were evaluated, as far as they show it.
+  /// Whether the stages of the last step indicate a singular position within it.
   bool dips() const;
 
   bool meets_constraints() const override { return options_.keeping != ConstraintKeeping::stabilisation; }

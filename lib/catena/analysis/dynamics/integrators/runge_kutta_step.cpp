@@ -1,4 +1,4 @@
-// RungeKutta::advance: the size of steps, and what is done near singular positions.
+// RungeKutta::advance: the size of steps, and the measures near singular positions.
 #include <algorithm>
 #include <cmath>
 
@@ -19,7 +19,7 @@ constexpr int most_rejections = 100;
 
 }  // namespace
 
-// Chooses the next step after a rejection; order 5 gets its turn when order 8 does not get ahead.
+// Chooses the next step after a rejection; order 5 is used when order 8 fails repeatedly.
 void RungeKutta::reject(double h) {
   ++motion_.equations().evaluator().counters.rejected;
   h_ = h;
@@ -44,8 +44,8 @@ void RungeKutta::repeat_with_projected_stages(double h) {
   h_ = h;
 }
 
-// What to do about a step of size h that failed near a singular position: project its stages; try other sizes; at last
-// take the best of those unless it is bad. False: none of this helps, h_ is as it was.
+// Repeats a step of size h that failed near a singular position: with projected stages; with other sizes; at last takes
+// the best of those if it is acceptable. False: none succeeds, h_ is unchanged.
 bool RungeKutta::try_crossing(double h, double error) {
   if (!projecting_stages_) {
     repeat_with_projected_stages(h);
@@ -115,12 +115,12 @@ bool RungeKutta::advance(double limit) {
     const double growth =
         std::clamp(safety * std::pow(std::max(error, 1e-10), -1.0 / tableau().order), largest_cut, largest_growth);
     if (error <= accepted_error_ && !fixed && !projecting_stages_ && projects() && dips()) {
-      // Errors of stages across the constraints spoil each other here, and the estimate does not see all of it.
+      // Errors of stages across the constraints affect each other here, and the estimate does not contain all of it.
       repeat_with_projected_stages(h);
       continue;
     }
     if (error > accepted_error_) {
-      // Near a singular position a shorter step would only walk into it.
+      // Near a singular position a shorter step would only end closer to it.
       if (projects() && dips() && try_crossing(h, error)) continue;
       reject(h * std::min(growth, 1.0));
       continue;
@@ -167,7 +167,7 @@ void RungeKutta::accept(double growth, double proposed) {
   slope_.swap(slope_new_);
   observe_ratio();
   observe_rates();
-  // A step that was cut short by a limit says nothing against the longer one.
+  // A step that was shortened by a limit does not change the usual step.
   h_ = rejections_ > 0 ? h * std::min(growth, 1.0) : std::max(h * growth, h < proposed ? proposed : 0.0);
 }
 

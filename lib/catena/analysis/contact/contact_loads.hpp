@@ -1,0 +1,75 @@
+// The forces of contacts while none of them changes its state: compliant ones press, closed ones slide or stick.
+//
+//   N_k = -lambda_k (rigid), k d^n + c d' (compliant), |(lambda_1, lambda_2)| of a joint
+//   friction on j along the slide:  f_k = -mu sigma_k N_k        sigma_k: sign of the slip, or tanh(slip / vs)
+//   f + mu sigma N(f) = 0           N(f) = N(lambda_0 + B f)       B_l: multipliers that a unit of friction l makes
+//
+// As the multipliers are linear in the friction, the sizes of all friction forces follow from a system of as many
+// equations, solved by Newton's method (one step without joints): reactions and friction are those of the same instant.
+// Where its determinant is not positive - it is 1 without friction - there is no such friction, or there are several
+// (Painleve): complete() is then false and trouble() says so. Source: Stewart, Rigid-body dynamics with friction and
+// impact, SIAM Review 42 (2000). Units as in contact_points.hpp.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "catena/analysis/contact/contact_points.hpp"
+#include "catena/analysis/motion/state_loads.hpp"
+#include "catena/assembly/evaluate.hpp"
+
+namespace catena {
+
+class ContactLoads final : public StateLoads {
+ public:
+  /// `points` must outlive this object.
+  ContactLoads(const Evaluator& evaluator, const std::vector<ContactPoint>& points, std::vector<ContactState> states);
+
+  void add(std::span<const double> qd, std::span<double> loads) override;
+  bool complete(EquationsOfMotion& equations, std::span<const double> gamma, std::span<double> loads,
+                std::span<double> qdd, std::span<double> lambda) override;
+  double dissipation() const override { return lost_; }
+  double energy() const override;
+  bool dissipates() const override { return dissipates_; }
+  std::string trouble() const override { return trouble_; }
+
+  /// After complete(): what point k presses with, its friction, its slip.
+  double normal(std::size_t k) const { return normal_[k]; }
+  double friction(std::size_t k) const { return friction_[k]; }
+  double slip(std::size_t k) const { return slide_[k].rate; }
+  /// What presses a place, from multipliers: of a joint its whole force; of a compliant place the force at the
+  /// evaluator's configuration, negative where it would have to pull.
+  double normal_from(std::size_t k, std::span<const double> qd, std::span<const double> lambda) const;
+  /// Scatters what presses, friction and slip to `force`, `friction` and `slip`, one entry an element.
+  void scatter(std::span<double> force, std::span<double> friction, std::span<double> slip) const;
+  /// The largest speed at which forces were asked for.
+  double speed() const { return speed_; }
+
+ private:
+  double compliant_force(const ContactPoint& point, const Evaluator::ScalarMotion& gap) const;
+  double joint_force(const ContactPoint& point, std::span<const double> lambda) const;
+  double joint_slope(const ContactPoint& point, std::span<const double> lambda, std::span<const double> along) const;
+  bool slides(std::size_t k) const;
+  double sigma(std::size_t k) const;
+  void finish(std::span<const double> lambda);
+
+  const Evaluator& evaluator_;
+  const std::vector<ContactPoint>& points_;
+  std::vector<ContactState> states_;
+  std::vector<Evaluator::ScalarMotion> slide_;
+  std::vector<double> normal_, friction_;
+  std::vector<std::size_t> coupled_;  // whose friction depends on multipliers
+  std::vector<double> unit_, change_, nothing_;
+  std::vector<std::vector<double>> response_;  // multipliers, by coupled point
+  double lost_ = 0, lost_in_springs_ = 0, speed_ = 0;
+  bool dissipates_ = false;
+  std::string trouble_;
+};
+
+/// The largest velocity of a body, m/s; of its turning, rad/s, times the length scale.
+double fastest(const Evaluator& evaluator, std::span<const double> qd);
+
+/// loads += factor x gradient of a scalar equation.
+void scatter_gradient(const Evaluator::ScalarMotion& of, double factor, std::span<double> loads);
+
+}  // namespace catena

@@ -1,0 +1,62 @@
+// Which contacts press, stick and slide: the complementarity problem of impulses or forces at several places at once.
+//
+//   w = b + D x                               two entries a place: across the contact, and along it
+//   x_n >= 0,  w_n >= 0,  x_n w_n = 0         an impact: w_n = v_n+ + e v_n-; forces: w_n = acceleration of the gap
+//   sticks: w_t = 0, |x_t| <= mu_static x_n   slides: x_t = -mu s x_n, s = sign of w_t, or of the slip there is
+//
+// D = J M^-1 J^T on the constraints is symmetric and positive semidefinite. Places are solved one after the other, over
+// and over, until nothing changes (nonlinear Gauss-Seidel); the states found are then solved for at once, so that the
+// answer is exact to rounding however slow that was. Several places of one body may be redundant: the least x is taken.
+// Not solvable where friction wedges a place (D_nn <= mu |D_tn|): solve() is then false.
+// Source: Stewart (2000), see contact_loads.hpp; Jean and Moreau, Unilaterality and dry friction (1992).
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace catena {
+
+class ContactProblem {
+ public:
+  struct Place {
+    bool has_normal = true;  ///< false: what presses is known: it sticks up to `limit` and slides with `kinetic`
+    bool has_friction = false;
+    double mu = 0, mu_static = 0;
+    double limit = 0, kinetic = 0;
+    int slip = 0;  ///< sign of the slip there is already; 0: it may stick
+  };
+  enum class State : unsigned char { open, slides, sticks };
+
+  explicit ContactProblem(std::size_t places)
+      : place(places),
+        b(2 * places, 0.0),
+        x(2 * places, 0.0),
+        state(places, State::open),
+        direction(places, 0),
+        d_(4 * places * places, 0.0) {}
+
+  double& D(std::size_t row, std::size_t column) { return d_[row * b.size() + column]; }
+  double D(std::size_t row, std::size_t column) const { return d_[row * b.size() + column]; }
+
+  /// Finds x and the states. False: there is no solution, or none that the iteration finds.
+  bool solve();
+
+  std::vector<Place> place;
+  std::vector<double> b;
+  std::vector<double> x;       ///< impulses or forces
+  std::vector<State> state;    ///< `slides` without friction: closed
+  std::vector<int> direction;  ///< of the slip, where it slides with friction
+
+ private:
+  bool solve_place(std::size_t k);
+  void solve_along(std::size_t k, double w_t);
+  /// w at place k, across (0) or along (1), but for the part of its own x.
+  double without_own(std::size_t k, std::size_t along) const;
+  void solve_states();
+  bool close_redundant(double size);
+  bool fits(double size) const;
+
+  std::vector<double> d_;
+};
+
+}  // namespace catena

@@ -1,0 +1,293 @@
+#include "catena/analysis/contact/contact_switch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// A gap of this part of the length scale (or rad) is closed: instants of impacts are found to rounding, configurations
+// are given to some ten digits.
+constexpr double closed_gap = 1e-9;
+// Of the largest speed so far: what cannot be told from rest after an impact or at the end of a slide.
+constexpr double no_speed = 1e-9;
+// Of the speed of the motion: the default of rest_speed.
+constexpr double default_rest = 1e-4;
+// Of the kinetic energy before an impact: rounding.
+constexpr double energy_rounding = 1e-12;
+
+// Friction of joints and their forces, by turns: the part mu of an error stays in each.
+constexpr int most_rounds = 100;
+
+double product(const Evaluator::ScalarMotion& of, std::span<const double> x) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k)
+    sum += of.gradient[k] * x[at(3 * of.body_i + k)] + of.gradient[3 + k] * x[at(3 * of.body_j + k)];
+  return sum;
+}
+
+int sign(double x, double none) { return x > none ? 1 : x < -none ? -1 : 0; }
+
+}  // namespace
+
+ContactSwitch::ContactSwitch(std::shared_ptr<const Model> model, const std::vector<ContactPoint>& points,
+                             const PlanOptions& plan)
+    : model_(std::move(model)),
+      points_(points),
+      evaluator_(Plan::make(*model_, plan), *model_),
+      equations_(evaluator_),
+      redundant_(equations_),
+      bounced_at_(points.size(), -std::numeric_limits<double>::infinity()),
+      landing_(points.size(), std::numeric_limits<double>::quiet_NaN()),
+      gap_(points.size()),
+      slide_(points.size()),
+      touching_(points.size(), 0) {
+  const auto coordinates = at(evaluator_.plan().coordinates());
+  load_.resize(coordinates);
+  qdd_.resize(coordinates);
+  nothing_.assign(at(evaluator_.plan().rows), 0.0);
+}
+
+Report ContactSwitch::prepare(std::span<const double> q) {
+  Report report = equations_.use_masses();
+  if (!report.ok()) return report;
+  equations_.weigh_massless(q);
+  redundant_.find(q);
+  return equations_.check_massless(q);
+}
+
+// Gaps, slides and their rates at the evaluator's configuration.
+void ContactSwitch::look(std::span<const double> qd) {
+  know_speed(fastest(evaluator_, qd));
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    if (points_[k].kind != ContactKind::joint) gap_[k] = evaluator_.scalar_motion(points_[k].element, qd);
+    if (points_[k].has_friction()) slide_[k] = evaluator_.scalar_motion(points_[k].slide, qd);
+  }
+}
+
+void ContactSwitch::find_touching(const std::vector<ContactState>& states, int trigger) {
+  active_.clear();
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    const ContactPoint& point = points_[k];
+    const double near = closed_gap * evaluator_.length_scale();
+    bool touches = states[k].closed || (point.kind == ContactKind::rigid && gap_[k].value <= near);
+    touches = touches || (point.kind == ContactKind::rigid && static_cast<int>(k) == trigger);
+    // Compliant and smoothed places are forces; only exact friction is decided about there.
+    if (point.kind != ContactKind::rigid) touches = touches && point.has_friction() && point.is_exact();
+    touching_[k] = touches;
+    if (touches) active_.push_back(k);
+  }
+}
+
+// What a unit force at every touching place makes of accelerations and multipliers, on the constraints.
+void ContactSwitch::find_responses() {
+  change_.assign(2 * active_.size(), std::vector<double>(load_.size(), 0.0));
+  multipliers_.assign(2 * active_.size(), nothing_);
+  for (std::size_t a = 0; a < active_.size(); ++a) {
+    for (std::size_t along = 0; along < 2; ++along) {
+      const ContactPoint& point = points_[active_[a]];
+      if (along == 0 ? point.kind != ContactKind::rigid : !point.has_friction()) continue;
+      std::fill(load_.begin(), load_.end(), 0.0);
+      scatter_gradient(along == 0 ? gap_[active_[a]] : slide_[active_[a]], 1, load_);
+      equations_.solve_motion(load_, nothing_, change_[2 * a + along], multipliers_[2 * a + along]);
+    }
+  }
+}
+
+void ContactSwitch::fill(ContactProblem& problem) const {
+  for (std::size_t a = 0; a < active_.size(); ++a) {
+    const ContactPoint& point = points_[active_[a]];
+    problem.place[a] = {.has_normal = point.kind == ContactKind::rigid,
+                        .has_friction = point.has_friction() && point.is_exact(),
+                        .mu = point.mu,
+                        .mu_static = point.mu_static};
+    for (std::size_t c = 0; c < 2 * active_.size(); ++c) {
+      if (problem.place[a].has_normal) problem.D(2 * a, c) = product(gap_[active_[a]], change_[c]);
+      if (point.has_friction()) problem.D(2 * a + 1, c) = product(slide_[active_[a]], change_[c]);
+    }
+  }
+}
+
+double ContactSwitch::kinetic_energy(std::span<const double> qd) const {
+  const std::vector<double>& mass = equations_.masses().mass;
+  double twice = 0;
+  for (int c = 0; c < 3 * evaluator_.plan().moving; ++c) twice += mass[at(c)] * qd[at(c)] * qd[at(c)];
+  return twice / 2;
+}
+
+Report ContactSwitch::wedged(double t) const {
+  Report report;
+  report.status = Status::inconsistent;
+  std::string names;
+  for (const std::size_t k : active_)
+    names += (names.empty() ? "\"" : ", \"") + model_->element_name(points_[k].element) + "\"";
+  report.message = fmt::format(
+      "at t = {:.12g} s no forces of the contacts {} fit, or several do (a Painleve situation: friction wedges rigid "
+      "bodies in this position); give a contact a stiffness k, or less friction",
+      t, names);
+  return report;
+}
+
+// Impulses of the touching places that close, with the given part of every restitution; `energy` after them.
+bool ContactSwitch::apply(double restitution_part, std::span<double> qd, double& energy) {
+  ContactProblem problem(active_.size());
+  fill(problem);
+  for (std::size_t a = 0; a < active_.size(); ++a) {
+    const std::size_t k = active_[a];
+    ContactProblem::Place& place = problem.place[a];
+    if (!place.has_normal) {
+      // What is pressed by a force of finite size has no impulse, and no friction of one.
+      place.has_friction = false;
+      place.limit = place.kinetic = 0;
+      continue;
+    }
+    place.mu_static = place.mu;
+    const double closing = std::min(gap_[k].rate, 0.0);
+    const double rest = points_[k].rest_speed >= 0 ? points_[k].rest_speed : default_rest * speed_;
+    const double rebound = -points_[k].restitution * closing;
+    problem.b[2 * a] = gap_[k].rate - (rebound >= rest ? restitution_part * rebound : 0);
+    problem.b[2 * a + 1] = place.has_friction ? slide_[k].rate : 0;
+  }
+  if (!problem.solve()) return false;
+  for (std::size_t c = 0; c < problem.x.size(); ++c) {
+    for (std::size_t n = 0; n < qd.size(); ++n) qd[n] += change_[c][n] * problem.x[c];
+  }
+  energy = kinetic_energy(qd);
+  return true;
+}
+
+Report ContactSwitch::collide(double t, std::span<double> qd, std::vector<ContactState>& states) {
+  const double none = no_speed * speed_;
+  const auto closes = [&](std::size_t k) { return points_[k].kind == ContactKind::rigid && gap_[k].rate < -none; };
+  if (std::none_of(active_.begin(), active_.end(), closes)) return {};
+  const std::vector<double> before(qd.begin(), qd.end());
+  const double energy = kinetic_energy(qd);
+  double part = 1, after = 0;
+  for (int attempt = 0;; ++attempt) {
+    std::copy(before.begin(), before.end(), qd.begin());
+    if (!apply(part, qd, after)) return wedged(t);
+    if (after <= energy * (1 + energy_rounding) || part == 0) break;
+    // Halved at first, then none: an impact without restitution never gains.
+    part = attempt < 40 ? part / 2 : 0;
+  }
+  std::vector<Evaluator::ScalarMotion> old = gap_;
+  look(qd);
+  for (const std::size_t k : active_) {
+    if (points_[k].kind != ContactKind::rigid || !(old[k].rate < -none)) continue;
+    events_.push_back({points_[k].element, "impact", t});
+    const double rebound = gap_[k].rate;
+    if (rebound > none) {
+      bounced_at_[k] = t;
+      states[k].closed = false;
+      continue;
+    }
+    // It stays. The bounces that were left out would have taken their time.
+    landing_[k] = t;
+    const double left_out = -points_[k].restitution * old[k].rate;
+    if (left_out > 0 && points_[k].restitution < 1 && bounced_at_[k] > -std::numeric_limits<double>::infinity()) {
+      const double fall = std::max(t - bounced_at_[k], 0.0);
+      landing_[k] = t + fall * points_[k].restitution / (1 - points_[k].restitution);
+    }
+  }
+  return {};
+}
+
+// Which places press, stick and slide from now on.
+Report ContactSwitch::choose(double t, std::span<const double> q, std::span<const double> qd,
+                             std::vector<ContactState>& states, const Cause& cause) {
+  const double none = no_speed * speed_;
+  // Without rigid places and exact friction; compliant ones press as they do.
+  std::vector<ContactState> forces = states;
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    if (points_[k].kind != ContactKind::compliant) forces[k].closed = false;
+    if (points_[k].is_exact()) forces[k].direction = 0;
+  }
+  ContactLoads loads(evaluator_, points_, forces);
+  equations_.attach(&loads);
+  const bool finite = equations_.accelerations(t, Side::after, q, qd, qdd_);
+  equations_.attach(nullptr);
+  if (!finite) return wedged(t);
+  std::erase_if(active_, [&](std::size_t k) { return points_[k].kind == ContactKind::rigid && gap_[k].rate > none; });
+  if (active_.empty()) return {};
+  find_responses();
+  ContactProblem problem(active_.size());
+  fill(problem);
+  for (std::size_t a = 0; a < active_.size(); ++a) {
+    const std::size_t k = active_[a];
+    ContactProblem::Place& place = problem.place[a];
+    problem.b[2 * a] = place.has_normal ? gap_[k].bend + product(gap_[k], qdd_) : 0;
+    if (points_[k].has_friction()) {
+      problem.b[2 * a + 1] = slide_[k].bend + product(slide_[k], qdd_);
+      place.slip = sign(slide_[k].rate, none);
+      if (static_cast<int>(k) == cause.place && cause.rests) place.slip = 0;
+    }
+  }
+  // What presses a joint depends on the forces themselves.
+  std::vector<double> lambda(equations_.multipliers().begin(), equations_.multipliers().end());
+  for (int round = 0; round < most_rounds; ++round) {
+    double change = 0, size = 0;
+    for (std::size_t a = 0; a < active_.size(); ++a) {
+      ContactProblem::Place& place = problem.place[a];
+      if (place.has_normal) continue;
+      const double normal = std::max(loads.normal_from(active_[a], qd, lambda), 0.0);
+      const double limit = points_[active_[a]].mu_static * normal;
+      change = std::max(change, std::abs(limit - place.limit));
+      size = std::max(size, limit);
+      place.limit = limit;
+      place.kinetic = points_[active_[a]].mu * normal;
+    }
+    if (!problem.solve()) return wedged(t);
+    if (change <= 1e-14 * size) break;
+    for (std::size_t r = 0; r < lambda.size(); ++r) {
+      lambda[r] = equations_.multipliers()[r];
+      for (std::size_t c = 0; c < problem.x.size(); ++c) lambda[r] += multipliers_[c][r] * problem.x[c];
+    }
+  }
+  for (std::size_t a = 0; a < active_.size(); ++a) {
+    const std::size_t k = active_[a];
+    const bool joint = points_[k].kind != ContactKind::rigid;
+    if (!joint) states[k].closed = problem.state[a] != ContactProblem::State::open;
+    states[k].direction = problem.state[a] == ContactProblem::State::slides ? problem.direction[a] : 0;
+  }
+  return {};
+}
+
+void ContactSwitch::tell_changes(double t, const std::vector<ContactState>& before,
+                                 const std::vector<ContactState>& after) {
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    const int element = points_[k].element;
+    const auto tell = [&](std::string_view kind, double when) { events_.push_back({element, kind, when}); };
+    if (after[k].closed && !before[k].closed) tell("contact", std::isnan(landing_[k]) ? t : landing_[k]);
+    if (!after[k].closed && before[k].closed && !(bounced_at_[k] == t)) tell("release", t);
+    landing_[k] = std::numeric_limits<double>::quiet_NaN();
+    const bool exact = points_[k].has_friction() && points_[k].is_exact();
+    if (!exact || !after[k].closed || !before[k].closed) continue;
+    if (after[k].direction == 0 && before[k].direction != 0) tell("stick", t);
+    if (after[k].direction != 0 && before[k].direction == 0) tell("slip", t);
+  }
+}
+
+Report ContactSwitch::decide(double t, std::span<const double> q, std::span<double> qd,
+                             std::vector<ContactState>& states, const Cause& cause) {
+  const std::vector<ContactState> before = states;
+  if (!equations_.factorize(t, Side::after, q)) {
+    Report report;
+    report.status = Status::singular;
+    report.message = fmt::format("the constraints' Jacobian is not finite at t = {:.12g} s", t);
+    return report;
+  }
+  look(qd);
+  find_touching(states, cause.place);
+  find_responses();
+  if (Report hit = collide(t, qd, states); !hit.ok()) return hit;
+  if (Report chosen = choose(t, q, qd, states, cause); !chosen.ok()) return chosen;
+  if (cause.tell) tell_changes(t, before, states);
+  return {};
+}
+
+}  // namespace catena

@@ -1,0 +1,89 @@
+// What contacts do next, at an instant at which one of them changes: impacts, then which of them press, stick and
+// slide.
+//
+//   impact        M (qd+ - qd-) + Phi_q^T p = J^T x,  Phi_q qd+ = nu      x: impulses of contact_problem.hpp
+//   Newton        v_n+ >= -e v_n-, equal where x_n > 0                    friction: |x_t| <= mu x_n
+//   then          accelerations of gaps and slides at qd+ decide which places press, stick and slide
+//
+// All places that touch take part together. Kinetic energy never grows: where impacts with friction of several places
+// would let it (Kane's example), the restitution of all is reduced until it does not. A place that would bounce slower
+// than its rest speed, or with e = 0, stays closed; had it bounced before, the instant of its landing is when ever
+// smaller bounces would have ended: t + 2 v / (a (1 - e)), a its free acceleration towards the contact.
+// Units as in contact_points.hpp.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "catena/analysis/contact/contact_loads.hpp"
+#include "catena/analysis/contact/contact_problem.hpp"
+#include "catena/analysis/motion/equations_of_motion.hpp"
+#include "catena/analysis/motion/redundant_rows.hpp"
+#include "catena/base/status.hpp"
+
+namespace catena {
+
+/// A change of a contact.
+struct ContactEvent {
+  int element = -1;
+  std::string_view kind;  ///< impact, contact, release, stick or slip
+  double t = 0;
+};
+
+class ContactSwitch {
+ public:
+  /// `plan`: one in which no row of a contact holds. The points must outlive this object.
+  ContactSwitch(std::shared_ptr<const Model> model, const std::vector<ContactPoint>& points, const PlanOptions& plan);
+
+  Evaluator& evaluator() { return evaluator_; }
+  EquationsOfMotion& equations() { return equations_; }
+  /// Masses, and what else is found once, at a configuration that meets the constraints.
+  Report prepare(std::span<const double> q);
+
+  /// Why contacts are decided about.
+  struct Cause {
+    int place = -1;      ///< the one that changed; -1: something else did
+    bool rests = false;  ///< its slide is at rest, to rounding
+    bool tell = true;    ///< changes of places are events; impacts always are
+  };
+  /// Changes qd by impacts, and `states` to what holds from t on.
+  Report decide(double t, std::span<const double> q, std::span<double> qd, std::vector<ContactState>& states,
+                const Cause& cause);
+  /// Takes note of a speed of the motion, see fastest().
+  void know_speed(double speed) { speed_ = std::max(speed_, speed); }
+  /// What happened since this was called last.
+  std::vector<ContactEvent> take_events() { return std::move(events_); }
+
+ private:
+  void look(std::span<const double> qd);
+  void find_touching(const std::vector<ContactState>& states, int trigger);
+  void find_responses();
+  void fill(ContactProblem& problem) const;
+  Report collide(double t, std::span<double> qd, std::vector<ContactState>& states);
+  bool apply(double restitution_part, std::span<double> qd, double& energy);
+  Report choose(double t, std::span<const double> q, std::span<const double> qd, std::vector<ContactState>& states,
+                const Cause& cause);
+  void tell_changes(double t, const std::vector<ContactState>& before, const std::vector<ContactState>& after);
+  double kinetic_energy(std::span<const double> qd) const;
+  Report wedged(double t) const;
+
+  std::shared_ptr<const Model> model_;
+  const std::vector<ContactPoint>& points_;
+  Evaluator evaluator_;
+  EquationsOfMotion equations_;
+  RedundantRows redundant_;
+  double speed_ = 0;                // largest of the motion so far, m/s or rad/s times the length scale
+  std::vector<double> bounced_at_;  // by point: when it hit and came back last
+  std::vector<double> landing_;     // by point: instant of the `contact` event under way, or NaN
+  std::vector<Evaluator::ScalarMotion> gap_, slide_;
+  std::vector<char> touching_;
+  // Of the touching places, two each: what a unit force across and along makes of accelerations and multipliers.
+  std::vector<std::size_t> active_;
+  std::vector<std::vector<double>> change_, multipliers_;
+  std::vector<double> load_, nothing_, qdd_;
+  std::vector<ContactEvent> events_;
+};
+
+}  // namespace catena

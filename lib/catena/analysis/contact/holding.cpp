@@ -1,0 +1,190 @@
+#include "catena/analysis/contact/holding.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "catena/analysis/contact/contact_points.hpp"
+#include "catena/analysis/pose/assemble.hpp"
+#include "catena/analysis/run/state_conversion.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// Of the loads: what is left unbalanced by rounding.
+constexpr double balanced = 1e-11;
+// A place within this part of the length scale is closed.
+constexpr double closed_gap = 1e-6;
+// Friction beyond this is as good as any: the edges of the cone are then along the tangent to this part.
+constexpr double most_friction = 1e8;
+
+/// The least |A x + b| over x >= 0.
+double least_residual(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+  const Eigen::Index n = A.cols();
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+  std::vector<char> used(static_cast<std::size_t>(n), 0);
+  const auto solve_used = [&](Eigen::VectorXd& s) {
+    std::vector<Eigen::Index> columns;
+    for (Eigen::Index c = 0; c < n; ++c)
+      if (used[static_cast<std::size_t>(c)]) columns.push_back(c);
+    Eigen::MatrixXd part(A.rows(), static_cast<Eigen::Index>(columns.size()));
+    for (std::size_t k = 0; k < columns.size(); ++k) part.col(static_cast<Eigen::Index>(k)) = A.col(columns[k]);
+    const Eigen::VectorXd solution = part.completeOrthogonalDecomposition().solve(-b);
+    s.setZero(n);
+    for (std::size_t k = 0; k < columns.size(); ++k) s(columns[k]) = solution(static_cast<Eigen::Index>(k));
+  };
+  const double rounding = 1e-13 * A.norm() * b.norm();
+  for (Eigen::Index outer = 0; outer < 3 * n; ++outer) {
+    const Eigen::VectorXd slope = -(A.transpose() * (A * x + b));
+    Eigen::Index enters = -1;
+    for (Eigen::Index c = 0; c < n; ++c) {
+      if (!used[static_cast<std::size_t>(c)] && slope(c) > rounding && (enters < 0 || slope(c) > slope(enters)))
+        enters = c;
+    }
+    if (enters < 0) break;
+    used[static_cast<std::size_t>(enters)] = 1;
+    Eigen::VectorXd s;
+    for (Eigen::Index inner = 0; inner <= n; ++inner) {
+      solve_used(s);
+      double part = 1;
+      for (Eigen::Index c = 0; c < n; ++c) {
+        if (used[static_cast<std::size_t>(c)] && s(c) < 0) part = std::min(part, x(c) / (x(c) - s(c)));
+      }
+      x += part * (s - x);
+      if (part == 1) break;
+      for (Eigen::Index c = 0; c < n; ++c) {
+        if (used[static_cast<std::size_t>(c)] && x(c) <= 1e-15 * x.lpNorm<Eigen::Infinity>()) {
+          used[static_cast<std::size_t>(c)] = 0;
+          x(c) = 0;
+        }
+      }
+    }
+  }
+  return (A * x + b).norm();
+}
+
+}  // namespace
+
+struct ContactHolding::Points {
+  ContactModel contacts;
+};
+
+ContactHolding::ContactHolding(std::shared_ptr<const Model> model) {
+  auto points = std::make_shared<Points>(Points{contact_points(std::move(model))});
+  PlanOptions options;
+  for (const ContactPoint& point : points->contacts.points) {
+    if (point.kind == ContactKind::joint) {
+      throw std::invalid_argument(
+          fmt::format("whether friction holds can be asked of contacts; that of joint \"{}\" is not treated there",
+                      points->contacts.model->element_name(point.joint)));
+    }
+    options.released_elements.push_back(point.element);
+    if (point.has_friction()) options.released_elements.push_back(point.slide);
+  }
+  evaluator_ = std::make_unique<Evaluator>(Plan::make(*points->contacts.model, options), *points->contacts.model);
+  points_ = std::move(points);
+}
+
+Holding ContactHolding::find(const SystemState& state, std::vector<double>& q) {
+  Holding holding;
+  const Plan& plan = evaluator_->plan();
+  if (plan.columns > most_held_coordinates) {
+    holding.status = Status::refused;
+    holding.message = fmt::format("whether friction holds is asked of at most {} coordinates; this scene has {}",
+                                  most_held_coordinates, plan.columns);
+    return holding;
+  }
+  q = configuration_of(*evaluator_, state);
+  evaluator_->set_time(state.t);
+  if (const AssemblyOutcome assembled = Assembler(*evaluator_).assemble(q); !assembled.ok()) {
+    static_cast<Report&>(holding) = assembled;
+    return holding;
+  }
+  evaluator_->set_configuration(q);
+  const double length = evaluator_->length_scale();
+  const std::vector<double> rest(q.size(), 0.0);
+  // Forces in columns, moments divided by the length scale so that they compare.
+  const auto force = [&](std::span<const double> loads) {
+    Eigen::VectorXd f(plan.columns);
+    for (int c = 0; c < plan.columns; ++c) {
+      const int coordinate = plan.coordinate[at(c)];
+      f(c) = loads[at(coordinate)] / (coordinate % 3 == 2 ? length : 1);
+    }
+    return f;
+  };
+  std::vector<double> loads(q.size(), 0.0), jacobian(at(plan.trash_slot()) + 1);
+  evaluator_->applied_forces(rest, loads);
+  struct Edge {
+    Eigen::VectorXd normal, along;
+    double friction;
+  };
+  std::vector<Edge> edges;
+  for (const ContactPoint& point : points_->contacts.points) {
+    const Evaluator::ScalarMotion gap = evaluator_->scalar_motion(point.element, rest);
+    const bool compliant = point.kind == ContactKind::compliant;
+    if (gap.value > (compliant ? 0 : closed_gap * length)) continue;
+    const auto gradient = [&](const Evaluator::ScalarMotion& of) {
+      std::vector<double> by(q.size(), 0.0);
+      for (int k = 0; k < 3; ++k) {
+        by[at(3 * of.body_i + k)] += of.gradient[k];
+        by[at(3 * of.body_j + k)] += of.gradient[3 + k];
+      }
+      return by;
+    };
+    const std::vector<double> normal = gradient(gap);
+    Edge edge{force(normal), Eigen::VectorXd::Zero(plan.columns), point.mu_static};
+    if (point.has_friction()) edge.along = force(gradient(evaluator_->scalar_motion(point.slide, rest)));
+    edges.push_back(std::move(edge));
+  }
+  // What constraints can balance does not count: forces along their null space are left.
+  Eigen::MatrixXd free = Eigen::MatrixXd::Identity(plan.columns, plan.columns);
+  if (plan.rows > 0) {
+    evaluator_->start_jacobian(jacobian);
+    evaluator_->jacobian(jacobian);
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(plan.columns, plan.rows);
+    for (int c = 0; c < plan.columns; ++c) {
+      const double unit = plan.coordinate[at(c)] % 3 == 2 ? length : 1;
+      for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k)
+        rows(c, plan.jacobian.row_index[at(k)]) = jacobian[at(k)] / unit;
+    }
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(rows);
+    const Eigen::MatrixXd q_full = factors.householderQ();
+    free = q_full.rightCols(plan.columns - factors.rank()).transpose();
+  }
+  const Eigen::VectorXd b = free * force(loads);
+  const auto holds = [&](double u) {
+    Eigen::MatrixXd A(free.rows(), 2 * static_cast<Eigen::Index>(edges.size()));
+    for (std::size_t k = 0; k < edges.size(); ++k) {
+      for (int s = 0; s < 2; ++s) {
+        const double slope = (s == 0 ? u : -u) * edges[k].friction;
+        const Eigen::VectorXd edge = free * (edges[k].normal + slope * edges[k].along);
+        A.col(2 * static_cast<Eigen::Index>(k) + s) = edge / std::max(edge.norm(), 1e-300);
+      }
+    }
+    return least_residual(A, b) <= balanced * force(loads).norm();
+  };
+  if (holds(0)) {
+    holding.utilisation = 0;
+    return holding;
+  }
+  double low = 0, high = 1;
+  while (!holds(high)) {
+    low = high;
+    high *= 4;
+    if (high > most_friction) return holding;
+  }
+  while (high - low > 1e-14 * high) {
+    const double middle = low + (high - low) / 2;
+    if (middle == low || middle == high) break;
+    (holds(middle) ? high : low) = middle;
+  }
+  holding.utilisation = high;
+  return holding;
+}
+
+}  // namespace catena

@@ -1,0 +1,85 @@
+// The slide of a contact: how far the point of body j has moved along the curve of body i, as touching material sees
+// it.
+//
+//   w = int_s0^s |p'| ds + R b (phi_j - phi_i - int_s0^s kappa |p'| ds)        s: foot of x,  x = A_i^T (r_Pj - r_i)
+//
+// R: radius of the disc around P_j, m; b = 1 where it is on the left of the curve, else -1; kappa: curvature. At
+// contact x = p + R b n, so that w' is the velocity of the disc's material against the curve's along the tangent p': a
+// wheel that rolls has w' = 0. The foot is that of point_on_curve.hpp; two Newton steps in the scalar of the
+// derivatives carry its first and second derivatives exactly. On a closed curve s goes on beyond a period. Singular as
+// point_on_curve.hpp. Units: m, rad. Source: Haug, section 3.4; rolling without slip.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "catena/elements/curve_search.hpp"
+
+namespace catena {
+
+class SlideOnCurve {
+ public:
+  /// `arm`: R b.
+  SlideOnCurve(BodyCurve<double> curve, const Vec2<double>& point, double arm, double start)
+      : curve_(std::move(curve)), point_(point), arm_(arm), start_(start), foot_(start) {}
+
+  template <class T>
+  T measure(const Frame<T>& i, const Frame<T>& j) const {
+    const Vec2<T> x = i.to_local(j.point(point_) - i.origin());
+    follow(plain(x));
+    T s(foot_);
+    if constexpr (!std::is_same_v<T, double>) {
+      const double bend = descent(curve_.plain(foot_), plain(x)).bend;
+      for (int step = 0; step < 2; ++step) {
+        const CurvePoint<T> c = curve_.evaluate(s);
+        s = s - dot(c.p - x, c.d1) / T(bend);
+      }
+    }
+    const auto [length, turn] = travel(s);
+    return length + T(arm_) * (j.phi - i.phi - turn);
+  }
+
+ private:
+  static Descent descent(const CurvePoint<double>& c, const Vec2<double>& x) {
+    const double size = squared_norm(c.d1);
+    return {dot(c.p - x, c.d1), size + dot(c.p - x, c.d2), size};
+  }
+  /// Moves foot_ to the foot of x, on a closed curve by less than half a period.
+  void follow(const Vec2<double>& x) const {
+    double s = foot_;
+    if (!follow_minimum(
+            curve_, [&](const CurvePoint<double>& c) { return descent(c, x); }, s))
+      s = curve_.nearest(x);
+    const bool closed = !curve_.is_line() && !curve_.ends() && !curve_.holds();
+    foot_ = closed ? foot_ + std::remainder(s - foot_, curve_.range()) : s;
+  }
+  /// Length and turn of the curve from the start to s, by Gauss's rule of five points on pieces of a sixteenth of the
+  /// range: exact for lines and circles, to rounding for the pieces of a spline.
+  template <class T>
+  std::array<T, 2> travel(const T& s) const {
+    constexpr std::array<double, 5> place{-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831,
+                                          0.9061798459386640};
+    constexpr std::array<double, 5> weight{0.2369268850561891, 0.4786286704993665, 0.5688888888888889,
+                                           0.4786286704993665, 0.2369268850561891};
+    const double way = std::abs(foot_ - start_);
+    const int pieces = curve_.is_line() ? 1 : 1 + static_cast<int>(16 * way / curve_.range());
+    const T h = (s - T(start_)) / T(2.0 * pieces);
+    T length(0.0), turn(0.0);
+    for (int n = 0; n < pieces; ++n) {
+      const T middle = T(start_) + T(2.0 * n + 1) * h;
+      for (std::size_t k = 0; k < place.size(); ++k) {
+        const CurvePoint<T> c = curve_.evaluate(middle + T(place[k]) * h);
+        length = length + T(weight[k]) * norm(c.d1) * h;
+        turn = turn + T(weight[k]) * cross(c.d1, c.d2) / squared_norm(c.d1) * h;
+      }
+    }
+    return {length, turn};
+  }
+
+  BodyCurve<double> curve_;
+  Vec2<double> point_;
+  double arm_, start_;
+  mutable double foot_;  // found last: where the search for the next one begins
+};
+
+}  // namespace catena

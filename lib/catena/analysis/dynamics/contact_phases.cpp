@@ -1,0 +1,205 @@
+#include "catena/analysis/dynamics/contact_phases.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "catena/analysis/motion/initial_velocities.hpp"
+#include "catena/analysis/pose/assemble.hpp"
+#include "catena/analysis/run/state_conversion.hpp"
+#include "catena/elements/all.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// A depth of this part of the length scale (or rad) at the start is an estimate of a closed place, more an error.
+constexpr double allowed_depth = 1e-6;
+
+}  // namespace
+
+ContactPhases::ContactPhases(std::shared_ptr<const Model> model) : contacts_(contact_points(std::move(model))) {
+  states_.resize(contacts_.points.size());
+  anchors_.assign(contacts_.points.size(), 0.0);
+}
+
+// An exact place of friction that does not slide holds by the row of its slide.
+bool ContactPhases::sticks(std::size_t k) const {
+  const ContactPoint& point = contacts_.points[k];
+  return point.has_friction() && point.is_exact() && states_[k].closed && states_[k].direction == 0;
+}
+
+void ContactPhases::add_rows(PlanOptions& options) const {
+  options.one_sided = options.friction = true;
+  for (const ContactPoint& point : contacts_.points) {
+    options.keep_elements.push_back(point.kind == ContactKind::joint ? point.joint : point.element);
+    if (point.has_friction()) options.keep_elements.push_back(point.slide);
+  }
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    const ContactPoint& point = contacts_.points[k];
+    const bool row = point.kind == ContactKind::rigid && states_[k].closed;
+    if (point.kind != ContactKind::joint && !row) options.released_elements.push_back(point.element);
+    if (point.has_friction() && !sticks(k)) options.released_elements.push_back(point.slide);
+  }
+}
+
+std::shared_ptr<const Model> ContactPhases::model() const {
+  std::shared_ptr<Model> changed;
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    if (!sticks(k)) continue;
+    if (!changed) changed = std::make_shared<Model>(*contacts_.model);
+    const ElementRecord& record = changed->elements[at(contacts_.points[k].slide)];
+    with_list(changed->constraints, record.type, [&](auto& list) {
+      if constexpr (ElementOf<decltype(list)>::functions == 1) list[at(record.index)].values[0].constant = anchors_[k];
+    });
+  }
+  return changed ? std::shared_ptr<const Model>(changed) : contacts_.model;
+}
+
+Report ContactPhases::check_depth(std::span<const double> q) {
+  Report report;
+  Evaluator& evaluator = switch_->evaluator();
+  evaluator.set_configuration(q);
+  for (const ContactPoint& point : contacts_.points) {
+    if (point.kind != ContactKind::rigid) continue;
+    const double gap = evaluator.measure(point.element, {}, {}).value;
+    if (gap >= -allowed_depth * evaluator.length_scale()) continue;
+    report.status = Status::inconsistent;
+    report.message = fmt::format(
+        "{} \"{}\" is violated at the start by {:.4g}: place the bodies so that they do not penetrate, or give it a "
+        "stiffness k",
+        contacts_.model->element_type(point.element), contacts_.model->element_name(point.element), -gap);
+    return report;
+  }
+  return report;
+}
+
+// Makes the switch anew, for a plan in which no row of a contact holds.
+Report ContactPhases::make_switch(const PlanOptions& options, const SystemState& state, std::vector<double>& q) {
+  PlanOptions open = options;
+  const std::vector<ContactState> states = std::exchange(states_, std::vector<ContactState>(states_.size()));
+  add_rows(open);
+  states_ = states;
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    if (contacts_.points[k].has_friction()) open.released_elements.push_back(contacts_.points[k].slide);
+  }
+  switch_ = std::make_unique<ContactSwitch>(contacts_.model, contacts_.points, open);
+  Evaluator& evaluator = switch_->evaluator();
+  q = configuration_of(evaluator, state);
+  evaluator.set_time(state.t);
+  if (const AssemblyOutcome assembled = Assembler(evaluator).assemble(q); !assembled.ok()) return assembled;
+  return switch_->prepare(q);
+}
+
+Report ContactPhases::start(SystemState& state, const PlanOptions& options) {
+  states_.assign(contacts_.points.size(), {});
+  events_.clear();
+  std::vector<double> q;
+  if (Report prepared = make_switch(options, state, q); !prepared.ok()) return prepared;
+  Evaluator& evaluator = switch_->evaluator();
+  std::vector<double> qd(q.size(), 0.0);
+  if (Report depth = check_depth(q); !depth.ok()) return depth;
+  const VelocityOutcome velocities =
+      find_initial_velocities(switch_->equations(), q, velocities_of(evaluator, state), qd);
+  if (!velocities.ok()) return velocities;
+  state = state_of(evaluator, state.t, q, qd);
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    const ContactPoint& point = contacts_.points[k];
+    if (point.kind == ContactKind::joint) states_[k].closed = true;
+    if (point.kind == ContactKind::compliant) {
+      evaluator.set_configuration(q);
+      states_[k].closed = evaluator.measure(point.element, {}, {}).value < 0;
+    }
+  }
+  return decide(state, {.tell = false});
+}
+
+Report ContactPhases::change_constraints(const PlanOptions& options, SystemState& state) {
+  std::vector<double> q;
+  if (Report prepared = make_switch(options, state, q); !prepared.ok()) return prepared;
+  return decide(state, {});
+}
+
+Report ContactPhases::decide(SystemState& state, const ContactSwitch::Cause& cause) {
+  Evaluator& evaluator = switch_->evaluator();
+  const std::vector<double> q = configuration_of(evaluator, state);
+  std::vector<double> qd = velocities_of(evaluator, state);
+  qd.resize(q.size(), 0.0);
+  Report report = switch_->decide(state.t, q, qd, states_, cause);
+  for (ContactEvent& event : switch_->take_events()) events_.push_back(event);
+  if (!report.ok()) return report;
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    if (!sticks(k)) continue;
+    const int slide = contacts_.points[k].slide;
+    const ElementRecord& record = contacts_.model->elements[at(slide)];
+    anchors_[k] = evaluator.scalar_motion(slide, {}).value;
+    with_list(contacts_.model->constraints, record.type, [&](const auto& list) {
+      if constexpr (ElementOf<decltype(list)>::functions == 1) anchors_[k] += list[at(record.index)].values[0].constant;
+    });
+  }
+  state = state_of(evaluator, state.t, q, qd);
+  return report;
+}
+
+Report ContactPhases::change(int transition, SystemState& state) {
+  const Watched& watched = watched_[at(transition)];
+  if (watched.ends == End::pressing) {
+    // A compliant place is pressed by a force that its own depth decides about.
+    states_[watched.place].closed = !states_[watched.place].closed;
+    states_[watched.place].direction = 0;
+  }
+  switch_->know_speed(loads_->speed());
+  return decide(state, {.place = static_cast<int>(watched.place), .rests = watched.ends == End::slide});
+}
+
+void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std::vector<Transition>& transitions) {
+  const ContactPoint& point = contacts_.points[k];
+  const ContactState state = states_[k];
+  const auto watch = [&](std::function<double(const Snapshot&)> value, int side, End ends) {
+    transitions.push_back({std::move(value), side});
+    watched_.push_back({k, ends});
+  };
+  const ContactLoads& loads = *loads_;
+  const int element = point.element, slide = point.slide;
+  const auto normal = [&loads, k](const Snapshot& s) { return loads.normal_from(k, s.qd, s.lambda); };
+  if (point.kind == ContactKind::rigid && !state.closed)
+    watch([element](const Snapshot& s) { return s.evaluator.measure(element, {}, {}).value; }, 1, End::contact);
+  if (point.kind == ContactKind::rigid && state.closed) {
+    watch(normal, 1, End::contact);
+    needs_.multipliers = true;
+  }
+  if (point.kind == ContactKind::compliant && state.closed) watch(normal, 1, End::pressing);
+  if (point.kind == ContactKind::compliant && !state.closed) {
+    watch([element,
+           normal](const Snapshot& s) { return std::min(-s.evaluator.measure(element, {}, {}).value, normal(s)); },
+          -1, End::pressing);
+  }
+  if (!point.has_friction() || !point.is_exact() || !state.closed) return;
+  needs_.multipliers = true;
+  if (state.direction != 0) {
+    watch([slide,
+           sign = state.direction](const Snapshot& s) { return sign * s.evaluator.scalar_motion(slide, s.qd).rate; },
+          1, End::slide);
+  } else {
+    const int row = dynamics.plan().element_row[at(slide)];
+    watch(
+        [normal, row, mu = point.mu_static](const Snapshot& s) { return mu * normal(s) - std::abs(s.lambda[at(row)]); },
+        1, End::slide);
+  }
+}
+
+void ContactPhases::attach(Dynamics& dynamics, EventWatch& watch) {
+  loads_ = std::make_unique<ContactLoads>(dynamics.evaluator(), contacts_.points, states_);
+  dynamics.attach(loads_.get());
+  std::vector<Transition> transitions;
+  watched_.clear();
+  needs_ = {};
+  needs_.velocity = true;
+  for (std::size_t k = 0; k < states_.size(); ++k) add_transitions(k, dynamics, transitions);
+  watch.watch(std::move(transitions), needs_);
+}
+
+}  // namespace catena

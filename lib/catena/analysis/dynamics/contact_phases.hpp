@@ -1,0 +1,66 @@
+// Motion with contacts as a row of phases, in each of which every contact does one thing: it is open, presses, sticks
+// or slides. A phase is integrated as a motion with the rows and forces of its state; it ends where one of these passes
+// zero, located on the dense output to rounding:
+//
+//   open, rigid        the gap                        open, compliant    the lesser of depth and force
+//   pressing           what presses                   slides             the slip, in its direction
+//   sticks             mu_static N - |T|
+//
+// There contact_switch.hpp finds impacts and what every contact does next. Units as in contact_points.hpp.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "catena/analysis/contact/contact_switch.hpp"
+#include "catena/analysis/dynamics/dynamics.hpp"
+
+namespace catena {
+
+class ContactPhases {
+ public:
+  explicit ContactPhases(std::shared_ptr<const Model> model);
+
+  bool any() const { return !contacts_.points.empty(); }
+  /// Assembles, makes velocities consistent and finds what every contact does at the start; `state` is changed to that.
+  /// `options`: of the plan, without the contacts.
+  Report start(SystemState& state, const PlanOptions& options);
+  bool started() const { return switch_ != nullptr; }
+
+  /// The model of the present phase; and what its plan needs more: rows of closed and sticking places hold.
+  std::shared_ptr<const Model> model() const;
+  void add_rows(PlanOptions& options) const;
+  /// Makes the forces of the phase for a Dynamics of model() and its plan, and has `watch` look for its end.
+  void attach(Dynamics& dynamics, EventWatch& watch);
+  /// Other constraints came or went, as `options` says: finds what every contact does then.
+  Report change_constraints(const PlanOptions& options, SystemState& state);
+  /// The phase ended by a transition: finds the next one.
+  Report change(int transition, SystemState& state);
+  /// Why friction could not be found at the last evaluation, or nothing.
+  std::string trouble() const { return loads_ ? loads_->trouble() : std::string(); }
+  const std::vector<ContactEvent>& events() const { return events_; }
+
+ private:
+  /// What ends a phase: a gap or a reaction, the force of a compliant place, a slide that comes to rest or begins.
+  enum class End : unsigned char { contact, pressing, slide };
+  struct Watched {
+    std::size_t place;
+    End ends;
+  };
+  void add_transitions(std::size_t k, const Dynamics& dynamics, std::vector<Transition>& transitions);
+  Report make_switch(const PlanOptions& options, const SystemState& state, std::vector<double>& q);
+  Report decide(SystemState& state, const ContactSwitch::Cause& cause);
+  Report check_depth(std::span<const double> q);
+  bool sticks(std::size_t k) const;
+
+  ContactModel contacts_;
+  std::unique_ptr<ContactSwitch> switch_;
+  std::unique_ptr<ContactLoads> loads_;
+  std::vector<ContactState> states_;
+  std::vector<double> anchors_;   // by point: the value of the slide's equation while it sticks
+  std::vector<Watched> watched_;  // by transition
+  Needs needs_;
+  std::vector<ContactEvent> events_;
+};
+
+}  // namespace catena
