@@ -16,18 +16,21 @@ constexpr long double step = 4e-3L;
 std::string scene_of(const FourBar& f, const std::string& mode) {
   const FourBarPose start = pose_of(f, 0);
   const auto n = [](long double x) { return fmt::format("{:.17g}", static_cast<double>(x)); };
-  return R"({"catena": 1, "parameters": {"a": )" + n(f.a) + R"(, "b": )" + n(f.b) + R"(, "c": )" + n(f.c) + R"(, "d": )" +
-         n(f.d) + R"(, "u": )" + n(f.u) + R"(, "v": )" + n(f.v) + R"(, "w": )" + n(f.w) + R"(, "s": )" + n(f.s) + R"(},
+  return R"({"catena": 1, "parameters": {"a": )" + n(f.a) + R"(, "b": )" + n(f.b) + R"(, "c": )" + n(f.c) +
+         R"(, "d": )" + n(f.d) + R"(, "u": )" + n(f.u) + R"(, "v": )" + n(f.v) + R"(, "w": )" + n(f.w) + R"(, "s": )" +
+         n(f.s) + R"--(},
   "bodies": {
     "crank": {"points": {"end": ["a", 0]}, "angle": "s"},
-    "coupler": {"points": {"end": ["b", 0], "pen": ["u", "v"]}, "position": ["=a*cos(s)", "=a*sin(s)"], "angle": )" +
+    "coupler": {"points": {"end": ["b", 0], "pen": ["u", "v"]}, "position": ["=a*cos(s)", "=a*sin(s)"], "angle": )--" +
          n(start.coupler) + R"(},
-    "rocker": {"points": {"end": ["c", 0]}, "position": ["d", 0], "angle": )" + n(start.rocker) + R"(}},
+    "rocker": {"points": {"end": ["c", 0]}, "position": ["d", 0], "angle": )" +
+         n(start.rocker) + R"(}},
   "constraints": [{"type": "revolute", "i": "ground", "j": "crank"}, {"type": "revolute", "i": "crank.end", "j": "coupler"},
     {"type": "revolute", "i": "coupler.end", "j": "rocker.end"}, {"type": "revolute", "i": ["ground", ["d", 0]], "j": "rocker"}],
   "drivers": [{"type": "absolute_angle", "i": "crank", "value": {"polynomial": ["s", "w"]}}],
   "outputs": ["coupler.pen.x", "coupler.pen.y", "rocker.angle", "rocker.omega", "rocker.alpha", "coupler.pen.ax"],
-  "analyses": [{"type": "sensitivity", "mode": ")" + mode + R"(", "parameters": ["a", "b", "c", "d", "u", "v", "w", "s"],
+  "analyses": [{"type": "sensitivity", "mode": ")" +
+         mode + R"(", "parameters": ["a", "b", "c", "d", "u", "v", "w", "s"],
     "of": {"type": "kinematics", "until": 1, "every": 0.25, "measures": {
       "area": {"integral": "=coupler.pen.x*rocker.omega"}, "reach": {"max": "coupler.pen.x"},
       "swing": {"range": "rocker.angle"}}}}]})";

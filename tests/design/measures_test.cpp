@@ -32,20 +32,17 @@ const MeasureResult& measure(const TextRun& run, const std::string& name) {
 double value(const TextRun& run, const std::string& name) { return measure(run, name).value.value_or(std::nan("")); }
 
 TEST(Measures, ExtremesLieBetweenRows) {
-  const TextRun run = run_text(crank(R"({"least": {"min": "crank.to.x"}, "most": {"max": "crank.to.y"},
-    "span": {"range": "crank.to.x"}, "kink": {"min": "=abs(crank.to.x)"}, "latest": {
-  "max" : "t"
-}
-})"));
+  const TextRun run = run_text(crank(R"--({"least": {"min": "crank.to.x"}, "most": {"max": "crank.to.y"},
+    "span": {"range": "crank.to.x"}, "kink": {"min": "=abs(crank.to.x)"}, "latest": {"max": "t"}})--"));
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
-EXPECT_NEAR(value(run, "least"), -1, 1e-15);
-EXPECT_NEAR(*measure(run, "least").t, pi - 0.3, 1e-9);
-EXPECT_NEAR(value(run, "most"), 1, 1e-15);
-EXPECT_NEAR(*measure(run, "most").t, pi / 2 - 0.3, 1e-9);
-EXPECT_NEAR(value(run, "span"), 1 + std::cos(0.3), 1e-14);
-EXPECT_NEAR(value(run, "kink"), 0, 1e-8);
-EXPECT_EQ(value(run, "latest"), 5);
-EXPECT_EQ(measure(run, "least").unit, "m");
+  EXPECT_NEAR(value(run, "least"), -1, 1e-15);
+  EXPECT_NEAR(*measure(run, "least").t, pi - 0.3, 1e-9);
+  EXPECT_NEAR(value(run, "most"), 1, 1e-15);
+  EXPECT_NEAR(*measure(run, "most").t, pi / 2 - 0.3, 1e-9);
+  EXPECT_NEAR(value(run, "span"), 1 + std::cos(0.3), 1e-14);
+  EXPECT_NEAR(value(run, "kink"), 0, 1e-8);
+  EXPECT_EQ(value(run, "latest"), 5);
+  EXPECT_EQ(measure(run, "least").unit, "m");
 }
 
 TEST(Measures, IntegralsAreOverTimeNotRows) {
@@ -81,23 +78,18 @@ TEST(Measures, PathsAreMeasuredFromGivenPoints) {
 
 TEST(Measures, OfMotionsUnderForces) {
   // A spring of 4 N/m and a mass of 1 kg, released at 1 m: x = cos 2t.
-  const TextRun run = run_text(R"({"catena": 1,
+  const TextRun run = run_text(R"--({"catena": 1,
   "bodies": {"mass": {"mass": 1, "particle": true, "position": [1, 0]}},
   "constraints": [{"type": "absolute_y", "i": "mass", "value": 0}],
   "forces": [{"type": "spring_damper", "name": "spring", "i": "ground", "j": "mass", "k": 4, "length": 0}],
   "outputs": ["mass.x"],
   "analyses": [{"type": "dynamics", "until": 3, "every": 3, "tolerance": 1e-10, "measures": {
-     "least": {"min": "mass.x"}, "fast": {"max": "=abs(mass.vx)"}, "pull": {
-  "integral" : "=mass.x^2"
-}
-}
-}]
-})");
+     "least": {"min": "mass.x"}, "fast": {"max": "=abs(mass.vx)"}, "pull": {"integral": "=mass.x^2"}}}]})--");
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
-EXPECT_NEAR(value(run, "least"), -1, 1e-9);
-EXPECT_NEAR(*measure(run, "least").t, pi / 2, 1e-8);
-EXPECT_NEAR(value(run, "fast"), 2, 1e-9);
-EXPECT_NEAR(value(run, "pull"), 1.5 + std::sin(12) / 8, 1e-9);
+  EXPECT_NEAR(value(run, "least"), -1, 1e-9);
+  EXPECT_NEAR(*measure(run, "least").t, pi / 2, 1e-8);
+  EXPECT_NEAR(value(run, "fast"), 2, 1e-9);
+  EXPECT_NEAR(value(run, "pull"), 1.5 + std::sin(12) / 8, 1e-9);
 }
 
 TEST(Measures, OfWhatAnAnalysisReports) {

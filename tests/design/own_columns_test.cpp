@@ -22,21 +22,20 @@ std::string crank(const std::string& columns, const std::string& outputs, const 
 
 TEST(OwnColumns, AreFormulasOverColumnsParametersAndTime) {
   const TextRun run = run_text(crank(
-      R"({"speed": {"value": "=sqrt(crank.to.vx^2 + crank.to.vy^2)", "unit": "m/s"},
-          "twice": "=2*speed + t*r", "far": "='long rod'.x - crank.to.x"
-})",
+      R"--({"speed": {"value": "=sqrt(crank.to.vx^2 + crank.to.vy^2)", "unit": "m/s"},
+          "twice": "=2*speed + t*r", "far": "='long rod'.x - crank.to.x"})--",
       R"(["speed", "twice", "far", "=crank.angle - w*t"])"));
-ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
-const std::vector<double> t = run.column("t"), speed = run.column("speed"), twice = run.column("twice"),
-                          far = run.column("far"), angle = run.column("=crank.angle - w*t");
-ASSERT_EQ(t.size(), 5u);
-for (std::size_t k = 0; k < t.size(); ++k) {
-  EXPECT_NEAR(speed[k], 0.6, 1e-14);
-  EXPECT_NEAR(twice[k], 1.2 + 0.3 * t[k], 1e-14);
-  EXPECT_NEAR(far[k], 1 - 0.3 * std::cos(2 * t[k]), 1e-14);
-  EXPECT_NEAR(angle[k], 0, 1e-14);
-}
-EXPECT_EQ(run.sink.rows.at(0).columns()[1].unit_text(), "m/s");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  const std::vector<double> t = run.column("t"), speed = run.column("speed"), twice = run.column("twice"),
+                            far = run.column("far"), angle = run.column("=crank.angle - w*t");
+  ASSERT_EQ(t.size(), 5u);
+  for (std::size_t k = 0; k < t.size(); ++k) {
+    EXPECT_NEAR(speed[k], 0.6, 1e-14);
+    EXPECT_NEAR(twice[k], 1.2 + 0.3 * t[k], 1e-14);
+    EXPECT_NEAR(far[k], 1 - 0.3 * std::cos(2 * t[k]), 1e-14);
+    EXPECT_NEAR(angle[k], 0, 1e-14);
+  }
+  EXPECT_EQ(run.sink.rows.at(0).columns()[1].unit_text(), "m/s");
 }
 
 TEST(OwnColumns, AreWatchedByEvents) {
@@ -64,12 +63,11 @@ TEST(OwnColumns, WrongOnesAreReportedWhereTheyStand) {
   expect_error(crank(R"({"a": "=§crnk.x + 1"})", R"(["a"])"), "crnk");
   expect_error(crank(R"({"a": "=1 + §R"})", R"(["a"])"), "there is no column or parameter \"R\"; did you mean \"r\"?");
   expect_error(crank(R"({"a": §"=b", "b": "=a + 1"})", R"(["a"])"), "in a circle: a -> b -> a");
-  expect_error(crank(R"({"a": "=sqrt(§crank)"
-})", R"(["a"])"), "stands for");
+  expect_error(crank(R"--({"a": "=sqrt(§crank)"})--", R"(["a"])"), "stands for");
   expect_error(crank(R"({§"r": "=t"})", R"(["r"])"), "a parameter is called \"r\" already");
-expect_error(crank(R"({"a": {"value": "=t", "unit": §"mm"}})", R"(["a"])"), "its unit is \"m\"");
-expect_error(crank(R"({"a": §"t"})", R"(["a"])"), "begins with =");
-expect_error(crank(R"({"a": "=t"})", R"(["=2*§crank.z"])"), "crank.z");
+  expect_error(crank(R"({"a": {"value": "=t", "unit": §"mm"}})", R"(["a"])"), "its unit is \"m\"");
+  expect_error(crank(R"({"a": §"t"})", R"(["a"])"), "begins with =");
+  expect_error(crank(R"({"a": "=t"})", R"(["=2*§crank.z"])"), "crank.z");
 }
 
 TEST(OwnColumns, WhatAnAnalysisCannotGiveIsLeftOutWithANote) {
