@@ -6,9 +6,9 @@
 namespace catena {
 
 std::string_view to_string(Status status) {
-  static constexpr std::array<std::string_view, 12> names = {
-      "ok",           "not_assembled", "under_driven",  "singular",       "lock_up",   "bifurcation",
-      "inconsistent", "unbounded",     "not_converged", "step_too_small", "cancelled", "refused"};
+  static constexpr std::array<std::string_view, 13> names = {
+      "ok",         "not_assembled", "under_driven",  "singular",       "lock_up",   "bifurcation", "inconsistent",
+      "infeasible", "unbounded",     "not_converged", "step_too_small", "cancelled", "refused"};
   return names[static_cast<std::size_t>(status)];
 }
 

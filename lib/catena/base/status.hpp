@@ -15,6 +15,7 @@ enum class Status {
   lock_up,         ///< w^T nu != 0 at a singular configuration: no continuation
   bifurcation,     ///< branches meet and none was chosen
   inconsistent,    ///< redundant rows contradict each other
+  infeasible,      ///< no design was found that meets its constraints
   unbounded,       ///< the energy has no minimum
   not_converged,   ///< iterations exhausted
   step_too_small,  ///< the integrator could not make a step

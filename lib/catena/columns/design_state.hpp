@@ -4,6 +4,7 @@
 // that nothing that is made of them looks differentiated.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "catena/assembly/design/design_mechanism.hpp"
@@ -54,6 +55,10 @@ class DesignState {
 
  private:
   static DesignScalar without_derivative(double value);
+  static std::optional<DesignScalar> of_contact(std::span<const double> values, int element) {
+    if (values.empty()) return {};
+    return without_derivative(values[static_cast<std::size_t>(element)]);
+  }
 
   const DesignMechanism& mechanism_;
   const Snapshot& snapshot_;

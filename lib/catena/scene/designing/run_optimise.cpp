@@ -68,7 +68,7 @@ Report report_of(const DesignOutcome& outcome, int max_evaluations) {
       report.message = "stopped; the best design so far is given";
       break;
     case DesignEnd::infeasible:
-      report.status = Status::inconsistent;
+      report.status = Status::infeasible;
       report.message = fmt::format(
           "the constraints cannot be met: the least infeasible design misses them by {:.3g} of "
           "their size; likely cause: relations that exclude each other within the bounds",

@@ -63,7 +63,10 @@ std::string friction_left_out(const Model& model) {
 
 void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   const AnalysisTask& task = context.task;
-  if (task.word("friction") == 1) return run_holding(context, result);
+  if (task.word("friction") == 1) {
+    if (context.design) return refuse(result, "what friction can hold has no derivatives yet");
+    return run_holding(context, result);
+  }
   // In the order of the keys' words.
   constexpr StaticSolver solvers[] = {StaticSolver::automatic, StaticSolver::newton, StaticSolver::ipopt,
                                       StaticSolver::nlopt};
