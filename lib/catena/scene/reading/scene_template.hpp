@@ -36,7 +36,7 @@ struct FunctionTemplate {
   Kind kind = Kind::constant;
   SplineEnd end = SplineEnd::natural;
   Beyond beyond = Beyond::error;
-  int order = 5;             // of a step
+  int order = 5;  // of a step
   MotionLaw law = MotionLaw::cycloidal;
   std::uint32_t offset = 0;  // of the value in the text
   /// constant: 1; polynomial: coefficients; harmonic: amplitude, omega, phase, offset; step, law: t0, t1, from, to;
