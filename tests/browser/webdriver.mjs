@@ -27,8 +27,14 @@ export async function startBrowser({ driver, browser, width = 1280, height = 720
   const capabilities = { alwaysMatch: { browserName: "chrome", "goog:chromeOptions": options,
                                         "goog:loggingPrefs": { browser: "ALL" } } };
   const base = `http://127.0.0.1:${port}/session`;
-  const session = await call("POST", base, { capabilities });
-  return new Browser(`${base}/${session.sessionId}`, process);
+  try {
+    const session = await call("POST", base, { capabilities });
+    return new Browser(`${base}/${session.sessionId}`, process);
+  } catch (error) {
+    process.removeAllListeners("exit");
+    process.kill();
+    throw error;
+  }
 }
 
 async function call(method, address, body) {
