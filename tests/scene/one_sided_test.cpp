@@ -249,8 +249,7 @@ TEST(OneSided, OtherAnalysesRefuseByName) {
   const std::string start = R"({"catena": 1, "gravity": [0, -10], "bodies": {"bob": {"particle": true, "mass": 2}},
     "forces": [{"type": "contact", "name": "floor", "i": "ground", "j": "bob",
       "curve": {"line": {"point": [0, -1], "axis": [1, 0]}}}], "analyses": [{"type": )";
-  for (const std::string& analysis : {std::string(R"("dynamics", "until": 1)"), std::string(R"("modes")"),
-                                      std::string(R"("kinematics")"), std::string(R"("inverse_dynamics")")}) {
+  for (const std::string& analysis : {std::string(R"("modes")")}) {
     const TextRun run = run_text(start + analysis + "}]}");
     ASSERT_EQ(run.outcome.exit_code, 1) << run.outcome.error_text;
     EXPECT_EQ(run.analysis().report.status, Status::refused);

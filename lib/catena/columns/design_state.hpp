@@ -4,7 +4,6 @@
 // that nothing that is made of them looks differentiated.
 #pragma once
 
-#include <optional>
 #include <span>
 
 #include "catena/assembly/design/design_mechanism.hpp"
@@ -55,10 +54,6 @@ class DesignState {
 
  private:
   static DesignScalar without_derivative(double value);
-  static std::optional<DesignScalar> of_contact(std::span<const double> values, int element) {
-    if (values.empty()) return {};
-    return without_derivative(values[static_cast<std::size_t>(element)]);
-  }
 
   const DesignMechanism& mechanism_;
   const Snapshot& snapshot_;

@@ -52,18 +52,26 @@ std::optional<double> stationary(const std::array<double, 7>& v) {
 
 }  // namespace
 
-void Extreme::consider(MotionSample sample, double value) {
+void Extreme::consider(MotionSample sample, double value, double reach) {
   size_ = std::max(size_, std::abs(value));
   if (!best_ || value > largest_ + tie * size_) {
     others_.clear();
     best_ = std::move(sample);
     largest_ = value;
-  } else if (value >= largest_ - tie * size_ && sample.t != best_->t) {
+    return;
+  }
+  // Of the samples of one top the highest counts; further away an equal one is another top.
+  const bool apart = std::abs(sample.t - best_->t) > reach;
+  if (value > largest_) {
+    if (apart) others_.push_back(std::move(*best_));
+    best_ = std::move(sample);
+    largest_ = value;
+  } else if (value >= largest_ - tie * size_ && apart) {
     others_.push_back(std::move(sample));
   }
 }
 
-void Extreme::add(const MotionSample& sample) { consider(sample, quantity_(sample.value)); }
+void Extreme::add(const MotionSample& sample) { consider(sample, quantity_(sample.value), 0); }
 
 // The top between a and b, `middle` above both.
 std::optional<Extreme::Peak> Extreme::locate(double a, double middle, double b, double length,
@@ -128,7 +136,7 @@ void Extreme::add(const MotionSamples& samples, const MotionSamples::Part& part,
   const auto take = [&](double instant) {
     if (auto sample = samples.look(stretch, instant, with_derivative)) {
       const double value = quantity_(sample->value);
-      consider(std::move(*sample), value);
+      consider(std::move(*sample), value, 2 * (t.back() - t.front()));
     }
   };
   const auto promises = [&](double value) { return !best_ || value + slack * size_ > largest_; };

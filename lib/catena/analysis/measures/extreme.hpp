@@ -41,7 +41,8 @@ class Extreme {
   using At = std::function<std::optional<double>(double)>;
   std::optional<Peak> locate(double a, double middle, double b, double length, const MotionStretch& stretch,
                              const At& at) const;
-  void consider(MotionSample sample, double value);
+  /// Samples within `reach` of the best, s, belong to the same top.
+  void consider(MotionSample sample, double value, double reach);
 
   Quantity quantity_;
   std::optional<MotionSample> best_;

@@ -12,6 +12,8 @@ namespace {
 // A gap below this part of the length scale is closed; a push below this part of the largest multiplier is none.
 // Both are what equilibria are found to (1e-11) with two digits to spare.
 constexpr double touching = 1e-9, pushing = 1e-9;
+// Places are rounded to this part of the length scale: what they make of the stiffest spring is no push either.
+constexpr double rounding_of_places = 1e-14;
 
 }  // namespace
 
@@ -25,10 +27,17 @@ bool StaticDerivatives::leave_open_gaps_out(const Snapshot& snapshot) {
   evaluator().phi(phi);
   double largest = 0;
   for (const double multiplier : snapshot.lambda) largest = std::max(largest, std::abs(multiplier));
+  double stiffest = 0;
+  if (!plan().gap_rows.empty()) {
+    evaluator().visit_stiffness(rest_, [&](int, int, const ElementMatrix& m) {
+      for (const double entry : m) stiffest = std::max(stiffest, std::abs(entry));
+    });
+  }
+  const double none = std::max(pushing * largest, rounding_of_places * evaluator().length_scale() * stiffest);
   std::vector<int> open;
   for (const int r : plan().gap_rows) {
     const auto row = static_cast<std::size_t>(r);
-    const bool pushes = std::abs(snapshot.lambda[row]) > pushing * largest;
+    const bool pushes = std::abs(snapshot.lambda[row]) > none;
     if (pushes) continue;
     if (phi[row] <= touching * evaluator().length_scale()) {
       const int element = plan().row_element[row];

@@ -25,7 +25,7 @@ std::string value_of_field(const FieldDescription& field) {
     case FieldKind::bound:
       return quantity(field.second_unit);
     case FieldKind::column:
-      return "\"crank.angle\"";
+      return field.key == "joint" ? "\"guide\"" : "\"crank.angle\"";
     case FieldKind::flag:
       return "true";
     case FieldKind::side:
@@ -80,10 +80,17 @@ std::string example_of(const AnalysisDescription& type) {
 }
 
 std::string example_scene(const ElementDescription& type) {
+  // What acts in a joint wants one.
+  const bool in_joint = type.find("joint") != nullptr;
+  const std::string joint =
+      in_joint
+          ? R"("constraints": [{"type": "translational", "name": "guide", "i": "ground", "j": "crank", "axis_i": [1, 0]}],
+ )"
+          : "";
   return std::string(R"({"catena": 1,
  "bodies": {"crank": {"points": {"tip": [0.1, 0]}}, "rod": {"position": [0.4, 0], "points": {"from": [-0.2, 0]}}},
- ")") + (type.force ? "forces" : "constraints") +
-         "\": [" + example_of(type) + "]}\n";
+ )") + joint +
+         "\"" + (type.force ? "forces" : "constraints") + "\": [" + example_of(type) + "]}\n";
 }
 
 }  // namespace catena

@@ -46,7 +46,6 @@ class AnalysisRows final : public RowObserver {
   bool cover(const MotionStretch& stretch) override;
 
   std::int64_t rows() const { return rows_; }
-  GapWatch* gaps = nullptr;  ///< looks at the rows too; may be none
   StateDerivatives* derivatives() { return derivatives_.get(); }
   /// Columns, rows, measures and what is to be said of them.
   void finish(AnalysisResult& result);
