@@ -102,9 +102,9 @@ TEST_P(RandomFourBars, HaveGradientsOfMeasuresWhateverTheMode) {
   const TextRun forward = run_text(scene_of(f, "forward")), adjoint = run_text(scene_of(f, "adjoint"));
   ASSERT_EQ(adjoint.outcome.exit_code, 0) << adjoint.outcome.error_text << adjoint.analysis().report.message;
   EXPECT_TRUE(adjoint.column("d(rocker.angle)/d(a)").empty());
-  // The integral by Simpson's rule of the closed form.
+  // The integral by Simpson's rule of the closed form: with 400 parts its own error is 1e-8.
   const auto area = [](const FourBar& g) {
-    constexpr int n = 400;
+    constexpr int n = 1000;
     long double sum = 0;
     for (int k = 0; k <= n; ++k) {
       const long double time = static_cast<long double>(k) / n;
