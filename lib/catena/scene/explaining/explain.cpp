@@ -149,8 +149,7 @@ std::string explain_analysis(const AnalysisDescription& type) {
 
 std::optional<std::string> explain(std::string_view name) {
   if (const ElementDescription* type = find_element_type(name)) return explain_element(*type);
-  if (const AnalysisDescription* type = find_analysis_type(name); type)
-    return explain_analysis(*type);
+  if (const AnalysisDescription* type = find_analysis_type(name)) return explain_analysis(*type);
   for (const ExplainedTopic& topic : explained_topics()) {
     for (const std::string_view known : topic.names) {
       if (known == name) return std::string(topic.text);
