@@ -2,17 +2,24 @@
 # From a fresh clone to a result: installs what is missing, builds the command line and runs a mechanism through it.
 #
 #   apps/quickstart.sh [SCENE]     SCENE: a scene file; without one, the crank-rocker of data/scenes
+#   apps/quickstart.sh --python    builds the Python package too, and runs the scene through it
 #
 # The build goes to build/release, the results to out/<name of the scene>, both in this tree and ignored by git.
 set -euo pipefail
 
 here="$(pwd)"
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+python=OFF
+if [[ "${1:-}" == --python ]]; then
+  python=ON
+  shift
+fi
 scene="${1:-$root/data/scenes/crank_rocker.json}"
 [[ "$scene" == /* ]] || scene="$here/$scene"
 cd "$root"
 
 apps/setup.sh
+[[ $python == ON ]] && apps/setup.sh --python
 
 build=build/release
 if [[ ! -f $build/build.ninja ]]; then
@@ -21,6 +28,10 @@ if [[ ! -f $build/build.ninja ]]; then
 fi
 echo "Building $build/bin/catena"
 cmake --build $build --target catena_cli
+if [[ $python == ON ]]; then
+  cmake -B $build -DCATENA_WITH_PYTHON=ON >/dev/null
+  cmake --build $build --target catena_python
+fi
 
 out="out/$(basename "$scene" .json)"
 mkdir -p "$out"
@@ -42,5 +53,10 @@ if [[ -n "$written" ]]; then
   done <<<"$written"
 else
   echo "No files were written to $out."
+fi
+if [[ $python == ON ]]; then
+  echo
+  echo "\$ PYTHONPATH=$build/python python3 -c 'import catena; print(catena.load(\"$shown\").run())'"
+  PYTHONPATH=$build/python python3 -c "import catena; print(catena.load('$shown').run())"
 fi
 exit $status

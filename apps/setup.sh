@@ -2,6 +2,7 @@
 # Installs the Debian packages that catena is built with: the one place that lists them.
 #
 #   apps/setup.sh            what building the library and the command line needs
+#   apps/setup.sh --python   also what the Python package needs
 #   apps/setup.sh --tests    also what the tests and benchmarks need
 #   apps/setup.sh --browser  also the browser that pages are tested in
 #   apps/setup.sh --all      also the second compiler and the formatter
@@ -22,7 +23,11 @@ packages=(
   libfmt-dev            # text reports
   esbuild               # the page of `catena view`
 )
+python_packages=(
+  pybind11-dev python3-dev python3-numpy
+)
 test_packages=(
+  "${python_packages[@]}"
   libgtest-dev
   librapidcheck-dev     # property tests
   libboost-dev          # 50-digit arithmetic to compare with
@@ -42,11 +47,12 @@ all_packages=(
 
 case "${1:-}" in
   "") ;;
+  --python) packages+=("${python_packages[@]}") ;;
   --tests) packages+=("${test_packages[@]}") ;;
   --browser) packages+=("${test_packages[@]}" "${browser_packages[@]}") ;;
   --all) packages+=("${test_packages[@]}" "${browser_packages[@]}" "${all_packages[@]}") ;;
   *)
-    echo "usage: apps/setup.sh [--tests | --browser | --all]" >&2
+    echo "usage: apps/setup.sh [--python | --tests | --browser | --all]" >&2
     exit 2
     ;;
 esac

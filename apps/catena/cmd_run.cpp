@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "commands.hpp"
+#include "result_folder.hpp"
 #include "run_command.hpp"
 #include "scene_arguments.hpp"
 
@@ -114,12 +115,23 @@ struct Parsed {
 void add_common_options(CLI::App& command, Parsed& parsed) {
   RunCommand& run = parsed.run;
   add_scene_arguments(command, parsed.scene);
-  command.add_flag("--json", run.json, "print results as JSON, every digit");
+  CLI::Option* json = command.add_flag("--json", run.json, "print results as JSON, every digit");
+  command.add_flag("--csv", run.csv, "print rows as CSV, every digit, an empty line between analyses")->excludes(json);
   command
       .add_option("-o,--output-dir,--output", run.directory,
-                  "also write one CSV file an analysis and report.json to this folder")
+                  "also write the rows of each analysis to a file, all other results to report.json, in this folder")
       ->type_name("DIR")
       ->check([](const std::string& folder) { return folder.empty() ? "the folder has no name" : ""; });
+  command.add_option("--format", run.format, "of the files with rows: csv, npz (NumPy) or json")
+      ->capture_default_str()
+      ->check(CLI::IsMember(std::vector<std::string>(ResultFolder::formats.begin(), ResultFolder::formats.end())))
+      ->type_name("FORMAT")
+      ->needs("--output-dir");
+  command
+      .add_option("--units", run.units,
+                  "units of the table and of CSV files, as angle=deg,length=mm: length, time, angle, force, mass")
+      ->delimiter(',')
+      ->type_name("KIND=UNIT");
   command.add_option("--view", run.page, "also write a page with the moving mechanism and its plots")
       ->type_name("FILE");
   command

@@ -7,9 +7,25 @@
 #include <cstring>
 #include <filesystem>
 
+#include "catena/results/csv_writer.hpp"
+#include "catena/results/npz_writer.hpp"
 #include "catena/scene/running/scene_runner.hpp"
 
 namespace catena::cli {
+namespace {
+
+std::unique_ptr<RowWriter> csv_writer(TextOutput& output) { return std::make_unique<CsvWriter>(output); }
+std::unique_ptr<RowWriter> npz_writer(TextOutput& output) { return std::make_unique<NpzWriter>(output); }
+
+MakeRowWriter writer_of(const std::string& format) {
+  if (format == "npz") return npz_writer;
+  return format == "json" ? json_row_writer : csv_writer;
+}
+
+}  // namespace
+
+ResultFolder::ResultFolder(std::string path, const std::string& format, OutputUnits::Wishes units)
+    : path_(std::move(path)), rows_(path_, "." + format, writer_of(format)), shown_(rows_, std::move(units)) {}
 
 std::string ResultFolder::obstacle(const std::string& path) {
   namespace fs = std::filesystem;
@@ -26,18 +42,18 @@ std::string ResultFolder::obstacle(const std::string& path) {
 }
 
 void ResultFolder::begin_run(const RunHeader& header) {
-  csv_.begin_run(header);  // makes the folder
+  shown_.begin_run(header);  // makes the folder
   report_file_.emplace(TextOutput::file((std::filesystem::path(path_) / "report.json").string()));
-  report_ = json_result_sink(*report_file_);
+  report_ = json_result_sink(*report_file_, JsonRows::left_out);
   report_->begin_run(header);
-  tee_.add(csv_);
+  tee_.add(shown_);
   tee_.add(*report_);
 }
 
 void ResultFolder::end_run() {
   tee_.end_run();
-  files_ = csv_.files();
-  error_ = csv_.error();
+  files_ = rows_.files();
+  error_ = rows_.error();
   if (report_file_->commit()) {
     files_.push_back((std::filesystem::path(path_) / "report.json").string());
   } else if (error_.empty()) {

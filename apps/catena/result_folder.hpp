@@ -1,20 +1,25 @@
-// The folder of -o: one CSV file an analysis, and report.json with the whole result document.
+// The folder of -o: one file of rows an analysis, and report.json with all other results.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "catena/results/csv_directory.hpp"
 #include "catena/results/result_sink.hpp"
+#include "catena/results/row_files.hpp"
 #include "catena/results/text_output.hpp"
+#include "catena/scene/running/units_sink.hpp"
 
 namespace catena::cli {
 
 class ResultFolder final : public ResultSink {
  public:
-  explicit ResultFolder(std::string path) : path_(std::move(path)), csv_(path_) {}
+  /// Formats of the files with rows.
+  static constexpr std::array<std::string_view, 3> formats{"csv", "npz", "json"};
+  /// `units`: in which rows are written.
+  ResultFolder(std::string path, const std::string& format, OutputUnits::Wishes units);
 
   void begin_run(const RunHeader& header) override;
   RowSink& begin_analysis(std::string_view type) override { return tee_.begin_analysis(type); }
@@ -30,7 +35,8 @@ class ResultFolder final : public ResultSink {
 
  private:
   std::string path_;
-  CsvDirectory csv_;
+  RowFiles rows_;
+  UnitsSink shown_;
   std::optional<TextOutput> report_file_;
   std::unique_ptr<ResultSink> report_;
   TeeSink tee_;

@@ -8,9 +8,11 @@
 #include <cstdio>
 #include <optional>
 
+#include "catena/results/csv_writer.hpp"
 #include "catena/results/interrupt.hpp"
 #include "catena/results/progress_bar.hpp"
 #include "catena/results/text_sink.hpp"
+#include "catena/scene/running/units_sink.hpp"
 #include "catena/scene/viewing/run_recorder.hpp"
 #include "commands.hpp"
 #include "result_folder.hpp"
@@ -42,6 +44,27 @@ class BeforeResults final : public ResultSink, private RowSink {
   ProgressBar& bar_;
 };
 
+/// The rows of all analyses as CSV, an empty line between two of them.
+class CsvSink final : public ResultSink, private RowSink {
+ public:
+  explicit CsvSink(TextOutput& output) : output_(output), writer_(output) {}
+  void begin_run(const RunHeader&) override {}
+  RowSink& begin_analysis(std::string_view) override { return *this; }
+  void end_analysis(const AnalysisResult&) override {}
+  void end_run() override {}
+
+ private:
+  void begin(std::span<const ColumnInfo> columns) override {
+    if (any_) output_.write("\r\n");
+    any_ = true;
+    writer_.begin(columns);
+  }
+  bool row(std::span<const double> values) override { return writer_.row(values); }
+  TextOutput& output_;
+  CsvWriter writer_;
+  bool any_ = false;
+};
+
 TableLimits table_limits(bool verbose) {
   if (verbose) return TableLimits::none();
   TableLimits limits;
@@ -54,13 +77,25 @@ TableLimits table_limits(bool verbose) {
 void print_messages(const RunCommand& command, const SceneOutcome& outcome) {
   std::fputs(outcome.error_text.c_str(), stderr);
   // A table on a terminal has said already which analysis failed and why.
-  const bool told = !command.json && !command.quiet && ::isatty(STDOUT_FILENO) == 1;
+  const bool told = !command.json && !command.csv && !command.quiet && ::isatty(STDOUT_FILENO) == 1;
   for (const AnalysisResult& result : outcome.analyses) {
     if (!told && !result.report.ok())
       complain(fmt::format("{}: {}: {}: {}\n", command.scene, result.type, to_string(result.report.status),
                            result.report.message));
     if (command.stats) std::fputs(counters_text(result).c_str(), stderr);
   }
+}
+
+/// Units that the command line asks for, as {"angle=deg", "length=mm"}; what is wrong with them, or nothing.
+std::string read_units(const std::vector<std::string>& texts, OutputUnits::Wishes& wishes) {
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) return fmt::format("wants KIND=UNIT, as angle=deg, not \"{}\"", text);
+    const std::string kind = text.substr(0, equals), unit = text.substr(equals + 1);
+    if (const auto problem = OutputUnits::problem(kind, unit)) return *problem;
+    wishes.emplace_back(kind, unit);
+  }
+  return {};
 }
 
 /// Whether everything could be written; says so if not.
@@ -84,14 +119,24 @@ int execute(const RunCommand& command) {
   ProgressBar bar(!command.quiet);
   BeforeResults before(bar);
   TextOutput output = TextOutput::standard_output();
-  TextSink text(output, table_limits(command.verbose),
-                "-v shows everything, -o DIR writes CSV files, --json prints every digit");
+  OutputUnits::Wishes wishes;
+  if (const std::string problem = read_units(command.units, wishes); !problem.empty()) {
+    complain(fmt::format("catena: --units: {}\n", problem));
+    return usage;
+  }
+  TextSink table(output, table_limits(command.verbose),
+                 "-v shows everything, -o DIR writes files, --json and --csv print every digit");
+  UnitsSink text(table, wishes);
   std::unique_ptr<ResultSink> json = command.json ? json_result_sink(output) : nullptr;
   std::optional<ResultFolder> folder;
   TeeSink sinks;
   sinks.add(before);
+  CsvSink csv(output);
+  UnitsSink rows(csv, wishes);
   if (command.json) {
     sinks.add(*json);
+  } else if (command.csv) {
+    sinks.add(rows);
   } else if (!command.quiet) {
     sinks.add(text);
   }
@@ -102,7 +147,7 @@ int execute(const RunCommand& command) {
       return no_file;
     }
   }
-  if (!command.directory.empty()) sinks.add(folder.emplace(command.directory));
+  if (!command.directory.empty()) sinks.add(folder.emplace(command.directory, command.format, wishes));
 
   std::optional<RunRecorder> recorder;
   if (!command.page.empty()) {

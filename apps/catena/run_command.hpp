@@ -9,10 +9,12 @@
 namespace catena::cli {
 
 struct RunCommand {
-  std::string scene;      ///< path
-  std::string directory;  ///< of -o, or empty
-  std::string page;       ///< of --view, or empty
-  bool json = false, stats = false, quiet = false, verbose = false;
+  std::string scene;               ///< path
+  std::string directory;           ///< of -o, or empty
+  std::string page;                ///< of --view, or empty
+  std::string format = "csv";      ///< of the files in it
+  std::vector<std::string> units;  ///< of --units: angle=deg
+  bool json = false, csv = false, stats = false, quiet = false, verbose = false;
   RunOptions options;
 };
 

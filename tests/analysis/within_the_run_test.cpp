@@ -22,14 +22,14 @@ struct Watched {
   TimeFunction<double> function;
 
   template <class F>
-  Watched(F f, const TimeRange& domain)
-      : function(TimeFunction<double>::custom(
-            [f, asked = asked](double t) {
-              asked->first = std::min(asked->first, t);
-              asked->last = std::max(asked->last, t);
-              return f(t);
-            },
-            {}, domain)) {}
+  Watched(F f, const TimeRange& domain) {
+    const auto note = [f, range = asked](double t) {
+      range->first = std::min(range->first, t);
+      range->last = std::max(range->last, t);
+      return f(t);
+    };
+    function = TimeFunction<double>::custom(note, {}, domain);
+  }
 };
 
 /// A parallelogram turned through its flat positions, its crank's angle given from the start.

@@ -77,7 +77,32 @@ TEST_F(Run, WritesOneCsvAnAnalysisAndTheReport) {
   const json report = json::parse(read_file(target + "/report.json"));
   EXPECT_EQ(report["analyses"].size(), 3u);
   EXPECT_EQ(report["analyses"][0]["type"], "check");
+  EXPECT_EQ(report["analyses"][1]["units"], json({"s", "m", "m", "rad"}));
+  EXPECT_FALSE(report["analyses"][1].contains("rows"));
   EXPECT_FALSE(std::filesystem::exists(target + "/check.csv"));
+}
+
+TEST_F(Run, WritesRowsInTheFormatAndUnitsAskedFor) {
+  const std::string target = folder_ / "results", path = scene(one_second);
+  const json rows = json::parse(run_catena({"run", path, "--json"}).out)["analyses"][0]["rows"];
+  EXPECT_EQ(run_catena({"run", path, "-o", target, "--format", "json", "-q"}).exit_code, 0);
+  const json file = json::parse(read_file(target + "/kinematics.json"));
+  EXPECT_EQ(file["rows"], rows);
+  EXPECT_EQ(file["columns"][3], "crank.angle");
+  EXPECT_EQ(run_catena({"run", path, "-o", target, "--format", "npz", "-q"}).exit_code, 0);
+  EXPECT_TRUE(read_file(target + "/kinematics.npz").starts_with("PK"));
+
+  const ProgramResult csv = run_catena({"run", path, "--csv", "--units", "length=mm"});
+  EXPECT_TRUE(csv.out.starts_with("t,crank.tip.x,crank.tip.y,crank.angle\r\n0,500,0,0\r\n")) << csv.out;
+  const ProgramResult table = run_catena({"run", path, "--units", "length=mm,angle=deg"});
+  EXPECT_NE(table.out.find("deg"), std::string::npos) << table.out;
+
+  EXPECT_EQ(run_catena({"run", path, "-o", target, "--format", "xls"}).exit_code, 2);
+  EXPECT_EQ(run_catena({"run", path, "--format", "npz"}).exit_code, 2);
+  EXPECT_EQ(run_catena({"run", path, "--csv", "--json"}).exit_code, 2);
+  const ProgramResult wrong = run_catena({"run", path, "--units", "length=deg"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_NE(wrong.err.find("\"deg\" is not a unit of length"), std::string::npos) << wrong.err;
 }
 
 TEST_F(Run, SaysWhatCannotBeWrittenBeforeTheRun) {
@@ -162,9 +187,9 @@ TEST_F(Run, CtrlCKeepsTheRowsSoFar) {
   EXPECT_EQ(result.exit_code, 1) << result.err;
   const json analysis = json::parse(read_file(target + "/report.json"))["analyses"][0];
   EXPECT_EQ(analysis["status"], "cancelled");
-  EXPECT_GT(analysis["rows"].size(), 10u);
   const std::string csv = read_file(target + "/kinematics.csv");
-  EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), analysis["rows"].size() + 1);
+  EXPECT_GT(std::count(csv.begin(), csv.end(), '\n'), 10);
+  EXPECT_TRUE(csv.ends_with("\r\n"));
 }
 
 // Rows may be far apart: the signal is noticed between the steps that lead to them.

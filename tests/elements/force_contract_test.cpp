@@ -26,7 +26,7 @@ struct ListOf<First, Types...> {
   using type = testing::Types<Types...>;
 };
 #define CATENA_TYPE(Type) , Type<double>
-using AllForces = ListOf<void CATENA_FORCES(CATENA_TYPE) CATENA_TYPE(ElasticCable)>::type;
+using AllForces = ListOf<void CATENA_FORCES(CATENA_TYPE) CATENA_TYPE(ElasticCable) CATENA_TYPE(JointDamper)>::type;
 #undef CATENA_TYPE
 
 struct Names {

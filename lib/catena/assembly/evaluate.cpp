@@ -79,14 +79,10 @@ void require_same_structure(const Model& known, const Model& model) {
     }
   }
   const auto compare = [&](const auto& all) {
-    for_each_list(all(known), [&](const auto& list, int type) {
-      with_list(all(model), type, [&](const auto& other) {
-        if constexpr (std::is_same_v<decltype(list), decltype(other)>) {
-          for (std::size_t k = 0; k < list.size(); ++k) {
-            if (list[k].i != other[k].i || list[k].j != other[k].j) differs(model.element_name(other[k].id));
-          }
-        }
-      });
+    for_each_list(all(known), all(model), [&](const auto& list, const auto& other, int) {
+      for (std::size_t k = 0; k < list.size(); ++k) {
+        if (list[k].i != other[k].i || list[k].j != other[k].j) differs(model.element_name(other[k].id));
+      }
     });
   };
   compare([](const Model& m) -> const auto& { return m.constraints; });

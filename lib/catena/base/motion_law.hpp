@@ -28,9 +28,9 @@ inline constexpr std::array<std::string_view, 5> motion_laws{"cycloidal", "poly3
 
 /// One piece of a law.
 struct MotionLawPiece {
-  double start;                    ///< u where it begins
-  std::array<double, 8> power;     ///< c0, c1, ...
-  double amplitude, omega, phase;  ///< of the sine
+  double start;                                ///< u where it begins
+  std::array<double, 8> power;                 ///< c0, c1, ...
+  double amplitude = 0, omega = 0, phase = 0;  ///< of the sine
 
   template <class T>
   T rise(const T& u) const {
@@ -45,24 +45,23 @@ struct MotionLawPiece {
 struct MotionLawPieces {
   std::array<MotionLawPiece, 5> piece;
   std::size_t count;
-
-  const MotionLawPiece& at(double u) const {
-    std::size_t k = 0;
-    while (k + 1 < count && u >= piece[k + 1].start) ++k;
-    return piece[k];
-  }
 };
+
+/// A law that is one polynomial of u, c0 + c1 u + ...
+inline MotionLawPieces polynomial_law(const std::array<double, 8>& power) { return {{MotionLawPiece{0, power}}, 1}; }
+
+/// 3 u^2 - 2 u^3: a step whose acceleration is not zero at its ends.
+inline MotionLawPieces cubic_step() { return polynomial_law({0, 0, 3, -2}); }
 
 inline MotionLawPieces motion_law_pieces(MotionLaw law) {
   constexpr double pi = std::numbers::pi;
-  const auto powers = [](std::array<double, 8> c) { return MotionLawPieces{{MotionLawPiece{0, c, 0, 0, 0}}, 1}; };
   switch (law) {
     case MotionLaw::cycloidal:
       return {{MotionLawPiece{0, {0, 1}, -1 / (2 * pi), 2 * pi, 0}}, 1};
     case MotionLaw::poly345:
-      return powers({0, 0, 0, 10, -15, 6});
+      return polynomial_law({0, 0, 0, 10, -15, 6});
     case MotionLaw::poly4567:
-      return powers({0, 0, 0, 0, 35, -84, 70, -20});
+      return polynomial_law({0, 0, 0, 0, 35, -84, 70, -20});
     case MotionLaw::modified_sine: {
       const double a = 1 / (4 * (4 + pi)), c = pi / (4 + pi);
       return {{MotionLawPiece{0, {0, c}, -a, 4 * pi, 0},

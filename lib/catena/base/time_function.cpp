@@ -50,7 +50,7 @@ OutsideTable::OutsideTable(double instant, double table_first, double table_last
 
 template <class S>
 struct TimeFunction<S>::Node {
-  std::variant<Polynomial<S>, Harmonic<S>, Step<S>, Law<S>, Table<S>, Combination<S>, Custom<S>> kind;
+  std::variant<Polynomial<S>, Harmonic<S>, Law<S>, Table<S>, Combination<S>, Custom<S>> kind;
 };
 
 template <class S>
@@ -73,26 +73,26 @@ TimeFunction<S> TimeFunction<S>::harmonic(const S& amplitude, const S& omega, co
 }
 
 template <class S>
-TimeFunction<S> TimeFunction<S>::step(const S& t0, const S& t1, const S& from, const S& to, int order) {
-  require_finite<S>({{"t0", t0}, {"t1", t1}, {"from", from}, {"to", to}}, "step");
+TimeFunction<S> TimeFunction<S>::rise(const char* what, const MotionLawPieces& pieces, const S& t0, const S& t1,
+                                      const S& from, const S& to) {
+  require_finite<S>({{"t0", t0}, {"t1", t1}, {"from", from}, {"to", to}}, what);
   if (!(t1 > t0)) {
-    throw std::invalid_argument("step: t1 = " + number_text(value_of(t1)) +
+    throw std::invalid_argument(std::string(what) + ": t1 = " + number_text(value_of(t1)) +
                                 " must be later than t0 = " + number_text(value_of(t0)));
   }
-  if (order != 3 && order != 5) throw std::invalid_argument("step: order must be 3 or 5, is " + std::to_string(order));
   if (vanishes(to - from)) return TimeFunction(from);
-  return TimeFunction(std::make_shared<const Node>(Node{Step<S>{t0, t1, from, to, order}}));
+  return TimeFunction(std::make_shared<const Node>(Node{Law<S>{t0, t1, from, to, pieces}}));
+}
+
+template <class S>
+TimeFunction<S> TimeFunction<S>::step(const S& t0, const S& t1, const S& from, const S& to, int order) {
+  if (order != 3 && order != 5) throw std::invalid_argument("step: order must be 3 or 5, is " + std::to_string(order));
+  return rise("step", order == 3 ? cubic_step() : motion_law_pieces(MotionLaw::poly345), t0, t1, from, to);
 }
 
 template <class S>
 TimeFunction<S> TimeFunction<S>::law(MotionLaw law, const S& t0, const S& t1, const S& from, const S& to) {
-  require_finite<S>({{"t0", t0}, {"t1", t1}, {"from", from}, {"to", to}}, "law");
-  if (!(t1 > t0)) {
-    throw std::invalid_argument("law: t1 = " + number_text(value_of(t1)) +
-                                " must be later than t0 = " + number_text(value_of(t0)));
-  }
-  if (vanishes(to - from)) return TimeFunction(from);
-  return TimeFunction(std::make_shared<const Node>(Node{Law<S>{t0, t1, from, to, motion_law_pieces(law)}}));
+  return rise("law", motion_law_pieces(law), t0, t1, from, to);
 }
 
 template <class S>

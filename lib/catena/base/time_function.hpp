@@ -96,6 +96,9 @@ class TimeFunction {
  private:
   struct Node;
   explicit TimeFunction(std::shared_ptr<const Node> node) : node_(std::move(node)) {}
+  /// `from` until t0, `to` after t1, between them as the pieces say; `what` is named in errors.
+  static TimeFunction rise(const char* what, const MotionLawPieces& pieces, const S& t0, const S& t1, const S& from,
+                           const S& to);
 
   S constant_{};                      // the value if there is no node: constants need no memory of their own
   std::shared_ptr<const Node> node_;  // any other function

@@ -50,27 +50,6 @@ struct Harmonic {
 };
 
 template <class S>
-struct Step {
-  S t0, t1, from, to;
-  int order;
-
-  Taylor<S> evaluate(double t, Side side) const { return continue_from(t, side, t); }
-  Taylor<S> continue_from(double place, Side side, double t) const {
-    if (!is_after(place, value_of(t0), side)) return Taylor<S>(from);
-    if (is_after(place, value_of(t1), side)) return Taylor<S>(to);
-    const S width = t1 - t0;
-    const Taylor<S> u((S(t) - t0) / width, S(1.0) / width, S(0.0));
-    const Taylor<S> rise =
-        order == 3 ? u * u * (S(3.0) - S(2.0) * u) : u * u * u * (S(10.0) + u * (S(6.0) * u - S(15.0)));
-    return Taylor<S>(from) + Taylor<S>(to - from) * rise;
-  }
-  TimeRange domain() const { return {}; }
-  double next_breakpoint(double t) const {
-    return t < value_of(t0) ? value_of(t0) : t < value_of(t1) ? value_of(t1) : never;
-  }
-};
-
-template <class S>
 struct Law {
   S t0, t1, from, to;
   MotionLawPieces pieces;

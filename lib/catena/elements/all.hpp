@@ -29,6 +29,7 @@
 #include "catena/elements/forces/bushing.hpp"
 #include "catena/elements/forces/custom_force.hpp"
 #include "catena/elements/forces/elastic_cable.hpp"
+#include "catena/elements/forces/joint_damper.hpp"
 #include "catena/elements/forces/point_force.hpp"
 #include "catena/elements/forces/spring_damper.hpp"
 #include "catena/elements/forces/torque.hpp"

@@ -53,10 +53,11 @@
   X(TorsionSpring)
 
 /// The same with the types that scenes do not name: the elastic cable, which a scene writes as a cable with a
-/// stiffness, and those that only C++ can make.
+/// stiffness, the damping of joints, and those that only C++ can make.
 #define CATENA_ALL_FORCES(X) \
   CATENA_FORCES(X)           \
   X(ElasticCable)            \
+  X(JointDamper)             \
   X(CustomForce)
 
 namespace catena {

@@ -75,6 +75,16 @@ void with_list(Lists& lists, int type, F&& f) {
   });
 }
 
+/// Calls f(first_list, second_list, type_index) for every type, of two tuples over the same types. To reach the second
+/// by with_list() instead would compile f for every pair of types.
+template <class First, class Second, class F>
+void for_each_list(First& first, Second& second, F&& f) {
+  [&]<std::size_t... K>(std::index_sequence<K...>) {
+    (f(std::get<K>(first), std::get<K>(second), static_cast<int>(K)), ...);
+  }
+  (std::make_index_sequence<std::tuple_size_v<std::remove_const_t<First>>>{});
+}
+
 /// The element type stored in a list.
 template <class List>
 using ElementOf = typename std::remove_cvref_t<List>::value_type::Element;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "catena/elements/element.hpp"
+#include "catena/elements/forces/joint_damper.hpp"
 #include "catena/elements/gap_element.hpp"
 #include "catena/model/given_frames.hpp"
 #include "catena/model/model.hpp"
@@ -151,6 +152,19 @@ int BasicModel<S>::append(std::string_view name, const ElementEntry<E, S>& entry
   return id;
 }
 
+/// Joints that may have viscous damping.
+template <class E>
+concept HasDamping = E::rows == 2 && requires(const E& joint) {
+  joint.c;
+};
+
+/// Gives a joint with damping a force of its own, without a name.
+template <class E, class S>
+void add_damping(BasicModel<S>& model, const ElementEntry<E, S>& joint) {
+  if (value_of(joint.element.c) == 0) return;
+  model.append({}, ElementEntry<JointDamper<S>, S>{damper_of<S>(joint.element), joint.i, joint.j}, ElementKind::force);
+}
+
 template <class S>
 template <class E>
 int BasicModel<S>::add(std::string_view name, const E& element, int i, int j) {
@@ -160,7 +174,9 @@ int BasicModel<S>::add(std::string_view name, const E& element, int i, int j) {
     entry.values[0].constant = entry.element.measure(frame_i, frame_j);
     detail::check_value<E>(entry.values[0].constant);
   }
-  return append(name, entry, ElementKind::constraint);
+  const int id = append(name, entry, ElementKind::constraint);
+  if constexpr (HasDamping<E>) add_damping(*this, entry);
+  return id;
 }
 
 template <class S>

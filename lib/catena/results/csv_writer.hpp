@@ -1,18 +1,17 @@
 // Rows as CSV (RFC 4180): a line of column names, then one line a row; "\r\n" ends a line.
 //
 // Numbers are exact, a number that is not finite leaves its field empty, names with commas, quotes or line ends are
-// quoted. Units are not in the file, so that every reader takes the names as they are: results are in SI and radians.
+// quoted. Units are not in the file, so that every reader takes the names as they are: the report beside it has them.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "catena/base/row_sink.hpp"
-#include "catena/results/text_output.hpp"
+#include "catena/results/row_writer.hpp"
 
 namespace catena {
 
-class CsvWriter final : public RowSink {
+class CsvWriter final : public RowWriter {
  public:
   /// Writes to `output`, which must outlive the writer; failures are kept by it and do not stop the analysis.
   explicit CsvWriter(TextOutput& output) : output_(output) {}

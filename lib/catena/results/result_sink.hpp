@@ -29,6 +29,7 @@ struct RunHeader {
   std::string version;                                       ///< of the library
   std::vector<std::pair<std::string, double>> parameters{};  ///< names and values of the run, SI
   std::vector<std::pair<std::string, std::string>> set{};    ///< of them, what the caller set, as it was written
+  std::vector<std::pair<std::string, std::string>> units{};  ///< in which the scene wants results shown, by kind
 };
 
 class ResultSink {

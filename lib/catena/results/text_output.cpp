@@ -46,6 +46,10 @@ bool TextOutput::fail() {
   return false;
 }
 
+void TextOutput::fail_with(const std::string& reason) {
+  if (ok()) error_ = "cannot write " + path_ + ": " + reason;
+}
+
 bool TextOutput::write(std::string_view text) {
   if (!ok()) return false;
   errno = 0;

@@ -23,6 +23,8 @@ class TextOutput {
   /// False once anything could not be written; further text is then dropped.
   bool write(std::string_view text);
   bool flush();
+  /// What is to be written cannot be: the same as if writing had failed for that reason.
+  void fail_with(const std::string& reason);
   /// Ends a file: flushed, closed and put in its place. False if any of it failed.
   bool commit();
 

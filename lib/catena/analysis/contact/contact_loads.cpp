@@ -34,6 +34,30 @@ double fastest(const Evaluator& evaluator, std::span<const double> qd) {
   return largest;
 }
 
+std::string names_of(const Model& model, const std::vector<ContactPoint>& points, std::span<const std::size_t> which) {
+  std::string names;
+  for (const std::size_t k : which)
+    names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", model.element_name(points[k].element));
+  return names;
+}
+
+/// f + mu sigma N(lambda_0 + B f) = 0, with the memory for its solution.
+struct ContactLoads::Sizes {
+  Eigen::VectorXd f, residual, step;
+  Eigen::MatrixXd slope;
+  Eigen::PartialPivLU<Eigen::MatrixXd> factors;
+  std::vector<double> lambda;  // lambda_0 + B f
+
+  void resize(std::size_t points, std::size_t rows) {
+    const auto m = static_cast<Eigen::Index>(points);
+    f.resize(m);
+    residual.resize(m);
+    step.resize(m);
+    slope.resize(m, m);
+    lambda.resize(rows);
+  }
+};
+
 ContactLoads::ContactLoads(const Evaluator& evaluator, const std::vector<ContactPoint>& points,
                            std::vector<ContactState> states)
     : evaluator_(evaluator),
@@ -41,7 +65,8 @@ ContactLoads::ContactLoads(const Evaluator& evaluator, const std::vector<Contact
       states_(std::move(states)),
       slide_(points.size()),
       normal_(points.size(), 0.0),
-      friction_(points.size(), 0.0) {
+      friction_(points.size(), 0.0),
+      sizes_(std::make_unique<Sizes>()) {
   const auto coordinates = at(evaluator.plan().coordinates());
   unit_.resize(coordinates);
   change_.resize(coordinates);
@@ -50,9 +75,14 @@ ContactLoads::ContactLoads(const Evaluator& evaluator, const std::vector<Contact
     const bool compliant = points_[k].kind == ContactKind::compliant;
     if (slides(k) && !compliant) coupled_.push_back(k);
     dissipates_ |= slides(k) || (compliant && states_[k].closed && points_[k].c > 0);
+    holds_ |= states_[k].closed &&
+              (points_[k].kind == ContactKind::rigid || (points_[k].has_friction() && points_[k].is_exact()));
   }
   response_.assign(coupled_.size(), nothing_);
+  sizes_->resize(coupled_.size(), nothing_.size());
 }
+
+ContactLoads::~ContactLoads() = default;
 
 bool ContactLoads::slides(std::size_t k) const {
   if (!points_[k].has_friction() || !states_[k].closed || points_[k].mu == 0) return false;
@@ -70,19 +100,22 @@ double ContactLoads::compliant_force(const ContactPoint& point, const Evaluator:
   return spring - point.c * gap.rate;
 }
 
+bool ContactLoads::is_guide(const ContactPoint& point) const {
+  return evaluator_.plan().row_is_angle[at(evaluator_.plan().element_row[at(point.joint)] + 1)] != 0;
+}
+
 // Multipliers of a joint: its force, and of a guide its moment, which two ends of the guide share.
 double ContactLoads::joint_force(const ContactPoint& point, std::span<const double> lambda) const {
   const std::size_t row = at(evaluator_.plan().element_row[at(point.joint)]);
   const double a = lambda[row], b = lambda[row + 1];
-  const bool turns = evaluator_.plan().row_is_angle[row + 1] != 0;
-  return point.radius * (turns ? std::abs(a) + std::abs(b) / point.half_length : std::hypot(a, b));
+  return point.radius * (is_guide(point) ? std::abs(a) + std::abs(b) / point.half_length : std::hypot(a, b));
 }
 
 double ContactLoads::joint_slope(const ContactPoint& point, std::span<const double> lambda,
                                  std::span<const double> along) const {
   const std::size_t row = at(evaluator_.plan().element_row[at(point.joint)]);
   const double a = lambda[row], b = lambda[row + 1];
-  if (evaluator_.plan().row_is_angle[row + 1] != 0) {
+  if (is_guide(point)) {
     return point.radius * (std::copysign(1, a) * along[row] + std::copysign(1, b) * along[row + 1] / point.half_length);
   }
   const double size = std::hypot(a, b);
@@ -116,6 +149,51 @@ void ContactLoads::add(std::span<const double> qd, std::span<double> loads) {
   }
 }
 
+// Residual and slope of the equations for the sizes of friction, at their present values.
+void ContactLoads::linearise(std::span<const double> lambda) {
+  Sizes& s = *sizes_;
+  std::copy(lambda.begin(), lambda.end(), s.lambda.begin());
+  for (std::size_t l = 0; l < coupled_.size(); ++l) {
+    for (std::size_t r = 0; r < lambda.size(); ++r) s.lambda[r] += response_[l][r] * s.f(static_cast<Eigen::Index>(l));
+  }
+  for (std::size_t p = 0; p < coupled_.size(); ++p) {
+    const ContactPoint& point = points_[coupled_[p]];
+    const double factor = point.mu * sigma(coupled_[p]);
+    const auto row = static_cast<Eigen::Index>(p);
+    s.residual(row) = s.f(row) + factor * normal_from(coupled_[p], {}, s.lambda);
+    for (std::size_t l = 0; l < coupled_.size(); ++l) {
+      const double change = point.kind == ContactKind::joint
+                                ? joint_slope(point, s.lambda, response_[l])
+                                : -response_[l][at(evaluator_.plan().element_row[at(point.element)])];
+      s.slope(row, static_cast<Eigen::Index>(l)) = (p == l ? 1 : 0) + factor * change;
+    }
+  }
+}
+
+bool ContactLoads::find_sizes(std::span<const double> lambda) {
+  Sizes& s = *sizes_;
+  s.f.setZero();
+  for (int iteration = 0; iteration <= most_iterations; ++iteration) {
+    linearise(lambda);
+    s.factors.compute(s.slope);
+    const double determinant = s.factors.determinant();
+    if (!std::isfinite(determinant)) break;
+    if (!(determinant > 0)) {
+      trouble_ = fmt::format(
+          "the friction of {} has no force that fits, or several (a Painleve situation): mu is too large for rigid "
+          "bodies in this position; give a contact a stiffness k, or less friction",
+          names_of(evaluator_.model(), points_, coupled_));
+      return false;
+    }
+    s.step.noalias() = s.factors.solve(s.residual);
+    s.f -= s.step;
+    if (s.step.lpNorm<Eigen::Infinity>() <= settled * s.f.lpNorm<Eigen::Infinity>()) return true;
+  }
+  trouble_ = fmt::format("the friction of {} and the reactions that press there do not settle",
+                         names_of(evaluator_.model(), points_, coupled_));
+  return false;
+}
+
 bool ContactLoads::complete(EquationsOfMotion& equations, std::span<const double> gamma, std::span<double> loads,
                             std::span<double> qdd, std::span<double> lambda) {
   trouble_.clear();
@@ -123,50 +201,14 @@ bool ContactLoads::complete(EquationsOfMotion& equations, std::span<const double
     finish(lambda);
     return true;
   }
-  const auto m = static_cast<Eigen::Index>(coupled_.size());
   for (std::size_t l = 0; l < coupled_.size(); ++l) {
     std::fill(unit_.begin(), unit_.end(), 0.0);
     scatter_gradient(slide_[coupled_[l]], 1, unit_);
     equations.solve_motion(unit_, nothing_, change_, response_[l]);
   }
-  Eigen::VectorXd f = Eigen::VectorXd::Zero(m), rest(m);
-  Eigen::MatrixXd slope(m, m);
-  std::vector<double> now(lambda.begin(), lambda.end());
-  for (int iteration = 0;; ++iteration) {
-    for (Eigen::Index p = 0; p < m; ++p) {
-      const std::size_t k = coupled_[static_cast<std::size_t>(p)];
-      const double factor = points_[k].mu * sigma(k);
-      rest(p) = f(p) + factor * normal_from(k, {}, now);
-      for (Eigen::Index l = 0; l < m; ++l) {
-        const std::vector<double>& by = response_[static_cast<std::size_t>(l)];
-        const double change = points_[k].kind == ContactKind::joint
-                                  ? joint_slope(points_[k], now, by)
-                                  : -by[at(evaluator_.plan().element_row[at(points_[k].element)])];
-        slope(p, l) = (p == l ? 1 : 0) + factor * change;
-      }
-    }
-    const Eigen::PartialPivLU<Eigen::MatrixXd> factors(slope);
-    if (!(factors.determinant() > 0)) {
-      trouble_ = fmt::format(
-          "friction at \"{}\" has no force that fits, or several (a Painleve situation): mu = {:.4g} is too large for "
-          "rigid bodies in this position; give the contact a stiffness k, or less friction",
-          evaluator_.model().element_name(points_[coupled_.front()].element), points_[coupled_.front()].mu);
-      return false;
-    }
-    const Eigen::VectorXd step = factors.solve(rest);
-    f -= step;
-    for (std::size_t r = 0; r < now.size(); ++r) {
-      now[r] = lambda[r];
-      for (std::size_t l = 0; l < coupled_.size(); ++l) now[r] += response_[l][r] * f(static_cast<Eigen::Index>(l));
-    }
-    if (step.lpNorm<Eigen::Infinity>() <= settled * f.lpNorm<Eigen::Infinity>()) break;
-    if (iteration == most_iterations || !f.allFinite()) {
-      trouble_ = "friction and reactions of joints do not settle";
-      return false;
-    }
-  }
+  if (!find_sizes(lambda)) return false;
   for (std::size_t l = 0; l < coupled_.size(); ++l) {
-    friction_[coupled_[l]] = f(static_cast<Eigen::Index>(l));
+    friction_[coupled_[l]] = sizes_->f(static_cast<Eigen::Index>(l));
     scatter_gradient(slide_[coupled_[l]], friction_[coupled_[l]], loads);
   }
   equations.solve_motion(loads, gamma, qdd, lambda);

@@ -11,6 +11,8 @@
 // impact, SIAM Review 42 (2000). Units as in contact_points.hpp.
 #pragma once
 
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,10 +23,15 @@
 
 namespace catena {
 
+/// Of the largest speed so far, divided by the length scale for rates of angles: what cannot be told from rest after an
+/// impact or at the end of a slide.
+constexpr double no_speed = 1e-9;
+
 class ContactLoads final : public StateLoads {
  public:
   /// `points` must outlive this object.
   ContactLoads(const Evaluator& evaluator, const std::vector<ContactPoint>& points, std::vector<ContactState> states);
+  ~ContactLoads() override;
 
   void add(std::span<const double> qd, std::span<double> loads) override;
   bool complete(EquationsOfMotion& equations, std::span<const double> gamma, std::span<double> loads,
@@ -45,6 +52,8 @@ class ContactLoads final : public StateLoads {
   void scatter(std::span<ContactLoad> loads) const;
   /// The largest speed at which forces were asked for.
   double speed() const { return speed_; }
+  /// Whether rigid places are closed, or exact friction holds or rubs: what a jump of velocities may end.
+  bool holds() const { return holds_; }
 
  private:
   double compliant_force(const ContactPoint& point, const Evaluator::ScalarMotion& gap) const;
@@ -52,6 +61,9 @@ class ContactLoads final : public StateLoads {
   double joint_slope(const ContactPoint& point, std::span<const double> lambda, std::span<const double> along) const;
   bool slides(std::size_t k) const;
   double sigma(std::size_t k) const;
+  bool is_guide(const ContactPoint& point) const;
+  void linearise(std::span<const double> lambda);
+  bool find_sizes(std::span<const double> lambda);
   void finish(std::span<const double> lambda);
 
   const Evaluator& evaluator_;
@@ -62,10 +74,15 @@ class ContactLoads final : public StateLoads {
   std::vector<std::size_t> coupled_;  // whose friction depends on multipliers
   std::vector<double> unit_, change_, nothing_;
   std::vector<std::vector<double>> response_;  // multipliers, by coupled point
+  struct Sizes;
+  std::unique_ptr<Sizes> sizes_;  // of the friction forces of coupled points, and Newton's method for them
   double lost_ = 0, lost_in_springs_ = 0, speed_ = 0;
-  bool dissipates_ = false;
+  bool dissipates_ = false, holds_ = false;
   std::string trouble_;
 };
+
+/// Names of the elements of some points, in quotes, for messages.
+std::string names_of(const Model& model, const std::vector<ContactPoint>& points, std::span<const std::size_t> which);
 
 /// The largest velocity of a body, m/s; of its turning, rad/s, times the length scale.
 double fastest(const Evaluator& evaluator, std::span<const double> qd);

@@ -16,6 +16,7 @@ ContactPoint point_of(const E& element, int number) {
   point.element = number;
   point.restitution = element.restitution;
   point.rest_speed = element.rest_speed;
+  if constexpr (requires { element.in_angle(); }) point.turns = element.in_angle();
   if constexpr (requires { element.exponent; }) {
     point.k = element.k;
     point.c = element.c;
@@ -51,6 +52,7 @@ ContactPoint point_of(const Friction<double>& friction, int number) {
   point.joint = friction.joint;
   point.mu = friction.mu;
   point.mu_static = friction.mu_static >= 0 ? friction.mu_static : friction.mu;
+  point.turns = friction.turns;
   // A pin's slip is an angle, its friction a torque.
   if (friction.turns) point.radius = friction.radius;
   point.smoothing = friction.turns && friction.vs > 0 ? friction.vs / friction.radius : friction.vs;
@@ -58,32 +60,46 @@ ContactPoint point_of(const Friction<double>& friction, int number) {
   return point;
 }
 
+/// Calls f(entry, point) for every place, in the order of the points of a ContactModel; `entry`: of its element.
+template <class F>
+void for_each_place(const Model& model, F&& f) {
+  for (const int number : model.gaps()) {
+    const ElementRecord& record = model.elements[at(number)];
+    with_list(model.constraints, record.type, [&](const auto& list) {
+      const auto& entry = list[at(record.index)];
+      if constexpr (requires { entry.element.restitution; }) f(entry, point_of(entry.element, number));
+    });
+  }
+  for (const int number : model.frictions()) {
+    const auto& list = std::get<std::vector<ElementEntry<Friction<double>, double>>>(model.constraints);
+    const auto& entry = list[at(model.elements[at(number)].index)];
+    f(entry, point_of(entry.element, number));
+  }
+}
+
 }  // namespace
+
+int first_friction(const Model& model) {
+  int first = -1;
+  for_each_place(model, [&](const auto&, const ContactPoint& point) {
+    if (first < 0 && point.mu_static > 0) first = point.element;
+  });
+  return first;
+}
 
 ContactModel contact_points(std::shared_ptr<const Model> model) {
   ContactModel result{model, {}};
   std::shared_ptr<Model> expanded;
-  for (const int number : model->gaps()) {
-    const ElementRecord& record = model->elements[at(number)];
-    with_list(model->constraints, record.type, [&](const auto& list) {
-      const auto& entry = list[at(record.index)];
-      if constexpr (requires { entry.element.restitution; }) {
-        result.points.push_back(point_of(entry.element, number));
-        if constexpr (requires { entry.element.mu; }) {
-          ContactPoint& point = result.points.back();
-          if (point.mu_static == 0) return;
-          if (!expanded) expanded = std::make_shared<Model>(*model);
-          point.slide = append_slide(*expanded, entry);
-        }
+  for_each_place(*model, [&](const auto& entry, ContactPoint point) {
+    if (point.kind == ContactKind::joint && point.mu_static == 0) return;
+    if constexpr (std::is_same_v<std::decay_t<decltype(entry)>, ElementEntry<Contact<double>, double>>) {
+      if (point.mu_static > 0) {
+        if (!expanded) expanded = std::make_shared<Model>(*model);
+        point.slide = append_slide(*expanded, entry);
       }
-    });
-  }
-  for (const int number : model->frictions()) {
-    const ElementRecord& record = model->elements[at(number)];
-    const auto& list = std::get<std::vector<ElementEntry<Friction<double>, double>>>(model->constraints);
-    const ContactPoint point = point_of(list[at(record.index)].element, number);
-    if (point.mu_static > 0) result.points.push_back(point);
-  }
+    }
+    result.points.push_back(point);
+  });
   if (expanded) result.model = expanded;
   return result;
 }

@@ -33,6 +33,7 @@ struct ContactPoint {
   int joint = -1;        ///< whose reaction presses, for the friction of a joint
   double radius = 1;     ///< of the pin, m: friction is a torque mu N radius; 1 where a joint slides
   double half_length = std::numeric_limits<double>::infinity();  ///< of a guide: its moment counts as moment / this
+  bool turns = false;                                            ///< its gap, or its slide, is an angle
 
   bool has_friction() const { return slide >= 0; }
   bool is_exact() const { return smoothing == 0; }
@@ -50,6 +51,9 @@ struct ContactModel {
   std::shared_ptr<const Model> model;  ///< with the equations of slides behind the elements of the given one
   std::vector<ContactPoint> points;
 };
+
+/// The first element of a model with dry friction; -1: none.
+int first_friction(const Model& model);
 
 /// The places of a model at which it may touch; `model` is the given one where no equation had to be added.
 ContactModel contact_points(std::shared_ptr<const Model> model);

@@ -5,14 +5,21 @@
 //   Newton        v_n+ >= -e v_n-, equal where x_n > 0                    friction: |x_t| <= mu x_n
 //   then          accelerations of gaps and slides at qd+ decide which places press, stick and slide
 //
-// All places that touch take part together. Kinetic energy never grows: where impacts with friction of several places
-// would let it (Kane's example), the restitution of all is reduced until it does not. A place that would bounce slower
-// than its rest speed, or with e = 0, stays closed; had it bounced before, the instant of its landing is when ever
-// smaller bounces would have ended: t + 2 v / (a (1 - e)), a its free acceleration towards the contact.
+// A strike is an impulse on a point; what it presses together collides then. Where a constraint is engaged or the
+// velocity of a driver jumps, velocities meet that first: v_n- is the rate then.
+//
+// All places that touch take part together. Their impulses do no work, x^T (v- + v+) / 2 <= 0, v the rates of gaps and
+// slides: what the bodies gain is then the work of drivers. Where impacts with friction of several places would do some
+// (Kane's example), the restitution of all is reduced until they do not.
+//
+// A place that would bounce slower than its rest speed, or with e = 0, stays closed; had it bounced before, the instant
+// of its landing is when ever smaller bounces would have ended: t + T e / (1 - e), T the time since the last bounce.
 // Units as in contact_points.hpp.
 #pragma once
 
 #include <algorithm>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +39,13 @@ struct ContactEvent {
   double t = 0;
 };
 
+/// A blow on a point of a body.
+struct Strike {
+  int body = -1;           ///< number in the model
+  Vec2<double> point{};    ///< in the frame of its centroid
+  Vec2<double> impulse{};  ///< in ground axes, N s
+};
+
 class ContactSwitch {
  public:
   /// `plan`: one in which no row of a contact holds. The points must outlive this object.
@@ -49,26 +63,39 @@ class ContactSwitch {
     bool rests = false;  ///< its slide is at rest, to rounding
     int leaves = 0;      ///< sign of the slip with which it leaves a state of sticking: friction has reached its limit
     bool tell = true;    ///< changes of places are events; impacts always are
+    const Strike* strike = nullptr;  ///< acts before anything closes
+    bool jolts = false;  ///< velocities need not meet the constraints: one was engaged, or a driver's velocity jumps
   };
   /// Changes qd by impacts, and `states` to what holds from t on.
   Report decide(double t, std::span<const double> q, std::span<double> qd, std::vector<ContactState>& states,
                 const Cause& cause);
+  /// Goes on from what another one knew of the same points, before constraints came or went.
+  void take_over(const ContactSwitch& earlier);
   /// Takes note of a speed of the motion, see fastest().
   void know_speed(double speed) { speed_ = std::max(speed_, speed); }
+  /// The work of the last strike, J.
+  double work_of_strike() const { return work_of_strike_; }
   /// What happened since this was called last.
   std::vector<ContactEvent> take_events() { return std::move(events_); }
 
  private:
   void look(std::span<const double> qd);
+  void apply(const Strike& strike, std::span<const double> q, std::span<double> qd);
   void find_touching(const std::vector<ContactState>& states, int trigger);
   void find_responses();
   void fill(ContactProblem& problem) const;
+  /// Of point k: what cannot be told from rest, m/s or rad/s, as a part of the largest speed.
+  double part_of_speed(std::size_t k, double part) const;
+  bool hits(std::size_t k) const;
   Report collide(double t, std::span<double> qd, std::vector<ContactState>& states);
-  bool apply(double restitution_part, std::span<double> qd, double& energy);
+  bool apply(double restitution_part, std::span<double> qd, double& work);
+  bool find_free_accelerations(double t, std::span<const double> q, std::span<const double> qd, ContactLoads& loads);
   Report choose(double t, std::span<const double> q, std::span<const double> qd, std::vector<ContactState>& states,
                 const Cause& cause);
+  Report press_joints(double t, std::span<const double> qd, const ContactLoads& loads, ContactProblem& problem);
   void tell_changes(double t, const std::vector<ContactState>& before, const std::vector<ContactState>& after);
   double kinetic_energy(std::span<const double> qd) const;
+  Report failure(double t, const std::string& why) const;
   Report wedged(double t) const;
 
   std::shared_ptr<const Model> model_;
@@ -76,11 +103,11 @@ class ContactSwitch {
   Evaluator evaluator_;
   EquationsOfMotion equations_;
   RedundantRows redundant_;
+  double work_of_strike_ = 0;
   double speed_ = 0;                // largest of the motion so far, m/s or rad/s times the length scale
   std::vector<double> bounced_at_;  // by point: when it hit and came back last
   std::vector<double> landing_;     // by point: instant of the `contact` event under way, or NaN
   std::vector<Evaluator::ScalarMotion> gap_, slide_;
-  std::vector<char> touching_;
   // Of the touching places, two each: what a unit force across and along makes of accelerations and multipliers.
   std::vector<std::size_t> active_;
   std::vector<std::vector<double>> change_, multipliers_;

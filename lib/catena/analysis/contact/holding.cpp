@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "catena/analysis/contact/contact_points.hpp"
+#include "catena/analysis/contact/contact_loads.hpp"
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 
@@ -70,24 +70,18 @@ double least_residual(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
 
 }  // namespace
 
-struct ContactHolding::Points {
-  ContactModel contacts;
-};
-
-ContactHolding::ContactHolding(std::shared_ptr<const Model> model) {
-  auto points = std::make_shared<Points>(Points{contact_points(std::move(model))});
+ContactHolding::ContactHolding(std::shared_ptr<const Model> model) : contacts_(contact_points(std::move(model))) {
   PlanOptions options;
-  for (const ContactPoint& point : points->contacts.points) {
+  for (const ContactPoint& point : contacts_.points) {
     if (point.kind == ContactKind::joint) {
       throw std::invalid_argument(
           fmt::format("whether friction holds can be asked of contacts; that of joint \"{}\" is not treated there",
-                      points->contacts.model->element_name(point.joint)));
+                      contacts_.model->element_name(point.joint)));
     }
     options.released_elements.push_back(point.element);
     if (point.has_friction()) options.released_elements.push_back(point.slide);
   }
-  evaluator_ = std::make_unique<Evaluator>(Plan::make(*points->contacts.model, options), *points->contacts.model);
-  points_ = std::move(points);
+  evaluator_ = std::make_unique<Evaluator>(Plan::make(*contacts_.model, options), *contacts_.model);
 }
 
 Holding ContactHolding::find(const SystemState& state, std::vector<double>& q) {
@@ -124,21 +118,16 @@ Holding ContactHolding::find(const SystemState& state, std::vector<double>& q) {
     double friction;
   };
   std::vector<Edge> edges;
-  for (const ContactPoint& point : points_->contacts.points) {
+  for (const ContactPoint& point : contacts_.points) {
     const Evaluator::ScalarMotion gap = evaluator_->scalar_motion(point.element, rest);
-    const bool compliant = point.kind == ContactKind::compliant;
-    if (gap.value > (compliant ? 0 : closed_gap * length)) continue;
-    const auto gradient = [&](const Evaluator::ScalarMotion& of) {
+    if (gap.value > closed_gap * length) continue;
+    const auto unit_force = [&](const Evaluator::ScalarMotion& of) {
       std::vector<double> by(q.size(), 0.0);
-      for (int k = 0; k < 3; ++k) {
-        by[at(3 * of.body_i + k)] += of.gradient[k];
-        by[at(3 * of.body_j + k)] += of.gradient[3 + k];
-      }
-      return by;
+      scatter_gradient(of, 1, by);
+      return force(by);
     };
-    const std::vector<double> normal = gradient(gap);
-    Edge edge{force(normal), Eigen::VectorXd::Zero(plan.columns), point.mu_static};
-    if (point.has_friction()) edge.along = force(gradient(evaluator_->scalar_motion(point.slide, rest)));
+    Edge edge{unit_force(gap), Eigen::VectorXd::Zero(plan.columns), point.mu_static};
+    if (point.has_friction()) edge.along = unit_force(evaluator_->scalar_motion(point.slide, rest));
     edges.push_back(std::move(edge));
   }
   // What constraints can balance does not count: forces along their null space are left.

@@ -4,8 +4,8 @@
 //
 // For a given u the forces of a place form a cone with two edges, J_n +- u mu_static J_t, so that the question is one
 // of least squares with coefficients that are not negative (Lawson and Hanson); a larger u never makes it harder, so
-// that the least u is found by bisection. Rigid places count as closed within 1e-6 length scales; what a compliant
-// place presses with is the force of its depth. Dense: meant for up to some hundred coordinates. No u: the position is
+// that the least u is found by bisection. Places count as closed within 1e-6 length scales; as in all of equilibrium a
+// stiffness is not looked at. Dense: meant for up to some hundred coordinates. No u: the position is
 // held by no friction however large. Source: Lawson and Hanson, Solving Least Squares Problems (1974), chapter 23.
 #pragma once
 
@@ -13,6 +13,7 @@
 #include <optional>
 #include <vector>
 
+#include "catena/analysis/contact/contact_points.hpp"
 #include "catena/analysis/run/system_state.hpp"
 #include "catena/assembly/evaluate.hpp"
 #include "catena/base/status.hpp"
@@ -27,20 +28,19 @@ struct Holding : Report {
 /// Largest number of coordinates that are treated.
 inline constexpr int most_held_coordinates = 600;
 
-/// Asks of the configuration `q` (size coordinates()), which meets the constraints at the evaluator's time. The
-/// evaluator's plan has no rows of contacts. `model` as given to contact_points() was expanded to the evaluator's.
+/// The evaluator's plan has no rows of contacts; its model is the given one with equations of slides.
 class ContactHolding {
  public:
   /// Throws std::invalid_argument where a joint has friction, whose limits are no cone.
   explicit ContactHolding(std::shared_ptr<const Model> model);
 
   Evaluator& evaluator() { return *evaluator_; }
-  /// At the state's place, assembled first; the evaluator is left there, and the configuration in `q`.
+  /// At the state's place, assembled first; the evaluator is left there, and the configuration in `q` (size
+  /// coordinates()).
   Holding find(const SystemState& state, std::vector<double>& q);
 
  private:
-  struct Points;
-  std::shared_ptr<const Points> points_;
+  ContactModel contacts_;
   std::unique_ptr<Evaluator> evaluator_;
 };
 

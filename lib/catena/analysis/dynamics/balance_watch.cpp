@@ -37,6 +37,10 @@ void BalanceWatch::begin(const Snapshot& start, double tolerance, bool work_know
   least_potential_ = largest_potential_ = start.evaluator.potential_energy() + start.contact_energy;
   initial_ = work_known ? start.initial_energy : largest_kinetic_ + least_potential_;
   missing_ = 0;
+  weight_ = 0;
+  const Model& model = start.evaluator.model();
+  for (const auto& body : model.bodies) weight_ += body.fixed ? 0 : body.mass;
+  weight_ *= std::hypot(model.gravity.x, model.gravity.y) * start.evaluator.length_scale();
 }
 
 void BalanceWatch::observe(const Snapshot& state) {
@@ -52,7 +56,7 @@ Report BalanceWatch::check(double t) const {
   // Energies that are not finite cannot be checked; the integration then ends by itself.
   if (!std::isfinite(missing_)) return report;
   const double energy = this->energy();
-  const double size = std::max({std::abs(least_potential_), std::abs(largest_potential_), std::abs(initial_)});
+  const double size = std::max({weight_, std::abs(least_potential_), std::abs(largest_potential_), std::abs(initial_)});
   if (std::abs(missing_) <= permitted * tolerance_ * energy + rounding * size) return report;
   report.status = Status::not_converged;
   report.message = fmt::format(

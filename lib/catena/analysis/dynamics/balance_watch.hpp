@@ -1,7 +1,7 @@
 // Checks the balance of energy of a motion: detects wrong integrations from the motion itself.
 //
 //   missing = T + V - (T0 + V0) - work of drivers and loads + dissipated
-//   allowed = permitted x tolerance x (largest T + range of V) + rounding of V
+//   allowed = permitted x tolerance x (largest T + range of V) + rounding of V, |V| and weights x length scale
 //
 // Errors of positions and velocities of `tolerance` (of the scale of the motion) change the energy by a few times
 // tolerance x (T + V); a motion with a much larger error of energy is wrong. No check is possible where forces without
@@ -33,7 +33,7 @@ class BalanceWatch {
 
  private:
   double tolerance_ = 0, initial_ = 0, missing_ = 0, largest_kinetic_ = 0, least_potential_ = 0, largest_potential_ = 0;
-  double earlier_ = 0;
+  double earlier_ = 0, weight_ = 0;  // of all bodies, times the length scale: V is zero by chance alone
   bool work_known_ = false;
 };
 

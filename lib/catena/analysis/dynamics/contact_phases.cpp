@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "catena/analysis/motion/initial_velocities.hpp"
 #include "catena/analysis/pose/assemble.hpp"
@@ -19,6 +18,20 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 // A depth of this part of the length scale (or rad) at the start is an estimate of a closed place, more an error.
 constexpr double allowed_depth = 1e-6;
 
+/// An exact place of friction that does not slide holds by the row of its slide.
+bool sticks(const ContactPoint& point, const ContactState& state) {
+  return point.has_friction() && point.is_exact() && state.closed && state.direction == 0;
+}
+
+/// Calls f with the constant of a slide's equation.
+template <class M, class F>
+void with_slide_value(M& model, int slide, F&& f) {
+  const ElementRecord& record = model.elements[at(slide)];
+  with_list(model.constraints, record.type, [&](auto& list) {
+    if constexpr (ElementOf<decltype(list)>::functions == 1) f(list[at(record.index)].values[0].constant);
+  });
+}
+
 }  // namespace
 
 ContactPhases::ContactPhases(std::shared_ptr<const Model> model) : contacts_(contact_points(std::move(model))) {
@@ -26,35 +39,24 @@ ContactPhases::ContactPhases(std::shared_ptr<const Model> model) : contacts_(con
   anchors_.assign(contacts_.points.size(), 0.0);
 }
 
-// An exact place of friction that does not slide holds by the row of its slide.
-bool ContactPhases::sticks(std::size_t k) const {
-  const ContactPoint& point = contacts_.points[k];
-  return point.has_friction() && point.is_exact() && states_[k].closed && states_[k].direction == 0;
-}
-
-void ContactPhases::add_rows(PlanOptions& options) const {
+void ContactPhases::add_rows(PlanOptions& options, const std::vector<ContactState>& states) const {
   options.one_sided = options.friction = true;
-  for (const ContactPoint& point : contacts_.points) {
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    const ContactPoint& point = contacts_.points[k];
     options.keep_elements.push_back(point.kind == ContactKind::joint ? point.joint : point.element);
     if (point.has_friction()) options.keep_elements.push_back(point.slide);
-  }
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    const ContactPoint& point = contacts_.points[k];
-    const bool row = point.kind == ContactKind::rigid && states_[k].closed;
+    const bool row = point.kind == ContactKind::rigid && states[k].closed;
     if (point.kind != ContactKind::joint && !row) options.released_elements.push_back(point.element);
-    if (point.has_friction() && !sticks(k)) options.released_elements.push_back(point.slide);
+    if (point.has_friction() && !sticks(point, states[k])) options.released_elements.push_back(point.slide);
   }
 }
 
 std::shared_ptr<const Model> ContactPhases::model() const {
   std::shared_ptr<Model> changed;
   for (std::size_t k = 0; k < states_.size(); ++k) {
-    if (!sticks(k)) continue;
+    if (!sticks(contacts_.points[k], states_[k])) continue;
     if (!changed) changed = std::make_shared<Model>(*contacts_.model);
-    const ElementRecord& record = changed->elements[at(contacts_.points[k].slide)];
-    with_list(changed->constraints, record.type, [&](auto& list) {
-      if constexpr (ElementOf<decltype(list)>::functions == 1) list[at(record.index)].values[0].constant = anchors_[k];
-    });
+    with_slide_value(*changed, contacts_.points[k].slide, [&](double& constant) { constant = anchors_[k]; });
   }
   return changed ? std::shared_ptr<const Model>(changed) : contacts_.model;
 }
@@ -66,40 +68,34 @@ Report ContactPhases::check_depth(std::span<const double> q) {
   for (const ContactPoint& point : contacts_.points) {
     if (point.kind != ContactKind::rigid) continue;
     const double gap = evaluator.measure(point.element, {}, {}).value;
-    if (gap >= -allowed_depth * evaluator.length_scale()) continue;
+    if (gap >= -allowed_depth * (point.turns ? 1 : evaluator.length_scale())) continue;
     report.status = Status::inconsistent;
     report.message = fmt::format(
-        "{} \"{}\" is violated at the start by {:.4g}: place the bodies so that they do not penetrate, or give it a "
+        "{} \"{}\" is violated at the start by {:.4g} {}: place the bodies so that they do not penetrate, or give it a "
         "stiffness k",
-        contacts_.model->element_type(point.element), contacts_.model->element_name(point.element), -gap);
+        contacts_.model->element_type(point.element), contacts_.model->element_name(point.element), -gap,
+        point.turns ? "rad" : "m");
     return report;
   }
   return report;
 }
 
 // Makes the switch anew, for a plan in which no row of a contact holds.
-Report ContactPhases::make_switch(const PlanOptions& options, const SystemState& state, std::vector<double>& q) {
+void ContactPhases::make_switch(const PlanOptions& options) {
   PlanOptions open = options;
-  const std::vector<ContactState> states = std::exchange(states_, std::vector<ContactState>(states_.size()));
-  add_rows(open);
-  states_ = states;
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    if (contacts_.points[k].has_friction()) open.released_elements.push_back(contacts_.points[k].slide);
-  }
+  add_rows(open, std::vector<ContactState>(states_.size()));
   switch_ = std::make_unique<ContactSwitch>(contacts_.model, contacts_.points, open);
-  Evaluator& evaluator = switch_->evaluator();
-  q = configuration_of(evaluator, state);
-  evaluator.set_time(state.t);
-  if (const AssemblyOutcome assembled = Assembler(evaluator).assemble(q); !assembled.ok()) return assembled;
-  return switch_->prepare(q);
 }
 
 Report ContactPhases::start(SystemState& state, const PlanOptions& options) {
   states_.assign(contacts_.points.size(), {});
   events_.clear();
-  std::vector<double> q;
-  if (Report prepared = make_switch(options, state, q); !prepared.ok()) return prepared;
+  make_switch(options);
   Evaluator& evaluator = switch_->evaluator();
+  std::vector<double> q = configuration_of(evaluator, state);
+  evaluator.set_time(state.t);
+  if (const AssemblyOutcome assembled = Assembler(evaluator).assemble(q); !assembled.ok()) return assembled;
+  if (Report prepared = switch_->prepare(q); !prepared.ok()) return prepared;
   std::vector<double> qd(q.size(), 0.0);
   if (Report depth = check_depth(q); !depth.ok()) return depth;
   const VelocityOutcome velocities =
@@ -117,10 +113,27 @@ Report ContactPhases::start(SystemState& state, const PlanOptions& options) {
   return decide(state, {.tell = false});
 }
 
+// For other constraints than before, with what the earlier one knew.
+Report ContactPhases::renew_switch(const PlanOptions& options, const SystemState& state) {
+  const std::unique_ptr<ContactSwitch> earlier = std::move(switch_);
+  make_switch(options);
+  if (earlier) switch_->take_over(*earlier);
+  Evaluator& evaluator = switch_->evaluator();
+  const std::vector<double> q = configuration_of(evaluator, state);
+  evaluator.set_time(state.t);
+  return switch_->prepare(q);
+}
+
 Report ContactPhases::change_constraints(const PlanOptions& options, SystemState& state) {
-  std::vector<double> q;
-  if (Report prepared = make_switch(options, state, q); !prepared.ok()) return prepared;
-  return decide(state, {});
+  if (Report renewed = renew_switch(options, state); !renewed.ok()) return renewed;
+  return decide(state, {.jolts = true});
+}
+
+Report ContactPhases::strike(const Strike& strike, const PlanOptions& options, SystemState& state, double& work) {
+  if (Report renewed = renew_switch(options, state); !renewed.ok()) return renewed;
+  Report decided = decide(state, {.strike = &strike});
+  work = switch_->work_of_strike();
+  return decided;
 }
 
 Report ContactPhases::decide(SystemState& state, const ContactSwitch::Cause& cause) {
@@ -128,17 +141,15 @@ Report ContactPhases::decide(SystemState& state, const ContactSwitch::Cause& cau
   const std::vector<double> q = configuration_of(evaluator, state);
   std::vector<double> qd = velocities_of(evaluator, state);
   qd.resize(q.size(), 0.0);
+  if (loads_) switch_->know_speed(loads_->speed());
   Report report = switch_->decide(state.t, q, qd, states_, cause);
   for (ContactEvent& event : switch_->take_events()) events_.push_back(event);
   if (!report.ok()) return report;
   for (std::size_t k = 0; k < states_.size(); ++k) {
-    if (!sticks(k)) continue;
     const int slide = contacts_.points[k].slide;
-    const ElementRecord& record = contacts_.model->elements[at(slide)];
-    anchors_[k] = evaluator.scalar_motion(slide, {}).value;
-    with_list(contacts_.model->constraints, record.type, [&](const auto& list) {
-      if constexpr (ElementOf<decltype(list)>::functions == 1) anchors_[k] += list[at(record.index)].values[0].constant;
-    });
+    if (!sticks(contacts_.points[k], states_[k])) continue;
+    with_slide_value(*contacts_.model, slide,
+                     [&](double constant) { anchors_[k] = evaluator.scalar_motion(slide, {}).value + constant; });
   }
   state = state_of(evaluator, state.t, q, qd);
   return report;
@@ -151,7 +162,6 @@ Report ContactPhases::change(int transition, SystemState& state) {
     states_[watched.place].closed = !states_[watched.place].closed;
     states_[watched.place].direction = 0;
   }
-  switch_->know_speed(loads_->speed());
   ContactSwitch::Cause cause{.place = static_cast<int>(watched.place), .rests = watched.ends == End::slide};
   cause.opens = watched.ends == End::contact && states_[watched.place].closed;
   // What stuck goes the way that friction no longer prevents; by rounding alone the limit might seem not to be reached.
@@ -159,7 +169,8 @@ Report ContactPhases::change(int transition, SystemState& state) {
   return decide(state, cause);
 }
 
-void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std::vector<Transition>& transitions) {
+void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std::vector<Transition>& transitions,
+                                    Needs& needs) {
   const ContactPoint& point = contacts_.points[k];
   const ContactState state = states_[k];
   const auto watch = [&](std::function<double(const Snapshot&)> value, int side, End ends) {
@@ -173,7 +184,7 @@ void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std
     watch([element](const Snapshot& s) { return s.evaluator.measure(element, {}, {}).value; }, 1, End::contact);
   if (point.kind == ContactKind::rigid && state.closed) {
     watch(normal, 1, End::contact);
-    needs_.multipliers = true;
+    needs.multipliers = true;
   }
   if (point.kind == ContactKind::compliant && state.closed) watch(normal, 1, End::pressing);
   if (point.kind == ContactKind::compliant && !state.closed) {
@@ -182,7 +193,7 @@ void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std
           -1, End::pressing);
   }
   if (!point.has_friction() || !point.is_exact() || !state.closed) return;
-  needs_.multipliers = true;
+  needs.multipliers = true;
   if (state.direction != 0) {
     watch([slide,
            sign = state.direction](const Snapshot& s) { return sign * s.evaluator.scalar_motion(slide, s.qd).rate; },
@@ -200,10 +211,9 @@ void ContactPhases::attach(Dynamics& dynamics, EventWatch& watch) {
   dynamics.attach(loads_.get());
   std::vector<Transition> transitions;
   watched_.clear();
-  needs_ = {};
-  needs_.velocity = true;
-  for (std::size_t k = 0; k < states_.size(); ++k) add_transitions(k, dynamics, transitions);
-  watch.watch(std::move(transitions), needs_);
+  Needs needs{.velocity = true};
+  for (std::size_t k = 0; k < states_.size(); ++k) add_transitions(k, dynamics, transitions, needs);
+  watch.watch(std::move(transitions), needs);
 }
 
 }  // namespace catena

@@ -29,11 +29,15 @@ class ContactPhases {
 
   /// The model of the present phase; and what its plan needs more: rows of closed and sticking places hold.
   std::shared_ptr<const Model> model() const;
-  void add_rows(PlanOptions& options) const;
+  void add_rows(PlanOptions& options) const { add_rows(options, states_); }
   /// Makes the forces of the phase for a Dynamics of model() and its plan, and has `watch` look for its end.
   void attach(Dynamics& dynamics, EventWatch& watch);
   /// Other constraints came or went, as `options` says: finds what every contact does then.
   Report change_constraints(const PlanOptions& options, SystemState& state);
+  /// A blow: the same. `work`: what it does, J.
+  Report strike(const Strike& strike, const PlanOptions& options, SystemState& state, double& work);
+  /// Functions of time jump, or their rates do: the same.
+  Report meet_jump(SystemState& state) { return decide(state, {.jolts = true}); }
   /// The phase ended by a transition: finds the next one.
   Report change(int transition, SystemState& state);
   /// Why friction could not be found at the last evaluation, or nothing.
@@ -47,11 +51,12 @@ class ContactPhases {
     std::size_t place;
     End ends;
   };
-  void add_transitions(std::size_t k, const Dynamics& dynamics, std::vector<Transition>& transitions);
-  Report make_switch(const PlanOptions& options, const SystemState& state, std::vector<double>& q);
+  void add_rows(PlanOptions& options, const std::vector<ContactState>& states) const;
+  void add_transitions(std::size_t k, const Dynamics& dynamics, std::vector<Transition>& transitions, Needs& needs);
+  void make_switch(const PlanOptions& options);
+  Report renew_switch(const PlanOptions& options, const SystemState& state);
   Report decide(SystemState& state, const ContactSwitch::Cause& cause);
   Report check_depth(std::span<const double> q);
-  bool sticks(std::size_t k) const;
 
   ContactModel contacts_;
   std::unique_ptr<ContactSwitch> switch_;
@@ -59,7 +64,6 @@ class ContactPhases {
   std::vector<ContactState> states_;
   std::vector<double> anchors_;   // by point: the value of the slide's equation while it sticks
   std::vector<Watched> watched_;  // by transition
-  Needs needs_;
   std::vector<ContactEvent> events_;
 };
 

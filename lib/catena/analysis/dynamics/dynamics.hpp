@@ -61,6 +61,9 @@ class Dynamics {
   /// position, after its rows.
   void pause_after(double t) { pause_after_ = t; }
   bool paused() const { return paused_; }
+  /// run() also ends, and jumped() says so, where the velocity of a driver jumps while contacts hold: what they do then
+  /// is not for this class to decide.
+  bool jumped() const { return jumped_; }
   /// The state of the motion where the last run paused.
   const MotionMemory& memory() const { return memory_; }
   /// Takes up a motion of the same model and options that paused: the next run() begins there, on the rest of its grid.
@@ -161,7 +164,9 @@ class Dynamics {
   ProcessTimer timer_;
   AnalysisReport report_;
   Report outcome_;
-  bool at_jump_ = false, paused_ = false;  // a function of time jumps at t_, and the integrator does not know yet
+  // A function of time jumps at t_, and the integrator does not know yet; the run ended at its pause, or at such a
+  // jump.
+  bool at_jump_ = false, paused_ = false, jumped_ = false;
   double pause_after_ = std::numeric_limits<double>::infinity();
   MotionMemory memory_;
   double t_ = 0, initial_energy_ = 0;

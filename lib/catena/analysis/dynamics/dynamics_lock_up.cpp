@@ -106,6 +106,7 @@ void Dynamics::give_row_at_lock_up(RowObserver& observer) {
   std::fill(y_row_.begin(), y_row_.end(), none);
   std::copy_n(point.q.begin(), n, y_row_.begin());
   lambda_row_.assign(static_cast<std::size_t>(plan_->rows), none);
+  std::fill(contact_loads_.begin(), contact_loads_.end(), ContactLoad{none, none, none});
   evaluator_.set_time(point.t);
   evaluator_.set_configuration(point.q);
   row_residual_ = equations_.position_residual(point.q);

@@ -73,18 +73,24 @@ class DynamicsOfIslands::Part final : public RowObserver {
     dynamics_.start_from(own);
     start_ = std::move(own);
   }
-  /// Gives the row at t of a motion that may have gone past it: from the start again.
-  void go_again_to(double t, const Needs& needs) {
+  /// Gives the row at t of a motion that may have gone past it: from the start again. False: it does not come there.
+  bool go_again_to(double t, const Needs& needs) {
     Dynamics again(model_, plan_options_, options_);
     if (start_) again.start_from(*start_);
-    again.run(TimeGrid::instant(t), needs, *this);
+    return again.run(TimeGrid::instant(t), needs, *this).ok();
   }
-  /// Where it locked, if it did.
-  std::optional<SingularPoint> dead_point() const {
-    if (dynamics_.singular_points().empty()) return {};
-    SingularPoint point = dynamics_.singular_points().back();
-    if (point.driver >= 0) point.driver = part_.elements[at(point.driver)];
-    return point;
+  std::vector<SingularPoint> singular_points() const {
+    std::vector<SingularPoint> points = dynamics_.singular_points();
+    for (SingularPoint& point : points) {
+      if (point.driver >= 0) point.driver = part_.elements[at(point.driver)];
+    }
+    return points;
+  }
+  /// The instant at which its motion ended: of the dead point, where it locked.
+  double end() const {
+    const std::vector<SingularPoint>& points = dynamics_.singular_points();
+    const bool locked = !points.empty() && points.back().kind == SingularPoint::Kind::lock_up;
+    return locked ? points.back().t : dynamics_.time();
   }
   /// Reports the progress of all mechanisms to the observer as times between `from` and `to`.
   void go_through(double from, double to, RowObserver& watcher) {
@@ -179,26 +185,30 @@ AnalysisReport DynamicsOfIslands::run(const TimeGrid& grid, const Needs& needs, 
   driver_work_.assign(needs.work ? model_->elements.size() : 0, 0.0);
   for (const auto& part : parts_) part->dynamics().begin(grid, needs);
   singular_points_.clear();
-  bool cancelled = false, together = true;
-  const Part* locked = nullptr;
-  for (std::int64_t row = 0; row < grid.size() && together && !cancelled; ++row) {
+  bool cancelled = false;
+  // Of those that cannot go on before a row the one that ends first.
+  const Part* ended = nullptr;
+  for (std::int64_t row = 0; row < grid.size() && !ended && !cancelled; ++row) {
     for (const auto& part : parts_) {
       part->go_through(t_, grid[row], observer);
-      together = together && part->dynamics().go_on(row + 1, *part);
-      if (!together && !locked && part->dead_point()) locked = part.get();
+      if (!part->dynamics().go_on(row + 1, *part) && (!ended || part->end() < ended->end())) ended = part.get();
     }
-    if (together) cancelled = !give_row(grid[row], needs, observer);
+    if (!ended) cancelled = !give_row(grid[row], needs, observer);
   }
   AnalysisReport total;
   total.bodies = plan_->bodies;
   total.rows = plan_->rows;
   total.islands = plan_->islands;
-  for (const auto& part : parts_) merge(total, part->dynamics().end());
+  collect_singular_points(ended ? ended->end() : grid.last());
+  std::vector<Part*> in_order;
+  for (const auto& part : parts_) in_order.push_back(part.get());
+  std::stable_partition(in_order.begin(), in_order.end(), [&](const Part* part) { return part == ended; });
+  for (Part* part : in_order) merge(total, part->dynamics().end());
   if (cancelled && total.ok()) {
     total.status = Status::cancelled;
     total.message = "stopped; the rows so far are kept";
   }
-  if (locked && total.status == Status::lock_up) give_row_at_lock_up(*locked, needs, observer);
+  if (ended && total.status == Status::lock_up) give_row_at_lock_up(*ended, needs, observer);
   total.counters += evaluator_.counters;
   total.seconds = timer.seconds();
   return total;
@@ -206,12 +216,22 @@ AnalysisReport DynamicsOfIslands::run(const TimeGrid& grid, const Needs& needs, 
 
 // The others are elsewhere when one locks, and some have gone past that instant.
 void DynamicsOfIslands::give_row_at_lock_up(const Part& locked, const Needs& needs, RowObserver& observer) {
-  singular_points_.push_back(*locked.dead_point());
-  const double t = singular_points_.back().t;
+  const double t = locked.end();
   for (const auto& part : parts_) {
-    if (part.get() != &locked) part->go_again_to(t, needs);
+    if (part.get() != &locked && !part->go_again_to(t, needs)) return;
   }
   give_row(t, needs, observer);
+}
+
+// Those up to an instant, in their order in time: some mechanisms have gone past it.
+void DynamicsOfIslands::collect_singular_points(double until) {
+  for (const auto& part : parts_) {
+    for (SingularPoint& point : part->singular_points()) {
+      if (point.t <= until) singular_points_.push_back(std::move(point));
+    }
+  }
+  std::stable_sort(singular_points_.begin(), singular_points_.end(),
+                   [](const SingularPoint& a, const SingularPoint& b) { return a.t < b.t; });
 }
 
 // The mechanisms together at an instant at which each of them gave its row.

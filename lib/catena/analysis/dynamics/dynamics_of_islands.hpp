@@ -39,6 +39,7 @@ class DynamicsOfIslands {
   class Part;
   bool give_row(double t, const Needs& needs, RowObserver& observer);
   void give_row_at_lock_up(const Part& locked, const Needs& needs, RowObserver& observer);
+  void collect_singular_points(double until);
 
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const Plan> plan_;

@@ -170,7 +170,10 @@ Report Dynamics::find_events(double from, RowObserver& observer) {
     if (events_->is_transition(*found)) {
       const std::optional<Snapshot> end = state_at(found->t);
       if (!end) return stuck();
-      if (balance_) balance_->observe(*end);
+      if (balance_) {
+        balance_->observe(*end);
+        if (Report balance = balance_->check(found->t); !balance.ok()) return balance;
+      }
       stopped_by_ = found->event;
       t_ = found->t;
       return {};

@@ -31,7 +31,7 @@ void Dynamics::begin(const TimeGrid& grid, const Needs& needs) {
   if (events_) needs_ |= events_->needs();
   stopped_by_ = -1;
   next_row_ = 0;
-  at_jump_ = paused_ = dependent_ = always_dependent_ = unbounded_ = false;
+  at_jump_ = paused_ = jumped_ = dependent_ = always_dependent_ = unbounded_ = false;
   singular_rows_ = formal_rows_ = 0;
   locked_ = false;
   singular_points_.clear();
@@ -138,7 +138,7 @@ Report Dynamics::set_out() {
 bool Dynamics::go_on(std::int64_t rows, RowObserver& observer) {
   const FlushDenormals flush;
   rows = std::min(rows, grid_.size());
-  while (outcome_.ok() && next_row_ < rows && stopped_by_ < 0 && !paused_) outcome_ = next(observer);
+  while (outcome_.ok() && next_row_ < rows && stopped_by_ < 0 && !paused_ && !jumped_) outcome_ = next(observer);
   if (outcome_.status == Status::lock_up && !std::exchange(locked_, true)) give_row_at_lock_up(observer);
   return outcome_.ok() && next_row_ >= rows;
 }
@@ -182,7 +182,11 @@ Report Dynamics::start_anew() {
   at_jump_ = false;
   std::copy(integrator_->state().begin(), integrator_->state().end(), y_row_.begin());
   if (!equations_.factorize(t_, Side::after, std::span(y_row_).first(q_.size()))) return stuck();
-  equations_.project_velocity(std::span(y_row_).subspan(q_.size(), q_.size()), 0);
+  const double jump = equations_.project_velocity(std::span(y_row_).subspan(q_.size(), q_.size()), 0);
+  if (contacts_ && contacts_->holds() && jump * evaluator_.length_scale() > no_speed * contacts_->speed()) {
+    jumped_ = true;
+    return {};
+  }
   return integrator_->start(t_, y_row_) ? Report{} : stuck();
 }
 
@@ -231,6 +235,7 @@ AnalysisReport Dynamics::end() {
   remark_on_singularities(report.warnings);
   if (!ambiguity_.empty()) report.warnings.push_back(ambiguity_);
   resumed_ = false;
+  start_.reset();
   report.counters = evaluator_.counters;
   report.seconds = timer_.seconds();
   return report;

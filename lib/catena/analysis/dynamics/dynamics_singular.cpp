@@ -59,6 +59,7 @@ bool Dynamics::know_singular_start() {
     if (!minimum_norm_) minimum_norm_.emplace(evaluator_);
     if (minimum_norm_->factorize()) minimum_norm_->solve(singular_->loads(), lambda_row_);
     account_->powers(y.subspan(n, n), lambda_row_, slope.subspan(2 * n));
+    motion_->add_losses(slope.subspan(2 * n));
   }
   motion_->know(t_, known_moments * singular_->moment(), slope.subspan(n));
   return true;

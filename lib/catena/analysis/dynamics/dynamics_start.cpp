@@ -80,17 +80,17 @@ bool Dynamics::know_start_from_rest() {
   if (!std::isfinite(later)) return false;
   const auto departure = std::make_shared<const Departure>(evaluator_, t_, 1);
   const int leader = departure->leader(later);
-  const auto slope = [this, z, departure, later, leader](double t, std::span<double> out) {
+  const auto slope = [this, z, departure, later, leader, qd = z](double t, std::span<double> out) mutable {
     const Taylor<double> s = departure->rates(t, later);
     for (std::size_t k = 0; k < z.size(); ++k) out[k] = s.dd * z[k];
     if (!account_) return;
-    std::vector<double> qd(z);
-    for (double& rate : qd) rate *= s.d;
+    for (std::size_t k = 0; k < z.size(); ++k) qd[k] = s.d * z[k];
     const std::span<const double> loads = equations_.applied_forces();
     const std::vector<double>& mass = equations_.masses().mass;
     double power = 0;
     for (std::size_t k = 0; k < mass.size(); ++k) power += (mass[k] * out[k] - loads[k]) * qd[k];
     account_->powers_of_one(qd, leader, power, out.subspan(z.size()));
+    motion_->add_losses(out.subspan(z.size()));
   };
   motion_->depart(later, slope);
   return true;

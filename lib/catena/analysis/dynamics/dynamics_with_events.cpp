@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "catena/analysis/dynamics/engaged_turns.hpp"
 #include "catena/analysis/run/report_parts.hpp"
@@ -79,7 +80,7 @@ void DynamicsWithEvents::make_dynamics() {
     model_ = turned;
   }
   dynamics_ = std::make_unique<Dynamics>(model_, plan, options_);
-  if (contacts_.started()) contacts_.attach(*dynamics_, *watch_);
+  if (contacts_.any() && contacts_.started()) contacts_.attach(*dynamics_, *watch_);
 }
 
 void DynamicsWithEvents::start_from(const SystemState& state) {
@@ -96,19 +97,34 @@ Report DynamicsWithEvents::start_contacts() {
   return {};
 }
 
-Report DynamicsWithEvents::change_contacts(int transition, bool sum_up_work) {
-  SystemState state = dynamics_->state();
+void DynamicsWithEvents::go_on_from(const SystemState& state, int engaged, bool sum_up_work, double work_of_strike) {
   WorkSoFar work = dynamics_->work_so_far();
+  work.supplied += work_of_strike;
+  work.energy += work_of_strike;
   const double energy = dynamics_->energy_in_motion();
-  if (Report changed = contacts_.change(transition, state); !changed.ok()) return changed;
   make_dynamics();
   dynamics_->start_from(state);
+  if (engaged >= 0) turn_value_to_bodies(engaged, state);
   dynamics_->know_energy(energy);
   if (sum_up_work) dynamics_->carry_on(std::move(work));
+}
+
+Report DynamicsWithEvents::change_contacts(int transition, bool sum_up_work) {
+  SystemState state = dynamics_->state();
+  if (Report changed = contacts_.change(transition, state); !changed.ok()) return changed;
+  go_on_from(state, -1, sum_up_work);
+  return {};
+}
+
+Report DynamicsWithEvents::meet_jump(bool sum_up_work) {
+  SystemState state = dynamics_->state();
+  if (Report met = contacts_.meet_jump(state); !met.ok()) return met;
+  go_on_from(state, -1, sum_up_work);
   return {};
 }
 
 void DynamicsWithEvents::resume(const MotionMemory& memory) {
+  if (contacts_.any()) throw std::invalid_argument("a motion with contacts, stops or dry friction cannot be taken up");
   resumed_ = true;
   first_row_ = memory.next_row;
   rows_before_ = memory.rows_given;
@@ -171,22 +187,25 @@ Report DynamicsWithEvents::check_fit(int element) {
   return report;
 }
 
+Report DynamicsWithEvents::strike(const Event& event, bool sum_up_work) {
+  SystemState state = dynamics_->state();
+  double work = 0;
+  if (Report struck = contacts_.strike(event.strike, plan_options_, state, work); !struck.ok()) return struck;
+  go_on_from(state, -1, sum_up_work, work);
+  return {};
+}
+
 Report DynamicsWithEvents::act(const Event& event, bool sum_up_work) {
+  if (event.action == EventAction::strike) return strike(event, sum_up_work);
   std::vector<int>& released = plan_options_.released_elements;
   const bool engage = event.action == EventAction::engage;
   std::erase(released, event.element);
   if (!engage) released.push_back(event.element);
   SystemState state = dynamics_->state();
-  WorkSoFar work = dynamics_->work_so_far();
   if (contacts_.any()) {
     if (Report changed = contacts_.change_constraints(plan_options_, state); !changed.ok()) return changed;
   }
-  const double energy = dynamics_->energy_in_motion();
-  make_dynamics();
-  dynamics_->start_from(state);
-  dynamics_->know_energy(energy);
-  if (engage) turn_value_to_bodies(event.element, state);
-  if (sum_up_work) dynamics_->carry_on(std::move(work));
+  go_on_from(state, engage ? event.element : -1, sum_up_work);
   return engage ? check_fit(event.element) : Report{};
 }
 
@@ -195,6 +214,7 @@ AnalysisReport DynamicsWithEvents::run(const TimeGrid& grid, const Needs& needs,
   watch_->rows_given = [&] { return rows.rows(); };
   AnalysisReport total;
   total.warnings = inactive_;
+  singular_points_.clear();
   std::int64_t next_row = first_row_;
   TimeGrid rest = grid.from_row(next_row);
   if (contacts_.any()) {
@@ -211,6 +231,8 @@ AnalysisReport DynamicsWithEvents::run(const TimeGrid& grid, const Needs& needs,
     // The next multiple that lies clearly ahead.
     dynamics_->pause_after((std::floor(dynamics_->time() / pauses_.every * (1 + 1e-12)) + 1) * pauses_.every);
     add_part(total, dynamics_->run(rest, needs, rows));
+    const std::vector<SingularPoint>& points = dynamics_->singular_points();
+    singular_points_.insert(singular_points_.end(), points.begin(), points.end());
     const int stopped_by = dynamics_->stopped_by();
     next_row += dynamics_->next_row();
     rest = grid.from_row(next_row);
@@ -222,40 +244,31 @@ AnalysisReport DynamicsWithEvents::run(const TimeGrid& grid, const Needs& needs,
       total.status = Status::inconsistent;
       total.message = fmt::format("at t = {:.12g} s: {}", dynamics_->time(), contacts_.trouble());
     }
-    if (!total.ok() || stopped_by < 0) return total;
-    if (watch_->is_transition({stopped_by, 0})) {
-      at_once = dynamics_->time() > last_action ? 1 : at_once + 1;
-      last_action = dynamics_->time();
-      Report changed = change_contacts(watch_->transition(stopped_by), needs.work || watch_->needs().work);
-      if (changed.ok() && at_once > most_at_once) {
-        changed.status = Status::step_too_small;
-        changed.message = fmt::format("contacts change without end at t = {:.12g} s", last_action);
-      }
-      if (!changed.ok()) {
-        total.status = changed.status;
-        total.message = changed.message;
-        return total;
-      }
-      if (rest.size() == 0) return total;
-      continue;
-    }
-    const Event& event = watch_->events()[static_cast<std::size_t>(stopped_by)];
-    if (event.action == EventAction::stop) {
+    const bool jumped = dynamics_->jumped();
+    if (!total.ok() || (stopped_by < 0 && !jumped)) return total;
+    const bool transition = jumped || watch_->is_transition({stopped_by, 0});
+    const Event* event = transition ? nullptr : &watch_->events()[static_cast<std::size_t>(stopped_by)];
+    if (event && event->action == EventAction::stop) {
       if (rest.size() > 0)
-        total.message = fmt::format("event \"{}\" ended it at t = {:.12g} s", event.name, dynamics_->time());
+        total.message = fmt::format("event \"{}\" ended it at t = {:.12g} s", event->name, dynamics_->time());
       return total;
     }
     at_once = dynamics_->time() > last_action ? 1 : at_once + 1;
     last_action = dynamics_->time();
-    Report acted = act(event, needs.work || watch_->needs().work);
-    if (acted.ok() && at_once > most_at_once) {
-      acted.status = Status::step_too_small;
-      acted.message = fmt::format("event \"{}\" and others follow each other without end at t = {:.12g} s", event.name,
-                                  last_action);
+    const bool sum_up_work = needs.work || watch_->needs().work;
+    Report next = jumped  ? meet_jump(sum_up_work)
+                  : event ? act(*event, sum_up_work)
+                          : change_contacts(watch_->transition(stopped_by), sum_up_work);
+    if (next.ok() && at_once > most_at_once) {
+      next.status = Status::step_too_small;
+      next.message =
+          fmt::format("{} without end at t = {:.12g} s",
+                      event ? fmt::format("event \"{}\" and others follow each other", event->name) : "contacts change",
+                      last_action);
     }
-    if (!acted.ok()) {
-      total.status = acted.status;
-      total.message = acted.message;
+    if (!next.ok()) {
+      total.status = next.status;
+      total.message = next.message;
       return total;
     }
     if (rest.size() == 0) return total;

@@ -49,7 +49,7 @@ class DynamicsWithEvents {
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
   SystemState state() const { return dynamics_->state(); }
   /// See Dynamics.
-  const std::vector<SingularPoint>& singular_points() const { return dynamics_->singular_points(); }
+  const std::vector<SingularPoint>& singular_points() const { return singular_points_; }
   const std::vector<EventRecord>& records() const { return watch_->records(); }
   /// Changes of contacts, in order of their instants but for accumulated bounces.
   const std::vector<ContactEvent>& contact_events() const { return contacts_.events(); }
@@ -58,12 +58,17 @@ class DynamicsWithEvents {
  private:
   void make_dynamics();
   Report start_contacts();
+  /// Goes on from `state` with the rows that hold now; `engaged`: an element that does from now on, or -1.
+  void go_on_from(const SystemState& state, int engaged, bool sum_up_work, double work_of_strike = 0);
+  Report strike(const Event& event, bool sum_up_work);
   /// Ends a phase at a transition, and begins the next one from the state that it leaves behind.
   Report change_contacts(int transition, bool sum_up_work);
+  /// The same where the velocity of a driver jumps.
+  Report meet_jump(bool sum_up_work);
   std::vector<double> residuals_of(int element);
   /// Saves the motion where it paused and goes on from what was saved.
   void save_and_resume(std::int64_t rows_given, std::int64_t next_row);
-  /// Releases or engages what the event says; a report if that cannot be.
+  /// Releases, engages or strikes what the event says; a report if that cannot be.
   Report act(const Event& event, bool sum_up_work);
   void turn_value_to_bodies(int element, const SystemState& state);
   Report check_fit(int element);
@@ -76,8 +81,9 @@ class DynamicsWithEvents {
   DynamicsOptions options_;
   std::unique_ptr<Dynamics> dynamics_;
   std::unique_ptr<EventWatch> watch_;
-  std::vector<int> turned_;            // see EventMemory
-  std::vector<std::string> inactive_;  // what is said of elements that are released before they are engaged
+  std::vector<int> turned_;                     // see EventMemory
+  std::vector<std::string> inactive_;           // what is said of elements that are released before they are engaged
+  std::vector<SingularPoint> singular_points_;  // of the run, in all its phases
   Pauses pauses_;
   bool resumed_ = false;
   std::int64_t first_row_ = 0, rows_before_ = 0;  // of the grid; rows given before the motion was taken up

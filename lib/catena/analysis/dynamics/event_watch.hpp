@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "catena/analysis/contact/contact_switch.hpp"
 #include "catena/analysis/motion/motion_memory.hpp"
 #include "catena/columns/column_set.hpp"
 
@@ -29,6 +30,7 @@ enum class EventAction {
   stop,     ///< the analysis ends
   release,  ///< a constraint ceases to hold
   engage,   ///< a constraint begins to hold; it does not before
+  strike,   ///< an impulse acts
 };
 
 struct Event {
@@ -38,6 +40,7 @@ struct Event {
   EventDirection direction = EventDirection::any;
   EventAction action = EventAction::record;
   int element = -1;  ///< what is released or engaged, in the model's list
+  Strike strike{};   ///< the impulse
 };
 
 /// A change of the mechanism itself: where `value` passes from the side on which it begins to the other one.

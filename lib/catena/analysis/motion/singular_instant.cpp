@@ -35,6 +35,7 @@ SingularInstant::Outcome SingularInstant::solve(double t, std::span<const double
     speed = std::max(speed, std::abs(qd[at(k)]) / (k % 3 == 2 ? 1 : evaluator.length_scale()));
   }
 
+  loads_.assign(equations_.applied_forces().begin(), equations_.applied_forces().end());
   std::vector<double> moved(q.begin(), q.end()), values(at(plan.trash_slot()) + 1), gamma(at(plan.rows));
   evaluator.start_jacobian(values);
   const double e = moment_ = speed > 0 ? small_move / speed : small_move;
@@ -51,8 +52,6 @@ SingularInstant::Outcome SingularInstant::solve(double t, std::span<const double
   for (std::size_t k = 0; k < values.size(); ++k) jacobian_rate[k] = (jacobian_rate[k] - values[k]) / (2 * e);
   for (std::size_t k = 0; k < gamma.size(); ++k) gamma_rate[k] = (gamma_rate[k] - gamma[k]) / (2 * e);
   evaluate(0);
-  loads_.assign(q.size(), 0.0);
-  evaluator.applied_forces(qd, loads_);
 
   RankOptions options;
   options.tolerance = dependent;

@@ -33,7 +33,8 @@ class SingularInstant {
     always_dependent,  ///< constraints depend on each other along the motion, too; or there is none, at rest
     not_found,
   };
-  /// Finds the accelerations at (t, q, qd), of plan.coordinates() entries. The evaluator is left at t and q. Allocates.
+  /// Finds the accelerations at (t, q, qd), of plan.coordinates() entries, where the equations were last solved: the
+  /// forces of then are taken, with those of contacts. The evaluator is left at t and q. Allocates.
   Outcome solve(double t, std::span<const double> q, std::span<const double> qd, std::span<double> qdd);
   /// The load of the constraints with bounded multipliers, Q - M qdd - b^T beta, by coordinate.
   std::span<const double> loads() const { return loads_; }

@@ -382,7 +382,7 @@ StaticResult StaticSearch::find_without_energy(std::vector<double>& q, std::vect
   }
   warn_of_rounding(accuracy_, result.report);
   drop_whole_turns(system_, start, q);
-  result.report.warnings.push_back(
+  result.report.warnings.emplace_back(
       "forces that turn with their body have no energy: the forces balance here, but nothing certifies that this "
       "equilibrium is stable");
   return result;
@@ -467,7 +467,7 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
   result.dependent_rows = system_.matrix().dependent_rows();
   name_weak_gaps(evaluator, result);
   if (way == Way::valley && !few) {
-    result.report.warnings.push_back(
+    result.report.warnings.emplace_back(
         "found by following the energy downhill from the start, after other methods had failed");
   }
   const Certificate& c = result.certificate;
@@ -482,7 +482,7 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
                                                  c.negative_modes > 1 ? "s" : "", motion));
   }
   if (pushed && result.report.ok()) {
-    result.report.warnings.push_back("a stationary point that is no minimum was left towards lower energy");
+    result.report.warnings.emplace_back("a stationary point that is no minimum was left towards lower energy");
   }
   return result;
 }

@@ -32,27 +32,25 @@ void DesignMechanism::applied_forces(std::span<DesignScalar> Q) const {
     const Frame<DesignSeries>& m = motion_[at(body)];
     return Twist<DesignScalar>{m.x.d, m.y.d, m.phi.d};
   };
-  for_each_list(plan_->forces, [&](const auto& block, int type) {
-    with_list(model_->forces, type, [&](const auto& list) {
-      using E = ElementOf<decltype(list)>;
-      for (int e = 0; e < block.size(); ++e) {
-        const auto& entry = list[at(block.entry[at(e)])];
-        const auto f = detail::design_frames<DesignScalar>(
-            block, e, plan_->moving, origin_, [&](int body) { return detail::present(motion_[at(body)]); });
-        const auto values = function_values<DesignScalar>(entry, function_);
-        const int body_i = block.body_i[at(e)], body_j = E::bodies == 2 ? block.body_j[at(e)] : plan_->bodies;
-        const Twist<DesignScalar> u = twist(body_i), v = twist(body_j);
-        Wrench<DesignScalar> on_i, on_j;
-        entry.element.force(ForceArguments<DesignScalar>{f.i, f.j, u, v, values.data(), f.ground}, on_i, on_j);
-        const auto add = [&](int body, const Wrench<DesignScalar>& wrench) {
-          Q[at(3 * body)] += wrench.fx;
-          Q[at(3 * body + 1)] += wrench.fy;
-          Q[at(3 * body + 2)] += wrench.moment;
-        };
-        add(body_i, on_i);
-        if constexpr (E::bodies == 2) add(body_j, on_j);
-      }
-    });
+  for_each_list(plan_->forces, model_->forces, [&](const auto& block, const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    for (int e = 0; e < block.size(); ++e) {
+      const auto& entry = list[at(block.entry[at(e)])];
+      const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_,
+                                                         [&](int body) { return detail::present(motion_[at(body)]); });
+      const auto values = function_values<DesignScalar>(entry, function_);
+      const int body_i = block.body_i[at(e)], body_j = E::bodies == 2 ? block.body_j[at(e)] : plan_->bodies;
+      const Twist<DesignScalar> u = twist(body_i), v = twist(body_j);
+      Wrench<DesignScalar> on_i, on_j;
+      entry.element.force(ForceArguments<DesignScalar>{f.i, f.j, u, v, values.data(), f.ground}, on_i, on_j);
+      const auto add = [&](int body, const Wrench<DesignScalar>& wrench) {
+        Q[at(3 * body)] += wrench.fx;
+        Q[at(3 * body + 1)] += wrench.fy;
+        Q[at(3 * body + 2)] += wrench.moment;
+      };
+      add(body_i, on_i);
+      if constexpr (E::bodies == 2) add(body_j, on_j);
+    }
   });
 }
 
@@ -64,20 +62,18 @@ Taylor<DesignScalar> DesignMechanism::potential() const {
     sum -= DesignSeries(body.mass) * (DesignSeries(model_->gravity.x) * m.x + DesignSeries(model_->gravity.y) * m.y);
   }
   const Twist<DesignSeries> rest;
-  for_each_list(plan_->forces, [&](const auto& block, int type) {
-    with_list(model_->forces, type, [&](const auto& list) {
-      for (int e = 0; e < block.size(); ++e) {
-        const auto& entry = list[at(block.entry[at(e)])];
-        const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_,
-                                                           [&](int body) { return motion_[at(body)]; });
-        const auto values = function_values<DesignSeries>(entry, function_);
-        if constexpr (requires(const ForceArguments<DesignSeries>& a) { entry.element.potential(a); }) {
-          if (is_conservative(entry.element)) {
-            sum += entry.element.potential(ForceArguments<DesignSeries>{f.i, f.j, rest, rest, values.data(), f.ground});
-          }
+  for_each_list(plan_->forces, model_->forces, [&](const auto& block, const auto& list, int) {
+    for (int e = 0; e < block.size(); ++e) {
+      const auto& entry = list[at(block.entry[at(e)])];
+      const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_,
+                                                         [&](int body) { return motion_[at(body)]; });
+      const auto values = function_values<DesignSeries>(entry, function_);
+      if constexpr (requires(const ForceArguments<DesignSeries>& a) { entry.element.potential(a); }) {
+        if (is_conservative(entry.element)) {
+          sum += entry.element.potential(ForceArguments<DesignSeries>{f.i, f.j, rest, rest, values.data(), f.ground});
         }
       }
-    });
+    }
   });
   return sum;
 }

@@ -34,15 +34,13 @@ DesignMechanism::DesignMechanism(const Evaluator& evaluator, std::shared_ptr<con
   for (int p = 0; p <= plan_->bodies; ++p) origin_.push_back(p < plan_->bodies ? evaluator.origin(p) : Vec2<double>{});
   scale_.assign(model_->elements.size(), 1.0);
   place_.assign(model_->elements.size(), -1);
-  for_each_list(plan_->blocks, [&](const auto& block, int type) {
-    using E = typename std::remove_cvref_t<decltype(block)>::Element;
-    with_list(model_->constraints, type, [&](const auto& list) {
-      for (int e = 0; e < block.size(); ++e) {
-        const int id = list[at(block.entry[at(e)])].id;
-        place_[at(id)] = e;
-        if constexpr (HasSquaredValue<E>) scale_[at(id)] = evaluator.element_jacobian(id).scale;
-      }
-    });
+  for_each_list(plan_->blocks, model_->constraints, [&](const auto& block, const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    for (int e = 0; e < block.size(); ++e) {
+      const int id = list[at(block.entry[at(e)])].id;
+      place_[at(id)] = e;
+      if constexpr (HasSquaredValue<E>) scale_[at(id)] = evaluator.element_jacobian(id).scale;
+    }
   });
   function_.resize(model_->functions.size());
   motion_.resize(at(plan_->bodies) + 1);

@@ -39,40 +39,36 @@ void derive(const E& element, const detail::DesignFrames<DesignScalar>& f, const
 }  // namespace
 
 void DesignMechanism::rows(std::span<Taylor<DesignScalar>> out) const {
-  for_each_list(plan_->blocks, [&](const auto& block, int type) {
-    with_list(model_->constraints, type, [&](const auto& list) {
-      using E = ElementOf<decltype(list)>;
-      for (int e = 0; e < block.size(); ++e) {
-        const auto& entry = list[at(block.entry[at(e)])];
-        const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_,
-                                                           [&](int body) { return motion_[at(body)]; });
-        DesignSeries* row = out.data() + block.row(e);
-        entry.element.phi(Arguments<DesignSeries>{f.i, f.j, value_of_entry(entry, function_), f.ground}, row);
-        if constexpr (HasSquaredValue<E>) row[0] *= DesignSeries(scale_[at(entry.id)]);
-      }
-    });
+  for_each_list(plan_->blocks, model_->constraints, [&](const auto& block, const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    for (int e = 0; e < block.size(); ++e) {
+      const auto& entry = list[at(block.entry[at(e)])];
+      const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_,
+                                                         [&](int body) { return motion_[at(body)]; });
+      DesignSeries* row = out.data() + block.row(e);
+      entry.element.phi(Arguments<DesignSeries>{f.i, f.j, value_of_entry(entry, function_), f.ground}, row);
+      if constexpr (HasSquaredValue<E>) row[0] *= DesignSeries(scale_[at(entry.id)]);
+    }
   });
 }
 
 void DesignMechanism::add_constraint_loads(std::span<const DesignScalar> lambda, std::span<DesignScalar> Q) const {
-  for_each_list(plan_->blocks, [&](const auto& block, int type) {
-    with_list(model_->constraints, type, [&](const auto& list) {
-      using E = ElementOf<decltype(list)>;
-      for (int e = 0; e < block.size(); ++e) {
-        const auto& entry = list[at(block.entry[at(e)])];
-        const auto f = detail::design_frames<DesignScalar>(
-            block, e, plan_->moving, origin_, [&](int body) { return detail::present(motion_[at(body)]); });
-        DesignScalar entries[6 * E::rows];
-        derive(entry.element, f, value_of_entry(entry, function_).f, entries);
-        for (int r = 0; r < E::rows; ++r) {
-          const DesignScalar weight = DesignScalar(scale_[at(entry.id)]) * lambda[at(block.row(e) + r)];
-          for (int k = 0; k < 3 * E::bodies; ++k) {
-            const int body = k < 3 ? block.body_i[at(e)] : block.body_j[at(e)];
-            Q[at(3 * body + k % 3)] += entries[6 * r + k] * weight;
-          }
+  for_each_list(plan_->blocks, model_->constraints, [&](const auto& block, const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    for (int e = 0; e < block.size(); ++e) {
+      const auto& entry = list[at(block.entry[at(e)])];
+      const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_,
+                                                         [&](int body) { return detail::present(motion_[at(body)]); });
+      DesignScalar entries[6 * E::rows];
+      derive(entry.element, f, value_of_entry(entry, function_).f, entries);
+      for (int r = 0; r < E::rows; ++r) {
+        const DesignScalar weight = DesignScalar(scale_[at(entry.id)]) * lambda[at(block.row(e) + r)];
+        for (int k = 0; k < 3 * E::bodies; ++k) {
+          const int body = k < 3 ? block.body_i[at(e)] : block.body_j[at(e)];
+          Q[at(3 * body + k % 3)] += entries[6 * r + k] * weight;
         }
       }
-    });
+    }
   });
 }
 
@@ -81,20 +77,18 @@ DesignElementJacobian DesignMechanism::element_jacobian(int element) const {
   const int e = place_[at(element)];
   const ElementRecord& record = model_->elements[at(element)];
   if (e < 0 || record.kind == ElementKind::force) return result;
-  for_each_list(plan_->blocks, [&](const auto& block, int type) {
+  for_each_list(plan_->blocks, model_->constraints, [&](const auto& block, const auto& list, int type) {
     if (type != record.type) return;
-    with_list(model_->constraints, type, [&](const auto& list) {
-      using E = ElementOf<decltype(list)>;
-      const auto& entry = list[at(record.index)];
-      const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_,
-                                                         [&](int body) { return detail::present(motion_[at(body)]); });
-      derive(entry.element, f, value_of_entry(entry, function_).f, result.entries);
-      result.rows = E::rows;
-      result.bodies = E::bodies;
-      result.body_i = block.body_i[at(e)];
-      if (E::bodies == 2) result.body_j = block.body_j[at(e)];
-      result.scale = scale_[at(element)];
-    });
+    using E = ElementOf<decltype(list)>;
+    const auto& entry = list[at(record.index)];
+    const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_,
+                                                       [&](int body) { return detail::present(motion_[at(body)]); });
+    derive(entry.element, f, value_of_entry(entry, function_).f, result.entries);
+    result.rows = E::rows;
+    result.bodies = E::bodies;
+    result.body_i = block.body_i[at(e)];
+    if (E::bodies == 2) result.body_j = block.body_j[at(e)];
+    result.scale = scale_[at(element)];
   });
   return result;
 }

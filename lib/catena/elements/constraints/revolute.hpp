@@ -26,10 +26,13 @@ struct Revolute {
   static constexpr std::array hessian_pattern = {HessianEntry{2, 2}, HessianEntry{5, 5}};
 
   Vec2<S> s_i{}, s_j{};
+  S c{};  // no part of the equations: a model gives the joint a JointDamper
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &Revolute::s_i, 0, "the pin's place on body i"},
-                           PointField{"j", &Revolute::s_j, 1, "the pin's place on body j"});
+                           PointField{"j", &Revolute::s_j, 1, "the pin's place on body j"},
+                           NumberField{"c", &Revolute::c, UnitKind::torsion_damping, Domain::not_negative, false,
+                                       "viscous damping of its turning (default 0)"});
   }
   template <class Pen>
   void draw(Pen& pen) const {

@@ -33,6 +33,7 @@ struct Translational {
 
   Vec2<S> s_i{}, s_j{}, axis_i{};
   Vec2<S> axis_j{};  // zero: left out
+  S c{};             // no part of the equations: a model gives the joint a JointDamper
 
   static constexpr UnitKind row_unit(int row) { return row == 1 ? UnitKind::angle : UnitKind::length; }
   static constexpr auto fields() {
@@ -40,7 +41,9 @@ struct Translational {
                            PointField{"j", &Translational::s_j, 1, "the point P_j of body j that moves along it"},
                            AxisField{"axis_i", &Translational::axis_i, 0, true, "direction of the line in body i"},
                            AxisField{"axis_j", &Translational::axis_j, 1, false,
-                                     "the same direction in body j (default: as in the given configuration)"});
+                                     "the same direction in body j (default: as in the given configuration)"},
+                           NumberField{"c", &Translational::c, UnitKind::damping, Domain::not_negative, false,
+                                       "viscous damping of its sliding (default 0)"});
   }
   template <class Pen>
   void draw(Pen& pen) const {

@@ -231,7 +231,9 @@ void fill(ModelBuilder<S>& builder, const ElementTemplate& source, const int* bo
       return;
     }
   }
-  if (good) builder.append(source, entry, kind);
+  if (!good) return;
+  builder.append(source, entry, kind);
+  if constexpr (HasDamping<E>) add_damping(model, entry);
 }
 
 }  // namespace filling

@@ -202,7 +202,8 @@ std::span<const AnalysisKey> event_keys() {
       {"value", KeyKind::number, "the value at which the event happens (default 0)", UnitKind::none, Domain::any},
       {"direction", KeyKind::word, "rising, falling or both", {}, {}, {"any", "up", "down"}},
       {"action", KeyKind::word, "what happens then", {}, {}, {"record", "stop", "release", "engage"}},
-      {"element", KeyKind::word, "the element that is released or engaged"}};
+      {"element", KeyKind::word, "the element that is released or engaged"},
+      {"impulse", KeyKind::impulse, "a blow: {\"i\": point, \"value\": [px, py]} in ground axes, N s"}};
   return keys;
 }
 

@@ -20,6 +20,7 @@ enum class KeyKind {
   parameter,  ///< the name of a parameter
   set,        ///< parameters and their values
   events,     ///< a list of events
+  impulse,    ///< of an event: the point that is struck, and the impulse
   measures,   ///< names and measures
   analysis,   ///< an analysis, or a list of them
   names,      ///< a list of parameters

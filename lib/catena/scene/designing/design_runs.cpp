@@ -5,20 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/scene/designing/measured_design.hpp"
+
 namespace catena {
-namespace {
 
-/// Rows of analyses inside of an optimisation: nobody wants them.
-class NoRows final : public RowSink {
- public:
-  void begin(std::span<const ColumnInfo>) override {}
-  bool row(std::span<const double>) override { return true; }
-};
-
-}  // namespace
-
-DesignRuns::DesignRuns(const AnalysisContext& context)
-    : context_(context), goal_(context.task.goal), start_(context.state) {
+DesignRuns::DesignRuns(const AnalysisContext& context) : context_(context), goal_(context.task.goal) {
   request_.rows = false;
   for (const DesignVariable& variable : goal_.variables) {
     request_.parameters.push_back(variable.parameter);
@@ -35,9 +26,8 @@ ParameterSeeds DesignRuns::seeds_of(std::span<const double> x) const {
 std::string DesignRuns::take_measures(const AnalysisTask& inner, const AnalysisResult& result, bool gradients,
                                       std::vector<Measured>& measures) {
   for (const PlacedMeasure& placed : inner.measures) {
-    const auto found = std::find_if(result.measures.begin(), result.measures.end(),
-                                    [&](const MeasureResult& m) { return m.name == placed.request.name; });
-    if (found == result.measures.end() || !found->value) return "not_measured";
+    const MeasureResult* found = value_of(placed, result);
+    if (!found) return "not_measured";
     Measured measured{*found->value, std::vector<double>(request_.names.size(), 0.0)};
     for (std::size_t p = 0; gradients && p < measured.gradient.size(); ++p) {
       const double derivative = p < found->gradient.size() ? found->gradient[p] : std::nan("");
@@ -59,36 +49,14 @@ std::string DesignRuns::take_measures(const AnalysisTask& inner, const AnalysisR
 }
 
 std::string DesignRuns::measure(const ParameterSeeds& seeds, bool gradients, std::vector<Measured>& measures) {
-  SystemState state = start_;
-  NoRows rows;
-  for (const AnalysisTask& read : context_.task.of) {
-    AnalysisTask inner = read;
-    inner.parameters = context_.models->values(*read.table, seeds);
-    if (inner.from_initial) state = {};
-    AnalysisContext within{.task = inner,
-                           .model = context_.models->model(*inner.table, seeds),
-                           .state = state,
-                           .rows = rows,
-                           .cancel = context_.cancel,
-                           .progress = {},
-                           .models = context_.models,
-                           .seeds = seeds,
-                           .design = gradients ? &request_ : nullptr};
-    if (!within.model) return "invalid";
-    if (inner.has("parameter"))
-      within.parameter_name = context_.models->names().all()[static_cast<std::size_t>(inner.word("parameter"))];
-    AnalysisResult result;
-    try {
-      analysis_function(inner.type())(within, result);
-    } catch (const std::bad_alloc&) {
-      throw;
-    } catch (const std::exception&) {
-      return std::string(to_string(Status::refused));
-    }
-    if (!result.report.ok()) return std::string(to_string(result.report.status));
-    if (std::string reason = take_measures(inner, result, gradients, measures); !reason.empty()) return reason;
-  }
-  return {};
+  std::string reason;
+  const std::optional<Status> status = run_design(context_, seeds, gradients ? &request_ : nullptr,
+                                                  [&](const AnalysisTask& inner, const AnalysisResult& result) {
+                                                    reason = take_measures(inner, result, gradients, measures);
+                                                    return reason.empty();
+                                                  });
+  if (!status) return "invalid";
+  return *status == Status::ok ? reason : std::string(to_string(*status));
 }
 
 std::vector<DesignScalar> DesignRuns::evaluate_formula(const DesignFormula& formula,

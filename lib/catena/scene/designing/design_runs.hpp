@@ -35,7 +35,6 @@ class DesignRuns {
   const AnalysisContext& context_;
   const DesignGoal& goal_;
   DesignRequest request_;
-  SystemState start_;
   std::vector<std::string> doubts_;
 };
 

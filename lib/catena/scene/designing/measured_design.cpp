@@ -6,7 +6,7 @@
 namespace catena {
 namespace {
 
-/// Rows of analyses inside of a sweep: nobody wants them.
+/// Rows of analyses inside of an optimisation or a sweep: nobody wants them.
 class NoRows final : public RowSink {
  public:
   void begin(std::span<const ColumnInfo>) override {}
@@ -15,10 +15,10 @@ class NoRows final : public RowSink {
 
 }  // namespace
 
-Status measure_design(const AnalysisContext& context, const ParameterSeeds& seeds, std::vector<double>& measures) {
+std::optional<Status> run_design(const AnalysisContext& context, const ParameterSeeds& seeds,
+                                 const DesignRequest* design, const TakeAnalysis& take) {
   SystemState state = context.state;
   NoRows rows;
-  bool measured = true;
   for (const AnalysisTask& read : context.task.of) {
     AnalysisTask inner = read;
     inner.parameters = context.models->values(*read.table, seeds);
@@ -30,8 +30,9 @@ Status measure_design(const AnalysisContext& context, const ParameterSeeds& seed
                            .cancel = context.cancel,
                            .progress = {},
                            .models = context.models,
-                           .seeds = seeds};
-    if (!within.model) return Status::refused;
+                           .seeds = seeds,
+                           .design = design};
+    if (!within.model) return std::nullopt;
     if (inner.has("parameter"))
       within.parameter_name = context.models->names().all()[static_cast<std::size_t>(inner.word("parameter"))];
     AnalysisResult result;
@@ -43,15 +44,29 @@ Status measure_design(const AnalysisContext& context, const ParameterSeeds& seed
       return Status::refused;
     }
     if (!result.report.ok()) return result.report.status;
-    for (const PlacedMeasure& placed : inner.measures) {
-      const auto found = std::find_if(result.measures.begin(), result.measures.end(),
-                                      [&](const MeasureResult& m) { return m.name == placed.request.name; });
-      const bool has = found != result.measures.end() && found->value.has_value();
-      measures.push_back(has ? *found->value : std::numeric_limits<double>::quiet_NaN());
-      measured = measured && has;
-    }
+    if (!take(inner, result)) break;
   }
-  return measured ? Status::ok : Status::not_converged;
+  return Status::ok;
+}
+
+const MeasureResult* value_of(const PlacedMeasure& measure, const AnalysisResult& result) {
+  const auto found = std::find_if(result.measures.begin(), result.measures.end(),
+                                  [&](const MeasureResult& m) { return m.name == measure.request.name; });
+  return found != result.measures.end() && found->value ? &*found : nullptr;
+}
+
+Status measure_design(const AnalysisContext& context, const ParameterSeeds& seeds, std::vector<double>& measures) {
+  bool measured = true;
+  const auto take = [&](const AnalysisTask& inner, const AnalysisResult& result) {
+    for (const PlacedMeasure& placed : inner.measures) {
+      const MeasureResult* found = value_of(placed, result);
+      measures.push_back(found ? *found->value : std::numeric_limits<double>::quiet_NaN());
+      measured = measured && found;
+    }
+    return true;
+  };
+  const Status status = run_design(context, seeds, nullptr, take).value_or(Status::refused);
+  return status == Status::ok && !measured ? Status::not_converged : status;
 }
 
 }  // namespace catena

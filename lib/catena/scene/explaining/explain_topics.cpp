@@ -8,7 +8,7 @@ std::span<const ExplainedTopic> explained_topics() {
        R"(number: how a number may be written
   0.12            SI units and radians
   "120 mm"        a quantity: begins with a digit, sign or dot; its kind must be the field's
-                  m mm cm km in, kg g t, s ms min, rad deg rev, rpm, N kN, Pa, J, W;
+                  m mm cm km in ft, kg g t lb, s ms min, Hz, rad deg rev, rpm, N kN lbf, Pa psi, J, W;
                   products by a space, /, ^: "6 N m/rad", "-9.81 m/s^2"
   "=crank/2+0.1"  an expression: + - * / ^ ( ) pi sin cos tan asin acos atan atan2 sqrt exp log abs min max,
                   parameters, and k inside a replicate block; SI units and radians
@@ -111,6 +111,7 @@ Example
        R"(spline: a cubic spline through a table, as a function of time
   t       times, increasing, s
   value   the values there
+  points  in place of both: pairs [t, value], or two columns of a file (catena explain file)
   end     "natural" (default), "clamped" (zero end slopes) or "periodic"
   beyond  outside of the table, unless periodic: "error" (default), "hold" the value at the end, or go on along the
           "line" of the slope there
@@ -119,13 +120,23 @@ Example
   {"spline": {"t": [0, 0.5, 1], "value": [0, 0.2, 0], "end": "clamped"}}
 
 spline: a curve through points of a body frame, the chord length as parameter
-  points   [[x', y'], ...], m
+  points   [[x', y'], ...], m, or two columns of a file (catena explain file)
   end      "natural" (default) or "periodic"
   beyond   the ends, unless periodic: "error" (default); "line": the curve goes on straight; "hold": its end stays the
            point of contact, for a follower along the tangent there (cam_cam cannot)
 
 Example
   {"spline": {"points": [[0.1, 0], [0, 0.1], [-0.1, 0], [0, -0.1]], "end": "periodic"}}
+)"},
+      {{"file"},
+       R"(file: columns of a CSV file, in place of a list of numbers or of pairs
+  file     its path, relative to the scene's folder; numbers separated by commas, semicolons, tabs or blanks; empty
+           lines, those that begin with #, and a first line of names are left out
+  columns  numbers from 1, or names in the file's first line (default: the first ones)
+  unit     of each column (default: SI and radians)
+
+Example
+  {"spline": {"points": {"file": "lift.csv", "columns": ["angle", "lift"], "unit": ["deg", "mm"]}, "end": "natural"}}
 )"},
       {{"sum", "product"},
        R"(sum, product: functions of time made of others

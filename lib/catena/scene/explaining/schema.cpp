@@ -6,6 +6,7 @@
 #include "catena/scene/describing/body_keys.hpp"
 #include "catena/scene/describing/element_description.hpp"
 #include "catena/scene/explaining/schema_fixed.hpp"
+#include "catena/scene/numbers/output_units.hpp"
 #include "catena/scene/numbers/unit.hpp"
 #include "catena/scene/running/scene_runner.hpp"
 
@@ -132,6 +133,9 @@ json key_schema(const AnalysisKey& key) {
       return described(map_of(reference("number")), key.doc);
     case KeyKind::events:
       return described(list_of(event_schema()), key.doc);
+    case KeyKind::impulse:
+      return described(object_of({{"i", reference("attachment")}, {"value", reference("pair")}}, {"i", "value"}),
+                       key.doc);
     case KeyKind::measures:
       return described(map_of(reference("measure")), key.doc);
     case KeyKind::analysis:
@@ -279,6 +283,9 @@ std::string schema_json() {
       map_of({{"anyOf", json::array({expression,
                                      object_of({{"value", expression}, {"unit", {{"type", "string"}}}}, {"value"})})}}),
       "name -> expression over columns, parameters and t");
+  json units = json::object();
+  for (const std::string_view kind : OutputUnits::kinds) units[std::string(kind)] = {{"type", "string"}};
+  properties["units"] = described(object_of(std::move(units), {}), "units of tables and CSV files, in place of SI");
   json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
               {"title", "catena scene, version 1"},
               {"description", "Planar multibody systems: SI units, radians."}};

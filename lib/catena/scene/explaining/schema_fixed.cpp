@@ -12,9 +12,9 @@ std::string_view fixed_definitions() {
 "numbers": {"type": "array", "items": {"$ref": "#/$defs/number"}},
 "beyond": {"enum": ["error", "hold", "line"], "description": "continuation beyond the ends (default: leaving the table is an error)"},
 "table": {"anyOf": [
-  {"type": "array", "items": {"$ref": "#/$defs/pair"}},
+  {"$ref": "#/$defs/pairsOrFile"},
   {"type": "object", "additionalProperties": false, "required": ["points"], "properties": {
-    "points": {"type": "array", "items": {"$ref": "#/$defs/pair"}}, "beyond": {"$ref": "#/$defs/beyond"}}}
+    "points": {"$ref": "#/$defs/pairsOrFile"}, "beyond": {"$ref": "#/$defs/beyond"}}}
 ]},
 "measure": {"anyOf": [
   {"type": "object", "additionalProperties": false, "minProperties": 1, "maxProperties": 1, "properties": {
@@ -28,6 +28,14 @@ std::string_view fixed_definitions() {
     "to": {"type": "array", "items": {"$ref": "#/$defs/pair"}, "minItems": 1}, "timed": {"type": "boolean"}}}
 ], "description": "an extreme, value, mean or integral of a column or expression, a distance from a path, a field"},
 "outputs": {"type": "array", "items": {"type": "string"}},
+"file": {"type": "object", "additionalProperties": false, "required": ["file"], "properties": {
+  "file": {"type": "string", "description": "a CSV file; its path is relative to the scene's folder"},
+  "columns": {"type": "array", "items": {"type": ["integer", "string"]},
+    "description": "numbers from 1, or names in the file's first line; by default the first ones"},
+  "unit": {"type": "array", "items": {"type": "string"}, "description": "of each column; by default SI and radians"}}},
+"numbersOrFile": {"anyOf": [{"$ref": "#/$defs/numbers"}, {"$ref": "#/$defs/file"}]},
+"pairsOrFile": {"anyOf": [
+  {"type": "array", "items": {"$ref": "#/$defs/pair"}}, {"$ref": "#/$defs/file"}]},
 "parameter": {"anyOf": [
   {"$ref": "#/$defs/number"},
   {"type": "object", "additionalProperties": false, "required": ["value"], "properties": {
@@ -54,8 +62,9 @@ std::string_view fixed_definitions() {
       "type": {"enum": ["cycloidal", "poly345", "poly4567", "modified_trapezoid", "modified_sine"]},
       "t0": {"$ref": "#/$defs/number"}, "t1": {"$ref": "#/$defs/number"},
       "from": {"$ref": "#/$defs/number"}, "to": {"$ref": "#/$defs/number"}}},
-    "spline": {"type": "object", "additionalProperties": false, "required": ["t", "value"], "properties": {
-      "t": {"$ref": "#/$defs/numbers"}, "value": {"$ref": "#/$defs/numbers"},
+    "spline": {"type": "object", "additionalProperties": false, "properties": {
+      "t": {"$ref": "#/$defs/numbersOrFile"}, "value": {"$ref": "#/$defs/numbersOrFile"},
+      "points": {"$ref": "#/$defs/pairsOrFile"},
       "end": {"enum": ["natural", "clamped", "periodic"]}, "beyond": {"$ref": "#/$defs/beyond"}}},
     "sum": {"type": "array", "minItems": 1, "items": {"$ref": "#/$defs/function"}},
     "product": {"type": "array", "minItems": 1, "items": {"$ref": "#/$defs/function"}}}}
@@ -64,10 +73,10 @@ std::string_view fixed_definitions() {
   "circle": {"type": "object", "additionalProperties": false, "required": ["centre", "radius"], "properties": {
     "centre": {"$ref": "#/$defs/pair"}, "radius": {"$ref": "#/$defs/number"}}},
   "spline": {"type": "object", "additionalProperties": false, "required": ["points"], "properties": {
-    "points": {"type": "array", "items": {"$ref": "#/$defs/pair"}}, "end": {"enum": ["natural", "periodic"]},
+    "points": {"$ref": "#/$defs/pairsOrFile"}, "end": {"enum": ["natural", "periodic"]},
     "beyond": {"$ref": "#/$defs/beyond"}}},
   "polar": {"type": "object", "additionalProperties": false, "required": ["angle", "radius"], "properties": {
-    "angle": {"$ref": "#/$defs/numbers"}, "radius": {"$ref": "#/$defs/numbers"}}},
+    "angle": {"$ref": "#/$defs/numbersOrFile"}, "radius": {"$ref": "#/$defs/numbersOrFile"}}},
   "line": {"type": "object", "additionalProperties": false, "required": ["point", "axis"], "properties": {
     "point": {"$ref": "#/$defs/pair"}, "axis": {"$ref": "#/$defs/pair"}}}}}
 })json";

@@ -27,19 +27,24 @@ constexpr Unit units[] = {
     {"cm", 1, 100, length},
     {"km", 1000, 1, length},
     {"in", 254, 10000, length},
+    {"ft", 3048, 10000, length},
     {"kg", 1, 1, mass},
     {"g", 1, 1000, mass},
     {"t", 1000, 1, mass},
+    {"lb", 45359237, 1e8, mass},
     {"s", 1, 1, time},
     {"ms", 1, 1000, time},
     {"min", 60, 1, time},
+    {"Hz", 1, 1, {0, 0, -1, 0}},
     {"rad", 1, 1, angle},
     {"deg", std::numbers::pi, 180, angle},
     {"rev", 2 * std::numbers::pi, 1, angle},
     {"rpm", 2 * std::numbers::pi, 60, angle / time},
     {"N", 1, 1, force},
     {"kN", 1000, 1, force},
+    {"lbf", 44482216152605, 1e13, force},  // lb x 9.80665 m/s^2
     {"Pa", 1, 1, force / (length * length)},
+    {"psi", 44482216152605, 6451600000, force / (length * length)},  // lbf / in^2
     {"J", 1, 1, force* length},
     {"W", 1, 1, force* length / time},
 };
@@ -55,7 +60,8 @@ std::string unknown_unit(std::string_view name) {
   NearMiss near(name);
   for (const Unit& unit : units) near.consider(unit.name);
   std::string hint = near.hint();
-  if (hint.empty()) hint = "; known are m mm cm km in, kg g t, s ms min, rad deg rev, rpm, N kN, Pa, J, W";
+  if (hint.empty())
+    hint = "; known are m mm cm km in ft, kg g t lb, s ms min, Hz, rad deg rev, rpm, N kN lbf, Pa psi, J, W";
   return "unknown unit " + in_quotes(name) + hint;
 }
 

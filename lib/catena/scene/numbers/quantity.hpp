@@ -1,9 +1,9 @@
 // Numbers with units: "30 deg", "120 mm", "6 N m/rad", "-9.81 m/s^2".
 //
 // A number, then units multiplied by blanks or * and divided by /; ^ raises the unit before it to an integer; / divides
-// by the one unit that follows it (N/m s is (N/m) s). Units: m mm cm km in, kg g t, s ms min, rad deg rev, rpm, N kN,
-// Pa, J, W. The result is in SI and radians. Conversion factors are ratios of exactly stored numbers, so "120 mm" is
-// the same double as 0.12 wherever the decimal is a short one.
+// by the one unit that follows it (N/m s is (N/m) s). Units: m mm cm km in ft, kg g t lb, s ms min, Hz (1/s), rad deg
+// rev, rpm, N kN lbf, Pa psi, J, W. The result is in SI and radians. Conversion factors are ratios of exactly stored
+// numbers, so "120 mm" is the same double as 0.12 wherever the decimal is a short one.
 #pragma once
 
 #include <string_view>

@@ -135,6 +135,7 @@ void AnalysisReader::read_key(const AnalysisKey& key, const JsonValue& value, An
       break;
     }
     case KeyKind::set:
+    case KeyKind::impulse:  // of events
       break;
     case KeyKind::events:
       read_events(value, task);

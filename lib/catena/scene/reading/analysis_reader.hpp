@@ -49,6 +49,7 @@ class AnalysisReader {
                   SweepRange& range);
   void check_sweep(const JsonValue& object, AnalysisTask& task);
   void read_event(const JsonValue& object, AnalysisTask& task);
+  EventRequest::Impulse read_impulse(const JsonValue& object);
   void check_times(const std::vector<JsonValue>& values, const AnalysisTask& task);
   void error(const JsonValue& value, std::string message) { report(value, std::move(message), diagnostics_); }
 

@@ -22,6 +22,13 @@ struct EventRequest {
   int action = 0;     ///< record, stop, release, engage
   std::string element;
   JsonValue place, element_place;  ///< of the column; of the element
+  /// An impulse, if the event has one: on a named point of a body, or on one in its own coordinates.
+  struct Impulse {
+    std::string body, point;
+    std::array<double, 2> local{}, value{};
+    JsonValue place;
+  };
+  std::optional<Impulse> impulse;
 };
 
 /// A name that an analysis uses, and where it stands.

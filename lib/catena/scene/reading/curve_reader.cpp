@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "catena/scene/reading/data_file.hpp"
 #include "catena/scene/reading/scene_reading.hpp"
 
 namespace catena {
@@ -10,29 +11,47 @@ namespace {
 
 constexpr std::array<std::string_view, 4> curve_keys{"circle", "spline", "polar", "line"};
 
-/// One number a line of a list of pairs.
-void append_pairs(const JsonValue& list, const ExpectedDimension& first, const ExpectedDimension& second,
-                  const FieldName& field, NumberReader& reader, std::vector<NumberValue>& out,
-                  Diagnostics& diagnostics) {
-  if (!list.is(JsonKind::array)) {
-    report(list, fmt::format("{} must be a list of pairs; this is {}", field.text(), describe(list.kind())),
-           diagnostics);
-    return;
+}  // namespace
+
+std::vector<NumberValue> SceneReading::number_list(const JsonValue& value, const ExpectedDimension& dimension,
+                                                   const FieldName& field) {
+  if (!is_data_file(value)) return numbers.read_list(value, dimension, field);
+  std::vector<NumberValue> result;
+  const ExpectedDimension dimensions[] = {dimension};
+  for (const std::vector<double>& column : read_data_file(value, dimensions, field, scene, diagnostics)) {
+    for (const double number : column) result.push_back(NumberValue::constant(number, value.offset()));
   }
-  for (const JsonValue& pair : list.elements()) {
+  return result;
+}
+
+std::vector<NumberValue> SceneReading::pair_list(const JsonValue& value, const ExpectedDimension& first,
+                                                 const ExpectedDimension& second, const FieldName& field) {
+  std::vector<NumberValue> result;
+  if (is_data_file(value)) {
+    const ExpectedDimension dimensions[] = {first, second};
+    const std::vector<std::vector<double>> columns = read_data_file(value, dimensions, field, scene, diagnostics);
+    for (std::size_t row = 0; !columns.empty() && row < columns[0].size(); ++row) {
+      for (std::size_t c = 0; c < 2; ++c) result.push_back(NumberValue::constant(columns[c][row], value.offset()));
+    }
+    return result;
+  }
+  if (!value.is(JsonKind::array)) {
+    error(value, fmt::format("{} must be a list of pairs; this is {}", field.text(), describe(value.kind())));
+    return result;
+  }
+  for (const JsonValue& pair : value.elements()) {
     if (!pair.is(JsonKind::array) || pair.size() != 2) {
-      report(pair, fmt::format("{} must be a list of pairs [a, b]", field.text()), diagnostics);
-      out.insert(out.end(), 2, NumberValue());  // what was reported counts as known
+      error(pair, fmt::format("{} must be a list of pairs [a, b]", field.text()));
+      result.insert(result.end(), 2, NumberValue());  // what was reported counts as known
       continue;
     }
     auto element = pair.elements().begin();
-    out.push_back(reader.read(*element, first, field));
+    result.push_back(numbers.read(*element, first, field));
     ++element;
-    out.push_back(reader.read(*element, second, field));
+    result.push_back(numbers.read(*element, second, field));
   }
+  return result;
 }
-
-}  // namespace
 
 int SceneReading::curve(const JsonValue& value, const FieldName& field) {
   CurveTemplate result;
@@ -73,7 +92,7 @@ int SceneReading::curve(const JsonValue& value, const FieldName& field) {
       result.numbers.push_back(numbers.read(v[1], metre, {names[1], owner}));
       break;
     case CurveTemplate::Kind::spline:
-      append_pairs(v[0], metre, metre, {names[0], owner}, numbers, result.numbers, diagnostics);
+      result.numbers = pair_list(v[0], metre, metre, {names[0], owner});
       if (v[1]) {
         static constexpr std::array<std::string_view, 2> words{"natural", "periodic"};
         if (read_word(v[1], words, {names[1], owner}, diagnostics) == 1) result.end = SplineEnd::periodic;
@@ -81,8 +100,8 @@ int SceneReading::curve(const JsonValue& value, const FieldName& field) {
       result.beyond = beyond(v[2], result.end, owner);
       break;
     case CurveTemplate::Kind::polar: {
-      const auto angles = numbers.read_list(v[0], dimension_of(UnitKind::angle), {names[0], owner});
-      const auto radii = numbers.read_list(v[1], metre, {names[1], owner});
+      const auto angles = number_list(v[0], dimension_of(UnitKind::angle), {names[0], owner});
+      const auto radii = number_list(v[1], metre, {names[1], owner});
       if (angles.size() != radii.size()) {
         error(v[1], fmt::format("{}: {} angles, but {} radii", owner, angles.size(), radii.size()));
         break;
@@ -103,7 +122,7 @@ int SceneReading::table(const JsonValue& value, UnitKind first, UnitKind second,
   TableTemplate result;
   result.offset = static_cast<std::uint32_t>(value.offset());
   JsonValue pairs = value;
-  if (value.is(JsonKind::object)) {
+  if (value.is(JsonKind::object) && !is_data_file(value)) {
     static constexpr std::array<std::string_view, 2> keys{"points", "beyond"};
     const std::string owner = field.text();
     std::array<JsonValue, 2> v;
@@ -112,8 +131,7 @@ int SceneReading::table(const JsonValue& value, UnitKind first, UnitKind second,
     result.beyond = beyond(v[1], SplineEnd::natural, owner);
     pairs = v[0];
   }
-  if (pairs)
-    append_pairs(pairs, dimension_of(first), dimension_of(second), field, numbers, result.numbers, diagnostics);
+  if (pairs) result.numbers = pair_list(pairs, dimension_of(first), dimension_of(second), field);
   scene.tables.push_back(std::move(result));
   return static_cast<int>(scene.tables.size()) - 1;
 }

@@ -114,19 +114,23 @@ FunctionTemplate SceneReading::function_object(const JsonValue& value, const Exp
       break;
     }
     case Kind::spline: {
-      static constexpr std::array<std::string_view, 4> keys{"t", "value", "end", "beyond"};
+      static constexpr std::array<std::string_view, 5> keys{"t", "value", "end", "beyond", "points"};
       std::array<JsonValue, keys.size()> v;
       if (!read_members(data, keys, owner, v, diagnostics)) break;
-      for (std::size_t k = 0; k < 2; ++k) {
-        if (!v[k]) {
-          error(data, fmt::format("{} needs {}", owner, in_quotes(keys[k])));
-          continue;
+      std::array<std::vector<NumberValue>, 2> lists;
+      if (v[4]) {
+        if (v[0] || v[1]) error(v[4], fmt::format("{} has \"points\", or \"t\" and \"value\", not both", owner));
+        const std::vector<NumberValue> pairs = pair_list(v[4], second, unit, {keys[4], owner});
+        for (std::size_t k = 0; k < pairs.size(); ++k) lists[k % 2].push_back(pairs[k]);
+      } else {
+        for (std::size_t k = 0; k < 2; ++k) {
+          if (!v[k]) error(data, fmt::format("{} needs {}", owner, in_quotes(keys[k])));
+          if (v[k]) lists[k] = number_list(v[k], k == 0 ? ExpectedDimension(second) : unit, {keys[k], owner});
         }
-        const auto list = numbers.read_list(v[k], k == 0 ? ExpectedDimension(second) : unit, {keys[k], owner});
-        result.numbers.insert(result.numbers.end(), list.begin(), list.end());
       }
-      if (v[0] && v[1] && v[0].is(JsonKind::array) && v[1].is(JsonKind::array) && v[0].size() != v[1].size()) {
-        error(v[1], fmt::format("{}: {} times, but {} values", owner, v[0].size(), v[1].size()));
+      for (const auto& list : lists) result.numbers.insert(result.numbers.end(), list.begin(), list.end());
+      if (v[0] && v[1] && !lists[0].empty() && !lists[1].empty() && lists[0].size() != lists[1].size()) {
+        error(v[1], fmt::format("{}: {} times, but {} values", owner, lists[0].size(), lists[1].size()));
         result.numbers.clear();
       }
       if (v[2]) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "catena/scene/numbers/name_rules.hpp"
 #include "catena/scene/reading/own_column_reader.hpp"
 #include "catena/scene/reading/scene_reading.hpp"
@@ -86,6 +88,32 @@ void SceneReading::block(const JsonValue& object, BlockTemplate& parent, int dep
   parent.blocks.push_back(std::move(block));
 }
 
+namespace {
+
+/// Units in which results are shown.
+void read_units(const JsonValue& object, SceneTemplate& scene, Diagnostics& diagnostics) {
+  if (!object.is(JsonKind::object)) {
+    report(object,
+           fmt::format("\"units\" must be an object of kinds and units, as {{\"angle\": \"deg\"}}; this is {}",
+                       describe(object.kind())),
+           diagnostics);
+    return;
+  }
+  for (const JsonMember member : object.members()) {
+    const std::string_view unit = read_string(member.value, {member.name(), "\"units\""}, diagnostics);
+    if (!member.value.is(JsonKind::string)) continue;
+    if (const auto problem = OutputUnits::problem(member.name(), unit)) {
+      const bool unknown =
+          std::find(OutputUnits::kinds.begin(), OutputUnits::kinds.end(), member.name()) == OutputUnits::kinds.end();
+      report(unknown ? member.key : member.value, *problem, diagnostics);
+    } else {
+      scene.units.emplace_back(member.name(), unit);
+    }
+  }
+}
+
+}  // namespace
+
 std::unique_ptr<SceneTemplate> read_scene(SourceText source, Diagnostics& diagnostics) {
   auto scene = std::make_unique<SceneTemplate>();
   scene->source = std::make_unique<SourceText>(std::move(source));
@@ -105,6 +133,7 @@ std::unique_ptr<SceneTemplate> read_scene(SourceText source, Diagnostics& diagno
   scene->outputs = v[11];
 
   if (v[13]) read_own_columns(v[13], *scene, diagnostics);
+  if (v[14]) read_units(v[14], *scene, diagnostics);
   SceneReading reading(*scene, diagnostics);
   scene->gravity[0] = scene->gravity[1] = NumberValue::constant(0);
   if (v[3]) {

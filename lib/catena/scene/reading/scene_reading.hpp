@@ -63,6 +63,12 @@ class SceneReading {
   int function(const JsonValue& value, const ExpectedDimension& unit, const FieldName& field, NumberValue& plain);
   /// A curve in a body frame: its number.
   int curve(const JsonValue& value, const FieldName& field);
+  /// A list of numbers, or a column of a file: their values.
+  std::vector<NumberValue> number_list(const JsonValue& value, const ExpectedDimension& dimension,
+                                       const FieldName& field);
+  /// A list of pairs, or two columns of a file: the numbers of one pair after those of the other.
+  std::vector<NumberValue> pair_list(const JsonValue& value, const ExpectedDimension& first,
+                                     const ExpectedDimension& second, const FieldName& field);
   /// A list of pairs, or an object with it and what is beyond its ends: its number.
   int table(const JsonValue& value, UnitKind first, UnitKind second, const FieldName& field);
 

@@ -17,6 +17,7 @@
 #include "catena/scene/json/json_document.hpp"
 #include "catena/scene/numbers/name_template.hpp"
 #include "catena/scene/numbers/number_value.hpp"
+#include "catena/scene/numbers/output_units.hpp"
 #include "catena/scene/numbers/parameter_table.hpp"
 
 namespace catena {
@@ -172,6 +173,9 @@ struct SceneTemplate {
   std::vector<CurveTemplate> curves;
   std::vector<TableTemplate> tables;
   std::vector<OwnColumnTemplate> own_columns;
+  OutputUnits::Wishes units;  ///< in which results are shown
+
+  std::vector<std::unique_ptr<SourceText>> data_files;  ///< that tables were read from
 
   JsonValue analyses, outputs;  ///< read by analysis_reader.hpp
   bool may_lack_parts = false;  ///< a key of the scene is none: what is in it is missing, and names in it are unknown

@@ -151,9 +151,58 @@ void append_counters(std::string& out, const Counters& c) {
   out += '}';
 }
 
+/// Names and units of columns; which of them are a status.
+std::vector<bool> append_columns(std::string& out, std::span<const ColumnInfo> columns) {
+  std::vector<bool> is_status;
+  append_key(out, "columns");
+  append_list(out, columns, [&](const ColumnInfo& column) { append_json(out, column.name); });
+  for (const ColumnInfo& column : columns) is_status.push_back(column.is_status);
+  append_key(out, "units");
+  append_list(out, columns, [&](const ColumnInfo& column) { catena::append_json(out, column.unit_text()); });
+  return is_status;
+}
+
+void append_row(std::string& out, std::span<const double> values, const std::vector<bool>& is_status) {
+  std::size_t k = 0;
+  append_list(out, values, [&](double value) {
+    if (is_status[k++])
+      catena::append_json(out, status_word(value));
+    else
+      catena::append_json(out, value);
+  });
+}
+
+/// The rows of one analysis alone: {"catena": 1, "columns", "units", "rows"}.
+class JsonRowWriter final : public RowWriter {
+ public:
+  explicit JsonRowWriter(TextOutput& output) : output_(output) {}
+
+  void begin(std::span<const ColumnInfo> columns) override {
+    text_ = "{\"catena\": 1";
+    is_status_ = append_columns(text_, columns);
+    append_key(text_, "rows");
+    text_ += '[';
+    output_.write(text_);
+  }
+  bool row(std::span<const double> values) override {
+    text_ = any_ ? ",\n  " : "\n  ";
+    any_ = true;
+    append_row(text_, values, is_status_);
+    output_.write(text_);
+    return true;
+  }
+  void finish() override { output_.write(any_ ? "\n]}\n" : "]}\n"); }
+
+ private:
+  TextOutput& output_;
+  std::string text_;
+  std::vector<bool> is_status_;
+  bool any_ = false;
+};
+
 class JsonSink final : public ResultSink, private RowSink {
  public:
-  explicit JsonSink(TextOutput& output) : output_(output) {}
+  JsonSink(TextOutput& output, JsonRows rows) : output_(output), with_rows_(rows == JsonRows::written) {}
 
   void begin_run(const RunHeader& header) override {
     text_ = "{\"catena\": 1";
@@ -182,7 +231,7 @@ class JsonSink final : public ResultSink, private RowSink {
   void end_analysis(const AnalysisResult& result) override {
     if (has_table_ && rows_ < 0) begin({});  // refused before its columns were known: a table without any
     text_.clear();
-    if (rows_ >= 0) text_ += rows_ > 0 ? "\n  ]" : "]";
+    if (rows_ >= 0 && with_rows_) text_ += rows_ > 0 ? "\n  ]" : "]";
     append_report(result);
     if (!result.set.empty()) {
       append_key(text_, "set");
@@ -206,26 +255,18 @@ class JsonSink final : public ResultSink, private RowSink {
  private:
   void begin(std::span<const ColumnInfo> columns) override {
     text_.clear();
-    append_key(text_, "columns");
-    append_list(text_, columns, [&](const ColumnInfo& column) { append_json(text_, column.name); });
-    is_status_.clear();
-    for (const ColumnInfo& column : columns) is_status_.push_back(column.is_status);
-    append_key(text_, "units");
-    append_list(text_, columns, [&](const ColumnInfo& column) { catena::append_json(text_, column.unit_text()); });
-    append_key(text_, "rows");
-    text_ += '[';
+    is_status_ = append_columns(text_, columns);
+    if (with_rows_) {
+      append_key(text_, "rows");
+      text_ += '[';
+    }
     rows_ = 0;
     send();
   }
   bool row(std::span<const double> values) override {
+    if (!with_rows_) return true;
     text_ = rows_++ > 0 ? ",\n    " : "\n    ";
-    std::size_t k = 0;
-    append_list(text_, values, [&](double value) {
-      if (is_status_[k++])
-        catena::append_json(text_, status_word(value));
-      else
-        catena::append_json(text_, value);
-    });
+    append_row(text_, values, is_status_);
     send();
     return true;
   }
@@ -262,6 +303,7 @@ class JsonSink final : public ResultSink, private RowSink {
   void send() { output_.write(text_); }
 
   TextOutput& output_;
+  bool with_rows_;
   std::string text_;             // what goes out next; kept for its memory
   int count_ = 0;                // analyses so far
   std::vector<bool> is_status_;  // by column
@@ -273,7 +315,11 @@ class JsonSink final : public ResultSink, private RowSink {
 
 void append_field(std::string& out, const FieldValue& value) { std::visit(FieldWriter{out}, value); }
 
-std::unique_ptr<ResultSink> json_result_sink(TextOutput& output) { return std::make_unique<JsonSink>(output); }
+std::unique_ptr<ResultSink> json_result_sink(TextOutput& output, JsonRows rows) {
+  return std::make_unique<JsonSink>(output, rows);
+}
+
+std::unique_ptr<RowWriter> json_row_writer(TextOutput& output) { return std::make_unique<JsonRowWriter>(output); }
 
 std::string invalid_json(const SceneOutcome& outcome) {
   std::string out = "{\"catena\": 1, \"status\": \"invalid\", \"errors\": ";

@@ -19,14 +19,33 @@ constexpr ColumnSources sources{
 // Of an analysis: time between checkpoints where none is given.
 constexpr double part_between_checkpoints = 0.05;
 
+Strike strike_of(const EventRequest::Impulse& impulse, const Model& model) {
+  const int body = model.find_body(impulse.body);
+  const Vec2<double>* const named = impulse.point.empty() ? nullptr : model.find_point(body, impulse.point);
+  const Vec2<double> origin = model.bodies[static_cast<std::size_t>(body)].origin;
+  return {body,
+          named ? *named : origin + Vec2<double>{impulse.local[0], impulse.local[1]},
+          {impulse.value[0], impulse.value[1]}};
+}
+
+/// The word of an event's action in the results.
+std::string_view kind_of(const EventRequest& event) {
+  constexpr std::string_view words[] = {"record", "stop", "release", "engage"};
+  return event.impulse ? "impulse" : words[event.action];
+}
+
 std::vector<Event> events_of(const AnalysisTask& task, const Model& model) {
   // In the order of the keys' words.
   constexpr EventDirection directions[] = {EventDirection::any, EventDirection::up, EventDirection::down};
   constexpr EventAction actions[] = {EventAction::record, EventAction::stop, EventAction::release, EventAction::engage};
   std::vector<Event> events;
   for (const EventRequest& request : task.events) {
-    events.push_back({request.name, request.column, request.value, directions[request.direction],
-                      actions[request.action], request.element.empty() ? -1 : model.find_element(request.element)});
+    Event& event = events.emplace_back(request.name, request.column, request.value, directions[request.direction],
+                                       actions[request.action],
+                                       request.element.empty() ? -1 : model.find_element(request.element));
+    if (!request.impulse) continue;
+    event.action = EventAction::strike;
+    event.strike = strike_of(*request.impulse, model);
   }
   return events;
 }
@@ -105,11 +124,11 @@ std::string DynamicsTask::conflict() const {
   const std::vector<EventRequest>& events = context_.task.events;
   const bool acts = std::any_of(events.begin(), events.end(), [](const EventRequest& event) {
     const auto action = static_cast<EventAction>(event.action);
-    return action == EventAction::release || action == EventAction::engage;
+    return event.impulse || action == EventAction::release || action == EventAction::engage;
   });
   if (estimates_ && acts) {
-    return "the error cannot be estimated where events release or engage a constraint: they would happen at other "
-           "instants in the second run";
+    return "the error cannot be estimated where events release or engage a constraint or strike a body: they would "
+           "happen at other instants in the second run";
   }
   if (touches_ && estimates_) {
     return "the error cannot be estimated where contacts open and close: they would do so at other instants in the "
@@ -118,12 +137,12 @@ std::string DynamicsTask::conflict() const {
   if (touches_ && context_.checkpoint)
     return "checkpoints do not keep the state of contacts: run without --checkpoint and --restart";
   if (context_.design && acts) {
-    return "derivatives are not carried through events that release or engage a constraint";
+    return "derivatives are not carried through events that release or engage a constraint or strike a body";
   }
   if (context_.design && context_.checkpoint) return "derivatives and checkpoints do not go together";
   if (context_.design && touches_) {
-    return "derivatives are not carried through impacts, contacts and friction: leave them out, or take \"verify\" "
-           "apart";
+    return "derivatives are not carried through impacts, contacts and friction: leave these out, or take differences "
+           "from a \"sweep\" over the parameter";
   }
   if (context_.checkpoint && estimates_) return "an estimate of the error and checkpoints do not go together";
   return {};
@@ -184,8 +203,13 @@ void DynamicsTask::run_with_events_or_pauses() {
   result_.fields.push_back({"method", std::string(to_string(analysis.method()))});
   if (context_.task.events.empty() && !analysis.has_contacts()) return;
   std::vector<std::pair<double, FieldRecord>> found;
-  for (const EventRecord& record : analysis.records())
-    found.push_back({record.t, {{"name", record.name}, {"t", record.t}, {"row", record.row}}});
+  for (const EventRecord& record : analysis.records()) {
+    const auto request = std::find_if(context_.task.events.begin(), context_.task.events.end(),
+                                      [&](const EventRequest& event) { return event.name == record.name; });
+    found.push_back(
+        {record.t,
+         {{"name", record.name}, {"t", record.t}, {"row", record.row}, {"kind", std::string(kind_of(*request))}}});
+  }
   for (const ContactEvent& event : analysis.contact_events()) {
     found.push_back(
         {event.t, {{"name", model_->element_name(event.element)}, {"kind", std::string(event.kind)}, {"t", event.t}}});

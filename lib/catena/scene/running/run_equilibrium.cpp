@@ -37,26 +37,13 @@ void run_holding(AnalysisContext& context, AnalysisResult& result) {
     context.state.q = state_of(evaluator, start.t, q).q;
     result.fields = {{"held", holding.held()}};
     if (holding.utilisation) result.fields.push_back({"utilisation", *holding.utilisation});
-    if (!holding.utilisation) report.warnings.push_back("no friction, however large, can hold this position");
+    if (!holding.utilisation) report.warnings.emplace_back("no friction, however large, can hold this position");
   }
   report.counters = evaluator.counters;
   report.seconds = timer.seconds();
   take_report(result, std::move(report), &columns, rows.rows());
   rows.finish(result);
   add_field_measures(context, result);
-}
-
-/// What equilibrium leaves out, in words; nothing if there is no friction.
-std::string friction_left_out(const Model& model) {
-  const ContactModel contacts = contact_points(std::shared_ptr<const Model>(&model, [](const Model*) {}));
-  for (const ContactPoint& point : contacts.points) {
-    if (!point.has_friction()) continue;
-    return fmt::format(
-        "dry friction (\"{}\") is left out: the position is that without any; \"friction\": \"hold\" asks whether it "
-        "holds the given one",
-        model.element_name(point.element));
-  }
-  return {};
 }
 
 }  // namespace
@@ -118,8 +105,12 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   needs.multipliers = needs.multipliers || derivatives;
   EquilibriumReport report = analysis.run(TimeGrid::instant(start.t), needs, rows);
   context.state = analysis.state();
-  if (std::string left_out = friction_left_out(*context.model); !left_out.empty())
-    report.warnings.push_back(std::move(left_out));
+  if (const int friction = first_friction(*context.model); friction >= 0) {
+    report.warnings.push_back(fmt::format(
+        "dry friction (\"{}\") is left out: the position is that without any; \"friction\": \"hold\" asks whether it "
+        "holds the given one",
+        context.model->element_name(friction)));
+  }
   if (report.certified) {
     result.fields = {{"energy", report.energy},
                      {"stable", report.stable},

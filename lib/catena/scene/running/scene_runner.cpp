@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "catena/columns/own_columns.hpp"
+#include "catena/elements/forces/joint_damper.hpp"
 #include "catena/scene/building/build_model.hpp"
 #include "catena/scene/json/near_miss.hpp"
 #include "catena/scene/models/command_text.hpp"
@@ -36,6 +37,12 @@ std::vector<std::string> element_names(const Model& model) {
   return names;
 }
 
+/// The damper of a joint stands behind it in the list.
+bool has_damping(const Model& model, int element) {
+  return element + 1 < static_cast<int>(model.elements.size()) &&
+         model.element_type(element + 1) == JointDamper<double>::type;
+}
+
 void print_iteration(std::string_view method, int iteration, double residual, double change) {
   const std::string line = fmt::format("{} {}: residual {:.3g}, change {:.3g}\n", method, iteration, residual, change);
   std::fputs(line.c_str(), stderr);
@@ -56,6 +63,7 @@ class SceneRun {
   void check_own_columns();
   void check_task(const AnalysisTask& task);
   void check_event(const EventRequest& event, const Model& model);
+  void check_impulse(const EventRequest::Impulse& impulse, const Model& model);
   void check_measure(const PlacedMeasure& measure, const Model& model);
   std::shared_ptr<const Model> build(std::span<const double> parameters);
   void run_all();
@@ -174,6 +182,7 @@ void SceneRun::check_event(const EventRequest& event, const Model& model) {
                        in_quotes(event.column), found.size(), in_quotes(found.front().info.name)),
            diagnostics_);
   }
+  if (event.impulse) check_impulse(*event.impulse, model);
   if (event.element.empty()) return;
   const int element = model.find_element(event.element);
   if (element < 0) {
@@ -185,6 +194,28 @@ void SceneRun::check_event(const EventRequest& event, const Model& model) {
              kind == ElementKind::force || kind == ElementKind::gap) {
     report(event.element_place,
            fmt::format("{} is a force; only constraints and drivers are released or engaged", in_quotes(event.element)),
+           diagnostics_);
+  } else if (has_damping(model, element)) {
+    report(
+        event.element_place,
+        fmt::format("{} has damping \"c\", which would go on without it: a joint that is released or engaged may not "
+                    "have any; give the bodies a bushing instead",
+                    in_quotes(event.element)),
+        diagnostics_);
+  }
+}
+
+void SceneRun::check_impulse(const EventRequest::Impulse& impulse, const Model& model) {
+  const int body = model.find_body(impulse.body);
+  if (body < 0) {
+    NearMiss near(impulse.body);
+    for (const auto& known : model.bodies) near.consider(model.names[known.name]);
+    report(impulse.place,
+           body == ground ? std::string("an impulse acts on a body, not on the ground")
+                          : fmt::format("there is no body {} to strike{}", in_quotes(impulse.body), near.hint()),
+           diagnostics_);
+  } else if (!impulse.point.empty() && !model.find_point(body, impulse.point)) {
+    report(impulse.place, fmt::format("body {} has no point {}", in_quotes(impulse.body), in_quotes(impulse.point)),
            diagnostics_);
   }
 }
@@ -366,7 +397,8 @@ void SceneRun::run_all() {
                    .analyses = static_cast<int>(tasks_.size()) - checkpoints_.first_analysis(),
                    .version = CATENA_VERSION,
                    .parameters = named_parameters(parameters_.evaluate<double>(scene_->expressions, diagnostics_)),
-                   .set = options_.set});
+                   .set = options_.set,
+                   .units = scene_->units});
   const auto first = static_cast<std::size_t>(checkpoints_.first_analysis());
   for (std::size_t k = first; k < tasks_.size(); ++k) {
     const AnalysisTask& task = tasks_[k];
@@ -412,7 +444,7 @@ void SceneRun::run(const std::string& path) {
   outcome_.scene = stem(path);
   std::optional<SourceText> source;
   try {
-    source.emplace(SourceText::read(path));
+    source.emplace(options_.text ? SourceText(path, *options_.text) : SourceText::read(path));
     checkpoints_.prepare(source->text());
   } catch (const FileError& error) {
     return refuse(4, error.what());

@@ -16,6 +16,7 @@
 
 #include "catena/results/analysis_result.hpp"
 #include "catena/results/result_sink.hpp"
+#include "catena/results/row_writer.hpp"
 #include "catena/results/text_output.hpp"
 #include "catena/scene/json/diagnostic.hpp"
 
@@ -32,6 +33,9 @@ struct Progress {
 };
 
 struct RunOptions {
+  /// The scene's text in place of the file's, which then need not exist: its path stands for it in messages, and files
+  /// that the scene names are sought beside it.
+  std::optional<std::string> text;
   /// Run this analysis alone instead of the scene's list: the `type` of an analysis, or empty.
   std::string verb;
   /// Keys of that analysis as text, as on the command line; a list is the same key several times.
@@ -75,7 +79,11 @@ std::string invalid_json(const SceneOutcome& outcome);
 
 /// Writes the result document, row by row, to `output`, which must outlive it. A failure to write shows there and stops
 /// no analysis: other sinks may still want its rows.
-std::unique_ptr<ResultSink> json_result_sink(TextOutput& output);
+enum class JsonRows { written, left_out };
+std::unique_ptr<ResultSink> json_result_sink(TextOutput& output, JsonRows rows = JsonRows::written);
+
+/// Writes the rows of one analysis alone: {"catena": 1, "columns": [...], "units": [...], "rows": [[...], ...]}.
+std::unique_ptr<RowWriter> json_row_writer(TextOutput& output);
 
 /// The JSON Schema of scenes.
 std::string schema_json();

@@ -169,7 +169,9 @@ bool CoordinatePartition::solve(double t, Side side, std::span<double> q, std::s
     if (!std::isfinite(position_residual_)) return false;
     if (k == 0 && (!factorize() || ratio_ < unusable * ratio_of_choice_)) return false;
     if (position_residual_ <= EquationsOfMotion::position_rounding) break;
-    if (k > 0 && position_residual_ > 0.5 * before && (before < good_enough || change_is_rounding(q))) break;
+    if (k > 0 && position_residual_ > 0.5 * before &&
+        ((before < good_enough && position_residual_ < 10 * good_enough) || change_is_rounding(q)))
+      break;
     if (k == most_iterations || (k > 0 && position_residual_ > before)) return false;
     before = position_residual_;
     system_.least_change(residual_, change_, multipliers_, evaluator_.counters);

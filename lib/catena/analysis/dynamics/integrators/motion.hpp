@@ -52,9 +52,14 @@ class Motion {
     if (account_) {
       const std::span<double> powers = k.subspan(2 * coordinates_);
       account_->powers(v, equations_.multipliers(), powers);
-      if (const StateLoads* loads = equations_.state_loads()) EnergyAccount::dissipated(powers) += loads->dissipation();
+      add_losses(powers);
     }
     return true;
+  }
+
+  /// Adds what contacts dissipate to `powers`: at the last evaluation.
+  void add_losses(std::span<double> powers) const {
+    if (const StateLoads* loads = equations_.state_loads()) EnergyAccount::dissipated(powers) += loads->dissipation();
   }
 
   /// Sets [qdd, power] within `moment` of t while constraints depend on each other and the equations do not determine

@@ -1,4 +1,5 @@
-// One CSV file an analysis, in a folder: kinematics.csv, kinematics-2.csv, equilibrium.csv, in the order of the run.
+// One file of rows an analysis, in a folder: kinematics.csv, kinematics-2.csv, equilibrium.csv, in the order of the
+// run.
 //
 // The folder is made if it is missing. A failure to write is remembered and reported at the end; the run goes on.
 #pragma once
@@ -8,14 +9,16 @@
 #include <string>
 #include <vector>
 
-#include "catena/results/csv_writer.hpp"
 #include "catena/results/result_sink.hpp"
+#include "catena/results/row_writer.hpp"
 
 namespace catena {
 
-class CsvDirectory final : public ResultSink, private RowSink {
+class RowFiles final : public ResultSink, private RowSink {
  public:
-  explicit CsvDirectory(std::string path) : path_(std::move(path)) {}
+  /// `extension`: of the files, ".csv".
+  RowFiles(std::string path, std::string extension, MakeRowWriter make)
+      : path_(std::move(path)), extension_(std::move(extension)), make_(std::move(make)) {}
 
   void begin_run(const RunHeader& header) override;
   RowSink& begin_analysis(std::string_view type) override;
@@ -32,11 +35,12 @@ class CsvDirectory final : public ResultSink, private RowSink {
   void begin(std::span<const ColumnInfo> columns) override;
   bool row(std::span<const double> values) override;
 
-  std::string path_, error_;
+  std::string path_, extension_, error_;
+  MakeRowWriter make_;
   std::map<std::string, int, std::less<>> count_;  // analyses so far, by type
   std::string file_name_;                          // of the analysis that runs
   std::optional<TextOutput> output_;
-  std::optional<CsvWriter> writer_;
+  std::unique_ptr<RowWriter> writer_;
   std::vector<std::string> files_;
 };
 

@@ -1,0 +1,33 @@
+// Passes results on in the units that were asked for: columns, measures, least and largest values. Other named results
+// stay in SI.
+#pragma once
+
+#include <vector>
+
+#include "catena/results/result_sink.hpp"
+#include "catena/scene/numbers/output_units.hpp"
+
+namespace catena {
+
+class UnitsSink final : public ResultSink, private RowSink {
+ public:
+  /// `wishes` come before those of the scene.
+  UnitsSink(ResultSink& target, OutputUnits::Wishes wishes) : target_(target), wishes_(std::move(wishes)) {}
+
+  void begin_run(const RunHeader& header) override;
+  RowSink& begin_analysis(std::string_view type) override;
+  void end_analysis(const AnalysisResult& result) override;
+  void end_run() override { target_.end_run(); }
+
+ private:
+  void begin(std::span<const ColumnInfo> columns) override;
+  bool row(std::span<const double> values) override;
+
+  ResultSink& target_;
+  OutputUnits::Wishes wishes_;
+  OutputUnits units_;
+  RowSink* rows_ = nullptr;
+  std::vector<double> factor_, row_;  // by column
+};
+
+}  // namespace catena

@@ -1,0 +1,126 @@
+// Whether friction can hold a position, against closed forms: blocks on slopes, ladders at walls, brakes of levers.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <sstream>
+#include <string>
+
+#include "scene/run_text.hpp"
+
+namespace catena::testing {
+namespace {
+
+std::string text_of(double x) {
+  std::ostringstream out;
+  out.precision(17);
+  out << x;
+  return out.str();
+}
+std::string pair_of(double x, double y) { return "[" + text_of(x) + "," + text_of(y) + "]"; }
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  double operator()(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+
+ private:
+  std::mt19937 engine_;
+};
+
+/// A line through the origin along (c, s) with a point of a body; free on its left.
+std::string contact(const std::string& name, const std::string& point, double c, double s, const std::string& keys) {
+  return R"({"type": "contact", "name": ")" + name + R"(", "i": "ground", "j": ")" + point +
+         R"(", "curve": {"line": {"point": [0,0], "axis": )" + pair_of(c, s) + "}}" + keys + "}";
+}
+std::string scene(const std::string& bodies, const std::string& constraints, const std::string& forces) {
+  return R"({"catena":1, "gravity":[0,-9.81], "bodies": {)" + bodies + R"(}, "constraints": [)" + constraints +
+         R"(], "forces": [)" + forces + R"(], "analyses": [{"type": "equilibrium", "friction": "hold"}]})";
+}
+
+void expect_utilisation(const TextRun& run, double u) {
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+  EXPECT_NEAR(field<double>(run, "utilisation"), u, 1e-9 * (1 + u));
+  EXPECT_EQ(field<bool>(run, "held"), u <= 1);
+}
+
+// The forces of both corners add up to the weight's parts along and across the slope.
+TEST(Holding, BlocksOnSlopes) {
+  int held = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    const double slope = random(-0.7, 0.7), mu = random(0.1, 0.9), mass = random(0.1, 20);
+    const double c = std::cos(slope), s = std::sin(slope);
+    // A stiffness is for motion alone: equilibrium and its friction take the place as rigid.
+    const std::string keys =
+        R"(, "mu": )" + text_of(mu / 2) + R"(, "mu_static": )" + text_of(mu) + (seed % 3 == 0 ? R"(, "k": 1e5)" : "");
+    const TextRun run =
+        run_text(scene(R"("block": {"mass": )" + text_of(mass) + R"(, "inertia": 0.01, "angle": )" + text_of(slope) +
+                           R"(, "position": )" + pair_of(-0.03 * s, 0.03 * c) +
+                           R"(, "points": {"l": [-0.1,-0.03], "r": [0.1,-0.03]}})",
+                       "", contact("l", "block.l", c, s, keys) + "," + contact("r", "block.r", c, s, keys)));
+    expect_utilisation(run, std::abs(s / c) / mu);
+    held += std::abs(s / c) <= mu;
+  }
+  EXPECT_GT(held, 10);
+  EXPECT_LT(held, 35);
+}
+
+// With the angle of friction f at both ends a ladder stands down to the angle pi/2 - 2 f.
+TEST(Holding, LaddersAtWalls) {
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    const double angle = random(0.3, 1.4), mu = random(0.1, 0.8), length = random(0.5, 10), mass = random(1, 50);
+    const double x = length * std::cos(angle) / 2, y = length * std::sin(angle) / 2;
+    const std::string keys = R"(, "mu": )" + text_of(mu);
+    const std::string ladder = R"("ladder": {"mass": )" + text_of(mass) + R"(, "inertia": 1, "angle": )" +
+                               text_of(-angle) + R"(, "position": )" + pair_of(x, y) + R"(, "points": {"top": )" +
+                               pair_of(-length / 2, 0) + R"(, "foot": )" + pair_of(length / 2, 0) + "}}";
+    const TextRun run = run_text(scene(
+        ladder, "", contact("floor", "ladder.foot", 1, 0, keys) + "," + contact("wall", "ladder.top", 0, -1, keys)));
+    expect_utilisation(run, std::tan((std::numbers::pi / 2 - angle) / 2) / mu);
+    // On a smooth floor nothing presses it to the wall.
+    const TextRun slips = run_text(scene(
+        ladder, "", contact("floor", "ladder.foot", 1, 0, "") + "," + contact("wall", "ladder.top", 0, -1, keys)));
+    ASSERT_EQ(slips.outcome.exit_code, 0) << slips.outcome.error_text << slips.analysis().report.message;
+    EXPECT_FALSE(field<bool>(slips, "held"));
+    EXPECT_FALSE(slips.analysis().report.warnings.empty());
+  }
+}
+
+// A lever that is pinned level with the brake's place presses there with P a / b, whatever the friction.
+TEST(Holding, BrakesOfLevers) {
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    const double a = random(0.5, 2), b = random(0.2, 1), force = random(10, 200), radius = random(0.1, 0.5);
+    const double torque = random(-20, 20), mu = random(0.1, 0.6);
+    const TextRun run = run_text(
+        scene(R"("wheel": {"mass": 1, "inertia": 1, "position": )" + pair_of(0, -radius) +
+                  R"(}, "lever": {"mass": 0, "inertia": 0, "position": )" + pair_of(-b, 0) + R"(, "points": {"tip": )" +
+                  pair_of(b, 0) + R"(, "end": )" + pair_of(a, 0) + "}}",
+              R"({"type": "revolute", "i": ["ground", )" + pair_of(0, -radius) +
+                  R"(], "j": "wheel"}, {"type": "revolute", "i": ["ground", )" + pair_of(-b, 0) + R"(], "j": "lever"})",
+              R"({"type": "contact", "i": "wheel", "j": "lever.tip", "mu": )" + text_of(mu) +
+                  R"(, "curve": {"circle": {"centre": [0,0], "radius": )" + text_of(radius) +
+                  R"(}}}, {"type": "point_force", "i": "lever.end", "force": )" + pair_of(0, -force) +
+                  R"(}, {"type": "torque", "i": "wheel", "torque": )" + text_of(torque) + "}"));
+    expect_utilisation(run, std::abs(torque) / (mu * radius * force * a / b));
+  }
+}
+
+// The friction of a joint is no cone of forces: it is refused, by name.
+TEST(Holding, FrictionOfJointsIsRefused) {
+  const TextRun run = run_text(scene(R"("wheel": {"mass": 1, "inertia": 1})",
+                                     R"({"type": "revolute", "name": "pin", "i": "ground", "j": "wheel"})",
+                                     R"({"type": "friction", "joint": "pin", "mu": 0.1, "radius": 0.01})"));
+  EXPECT_NE(run.outcome.exit_code, 0);
+  EXPECT_NE(run.outcome.error_text + run.analysis().report.message, "");
+  EXPECT_NE((run.outcome.error_text + run.analysis().report.message).find("\"pin\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace catena::testing

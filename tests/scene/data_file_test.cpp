@@ -1,0 +1,100 @@
+// Tables from files: the same as if their numbers stood in the scene.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "scene/run_text.hpp"
+
+namespace catena::testing {
+namespace {
+
+/// A slide driven along a table, with a file beside the scene.
+TextRun run_with(const std::string& value, const std::string& file) {
+  TemporaryFolder folder;
+  std::ofstream(folder / "lift.csv", std::ios::binary) << file;
+  const std::string path = folder / "scene.json";
+  std::ofstream(path, std::ios::binary) << R"({"catena": 1, "bodies": {"b": {"mass": 1, "inertia": 1}},
+    "constraints": [{"type": "absolute_y", "i": "b", "value": 0}, {"type": "absolute_angle", "i": "b", "value": 0}],
+    "drivers": [{"type": "absolute_x", "name": "lift", "i": "b", "value": )" +
+                                               value + R"(}],
+    "outputs": ["b.x"], "analyses": [{"type": "kinematics", "at": [0.25, 0.6, 1]}]})";
+  TextRun run;
+  run.outcome = run_scene(path, {}, run.sink);
+  return run;
+}
+
+const std::vector<double>& written_out() {
+  static const std::vector<double> x =
+      run_with(R"({"spline": {"t": [0, 0.5, 1], "value": [0, 0.02, 0.01]}})", "").column("b.x");
+  return x;
+}
+
+void expect_as_written_out(const std::string& value, const std::string& file) {
+  SCOPED_TRACE(value + "\n" + file);
+  const TextRun run = run_with(value, file);
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  const std::vector<double> x = run.column("b.x");
+  ASSERT_EQ(x.size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(x[k], written_out()[k], 1e-17);
+}
+
+TEST(DataFiles, GiveListsOfNumbersAndPairs) {
+  expect_as_written_out(R"({"spline": {"points": [[0, 0], [0.5, 0.02], [1, 0.01]]}})", "");
+  expect_as_written_out(R"({"spline": {"points": {"file": "lift.csv"}}})", "0,0\n0.5,0.02\n1,0.01\n");
+  expect_as_written_out(R"({"spline": {"t": {"file": "lift.csv"}, "value": {"file": "lift.csv", "columns": [2]}}})",
+                        "0,0\n0.5,0.02\n1,0.01");
+  expect_as_written_out(R"({"spline": {"points": {"file": "lift.csv", "columns": [3, 1], "unit": ["s", "mm"]}}})",
+                        "# measured\r\n0; 9; 0\r\n\r\n20; 9; +0.5\r\n10; 9; 1\r\n");
+  expect_as_written_out(
+      R"({"spline": {"points": {"file": "lift.csv", "columns": ["time", "lift"], "unit": ["ms", "mm"]}}})",
+      "lift,time\n0,0\n20,500\n10,1000\n");
+  expect_as_written_out(R"({"spline": {"points": {"file": "lift.csv"}}})", "  0   0\n0.5\t0.02\n1 0.01\n");
+}
+
+TEST(DataFiles, GiveCurvesAndSprings) {
+  TemporaryFolder folder;
+  std::ofstream(folder / "spring.csv") << "elongation,tension\n0,0\n10,5\n20,20\n";
+  const auto length = [&](const std::string& curve) {
+    const std::string path = folder / "scene.json";
+    std::ofstream(path) << R"({"catena": 1, "gravity": [0, -10], "bodies": {"b": {"particle": true, "mass": 1.2,
+      "position": [0, -1.01]}}, "forces": [{"type": "spring_damper", "name": "s", "i": "ground", "j": "b", "length": 1,
+      "curve": )" << curve
+                        << R"(}], "outputs": ["s.length"], "analyses": [{"type": "equilibrium"}]})";
+    TextRun run;
+    run.outcome = run_scene(path, {}, run.sink);
+    EXPECT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+    return run.last("s.length");
+  };
+  const double expected = length("[[0, 0], [0.01, 5], [0.02, 20]]");
+  EXPECT_GT(expected, 1.01);
+  EXPECT_NEAR(length(R"({"file": "spring.csv", "unit": ["mm", "N"]})"), expected, 1e-15);
+  EXPECT_NEAR(length(R"({"points": {"file": "spring.csv", "unit": ["mm", "N"]}, "beyond": "line"})"), expected, 1e-12);
+}
+
+TEST(DataFiles, SayWhatIsWrongAndWhere) {
+  const struct {
+    const char *value, *file, *error;
+  } cases[] = {
+      {R"({"file": "lost.csv"})", "", "lost.csv"},
+      {R"({"file": "lift.csv"})", "", "holds no numbers"},
+      {R"({"file": "lift.csv"})", "t,x\n0,0\n0.5,wet\n", "lift.csv:3:5: error: \"wet\" is not a number"},
+      {R"({"file": "lift.csv"})", "0,0\n0.5\n", "lift.csv:2:1: error: this line has 1 numbers, those before have 2"},
+      {R"({"file": "lift.csv"})", "0\n1\n", "must be 2; the file has 1"},
+      {R"({"file": "lift.csv", "columns": [0, 1]})", "0,0\n1,1\n", "are numbers from 1, or names"},
+      {R"({"file": "lift.csv", "columns": [1, 3]})", "0,0\n1,1\n", "beyond the 2 columns of the file"},
+      {R"({"file": "lift.csv", "columns": [1]})", "0,0\n1,1\n", "must be a list of 2"},
+      {R"({"file": "lift.csv", "columns": ["time", "lfit"]})", "time,lift\n0,0\n1,1\n", "did you mean \"lift\""},
+      {R"({"file": "lift.csv", "unit": ["s", "N"]})", "0,0\n1,1\n", "\"N\" is not a unit of a length"},
+      {R"({"file": "lift.csv", "colums": [1, 2]})", "0,0\n1,1\n", "unknown key \"colums\""},
+  };
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.value);
+    const TextRun run = run_with(std::string(R"({"spline": {"points": )") + c.value + "}}", c.file);
+    EXPECT_EQ(run.outcome.exit_code, 3);
+    EXPECT_NE(run.outcome.error_text.find(c.error), std::string::npos) << run.outcome.error_text;
+  }
+}
+
+}  // namespace
+}  // namespace catena::testing
