@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "catena/scene/viewing/record_figure.hpp"
+#include "figure_files.hpp"
 #include "recorded_run.hpp"
 
 namespace catena::cli {
@@ -15,17 +15,15 @@ namespace {
 struct PlotCommand {
   SceneArguments scene;
   PlotRequest request;
-  std::string svg, pdf, log;
+  FigureFiles files;
+  std::string log;
   double width = 360, height = 150;  // points: a column of a paper
 };
 
-/// Columns that the run must give: time is there by itself.
+/// Columns that the run must give, where not all of its own are wanted.
 std::vector<std::string> outputs_of(const PlotRequest& request) {
-  std::vector<std::string> outputs;
-  for (const std::string& name : request.y) {
-    if (name != "t") outputs.push_back(name);
-  }
-  if (!request.y.empty() && !request.x.empty() && request.x != "t") outputs.push_back(request.x);
+  std::vector<std::string> outputs = request.y;
+  if (!outputs.empty() && !request.x.empty()) outputs.push_back(request.x);
   return outputs;
 }
 
@@ -49,18 +47,14 @@ int plot(const PlotCommand& command) {
     request.log_x = command.log.find('x') != std::string::npos;
     request.log_y = command.log.find('y') != std::string::npos;
     const Plot plot = plot_record(run.recorder.record(), request);
-    for (const auto& [path, format] :
-         {std::pair(command.svg, FigureFormat::svg), std::pair(command.pdf, FigureFormat::pdf)}) {
-      if (path.empty()) continue;
-      const std::string file = draw_plot(plot, command.width, command.height, canvas_maker(format, plot.title));
-      if (const int written = write_file(path, file); written != solved) exit_code = written;
-    }
-    if (command.svg.empty() && command.pdf.empty()) {
-      if (const int printed = print_braille(plot); printed != solved) exit_code = printed;
-    }
+    const auto make = [&](FigureFormat format) {
+      return draw_plot(plot, command.width, command.height, canvas_maker(format, plot.title));
+    };
+    const int written = command.files.named() ? write_figures(command.files, make) : print_braille(plot);
+    if (written != solved) exit_code = written;
   } catch (const FigureError& error) {
     complain(fmt::format("catena: {}\n", error.what()));
-    return usage;
+    return exit_code_without_figure(run);
   }
   return exit_code;
 }
@@ -76,8 +70,7 @@ void add_plot_command(CLI::App& app, Action& chosen) {
   command->add_option("--y", parsed->request.y, "columns, separated by commas: all unless given")
       ->delimiter(',')
       ->type_name("COLUMNS");
-  command->add_option("--svg", parsed->svg, "write a figure to this file")->type_name("FILE");
-  command->add_option("--pdf", parsed->pdf, "the same as PDF")->type_name("FILE");
+  add_figure_files(*command, parsed->files, "without --svg and --pdf it is drawn in the terminal");
   command->add_option("--log", parsed->log, "logarithmic axes")
       ->type_name("x|y|xy")
       ->check(CLI::IsMember({"x", "y", "xy"}));

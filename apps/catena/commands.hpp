@@ -28,6 +28,8 @@ void add_view_command(CLI::App& app, Action& chosen);
 
 /// Prints text to the standard output; returns the exit code.
 int print(const std::string& text);
+/// Writes a whole file, and says where and how much unless it is to be quiet; the exit code.
+int write_file(const std::string& path, std::string_view content, bool quiet = false);
 /// Prints a message to the standard error. A failure to write there is ignored.
 void complain(std::string_view message);
 

@@ -24,6 +24,20 @@ int print(const std::string& text) {
   return no_file;
 }
 
+int write_file(const std::string& path, std::string_view content, bool quiet) {
+  TextOutput output = TextOutput::file(path);
+  output.write(content);
+  if (!output.commit()) {
+    complain(fmt::format("catena: {}\n", output.error()));
+    return no_file;
+  }
+  const auto bytes = static_cast<double>(content.size());
+  if (!quiet)
+    complain(fmt::format("wrote {} ({:.3g} {})\n", path, bytes < 1e6 ? bytes / 1e3 : bytes / 1e6,
+                         bytes < 1e6 ? "kB" : "MB"));
+  return solved;
+}
+
 void complain(std::string_view message) { std::fwrite(message.data(), 1, message.size(), stderr); }
 
 namespace {

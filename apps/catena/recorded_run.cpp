@@ -1,11 +1,9 @@
 #include "recorded_run.hpp"
 
-#include <fmt/format.h>
-
 #include <cstdio>
 
 #include "catena/results/interrupt.hpp"
-#include "catena/results/progress_bar.hpp"
+#include "run_messages.hpp"
 
 namespace catena::cli {
 
@@ -15,32 +13,13 @@ void run_recorded(const SceneArguments& arguments, const std::vector<std::string
   options.poses = &run.recorder;
   options.cancel = &interrupt_flag();
   ProgressBar bar(true);
-  if (bar.visible()) {
-    options.progress = [&](const Progress& progress) {
-      bar.update(fmt::format("{} {}/{}", progress.analysis, progress.number + 1, progress.analyses), progress.fraction);
-    };
-  }
+  show_progress(bar, options);
   catch_interrupts();
   run.outcome = run_scene(arguments.scene, options, run.recorder);
   interrupt_was_noticed();
   bar.clear();
   std::fputs(run.outcome.error_text.c_str(), stderr);
-  for (const AnalysisResult& result : run.outcome.analyses) {
-    if (!result.report.ok())
-      complain(fmt::format("{}: {}: {}: {}\n", arguments.scene, result.type, to_string(result.report.status),
-                           result.report.message));
-  }
-}
-
-int write_file(const std::string& path, std::string_view content) {
-  TextOutput output = TextOutput::file(path);
-  output.write(content);
-  if (!output.commit()) {
-    complain(fmt::format("catena: {}\n", output.error()));
-    return no_file;
-  }
-  complain(fmt::format("wrote {}\n", path));
-  return solved;
+  complain_of_failures(arguments.scene, run.outcome);
 }
 
 }  // namespace catena::cli

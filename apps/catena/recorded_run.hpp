@@ -21,7 +21,9 @@ struct RecordedRun {
 /// said when it returns.
 void run_recorded(const SceneArguments& arguments, const std::vector<std::string>& outputs, RecordedRun& run);
 
-/// Writes a whole file and says where; the exit code.
-int write_file(const std::string& path, std::string_view content);
+/// The exit code of a command whose figure cannot be made: where the run failed, that is why.
+inline int exit_code_without_figure(const RecordedRun& run) {
+  return run.outcome.exit_code == solved ? usage : run.outcome.exit_code;
+}
 
 }  // namespace catena::cli

@@ -10,12 +10,12 @@
 
 #include "catena/results/csv_writer.hpp"
 #include "catena/results/interrupt.hpp"
-#include "catena/results/progress_bar.hpp"
 #include "catena/results/text_sink.hpp"
 #include "catena/scene/running/units_sink.hpp"
 #include "catena/scene/viewing/run_recorder.hpp"
 #include "commands.hpp"
 #include "result_folder.hpp"
+#include "run_messages.hpp"
 #include "view_page.hpp"
 
 namespace catena::cli {
@@ -78,10 +78,8 @@ void print_messages(const RunCommand& command, const SceneOutcome& outcome) {
   std::fputs(outcome.error_text.c_str(), stderr);
   // A table on a terminal has said already which analysis failed and why.
   const bool told = !command.json && !command.csv && !command.quiet && ::isatty(STDOUT_FILENO) == 1;
+  if (!told) complain_of_failures(command.scene, outcome);
   for (const AnalysisResult& result : outcome.analyses) {
-    if (!told && !result.report.ok())
-      complain(fmt::format("{}: {}: {}: {}\n", command.scene, result.type, to_string(result.report.status),
-                           result.report.message));
     if (command.stats) std::fputs(counters_text(result).c_str(), stderr);
   }
 }
@@ -162,11 +160,7 @@ int execute(const RunCommand& command) {
   options.poses = recorder ? &*recorder : nullptr;
   options.cancel = &interrupt_flag();
   options.verbose = command.verbose;
-  if (bar.visible()) {
-    options.progress = [&](const Progress& progress) {
-      bar.update(fmt::format("{} {}/{}", progress.analysis, progress.number + 1, progress.analyses), progress.fraction);
-    };
-  }
+  show_progress(bar, options);
 
   const SceneOutcome outcome = run_scene(command.scene, options, sinks);
   bar.clear();
@@ -174,7 +168,8 @@ int execute(const RunCommand& command) {
   output.flush();
   print_messages(command, outcome);
   bool written = finish_output(output, folder ? &*folder : nullptr, command.quiet);
-  if (recorder && recorder->record().model) written = write_page(command.page, recorder->record()) == solved && written;
+  if (recorder && recorder->record().model)
+    written = write_page(command.page, recorder->record(), command.quiet) == solved && written;
   if (output.reader_gone()) {
     std::signal(SIGPIPE, SIG_DFL);
     std::raise(SIGPIPE);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "catena/results/text_output.hpp"
 #include "catena/scene/viewing/view_document.hpp"
 #include "catena/scene/viewing/viewer_page.hpp"
 #include "commands.hpp"
@@ -15,16 +14,12 @@ std::string viewer_obstacle() {
          "plot\" make figures\n";
 }
 
-int write_page(const std::string& path, const RunRecord& record) {
-  const std::string page = compose_page(view_document(record));
-  TextOutput output = TextOutput::file(path);
-  output.write(page);
-  if (!output.commit()) {
-    complain(fmt::format("catena: {}\n", output.error()));
-    return no_file;
+int write_page(const std::string& path, const RunRecord& record, bool quiet) {
+  if (const int written = write_file(path, compose_page(view_document(record)), quiet); written != solved)
+    return written;
+  for (const std::string& note : view_notes(record)) {
+    if (!quiet) complain(fmt::format("{}: {}\n", path, note));
   }
-  for (const std::string& note : view_notes(record)) complain(fmt::format("{}: {}\n", path, note));
-  complain(fmt::format("wrote {} ({:.2g} MB)\n", path, static_cast<double>(page.size()) / 1e6));
   return solved;
 }
 

@@ -10,7 +10,7 @@ namespace catena::cli {
 /// Why this catena cannot write pages, as a message; empty if it can.
 std::string viewer_obstacle();
 
-/// Writes the page and says where, how large it is and what it leaves out; the exit code.
-int write_page(const std::string& path, const RunRecord& record);
+/// Writes the page, and says where, how large it is and what it leaves out unless it is to be quiet; the exit code.
+int write_page(const std::string& path, const RunRecord& record, bool quiet = false);
 
 }  // namespace catena::cli

@@ -41,7 +41,33 @@ const stuck = {
   analyses: [{ type: "kinematics", until: 6, every: 0.05 }],
 };
 
-const pages = Object.fromEntries(Object.entries({ rods, empty, single, stuck })
+// A bar on a pin whose end is held at a height: short bars do not reach it.
+const bar = {
+  catena: 1, name: "swept", parameters: { length: 2, height: 1 },
+  bodies: { bar: { mass: 1, rod: { from: [0, 0], to: ["length", 0] } } },
+  constraints: [{ type: "revolute", i: "ground", j: "bar.from" }, { type: "absolute_y", i: "bar.to", value: "height" }],
+};
+const turned = { type: "kinematics", at: 0, measures: { turned: { final: "bar.angle" } } };
+const swept = {
+  ...bar,
+  analyses: [{ type: "sweep", over: { length: [2, 0.9], height: [1, 1.4] }, of: turned }, { type: "check" },
+             { type: "sensitivity", parameters: ["length"], of: turned }],
+};
+// Bodies that go by 1 m/s along x, two or four of them.
+const repeated = {
+  catena: 1, name: "repeated", parameters: { n: 2 },
+  replicate: [{
+    count: "n", bodies: { "b{k}": { position: ["=k", 0] } },
+    drivers: [{ type: "absolute_x", i: "b{k}", value: { polynomial: ["=k", 1] } },
+              { type: "absolute_y", i: "b{k}", value: 0 }, { type: "absolute_angle", i: "b{k}", value: 0 }],
+  }],
+  analyses: [{ type: "kinematics", until: 2, every: 0.5 },
+             { type: "kinematics", until: 2, every: 0.5, from: "initial", set: { n: 4 } }],
+};
+const unorderedTimes = [2, 0, 3, 1];
+const unordered = { ...repeated, name: "unordered", analyses: [{ type: "kinematics", at: unorderedTimes }] };
+
+const pages = Object.fromEntries(Object.entries({ rods, empty, single, stuck, swept, repeated, unordered })
     .map(([name, content]) => [name, makePage(writeScene(name, content), name)]));
 equal(pages.rods.exit, 0, `rods: ${pages.rods.said}`);
 equal(pages.stuck.exit, 1, "exit code of a run that ended early");
@@ -93,21 +119,97 @@ await test({}, async (page) => {
   await page.run(`catena.showAnalysis(${types.indexOf("dynamics")})`);
   check((await page.run("return document.querySelectorAll('#marks button').length")) > 0, "events on the time bar");
 
-  // Analyses that no page knows yet: rows of a sweep, and of something without a name here.
-  for (const type of ["sweep", "other"]) {
-    const unknown = `${outputFolder}/${type}.html`;
-    const text = readFileSync(pages.rods.page, "utf8");
-    check(text.includes('"type":"path"'), "the data name the type of an analysis");
-    writeFileSync(unknown, text.replace('"type":"path"', `"type":"${type}"`));
-    await page.open(unknown);
-    await page.run(`catena.showAnalysis(${types.indexOf("path")}); catena.showTab("plots")`);
+  // An analysis that no page knows: its rows are shown as those of any other.
+  const unknown = `${outputFolder}/other.html`;
+  const text = readFileSync(pages.rods.page, "utf8");
+  check(text.includes('"type":"path"'), "the data name the type of an analysis");
+  writeFileSync(unknown, text.replace('"type":"path"', '"type":"other"'));
+  await page.open(unknown);
+  await page.run(`catena.showAnalysis(${types.indexOf("path")}); catena.showTab("plots")`);
+  await settle(page);
+  check((await page.run("return document.querySelectorAll('.plot canvas').length")) > 0, "plots of other");
+  equal(await page.run("return catena.plots.parallel !== null"), false, "parallel axes of other");
+  await page.run('catena.showTab("table")');
+  check((await page.run("return document.querySelectorAll('#panel tr').length")) > 3, "table of other");
+
+  // A sweep: its designs on parallel axes, failed ones by the name of their status, its counts as words.
+  await page.open(pages.swept.page);
+  await page.run("catena.showAnalysis(0)");
+  for (const tab of ["plots", "report", "table"]) {
+    await page.run(`catena.showTab("${tab}")`);
     await settle(page);
-    check((await page.run("return document.querySelectorAll('.plot canvas').length")) > 0, `plots of ${type}`);
-    equal(await page.run("return catena.plots.parallel !== null"), type === "sweep", `parallel axes of ${type}`);
-    await page.screenshot(`${outputFolder}/${type}.png`);
-    await page.run('catena.showTab("table")');
-    check((await page.run("return document.querySelectorAll('#panel tr').length")) > 3, `table of ${type}`);
+    equal(await page.run(noNumber), false, `NaN in ${tab} of the sweep`);
+    await page.screenshot(`${outputFolder}/sweep_${tab}.png`);
   }
+  check((await page.run("return document.getElementById('panel').innerText")).includes("not_assembled"),
+        "the table names the status of a design");
+  const axes = await page.run("return catena.plots.parallel.plot.columns.map((c) => catena.table.names[c])");
+  equal(axes.join(), "length,height,turned", "parallel axes of the sweep");
+  equal(await page.run("return catena.table.csv([0, catena.table.find('status')]).split('\\r\\n')[1]"), "1,ok",
+        "the status in a CSV file");
+  await page.run('catena.showTab("report")');
+  const report = await page.run("return document.getElementById('panel').innerText");
+  check(report.includes("not_assembled = 2"), `how many designs failed: ${report}`);
+  check(!report.includes("[object"), "objects in the report are told by their members");
+  // Where the next analysis has no rows, nothing of the sweep stays.
+  await page.run("catena.showAnalysis(1)");
+  equal(await page.run("return catena.plots.parallel"), null, "parallel axes of check");
+
+  // Measures with derivatives.
+  await page.run('catena.showAnalysis(2); catena.showTab("report")');
+  const measured = await page.run("return document.getElementById('panel').innerText");
+  check(/turned\s+0\.5236 rad/.test(measured) && measured.includes("d/d(length)"), `measures: ${measured}`);
+
+  // Another number of bodies: names, poses and drawing are those of the analysis.
+  await page.open(pages.repeated.page);
+  for (const [analysis, bodies] of [[0, 2], [1, 4]]) {
+    await page.run(`catena.showAnalysis(${analysis}); catena.player.pause(); catena.player.moveTo(1)`);
+    await settle(page);
+    equal(await page.run("return catena.motion.names.bodies.length"), bodies, "bodies of the analysis");
+    const places = await page.run("return Array.from(catena.motion.pose.q)");
+    for (let k = 0; k < bodies; ++k) {
+      near(places[3 * k], k + 1 + 1, 1e-6, `x of body ${k + 1} of ${bodies} at 1 s`);
+      near(places[3 * k + 1], 0, 1e-6, `y of body ${k + 1} of ${bodies} at 1 s`);
+    }
+    equal(await page.run(noNumber), false, "NaN with other bodies");
+  }
+
+  // Instants in any order: the clock goes through them as time does, rows stay those of the list.
+  await page.open(pages.unordered.page);
+  await settle(page);
+  const [begin, end] = await page.run("return [catena.motion.begin, catena.motion.end]");
+  equal(`${begin} ${end}`, "0 3", "the clock of a list of instants");
+  for (const [row, t] of unorderedTimes.entries()) {
+    await page.run(`catena.goToRow(${row})`);
+    near(await page.run("return catena.player.clock"), t, 1e-12, `instant of row ${row}`);
+    await settle(page);
+    near(await page.run("return catena.motion.pose.q[0]"), 1 + t, 1e-6, `x at row ${row}`);
+    equal(await page.run("return catena.plots.cursor"), row, `the cursor is at row ${row}`);
+  }
+  await page.run("catena.player.moveTo(0.5)");
+  await settle(page);
+  near(await page.run("return catena.motion.pose.q[0]"), 1.5, 1e-6, "x half way between two instants");
+  await page.run("catena.player.moveTo(0); catena.player.step(1)");
+  equal(await page.run("return catena.player.clock"), 1, "one step on in time");
+
+  // A plot is drawn once, however far its cursor moves; a slider keeps its arrows, the time bar goes by rows.
+  await page.run("catena.showTab('plots')");
+  await settle(page);
+  const before = await page.run("return catena.plots.views.map((view) => view.picture.drawn).join()");
+  await page.run("catena.player.moveTo(2.5)");
+  await settle(page);
+  equal(await page.run("return catena.plots.views.map((view) => view.picture.drawn).join()"), before,
+        "drawings of plots while the cursor moves");
+  await page.run("catena.player.moveTo(1); document.getElementById('clock').focus()");
+  await page.keys("\uE014");
+  equal(await page.run("return catena.player.clock"), 2, "the time bar goes on by a row");
+  await page.run(`
+    const slider = Object.assign(document.createElement("input"), { type: "range", min: 0, max: 10, value: 5 });
+    document.body.append(slider);
+    slider.focus();`);
+  await page.keys("\uE014");
+  equal(await page.run("return catena.player.clock"), 2, "the arrows of another slider move no clock");
+  equal(await page.run("return document.activeElement.value"), "6", "but the slider");
 
   for (const name of ["empty", "single", "stuck"]) {
     await page.open(pages[name].page);

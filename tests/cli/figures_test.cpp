@@ -70,13 +70,67 @@ TEST_F(Figures, WrongWordsAreExitCodeTwo) {
 
 TEST_F(Figures, WrongScenesAndPlacesGetNoFile) {
   const std::string wrong = write_scene(folder_ / "wrong.json", R"({"catena": 1, "bodies": {"a": {"mas": 1}}})");
-  for (const char* command : {"draw", "plot", "view"}) {
-    const ProgramResult result = run_catena({command, wrong});
-    EXPECT_EQ(result.exit_code, has_viewer() || command != std::string("view") ? 3 : 2) << command << result.err;
+  const std::string file = folder_ / "figure";
+  for (const std::string command : {"draw", "plot", "view"}) {
+    if (command == "view" && !has_viewer()) continue;
+    const std::string option = command == "view" ? "-o" : "--svg";
+    const ProgramResult result = run_catena({command, wrong, option, file});
+    EXPECT_EQ(result.exit_code, 3) << command << result.err;
+    EXPECT_NE(result.err.find("did you mean \"mass\"?"), std::string::npos) << result.err;
     EXPECT_EQ(result.out, "");
-    EXPECT_EQ(run_catena({command, folder_ / "none.json"}).out, "");
+    const ProgramResult none = run_catena({command, folder_ / "none.json", option, file});
+    EXPECT_EQ(none.exit_code, 4) << command << none.err;
+    EXPECT_EQ(none.out, "");
+    EXPECT_FALSE(std::filesystem::exists(file)) << command;
+    EXPECT_EQ(run_catena({command, scene_, option, "/nowhere/figure"}).exit_code, 4) << command;
   }
-  EXPECT_EQ(run_catena({"draw", scene_, "--svg", "/nowhere/a.svg"}).exit_code, 4);
+}
+
+// A crank that is too long for its rod, whose end keeps its height: the driver gets stuck on the way.
+TEST_F(Figures, OfARunThatEndedEarlyAreMadeWithItsExitCode) {
+  const std::string stuck = write_scene(folder_ / "stuck.json", R"({"catena": 1,
+    "bodies": {"crank": {"rod": {"from": [0, 0], "to": [1, 0]}}, "rod": {"rod": {"from": [1, 0], "to": [1.5, 0.5]}}},
+    "constraints": [{"type": "revolute", "i": "ground", "j": "crank.from"},
+                    {"type": "revolute", "i": "crank.to", "j": "rod.from"},
+                    {"type": "absolute_y", "i": "rod.to", "value": 0.5}],
+    "drivers": [{"type": "absolute_angle", "i": "crank", "value": {"polynomial": [0, 1]}}],
+    "analyses": [{"type": "kinematics", "until": 6, "every": 0.05}]})");
+  const ProgramResult printed = run_catena({"draw", stuck, "--at", "0.12"});
+  EXPECT_EQ(printed.exit_code, 1) << printed.err;
+  EXPECT_EQ(printed.out.substr(0, 4), "<svg");
+  EXPECT_NE(printed.err.find("no row at t = 0.12 s"), std::string::npos) << printed.err;
+  const ProgramResult written =
+      run_catena({"draw", stuck, "--at", "0.12", "--svg", folder_ / "s.svg", "--pdf", folder_ / "s.pdf"});
+  EXPECT_EQ(written.exit_code, 1) << written.err;
+  const std::size_t note = written.err.find("no row at");
+  EXPECT_EQ(written.err.find("no row at", note + 1), std::string::npos) << "said once for all files\n" << written.err;
+  EXPECT_EQ(run_catena({"plot", stuck}).exit_code, 1);
+}
+
+// Columns that an analysis has by itself are as good as any other; the analyses before it are not asked for them.
+TEST_F(Figures, PlotKnowsTheColumnsThatAnalysesHaveByThemselves) {
+  const std::string truss = write_scene(folder_ / "truss.json", R"({"catena": 1, "parameters": {"P": 0, "k": 1000},
+    "bodies": {"apex": {"mass": 1, "position": [0, 0.3], "particle": true}},
+    "constraints": [{"type": "absolute_x", "i": "apex", "value": 0}],
+    "forces": [{"type": "spring_damper", "i": ["ground", [-1, 0]], "j": "apex", "k": "k"},
+               {"type": "spring_damper", "i": ["ground", [1, 0]], "j": "apex", "k": "k"},
+               {"type": "point_force", "i": "apex", "force": [0, "=-P"]}],
+    "analyses": [{"type": "equilibrium"}, {"type": "modes"}, {"type": "path", "parameter": "P", "to": 5},
+      {"type": "sweep", "from": "initial", "over": {"k": [900, 1000, 1100]},
+       "of": {"type": "equilibrium", "measures": {"height": {"final": "apex.y"}}}}]})");
+  const auto plotted = [&](const std::string& x, const std::string& y) {
+    return run_catena({"plot", truss, "--x", x, "--y", y});
+  };
+  for (const auto& [x, y] : {std::pair("P", "apex.y"), std::pair("apex.y", "P"), std::pair("mode", "omega,omega2"),
+                             std::pair("k", "height"), std::pair("design", "height")}) {
+    const ProgramResult result = plotted(x, y);
+    EXPECT_EQ(result.exit_code, 0) << x << ' ' << y << '\n' << result.err;
+    EXPECT_NE(result.out.find(std::string("over ") + x), std::string::npos) << result.out;
+  }
+  const ProgramResult words = plotted("k", "status");
+  EXPECT_EQ(words.exit_code, 2);
+  EXPECT_NE(words.err.find("holds words"), std::string::npos) << words.err;
+  EXPECT_EQ(plotted("P", "apex.z").exit_code, 2);
 }
 
 TEST_F(Figures, ViewWritesAPageAndSaysWhere) {
@@ -87,6 +141,7 @@ TEST_F(Figures, ViewWritesAPageAndSaysWhere) {
   EXPECT_EQ(content_of(folder_ / "page.html").substr(0, 15), "<!doctype html>");
   const ProgramResult run = run_catena({"run", scene_, "-q", "--view", folder_ / "run.html"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.err + run.out, "") << "it was asked to be quiet";
   EXPECT_TRUE(std::filesystem::exists(folder_ / "run.html"));
   EXPECT_EQ(run_catena({"view", scene_, "-o", "/nowhere/page.html"}).exit_code, 4);
 }

@@ -58,4 +58,23 @@ inline std::vector<SvgCircle> svg_circles(const std::string& text) {
   return found;
 }
 
+/// Width and height of the figure.
+inline Vec2<double> svg_size(const std::string& text) {
+  std::smatch size;
+  if (!std::regex_search(text, size, std::regex("<svg [^>]*width=\"([0-9.]+)\" height=\"([0-9.]+)\""))) return {};
+  return {std::stod(size[1]), std::stod(size[2])};
+}
+
+/// The corners of all paths, y downwards.
+inline std::vector<Vec2<double>> svg_corners(const std::string& text) {
+  static const std::regex data("<path d=\"([^\"]*)\""), corner("[ML](-?[0-9.]+) (-?[0-9.]+)");
+  std::vector<Vec2<double>> found;
+  for (std::sregex_iterator path(text.begin(), text.end(), data), end; path != end; ++path) {
+    const std::string points = (*path)[1];
+    for (std::sregex_iterator k(points.begin(), points.end(), corner); k != end; ++k)
+      found.push_back({std::stod((*k)[1]), std::stod((*k)[2])});
+  }
+  return found;
+}
+
 }  // namespace catena::testing

@@ -79,5 +79,26 @@ TEST(Manual, NamesTheKeysOfEveryAnalysis) {
   }
 }
 
+// What `catena explain` lists of an analysis and what the manual lists are the same results.
+TEST(Manual, NamesTheResultsThatExplainNames) {
+  const std::string reference = read_reference();
+  for (const AnalysisDescription& analysis : analysis_descriptions()) {
+    const std::string line = line_of(reference, analysis.type);
+    const std::size_t last = line.rfind('|');
+    const std::size_t before = line.rfind('|', last - 1);
+    const std::string cell = line.substr(before, last - before);
+    int listed = 0;
+    for (std::size_t at = cell.find('`'); at != std::string::npos; at = cell.find('`', at)) {
+      const std::size_t end = cell.find('`', at + 1);
+      const std::string name = cell.substr(at + 1, end - at - 1);
+      at = end + 1;
+      ++listed;
+      if (name.find('(') != std::string::npos) continue;  // a pattern of columns
+      EXPECT_NE(analysis.results.find(name), std::string_view::npos) << analysis.type << ' ' << name;
+    }
+    EXPECT_GT(listed, 0) << analysis.type;
+  }
+}
+
 }  // namespace
 }  // namespace catena::testing

@@ -54,6 +54,18 @@ TEST(RunPath, GivesTheParameterFirstAndCriticalPoints) {
   EXPECT_NEAR(run.first("apex.y", 1), y.back(), 1e-10);
 }
 
+// Whatever comes after a path has its last value, until an analysis starts from the given configuration.
+TEST(RunPath, LeavesItsParameterToTheNextAnalyses) {
+  const TextRun run = run_text(truss(R"({"type": "path", "parameter": "P", "to": 12}, {"type": "equilibrium"},
+    {"type": "path", "parameter": "P", "to": 14}, {"type": "equilibrium"},
+    {"type": "equilibrium", "from": "initial"})"));
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  EXPECT_NEAR(run.first("apex.y", 1), run.last("apex.y", 0), 1e-10);
+  EXPECT_NEAR(run.first("P", 2), 12, 1e-12) << "a second path begins where the first ended";
+  EXPECT_NEAR(run.first("apex.y", 3), run.last("apex.y", 2), 1e-10);
+  EXPECT_NEAR(run.first("apex.y", 4), 0.3, 1e-10);
+}
+
 TEST(RunPath, StopsAtTheLimitOfAParameter) {
   EXPECT_EQ(run_text(truss(R"({"type": "path", "parameter": "Q", "to": 5})")).outcome.exit_code, 0);
   const TextRun run = run_text(truss(R"({"type": "path", "parameter": "Q", "to": 7})"));

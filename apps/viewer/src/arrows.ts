@@ -48,10 +48,11 @@ export class Arrows {
   private visit(kind: ArrowKind, pose: number,
                 f: (x: number, y: number, fx: number, fy: number, towards: boolean) => void): void {
     const { data, analysis } = this.motion;
+    const bodies = this.motion.names.bodies.length;
     const now = this.motion.pose;
     if (kind === "velocities" && this.motion.velocities) {
-      const at = 3 * data.bodies.length * pose;
-      for (let b = 0; b < data.bodies.length; ++b) {
+      const at = 3 * bodies * pose;
+      for (let b = 0; b < bodies; ++b) {
         const v = this.motion.velocities;
         f(now.q[3 * b], now.q[3 * b + 1], v[at + 3 * b], v[at + 3 * b + 1], false);
       }

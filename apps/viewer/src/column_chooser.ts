@@ -12,7 +12,7 @@ export function columnChooser(plot: Plot, changed: () => void): HTMLElement {
     items.replaceChildren();
     const wanted = search.value.toLowerCase();
     const found = plot.table.names.map((name, k) => ({ name, k }))
-        .filter(({ name }) => name.toLowerCase().includes(wanted));
+        .filter(({ name, k }) => plot.table.hasNumbers(k) && name.toLowerCase().includes(wanted));
     for (const { name, k } of found.slice(0, mostListed)) {
       const box = make("input", { type: "checkbox" });
       box.checked = plot.ys.includes(k);

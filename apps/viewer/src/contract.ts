@@ -24,7 +24,14 @@ export interface Line {
 /** anchor, symbol, element, body i, x, y, body j, x, y */
 export type Shape = [number, number, number, number, number, number, number, number, number];
 
-export interface Drawing {
+/** Names of bodies, elements and points: the page's own, and a drawing's where its model has others. */
+export interface Names {
+  bodies: string[];
+  elements: { types: string[]; type: number[]; name: string[] };
+  points: { body: number[]; name: string[]; at: number[] };
+}
+
+export interface Drawing extends Partial<Names> {
   symbols: { lines: Line[] }[];
   shapes: Shape[];
   loads: { element: number; body: number; point: [number, number]; in_body_axes: boolean }[];
@@ -35,7 +42,17 @@ export interface Drawing {
 export interface Column {
   name: string;
   unit: string;
+  /** Where the values number words: these. */
+  words?: Record<string, string>;
   values: PackedNumbers;
+}
+
+export interface Measure {
+  name: string;
+  unit: string;
+  value: number | null;
+  t?: number;
+  gradient?: Record<string, number | null>;
 }
 
 export interface Poses {
@@ -62,6 +79,7 @@ export interface Analysis {
   redundant: string[];
   set: Record<string, number>;
   fields: Record<string, unknown>;
+  measures: Measure[];
   drawing: number;
   rows: { count: number; total: number; stride: number };
   columns: Column[];
@@ -69,16 +87,13 @@ export interface Analysis {
   shapes: PackedNumbers[];
 }
 
-export interface PageData {
+export interface PageData extends Names {
   catena_view: number;
   version: string;
   scene: string;
   description: string;
   gravity: [number, number];
   parameters: Record<string, number>;
-  bodies: string[];
-  elements: { types: string[]; type: number[]; name: string[] };
-  points: { body: number[]; name: string[]; at: number[] };
   drawings: Drawing[];
   analyses: Analysis[];
   notes: string[];

@@ -29,12 +29,12 @@ export class Frames {
     this.step = packed.step;
   }
 
-  /** Between pose `row` and the next one, `part` of the way; angles that were wrapped turn the shorter way. */
-  interpolate(row: number, part: number, out: Float64Array): void {
+  /** Between two poses, `part` of the way; angles that were wrapped turn the shorter way. */
+  interpolate(from: number, to: number, part: number, out: Float64Array): void {
     const width = 3 * this.bodies;
     const { values, base, step } = this;
-    const first = row * width;
-    const second = part > 0 ? first + width : first;
+    const first = from * width;
+    const second = to * width;
     for (let k = 0, b = 0; k < width; k += 3, b += 2) {
       for (let c = 0; c < 2; ++c) {
         const a = values[first + k + c];

@@ -1,6 +1,5 @@
 // What is said of a body or an element under the pointer: name, type, values with units.
 
-import { PageData } from "./contract";
 import { make } from "./dom";
 import { Highlight } from "./mechanism";
 import { Motion } from "./motion";
@@ -9,11 +8,12 @@ import { short } from "./ticks";
 
 const mostValues = 9;
 
-export function describe(data: PageData, motion: Motion, table: Table, row: number,
+export function describe(motion: Motion, table: Table, row: number,
                          owner: Highlight): (Node | string)[] {
   const isElement = owner.element >= 0;
-  const name = isElement ? data.elements.name[owner.element] : data.bodies[owner.body] ?? "ground";
-  const type = isElement ? data.elements.types[data.elements.type[owner.element]] : "body";
+  const { elements, bodies } = motion.names;
+  const name = isElement ? elements.name[owner.element] : bodies[owner.body] ?? "ground";
+  const type = isElement ? elements.types[elements.type[owner.element]] : "body";
   const lines: string[] = [];
   if (!isElement && owner.body >= 0) {
     const q = motion.pose.q;
@@ -22,7 +22,7 @@ export function describe(data: PageData, motion: Motion, table: Table, row: numb
   }
   table.names.forEach((column, k) => {
     if (lines.length >= mostValues || !column.startsWith(`${name}.`) || row < 0) return;
-    lines.push(`${column.slice(name.length + 1)} = ${short(table.values(k)[row])} ${table.unit(k)}`);
+    lines.push(`${column.slice(name.length + 1)} = ${table.text(k, row)} ${table.unit(k)}`);
   });
   return [make("b", {}, name), ` ${type}`, ...lines.map((line) => make("div", {}, line))];
 }

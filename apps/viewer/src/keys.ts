@@ -86,11 +86,13 @@ export function listenToKeys(page: Page): void {
               make("form", { method: "dialog" }, make("button", {}, "close")));
   byId("help-button").addEventListener("click", () => help.showModal());
   addEventListener("keydown", (event) => {
-    const target = event.target as HTMLElement;
+    const target = event.target instanceof Element ? event.target : document.body;
     const typing = target.matches("input[type=search], select, dialog *");
-    // A button takes the space bar itself, a time bar its arrows.
-    const own = target.matches("button, input, tr") && (event.key === " " || event.key === "Enter");
-    if (typing || own || event.ctrlKey || event.metaKey) return;
+    // What has the focus takes its own keys: buttons and rows the space bar, sliders the arrows. Those of the time bar
+    // go by rows, as everywhere on the page.
+    const pressed = target.matches("button, input, tr") && (event.key === " " || event.key === "Enter");
+    const slid = target.matches("input[type=range]:not(#clock)") && /^(Arrow|Home|End|Page)/.test(event.key);
+    if (typing || pressed || slid || event.ctrlKey || event.metaKey) return;
     if (act(page, event)) event.preventDefault();
   });
 }

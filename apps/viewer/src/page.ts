@@ -1,6 +1,6 @@
 // The page as a whole: which analysis is shown, what happens at keys and buttons.
 
-import { PageData } from "./contract";
+import { Analysis, PageData } from "./contract";
 import { button, byId, make, setIcon } from "./dom";
 import { describe } from "./hover";
 import { listenToKeys } from "./keys";
@@ -53,11 +53,13 @@ export class Page {
     if (!still) this.player.play();
   }
 
-  /** The last one that moves, else the last. */
+  /** The last one that goes through poses, else the last with shapes to swing in, else the last. */
   private firstAnalysis(): number {
     const { analyses } = this.data;
-    for (let k = analyses.length - 1; k >= 0; --k) if (analyses[k].poses.count > 1) return k;
-    return analyses.length - 1;
+    const last = (fits: (analysis: Analysis) => boolean) => analyses.map(fits).lastIndexOf(true);
+    const moving = last(({ poses, shapes }) => poses.count > (shapes.length > 0 ? 2 : 1));
+    const swinging = last(({ shapes }) => shapes.length > 0);
+    return moving >= 0 ? moving : swinging >= 0 ? swinging : analyses.length - 1;
   }
 
   private makeChoices(): void {
@@ -102,7 +104,7 @@ export class Page {
   }
 
   private allPoints(): Trace[] {
-    const { points, bodies } = this.data;
+    const { points, bodies } = this.motion.names;
     return points.body.map((body, k) => ({
       body, u: points.at[2 * k], v: points.at[2 * k + 1], name: `${bodies[body]}.${points.name[k]}`,
     }));
@@ -125,13 +127,13 @@ export class Page {
   }
 
   private rowAtTime(t: number): number {
-    return this.motion.timed ? this.motion.rowNumber(Math.round(this.motion.position(t))) : 0;
+    return this.motion.timed ? this.motion.rowNumber(this.motion.poseAt(t)) : 0;
   }
 
   private makeMarks(): void {
     const { begin, end } = this.motion;
     byId("marks").replaceChildren(...(this.motion.count > 1 ? this.marks() : []).slice(0, 200).map((mark) => {
-      const clock = mark.t ?? this.motion.clockAt(this.poseOfRow(mark.row));
+      const clock = mark.t ?? this.motion.clockOfRow(mark.row);
       const when = mark.t === undefined ? `row ${mark.row}` : `t = ${short(mark.t)} s`;
       const title = `${mark.label} at ${when}`;
       const element = button("", title, () => (this.player.pause(), this.player.moveTo(clock)));
@@ -146,16 +148,10 @@ export class Page {
     return Array.from({ length: this.table.rows }, (_, k) => Number(negative[this.table.numberOf(k)] ?? 0) > 0);
   }
 
-  private poseOfRow(row: number): number {
-    const { count } = this.motion;
-    const { stride, total } = this.motion.analysis.poses;
-    return row >= total - 1 ? count - 1 : Math.min(count - 1, row / stride);
-  }
-
   goToRow(row: number): void {
     this.player.pause();
     this.motion.shape = this.motion.count > 1 ? -1 : this.motion.shape;
-    this.player.moveTo(this.motion.clockAt(this.poseOfRow(row)));
+    this.player.moveTo(this.motion.clockOfRow(row));
   }
 
   showShape(shape: number): void {
@@ -174,7 +170,7 @@ export class Page {
     if (tab === "table") this.panel.replaceChildren(tablePanel(this.table, analysis.type, (row) => this.goToRow(row)));
     if (tab === "points") this.panel.replaceChildren(pointPanel(this, this.allPoints()));
     if (tab === "report") {
-      this.panel.replaceChildren(reportPanel(this.data, analysis, this.motion.shape, {
+      this.panel.replaceChildren(reportPanel(this.data, this.motion, {
         showAnalysis: (number) => this.showAnalysis(number),
         showShape: (shape) => this.showShape(shape),
         goToRow: (row) => this.goToRow(row),
@@ -190,7 +186,7 @@ export class Page {
     box.hidden = shape < 0;
     if (shape >= 0) {
       const row = this.table.rowAt(this.motion.rowNumber(this.motion.nearestPose(this.player.clock)));
-      box.replaceChildren(...describe(this.data, this.motion, this.table, row, this.stage.ownerOf(shape)));
+      box.replaceChildren(...describe(this.motion, this.table, row, this.stage.ownerOf(shape)));
       box.style.left = `${Math.min(x + 14, this.stage.camera.width - 200)}px`;
       box.style.top = `${Math.min(y + 14, this.stage.camera.height - 80)}px`;
     }
@@ -200,7 +196,8 @@ export class Page {
   private select(owner: Highlight): void {
     this.selected = owner;
     this.stage.lit = owner;
-    const name = owner.element >= 0 ? this.data.elements.name[owner.element] : this.data.bodies[owner.body];
+    const { elements, bodies } = this.motion.names;
+    const name = owner.element >= 0 ? elements.name[owner.element] : bodies[owner.body];
     if (name !== undefined) this.plots.showColumnsOf(name);
     this.redraw();
   }

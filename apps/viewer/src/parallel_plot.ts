@@ -30,7 +30,7 @@ export class ParallelPlot {
 
   /** Columns that are constant tell nothing of the rows; the number of the design, the first one, neither. */
   constructor(private readonly table: Table) {
-    const candidates = table.names.map((_, k) => k).filter((k) => k > 0 || table.names[0] !== "design");
+    const candidates = table.numeric(Infinity).filter((k) => k > 0 || table.names[0] !== "design");
     const varies = (column: number) => {
       const values = table.values(column);
       for (let k = 1; k < values.length; ++k) if (isFinite(values[k]) && values[k] !== values[0]) return true;
@@ -58,7 +58,7 @@ export class ParallelPlot {
     return this.columns.flatMap((_, k) => [this.axisX(k), this.pageY(k, row)]);
   }
 
-  draw(painter: Painter, theme: Theme, cursor: number): void {
+  draw(painter: Painter, theme: Theme): void {
     for (let row = 0; row < this.table.rows; row += this.step)
       painter.path(this.points(row), false, { stroke: css(theme.faint), width: 0.5 });
     this.columns.forEach((column, k) => {
@@ -70,6 +70,9 @@ export class ParallelPlot {
       painter.text(x, this.height - 5, short(this.axes[k].first), { ...text, colour: css(theme.faint) });
       painter.text(x, top - 3, short(this.axes[k].last), { ...text, size: 9, colour: css(theme.faint) });
     });
+  }
+
+  drawCursor(painter: Painter, theme: Theme, cursor: number): void {
     if (cursor >= 0 && cursor < this.table.rows)
       painter.path(this.points(cursor), false, { stroke: css(theme.accent), width: 2.5 });
   }

@@ -3,7 +3,7 @@
 import { Painter } from "./painter";
 import { Table, withUnit } from "./table";
 import { css, Theme } from "./theme";
-import { along, Axis, rangeOf, short, ticksOf, valueAt } from "./ticks";
+import { along, Axis, rangeOf, ticksOf, valueAt } from "./ticks";
 
 export interface PlotMark {
   row: number;
@@ -96,15 +96,33 @@ export class Plot {
     return true;
   }
 
-  draw(painter: Painter, theme: Theme, cursor: number): void {
+  /** All but the cursor. */
+  draw(painter: Painter, theme: Theme): void {
     const [ax, ay] = [this.axisX, this.axisY];
     this.axes(painter, theme, ax, ay);
-    painter.clip(left, top, this.width - left - right, this.height - top - bottom);
+    this.clip(painter);
     const xs = this.table.values(this.x);
     this.ys.forEach((y, k) => this.line(painter, theme, ax, ay, xs, this.table.values(y), k));
     this.drawMarks(painter, theme, ax, ay, xs);
-    if (cursor >= 0 && cursor < xs.length) this.cursor(painter, theme, ax, ay, xs, cursor);
     painter.unclip();
+  }
+
+  drawCursor(painter: Painter, theme: Theme, row: number): void {
+    const xs = this.table.values(this.x);
+    if (row < 0 || row >= xs.length) return;
+    const [ax, ay] = [this.axisX, this.axisY];
+    this.clip(painter);
+    const px = this.pageX(ax, xs[row]);
+    painter.path([px, top, px, this.height - bottom], false, { stroke: css(theme.accent), width: 1 });
+    this.ys.forEach((y, k) => {
+      const py = this.pageY(ay, this.table.values(y)[row]);
+      painter.circle(px, py, 3.4, { fill: theme.line(k), stroke: css(theme.paper) });
+    });
+    painter.unclip();
+  }
+
+  private clip(painter: Painter): void {
+    painter.clip(left, top, this.width - left - right, this.height - top - bottom);
   }
 
   private axes(painter: Painter, theme: Theme, ax: Axis, ay: Axis): void {
@@ -143,12 +161,15 @@ export class Plot {
       points[2 * row] = this.pageX(ax, xs[row]);
       points[2 * row + 1] = this.pageY(ay, ys[row]);
     }
-    if (this.scatter || xs.length === 1) {
-      for (let row = 0; row < xs.length; ++row)
-        painter.circle(points[2 * row], points[2 * row + 1], 2.5, { fill: colour });
-    } else if (this.unstable) {
+    // A line of one point, between gaps, would not be seen.
+    const shown = (row: number) => isFinite(points[2 * row] + points[2 * row + 1]);
+    const alone = (row: number) => shown(row) && !shown(row - 1) && !shown(row + 1);
+    for (let row = 0; row < xs.length; ++row) {
+      if (this.scatter || alone(row)) painter.circle(points[2 * row], points[2 * row + 1], 2.5, { fill: colour });
+    }
+    if (!this.scatter && this.unstable) {
       this.partsByStability(painter, points, colour);
-    } else {
+    } else if (!this.scatter) {
       painter.path(points, false, { stroke: colour, width: 1.6, dash: k >= 7 ? [6, 4] : undefined });
     }
     this.extremes(painter, points, ys, colour);
@@ -192,20 +213,10 @@ export class Plot {
     }
   }
 
-  private cursor(painter: Painter, theme: Theme, ax: Axis, ay: Axis, xs: ArrayLike<number>, row: number): void {
-    const px = this.pageX(ax, xs[row]);
-    painter.path([px, top, px, this.height - bottom], false, { stroke: css(theme.accent), width: 1 });
-    this.ys.forEach((y, k) => {
-      const py = this.pageY(ay, this.table.values(y)[row]);
-      painter.circle(px, py, 3.4, { fill: theme.line(k), stroke: css(theme.paper) });
-    });
-  }
-
   /** Names and values at a row, for the legend. */
   legend(row: number): { name: string; value: string; unit: string }[] {
     return this.ys.map((y) => {
-      const values = this.table.values(y);
-      const value = row >= 0 && row < values.length ? short(values[row]) : "–";
+      const value = row >= 0 && row < this.table.rows ? this.table.text(y, row) : "–";
       return { name: this.table.analysis.columns[y].name, value, unit: this.table.unit(y) };
     });
   }

@@ -3,14 +3,16 @@
 import { columnChooser, mostListed } from "./column_chooser";
 import { button, make } from "./dom";
 import { save, saveCanvas } from "./files";
-import { CanvasPainter, SvgPainter } from "./painter";
+import { SvgPainter } from "./painter";
 import { ParallelPlot } from "./parallel_plot";
 import { Plot, PlotMark } from "./plot";
+import { PlotPicture } from "./plot_picture";
 import { Table } from "./table";
 import { css, Theme } from "./theme";
 
 interface View {
   plot: Plot;
+  picture: PlotPicture;
   canvas: HTMLCanvasElement;
   legend: HTMLElement;
 }
@@ -21,7 +23,7 @@ export class PlotPanel {
   private marks: PlotMark[] = [];
   private unstable: boolean[] | null = null;
   private cursor = -1;
-  private parallel: { plot: ParallelPlot; canvas: HTMLCanvasElement } | null = null;
+  private parallel: PlotPicture | null = null;
 
   constructor(private readonly root: HTMLElement, public theme: Theme,
               private readonly chosen: (row: number) => void) {}
@@ -31,18 +33,19 @@ export class PlotPanel {
     this.marks = marks;
     this.unstable = unstable;
     this.views = [];
+    this.parallel = null;
     this.root.replaceChildren();
     if (table.names.length === 0 || table.rows === 0) {
       this.root.append(make("p", { class: "note" }, "This analysis has no rows to plot."));
       return;
     }
-    const adder = button("+ plot", "add a plot", () => this.add(0, [Math.min(1, table.names.length - 1)], true));
+    const adder = button("+ plot", "add a plot", () => this.add(0, table.numeric(2).slice(-1), true));
     this.root.append(make("div", {}, adder));
-    this.parallel = table.analysis.type === "sweep" ? this.addParallel() : null;
+    if (table.analysis.type === "sweep") this.parallel = this.addParallel();
     for (const { x, ys } of this.firstPlots()) this.add(x, ys, false);
   }
 
-  private addParallel() {
+  private addParallel(): PlotPicture | null {
     const plot = new ParallelPlot(this.table);
     if (!plot.worthwhile) return null;
     const canvas = make("canvas", { role: "img", "aria-label": "parallel coordinates" });
@@ -51,7 +54,7 @@ export class PlotPanel {
       this.chosen(this.table.numberOf(plot.rowNear(event.clientX - box.left, event.clientY - box.top)));
     });
     this.root.append(make("div", { class: "plot" }, canvas));
-    return { plot, canvas };
+    return new PlotPicture(plot, canvas);
   }
 
   /** Columns of one unit together, at most three plots; of a path the load over the first displacement. */
@@ -60,7 +63,7 @@ export class PlotPanel {
     if (table.analysis.type === "path" && table.names.length > 1) return [{ x: 1, ys: [0] }];
     if (table.rows === 1) return [];
     const groups = new Map<string, number[]>();
-    for (let c = 1; c < table.names.length && c < mostListed; ++c) {
+    for (const c of table.numeric(mostListed).slice(1)) {
       const list = groups.get(table.unit(c)) ?? [];
       if (list.length < 6) list.push(c);
       groups.set(table.unit(c), list);
@@ -71,7 +74,8 @@ export class PlotPanel {
 
   /** A plot of the columns of one body or element, in front of the others. */
   showColumnsOf(name: string): void {
-    const ys = this.table.names.map((column, k) => (column.startsWith(name + ".") ? k : -1)).filter((k) => k > 0);
+    const ys = this.table.names.map((column, k) => (column.startsWith(name + ".") ? k : -1))
+        .filter((k) => k > 0 && this.table.hasNumbers(k));
     if (ys.length === 0 || this.table.rows < 2) return;
     this.add(0, ys.slice(0, 6), true);
   }
@@ -79,7 +83,8 @@ export class PlotPanel {
   private add(x: number, ys: number[], first: boolean): void {
     const plot = new Plot(this.table, x, ys, this.marks, this.unstable);
     plot.scatter = this.isScattered(x);
-    const view: View = { plot, canvas: make("canvas", { tabindex: "0", role: "img", "aria-label": "plot" }),
+    const canvas = make("canvas", { tabindex: "0", role: "img", "aria-label": "plot" });
+    const view: View = { plot, picture: new PlotPicture(plot, canvas), canvas,
                          legend: make("div", { class: "legend" }) };
     const box = make("div", { class: "plot" });
     box.append(view.legend, view.canvas, this.tools(view, box));
@@ -103,7 +108,7 @@ export class PlotPanel {
   private tools(view: View, box: HTMLElement): HTMLElement {
     const { plot } = view;
     const x = make("select", { title: "horizontal axis", "aria-label": "horizontal axis" });
-    this.table.names.slice(0, mostListed).forEach((name, k) => x.append(new Option(name, String(k))));
+    for (const k of this.table.numeric(mostListed)) x.append(new Option(this.table.names[k], String(k)));
     x.value = String(plot.x);
     x.addEventListener("change", () => {
       plot.x = Number(x.value);
@@ -134,7 +139,7 @@ export class PlotPanel {
                 button("⤢", "show all (double click)", () => (plot.resetZoom(), this.draw())),
                 button("CSV", "save these columns as CSV",
                        () => save(`${name()}.csv`, this.table.csv([...new Set([plot.x, ...plot.ys])]), "text/csv")),
-                button("PNG", "save as PNG", () => saveCanvas(`${name()}.png`, this.picture(view))),
+                button("PNG", "save as PNG", () => saveCanvas(`${name()}.png`, view.picture.onPaper(this.theme, this.cursor))),
                 button("SVG", "save as SVG", () => save(`${name()}.svg`, this.svg(plot), "image/svg+xml")),
                 button("✕", "remove this plot", () => {
                   this.views = this.views.filter((other) => other !== view);
@@ -189,21 +194,16 @@ export class PlotPanel {
     const kept = this.table ? this.table.rowAt(row) : -1;
     if (kept === this.cursor) return;
     this.cursor = kept;
-    this.draw();
+    for (const view of this.views) view.picture.showCursor(this.theme, kept), this.showLegend(view);
+    this.parallel?.showCursor(this.theme, kept);
   }
 
   draw(): void {
-    for (const view of this.views) this.drawView(view);
-    if (!this.parallel) return;
-    const { plot, canvas } = this.parallel;
-    if (canvas.isConnected && canvas.clientWidth > 0) plot.width = canvas.clientWidth;
-    this.drawOn(canvas, plot, false);
+    for (const view of this.views) view.picture.draw(this.theme, this.cursor), this.showLegend(view);
+    this.parallel?.draw(this.theme, this.cursor);
   }
 
-  private drawView(view: View): void {
-    const { plot, canvas, legend } = view;
-    if (canvas.isConnected && canvas.clientWidth > 0) plot.width = canvas.clientWidth;
-    this.drawOn(canvas, plot, false);
+  private showLegend({ plot, legend }: View): void {
     legend.replaceChildren(...plot.legend(this.cursor).map((entry, k) => {
       const mark = make("i");
       mark.style.background = this.theme.line(k);
@@ -212,29 +212,10 @@ export class PlotPanel {
     }));
   }
 
-  private drawOn(canvas: HTMLCanvasElement, plot: Plot | ParallelPlot, onPaper: boolean): void {
-    const ratio = window.devicePixelRatio || 1;
-    canvas.width = Math.round(plot.width * ratio);
-    canvas.height = Math.round(plot.height * ratio);
-    const context = canvas.getContext("2d");
-    if (!context) return;
-    context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    if (onPaper) {
-      context.fillStyle = css(this.theme.paper);
-      context.fillRect(0, 0, plot.width, plot.height);
-    }
-    plot.draw(new CanvasPainter(context), this.theme, this.cursor);
-  }
-
-  private picture(view: View): HTMLCanvasElement {
-    const copy = document.createElement("canvas");
-    this.drawOn(copy, view.plot, true);
-    return copy;
-  }
-
   private svg(plot: Plot): string {
     const painter = new SvgPainter(Math.round(plot.width), plot.height, css(this.theme.paper));
-    plot.draw(painter, this.theme, this.cursor);
+    plot.draw(painter, this.theme);
+    plot.drawCursor(painter, this.theme, this.cursor);
     return painter.finish();
   }
 }

@@ -9,7 +9,7 @@ const mostPoints = 1000;
 
 export function pointPanel(page: Page, named: Trace[]): HTMLElement {
   const root = make("div", {}, make("p", { class: "note" }, "Points whose paths are drawn."));
-  const centroids = page.data.bodies.slice(0, mostBodies)
+  const centroids = page.motion.names.bodies.slice(0, mostBodies)
       .map((name, body) => ({ body, u: 0, v: 0, name: `${name} (centroid)` }));
   for (const point of [...named, ...centroids].slice(0, mostPoints)) {
     const box = make("input", { type: "checkbox" });

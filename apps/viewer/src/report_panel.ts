@@ -1,13 +1,17 @@
 // The tab with what the analysis says of itself: outcome, warnings, named results, lists of modes and critical points.
 
-import { Analysis, FieldRecord, PageData } from "./contract";
+import { Analysis, FieldRecord, Measure, PageData } from "./contract";
 import { make } from "./dom";
+import { Motion } from "./motion";
 import { short } from "./ticks";
 
 function show(value: unknown): string {
   if (typeof value === "number") return short(value);
   if (typeof value === "boolean") return value ? "yes" : "no";
   if (value === null || value === undefined) return "–";
+  if (typeof value === "object" && !Array.isArray(value)) {
+    return Object.entries(value).map(([key, member]) => `${key} = ${show(member)}`).join(", ") || "none";
+  }
   if (Array.isArray(value)) {
     const shown = value.slice(0, 12).map(show).join(", ");
     return value.length > 12 ? `${shown}, … (${value.length})` : shown || "none";
@@ -51,6 +55,26 @@ function modeTable(analysis: Analysis, present: number, chosen: (mode: number) =
               make("table", {}, make("tr", {}, ...head.map((h) => make("th", {}, h))), ...rows));
 }
 
+/** What the analysis measured, with derivatives by parameters where they were asked for. */
+function measureTable(measures: Measure[], goToTime: (t: number) => void): HTMLElement[] {
+  if (measures.length === 0) return [];
+  const parameters = [...new Set(measures.flatMap((measure) => Object.keys(measure.gradient ?? {})))];
+  const timed = measures.some((measure) => measure.t !== undefined);
+  const head = ["measure", "value", ...(timed ? ["t [s]"] : []), ...parameters.map((name) => `d/d(${name})`)];
+  const rows = measures.map((measure) => {
+    const cells = [measure.name, `${show(measure.value)} ${measure.unit === "1" ? "" : measure.unit}`,
+                   ...(timed ? [show(measure.t)] : []), ...parameters.map((name) => show(measure.gradient?.[name]))];
+    const row = make("tr", { tabindex: "0" }, ...cells.map((cell) => make("td", {}, cell)));
+    const go = () => measure.t !== undefined && goToTime(measure.t);
+    row.addEventListener("click", go);
+    row.addEventListener("keydown", (event) => event.key === "Enter" && go());
+    return row;
+  });
+  return [make("h2", {}, "measures"),
+          make("div", { class: "scroll" },
+               make("table", {}, make("tr", {}, ...head.map((h) => make("th", {}, h))), ...rows))];
+}
+
 export interface ReportActions {
   showAnalysis(number: number): void;
   showShape(shape: number): void;
@@ -81,14 +105,15 @@ function analysisList(data: PageData, present: Analysis, chosen: (number: number
   return [make("h2", {}, "analyses"), make("div", { class: "scroll" }, make("table", {}, ...rows))];
 }
 
-export function reportPanel(data: PageData, analysis: Analysis, shape: number, actions: ReportActions): HTMLElement {
+export function reportPanel(data: PageData, motion: Motion, actions: ReportActions): HTMLElement {
+  const { analysis, names, shape } = motion;
   const root = make("div");
   const facts = make("dl");
   const fact = (name: string, value: unknown) => facts.append(make("dt", {}, name), make("dd", {}, show(value)));
   if (analysis.message) root.append(make("p", { class: analysis.status === "ok" ? "" : "warning" }, analysis.message));
   for (const warning of analysis.warnings) root.append(make("p", { class: "warning" }, `⚠ ${warning}`));
   fact("status", analysis.status);
-  fact("bodies, elements", `${data.bodies.length}, ${data.elements.name.length}`);
+  fact("bodies, elements", `${names.bodies.length}, ${names.elements.name.length}`);
   fact("gravity [m/s²]", `${short(data.gravity[0])}, ${short(data.gravity[1])}`);
   if (analysis.dof !== undefined) fact("degrees of freedom", analysis.dof);
   if (analysis.mobility !== undefined) fact("without drivers", analysis.mobility);
@@ -110,7 +135,7 @@ export function reportPanel(data: PageData, analysis: Analysis, shape: number, a
     root.append(make("h2", {}, analysis.type === "equilibrium" ? "softest mode" : "shapes"),
                 modeTable(analysis, shape, (k) => actions.showShape(k)));
   }
-  root.append(...tables, ...analysisList(data, analysis, (k) => actions.showAnalysis(k)),
+  root.append(...measureTable(analysis.measures, (t) => actions.goToTime(t)), ...tables, ...analysisList(data, analysis, (k) => actions.showAnalysis(k)),
               ...parameters(data, analysis));
   if (data.description) root.append(make("h2", {}, "scene"), make("p", {}, data.description));
   for (const note of data.notes) root.append(make("p", { class: "note" }, note));

@@ -51,7 +51,7 @@ export class Stage {
     const { drawing } = this;
     const redundant = new Set<number>();
     const names = new Set(motion.analysis.redundant);
-    if (names.size > 0) motion.data.elements.name.forEach((name, k) => names.has(name) && redundant.add(k));
+    if (names.size > 0) motion.names.elements.name.forEach((name, k) => names.has(name) && redundant.add(k));
     this.shapes = new ShapeTable(drawing.shapes);
     this.painter = new MechanismPainter(drawing, this.shapes, redundant);
     this.arrows = new Arrows(motion);

@@ -2,6 +2,7 @@
 
 import { Analysis } from "./contract";
 import { decodeNumbers } from "./decode";
+import { short } from "./ticks";
 
 export class Table {
   private readonly known = new Map<number, ArrayLike<number>>();
@@ -30,6 +31,22 @@ export class Table {
     return values;
   }
 
+  /** Whether values have a place along an axis: words have none. */
+  hasNumbers(column: number): boolean {
+    return this.analysis.columns[column].words === undefined;
+  }
+
+  /** The columns that can be plotted, `most` at most. */
+  numeric(most: number): number[] {
+    return this.names.map((_, k) => k).filter((k) => this.hasNumbers(k)).slice(0, most);
+  }
+
+  /** A value for people. */
+  text(column: number, row: number): string {
+    const value = this.values(column)[row];
+    return this.analysis.columns[column].words?.[String(value)] ?? short(value);
+  }
+
   find(name: string): number {
     return this.analysis.columns.findIndex((column) => column.name === name);
   }
@@ -50,8 +67,12 @@ export class Table {
   csv(columns: number[]): string {
     const quoted = (name: string) => (/[",\r\n]/.test(name) ? `"${name.replace(/"/g, '""')}"` : name);
     const lines = [columns.map((c) => quoted(this.analysis.columns[c].name)).join(",")];
-    const values = columns.map((c) => this.values(c));
-    for (let k = 0; k < this.rows; ++k) lines.push(values.map((v) => (isFinite(v[k]) ? String(v[k]) : "")).join(","));
+    const cell = (c: number, k: number) => {
+      const value = this.values(c)[k];
+      if (!this.hasNumbers(c)) return quoted(this.text(c, k));
+      return isFinite(value) ? String(value) : "";
+    };
+    for (let k = 0; k < this.rows; ++k) lines.push(columns.map((c) => cell(c, k)).join(","));
     return lines.join("\r\n") + "\r\n";
   }
 }

@@ -3,7 +3,6 @@
 import { button, make } from "./dom";
 import { save } from "./files";
 import { Table, withUnit } from "./table";
-import { short } from "./ticks";
 
 const mostRows = 300;
 const mostColumns = 40;
@@ -18,7 +17,7 @@ export function tablePanel(table: Table, name: string, chosen: (row: number) => 
     make("tr", {}, ...columns.map((c) => make("th", {}, withUnit(names[c], table.unit(c))))),
   ];
   for (let row = 0; row < rows; row += step) {
-    const line = make("tr", { tabindex: "0" }, ...columns.map((c) => make("td", {}, short(table.values(c)[row]))));
+    const line = make("tr", { tabindex: "0" }, ...columns.map((c) => make("td", {}, table.text(c, row))));
     const number = table.numberOf(row);
     line.addEventListener("click", () => chosen(number));
     line.addEventListener("keydown", (event) => event.key === "Enter" && chosen(number));

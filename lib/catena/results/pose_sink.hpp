@@ -6,6 +6,7 @@
 // for a pose sink unless there is one.
 #pragma once
 
+#include <memory>
 #include <span>
 
 #include "catena/columns/snapshot.hpp"
@@ -16,7 +17,7 @@ class PoseSink {
  public:
   virtual ~PoseSink() = default;
   /// The model of what comes: first that of the scene, then that of every analysis, in which parameters may differ.
-  virtual void begin_poses(const Model& model) = 0;
+  virtual void begin_poses(std::shared_ptr<const Model> model) = 0;
   /// A configuration, with what needs() asked for where the analysis can give it.
   virtual void pose(const Snapshot& snapshot) = 0;
   /// A motion from the last pose along which something is shown: rates of the plan's coordinates, m and rad.

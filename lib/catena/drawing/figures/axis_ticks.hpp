@@ -3,7 +3,8 @@
 //   linear   multiples of 1, 2 or 5 times a power of ten, about `wanted` of them
 //   log      powers of ten, every second, third ... one where there are many
 //
-// All labels of an axis have the same number of decimals. Values beyond 1e5, or below 1e-4, share a power of ten.
+// Linear labels are exact to the step: with the same decimals all along the axis, or, where its largest value is 1e5
+// and more or below 1e-3, in the form 2.5e-6.
 #pragma once
 
 #include <span>

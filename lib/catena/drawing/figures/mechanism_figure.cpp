@@ -27,6 +27,12 @@ struct Extent {
   }
 };
 
+/// Of an applied force: where it acts, its direction, and its length, m.
+struct Arrow {
+  Vec2<double> tip, along;
+  double length;
+};
+
 class Figure {
  public:
   Figure(const Drawing& drawing, const MechanismFigure& figure) : drawing_(drawing), figure_(figure) {}
@@ -41,13 +47,16 @@ class Figure {
   }
   void draw_pose(VectorCanvas& canvas, const FigurePose& pose, double pale) const;
   void draw_line(VectorCanvas& canvas, const DrawnLine& line, const Placement& place, int body, double pale) const;
-  void draw_loads(VectorCanvas& canvas, const FigurePose& pose) const;
+  void draw_loads(VectorCanvas& canvas) const;
+  /// Of the last pose.
+  std::vector<Arrow> arrows() const;
+  Extent extent_with_arrows() const;
 
   const Drawing& drawing_;
   const MechanismFigure& figure_;
   Extent extent_;
   double scale_ = 1, room_ = 0, width_ = 0, height_ = 0;
-  double size_ = 0;  // of symbols, m
+  double size_ = 0, longest_arrow_ = 0;  // of symbols and of arrows, m
 };
 
 // With symbols of no size: they get the room around everything.
@@ -67,21 +76,52 @@ void Figure::find_extent() {
   if (!(extent_.low.x <= extent_.high.x)) extent_.include({0, 0});
 }
 
+std::vector<Arrow> Figure::arrows() const {
+  const FigurePose& pose = figure_.poses.back();
+  double largest = 0;
+  for (const Vec2<double>& load : pose.loads) largest = std::max(largest, norm(load));
+  std::vector<Arrow> found;
+  for (std::size_t k = 0; k < pose.loads.size(); ++k) {
+    const DrawnLoad& load = drawing_.loads[k];
+    const Frame<double> frame = frame_of_body(pose.frames, load.body);
+    const Vec2<double> force = load.in_body_axes ? frame.axis(pose.loads[k]) : pose.loads[k];
+    const double size = norm(force);
+    if (size > 0) found.push_back({frame.point(load.point), force / size, longest_arrow_ * size / largest});
+  }
+  return found;
+}
+
+Extent Figure::extent_with_arrows() const {
+  Extent extent = extent_;
+  for (const Arrow& arrow : arrows()) extent.include(arrow.tip - arrow.length * arrow.along);
+  return extent;
+}
+
+// Symbols and arrows have their size on the page, so that the room for them depends on the scale: each pass leaves as
+// much as was needed at the scale before. An arrow takes a quarter of the figure at most; scales fall from pass to pass
+// towards one that is at least half of the first.
 void Figure::choose_scale() {
   const Vec2<double> span = extent_.high - extent_.low;
-  width_ = figure_.width;
   double points = figure_.symbol_points;
-  for (int pass = 0; pass < 3; ++pass) {  // the room depends on the symbols, and these on the scale
+  Extent shown = extent_;
+  Vec2<double> beyond{};  // what arrows need on the page, points
+  constexpr int passes = 20;
+  for (int pass = 0; pass < passes; ++pass) {
     room_ = symbol_room * points + 2;
-    const double inside = width_ - 2 * room_, tall = figure_.most_height - 2 * room_;
-    const double largest = std::max(span.x, span.y);
-    scale_ = largest > 0 ? std::min(span.x > 0 ? inside / span.x : INFINITY, span.y > 0 ? tall / span.y : INFINITY) : 1;
+    const double inside = figure_.width - 2 * room_;
+    const auto fitting = [&](double length, double taken) { return length > 0 ? (inside - taken) / length : INFINITY; };
+    scale_ = std::min(fitting(span.x, beyond.x), fitting(span.y, beyond.y));
+    if (!std::isfinite(scale_)) scale_ = 1;  // a single place
     if (drawing_.typical_length > 0)
       points = std::clamp(0.25 * drawing_.typical_length * scale_, smallest_symbol, figure_.symbol_points);
+    size_ = points / scale_;
+    longest_arrow_ = std::min(load_length * points, inside / 4) / scale_;
+    shown = extent_with_arrows();
+    beyond = scale_ * (shown.high - shown.low - span);
   }
-  width_ = std::min(width_, span.x * scale_ + 2 * room_);
-  height_ = span.y * scale_ + 2 * room_;
-  size_ = points / scale_;
+  extent_ = shown;
+  width_ = (shown.high.x - shown.low.x) * scale_ + 2 * room_;
+  height_ = (shown.high.y - shown.low.y) * scale_ + 2 * room_;
 }
 
 void Figure::draw_line(VectorCanvas& canvas, const DrawnLine& line, const Placement& placement, int body,
@@ -118,23 +158,16 @@ void Figure::draw_pose(VectorCanvas& canvas, const FigurePose& pose, double pale
   }
 }
 
-void Figure::draw_loads(VectorCanvas& canvas, const FigurePose& pose) const {
-  double largest = 0;
-  for (const Vec2<double>& load : pose.loads) largest = std::max(largest, norm(load));
-  if (!(largest > 0)) return;
+void Figure::draw_loads(VectorCanvas& canvas) const {
   const Paint line{.stroke = role_colour(Role::driver, ground), .width = 1.4};
-  for (std::size_t k = 0; k < pose.loads.size(); ++k) {
-    const DrawnLoad& load = drawing_.loads[k];
-    const Frame<double> frame = frame_of_body(pose.frames, load.body);
-    const Vec2<double> force = load.in_body_axes ? frame.axis(pose.loads[k]) : pose.loads[k];
-    if (!(norm(force) > 0)) continue;
-    const Vec2<double> along = force / norm(force), across = perpendicular(along), tip = frame.point(load.point);
-    const double length = load_length * size_ * norm(force) / largest, head = std::min(1.5 * size_, length);
-    const Vec2<double> shaft[] = {on_page(tip - length * along), on_page(tip - head * along)};
-    const Vec2<double> arrow[] = {on_page(tip), on_page(tip - head * along + 0.4 * head * across),
-                                  on_page(tip - head * along - 0.4 * head * across)};
+  for (const Arrow& arrow : arrows()) {
+    const Vec2<double>&along = arrow.along, across = perpendicular(along), tip = arrow.tip;
+    const double head = std::min(1.5 * size_, arrow.length);
+    const Vec2<double> shaft[] = {on_page(tip - arrow.length * along), on_page(tip - head * along)};
+    const Vec2<double> corners[] = {on_page(tip), on_page(tip - head * along + 0.4 * head * across),
+                                    on_page(tip - head * along - 0.4 * head * across)};
     canvas.path(shaft, false, line);
-    canvas.path(arrow, true, {.fill = line.stroke});
+    canvas.path(corners, true, {.fill = line.stroke});
   }
 }
 
@@ -151,7 +184,7 @@ std::string Figure::draw(const CanvasMaker& make_canvas) {
     for (const Vec2<double>& p : trace) points.push_back(on_page(p));
     canvas->path(points, false, {.stroke = role_colour(Role::driver, ground), .width = 1.2});
   }
-  draw_loads(*canvas, figure_.poses.back());
+  draw_loads(*canvas);
   return canvas->finish();
 }
 

@@ -23,9 +23,7 @@ struct FigurePose {
 };
 
 struct MechanismFigure {
-  std::string title;
-  double width = 480;        ///< points
-  double most_height = 480;  ///< points; the width is reduced where the figure would be taller
+  double width = 480;        ///< points; a figure that is taller than wide has this height, and is narrower
   double symbol_points = 5;  ///< size of symbols
   std::vector<FigurePose> poses{};
   std::vector<std::vector<Vec2<double>>> traces{};  ///< paths of points, m

@@ -1,5 +1,6 @@
 #include "catena/drawing/figures/pdf_canvas.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -84,10 +85,12 @@ void PdfCanvas::end_path(const Paint& paint, bool closed) {
 }
 
 void PdfCanvas::path(std::span<const Vec2<double>> points, bool closed, const Paint& paint) {
+  const auto is_finite = [](const Vec2<double>& p) { return std::isfinite(p.x) && std::isfinite(p.y); };
+  if (std::none_of(points.begin(), points.end(), is_finite)) return;  // a path without a point is an error in PDF
   set_paint(paint);
   bool begun = false;
   for (const Vec2<double>& p : points) {
-    if (!std::isfinite(p.x) || !std::isfinite(p.y)) {
+    if (!is_finite(p)) {
       begun = false;
       continue;
     }
@@ -120,7 +123,7 @@ void PdfCanvas::text(const Vec2<double>& place, std::string_view text, const Tex
   const double length = style.size * helvetica_width(text);
   const double back = style.anchor == TextAnchor::start ? 0 : style.anchor == TextAnchor::middle ? length / 2 : length;
   const Vec2<double> start = style.upwards ? place + Vec2<double>{0, back} : place - Vec2<double>{back, 0};
-  append_colour(style.colour, "rg");
+  append_colour(black, "rg");
   content_ += "BT /F1 ";
   append_short(content_, style.size);
   content_ += style.upwards ? " Tf 0 1 -1 0 " : " Tf 1 0 0 1 ";

@@ -13,8 +13,6 @@ class PdfCanvas final : public VectorCanvas {
  public:
   PdfCanvas(double width, double height, std::string_view title);
 
-  double width() const override { return width_; }
-  double height() const override { return height_; }
   void path(std::span<const Vec2<double>> points, bool closed, const Paint& paint) override;
   void circle(const Vec2<double>& centre, double radius, const Paint& paint) override;
   void text(const Vec2<double>& place, std::string_view text, const TextStyle& style) override;

@@ -76,7 +76,14 @@ void draw_panel(VectorCanvas& canvas, const Plot& plot, const PlotPanel& panel, 
       points.push_back(box.at(x.place(plot.x[row]), y.place(panel.lines[k].y[row])));
     const Paint paint{.stroke = body_colour(static_cast<int>(k)), .width = 1.2, .dashed = k >= 7};
     canvas.path(points, false, paint);
-    if (points.size() == 1) canvas.circle(points.front(), 2, {.fill = paint.stroke});
+    // A line of one point, between gaps, would not be seen.
+    const auto shown = [&](std::size_t row) {
+      return row < points.size() && std::isfinite(points[row].x + points[row].y);
+    };
+    for (std::size_t row = 0; row < points.size(); ++row) {
+      if (shown(row) && (row == 0 || !shown(row - 1)) && !shown(row + 1))
+        canvas.circle(points[row], 2, {.fill = paint.stroke});
+    }
   }
   canvas.unclip();
   const std::string name = panel.lines.size() == 1 ? with_unit(panel.lines.front().name, panel.unit)

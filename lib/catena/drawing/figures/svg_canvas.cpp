@@ -56,7 +56,7 @@ void append_point(std::string& out, const Vec2<double>& p) {
 
 }  // namespace
 
-SvgCanvas::SvgCanvas(double width, double height, std::string_view title) : width_(width), height_(height) {
+SvgCanvas::SvgCanvas(double width, double height, std::string_view title) {
   out_ = "<svg xmlns=\"http://www.w3.org/2000/svg\"";
   append_attribute(out_, "width", width);
   append_attribute(out_, "height", height);
@@ -133,7 +133,7 @@ void SvgCanvas::text(const Vec2<double>& place, std::string_view text, const Tex
   }
   append_attribute(out_, "font-size", style.size);
   out_ += " fill=\"";
-  append_colour(out_, style.colour);
+  append_colour(out_, black);
   out_ += '"';
   if (style.anchor != TextAnchor::start)
     out_ += style.anchor == TextAnchor::middle ? " text-anchor=\"middle\"" : " text-anchor=\"end\"";

@@ -12,8 +12,6 @@ class SvgCanvas final : public VectorCanvas {
   /// `title` is what readers of the file are told it shows.
   SvgCanvas(double width, double height, std::string_view title);
 
-  double width() const override { return width_; }
-  double height() const override { return height_; }
   void path(std::span<const Vec2<double>> points, bool closed, const Paint& paint) override;
   void circle(const Vec2<double>& centre, double radius, const Paint& paint) override;
   void text(const Vec2<double>& place, std::string_view text, const TextStyle& style) override;
@@ -25,7 +23,6 @@ class SvgCanvas final : public VectorCanvas {
   void end_path();
   void append_paint(const Paint& paint);
 
-  double width_, height_;
   std::string out_, data_;  // the file so far; the path that may still grow
   Paint paint_;
   int clips_ = 0;

@@ -32,18 +32,16 @@ struct Paint {
 
 enum class TextAnchor { start, middle, end };
 
+/// Texts are black.
 struct TextStyle {
   double size = 9;
   TextAnchor anchor = TextAnchor::start;
-  Colour colour = black;
   bool upwards = false;  ///< turned by a quarter, read from below
 };
 
 class VectorCanvas {
  public:
   virtual ~VectorCanvas() = default;
-  virtual double width() const = 0;
-  virtual double height() const = 0;
   /// Corners that are not finite end a line, and the next one begins it anew.
   virtual void path(std::span<const Vec2<double>> points, bool closed, const Paint& paint) = 0;
   virtual void circle(const Vec2<double>& centre, double radius, const Paint& paint) = 0;

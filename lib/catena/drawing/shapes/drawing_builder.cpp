@@ -54,6 +54,14 @@ void DrawingBuilder::add_guide(DrawnGuide guide, const DrawnShape& shape, DrawnS
   drawing_.guides.push_back(guide);
 }
 
+void DrawingBuilder::follow(int element, int body, const Vec2<double>& local) {
+  // Those of the element that is being drawn came last.
+  for (auto guide = drawing_.guides.rbegin(); guide != drawing_.guides.rend(); ++guide) {
+    if (drawing_.shapes[static_cast<std::size_t>(guide->shape)].element != element) return;
+    if (guide->body_j == body) guide->point_j = local;
+  }
+}
+
 void DrawingBuilder::attach(int body, const Vec2<double>& local) {
   if (body >= 0) places_.emplace_back(body, local);
 }

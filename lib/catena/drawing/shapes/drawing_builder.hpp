@@ -28,6 +28,8 @@ class DrawingBuilder {
   void add_load(const DrawnLoad& load) { drawing_.loads.push_back(load); }
   /// `guide.shape` is set here.
   void add_guide(DrawnGuide guide, const DrawnShape& shape, DrawnSymbol look);
+  /// The guides of an element along which something fixed in this body goes reach as far as this point of it does.
+  void follow(int element, int body, const Vec2<double>& local);
 
   /// The body's link reaches to this place.
   void attach(int body, const Vec2<double>& local);

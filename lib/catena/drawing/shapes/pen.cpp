@@ -108,6 +108,7 @@ void Pen::tie(const Vec2<double>& s_i, const Vec2<double>& s_j) {
 void Pen::face_on_j(const Vec2<double>& s_j, const Vec2<double>& axis_j) {
   builder_.attach(j_, s_j);
   builder_.has_look(j_);
+  builder_.follow(element_, j_, s_j);
   point(j_, s_j, j_, axis_j, face_symbol());
 }
 

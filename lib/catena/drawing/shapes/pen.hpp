@@ -43,6 +43,7 @@ class Pen {
   void rack_and_pinion(const Vec2<double>& s_i, const Vec2<double>& axis_i, const Vec2<double>& s_j, double radius,
                        int side);
 
+  /// Curves come before the point that follows them: a straight one is drawn as far as that point goes.
   void curve_on_i(const BodyCurve<double>& curve) { curve_on(i_, curve, 0); }
   void curve_on_j(const BodyCurve<double>& curve) { curve_on(j_, curve, 0); }
   /// A curve that is free on its side `side` alone: the other one is hatched.

@@ -52,6 +52,7 @@ void Pen::curve_on(int body, const BodyCurve<double>& curve, int side) {
   }
   DrawnLine line{.role = body < 0 ? Role::support : Role::curve};
   if (circle) {
+    builder_.follow(element_, body, curve.centre());
     line.points = {curve.centre()};
     line.radius = curve.radius();
   } else {
@@ -67,6 +68,7 @@ void Pen::curve_on(int body, const BodyCurve<double>& curve, int side) {
 
 void Pen::follower_on_j(const Vec2<double>& s_j, double radius) {
   builder_.attach(j_, s_j);
+  builder_.follow(element_, j_, s_j);
   if (!(radius > 0)) return point(j_, s_j, ground, {1, 0}, pin_symbol());
   builder_.has_look(j_);
   builder_.add({.element = element_, .body_i = j_},

@@ -45,9 +45,11 @@ AnalysisDescription make(std::string_view name, std::string_view summary, std::s
 std::vector<AnalysisDescription> describe_all() {
   return {
       make("check", "Bodies, equations, degrees of freedom by count and by rank, redundant constraints, islands.",
-           "bodies, rows, rank, dof, mobility, redundant, islands", false, {at_time}),
+           "bodies, rows, rank, dof, mobility, redundant, islands, free_bodies, free_motions and moving_freely (what "
+           "nothing resists), misfits (equations that are not met)",
+           false, {at_time}),
       make("assemble", "The configuration nearest to the given one that meets all constraints.",
-           "residual, moved, iterations", false, {outputs, at_time}),
+           "residual, moved, iterations, misfits (equations that are not met)", false, {outputs, at_time}),
       make("kinematics", "Positions, velocities and accelerations of a driven mechanism over time.",
            "dof, mobility, singular", true, {outputs, until, every, at_times, free_motions, branch, measures}),
       make("inverse_dynamics", "Loads of drivers and reactions in a driven mechanism over time.",
@@ -81,7 +83,8 @@ std::vector<AnalysisDescription> describe_all() {
             measures}),
       make("equilibrium", "A configuration at rest, and whether it is stable.",
            "energy, stable, neutral, negative_modes, free_motions and moving_freely (what nothing resists to second "
-           "order), residual, solver, iterations, active (the closed gaps), equilibria",
+           "order), residual, solver, iterations, active (the closed gaps), equilibria; with friction "
+           "held and utilisation",
            false,
            {outputs,
             at_time,

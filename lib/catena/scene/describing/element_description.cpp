@@ -56,7 +56,6 @@ ElementDescription describe_element(int number) {
   }
   if constexpr (requires { E::one_sided; }) d.force = d.one_sided = true;
   if constexpr (requires { E::second_body_optional; }) d.second_body_optional = E::second_body_optional;
-  if constexpr (requires { E::squared; }) d.squared = E::squared;
   const auto describe = [&](const auto&... field) { (d.fields.push_back(describe_field(field)), ...); };
   if constexpr (requires { E::keys(); }) {
     d.bodies = 0;

@@ -54,7 +54,6 @@ struct ElementDescription {
   int number = 0;                           ///< in the list of constraint types, or of force types
   int rows = 0, bodies = 1, functions = 0;  ///< bodies: 0 where a column says which
   bool second_body_optional = false;
-  bool squared = false;  ///< its value is a distance, which may not vanish
   int slots = 0;
   std::vector<FieldDescription> fields;
 

@@ -11,6 +11,16 @@ namespace {
 constexpr double overlap = 1e-9;
 constexpr std::size_t most = 10;
 
+/// How far the element is violated at the evaluator's configuration; 0 where it is not.
+double depth_of(const Evaluator& evaluator, int element) {
+  const double depth = -evaluator.measure(element, {}, {}).value;
+  return depth > overlap * evaluator.length_scale() ? depth : 0;
+}
+
+void tell_of_others(std::size_t violated, std::vector<std::string>& sentences) {
+  if (violated > most) sentences.push_back(fmt::format("{} more one-sided elements are violated", violated - most));
+}
+
 }  // namespace
 
 GapWatch::GapWatch(const Model& model) : model_(model) {
@@ -19,8 +29,8 @@ GapWatch::GapWatch(const Model& model) : model_(model) {
 
 void GapWatch::observe(const Snapshot& row) {
   for (Worst& worst : worst_) {
-    const double depth = -row.evaluator.measure(worst.element, {}, {}).value;
-    if (depth <= overlap * row.evaluator.length_scale()) continue;
+    const double depth = depth_of(row.evaluator, worst.element);
+    if (!(depth > 0)) continue;
     if (worst.depth == 0) worst.first = row.t;
     if (depth > worst.depth) worst.depth = depth, worst.t = row.t;
   }
@@ -36,9 +46,21 @@ std::vector<std::string> GapWatch::warnings() const {
         "regardless",
         model_.element_type(worst.element), model_.element_name(worst.element), worst.first, worst.depth, worst.t));
   }
-  if (violated > static_cast<std::ptrdiff_t>(most))
-    sentences.push_back(
-        fmt::format("{} more one-sided elements are violated", violated - static_cast<std::ptrdiff_t>(most)));
+  tell_of_others(static_cast<std::size_t>(violated), sentences);
+  return sentences;
+}
+
+std::vector<std::string> violated_gaps(const Evaluator& evaluator) {
+  const Model& model = evaluator.model();
+  std::vector<std::string> sentences;
+  std::size_t violated = 0;
+  for (const int element : model.gaps()) {
+    const double depth = depth_of(evaluator, element);
+    if (!(depth > 0) || ++violated > most) continue;
+    sentences.push_back(fmt::format("{} \"{}\" is violated by {:.3g} here: assembly leaves one-sided elements out",
+                                    model.element_type(element), model.element_name(element), depth));
+  }
+  tell_of_others(violated, sentences);
   return sentences;
 }
 

@@ -28,4 +28,7 @@ class GapWatch {
   std::vector<Worst> worst_;
 };
 
+/// Those that the evaluator's configuration violates, which was assembled without them: one sentence each, ten at most.
+std::vector<std::string> violated_gaps(const Evaluator& evaluator);
+
 }  // namespace catena

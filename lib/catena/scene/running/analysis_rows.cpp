@@ -79,9 +79,26 @@ void AnalysisRows::begin() {
 }
 
 Needs AnalysisRows::needs() const {
-  Needs needs = needs_of(context_, columns_, sources_);
+  Needs needs = columns_.needs();
+  if (!drawn_) needs |= drawn_needs();
   if (!measures_.empty()) needs |= measures_.needs();
   return needs;
+}
+
+Needs AnalysisRows::drawn_needs() const {
+  if (!context_.poses) return {};
+  Needs needs = context_.poses->needs();
+  needs.velocity = needs.velocity && sources_.velocity;
+  needs.acceleration = needs.acceleration && sources_.acceleration;
+  needs.multipliers = needs.multipliers && sources_.multipliers;
+  needs.work = needs.work && sources_.work;
+  return needs;
+}
+
+void AnalysisRows::draw(const Snapshot& snapshot) const {
+  if (!context_.poses) return;
+  const std::optional<Snapshot> seen = drawn_ ? drawn_(snapshot) : std::nullopt;
+  context_.poses->pose(seen ? *seen : snapshot);
 }
 
 void AnalysisRows::tell(double t) const {
@@ -109,19 +126,19 @@ void AnalysisRows::look_since_last_row(const Snapshot& snapshot) {
 bool AnalysisRows::observe(const Snapshot& snapshot) {
   tell(snapshot.t);
   if (gaps_) gaps_->observe(snapshot);
-  if (context_.poses) context_.poses->pose(snapshot);
+  draw(snapshot);
   look_since_last_row(snapshot);
   measures_.take_row(snapshot, !timed_ || rows_alone_);
   columns_.evaluate(snapshot, values_);
   if (row_derivatives_) {
     const std::size_t plain = columns_.size(), first = plain > 0 && info_[0].unit == UnitKind::time ? 1 : 0;
     const auto parameters = static_cast<std::size_t>(derivatives_->parameters());
-    std::vector<double> derivatives(plain * parameters, std::numeric_limits<double>::quiet_NaN());
+    row_gradients_.assign(plain * parameters, std::numeric_limits<double>::quiet_NaN());
     if (derivatives_->find(snapshot))
-      derivatives_->differentiate(columns_, snapshot, derivatives);
+      derivatives_->differentiate(columns_, snapshot, row_gradients_);
     else
       ++missing_;
-    std::copy(derivatives.begin() + static_cast<std::ptrdiff_t>(first * parameters), derivatives.end(),
+    std::copy(row_gradients_.begin() + static_cast<std::ptrdiff_t>(first * parameters), row_gradients_.end(),
               values_.begin() + static_cast<std::ptrdiff_t>(plain));
   }
   ++rows_;
@@ -129,9 +146,8 @@ bool AnalysisRows::observe(const Snapshot& snapshot) {
 }
 
 void AnalysisRows::finish(AnalysisResult& result) {
-  result.has_rows = true;
-  result.columns = info_;
-  result.rows = rows_;
+  take_rows(result, std::move(info_), rows_);
+  for (const std::string& note : columns_.notes()) result.report.warnings.push_back(note);
   for (MeasureResult& measure : measures_.results()) {
     if (timed_ && rows_alone_ && measure.trouble.empty())
       measure.trouble = "taken from the rows alone: this motion is not looked at between them";

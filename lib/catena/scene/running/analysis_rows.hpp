@@ -29,6 +29,10 @@ class AnalysisRows final : public RowObserver {
   /// made at the first row, from its snapshot.
   using Look = std::function<std::optional<Snapshot>(double)>;
   void look_by(std::function<Look(const Snapshot&)> make) { make_look_ = std::move(make); }
+  /// Where those who draw look, if the analysis computes nothing for them; before begin(). What it gives is valid until
+  /// the next call; where it gives nothing they see the row as it is.
+  using Drawn = std::function<std::optional<Snapshot>(const Snapshot&)>;
+  void draw_by(Drawn drawn) { drawn_ = std::move(drawn); }
   /// Nobody can look between rows: measures are those of the rows, and say so.
   void take_rows_alone() { rows_alone_ = true; }
   /// One-sided elements do not take part in the analysis: the rows tell which of them are violated.
@@ -36,8 +40,10 @@ class AnalysisRows final : public RowObserver {
   /// Announces the columns to the sink.
   void begin();
 
-  /// Of the columns, and of what measures look at.
+  /// Of the columns, of what measures look at, and of those who draw, unless they look elsewhere.
   Needs needs() const;
+  /// What those who draw want of what this analysis can give.
+  Needs drawn_needs() const;
   bool observe(const Snapshot& snapshot) override;
   bool proceed(double t) override;
   bool wants_stretches() const override {
@@ -46,12 +52,12 @@ class AnalysisRows final : public RowObserver {
   bool cover(const MotionStretch& stretch) override;
 
   std::int64_t rows() const { return rows_; }
-  StateDerivatives* derivatives() { return derivatives_.get(); }
-  /// Columns, rows, measures and what is to be said of them.
+  /// Columns, rows, measures and what is to be said of them, after the report was taken over; the last call.
   void finish(AnalysisResult& result);
 
  private:
   void tell(double t) const;
+  void draw(const Snapshot& snapshot) const;
   void look_since_last_row(const Snapshot& snapshot);
 
   const ColumnSet& columns_;
@@ -60,10 +66,11 @@ class AnalysisRows final : public RowObserver {
   std::unique_ptr<StateDerivatives> derivatives_;
   std::function<Look(const Snapshot&)> make_look_;
   Look look_;
+  Drawn drawn_;
   std::optional<GapWatch> gaps_;
   ColumnSources sources_;
   std::vector<ColumnInfo> info_;
-  std::vector<double> values_;
+  std::vector<double> values_, row_gradients_;  // of one row, kept for their memory
   bool timed_, row_derivatives_ = false, rows_alone_ = false;
   double first_, last_, row_before_ = 0;
   std::int64_t rows_ = 0, missing_ = 0;  // missing_: rows without derivatives

@@ -90,26 +90,8 @@ std::optional<TimeGrid> time_grid(const AnalysisContext& context, Report& report
   return grid;
 }
 
-Needs needs_of(const AnalysisContext& context, const ColumnSet& columns, const ColumnSources& sources) {
-  Needs needs = columns.needs();
-  if (!context.poses) return needs;
-  const Needs drawn = context.poses->needs();
-  needs.velocity = needs.velocity || (drawn.velocity && sources.velocity);
-  needs.multipliers = needs.multipliers || (drawn.multipliers && sources.multipliers);
-  return needs;
-}
-
 PlanOptions plan_options(const Model& model, const std::vector<std::string>& outputs) {
   return {elements_with_reactions(model, outputs)};
-}
-
-void take_report(AnalysisResult& result, AnalysisReport report, const ColumnSet* columns, std::int64_t rows) {
-  result.report = std::move(report);
-  if (!columns) return;
-  result.has_rows = true;
-  result.columns.assign(columns->info().begin(), columns->info().end());
-  result.rows = rows;
-  for (const std::string& note : columns->notes()) result.report.warnings.push_back(note);
 }
 
 }  // namespace catena

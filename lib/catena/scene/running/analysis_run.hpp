@@ -42,9 +42,9 @@ struct AnalysisContext {
   ParameterSeeds seeds{};                 ///< values of parameters besides those of the task's table
   const DesignRequest* design = nullptr;  ///< nullptr: no derivatives
   std::string_view parameter_name{};      ///< of the task's parameter
-  /// The value of that parameter with which the analysis ended, and with which the next one begins.
-  std::optional<double> parameter_at_end{};
-  ParameterSeeds values_at_end{};           ///< values that an optimisation found, with which the next one begins
+  /// Of parameters that a path or an optimisation changed: with these values the next analysis begins. Empty where it
+  /// did not succeed.
+  ParameterSeeds values_at_end{};
   bool estimate_error = false;              ///< of dynamics
   CheckpointRequest* checkpoint = nullptr;  ///< nullptr: no analysis has to pause
   PoseSink* poses = nullptr;                ///< nullptr: nobody draws
@@ -88,14 +88,15 @@ inline void refuse(AnalysisResult& result, std::string message) {
   result.report.message = std::move(message);
 }
 
-/// What an analysis must compute for its columns and for those who draw; the latter get what it can give.
-Needs needs_of(const AnalysisContext& context, const ColumnSet& columns, const ColumnSources& sources);
-
 /// The names whose reactions must be solved for, as plan options.
 PlanOptions plan_options(const Model& model, const std::vector<std::string>& outputs);
 
-/// Takes over the report of an analysis, in the order: outcome, columns, notes.
-void take_report(AnalysisResult& result, AnalysisReport report, const ColumnSet* columns, std::int64_t rows);
+/// What the result says of the rows that went to the sink.
+inline void take_rows(AnalysisResult& result, std::vector<ColumnInfo> columns, std::int64_t rows) {
+  result.has_rows = true;
+  result.columns = std::move(columns);
+  result.rows = rows;
+}
 
 /// Runs an analysis that goes through time, from the present state, and leaves the state where it ended. `prepare` gets
 /// the rows before the run.
@@ -114,7 +115,7 @@ void run_over_time(AnalysisContext& context, AnalysisResult& result, Analysis& a
   AnalysisReport report = analysis.run(grid, rows.needs(), rows);
   for (std::string& doubt : gears_that_do_not_fit(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
   context.state = analysis.state();
-  take_report(result, std::move(report), &columns, rows.rows());
+  result.report = std::move(report);
   rows.finish(result);
 }
 

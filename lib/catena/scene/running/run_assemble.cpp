@@ -9,6 +9,7 @@
 #include "catena/analysis/pose/mobility.hpp"
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
+#include "catena/scene/judging/gap_watch.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 
 namespace catena {
@@ -45,22 +46,6 @@ void add_misfits(AnalysisResult& result, const AssemblyOutcome& outcome, const M
                        {"unit", std::string(misfit.angle ? "rad" : "m")}});
   }
   result.fields.push_back({"misfits", std::move(records)});
-}
-
-/// One-sided elements do not take part in assembly: those that its outcome violates are named.
-void warn_of_closed_gaps(const Evaluator& evaluator, AnalysisReport& report) {
-  constexpr double overlap = 1e-9;
-  constexpr std::size_t most = 10;
-  const Model& model = evaluator.model();
-  std::size_t count = 0;
-  for (const int element : model.gaps()) {
-    const double gap = evaluator.measure(element, {}, {}).value;
-    if (gap >= -overlap * evaluator.length_scale() || ++count > most) continue;
-    report.warnings.push_back(
-        fmt::format("{} \"{}\" is violated by {:.3g} here: assembly leaves one-sided elements out",
-                    model.element_type(element), model.element_name(element), -gap));
-  }
-  if (count > most) report.warnings.push_back(fmt::format("{} more one-sided elements are violated", count - most));
 }
 
 /// Checks the changes that a start of dynamics would make to the given velocities.
@@ -111,11 +96,12 @@ void run_assemble(AnalysisContext& context, AnalysisResult& result) {
                   .residual = outcome.residual * scale});
     // Places alone change hands: the velocities and the time stay those of the motion so far.
     context.state.q = analysis.state().q;
-    warn_of_closed_gaps(analysis.evaluator(), report);
+    for (std::string& doubt : violated_gaps(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
   }
   report.counters = analysis.evaluator().counters;
   report.seconds = timer.seconds();
-  take_report(result, std::move(report), &columns, rows.rows());
+  result.report = std::move(report);
+  rows.finish(result);
   result.fields = {{"residual", outcome.residual * (only_angles ? 1 : scale)},
                    {"moved", outcome.moved},
                    {"iterations", std::int64_t{outcome.iterations}}};
@@ -157,13 +143,13 @@ void run_check(AnalysisContext& context, AnalysisResult& result) {
   if (outcome.ok() && mobility.dof() > 0) free = find_free_motions(context.model, analysis.state());
   const bool any_free = free && free->count > 0;
   if (outcome.ok()) {
-    warn_of_closed_gaps(analysis.evaluator(), report);
+    for (std::string& doubt : violated_gaps(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
     check_velocities(analysis, model, report);
     for (std::string& doubt : gears_that_do_not_fit(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
   }
   report.counters = analysis.evaluator().counters;
   report.seconds = timer.seconds();
-  take_report(result, std::move(report), nullptr, 0);
+  result.report = std::move(report);
   if (!mobility.free_bodies.empty()) result.fields.push_back({"free_bodies", mobility.free_bodies});
   if (any_free) {
     result.fields.push_back({"free_motions", std::int64_t{free->count}});

@@ -90,13 +90,10 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result) {
   // Places alone change hands: velocities and time stay those of the motion so far.
   if (report.ok()) context.state.q = analysis.state().q;
   result.fields = {{"loads", report.loads}};
-  const BucklingReport found = report;
-  take_report(result, std::move(report), nullptr, 0);
-  result.has_rows = true;
-  result.columns = std::move(info);
-  result.rows = rows;
+  result.report = report;
+  take_rows(result, std::move(info), rows);
   add_field_measures(context, result);
-  if (context.design && found.ok()) differentiate(context, analysis, found, result);
+  if (context.design && report.ok()) differentiate(context, analysis, report, result);
 }
 
 }  // namespace catena

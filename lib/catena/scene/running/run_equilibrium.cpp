@@ -41,7 +41,7 @@ void run_holding(AnalysisContext& context, AnalysisResult& result) {
   }
   report.counters = evaluator.counters;
   report.seconds = timer.seconds();
-  take_report(result, std::move(report), &columns, rows.rows());
+  result.report = std::move(report);
   rows.finish(result);
   add_field_measures(context, result);
 }
@@ -138,7 +138,7 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
     result.fields.push_back({"equilibria", std::move(list)});
   }
   if (report.ok()) draw_softest_mode(context);
-  take_report(result, report, &columns, rows.rows());
+  result.report = report;
   rows.finish(result);
   add_field_measures(context, result);
   if (!derivatives || !report.certified || !report.ok()) return;

@@ -57,7 +57,7 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
     return add_singular_points(result, analysis.singular_points(), *context.model);
   }
   Kinematics analysis(context.model, plan, options);
-  std::optional<KinematicLook> look;
+  std::optional<KinematicLook> look, drawn;
   const auto prepare = [&](AnalysisRows& rows) {
     rows.watch_gaps(*context.model);
     if (!task.measures.empty()) {
@@ -65,6 +65,14 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
       rows.look_by([&](const Snapshot& snapshot) {
         look->start_from(snapshot);
         return AnalysisRows::Look([&](double t) { return look->at(t); });
+      });
+    }
+    // Rates found on the way would serve as predictions, and rows would differ in their last digits by being drawn.
+    if (const Needs wanted = rows.drawn_needs(); wanted.velocity || wanted.multipliers) {
+      drawn.emplace(context.model, plan, options, wanted);
+      rows.draw_by([&](const Snapshot& snapshot) {
+        drawn->start_from(snapshot);
+        return drawn->at(snapshot.t);
       });
     }
     if (!context.design) return;

@@ -88,13 +88,10 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
     result.fields.push_back({"free_motions", static_cast<std::int64_t>(report.free_motions)});
     result.fields.push_back({"moving_freely", report.free_bodies});
   }
-  const ModesReport found = report;
-  take_report(result, std::move(report), nullptr, 0);
-  result.has_rows = true;
-  result.columns = std::move(info);
-  result.rows = rows;
+  result.report = report;
+  take_rows(result, std::move(info), rows);
   add_field_measures(context, result);
-  if (context.design && found.ok()) differentiate(context, analysis, found, result);
+  if (context.design && report.ok()) differentiate(context, analysis, report, result);
 }
 
 }  // namespace catena

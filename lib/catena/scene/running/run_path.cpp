@@ -68,7 +68,6 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
     measures.take_row(snapshot, true);
     if (context.design) places.push_back({value, to_vector(snapshot.q), to_vector(snapshot.lambda)});
     row[0] = value;
-    context.parameter_at_end = value;
     columns.evaluate(snapshot, std::span<double>(row).subspan(1));
     if (context.poses) context.poses->pose(snapshot);
     ++rows;
@@ -76,6 +75,7 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
     return context.rows.row(row) && !(context.cancel && context.cancel->load(std::memory_order_relaxed));
   });
   context.state = analysis.state();
+  if (report.ok() && rows > 0) context.values_at_end = {{parameter, row[0]}};
   std::vector<FieldRecord> critical;
   for (const PathCritical& point : report.critical) {
     critical.push_back({{"kind", std::string(point.branch ? "branch" : "limit")},
@@ -87,18 +87,19 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
   result.fields = {{"critical", std::move(critical)},
                    {"negative_modes", report.negative_modes},
                    {"steps", static_cast<std::int64_t>(report.steps)}};
-  const std::vector<PathCritical> points = report.critical;
-  take_report(result, std::move(report), &columns, rows);
-  result.columns = std::move(info);
+  result.report = report;
+  for (const std::string& note : columns.notes()) result.report.warnings.push_back(note);
+  take_rows(result, std::move(info), rows);
   for (MeasureResult& measure : measures.results()) {
     measure.t.reset();
     result.measures.push_back(std::move(measure));
   }
   add_field_measures(context, result);
-  for (std::size_t k = 0; context.design && k < points.size(); ++k) {
+  for (std::size_t k = 0; context.design && k < report.critical.size(); ++k) {
     std::string trouble;
-    const std::vector<double> gradient = critical_gradient(
-        context, analysis.evaluator().shared_plan(), places[static_cast<std::size_t>(points[k].row)], start.t, trouble);
+    const std::vector<double> gradient =
+        critical_gradient(context, analysis.evaluator().shared_plan(),
+                          places[static_cast<std::size_t>(report.critical[k].row)], start.t, trouble);
     set_field_gradient(context, result, "critical", static_cast<int>(k) + 1, gradient, trouble);
   }
 }

@@ -16,6 +16,7 @@
 #include "catena/scene/reading/scene_reader.hpp"
 #include "catena/scene/reading/scene_reading.hpp"
 #include "catena/scene/running/analysis_run.hpp"
+#include "catena/scene/running/own_names.hpp"
 #include "catena/scene/running/scene_checkpoints.hpp"
 
 namespace catena {
@@ -225,7 +226,12 @@ void SceneRun::read_tasks() {
   const std::vector<double> values = parameters_.evaluate<double>(scene.expressions, diagnostics_);
   if (scene.outputs) read_outputs(scene.outputs, scene, values, diagnostics_);
   if (scene.analyses) tasks_ = read_analyses(scene.analyses, scene.outputs, scene, parameters_, diagnostics_);
-  if (command_.read_outputs(options_.outputs, diagnostics_)) {
+  std::vector<std::string> asked = options_.outputs;
+  std::erase_if(asked, [&](const std::string& name) {
+    return std::any_of(tasks_.begin(), tasks_.end(),
+                       [&](const AnalysisTask& task) { return has_by_itself(task, name, parameters_.names()); });
+  });
+  if (command_.read_outputs(asked, diagnostics_)) {
     const std::vector<PlacedName> outputs = read_outputs(command_.outputs(), scene, values, diagnostics_);
     for (AnalysisTask& task : tasks_) {
       if (task.description->find("outputs")) task.outputs = outputs;
@@ -352,7 +358,7 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
                           .checkpoint = checkpoints_.wanted() ? &checkpoint : nullptr,
                           .poses = options_.poses,
                           .threads = options_.threads};
-  if (context.poses) context.poses->begin_poses(*context.model);
+  if (context.poses) context.poses->begin_poses(context.model);
   if (task.changes_parameters) {
     // Those that follow from what was set differ too.
     const auto before = named_parameters(parameters_.evaluate<double>(scene_->expressions, diagnostics_));
@@ -377,8 +383,6 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
     result.report.status = Status::refused;
     result.report.message = error.what();
   }
-  if (context.parameter_at_end && result.report.ok())
-    context.values_at_end = {{task.word("parameter"), *context.parameter_at_end}};
   for (const ParameterSeed<double>& value : context.values_at_end) {
     std::erase_if(handed_on_, [&](const auto& seed) { return seed.index == value.index; });
     handed_on_.push_back(value);
@@ -388,7 +392,7 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
 
 void SceneRun::run_all() {
   SystemState state;
-  if (options_.poses) options_.poses->begin_poses(*model_);
+  if (options_.poses) options_.poses->begin_poses(model_);
   sink_.begin_run({.scene = outcome_.scene,
                    .description = std::string(scene_->description),
                    .gravity = {model_->gravity.x, model_->gravity.y},

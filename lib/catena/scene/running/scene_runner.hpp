@@ -46,7 +46,7 @@ struct RunOptions {
   std::string save;
   /// Parameters to change: name, and a value in the syntax of scenes (a number, "30 deg", "=2*a").
   std::vector<std::pair<std::string, std::string>> set;
-  /// Columns in place of all outputs that the scene names; empty: the scene's.
+  /// Columns in place of all that the scene names; empty: the scene's. Those that analyses have anyway may be named.
   std::vector<std::string> outputs;
   std::int64_t max_elements = 10'000'000;  ///< a larger scene is refused
   const std::atomic<bool>* cancel = nullptr;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/base/si_unit.hpp"
 #include "catena/drawing/figures/pdf_canvas.hpp"
 #include "catena/drawing/figures/svg_canvas.hpp"
 #include "catena/drawing/shapes/pen.hpp"
@@ -56,7 +55,7 @@ std::pair<int, Vec2<double>> find_place(const Model& model, const std::string& n
 FigurePose figure_pose(const RecordedAnalysis& analysis, std::size_t row) {
   const std::span<const double> pose = analysis.poses[row];
   FigurePose figure{.frames = frames_of(analysis.layout, pose)};
-  for (std::size_t k = 0; k < analysis.layout.loads; ++k) {
+  for (std::size_t k = 0; k < analysis.layout.loads.size(); ++k) {
     const std::size_t at = analysis.layout.load_forces() + 2 * k;
     figure.loads.push_back({pose[at], pose[at + 1]});
   }
@@ -101,7 +100,7 @@ DrawnFigure draw_record(const RunRecord& record, const DrawRequest& request) {
   DrawnFigure drawn;
   const RecordedAnalysis* analysis =
       choose_analysis(record, request.analysis, [](const RecordedAnalysis& a) { return a.poses.size() > 0; });
-  MechanismFigure figure{.title = record.header.scene, .width = request.width};
+  MechanismFigure figure{.width = request.width};
   const Model& model = analysis ? *analysis->model : *record.model;
   if (analysis && analysis->poses.size() > 0) {
     for (const std::size_t row : choose_rows(*analysis, request, drawn.notes))
@@ -131,10 +130,21 @@ std::optional<std::size_t> find_column(const RecordedAnalysis& analysis, const s
   return {};
 }
 
+/// Its values have a place along an axis.
+bool has_numbers(const RecordedAnalysis& analysis, std::size_t column) {
+  return !analysis.result.columns[column].is_status;
+}
+
 std::size_t required_column(const RecordedAnalysis& analysis, const std::string& name) {
-  if (const auto column = find_column(analysis, name)) return *column;
+  if (const auto column = find_column(analysis, name)) {
+    if (has_numbers(analysis, *column)) return *column;
+    throw FigureError(
+        fmt::format("column \"{}\" of {} holds words, which have no place in a plot", name, analysis.result.type));
+  }
   NearMiss near(name);
-  for (std::size_t c = 0; c < analysis.columns_kept; ++c) near.consider(analysis.result.columns[c].name);
+  for (std::size_t c = 0; c < analysis.columns_kept; ++c) {
+    if (has_numbers(analysis, c)) near.consider(analysis.result.columns[c].name);
+  }
   throw FigureError(fmt::format("{} has no column \"{}\"{}", analysis.result.type, name, near.hint()));
 }
 
@@ -156,7 +166,7 @@ Plot plot_record(const RunRecord& record, const PlotRequest& request) {
   if (!analysis || analysis->rows.size() == 0) throw FigureError("no analysis of the scene has rows to plot");
   const std::size_t x = request.x.empty() ? 0 : required_column(*analysis, request.x);
   const auto unit = [&](std::size_t column) {
-    const std::string_view name = si_unit(analysis->result.columns[column].unit);
+    const std::string_view name = analysis->result.columns[column].unit_text();
     return std::string(name == "1" ? "" : name);
   };
   Plot plot{.title = record.header.scene + ": " + analysis->result.type,
@@ -169,7 +179,7 @@ Plot plot_record(const RunRecord& record, const PlotRequest& request) {
   std::vector<std::size_t> columns;
   for (const std::string& name : request.y) columns.push_back(required_column(*analysis, name));
   for (std::size_t c = 0; request.y.empty() && c < analysis->columns_kept; ++c) {
-    if (c != x) columns.push_back(c);
+    if (c != x && has_numbers(*analysis, c)) columns.push_back(c);
   }
   if (columns.empty()) throw FigureError(analysis->result.type + " has no column to plot over " + plot.x_name);
   for (const std::size_t column : columns) {

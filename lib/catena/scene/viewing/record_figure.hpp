@@ -23,7 +23,7 @@ struct DrawRequest {
   std::vector<double> at{};  ///< instants, s, a pose each; none: see `poses`
   int poses = 1;             ///< evenly spread over the rows; one: the first row of a motion, else the last row
   std::vector<std::string> traces{};  ///< points whose paths are shown: body.point, or a body's origin
-  double width = 480;                 ///< points of 1/72 inch
+  double width = 480;                 ///< points of 1/72 inch; the height of figures that are taller than wide
   FigureFormat format = FigureFormat::svg;
 };
 

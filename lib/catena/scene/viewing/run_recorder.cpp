@@ -20,8 +20,8 @@ PoseLayout layout_of(const Model& model, std::size_t most) {
   for (int e = 0; e < static_cast<int>(model.elements.size()); ++e) {
     const ElementRecord& record = model.elements[static_cast<std::size_t>(e)];
     if (record.kind == ElementKind::constraint || record.kind == ElementKind::driver) layout.reactions.push_back(e);
+    if (model.element_type(e) == PointForce<>::type) layout.loads.push_back(e);
   }
-  layout.loads = std::get<std::vector<ElementEntry<PointForce<double>, double>>>(model.forces).size();
   return layout;
 }
 
@@ -48,15 +48,13 @@ bool RunRecorder::row(std::span<const double> values) {
   return true;
 }
 
-void RunRecorder::begin_poses(const Model& model) {
-  if (!scene_model_) {
-    scene_model_ = &model;
-    record_.model = std::make_shared<Model>(model);
+void RunRecorder::begin_poses(std::shared_ptr<const Model> model) {
+  if (record_.analyses.empty()) {
+    record_.model = std::move(model);
     return;
   }
-  if (record_.analyses.empty()) return;
-  if (&model != scene_model_) current().model = std::make_shared<Model>(model);
-  current().layout = layout_of(model, limits_.arrow_bodies);
+  current().layout = layout_of(*model, limits_.arrow_bodies);
+  current().model = std::move(model);
   current().poses.begin(current().layout.width());
 }
 
@@ -117,9 +115,8 @@ void RunRecorder::take_loads(const Snapshot& snapshot) {
   const PoseLayout& layout = current().layout;
   const Model& model = snapshot.evaluator.model();
   std::size_t at = layout.load_forces();
-  for (int e = 0; e < static_cast<int>(model.elements.size()) && at < layout.width(); ++e) {
-    if (model.element_type(e) != PointForce<>::type) continue;
-    const Vec2<double> load = load_at(model, e, snapshot.t);
+  for (const int element : layout.loads) {
+    const Vec2<double> load = load_at(model, element, snapshot.t);
     pose_[at++] = load.x;
     pose_[at++] = load.y;
   }

@@ -28,13 +28,13 @@ struct PoseLayout {
   std::size_t bodies = 0;
   bool arrows = false;
   std::vector<int> reactions{};  ///< elements with a reaction: force on body j, ground axes, and its place
-  std::size_t loads = 0;         ///< applied forces of the drawing, two values each
+  std::vector<int> loads{};      ///< elements with an applied force in the drawing, two values each
 
   static constexpr std::size_t time = 0, frames = 1;
   std::size_t velocities() const { return frames + 3 * bodies; }
   std::size_t reaction_forces() const { return velocities() + (arrows ? 3 * bodies : 0); }
   std::size_t load_forces() const { return reaction_forces() + 4 * reactions.size(); }
-  std::size_t width() const { return load_forces() + 2 * loads; }
+  std::size_t width() const { return load_forces() + 2 * loads.size(); }
 };
 
 struct RecordedAnalysis {
@@ -64,7 +64,7 @@ class RunRecorder final : public ResultSink, public PoseSink, private RowSink {
   void end_analysis(const AnalysisResult& result) override;
   void end_run() override {}
 
-  void begin_poses(const Model& model) override;
+  void begin_poses(std::shared_ptr<const Model> model) override;
   void pose(const Snapshot& snapshot) override;
   void shape(const Evaluator& evaluator, std::span<const double> rates) override;
   Needs needs() const override;
@@ -79,8 +79,7 @@ class RunRecorder final : public ResultSink, public PoseSink, private RowSink {
 
   RecordLimits limits_;
   RunRecord record_;
-  const Model* scene_model_ = nullptr;  // only to be compared with
-  std::vector<double> pose_;            // kept for its memory
+  std::vector<double> pose_;  // kept for its memory
 };
 
 /// The frames of a pose, model order.

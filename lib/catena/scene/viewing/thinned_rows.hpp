@@ -22,7 +22,6 @@ class ThinnedRows {
     if ((seen_ - 1) % stride_ == 0) values_.insert(values_.end(), row.begin(), row.end());
   }
 
-  std::size_t width() const { return width_; }
   /// How many there were, and one in how many is kept.
   std::int64_t seen() const { return seen_; }
   std::int64_t stride() const { return stride_; }

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <cmath>
+#include <limits>
+#include <set>
 
-#include "catena/base/si_unit.hpp"
 #include "catena/drawing/shapes/guide_travel.hpp"
 #include "catena/drawing/shapes/pen.hpp"
+#include "catena/results/status_word.hpp"
 #include "catena/scene/running/field_json.hpp"
 #include "catena/scene/viewing/packed_numbers.hpp"
 #include "catena/scene/viewing/view_json.hpp"
@@ -34,11 +36,23 @@ class Drawings {
   }
   void append_to(ViewJson& json) const {
     json.key("drawings").open('[');
-    for (std::size_t k = 0; k < models_.size(); ++k) append_drawing(json, *models_[k], drawings_[k]);
+    const std::string known = names_of(*models_.front());
+    for (std::size_t k = 0; k < models_.size(); ++k) {
+      json.open('{');
+      append_drawing(json, *models_[k], drawings_[k]);
+      if (k > 0 && names_of(*models_[k]) != known) append_names(json, *models_[k]);
+      json.close('}');
+    }
     json.close(']');
   }
 
  private:
+  static std::string names_of(const Model& model) {
+    std::string out;
+    ViewJson json(out);
+    append_names(json, model);
+    return out;
+  }
   void add(const std::shared_ptr<const Model>& model) {
     if (number(model) < models_.size()) return;
     models_.push_back(model);
@@ -50,46 +64,15 @@ class Drawings {
   std::vector<Drawing> drawings_;
 };
 
-void append_names(ViewJson& json, const Model& model) {
-  json.key("bodies").open('[');
-  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) json.text(model.body_name(b));
-  json.close(']');
-  std::vector<std::string> types;
-  std::map<std::string, std::int64_t, std::less<>> number;
-  json.key("elements").open('{').key("type").open('[');
-  const auto elements = static_cast<int>(model.elements.size());
-  for (int e = 0; e < elements; ++e) {
-    const auto [place, is_new] =
-        number.try_emplace(std::string(model.element_type(e)), static_cast<std::int64_t>(types.size()));
-    if (is_new) types.push_back(place->first);
-    json.value(place->second);
+/// The values of a column that number a status, each with its name.
+void append_words(ViewJson& json, const RecordedAnalysis& analysis, std::size_t column) {
+  std::set<double> found;
+  for (std::size_t k = 0; k < analysis.rows.size(); ++k) {
+    if (std::isfinite(analysis.rows[k][column])) found.insert(analysis.rows[k][column]);
   }
-  json.close(']').key("types").open('[');
-  for (const std::string& type : types) json.text(type);
-  json.close(']').key("name").open('[');
-  for (int e = 0; e < elements; ++e) json.text(model.element_name(e));
-  json.close(']').close('}');
-}
-
-/// Points with a name, at most so many: the page lists them.
-void append_points(ViewJson& json, const Model& model) {
-  constexpr std::size_t most = 2000;
-  std::vector<std::pair<int, int>> points;  // body, number
-  for (int b = 0; b < static_cast<int>(model.bodies.size()) && points.size() < most; ++b) {
-    for (int k = model.bodies[static_cast<std::size_t>(b)].first_point; k >= 0;
-         k = model.points[static_cast<std::size_t>(k)].next)
-      points.emplace_back(b, k);
-  }
-  json.key("points").open('{').key("body").open('[');
-  for (const auto& [body, k] : points) json.value(std::int64_t{body});
-  json.close(']').key("name").open('[');
-  for (const auto& [body, k] : points) json.text(model.point_names[model.points[static_cast<std::size_t>(k)].name]);
-  json.close(']').key("at").open('[');
-  for (const auto& [body, k] : points) {
-    const Vec2<double>& local = model.points[static_cast<std::size_t>(k)].local;
-    json.rounded(local.x).rounded(local.y);
-  }
-  json.close(']').close('}');
+  json.key("words").open('{');
+  for (const double value : found) json.key(fmt::format("{}", static_cast<int>(value))).text(status_word(value));
+  json.close('}');
 }
 
 void append_columns(ViewJson& json, const RecordedAnalysis& analysis) {
@@ -98,10 +81,29 @@ void append_columns(ViewJson& json, const RecordedAnalysis& analysis) {
   json.key("columns").open('[');
   for (std::size_t c = 0; c < analysis.columns_kept && c < analysis.result.columns.size(); ++c) {
     const ColumnInfo& column = analysis.result.columns[c];
-    json.open('{').key("name").text(column.name).key("unit").text(si_unit(column.unit)).key("values");
+    json.open('{').key("name").text(column.name).key("unit").text(column.unit_text());
+    if (column.is_status) append_words(json, analysis, c);
+    json.key("values");
     PackedNumbers packed;
     for (std::size_t k = 0; k < analysis.rows.size(); ++k) packed.add_double(analysis.rows[k][c]);
     json.packed("float64", packed).close('}');
+  }
+  json.close(']');
+}
+
+void append_measures(ViewJson& json, const AnalysisResult& result) {
+  json.key("measures").open('[');
+  for (const MeasureResult& measure : result.measures) {
+    json.open('{').key("name").text(measure.name).key("unit").text(measure.unit).key("value");
+    json.value(measure.value.value_or(std::numeric_limits<double>::quiet_NaN()));  // written as null
+    if (measure.t) json.key("t").value(*measure.t);
+    if (!result.gradient_parameters.empty()) {
+      json.key("gradient").open('{');
+      for (std::size_t p = 0; p < result.gradient_parameters.size() && p < measure.gradient.size(); ++p)
+        json.key(result.gradient_parameters[p]).value(measure.gradient[p]);
+      json.close('}');
+    }
+    json.close('}');
   }
   json.close(']');
 }
@@ -122,6 +124,7 @@ void append_analysis(ViewJson& json, const RecordedAnalysis& analysis, std::size
   for (const NamedField& field : analysis.result.fields)
     append_field(json.key(field.name).text_of_value(), field.value);
   json.close('}').key("drawing").count(drawing);
+  append_measures(json, analysis.result);
   append_columns(json, analysis);
   append_poses(json.key("poses"), analysis);
   json.key("shapes").open('[');
@@ -150,9 +153,12 @@ std::vector<std::string> view_notes(const RunRecord& record) {
       notes.push_back(fmt::format("{}: the first {} of {} columns are in this page", which, a.columns_kept,
                                   a.result.columns.size()));
   }
-  if (static_cast<std::size_t>(record.header.analyses) > record.analyses.size())
-    notes.push_back(fmt::format("{} of {} analyses were run: the one before did not leave a state to go on from",
-                                record.analyses.size(), record.header.analyses));
+  if (static_cast<std::size_t>(record.header.analyses) > record.analyses.size()) {
+    const bool stopped = !record.analyses.empty() && record.analyses.back().result.report.status == Status::cancelled;
+    notes.push_back(
+        fmt::format("{} of {} analyses were run: {}", record.analyses.size(), record.header.analyses,
+                    stopped ? "the run was stopped" : "the last of them did not leave a state to go on from"));
+  }
   return notes;
 }
 
@@ -167,7 +173,6 @@ std::string view_document(const RunRecord& record) {
   for (const auto& [name, value] : record.header.parameters) json.key(name).value(value);
   json.close('}');
   append_names(json, *record.model);
-  append_points(json, *record.model);
   drawings.append_to(json);
   json.key("analyses").open('[');
   for (const RecordedAnalysis& analysis : record.analyses)

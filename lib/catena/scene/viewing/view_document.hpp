@@ -20,9 +20,10 @@ std::string view_document(const RunRecord& record);
 /// What the document leaves out of the run, in sentences.
 std::vector<std::string> view_notes(const RunRecord& record);
 
-/// The drawing of a model as an object: symbols, shapes, loads, the given poses. `ViewJson` stands where the value
-/// goes.
 class ViewJson;
+/// Members of an object: names of bodies, elements and points.
+void append_names(ViewJson& json, const Model& model);
+/// Members of an object: symbols, shapes, loads, the given poses.
 void append_drawing(ViewJson& json, const Model& model, const Drawing& drawing);
 /// Poses of an analysis as an object. `count`: how many of them.
 void append_poses(ViewJson& json, const RecordedAnalysis& analysis);

@@ -56,7 +56,7 @@ void append_shape(ViewJson& json, const DrawnShape& shape) {
 }  // namespace
 
 void append_drawing(ViewJson& json, const Model& model, const Drawing& drawing) {
-  json.open('{').key("symbols").open('[');
+  json.key("symbols").open('[');
   for (const DrawnSymbol& symbol : drawing.symbols) append_symbol(json, symbol);
   json.close(']').key("shapes").open('[');
   for (const DrawnShape& shape : drawing.shapes) append_shape(json, shape);
@@ -68,7 +68,7 @@ void append_drawing(ViewJson& json, const Model& model, const Drawing& drawing) 
   }
   json.close(']').key("typical_length").rounded(drawing.typical_length).key("given").open('[');
   for (const Frame<double>& frame : given_poses(model)) json.value(frame.x).value(frame.y).value(frame.phi);
-  json.close(']').close('}');
+  json.close(']');
 }
 
 }  // namespace catena

@@ -1,0 +1,47 @@
+#include "catena/scene/running/own_names.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace catena {
+namespace {
+
+template <class List, class NameOf>
+bool has(const List& list, std::string_view name, NameOf&& name_of) {
+  return std::any_of(list.begin(), list.end(), [&](const auto& entry) { return name_of(entry) == name; });
+}
+
+bool is_measure(const AnalysisTask& task, std::string_view name) {
+  return has(task.measures, name, [](const PlacedMeasure& measure) { return measure.request.name; });
+}
+
+}  // namespace
+
+bool has_by_itself(const AnalysisTask& task, std::string_view name, const ParameterNames& parameters) {
+  const std::string_view type = task.type();
+  const int parameter = parameters.find(name);
+  if (task.description->timed && name == "t") return true;
+  if (type == "path" || type == "buckling") return parameter >= 0 && task.word("parameter") == parameter;
+  if (type == "modes")
+    return has(std::array{"mode", "omega2", "omega"}, name, [](std::string_view own) { return own; });
+  if (type == "sweep") {
+    return name == "design" || name == "status" ||
+           (parameter >= 0 && has(task.sweep.over, name,
+                                  [&](const SweepRange& range) {
+                                    return parameters.all()[static_cast<std::size_t>(range.parameter)];
+                                  })) ||
+           std::any_of(task.of.begin(), task.of.end(), [&](const auto& inner) { return is_measure(inner, name); });
+  }
+  if (type == "optimise") {
+    return name == "objective" ||
+           has(task.goal.relations, name, [](const DesignRelation& relation) { return relation.text; }) ||
+           has(task.goal.variables, name, [&](const DesignVariable& variable) {
+             return parameters.all()[static_cast<std::size_t>(variable.parameter)];
+           });
+  }
+  // Derivatives: d(crank.x)/d(a).
+  if (type == "sensitivity") return name.starts_with("d(") || has_by_itself(task.of.front(), name, parameters);
+  return false;
+}
+
+}  // namespace catena
