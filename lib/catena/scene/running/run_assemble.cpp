@@ -8,6 +8,7 @@
 #include "catena/analysis/motion/initial_velocities.hpp"
 #include "catena/analysis/pose/mobility.hpp"
 #include "catena/analysis/run/process_time.hpp"
+#include "catena/analysis/sensitivity/assembly_derivatives.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 
@@ -95,6 +96,11 @@ void run_assemble(AnalysisContext& context, AnalysisResult& result) {
   const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), names, sources);
   start(analysis, context);
   AnalysisRows rows(columns, context, *context.model, analysis.plan(), sources, {context.state.t, context.state.t});
+  if (context.design) {
+    rows.differentiate(std::make_unique<AssemblyDerivatives>(analysis.evaluator(), designs_of(context),
+                                                             static_cast<int>(context.design->names.size()),
+                                                             context.state.q.empty()));
+  }
   rows.begin();
   const AssemblyOutcome outcome = analysis.assemble();
   AnalysisReport report;
@@ -116,6 +122,7 @@ void run_assemble(AnalysisContext& context, AnalysisResult& result) {
   report.counters = analysis.evaluator().counters;
   report.seconds = timer.seconds();
   take_report(result, std::move(report), &columns, rows.rows());
+  rows.finish(result);
   result.fields = {{"residual", outcome.residual * (only_angles ? 1 : scale)},
                    {"moved", outcome.moved},
                    {"iterations", std::int64_t{outcome.iterations}}};
