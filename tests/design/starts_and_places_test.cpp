@@ -145,7 +145,7 @@ struct Falling {
                  diagnostics);
   SceneModels models{*scene, 1000};
   std::shared_ptr<const Model> model = models.model(scene->parameters, {});
-  std::shared_ptr<const Plan> plan = Plan::make(model, {});
+  std::shared_ptr<const Plan> plan = Plan::make(*model);
   Evaluator evaluator{plan, *model};
 };
 
