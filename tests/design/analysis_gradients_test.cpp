@@ -3,25 +3,10 @@
 
 #include <numbers>
 
-#include "scene/run_text.hpp"
+#include "design/measured.hpp"
 
 namespace catena::testing {
 namespace {
-
-/// d(measure)/d(parameter number p) of the first analysis.
-double gradient(const TextRun& run, const std::string& name, std::size_t p) {
-  for (const MeasureResult& measure : run.analysis().measures) {
-    if (measure.name == name && p < measure.gradient.size()) return measure.gradient[p];
-  }
-  ADD_FAILURE() << "no gradient of " << name << " " << run.analysis().report.message << run.outcome.error_text;
-  return std::nan("");
-}
-double value(const TextRun& run, const std::string& name) {
-  for (const MeasureResult& measure : run.analysis().measures) {
-    if (measure.name == name) return measure.value.value_or(std::nan(""));
-  }
-  return std::nan("");
-}
 
 // A rod of length L and mass m, held at one end by a pin and a torsion spring k without load at the angle 0:
 // k a + m g L/2 cos a = 0.
@@ -92,6 +77,7 @@ TEST(FrequencyGradients, OfAPendulum) {
   EXPECT_NEAR(gradient(run, "square", 1), m * g * (J - m * s * s) / (I * I), 1e-9);
   EXPECT_NEAR(gradient(run, "square", 2), -m * g * s / (I * I), 1e-9);
   EXPECT_NEAR(gradient(run, "omega", 2), -m * g * s / (I * I) / (2 * std::sqrt(square)), 1e-9);
+  EXPECT_LT(field<double>(run, "deviation"), 1e-6);
 }
 
 TEST(FrequencyGradients, OfDoubleOnesAreRefused) {

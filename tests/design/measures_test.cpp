@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "scene/run_text.hpp"
+#include "design/measured.hpp"
 
 namespace catena::testing {
 namespace {
@@ -20,16 +20,6 @@ std::string crank(const std::string& measures, double every = 5, const std::stri
   "analyses": [{"type": ")" +
          type + R"(", "until": 5, "every": )" + std::to_string(every) + R"(, "measures": )" + measures + "}]}";
 }
-
-const MeasureResult& measure(const TextRun& run, const std::string& name) {
-  static const MeasureResult missing;
-  for (const MeasureResult& m : run.analysis().measures) {
-    if (m.name == name) return m;
-  }
-  ADD_FAILURE() << "no measure " << name << " " << run.analysis().report.message << run.outcome.error_text;
-  return missing;
-}
-double value(const TextRun& run, const std::string& name) { return measure(run, name).value.value_or(std::nan("")); }
 
 TEST(Measures, ExtremesLieBetweenRows) {
   const TextRun run = run_text(crank(R"--({"least": {"min": "crank.to.x"}, "most": {"max": "crank.to.y"},
@@ -76,6 +66,52 @@ TEST(Measures, PathsAreMeasuredFromGivenPoints) {
   EXPECT_NEAR(value(run, "timed"), std::sqrt((square(0.3, 1, 0) + square(2.8, 0, 1) + 1) / 3), 1e-13);
 }
 
+// The motion starts at 0, whatever the rows, and every part of it counts once.
+TEST(Measures, ListedRowsMayStartLateAndBeInAnyOrder) {
+  for (const std::string at : {"[1, 2.5]", "[2.5, 1]", "[1, 0.2, 2.5]", "[0, 2.5, 1, 2]"}) {
+    SCOPED_TRACE(at);
+    std::string text = crank(R"({"area": {"integral": "crank.to.x"}, "mean": {"mean": "crank.to.x"},
+      "most": {"max": "crank.to.y"}, "final": {"final": "crank.to.y"}})");
+    const std::string times = R"("until": 5, "every": 5.000000)";
+    text.replace(text.find(times), times.size(), R"("at": )" + at);
+    const TextRun run = run_text(text);
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+    EXPECT_NEAR(value(run, "area"), std::sin(2.8) - std::sin(0.3), 1e-12);
+    EXPECT_NEAR(value(run, "mean"), (std::sin(2.8) - std::sin(0.3)) / 2.5, 1e-12);
+    EXPECT_NEAR(value(run, "most"), 1, 1e-14);
+    EXPECT_NEAR(value(run, "final"), std::sin(2.8), 1e-14);
+  }
+}
+
+TEST(Measures, OfWhatIsNoNumberHaveNoValue) {
+  const TextRun run =
+      run_text(crank(R"--({"end": {"final": "=sqrt(crank.to.y)"}, "area": {"integral": "=sqrt(crank.to.y)"},
+    "most": {"max": "=sqrt(crank.to.y)"}})--"));
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  EXPECT_FALSE(measure(run, "end").value);
+  EXPECT_NE(measure(run, "end").trouble.find("not a number at t = 5"), std::string::npos)
+      << measure(run, "end").trouble;
+  EXPECT_FALSE(measure(run, "area").value);
+  EXPECT_NEAR(value(run, "most"), 1, 1e-12);
+  EXPECT_FALSE(measure(run, "most").trouble.empty());
+}
+
+TEST(Measures, OfAMotionOfLeastVelocitiesHaveNoIntegral) {
+  const TextRun run = run_text(R"({"catena": 1,
+  "bodies": {"a": {"rod": {"from": [0, 0], "to": [1, 0]}}, "b": {"rod": {"from": [1, 0], "to": [2, 0]}}},
+  "constraints": [{"type": "revolute", "i": "ground", "j": "a.from"}, {"type": "revolute", "i": "a.to", "j": "b.from"}],
+  "drivers": [{"type": "absolute_angle", "i": "a", "value": {"polynomial": [0, 1]}}],
+  "outputs": ["b.angle"],
+  "analyses": [{"type": "kinematics", "free": "minimum_norm", "until": 1, "every": 0.1, "measures": {
+    "area": {"integral": "a.angle"}, "most": {"max": "a.angle"}, "at": {"at": 0.55, "of": "a.angle"}}}]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+  EXPECT_FALSE(measure(run, "area").value);
+  EXPECT_NE(measure(run, "area").trouble.find("between its rows"), std::string::npos);
+  EXPECT_NEAR(value(run, "most"), 1, 1e-9);
+  EXPECT_FALSE(measure(run, "at").value);
+  EXPECT_NE(measure(run, "at").trouble.find("none of its rows"), std::string::npos);
+}
+
 TEST(Measures, OfMotionsUnderForces) {
   // A spring of 4 N/m and a mass of 1 kg, released at 1 m: x = cos 2t.
   const TextRun run = run_text(R"--({"catena": 1,
@@ -90,6 +126,26 @@ TEST(Measures, OfMotionsUnderForces) {
   EXPECT_NEAR(*measure(run, "least").t, pi / 2, 1e-8);
   EXPECT_NEAR(value(run, "fast"), 2, 1e-9);
   EXPECT_NEAR(value(run, "pull"), 1.5 + std::sin(12) / 8, 1e-9);
+}
+
+// Under gravity of 10 m/s^2 against a damper of 0.5 N m s: W = 5 (sin(0.3 + t) - sin 0.3) + 0.5 t, 0.5 t of it
+// dissipated.
+TEST(Measures, OfWorkBetweenTheRows) {
+  std::string text = crank(R"--({"most": {"max": "drive.work"}, "lost": {"integral": "energy.dissipated"},
+    "end": {"final": "drive.work"}, "doubt": {"max": "=abs(energy.balance)"}})--",
+                           5, "inverse_dynamics");
+  text.insert(text.find("\"bodies\""), R"("gravity": [0, -10],
+  "forces": [{"type": "torsion_spring", "i": "ground", "j": "crank", "k": 0, "c": 0.5}], )");
+  const TextRun run = run_text(text);
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+  const double top = std::acos(-0.1) - 0.3;
+  const auto work = [](double t) { return 5 * (std::sin(0.3 + t) - std::sin(0.3)) + 0.5 * t; };
+  EXPECT_NEAR(value(run, "most"), work(top), 1e-9);
+  EXPECT_NEAR(*measure(run, "most").t, top, 1e-7);
+  EXPECT_NEAR(value(run, "lost"), 0.25 * 25, 1e-9);
+  EXPECT_NEAR(value(run, "end"), work(5), 1e-9);
+  EXPECT_LT(value(run, "doubt"), 1e-9);
+  EXPECT_TRUE(measure(run, "most").trouble.empty()) << measure(run, "most").trouble;
 }
 
 TEST(Measures, OfWhatAnAnalysisReports) {
@@ -118,6 +174,12 @@ TEST(Measures, WrongOnesAreReportedWhereTheyStand) {
   expect_error(R"({"a": {"max": §"crank"}})", "a measure wants one column");
   expect_error(R"({§"a b": {"max": "crank.x"}})", "cannot stand in an expression");
   expect_error(R"({"a": {"field": §"omega[0]"}})", "count from 1");
+  const MarkedText shapes = take_mark(R"({"catena": 1, "bodies": {"a": {"mass": 1, "particle": true}},
+  "analyses": [{"type": "modes", "measures": {"a": {"max": §"a.x"}}}]})");
+  const TextRun modes = run_text(shapes.text);
+  ASSERT_FALSE(modes.outcome.errors.empty());
+  EXPECT_EQ(modes.outcome.errors.front().column, shapes.column);
+  EXPECT_NE(modes.outcome.errors.front().message.find("omega2[1]"), std::string::npos);
 }
 
 TEST(Measures, LeastAndLargestOfEveryColumnStandInTheReport) {

@@ -32,6 +32,28 @@ TEST(SweepPlan, TogetherGoesInStep) {
   const auto all = designs({{list({1, 2, 3}), list({9}), list({4, 5, 6})}, SweepKind::together});
   EXPECT_EQ(all, (std::vector<std::vector<double>>{{1, 9, 4}, {2, 9, 5}, {3, 9, 6}}));
   EXPECT_TRUE(SweepPlan::trouble({{list({1, 2}), list({4, 5, 6})}, SweepKind::together}));
+  // Only a grid multiplies: four lists of 200 are 200 designs here.
+  const SweepRange longer = list(std::vector<double>(200, 1.0));
+  EXPECT_FALSE(SweepPlan::trouble({{longer, longer, longer, longer, longer}, SweepKind::together}));
+  EXPECT_TRUE(SweepPlan::trouble({{longer, longer, longer, longer, longer}, SweepKind::grid}));
+}
+
+TEST(SweepPlan, StepsAreCountedNotKept) {
+  SweepRange steps;
+  steps.kind = SweepRange::Kind::steps;
+  steps.first = 1;
+  steps.second = 2;
+  steps.count = 5;
+  EXPECT_EQ(designs({{steps}, SweepKind::grid}), (std::vector<std::vector<double>>{{1}, {1.25}, {1.5}, {1.75}, {2}}));
+  steps.count = 1e9;  // 8 GB if they were kept
+  const SweepPlan plan({{steps}, SweepKind::grid});
+  double last = 0;
+  plan.values(plan.designs() - 1, {&last, 1});
+  EXPECT_EQ(last, 2);
+  steps.count = 1e300;
+  EXPECT_TRUE(SweepPlan::trouble({{steps}, SweepKind::grid}));
+  steps.count = 2;
+  EXPECT_TRUE(SweepPlan::trouble({{steps, steps}, SweepKind::latin, 900'000'000}));
 }
 
 TEST(SweepPlan, SamplesHaveTheirDistribution) {
@@ -98,6 +120,18 @@ TEST(Sweep, GivesARowADesignAndItsStatus) {
   }
 }
 
+TEST(Sweep, AMeasureThatIsNoNumberFailsTheDesign) {
+  std::string text = slider + R"("over": {"a": [0.1, 0.2]}}]})";
+  const std::string range = R"({"range": "slide.x"})";
+  text.replace(text.find(range), range.size(), R"--({"final": "=sqrt(slide.x - 4*a)"})--");
+  const TextRun run = run_text(text);
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  const std::vector<double> status = run.column("status");
+  ASSERT_EQ(status.size(), 2u);
+  // About a + b: 0.4 - 0.4, and 0.5 - 0.8.
+  EXPECT_NE(status[1], static_cast<double>(Status::ok));
+}
+
 TEST(Sweep, ThreadsChangeNothing) {
   const std::string scene = slider + R"("over": {"a": {"uniform": [0.05, 0.2]}, "b": {"normal": [0.3, 0.05]}},
     "design": "latin", "samples": 60, "seed": 3}]})";
@@ -119,7 +153,7 @@ TEST(Sweep, NamesWhatIsWrong) {
   EXPECT_NE(error(R"("over": {"c": [1]})").error_text.find("unknown parameter"), std::string::npos);
   EXPECT_NE(error(R"("over": {"a": {"from": 1, "to": 2}})").error_text.find("count"), std::string::npos);
   EXPECT_NE(error(R"("over": {"a": {"normal": [1, 0.1]}})").error_text.find("sampled"), std::string::npos);
-  EXPECT_NE(error(R"("over": {"a": {"from": 0, "to": 1, "count": 1e12}})").error_text.find("more than"),
+  EXPECT_NE(error(R"("over": {"a": {"from": 0, "to": 1, "count": 1e12}})").error_text.find("at most"),
             std::string::npos);
   EXPECT_NE(error(R"("over": {"a": [1, 2], "b": [1, 2, 3]}, "design": "together")").error_text.find("one length"),
             std::string::npos);

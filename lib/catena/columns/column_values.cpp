@@ -55,6 +55,7 @@ void ColumnSet::evaluate(const Snapshot& snapshot, std::span<double> out) const 
   // Rows of released constraints are missing while they are.
   const auto rows = static_cast<std::size_t>(snapshot.evaluator.plan().rows);
   require(needs_.multipliers, snapshot.lambda, rows, "multipliers");
+  require(needs_.work, snapshot.driver_work, snapshot.evaluator.model().elements.size(), "work");
   const ColumnState state(snapshot, only_angles_);
   RowValues<ColumnState> row(state, own_inputs_);
   for (std::size_t k = 0; k < columns_.size(); ++k) out[k] = row.value(columns_[k]);

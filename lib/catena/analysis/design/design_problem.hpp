@@ -3,12 +3,14 @@
 //   min f(x)   subject to   lower <= x <= upper,   g(x) <= 0,   h(x) = 0
 //
 // evaluate() analyses a design. One that cannot be analysed (does not assemble, locks, buckles) is data: it has a
-// reason in place of values, and the search goes on. Objective and constraints may be anything that a mechanism's
-// numbers decide; gradients are asked for where the method uses them.
+// reason in place of values, and the search goes on; so has one whose values are not numbers (`not_finite`), or whose
+// gradients are not where the method uses them (`no_derivative`). Objective and constraints may be anything that a
+// mechanism's numbers decide.
 #pragma once
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -46,14 +48,21 @@ struct DesignOptions {
   std::function<void(std::span<const double> x, const DesignValues&)> improved = {};
 };
 
-enum class DesignEnd { converged, slow, cancelled, infeasible, failed };
+enum class DesignEnd {
+  converged,
+  slow,        ///< max_evaluations reached
+  broken_off,  ///< the method came to an end of its own without an optimum
+  cancelled,
+  infeasible,
+  failed,  ///< no design could be analysed
+};
 
 struct DesignOutcome {
   DesignEnd end = DesignEnd::failed;
   std::vector<double> x;  ///< the best design; where the constraints cannot be met, the least infeasible
   DesignValues values;
   double violation = 0;                 ///< largest of its constraints, in their sizes at the start
-  double optimality = 0;                ///< see optimality_of()
+  std::optional<double> optimality;     ///< see optimality_of(); nothing where the gradients there are not known
   std::vector<int> active_unequal;      ///< inequalities that hold it
   std::vector<int> at_lower, at_upper;  ///< variables at their bounds
   int evaluations = 0;                  ///< designs that were analysed, failed ones included

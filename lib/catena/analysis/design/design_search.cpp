@@ -20,12 +20,27 @@ double size_of(double value, std::span<const double> gradient, const std::vector
   return size > 0 && std::isfinite(size) ? size : 1;
 }
 
+bool all_finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+}
+bool has_values(const DesignValues& values) {
+  return std::isfinite(values.objective) && all_finite(values.unequal) && all_finite(values.equal);
+}
+bool has_gradients(const DesignValues& values, std::size_t variables) {
+  const auto has = [&](const std::vector<double>& gradients, std::size_t rows) {
+    return gradients.size() == rows * variables && all_finite(gradients);
+  };
+  return has(values.gradient, 1) && has(values.unequal_gradient, values.unequal.size()) &&
+         has(values.equal_gradient, values.equal.size());
+}
+
 }  // namespace
 
 DesignSearch::DesignSearch(const DesignProblem& problem, const DesignOptions& options, DesignOutcome& outcome)
     : problem_(problem),
       options_(options),
       outcome_(outcome),
+      gradients_(uses_gradients(options.method)),
       unequal_size_(static_cast<std::size_t>(problem.inequalities), 1.0),
       equal_size_(static_cast<std::size_t>(problem.equations), 1.0) {}
 
@@ -45,16 +60,18 @@ bool DesignSearch::go_on() {
   return !cancelled_ && outcome_.evaluations < options_.max_evaluations;
 }
 
-bool DesignSearch::analyse(std::span<const double> u, bool gradients, Point& point) {
+bool DesignSearch::analyse(std::span<const double> u, Point& point) {
   ++outcome_.evaluations;
-  DesignEvaluation evaluation = problem_.evaluate(design(u), gradients);
+  DesignEvaluation evaluation = problem_.evaluate(design(u), gradients_);
+  if (evaluation.failure.empty() && !has_values(evaluation.values)) evaluation.failure = "not_finite";
+  if (evaluation.failure.empty() && gradients_ && !has_gradients(evaluation.values, u.size()))
+    evaluation.failure = "no_derivative";
   if (!evaluation.failure.empty()) {
     ++outcome_.failed[evaluation.failure];
     return false;
   }
   point.u.assign(u.begin(), u.end());
   point.values = std::move(evaluation.values);
-  point.gradients = gradients;
   return true;
 }
 
@@ -74,40 +91,38 @@ void DesignSearch::compare(const Point& point) {
     const bool good = violation <= allowed, best_good = outcome_.violation <= allowed;
     const bool better = good && best_good ? point.values.objective < outcome_.values.objective
                                           : good || (!best_good && violation < outcome_.violation);
-    const bool same = point.gradients && !best_has_gradients_ && design(point.u) == outcome_.x;
-    if (!better && !same) return;
-    if (same) {
-      outcome_.values = point.values;
-      best_has_gradients_ = true;
-      return;
-    }
+    if (!better) return;
   }
   has_best_ = true;
-  best_has_gradients_ = point.gradients;
+  ++improvements_;
   outcome_.x = design(point.u);
   outcome_.values = point.values;
   outcome_.violation = violation;
   if (options_.improved) options_.improved(outcome_.x, outcome_.values);
 }
 
-void DesignSearch::complete_best() {
-  if (!has_best_ || best_has_gradients_) return;
+bool DesignSearch::complete_best() {
+  if (!has_best_ || gradients_) return has_best_;
+  ++outcome_.evaluations;
   DesignEvaluation evaluation = problem_.evaluate(outcome_.x, true);
-  if (evaluation.failure.empty()) outcome_.values = std::move(evaluation.values);
+  const bool complete = evaluation.failure.empty() && has_values(evaluation.values) &&
+                        has_gradients(evaluation.values, outcome_.x.size());
+  if (!complete) return false;
+  outcome_.values = std::move(evaluation.values);
+  return true;
 }
 
 bool DesignSearch::begin(std::vector<double>& u) {
   const std::size_t n = u.size();
   std::vector<double> range(n);
   for (std::size_t v = 0; v < n; ++v) range[v] = problem_.upper[v] - problem_.lower[v];
-  const bool gradients = uses_gradients(options_.method);
-  bool found = analyse(u, gradients, now_);
+  bool found = analyse(u, now_);
   for (std::size_t k = 0; !found && k < std::size(around) && go_on(); ++k) {
     std::fill(u.begin(), u.end(), around[k]);
-    found = analyse(u, gradients, now_);
+    found = analyse(u, now_);
   }
   if (!found) return false;
-  has_now_ = has_good_ = true;
+  has_now_ = true;
   const auto row = [&](const std::vector<double>& all, std::size_t k) {
     return all.size() >= (k + 1) * n ? std::span<const double>(all).subspan(k * n, n) : std::span<const double>();
   };
@@ -126,7 +141,7 @@ bool DesignSearch::begin(std::vector<double>& u) {
 }
 
 // See the header.
-void DesignSearch::replace_failed(std::span<const double> u, bool gradients) {
+void DesignSearch::replace_failed(std::span<const double> u) {
   const std::size_t n = u.size();
   Point border = good_, trial;
   double reached = 0, failed = 1;
@@ -134,7 +149,7 @@ void DesignSearch::replace_failed(std::span<const double> u, bool gradients) {
     const double part = (reached + failed) / 2;
     std::vector<double> between(n);
     for (std::size_t v = 0; v < n; ++v) between[v] = good_.u[v] + part * (u[v] - good_.u[v]);
-    if (analyse(between, gradients, trial)) {
+    if (analyse(between, trial)) {
       border = trial;
       reached = part;
       compare(border);
@@ -142,7 +157,6 @@ void DesignSearch::replace_failed(std::span<const double> u, bool gradients) {
       failed = part;
     }
   }
-  if (gradients && !border.gradients) analyse(std::vector<double>(border.u), true, border);
   now_ = border;
   now_.u.assign(u.begin(), u.end());
   DesignValues& values = now_.values;
@@ -163,32 +177,28 @@ void DesignSearch::replace_failed(std::span<const double> u, bool gradients) {
   values.objective += weight * beyond;
 }
 
-const DesignSearch::Point& DesignSearch::look(std::span<const double> u, bool gradients) {
-  const bool here = has_now_ && std::equal(u.begin(), u.end(), now_.u.begin());
-  if (here && (now_.gradients || !gradients)) return now_;
-  // Methods that use gradients want them at almost every design: they come with its values.
-  const bool all = gradients || uses_gradients(options_.method);
-  if (here) --outcome_.evaluations;  // the same design once more
+const DesignSearch::Point& DesignSearch::look(std::span<const double> u) {
+  if (has_now_ && std::equal(u.begin(), u.end(), now_.u.begin())) return now_;
   Point point;
   has_now_ = true;
-  if (analyse(u, all, point)) {
+  if (analyse(u, point)) {
     now_ = good_ = std::move(point);
     compare(now_);
   } else {
-    replace_failed(u, all);
+    replace_failed(u);
   }
   return now_;
 }
 
 double DesignSearch::objective(std::span<const double> u, std::span<double> gradient) {
-  const Point& point = look(u, !gradient.empty());
+  const Point& point = look(u);
   for (std::size_t v = 0; v < gradient.size(); ++v)
     gradient[v] = point.values.gradient[v] * (problem_.upper[v] - problem_.lower[v]) / objective_size_;
   return point.values.objective / objective_size_;
 }
 
 void DesignSearch::unequal(std::span<const double> u, std::span<double> g, std::span<double> jacobian) {
-  const DesignValues& values = look(u, !jacobian.empty()).values;
+  const DesignValues& values = look(u).values;
   for (std::size_t k = 0; k < g.size(); ++k) g[k] = values.unequal[k] / unequal_size_[k];
   for (std::size_t k = 0; k < jacobian.size(); ++k) {
     const std::size_t v = k % u.size();
@@ -197,7 +207,7 @@ void DesignSearch::unequal(std::span<const double> u, std::span<double> g, std::
 }
 
 void DesignSearch::equal(std::span<const double> u, std::span<double> h, std::span<double> jacobian) {
-  const DesignValues& values = look(u, !jacobian.empty()).values;
+  const DesignValues& values = look(u).values;
   for (std::size_t k = 0; k < h.size(); ++k) h[k] = values.equal[k] / equal_size_[k];
   for (std::size_t k = 0; k < jacobian.size(); ++k) {
     const std::size_t v = k % u.size();

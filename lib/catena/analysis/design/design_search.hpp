@@ -28,29 +28,32 @@ class DesignSearch final : public MinimisationProblem {
   std::span<const double> unequal_sizes() const { return unequal_size_; }
   double gradient_size() const { return gradient_size_; }
   bool was_cancelled() const { return cancelled_; }
-  /// The best design with gradients, if it has none yet.
-  void complete_best();
+  /// How many designs were better than all before.
+  int improvements() const { return improvements_; }
+  /// Whether the best design has gradients, which are asked for once more where the method needed none.
+  bool complete_best();
 
  private:
   struct Point {
     std::vector<double> u;
     DesignValues values;
-    bool gradients = false;
   };
   std::vector<double> design(std::span<const double> u) const;
-  /// Analyses a design; false, and counted, where it fails.
-  bool analyse(std::span<const double> u, bool gradients, Point& point);
+  /// Analyses a design, with gradients where the method uses them; false, and counted, where it fails.
+  bool analyse(std::span<const double> u, Point& point);
   /// The values at u, continued from the nearest good design where u fails.
-  const Point& look(std::span<const double> u, bool gradients);
-  void replace_failed(std::span<const double> u, bool gradients);
+  const Point& look(std::span<const double> u);
+  void replace_failed(std::span<const double> u);
   void compare(const Point& point);
   double violation_of(const DesignValues& values) const;
 
   const DesignProblem& problem_;
   const DesignOptions& options_;
   DesignOutcome& outcome_;
+  bool gradients_;
   Point now_, good_;
-  bool has_now_ = false, has_good_ = false, has_best_ = false, best_has_gradients_ = false, cancelled_ = false;
+  bool has_now_ = false, has_best_ = false, cancelled_ = false;
+  int improvements_ = 0;
   double objective_size_ = 1, gradient_size_ = 0;
   std::vector<double> unequal_size_, equal_size_;
 };

@@ -32,7 +32,7 @@ std::vector<double> solve_symmetric(std::vector<std::vector<double>> a, std::vec
     used[pivot] = 1;
     order.push_back(pivot);
     for (std::size_t k = 0; k < n; ++k) {
-      if (k == pivot || a[k][pivot] == 0 || (used[k] && k != pivot)) continue;
+      if (used[k] || a[k][pivot] == 0) continue;
       const double factor = a[k][pivot] / a[pivot][pivot];
       for (std::size_t j = 0; j < n; ++j) a[k][j] -= factor * a[pivot][j];
       b[k] -= factor * b[pivot];

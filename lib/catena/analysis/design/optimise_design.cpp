@@ -43,9 +43,11 @@ DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions&
   DesignOutcome outcome;
   DesignSearch search(problem, options, outcome);
   std::mt19937_64 random(options.seed);
-  bool converged = false, analysed = false;
+  bool analysed = false;
+  MinimiserEnd end = MinimiserEnd::failed;  // of the start that led to the best design
   for (int k = 0; k < options.starts && (k == 0 || search.go_on()); ++k) {
     std::vector<double> u = start_of(problem, random, k);
+    const int improvements = search.improvements();
     if (!search.begin(u)) continue;
     analysed = true;
     const MinimiserOptions wanted{.method = options.method,
@@ -56,16 +58,15 @@ DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions&
                                   .constraint_tolerance = options.tolerance,
                                   .max_evaluations = std::max(1, options.max_evaluations - outcome.evaluations),
                                   .seed = options.seed};
-    const MinimiserEnd end = minimise(search, wanted, u);
-    converged = converged || end == MinimiserEnd::converged || end == MinimiserEnd::rounding;
+    const MinimiserEnd ended = minimise(search, wanted, u);
+    if (search.improvements() > improvements) end = ended;
   }
   if (!analysed) {
     search.go_on();
     if (search.was_cancelled()) outcome.end = DesignEnd::cancelled;
     return outcome;
   }
-  search.complete_best();
-  if (!outcome.values.gradient.empty()) {
+  if (search.complete_best()) {
     Stationarity found =
         optimality_of(problem, outcome.x, outcome.values, search.unequal_sizes(), search.gradient_size());
     outcome.optimality = found.optimality;
@@ -76,12 +77,13 @@ DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions&
     if (outcome.x[v] == problem.upper[v]) outcome.at_upper.push_back(static_cast<int>(v));
   }
   const bool feasible = outcome.violation <= 10 * options.tolerance;
+  const bool converged = end == MinimiserEnd::converged || end == MinimiserEnd::rounding;
   if (search.was_cancelled())
     outcome.end = DesignEnd::cancelled;
-  else if (!feasible)
-    outcome.end = converged ? DesignEnd::infeasible : DesignEnd::slow;
+  else if (converged || (feasible && outcome.optimality && *outcome.optimality <= stationary))
+    outcome.end = feasible ? DesignEnd::converged : DesignEnd::infeasible;
   else
-    outcome.end = converged || outcome.optimality <= stationary ? DesignEnd::converged : DesignEnd::slow;
+    outcome.end = end == MinimiserEnd::failed ? DesignEnd::broken_off : DesignEnd::slow;
   return outcome;
 }
 

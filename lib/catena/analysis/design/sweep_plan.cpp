@@ -1,5 +1,7 @@
 #include "catena/analysis/design/sweep_plan.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -8,15 +10,13 @@ namespace {
 
 bool is_sampled(SweepKind kind) { return kind != SweepKind::grid && kind != SweepKind::together; }
 
-/// Designs of a plan; negative: more than are allowed.
-std::int64_t count(const SweepRequest& request) {
-  if (is_sampled(request.kind)) return request.samples > SweepPlan::most_designs ? -1 : request.samples;
-  std::int64_t product = 1, longest = 1;
+/// Designs of a plan, as a number that may be larger than any plan.
+double count(const SweepRequest& request) {
+  if (is_sampled(request.kind)) return static_cast<double>(request.samples);
+  double product = 1, longest = 1;
   for (const SweepRange& range : request.over) {
-    const auto n = static_cast<std::int64_t>(range.values.size());
-    longest = std::max(longest, n);
-    if (product > SweepPlan::most_designs / std::max<std::int64_t>(n, 1)) return -1;
-    product *= n;
+    product *= SweepPlan::size(range);
+    longest = std::max(longest, SweepPlan::size(range));
   }
   return request.kind == SweepKind::grid ? product : longest;
 }
@@ -27,6 +27,7 @@ double value_at(const SweepRange& range, double u) {
     case SweepRange::Kind::normal:
       return range.first + range.second * normal_quantile(u);
     case SweepRange::Kind::uniform:
+    case SweepRange::Kind::steps:
       return range.first + u * (range.second - range.first);
     case SweepRange::Kind::list:
       break;
@@ -37,11 +38,23 @@ double value_at(const SweepRange& range, double u) {
 
 }  // namespace
 
+double SweepPlan::size(const SweepRange& range) {
+  return range.kind == SweepRange::Kind::steps ? range.count : static_cast<double>(range.values.size());
+}
+
+double SweepPlan::value(const SweepRange& range, std::int64_t k) {
+  if (range.kind != SweepRange::Kind::steps) return range.values[static_cast<std::size_t>(k)];
+  const auto step = static_cast<double>(k), last = range.count - 1;
+  // The last one exactly.
+  return step == last && last > 0 ? range.second
+                                  : range.first + step * (range.second - range.first) / std::max(1.0, last);
+}
+
 std::optional<std::string> SweepPlan::trouble(const SweepRequest& request) {
   if (request.over.empty()) return "a sweep needs at least one parameter in \"over\"";
   for (const SweepRange& range : request.over) {
-    if (range.kind == SweepRange::Kind::list && range.values.empty()) return "a parameter has no values";
-    if (range.kind != SweepRange::Kind::list && !is_sampled(request.kind))
+    if (!range.is_distribution() && !(size(range) >= 1)) return "a parameter has no values";
+    if (range.is_distribution() && !is_sampled(request.kind))
       return "distributions are sampled: take \"design\" sobol, latin or random";
   }
   if (is_sampled(request.kind) && request.samples < 1) return "\"samples\" must be at least 1";
@@ -49,14 +62,21 @@ std::optional<std::string> SweepPlan::trouble(const SweepRequest& request) {
     return "Sobol's sequence is made for at most " + std::to_string(SamplePoints::most_sobol_directions) +
            " parameters; take latin or random";
   }
-  const std::int64_t designs = count(request);
-  if (designs < 0) return "more than " + std::to_string(most_designs) + " designs are asked for";
+  const auto numbers = static_cast<double>(request.samples) * static_cast<double>(request.over.size());
+  if (request.kind == SweepKind::latin && numbers > static_cast<double>(most_latin_numbers)) {
+    return fmt::format("a latin design keeps all its samples: {:.3g} numbers are more than {}; take sobol or random",
+                       numbers, most_latin_numbers);
+  }
+  const double designs = count(request);
+  if (designs > static_cast<double>(most_designs)) {
+    return fmt::format("{:.3g} designs are asked for; a sweep has at most {}: take a sampled \"design\", such as sobol",
+                       designs, most_designs);
+  }
   if (request.kind != SweepKind::together) return {};
   for (const SweepRange& range : request.over) {
-    const auto n = static_cast<std::int64_t>(range.values.size());
-    if (n != 1 && n != designs) {
-      return "\"together\" wants lists of one length: there are lists of " + std::to_string(n) + " and of " +
-             std::to_string(designs) + " values";
+    if (size(range) != 1 && size(range) != designs) {
+      return fmt::format("\"together\" wants lists of one length: there are lists of {} and of {} values", size(range),
+                         designs);
     }
   }
   return {};
@@ -64,7 +84,7 @@ std::optional<std::string> SweepPlan::trouble(const SweepRequest& request) {
 
 SweepPlan::SweepPlan(SweepRequest request) : request_(std::move(request)) {
   if (const std::optional<std::string> why = trouble(request_)) throw std::invalid_argument(*why);
-  designs_ = count(request_);
+  designs_ = static_cast<std::int64_t>(count(request_));
   if (!is_sampled(request_.kind)) return;
   constexpr Sampling kinds[] = {Sampling::sobol, Sampling::latin, Sampling::random};
   points_.emplace(kinds[static_cast<int>(request_.kind) - static_cast<int>(SweepKind::sobol)], designs_,
@@ -79,11 +99,10 @@ void SweepPlan::values(std::int64_t k, std::span<double> out) const {
     return;
   }
   for (std::size_t p = n; p-- > 0;) {
-    const std::vector<double>& values = request_.over[p].values;
-    const auto size = static_cast<std::int64_t>(values.size());
-    const std::int64_t place = request_.kind == SweepKind::grid ? k % size : size == 1 ? 0 : k;
-    out[p] = values[static_cast<std::size_t>(place)];
-    if (request_.kind == SweepKind::grid) k /= size;
+    const auto values = static_cast<std::int64_t>(size(request_.over[p]));
+    const std::int64_t place = request_.kind == SweepKind::grid ? k % values : values == 1 ? 0 : k;
+    out[p] = value(request_.over[p], place);
+    if (request_.kind == SweepKind::grid) k /= values;
   }
 }
 

@@ -21,11 +21,14 @@ namespace catena {
 
 /// What a sweep says of one parameter.
 struct SweepRange {
-  enum class Kind : unsigned char { list, normal, uniform };
+  enum class Kind : unsigned char { list, steps, normal, uniform };
   int parameter = -1;
   Kind kind = Kind::list;
-  std::vector<double> values;    ///< of a list; of steps, all of them
-  double first = 0, second = 0;  ///< mean and deviation, or least and greatest
+  std::vector<double> values;    ///< of a list
+  double first = 0, second = 0;  ///< of steps the first and the last value; mean and deviation; least and greatest
+  double count = 0;              ///< of steps: how many values, a whole number of any size
+
+  bool is_distribution() const { return kind == Kind::normal || kind == Kind::uniform; }
 };
 
 enum class SweepKind : unsigned char { grid, together, sobol, latin, random };
@@ -41,6 +44,12 @@ class SweepPlan {
  public:
   /// More designs than this are taken for a mistake.
   static constexpr std::int64_t most_designs = 1'000'000'000;
+  /// A latin square keeps so many numbers at most, samples times parameters: of 8 bytes each, 0.8 GB.
+  static constexpr std::int64_t most_latin_numbers = 100'000'000;
+
+  /// Values of a list or of steps, and value k of them.
+  static double size(const SweepRange& range);
+  static double value(const SweepRange& range, std::int64_t k);
 
   /// Why the request is no plan, in words; nothing if it is one.
   static std::optional<std::string> trouble(const SweepRequest& request);

@@ -1,10 +1,12 @@
 // Looks at a driven motion at any instant, in any order, beside the run that gives its rows.
 //
 // A second Kinematics of the same model follows the motion from a state that the run gave: what is asked of it disturbs
-// neither the run's predictions nor its account of work. Work and dissipated energy are therefore not to be had.
+// neither the run's predictions nor its account of work. Where work is needed it sums up its own, on top of what the
+// run's had come to in that state.
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "catena/analysis/kinematics/kinematics.hpp"
 
@@ -16,31 +18,41 @@ class KinematicLook {
   KinematicLook(std::shared_ptr<const Model> model, const PlanOptions& plan_options, const KinematicsOptions& options,
                 const Needs& needs)
       : kinematics_(std::move(model), plan_options, options), needs_(needs) {
-    needs_.work = false;
+    if (needs_.work) needs_.velocity = needs_.acceleration = needs_.multipliers = true;
   }
 
   /// Starts from where another evaluator's snapshot is.
   void start_from(const Snapshot& snapshot) {
     kinematics_.start_from(state_of(snapshot.evaluator, snapshot.t, snapshot.q));
+    work_ = snapshot.work;
+    dissipated_ = snapshot.dissipated;
+    initial_energy_ = snapshot.initial_energy;
+    driver_work_before_.assign(snapshot.driver_work.begin(), snapshot.driver_work.end());
+    driver_work_ = driver_work_before_;
+    follows_ = !needs_.work || kinematics_.sum_up_work().ok();
   }
   /// The mechanism at t; nothing where the motion cannot be followed there. Valid until the next call.
   std::optional<Snapshot> at(double t) {
-    if (!kinematics_.move_to(t).ok() || !kinematics_.solve_rates(needs_).ok()) return {};
+    if (!follows_ || !kinematics_.move_to(t).ok() || !kinematics_.solve_rates(needs_).ok()) return {};
     kinematics_.evaluator().set_configuration(kinematics_.q());
-    const bool velocity = needs_.velocity || needs_.acceleration || needs_.multipliers;
-    const bool acceleration = needs_.acceleration || needs_.multipliers;
-    const std::span<const double> none;
-    return Snapshot{.evaluator = kinematics_.evaluator(),
-                    .t = t,
-                    .q = kinematics_.q(),
-                    .qd = velocity ? kinematics_.qd() : none,
-                    .qdd = acceleration ? kinematics_.qdd() : none,
-                    .lambda = needs_.multipliers ? kinematics_.lambda() : none};
+    Snapshot snapshot = kinematics_.snapshot();
+    if (needs_.multipliers) snapshot.lambda = kinematics_.lambda();
+    if (!needs_.work) return snapshot;
+    for (std::size_t e = 0; e < driver_work_.size(); ++e)
+      driver_work_[e] = driver_work_before_[e] + snapshot.driver_work[e];
+    snapshot.driver_work = driver_work_;
+    snapshot.work += work_;
+    snapshot.dissipated += dissipated_;
+    snapshot.initial_energy = initial_energy_;
+    return snapshot;
   }
 
  private:
   Kinematics kinematics_;
   Needs needs_;
+  bool follows_ = true;
+  double work_ = 0, dissipated_ = 0, initial_energy_ = 0;  // of the run, where this began
+  std::vector<double> driver_work_before_, driver_work_;
 };
 
 }  // namespace catena

@@ -77,6 +77,7 @@ void Kinematics::start_from(const SystemState& state) {
   redundant_.clear();
   prepared_ = placed_ = on_bridge_ = false;
   has_velocity_ = has_acceleration_ = false;
+  account_.reset();
   take_over_places(evaluator_, state, q_);
 }
 
@@ -142,7 +143,8 @@ Report Kinematics::move_to(double t) {
   if (!std::isfinite(t)) throw std::invalid_argument("kinematics cannot move to an instant that is not finite");
   Report ready = get_ready(t < t_ ? -1 : 1);
   if (!ready.ok()) return ready;
-  Report moved = follow_to(t);
+  Report moved = account_ ? move_and_sum_up(t) : follow_to(t);
+  if (account_) account_->driver_work(work_, driver_work_);
   moved.warnings.insert(moved.warnings.begin(), ready.warnings.begin(), ready.warnings.end());
   return moved;
 }
@@ -150,6 +152,11 @@ Report Kinematics::move_to(double t) {
 Report Kinematics::solve_rates(const Needs& needs) {
   Report ready = get_ready(1);
   return ready.ok() ? find_rates(needs) : ready;
+}
+
+Report Kinematics::sum_up_work() {
+  Report ready = get_ready(1);
+  return ready.ok() ? start_work() : ready;
 }
 
 // Makes sure that the constraints drive every coordinate, with a working set of rows if there are more than needed.

@@ -58,6 +58,10 @@ class Kinematics {
   /// that is done first; `under_driven` where constraints and drivers do not determine the motion.
   Report move_to(double t);
   Report solve_rates(const Needs& needs);
+  /// From the present instant on, move_to() sums up the work that is done on the way, and snapshot() has it.
+  Report sum_up_work();
+  /// The mechanism as it is now, with what was solved for there, multipliers apart. Valid until it moves.
+  Snapshot snapshot() const;
 
   double time() const { return t_; }
   std::span<const double> q() const { return q_; }
@@ -105,7 +109,6 @@ class Kinematics {
   void choose_least_reactions();
   bool multipliers_on_bridge(double t, std::span<double> lambda);
   void find_limit_of_multipliers();
-  Snapshot snapshot() const;
   // Work along the motion: kinematics_work.cpp.
   Report start_work();
   double energy_gap() const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace catena {
 namespace {
@@ -10,6 +11,9 @@ namespace {
 // A node holds (instant, derivative); data vectors are addressed symbolically through weights on them.
 constexpr int max_nodes = 6;
 using Weights = std::array<double, max_nodes>;
+// Instants nearer to each other than this part of the way ahead are one: the quintic through both would amplify
+// rounding of 1e-16 by the fifth power of the ratio to more than 1e-6.
+constexpr double one_instant = 0.01;
 
 struct Nodes {
   int count = 0;
@@ -80,8 +84,12 @@ bool Predictor::predict(double t, std::span<double> q, std::span<double> qd, std
   const int instants = std::min(count_, back(0).derivatives > 0 ? 2 : capacity);
   Nodes nodes;
   std::array<const double*, max_nodes> data{};
-  for (int k = 0; k < instants; ++k) {
+  for (int k = 0, taken = 0; k < count_ && taken < instants; ++k) {
     const Instant& instant = back(k);
+    const auto* const first = nodes.t.data();
+    const auto near = [&](double other) { return std::abs(other - instant.t) < one_instant * std::abs(t - back(0).t); };
+    if (std::any_of(first, first + nodes.count, near)) continue;
+    ++taken;
     const int group = nodes.count;
     for (int d = 0; d <= instant.derivatives && nodes.count < max_nodes; ++d) {
       const auto n = static_cast<std::size_t>(nodes.count++);

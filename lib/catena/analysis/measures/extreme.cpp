@@ -60,6 +60,10 @@ std::optional<Stationary> stationary(const std::array<double, 7>& v) {
 }  // namespace
 
 void Extreme::consider(MotionSample sample, double value, double reach) {
+  if (!std::isfinite(value)) {
+    if (!undefined_) undefined_ = sample.t;
+    return;
+  }
   size_ = std::max(size_, std::abs(value));
   if (!best_ || value > largest_ + tie * size_) {
     others_.clear();
@@ -136,7 +140,10 @@ void Extreme::add(const MotionSamples& samples, const MotionSamples::Part& part,
   for (std::size_t k = 0; k < count; ++k) {
     v[k] = quantity_(part[k].value);
     t[k] = part[k].t;
-    size_ = std::max(size_, std::abs(v[k]));
+    if (std::isfinite(v[k]))
+      size_ = std::max(size_, std::abs(v[k]));
+    else if (!undefined_)
+      undefined_ = t[k];
   }
   const auto at = [&](double instant) -> std::optional<double> {
     const std::optional<MotionSample> sample = samples.look(stretch, instant, false);

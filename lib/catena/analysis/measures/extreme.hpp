@@ -33,6 +33,8 @@ class Extreme {
   double value() const { return largest_; }
   /// Other instants where the quantity is as large to 1e-9 of its size: ties.
   const std::vector<MotionSample>& others() const { return others_; }
+  /// An instant at which the quantity is not a number; nothing if it is one everywhere.
+  const std::optional<double>& undefined() const { return undefined_; }
 
  private:
   struct Peak {
@@ -48,6 +50,7 @@ class Extreme {
   std::optional<MotionSample> best_;
   double largest_ = 0, size_ = 0;
   std::vector<MotionSample> others_;
+  std::optional<double> undefined_;
 };
 
 }  // namespace catena

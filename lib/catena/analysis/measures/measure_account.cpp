@@ -55,8 +55,9 @@ void MeasureSet::Account::look_at_instants(const MotionSamples& samples, const M
 }
 
 void MeasureSet::Account::add_row(const MotionSample& sample, bool only_rows) {
-  if (!first_) first_ = sample;
-  last_ = sample;
+  // Rows may be listed in any order of their instants.
+  if (!first_ || sample.t < first_->t) first_ = sample;
+  if (!last_ || sample.t >= last_->t) last_ = sample;
   for (Instant& instant : instants_) {
     if (!instant.sample && instant.t == sample.t) instant.sample = sample;
   }
@@ -101,13 +102,21 @@ void MeasureSet::Account::give_extreme(MeasureResult& result, const Extreme& ext
   result.t = extreme.best().t;
   for (std::size_t p = 0; p < parameters_; ++p) result.gradient[p] += factor * gradient_of(extreme.best(), column_, p);
   check_ties(result, extreme);
+  if (extreme.undefined() && result.trouble.empty()) {
+    result.trouble =
+        fmt::format("it is taken where its column is a number, which it is not at t = {:.9g} s", *extreme.undefined());
+  }
 }
 
 void MeasureSet::Account::give_integral(MeasureResult& result) const {
   const double duration = rows_ > 0 ? static_cast<double>(rows_) : duration_;
   if (request_.kind == MeasureKind::integral) {
-    result.value = rows_ > 0 ? 0 : sum_;
-    if (rows_ == 0 && !sum_gradient_.empty()) result.gradient = sum_gradient_;
+    if (rows_ > 0) {
+      result.trouble = "an integral over time needs the motion between its rows, where this one is not looked at";
+      return;
+    }
+    result.value = sum_;
+    if (!sum_gradient_.empty()) result.gradient = sum_gradient_;
     return;
   }
   if (!(duration > 0)) {
@@ -144,7 +153,7 @@ void MeasureSet::Account::give_path(MeasureResult& result) const {
     result.trouble = "all its points are met exactly: a distance has a kink there";
 }
 
-MeasureResult MeasureSet::Account::result(const ColumnInfo& column, bool gradient_at_last) const {
+MeasureResult MeasureSet::Account::result(const ColumnInfo& column, bool gradient_at_last, bool looked) const {
   MeasureResult result{request_.name,
                        std::string(column.unit_text()),
                        request_.kind == MeasureKind::integral,
@@ -176,7 +185,9 @@ MeasureResult MeasureSet::Account::result(const ColumnInfo& column, bool gradien
       if (instants_[0].sample)
         give(result, *instants_[0].sample);
       else
-        result.trouble = fmt::format("t = {:.9g} s is not within the motion", instants_[0].t);
+        result.trouble = fmt::format(
+            "t = {:.9g} s is {}", instants_[0].t,
+            rows_ > 0 ? "at none of its rows, and the motion is not looked at between them" : "not within the motion");
       break;
     case MeasureKind::path:
       give_path(result);
@@ -184,10 +195,21 @@ MeasureResult MeasureSet::Account::result(const ColumnInfo& column, bool gradien
     case MeasureKind::mean:
     case MeasureKind::rms:
     case MeasureKind::integral:
-      give_integral(result);
+      if (looked)
+        give_integral(result);
+      else
+        result.trouble = "the motion could not be looked at everywhere between its rows";
       break;
     case MeasureKind::field:
       break;
+  }
+  if (result.value && !std::isfinite(*result.value)) {
+    if (result.trouble.empty()) {
+      result.trouble = result.t ? fmt::format("its column is not a number at t = {:.9g} s", *result.t)
+                                : "its column is not a number everywhere";
+    }
+    result.value.reset();
+    result.t.reset();
   }
   if (!result.value) {
     std::fill(result.gradient.begin(), result.gradient.end(), none);

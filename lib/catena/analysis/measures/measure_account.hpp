@@ -40,14 +40,15 @@ class MeasureSet::Account {
     return request_.kind == MeasureKind::integral || request_.kind == MeasureKind::mean ||
            request_.kind == MeasureKind::rms;
   }
-  /// Whether derivatives are wanted at the last row.
-  bool wants_last() const { return request_.kind == MeasureKind::final; }
+  /// Whether it depends on what is between rows, single instants apart.
+  bool wants_samples() const { return is_integral() || !extremes_.empty(); }
 
   void set_parameters(int parameters) { parameters_ = static_cast<std::size_t>(parameters); }
   void add(const MotionSamples& samples, const MotionSamples::Part& part, const MotionStretch& stretch);
   void look_at_instants(const MotionSamples& samples, const MotionStretch& stretch);
   void add_row(const MotionSample& sample, bool only_rows);
-  MeasureResult result(const ColumnInfo& column, bool gradient_at_last) const;
+  /// `looked`: the motion could be looked at everywhere between its rows.
+  MeasureResult result(const ColumnInfo& column, bool gradient_at_last, bool looked) const;
 
  private:
   struct Instant {

@@ -52,6 +52,7 @@ MeasureSet::MeasureSet(std::vector<MeasureRequest> requests, const Model& model,
           fmt::format("measure \"{}\" is taken over time, which {} has not", requests_[k].name, sources.analysis));
     const auto [first, second] = places.of_request[k];
     accounts_.push_back(std::make_unique<Account>(requests_[k], first, second, run_));
+    wants_samples_ = wants_samples_ || accounts_.back()->wants_samples();
   }
 }
 
@@ -69,6 +70,7 @@ void MeasureSet::differentiate(int parameters, DifferentiateColumns derivatives)
 void MeasureSet::cover(const MotionStretch& stretch) {
   if (empty()) return;
   for (const auto& account : accounts_) account->look_at_instants(*samples_, stretch);
+  if (!wants_samples_) return;
   looked_ = samples_->cover(stretch, [&](const MotionSamples::Part& part, const MotionStretch& within) {
     for (const auto& account : accounts_) account->add(*samples_, part, within);
   }) && looked_;
@@ -77,9 +79,10 @@ void MeasureSet::cover(const MotionStretch& stretch) {
 void MeasureSet::take_row(const Snapshot& snapshot, bool only_rows) {
   if (empty()) return;
   const bool last = only_rows || snapshot.t == run_.last;
-  const bool derivative = parameters_ > 0 && (last || snapshot.t == run_.first);
-  const MotionSample sample = samples_->take(snapshot, derivative);
-  gradient_at_last_ = last;
+  const bool first = !earliest_row_ || snapshot.t < *earliest_row_;
+  if (first) earliest_row_ = snapshot.t;
+  const MotionSample sample = samples_->take(snapshot, parameters_ > 0 && (last || first));
+  gradient_at_last_ = gradient_at_last_ || last;
   for (const auto& account : accounts_) account->add_row(sample, only_rows);
 }
 
@@ -89,8 +92,9 @@ std::vector<MeasureResult> MeasureSet::results() const {
     const auto& names = requests_[k].columns;
     const auto info = std::find_if(columns_->info().begin(), columns_->info().end(),
                                    [&](const ColumnInfo& column) { return column.name == names.front(); });
-    results.push_back(accounts_[k]->result(info == columns_->info().end() ? ColumnInfo{} : *info, gradient_at_last_));
-    if (!looked_ && results.back().trouble.empty())
+    results.push_back(
+        accounts_[k]->result(info == columns_->info().end() ? ColumnInfo{} : *info, gradient_at_last_, looked_));
+    if (!looked_ && accounts_[k]->wants_samples() && results.back().trouble.empty())
       results.back().trouble = "the motion could not be looked at everywhere between its rows";
   }
   return results;

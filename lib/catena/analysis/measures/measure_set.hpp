@@ -10,7 +10,7 @@
 //   paths             of each point the nearest instant is fixed     first, final, at
 //
 // What a run could not be looked at for (between rows of a motion of least norm) is taken from its rows, and `trouble`
-// says so.
+// says so; integrals over time have no value there. Neither has a measure that is not a number.
 #pragma once
 
 #include <memory>
@@ -52,6 +52,8 @@ class MeasureSet {
   std::unique_ptr<MotionSamples> samples_;
   std::vector<std::unique_ptr<Account>> accounts_;
   int parameters_ = 0;
+  std::optional<double> earliest_row_;
+  bool wants_samples_ = false;  // some measure depends on what is between rows
   bool gradient_at_last_ = false;
   bool looked_ = true;  // whether every stretch could be looked at
 };

@@ -74,7 +74,10 @@ double MotionSamples::misfit(const Part& part) const {
     for (std::size_t f = 0; f < foretold.size() && size_[c] > 0; ++f) {
       double value = 0;
       for (std::size_t k = 0; k < known.size(); ++k) value += weights[f][k] * part[known[k]].value[c];
-      largest = std::max(largest, std::abs(value - part[foretold[f]].value[c]) / size_[c]);
+      const double there = part[foretold[f]].value[c];
+      // Where a column ceases to be a number halving finds the border.
+      if (std::isfinite(value) != std::isfinite(there)) return std::numeric_limits<double>::infinity();
+      largest = std::max(largest, std::abs(value - there) / size_[c]);
     }
   }
   return largest;

@@ -48,8 +48,6 @@ class MotionSamples {
   /// The columns at a snapshot, or at an instant of a stretch.
   MotionSample take(const Snapshot& snapshot, bool with_derivative) const;
   std::optional<MotionSample> look(const MotionStretch& stretch, double t, bool with_derivative) const;
-  /// Largest magnitude of every column so far.
-  std::span<const double> sizes() const { return size_; }
 
  private:
   /// Takes the samples between a and b; false where the motion could not be looked at.

@@ -16,23 +16,20 @@ namespace {
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double given_weight = 1e4;
-constexpr int most_rounds = 12;
+constexpr int most_rounds = rounds_of_velocities;
 // A massless component counts with its small mass, 1e-4 of the constrained mass; a given one thus weighs more than that
 // mass.
 constexpr double given_massless_weight = 1e8;
 // Velocities are corrected until the constraints' residual no longer shrinks, at most so many times.
 constexpr int most_corrections = 4;
 
-/// The velocities given by the model or by an earlier analysis, by column.
-struct Wanted {
-  std::vector<double> velocity, weight;
-  std::vector<char> given, follows;  // massless and not given: it follows what has mass
-};
+}  // namespace
 
-Wanted wanted_velocities(const Evaluator& evaluator, const MassMatrix& masses, std::span<const double> given) {
+WantedVelocities wanted_velocities(const Evaluator& evaluator, const MassMatrix& masses,
+                                   std::span<const double> given) {
   const Plan& plan = evaluator.plan();
-  Wanted wanted{std::vector<double>(at(plan.columns), 0.0), std::vector<double>(at(plan.columns), 1.0),
-                std::vector<char>(at(plan.columns), 0), std::vector<char>(at(plan.columns), 0)};
+  WantedVelocities wanted{std::vector<double>(at(plan.columns), 0.0), std::vector<double>(at(plan.columns), 1.0),
+                          std::vector<char>(at(plan.columns), 0), std::vector<char>(at(plan.columns), 0)};
   for (int c = 0; c < plan.columns; ++c) {
     const int coordinate = plan.coordinate[at(c)], k = coordinate % 3;
     const auto& body = evaluator.model().bodies[at(plan.model_body[at(coordinate / 3)])];
@@ -60,15 +57,13 @@ Wanted wanted_velocities(const Evaluator& evaluator, const MassMatrix& masses, s
   return wanted;
 }
 
-}  // namespace
-
 VelocityOutcome find_initial_velocities(EquationsOfMotion& equations, std::span<const double> q,
                                         std::span<const double> given, std::span<double> qd) {
   VelocityOutcome outcome;
   Evaluator& evaluator = equations.evaluator();
   const Plan& plan = evaluator.plan();
   evaluator.set_configuration(q);
-  const Wanted wanted = wanted_velocities(evaluator, equations.masses(), given);
+  const WantedVelocities wanted = wanted_velocities(evaluator, equations.masses(), given);
   std::vector<double> velocity = wanted.velocity;
   if (plan.rows > 0) {
     std::vector<double> jacobian(at(plan.trash_slot()) + 1), nu(at(plan.rows)), rest(nu), lambda(nu);

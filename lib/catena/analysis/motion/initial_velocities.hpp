@@ -29,6 +29,21 @@ struct VelocityOutcome : Report {
   std::optional<SingularPoint> dead_point;  ///< where the status is lock_up
 };
 
+/// What is asked of initial velocities, by column of the plan: given ones are to be kept, and weigh so much; what
+/// follows has no mass and is not given.
+struct WantedVelocities {
+  std::vector<double> velocity, weight;
+  std::vector<char> given, follows;
+};
+
+/// Of the model, or of an earlier analysis where `given` is not empty: see find_initial_velocities(). Of the masses the
+/// small ones in place of zero must have been chosen. At the evaluator's configuration.
+WantedVelocities wanted_velocities(const Evaluator& evaluator, const MassMatrix& masses, std::span<const double> given);
+
+/// Most rounds in which what is missing of given velocities is added: each gains the ratio of the weights, 10^4, where
+/// it can be had at all.
+inline constexpr int rounds_of_velocities = 12;
+
 /// Finds qd (size plan.coordinates()) at the evaluator's time and the assembled configuration q. `given`, if not empty,
 /// are velocities of an earlier analysis, all of which count as given; otherwise those of the model do.
 VelocityOutcome find_initial_velocities(EquationsOfMotion& equations, std::span<const double> q,

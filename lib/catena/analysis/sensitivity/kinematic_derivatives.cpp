@@ -39,10 +39,9 @@ bool KinematicDerivatives::solve_multipliers(Group& group) {
     for (std::size_t c = 0; c < f.size(); ++c) f[c] = -group.loads[c].d[p];
     std::fill(b.begin(), b.end(), 0.0);
     if (!system_.solve(f, b)) return false;
-    const bool unique = system_.dependent_rows().empty();
-    for (std::size_t r = 0; r < b.size(); ++r)
-      group.lambda[r].d[p] = unique ? b[r] : std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t r = 0; r < b.size(); ++r) group.lambda[r].d[p] = b[r];
   }
+  if (!system_.dependent_rows().empty()) leave_out_reactions(group);
   return true;
 }
 
@@ -82,8 +81,6 @@ bool KinematicDerivatives::find(const Snapshot& snapshot) {
       mechanism.set_state(group.q);
     if (acceleration && !snapshot.lambda.empty() && !solve_multipliers(group)) return singular();
   }
-  if (!snapshot.lambda.empty() && !system_.dependent_rows().empty())
-    fail("reactions of constraints that depend on each other are not unique, and have no derivative");
   return true;
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace catena {
 namespace {
@@ -40,6 +39,11 @@ bool MotionDerivatives::singular(double t) {
       fmt::format("at t = {:.9g} s the motion passes a singular configuration, beyond which its derivatives are "
                   "not known",
                   t));
+}
+
+bool MotionDerivatives::not_shown(double t) {
+  return fail(
+      fmt::format("the motion could not be looked at at t = {:.9g} s, beyond which its derivatives are not known", t));
 }
 
 bool MotionDerivatives::factorize(double t, Side side, std::span<const DesignScalar> q) {
@@ -139,7 +143,7 @@ bool MotionDerivatives::start(double t, std::span<const double> q, std::span<con
     for (std::size_t c = 0; c < n_; ++c) tracks_[k].end[n_ + c] = qd[c];
     if (!start.find(group.mechanism, group.count, std::span(tracks_[k].end).first(n_),
                     std::span(tracks_[k].end).subspan(n_)))
-      return fail("the start of the motion has no derivative: constraints are singular there");
+      return fail("the start of the motion has no derivative: " + start.why());
   }
   return true;
 }
@@ -166,7 +170,7 @@ bool MotionDerivatives::make_step(double h) {
 // Values are the motion's own: angles may have been moved by whole turns, velocities by a jump.
 bool MotionDerivatives::take_values(const MotionStretch& stretch, double t, bool& jumped) {
   const std::optional<Snapshot> state = stretch.at(t);
-  if (!state) return false;
+  if (!state) return not_shown(t);
   jumped = false;
   for (Track& track : tracks_) {
     for (std::size_t c = 0; c < n_; ++c) {
@@ -187,23 +191,26 @@ bool MotionDerivatives::project_end(double t, Side side) {
   return true;
 }
 
-bool MotionDerivatives::cover(const MotionStretch& stretch) {
-  if (!why().empty()) return true;  // rows and measures say so
+// Once derivatives are lost they stay lost: why() says it, and find() fails.
+void MotionDerivatives::cover(const MotionStretch& stretch) {
+  if (!why().empty()) return;
   if (!started_) {
     const std::optional<Snapshot> state = stretch.at(stretch.from);
-    if (!state || !start(stretch.from, state->q, state->qd)) return true;
+    if (!state) {
+      not_shown(stretch.from);
+      return;
+    }
+    if (!start(stretch.from, state->q, state->qd)) return;
   }
   bool jumped = false;
-  if (!take_values(stretch, stretch.from, jumped)) return true;
-  if (jumped && !project_end(stretch.from, Side::after)) return true;
+  if (!take_values(stretch, stretch.from, jumped)) return;
+  if (jumped && !project_end(stretch.from, Side::after)) return;
   for (Track& track : tracks_) track.begin.swap(track.end);
   from_ = stretch.from;
   to_ = stretch.to;
   has_step_ = true;
   interpolant_ready_ = false;
-  if (!make_step(to_ - from_)) return true;
-  if (take_values(stretch, to_, jumped)) project_end(to_, Side::before);
-  return true;
+  if (make_step(to_ - from_) && take_values(stretch, to_, jumped)) project_end(to_, Side::before);
 }
 
 // See runge_kutta_interpolant.cpp.
@@ -244,7 +251,8 @@ void MotionDerivatives::interpolate(const Track& track, double t, Vector& y) con
 
 bool MotionDerivatives::find(const Snapshot& snapshot) {
   if (!started_ && !start(snapshot.t, snapshot.q, snapshot.qd)) return false;
-  if (!why().empty() || snapshot.t < from_ || snapshot.t > to_) return false;
+  if (!why().empty()) return false;
+  if (snapshot.t < from_ || snapshot.t > to_) return not_shown(snapshot.t);
   const bool inside = has_step_ && snapshot.t != to_ && snapshot.t != from_;
   if (inside && !interpolant_ready_) {
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
@@ -269,8 +277,7 @@ bool MotionDerivatives::find(const Snapshot& snapshot) {
       continue;
     }
     if (!derivative(group, snapshot.t, Side::after, y_, stage_)) return singular(snapshot.t);
-    if (system_.dependent_rows().empty()) continue;
-    for (DesignScalar& multiplier : group.lambda) multiplier.d.fill(std::numeric_limits<double>::quiet_NaN());
+    if (!system_.dependent_rows().empty()) leave_out_reactions(group);
   }
   return true;
 }

@@ -26,7 +26,7 @@ class MotionDerivatives final : public StateDerivatives {
   /// `from_model`: see StartDerivatives.
   MotionDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters, bool from_model);
 
-  bool cover(const MotionStretch& stretch) override;
+  void cover(const MotionStretch& stretch) override;
   bool find(const Snapshot& snapshot) override;
 
  private:
@@ -51,6 +51,7 @@ class MotionDerivatives final : public StateDerivatives {
   bool project(Group& group, double t, Side side, Vector& y);
   bool factorize(double t, Side side, std::span<const DesignScalar> q);
   bool singular(double t);
+  bool not_shown(double t);
 
   std::size_t n_;  // coordinates
   SaddleSystem system_;

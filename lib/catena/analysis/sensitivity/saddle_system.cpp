@@ -35,7 +35,6 @@ std::vector<std::pair<int, int>> tied_pairs(const Plan& plan) {
 SaddleSystem::SaddleSystem(std::shared_ptr<const Plan> plan, SaddleBlock block)
     : plan_(std::move(plan)), block_(block) {
   if (block_ == SaddleBlock::elements) pairs_ = tied_pairs(*plan_);
-  for (int r = 0; r < plan_->rows; ++r) rows_.push_back(r);
 }
 
 void SaddleSystem::leave_out(std::vector<int> rows) {

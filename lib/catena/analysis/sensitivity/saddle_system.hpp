@@ -46,7 +46,6 @@ class SaddleSystem {
   bool solve(std::span<double> f, std::span<double> b);
   /// Rows that depend on others: their multipliers are not determined.
   const std::vector<int>& dependent_rows() const { return dependent_; }
-  const Counters& counters() const { return counters_; }
 
  private:
   void choose_rows(std::span<const double> jacobian);

@@ -27,20 +27,22 @@ bool factor_metric(Evaluator& evaluator, SaddleSystem& system, std::span<double>
 
 }  // namespace
 
-std::vector<double> balancing_multipliers(Evaluator& evaluator, double t, std::span<const double> q) {
+std::optional<std::vector<double>> balancing_multipliers(Evaluator& evaluator, double t, std::span<const double> q) {
   const Plan& plan = evaluator.plan();
   evaluator.set_time(t);
   evaluator.set_configuration(q);
   SaddleSystem system(evaluator.shared_plan(), SaddleBlock::diagonal);
   std::vector<double> jacobian(at(plan.trash_slot()) + 1), f(at(plan.coordinates())), b(at(plan.rows), 0.0);
-  if (!factor_metric(evaluator, system, jacobian)) return b;
+  if (!factor_metric(evaluator, system, jacobian)) return {};
   evaluator.applied_forces(std::vector<double>(f.size(), 0.0), f);
-  if (!system.solve(f, b)) std::fill(b.begin(), b.end(), 0.0);
+  if (!system.solve(f, b)) return {};
   return b;
 }
 
-SpectrumDerivatives::SpectrumDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters)
+SpectrumDerivatives::SpectrumDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters,
+                                         bool from_model)
     : StateDerivatives(evaluator, models, parameters),
+      from_model_(from_model),
       metric_(evaluator.shared_plan(), SaddleBlock::diagonal),
       rest_(at(plan().coordinates()), 0.0),
       values_(at(plan().trash_slot()) + 1) {}
@@ -112,11 +114,11 @@ bool SpectrumDerivatives::find(const Snapshot& snapshot) {
   evaluator().set_configuration(snapshot.q);
   if (is_in_balance() && find_as_equilibrium(snapshot)) return true;
   // No balance, or one that nothing holds: the place follows the given configuration.
-  StartDerivatives start(evaluator(), true);
+  StartDerivatives start(evaluator(), from_model_);
   for (Group& group : groups()) {
     lift_state(group, snapshot);
-    std::vector<DesignScalar> qd(group.q.size());
-    if (!start.find(group.mechanism, group.count, group.q, qd)) return fail("the place has no derivative");
+    if (!start.find_places(group.mechanism, group.count, group.q))
+      return fail("the place has no derivative: " + start.why());
     if (!find_multipliers(group, snapshot.t)) return false;
   }
   return true;
@@ -140,7 +142,7 @@ bool SpectrumDerivatives::find_held(const Snapshot& snapshot, const StateDerivat
   return true;
 }
 
-std::vector<double> SpectrumDerivatives::holding_multipliers(double omega2, std::span<const double> v) {
+std::optional<std::vector<double>> SpectrumDerivatives::holding_multipliers(double omega2, std::span<const double> v) {
   std::vector<double> f(v.size(), 0.0), b(at(plan().rows), 0.0);
   const auto subtract = [&](int i, int j, const ElementMatrix& m) {
     const int body[2] = {i, j};
@@ -155,34 +157,30 @@ std::vector<double> SpectrumDerivatives::holding_multipliers(double omega2, std:
   evaluator().visit_stiffness(rest_, subtract);
   evaluator().visit_constraint_hessians(lambda_, subtract);
   for (int c = 0; c < 3 * plan().moving; ++c) f[at(c)] += omega2 * groups().front().mechanism.mass(c).v * v[at(c)];
-  if (factor_metric(evaluator(), metric_, values_)) metric_.solve(f, b);
+  if (!factor_metric(evaluator(), metric_, values_) || !metric_.solve(f, b)) {
+    fail("constraints are singular");
+    return {};
+  }
   return b;
 }
 
-std::vector<double> SpectrumDerivatives::quadratic_gradient(double omega2, std::span<const double> shape) {
+std::optional<std::vector<double>> SpectrumDerivatives::gradient(double omega2, std::span<const double> shape) {
   std::vector<double> v(at(plan().coordinates()), 0.0), gradient;
   for (int c = 0; c < plan().columns; ++c) v[at(plan().coordinate[at(c)])] = shape[at(c)];
-  const std::vector<double> mu = holding_multipliers(omega2, v);
+  const std::optional<std::vector<double>> mu = holding_multipliers(omega2, v);
+  if (!mu) return {};
   std::vector<DesignScalar> along(v.begin(), v.end());
   for (Group& group : groups()) {
     group.mechanism.set_state(group.q, along);
     group.mechanism.rows(group.rows);
     DesignScalar sum = group.mechanism.potential().dd;
-    for (std::size_t r = 0; r < mu.size(); ++r)
-      sum += group.lambda[r] * group.rows[r].dd + DesignScalar(2 * mu[r]) * group.rows[r].d;
+    for (std::size_t r = 0; r < mu->size(); ++r)
+      sum += group.lambda[r] * group.rows[r].dd + DesignScalar(2 * (*mu)[r]) * group.rows[r].d;
     for (int c = 0; c < 3 * plan().moving; ++c)
       sum -= DesignScalar(omega2 * v[at(c)] * v[at(c)]) * group.mechanism.mass(c);
     for (std::size_t p = 0; p < at(group.count); ++p) gradient.push_back(sum.d[p]);
   }
   return gradient;
-}
-
-std::vector<double> SpectrumDerivatives::frequency_gradient(double omega2, std::span<const double> shape) {
-  return quadratic_gradient(omega2, shape);
-}
-
-std::vector<double> SpectrumDerivatives::stiffness_gradient(std::span<const double> shape) {
-  return quadratic_gradient(0, shape);
 }
 
 }  // namespace catena

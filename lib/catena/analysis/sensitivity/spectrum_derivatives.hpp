@@ -26,12 +26,15 @@ struct StaticPlace {
   std::span<const double> q, lambda;
 };
 
-/// Multipliers that balance the forces at a place best, in the metric (1, 1, radius^2); size rows.
-std::vector<double> balancing_multipliers(Evaluator& evaluator, double t, std::span<const double> q);
+/// Multipliers that balance the forces at a place best, in the metric (1, 1, radius^2), size rows; nothing where its
+/// constraints are singular.
+std::optional<std::vector<double>> balancing_multipliers(Evaluator& evaluator, double t, std::span<const double> q);
 
 class SpectrumDerivatives final : public StateDerivatives {
  public:
-  SpectrumDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters);
+  /// `from_model`: a place that is no equilibrium follows from what the model gives; else it is where an earlier
+  /// analysis ended, and constraints alone move it.
+  SpectrumDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters, bool from_model);
 
   /// Takes the place's derivatives: those of the equilibrium that it is, or of assembly where forces are not in
   /// balance.
@@ -39,10 +42,10 @@ class SpectrumDerivatives final : public StateDerivatives {
   /// Takes those of a place at which another load acts than the one that it is the equilibrium of: its configuration
   /// moves as `equilibrium` found it, but not with the last parameter, the load.
   bool find_held(const Snapshot& snapshot, const StateDerivatives& equilibrium);
-  /// Derivatives of omega2 of the mode `shape` (over columns, v^T M v = 1) at the place of the last find().
-  std::vector<double> frequency_gradient(double omega2, std::span<const double> shape);
-  /// v^T K v + 2 mu^T Phi_q v by every parameter, v and mu fixed, at a place that does not move; K v + Phi_q^T mu = 0.
-  std::vector<double> stiffness_gradient(std::span<const double> shape);
+  /// v^T (K - omega2 M) v + 2 mu^T Phi_q v by every parameter, v and mu fixed, at the place of the last find: the
+  /// derivatives of omega2 of the mode `shape` (over columns, v^T M v = 1); of stiffness alone with omega2 = 0.
+  /// Nothing, and why() says it, where they cannot be had.
+  std::optional<std::vector<double>> gradient(double omega2, std::span<const double> shape);
 
  private:
   bool is_in_balance();
@@ -51,9 +54,9 @@ class SpectrumDerivatives final : public StateDerivatives {
   void fill_residual(Group& group, double t);
   bool find_multipliers(Group& group, double t);
   /// mu with K v + Phi_q^T mu = omega2 M v.
-  std::vector<double> holding_multipliers(double omega2, std::span<const double> v);
-  std::vector<double> quadratic_gradient(double omega2, std::span<const double> shape);
+  std::optional<std::vector<double>> holding_multipliers(double omega2, std::span<const double> v);
 
+  bool from_model_;
   SaddleSystem metric_;
   std::vector<double> lambda_, rest_, values_;
 };

@@ -1,17 +1,23 @@
 #include "catena/analysis/sensitivity/start_derivatives.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "catena/analysis/motion/initial_velocities.hpp"
 
 namespace catena {
 namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// As in initial_velocities.cpp.
-constexpr double given_weight = 1e4;
-constexpr int most_rounds = 12;
+// Velocities whose last round changed them by more than this part are not settled: derivatives are good to it.
+constexpr double settled = 1e-9;
+// Given velocities that are missed by more than this part of the largest one: what derivatives lack is of that size,
+// below which "verify" does not see it.
+constexpr double missed = 1e-6;
 // Coordinates that assembly may not change: in weights of the others.
 constexpr double held_weight = 1e8;
 
@@ -29,21 +35,24 @@ StartDerivatives::StartDerivatives(Evaluator& evaluator, bool from_model)
       velocities_(evaluator.shared_plan(), SaddleBlock::diagonal),
       jacobian_(at(plan_.trash_slot()) + 1),
       weight_(at(plan_.coordinates()), 0.0),
-      given_(at(plan_.coordinates()), 0) {
+      wanted_(weight_),
+      given_(at(plan_.coordinates()), 0),
+      follows_(given_) {
   evaluator_.start_jacobian(jacobian_);
 }
 
 bool StartDerivatives::find(DesignMechanism& mechanism, int count, std::span<DesignScalar> q,
                             std::span<DesignScalar> qd) {
+  return find_places(mechanism, count, q) && find_velocities(mechanism, count, q, qd);
+}
+
+bool StartDerivatives::find_places(DesignMechanism& mechanism, int count, std::span<DesignScalar> q) {
   std::vector<double> values(q.size());
   for (std::size_t c = 0; c < q.size(); ++c) values[c] = q[c].v;
   evaluator_.set_configuration(values);
   evaluator_.jacobian(jacobian_);
   mechanism.set_time(evaluator_.time());
-  return find_configuration(mechanism, count, q) && find_velocities(mechanism, count, q, qd);
-}
-
-bool StartDerivatives::find_configuration(DesignMechanism& mechanism, int count, std::span<DesignScalar> q) {
+  const auto singular = [&] { return fail("constraints are singular where it was assembled"); };
   const std::vector<double> radius = evaluator_.attachment_radii();
   const auto phi_q = std::span<const double>(jacobian_).first(at(plan_.trash_slot()));
   std::vector<double> apart(q.size(), 0.0), weight(q.size(), 0.0), f(q.size()), b(at(plan_.rows), 0.0);
@@ -60,17 +69,17 @@ bool StartDerivatives::find_configuration(DesignMechanism& mechanism, int count,
     apart[at(c)] = k == 2 ? std::remainder(q[at(c)].v - estimate[at(c)].v, turn) : q[at(c)].v;
   }
   // The multipliers of assembly: W (q - e) + Phi_q^T mu = 0, here the least squares solution.
-  if (!assembly_.begin(phi_q)) return false;
+  if (!assembly_.begin(phi_q)) return singular();
   for (int c = 0; c < 3 * plan_.moving; ++c) assembly_.add_diagonal(c, weight[at(c)]);
-  if (!assembly_.factorize()) return false;
+  if (!assembly_.factorize()) return singular();
   for (std::size_t c = 0; c < f.size(); ++c) f[c] = -weight[c] * apart[c];
-  if (!assembly_.solve(f, b)) return false;
+  if (!assembly_.solve(f, b)) return singular();
   std::vector<DesignScalar> mu(b.begin(), b.end()), loads(q.size());
   assembly_.begin(phi_q);
   for (int c = 0; c < 3 * plan_.moving; ++c) assembly_.add_diagonal(c, weight[at(c)]);
   evaluator_.visit_constraint_hessians(
       b, [&](int i, int j, const ElementMatrix& matrix) { assembly_.add_element(i, j, matrix); });
-  if (!assembly_.factorize()) return false;
+  if (!assembly_.factorize()) return singular();
   std::vector<Taylor<DesignScalar>> rows(b.size());
   mechanism.set_state(q);
   mechanism.rows(rows);
@@ -78,75 +87,106 @@ bool StartDerivatives::find_configuration(DesignMechanism& mechanism, int count,
   for (std::size_t p = 0; p < at(count); ++p) {
     for (std::size_t c = 0; c < f.size(); ++c) f[c] = weight[c] * estimate[c].d[p] - loads[c].d[p];
     for (std::size_t r = 0; r < b.size(); ++r) b[r] = -rows[r].f.d[p];
-    if (!assembly_.solve(f, b)) return false;
+    if (!assembly_.solve(f, b)) return singular();
     for (const int c : plan_.coordinate) q[at(c)].d[p] = f[at(c)];
   }
   return true;
 }
 
-bool StartDerivatives::given_velocity(const DesignMechanism& mechanism, int coordinate, DesignScalar& velocity) const {
-  velocity = DesignScalar();
-  if (!from_model_) return true;
-  const auto& body = mechanism.model().bodies[at(plan_.model_body[at(coordinate / 3)])];
-  const DesignScalar omega = body.angular_velocity_given ? body.angular_velocity : DesignScalar();
-  if (coordinate % 3 == 2) {
-    velocity = omega;
-    return body.angular_velocity_given;
-  }
-  // From the author's origin to the centroid.
-  const Vec2<DesignScalar> arm = mechanism.ground_frame(coordinate / 3).axis(body.origin);
-  const Vec2<DesignScalar> v = body.velocity - omega * perpendicular(arm);
-  velocity = coordinate % 3 == 0 ? v.x : v.y;
-  return body.velocity_given;
-}
-
-bool StartDerivatives::solve_keeping(std::span<const double> wanted, std::span<const double> load,
-                                     std::span<const double> rows, std::span<double> v, std::span<double> multipliers) {
-  std::vector<double> asked(wanted.begin(), wanted.end());
-  for (int round = 0; round < most_rounds; ++round) {
-    for (std::size_t c = 0; c < v.size(); ++c) v[c] = given_[c] ? weight_[c] * asked[c] : load[c];
-    std::copy(rows.begin(), rows.end(), multipliers.begin());
-    if (!velocities_.solve(v, multipliers)) return false;
-    double change = 0, size = 0;
-    for (const int coordinate : plan_.coordinate) {
-      const std::size_t c = at(coordinate);
-      size = std::max(size, std::abs(v[c]));
-      if (!given_[c]) continue;
-      change = std::max(change, std::abs(wanted[c] - v[c]));
-      asked[c] += wanted[c] - v[c];
-    }
-    if (change <= 1e-15 * size) break;
+bool StartDerivatives::weigh(std::span<const double> q, std::span<const double> qd) {
+  EquationsOfMotion equations(evaluator_);
+  if (const Report masses = equations.use_masses(); !masses.ok()) return fail(masses.message);
+  equations.weigh_massless(q);
+  evaluator_.set_configuration(q);
+  const std::span<const double> none;
+  const WantedVelocities wanted = wanted_velocities(evaluator_, equations.masses(), from_model_ ? none : qd);
+  for (int c = 0; c < plan_.columns; ++c) {
+    const std::size_t coordinate = at(plan_.coordinate[at(c)]);
+    weight_[coordinate] = wanted.weight[at(c)];
+    wanted_[coordinate] = wanted.velocity[at(c)];
+    given_[coordinate] = wanted.given[at(c)];
+    follows_[coordinate] = wanted.follows[at(c)];
   }
   return true;
 }
 
+DesignScalar StartDerivatives::given_velocity(const DesignMechanism& mechanism, int coordinate) const {
+  if (!from_model_) return {wanted_[at(coordinate)]};
+  const auto& body = mechanism.model().bodies[at(plan_.model_body[at(coordinate / 3)])];
+  const DesignScalar omega = body.angular_velocity_given ? body.angular_velocity : DesignScalar();
+  if (coordinate % 3 == 2) return omega;
+  // From the author's origin to the centroid.
+  const Vec2<DesignScalar> arm = mechanism.ground_frame(coordinate / 3).axis(body.origin);
+  const Vec2<DesignScalar> v = body.velocity - omega * perpendicular(arm);
+  return coordinate % 3 == 0 ? v.x : v.y;
+}
+
+bool StartDerivatives::solve_keeping(std::span<const double> goal, std::span<const double> load,
+                                     std::span<const double> rows, std::span<double> v, std::span<double> multipliers) {
+  std::vector<double> asked(v.size(), 0.0), before(v.size(), 0.0);
+  for (std::size_t c = 0; c < v.size(); ++c) {
+    if (given_[c]) asked[c] = goal[c];
+  }
+  double change = 0, size = 0;
+  for (int round = 0; round < rounds_of_velocities; ++round) {
+    for (std::size_t c = 0; c < v.size(); ++c) v[c] = weight_[c] * asked[c] + (given_[c] ? 0 : load[c]);
+    std::copy(rows.begin(), rows.end(), multipliers.begin());
+    if (!velocities_.solve(v, multipliers)) return fail("the equations of its velocities are singular");
+    change = size = 0;
+    for (const int coordinate : plan_.coordinate) {
+      const std::size_t c = at(coordinate);
+      size = std::max(size, std::abs(v[c]));
+      change = std::max(change, std::abs(v[c] - before[c]));
+      before[c] = v[c];
+      if (given_[c]) asked[c] += goal[c] - v[c];
+      if (follows_[c]) asked[c] = v[c];
+    }
+    if (round > 0 && change <= 1e-15 * size) return true;
+  }
+  if (change <= settled * size) return true;
+  return fail(
+      fmt::format("velocities that keep what is given do not settle: after {} rounds they change by {:.2g} of their "
+                  "size; likely cause: masses that differ by more than ten orders of magnitude",
+                  rounds_of_velocities, change / size));
+}
+
 bool StartDerivatives::find_velocities(DesignMechanism& mechanism, int count, std::span<const DesignScalar> q,
                                        std::span<DesignScalar> qd) {
-  const auto phi_q = std::span<const double>(jacobian_).first(at(plan_.trash_slot()));
-  if (!velocities_.begin(phi_q)) return false;
-  mechanism.set_state(q);
-  std::vector<DesignScalar> wanted(qd.size());
-  for (int c = 0; c < 3 * plan_.moving; ++c) {
-    if (plan_.column[at(c)] < 0) continue;
-    given_[at(c)] = given_velocity(mechanism, c, wanted[at(c)]);
-    weight_[at(c)] = mechanism.mass(c).v * (given_[at(c)] ? given_weight : 1);
-    velocities_.add_diagonal(c, weight_[at(c)]);
+  std::vector<double> places(q.size()), goal(qd.size()), load(qd.size(), 0.0), v(qd.size());
+  for (std::size_t c = 0; c < q.size(); ++c) {
+    places[c] = q[c].v;
+    goal[c] = qd[c].v;
   }
-  if (!velocities_.factorize()) return false;
-  std::vector<double> goal(qd.size()), load(qd.size(), 0.0), v(qd.size()), b(at(plan_.rows)), multipliers(b);
+  if (!weigh(places, goal)) return false;
+  if (!velocities_.begin(std::span<const double>(jacobian_).first(at(plan_.trash_slot()))))
+    return fail("the equations of its velocities are singular");
+  for (const int coordinate : plan_.coordinate) velocities_.add_diagonal(coordinate, weight_[at(coordinate)]);
+  if (!velocities_.factorize()) return fail("the equations of its velocities are singular");
+  std::vector<double> b(at(plan_.rows)), multipliers(b);
   std::vector<Taylor<DesignScalar>> rows(b.size());
+  mechanism.set_state(q);
   mechanism.rows(rows);
-  for (std::size_t c = 0; c < goal.size(); ++c) goal[c] = wanted[c].v;
   for (std::size_t r = 0; r < b.size(); ++r) b[r] = -rows[r].d.v;  // nu
-  if (!solve_keeping(goal, load, b, v, multipliers)) return false;
+  if (!solve_keeping(wanted_, load, b, v, multipliers)) return false;
+  double largest = 0, off = 0;
+  for (const int coordinate : plan_.coordinate) {
+    const std::size_t c = at(coordinate);
+    largest = std::max({largest, std::abs(v[c]), given_[c] ? std::abs(wanted_[c]) : 0.0});
+    if (given_[c]) off = std::max(off, std::abs(v[c] - wanted_[c]));
+  }
+  if (off > missed * largest) {
+    return fail(fmt::format(
+        "the given velocities do not meet the constraints, which change them by {:.3g}: give such as meet them", off));
+  }
   std::vector<DesignScalar> mu(multipliers.begin(), multipliers.end()), loads(qd.size());
   mechanism.set_state(q, qd);
   mechanism.rows(rows);
   mechanism.add_constraint_loads(mu, loads);
   for (std::size_t p = 0; p < at(count); ++p) {
-    for (int c = 0; c < 3 * plan_.moving; ++c) {
-      goal[at(c)] = wanted[at(c)].d[p];
-      load[at(c)] = -mechanism.mass(c).d[p] * qd[at(c)].v - loads[at(c)].d[p];
+    for (const int coordinate : plan_.coordinate) {
+      const std::size_t c = at(coordinate);
+      goal[c] = given_[c] ? given_velocity(mechanism, coordinate).d[p] : 0;
+      load[c] = -mechanism.mass(coordinate).d[p] * qd[c].v - loads[c].d[p];
     }
     for (std::size_t r = 0; r < b.size(); ++r) b[r] = -rows[r].d.d[p];
     if (!solve_keeping(goal, load, b, v, multipliers)) return false;

@@ -6,9 +6,13 @@
 //                M v_p + Phi_q^T mu_p = -M_p v - (Phi_q^T)_p mu,   Phi_q v_p = nu_p - (Phi_q v)_p
 //
 // e is the given estimate, W = diag(1, 1, rho^2) as in assembly, rho a constant. Given velocities are held as there by
-// a weight of 10^4 masses and by adding what is missing to what is asked for, until nothing is. Starts that an earlier
-// analysis left are constants. Source: apps/manual/sensitivity.md; analysis/motion/initial_velocities.hpp.
+// a weight of 10^4 masses and by adding what is missing to what is asked for, until nothing is; massless coordinates
+// weigh what they do there. Starts that an earlier analysis left are constants. Refused: given velocities that the
+// constraints do not allow, where the nearest ones depend on what they are changed by. Source:
+// apps/manual/sensitivity.md; analysis/motion/initial_velocities.hpp.
 #pragma once
+
+#include <string>
 
 #include "catena/analysis/sensitivity/saddle_system.hpp"
 #include "catena/assembly/design/design_mechanism.hpp"
@@ -20,26 +24,37 @@ class StartDerivatives {
   /// `from_model`: the motion starts from what the model gives, not from where an earlier analysis ended.
   StartDerivatives(Evaluator& evaluator, bool from_model);
 
-  /// Derivatives into q and qd, which hold the values of the start at the evaluator's time; false where there are none.
+  /// Derivatives into q, which holds the assembled configuration at the evaluator's time; false where there are none.
   /// `count`: how many of the scalar's derivatives are in use.
+  bool find_places(DesignMechanism& mechanism, int count, std::span<DesignScalar> q);
+  /// The same into q and into qd, which holds the velocities at the start.
   bool find(DesignMechanism& mechanism, int count, std::span<DesignScalar> q, std::span<DesignScalar> qd);
+  /// Why there are none; a sentence without full stop.
+  const std::string& why() const { return why_; }
 
  private:
-  bool find_configuration(DesignMechanism& mechanism, int count, std::span<DesignScalar> q);
   bool find_velocities(DesignMechanism& mechanism, int count, std::span<const DesignScalar> q,
                        std::span<DesignScalar> qd);
-  /// What is asked of the velocity of a coordinate, if anything.
-  bool given_velocity(const DesignMechanism& mechanism, int coordinate, DesignScalar& velocity) const;
-  /// Solves for velocities with what is missing of given ones added until nothing is; `asked` and `b` in, v out.
-  bool solve_keeping(std::span<const double> wanted, std::span<const double> load, std::span<const double> rows,
+  /// What is asked of all velocities and how much it weighs, at their values; false without masses.
+  bool weigh(std::span<const double> q, std::span<const double> qd);
+  /// What is asked of the given velocity of a coordinate.
+  DesignScalar given_velocity(const DesignMechanism& mechanism, int coordinate) const;
+  /// Solves for velocities with what is missing of given ones added until nothing is, and small masses taken back;
+  /// `goal` of given ones, `load` and `rows` in, v and multipliers out.
+  bool solve_keeping(std::span<const double> goal, std::span<const double> load, std::span<const double> rows,
                      std::span<double> v, std::span<double> multipliers);
+  bool fail(std::string why) {
+    why_ = std::move(why);
+    return false;
+  }
 
   Evaluator& evaluator_;
   const Plan& plan_;
   bool from_model_;
   SaddleSystem assembly_, velocities_;
-  std::vector<double> jacobian_, weight_;
-  std::vector<char> given_;  // by coordinate
+  std::vector<double> jacobian_, weight_, wanted_;
+  std::vector<char> given_, follows_;  // by coordinate
+  std::string why_;
 };
 
 }  // namespace catena

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "catena/columns/design_state.hpp"
@@ -37,6 +38,11 @@ std::span<const double> StateDerivatives::jacobian() {
 
 void StateDerivatives::lift(std::span<const double> values, std::vector<DesignScalar>& out) {
   for (std::size_t k = 0; k < out.size(); ++k) out[k] = k < values.size() ? values[k] : 0.0;
+}
+
+void StateDerivatives::leave_out_reactions(Group& group) {
+  lack_ = "reactions of constraints that depend on each other are not unique, and have no derivative";
+  for (DesignScalar& multiplier : group.lambda) multiplier.d.fill(std::numeric_limits<double>::quiet_NaN());
 }
 
 void StateDerivatives::lift_state(Group& group, const Snapshot& snapshot) {

@@ -31,17 +31,14 @@ class StateDerivatives {
   StateDerivatives& operator=(const StateDerivatives&) = delete;
 
   int parameters() const { return parameters_; }
-  /// What the columns that are differentiated need; before the first find().
-  void need(const Needs& needs) { needs_ |= needs; }
   /// Derivatives of this state; false where there are none, and why() says it.
   virtual bool find(const Snapshot& snapshot) = 0;
   /// A stretch of the motion that find() may ask about from now on, if the motion has a memory.
-  virtual bool cover(const MotionStretch& stretch) {
-    static_cast<void>(stretch);
-    return true;
-  }
-  /// A sentence without full stop; empty where nothing went wrong so far.
+  virtual void cover(const MotionStretch& stretch) { static_cast<void>(stretch); }
+  /// Why there are none; a sentence without full stop, empty where nothing went wrong so far.
   const std::string& why() const { return why_; }
+  /// Why some columns have none where others have; empty if all have.
+  const std::string& lack() const { return lack_; }
 
   /// q of the last find() with derivatives, by the parameters of a group.
   std::span<const DesignScalar> configuration(std::size_t group) const { return groups_[group].q; }
@@ -62,12 +59,13 @@ class StateDerivatives {
 
   Evaluator& evaluator() { return evaluator_; }
   const Plan& plan() const { return evaluator_.plan(); }
-  const Needs& needs() const { return needs_; }
   std::vector<Group>& groups() { return groups_; }
   bool fail(std::string why) {
     if (why_.empty()) why_ = std::move(why);
     return false;
   }
+  /// Multipliers of rows that depend on each other: which of them are shown depends on the parameters.
+  void leave_out_reactions(Group& group);
   /// Phi_q at the evaluator's configuration, size entries.
   std::span<const double> jacobian();
   /// Values without derivatives.
@@ -81,11 +79,10 @@ class StateDerivatives {
  private:
   Evaluator evaluator_;
   int parameters_;
-  Needs needs_;
   std::vector<Group> groups_;
   std::vector<double> jacobian_, f_, b_;
   std::vector<DesignScalar> values_;
-  std::string why_;
+  std::string why_, lack_;
 };
 
 }  // namespace catena

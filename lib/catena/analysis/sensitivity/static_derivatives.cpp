@@ -80,12 +80,11 @@ bool StaticDerivatives::find(const Snapshot& snapshot) {
       for (std::size_t r = 0; r < b.size(); ++r) b[r] = -group.rows[r].f.d[p];
       if (!system_.solve(f, b)) return neutral();
       for (const int c : plan().coordinate) group.q[static_cast<std::size_t>(c)].d[p] = f[static_cast<std::size_t>(c)];
-      for (std::size_t r = 0; r < b.size(); ++r)
-        group.lambda[r].d[p] = unique ? b[r] : std::numeric_limits<double>::quiet_NaN();
+      for (std::size_t r = 0; r < b.size(); ++r) group.lambda[r].d[p] = b[r];
     }
+    if (!unique) leave_out_reactions(group);
     mechanism.set_state(group.q);
   }
-  if (!unique) fail("reactions of constraints that depend on each other are not unique, and have no derivative");
   return true;
 }
 

@@ -30,18 +30,16 @@ std::string DesignRuns::take_measures(const AnalysisTask& inner, const AnalysisR
     if (!found) return "not_measured";
     Measured measured{*found->value, std::vector<double>(request_.names.size(), 0.0)};
     for (std::size_t p = 0; gradients && p < measured.gradient.size(); ++p) {
-      const double derivative = p < found->gradient.size() ? found->gradient[p] : std::nan("");
-      if (std::isfinite(derivative)) {
-        measured.gradient[p] = derivative;
-        continue;
-      }
-      const std::string doubt =
-          fmt::format("measure \"{}\" had no derivative in some designs, which were searched as if it were zero: {}",
-                      found->name, found->trouble.empty() ? "see the analysis by itself" : found->trouble);
-      if (doubts_.empty() || std::none_of(doubts_.begin(), doubts_.end(), [&](const std::string& known) {
-            return known.starts_with(fmt::format("measure \"{}\"", found->name));
-          }))
-        doubts_.push_back(doubt);
+      // One that is not a number stays so in whatever is made of it, and the search takes the design for failed.
+      measured.gradient[p] = p < found->gradient.size() ? found->gradient[p] : std::nan("");
+      if (std::isfinite(measured.gradient[p])) continue;
+      const std::string what =
+          fmt::format("measure \"{}\" has no derivative by \"{}\"", found->name, request_.names[p]);
+      const bool known = std::any_of(doubts_.begin(), doubts_.end(),
+                                     [&](const std::string& doubt) { return doubt.starts_with(what); });
+      if (!known)
+        doubts_.push_back(fmt::format("{} in some designs: {}", what,
+                                      found->trouble.empty() ? "see the analysis by itself" : found->trouble));
     }
     measures.push_back(std::move(measured));
   }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "catena/scene/designing/design_runs.hpp"
 
@@ -52,8 +53,16 @@ std::vector<std::string> active_limits(const DesignGoal& goal, const DesignOutco
   return active;
 }
 
-Report report_of(const DesignOutcome& outcome, int max_evaluations) {
+/// `doubts`: derivatives that were missing.
+Report report_of(const DesignOutcome& outcome, int max_evaluations, const std::vector<std::string>& doubts) {
   Report report;
+  if (outcome.end == DesignEnd::failed && outcome.failed.contains("no_derivative") && !doubts.empty()) {
+    report.status = Status::refused;
+    report.message = doubts.front() +
+                     "; the solver searches by derivatives: take \"solver\": \"bobyqa\", which needs none, or measure "
+                     "something else";
+    return report;
+  }
   switch (outcome.end) {
     case DesignEnd::converged:
       break;
@@ -62,6 +71,13 @@ Report report_of(const DesignOutcome& outcome, int max_evaluations) {
       report.message =
           fmt::format("{} designs did not lead to an optimum (max_evaluations = {}); the best so far is given",
                       outcome.evaluations, max_evaluations);
+      break;
+    case DesignEnd::broken_off:
+      report.status = Status::not_converged;
+      report.message = fmt::format(
+          "the method gave up after {} designs without an optimum; the best so far is given; likely cause: kinks or "
+          "noise in measures; another \"solver\", such as \"bobyqa\", may go on",
+          outcome.evaluations);
       break;
     case DesignEnd::cancelled:
       report.status = Status::cancelled;
@@ -96,7 +112,9 @@ void add_fields(AnalysisResult& result, const DesignGoal& goal, const DesignOutc
     result.fields.push_back({"objective", goal.maximise ? -outcome.values.objective : outcome.values.objective});
     result.fields.push_back({"constraints", std::move(constraints)});
     result.fields.push_back({"active", active_limits(goal, outcome, variables)});
-    result.fields.push_back({"optimality", outcome.optimality});
+    result.fields.push_back({"optimality", outcome.optimality.value_or(std::numeric_limits<double>::quiet_NaN())});
+    if (!outcome.optimality)
+      result.report.warnings.push_back("optimality is not known: some derivative is missing at the design found");
   }
   result.fields.push_back({"evaluations", std::int64_t{outcome.evaluations}});
   result.fields.push_back({"failed", std::move(failed)});
@@ -139,7 +157,7 @@ void run_optimise(AnalysisContext& context, AnalysisResult& result) {
     ++rows;
   };
   const DesignOutcome outcome = optimise_design(problem, options);
-  static_cast<Report&>(result.report) = report_of(outcome, options.max_evaluations);
+  static_cast<Report&>(result.report) = report_of(outcome, options.max_evaluations, runs.doubts());
   for (const std::string& doubt : runs.doubts()) result.report.warnings.push_back(doubt);
   result.has_rows = true;
   result.columns = std::move(info);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "catena/results/result_storage.hpp"
 #include "catena/scene/running/analysis_run.hpp"
@@ -51,44 +52,60 @@ AnalysisResult run_at(const AnalysisContext& outer, const SystemState& start, Pa
   }
   if (inner.has("parameter"))
     context.parameter_name = outer.models->names().all()[static_cast<std::size_t>(inner.word("parameter"))];
-  analysis_function(inner.type())(context, result);
+  try {
+    analysis_function(inner.type())(context, result);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    result.report.status = Status::refused;
+    result.report.message = error.what();
+  }
   return result;
 }
 
-/// Derivatives by one parameter against central differences: the largest deviation relative to the larger of the
-/// derivative and the size of the output over that of the parameter.
+/// Derivatives against central differences: the largest deviation relative to the larger of the derivative and the size
+/// of the output over that of the parameter.
 class Comparison {
  public:
-  Comparison(const AnalysisContext& context, const SystemState& start, const AnalysisResult& result,
-             const ResultStorage& rows)
-      : context_(context), start_(start), result_(result), rows_(rows) {}
-
-  double deviation() {
-    double largest = 0;
+  /// `names` of the parameters by which was differentiated.
+  Comparison(const AnalysisContext& context, const SystemState& start, const std::vector<std::string>& names,
+             const AnalysisResult& result, const ResultStorage& rows)
+      : context_(context), start_(start), names_(names), result_(result), rows_(rows) {
     const std::vector<double> values = context_.models->values(*context_.task.of.front().table, context_.seeds);
-    for (std::size_t p = 0; p < context_.task.design_parameters.size(); ++p) {
-      const double value = values[static_cast<std::size_t>(context_.task.design_parameters[p])];
-      largest = std::max(largest, compare(p, value));
-    }
-    return largest;
+    for (std::size_t p = 0; p < names_.size(); ++p)
+      compare(p, values[static_cast<std::size_t>(context_.task.design_parameters[p])]);
   }
 
+  /// Nothing where there was nothing to compare.
+  std::optional<double> deviation() const { return compared_ > 0 ? std::optional(largest_) : std::nullopt; }
+  /// What could not be compared, in sentences.
+  const std::vector<std::string>& doubts() const { return doubts_; }
+
  private:
-  double compare(std::size_t p, double value) {
+  void doubt(const std::string& name, std::string_view why) {
+    doubts_.push_back(fmt::format("\"verify\" of the derivatives by \"{}\": {}", name, why));
+  }
+
+  void compare(std::size_t p, double value) {
     const double size = value != 0 ? std::abs(value) : 1, step = part_of_parameter * size;
     KeptRows rows[2] = {KeptRows(nullptr), KeptRows(nullptr)};
     AnalysisResult shifted[2];
     for (int side = 0; side < 2; ++side) {
+      const double at = value + (side == 0 ? -step : step);
       ParameterSeeds seeds = context_.seeds;
-      seeds.push_back({context_.task.design_parameters[p], value + (side == 0 ? -step : step)});
+      seeds.push_back({context_.task.design_parameters[p], at});
       shifted[side] = run_at(context_, start_, std::move(seeds), rows[side]);
+      if (shifted[side].report.ok()) continue;
+      return doubt(names_[p], fmt::format("at {:.12g} the analysis ends with {}: {}", at,
+                                          to_string(shifted[side].report.status), shifted[side].report.message));
     }
-    double largest = 0;
+    const std::int64_t before = compared_;
     const auto take = [&](double derivative, double below, double above, double scale) {
       const double difference = (above - below) / (2 * step);
       if (!std::isfinite(derivative) || !std::isfinite(difference)) return;
+      ++compared_;
       const double unit = std::max(std::abs(derivative), scale / size);
-      if (unit > 0) largest = std::max(largest, std::abs(derivative - difference) / unit);
+      if (unit > 0) largest_ = std::max(largest_, std::abs(derivative - difference) / unit);
     };
     for (std::size_t m = 0; m < result_.measures.size(); ++m) {
       if (m >= shifted[0].measures.size() || m >= shifted[1].measures.size()) break;
@@ -96,18 +113,22 @@ class Comparison {
       if (below && above && result_.measures[m].value && p < result_.measures[m].gradient.size())
         take(result_.measures[m].gradient[p], *below, *above, std::abs(*result_.measures[m].value));
     }
-    compare_rows(p, rows[0].kept, rows[1].kept, take);
-    return largest;
+    compare_rows(names_[p], rows[0].kept, rows[1].kept, take);
+    if (compared_ == before) doubt(names_[p], "there was nothing to compare: no derivative that is a number");
   }
 
   template <class Take>
-  void compare_rows(std::size_t p, const ResultStorage& below, const ResultStorage& above, Take&& take) const {
-    const std::string& parameter = result_.gradient_parameters[p];
+  void compare_rows(const std::string& parameter, const ResultStorage& below, const ResultStorage& above, Take&& take) {
+    bool counted = false;
     for (std::size_t c = 0; c < below.columns().size(); ++c) {
       const std::string& name = below.columns()[c].name;
       const auto column = rows_.find(fmt::format("d({})/d({})", name, parameter)), plain = rows_.find(name);
       const auto other = above.find(name);
-      if (!column || !plain || !other || below.rows() != rows_.rows() || above.rows() != rows_.rows()) continue;
+      if (!column || !plain || !other) continue;
+      if (below.rows() != rows_.rows() || above.rows() != rows_.rows()) {
+        if (!std::exchange(counted, true)) doubt(parameter, "rows were not compared: their number changes with it");
+        continue;
+      }
       double scale = 0;
       for (std::size_t r = 0; r < rows_.rows(); ++r) scale = std::max(scale, std::abs(rows_.at(r, *plain)));
       for (std::size_t r = 0; r < rows_.rows(); ++r)
@@ -117,8 +138,12 @@ class Comparison {
 
   const AnalysisContext& context_;
   const SystemState& start_;
+  const std::vector<std::string>& names_;
   const AnalysisResult& result_;
   const ResultStorage& rows_;
+  double largest_ = 0;
+  std::int64_t compared_ = 0;  // pairs of numbers
+  std::vector<std::string> doubts_;
 };
 
 }  // namespace
@@ -147,8 +172,18 @@ void run_sensitivity(AnalysisContext& context, AnalysisResult& result) {
   if (inner.has("parameter"))
     within.parameter_name = context.models->names().all()[static_cast<std::size_t>(inner.word("parameter"))];
   analysis_function(inner.type())(within, result);
+  result.gradient_parameters = design.names;
+  const bool has_rows = std::any_of(result.columns.begin(), result.columns.end(),
+                                    [](const ColumnInfo& column) { return column.name.starts_with("d("); });
+  if (design.rows && result.rows > 0 && !has_rows) {
+    result.report.warnings.push_back(fmt::format(
+        "derivatives: the rows of {} have none; what it reports has, as a measure {{\"field\": ...}}", inner.type()));
+  }
   if (!verify || !result.report.ok()) return;
-  result.fields.push_back({"deviation", Comparison(context, start, result, kept.kept).deviation()});
+  const Comparison comparison(context, start, design.names, result, kept.kept);
+  if (const std::optional<double> deviation = comparison.deviation())
+    result.fields.push_back({"deviation", *deviation});
+  for (const std::string& doubt : comparison.doubts()) result.report.warnings.push_back(doubt);
 }
 
 }  // namespace catena

@@ -132,6 +132,12 @@ void AnalysisReader::read_measure(const JsonMember& member, AnalysisTask& task) 
   }
   if (needs_time(measure.request.kind) && !task.description->timed)
     error(value, fmt::format("{} is measured over time, which {} has not", in_quotes(kinds[*kind]), task.type()));
+  const bool of_shapes = task.type() == "modes" || task.type() == "buckling";
+  if (measure.request.kind != MeasureKind::field && of_shapes) {
+    error(value, fmt::format("{} is taken of columns along a motion or at a state; the rows of {} are shapes: measure "
+                             "what it reports, as {{\"field\": \"{}[1]\"}}",
+                             in_quotes(kinds[*kind]), task.type(), task.type() == "modes" ? "omega2" : "loads"));
+  }
   task.measures.push_back(std::move(measure));
 }
 

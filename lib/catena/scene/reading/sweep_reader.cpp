@@ -10,11 +10,6 @@
 #include "catena/scene/reading/analysis_reader.hpp"
 
 namespace catena {
-namespace {
-
-constexpr double most_steps = 1e9;
-
-}  // namespace
 
 void AnalysisReader::read_over(const JsonValue& object, AnalysisTask& task) {
   if (!object.is(JsonKind::object) || object.size() == 0) {
@@ -88,23 +83,12 @@ void AnalysisReader::read_steps(const JsonMember& member, const std::array<JsonV
   }
   const std::optional<Dimension>& dimension = parameters_.names().dimension(range.parameter);
   const Evaluation<double> evaluation(member.value.source(), scene_.expressions, values_, diagnostics_);
-  const double from = evaluation(reading_.numbers.read(v[0], dimension, {"from", owner}));
-  const double to = evaluation(reading_.numbers.read(v[1], dimension, {"to", owner}));
-  const double count = v[2].is(JsonKind::number) ? v[2].number() : 0;
-  if (!(count >= 1) || count != std::floor(count)) {
+  range.kind = SweepRange::Kind::steps;
+  range.first = evaluation(reading_.numbers.read(v[0], dimension, {"from", owner}));
+  range.second = evaluation(reading_.numbers.read(v[1], dimension, {"to", owner}));
+  range.count = v[2].is(JsonKind::number) ? v[2].number() : 0;
+  if (!(range.count >= 1) || range.count != std::floor(range.count))
     error(v[2], fmt::format("\"count\" of {} must be a whole number, at least 1", owner));
-    return;
-  }
-  if (count > most_steps) {
-    error(v[2], fmt::format("{}: {:.3g} values are more than any sweep has", owner, count));
-    return;
-  }
-  const auto n = static_cast<std::size_t>(count);
-  for (std::size_t k = 0; k < n; ++k) {
-    // The last one exactly.
-    range.values.push_back(
-        k + 1 == n && n > 1 ? to : from + static_cast<double>(k) * (to - from) / std::max(1.0, count - 1));
-  }
 }
 
 void AnalysisReader::check_sweep(const JsonValue& object, AnalysisTask& task) {
@@ -112,7 +96,9 @@ void AnalysisReader::check_sweep(const JsonValue& object, AnalysisTask& task) {
   constexpr SweepKind kinds[] = {SweepKind::grid, SweepKind::together, SweepKind::sobol, SweepKind::latin,
                                  SweepKind::random};
   task.sweep.kind = kinds[task.word("design")];
-  task.sweep.samples = static_cast<std::int64_t>(task.number("samples", static_cast<double>(task.sweep.samples)));
+  // What is beyond 64 bits is more than any sweep has, too.
+  task.sweep.samples =
+      static_cast<std::int64_t>(std::min(task.number("samples", static_cast<double>(task.sweep.samples)), 9e18));
   task.sweep.seed = static_cast<std::uint64_t>(task.number("seed", 1));
   if (!object.find("over") || task.sweep.over.empty()) return;  // reported
   if (const std::optional<std::string> why = SweepPlan::trouble(task.sweep)) error(object.find("over"), *why);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "catena/scene/numbers/quantity.hpp"
@@ -53,11 +54,11 @@ AnalysisRows::AnalysisRows(const ColumnSet& columns, AnalysisContext& context, c
       info_(columns.info().begin(), columns.info().end()),
       timed_(sources.timed),
       first_(run.first),
-      last_(run.last) {}
+      last_(run.last),
+      covered_to_(run.first) {}
 
 void AnalysisRows::differentiate(std::unique_ptr<StateDerivatives> derivatives) {
   derivatives_ = std::move(derivatives);
-  derivatives_->need(needs());
   row_derivatives_ = context_.design->rows;
   if (measures_.empty()) return;
   measures_.differentiate(derivatives_->parameters(), [this](const Snapshot& snapshot, std::span<double> out) {
@@ -119,8 +120,18 @@ bool AnalysisRows::cover(const MotionStretch& stretch) {
 void AnalysisRows::look_since_last_row(const Snapshot& snapshot) {
   if (!make_look_ || measures_.empty()) return;
   if (!look_) look_ = make_look_(snapshot);
-  if (rows_ > 0 && snapshot.t > row_before_) measures_.cover({row_before_, snapshot.t, look_});
-  row_before_ = snapshot.t;
+  // Rows may be listed in any order of their instants: every part of the motion counts once.
+  if (!(snapshot.t > covered_to_)) return;
+  measures_.cover({covered_to_, snapshot.t, look_});
+  covered_to_ = snapshot.t;
+}
+
+std::string AnalysisRows::why_no_derivative() const {
+  if (!derivatives_->why().empty()) return derivatives_->why();
+  if (!derivatives_->lack().empty()) return derivatives_->lack();
+  if (!measures_.empty() && measures_.needs().work)
+    return "work and dissipated energy, which are summed up over time, have no derivative";
+  return "the derivative of its column is not a number there";
 }
 
 bool AnalysisRows::observe(const Snapshot& snapshot) {
@@ -152,6 +163,10 @@ void AnalysisRows::finish(AnalysisResult& result) {
     if (timed_ && rows_alone_ && measure.trouble.empty())
       measure.trouble = "taken from the rows alone: this motion is not looked at between them";
     if (measure.times_second) measure.unit = times_second(measure.unit);
+    const auto is_missing = [](double derivative) { return !std::isfinite(derivative); };
+    if (derivatives_ && measure.trouble.empty() &&
+        std::any_of(measure.gradient.begin(), measure.gradient.end(), is_missing))
+      measure.trouble = why_no_derivative();
     if (!measure.trouble.empty())
       result.report.warnings.push_back(fmt::format("measure \"{}\": {}", measure.name, measure.trouble));
     result.measures.push_back(std::move(measure));
@@ -160,8 +175,13 @@ void AnalysisRows::finish(AnalysisResult& result) {
     for (std::string& doubt : gaps_->warnings()) result.report.warnings.push_back(std::move(doubt));
   }
   if (context_.design) result.gradient_parameters = context_.design->names;
-  if (derivatives_ && !derivatives_->why().empty())
-    result.report.warnings.push_back("derivatives: " + derivatives_->why());
+  for (const std::string& why : {derivatives_ ? derivatives_->why() : "", derivatives_ ? derivatives_->lack() : ""}) {
+    if (!why.empty()) result.report.warnings.push_back("derivatives: " + why);
+  }
+  if (row_derivatives_ && columns_.needs().work) {
+    result.report.warnings.push_back(
+        "derivatives: work and dissipated energy, which are summed up over time, have none");
+  }
   if (missing_ > 0) result.report.warnings.push_back(fmt::format("{} rows have no derivatives", missing_));
 }
 
@@ -172,6 +192,7 @@ void add_field_measures(const AnalysisContext& context, AnalysisResult& result) 
     MeasureResult measure;
     measure.name = request.name;
     measure.value = reported(result, request);
+    if (measure.value && !std::isfinite(*measure.value)) measure.value.reset();
     if (context.design) {
       measure.gradient.assign(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
       result.gradient_parameters = context.design->names;

@@ -59,6 +59,8 @@ class AnalysisRows final : public RowObserver {
   void tell(double t) const;
   void draw(const Snapshot& snapshot) const;
   void look_since_last_row(const Snapshot& snapshot);
+  /// Why a measure's derivative is missing.
+  std::string why_no_derivative() const;
 
   const ColumnSet& columns_;
   AnalysisContext& context_;
@@ -72,7 +74,7 @@ class AnalysisRows final : public RowObserver {
   std::vector<ColumnInfo> info_;
   std::vector<double> values_, row_gradients_;  // of one row, kept for their memory
   bool timed_, row_derivatives_ = false, rows_alone_ = false;
-  double first_, last_, row_before_ = 0;
+  double first_, last_, covered_to_;     // covered_to_: how far measures have looked between rows
   std::int64_t rows_ = 0, missing_ = 0;  // missing_: rows without derivatives
 };
 

@@ -109,7 +109,7 @@ void run_over_time(AnalysisContext& context, AnalysisResult& result, Analysis& a
   analysis.start_from(context.state);
   if (context.trace) analysis.evaluator().trace = &context.trace;
   AnalysisRows rows(columns, context, model, analysis.plan(), sources,
-                    {std::min(context.state.t, grid.earliest()), grid.last()});
+                    {std::min(context.state.t, grid.earliest()), grid.latest()});
   prepare(rows);
   rows.begin();
   AnalysisReport report = analysis.run(grid, rows.needs(), rows);

@@ -8,6 +8,7 @@
 #include "catena/analysis/motion/initial_velocities.hpp"
 #include "catena/analysis/pose/mobility.hpp"
 #include "catena/analysis/run/process_time.hpp"
+#include "catena/analysis/sensitivity/assembly_derivatives.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/scene/judging/gap_watch.hpp"
 #include "catena/scene/running/analysis_run.hpp"
@@ -80,6 +81,11 @@ void run_assemble(AnalysisContext& context, AnalysisResult& result) {
   const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), names, sources);
   start(analysis, context);
   AnalysisRows rows(columns, context, *context.model, analysis.plan(), sources, {context.state.t, context.state.t});
+  if (context.design) {
+    rows.differentiate(std::make_unique<AssemblyDerivatives>(analysis.evaluator(), designs_of(context),
+                                                             static_cast<int>(context.design->names.size()),
+                                                             context.state.q.empty()));
+  }
   rows.begin();
   const AssemblyOutcome outcome = analysis.assemble();
   AnalysisReport report;

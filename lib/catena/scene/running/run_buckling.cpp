@@ -16,6 +16,7 @@ namespace {
 
 // Loads nearer to each other than this part count as double: their shapes, known to 1e-8, turn into each other.
 constexpr double apart = 1e-6;
+constexpr const char* singular = "constraints are singular at this place";
 
 /// dP/dp = -h_p / h_P, h = v^T K v on the null space; see spectrum_derivatives.hpp. The configuration is that of the
 /// present equilibrium, which moves with every parameter but the load.
@@ -24,13 +25,14 @@ void differentiate(const AnalysisContext& context, Buckling& analysis, const Buc
   const int parameter = context.task.word("parameter");
   const std::size_t count = context.design->names.size();
   Evaluator& present = analysis.evaluator();
-  const std::vector<double> held = balancing_multipliers(present, analysis.time(), analysis.q());
+  const auto held = balancing_multipliers(present, analysis.time(), analysis.q());
   StaticDerivatives equilibrium(present, designs_of(context, parameter), static_cast<int>(count) + 1);
-  const bool moves = equilibrium.find({.evaluator = present, .t = analysis.time(), .q = analysis.q(), .lambda = held});
+  const bool moves =
+      held && equilibrium.find({.evaluator = present, .t = analysis.time(), .q = analysis.q(), .lambda = *held});
   for (std::size_t k = 0; k < report.loads.size(); ++k) {
     const double load = report.loads[k];
     std::vector<double> gradient(count, std::numeric_limits<double>::quiet_NaN());
-    std::string trouble = moves ? std::string() : equilibrium.why();
+    std::string trouble = moves ? "" : held ? equilibrium.why() : singular;
     for (std::size_t other = 0; other < report.loads.size(); ++other) {
       if (other != k && std::abs(load - report.loads[other]) <= apart * std::abs(load))
         trouble = fmt::format("load {} is double: it has no derivative", k + 1);
@@ -39,16 +41,21 @@ void differentiate(const AnalysisContext& context, Buckling& analysis, const Buc
     if (!model) trouble = "the scene allows no model at this load";
     if (trouble.empty()) {
       Evaluator evaluator(analysis.evaluator().shared_plan(), *model);
-      const std::vector<double> lambda = balancing_multipliers(evaluator, analysis.time(), analysis.q());
+      const auto lambda = balancing_multipliers(evaluator, analysis.time(), analysis.q());
       SpectrumDerivatives derivatives(evaluator, designs_of(context, parameter, ParameterSeed<double>{parameter, load}),
-                                      static_cast<int>(count) + 1);
-      if (derivatives.find_held({.evaluator = evaluator, .t = analysis.time(), .q = analysis.q(), .lambda = lambda},
-                                equilibrium)) {
-        const std::vector<double> h = derivatives.stiffness_gradient(report.shapes[k]);
-        for (std::size_t p = 0; p < count; ++p)
-          gradient[p] = context.design->parameters[p] == parameter ? 0 : -h[p] / h[count];
+                                      static_cast<int>(count) + 1, true);
+      std::optional<std::vector<double>> h;
+      if (lambda &&
+          derivatives.find_held({.evaluator = evaluator, .t = analysis.time(), .q = analysis.q(), .lambda = *lambda},
+                                equilibrium))
+        h = derivatives.gradient(0, report.shapes[k]);
+      if (!h) {
+        trouble = lambda ? derivatives.why() : singular;
+      } else if ((*h)[count] == 0) {
+        trouble = fmt::format("load {} does not change the stiffness along its shape: it has no derivative", k + 1);
       } else {
-        trouble = derivatives.why();
+        for (std::size_t p = 0; p < count; ++p)
+          gradient[p] = context.design->parameters[p] == parameter ? 0 : -(*h)[p] / (*h)[count];
       }
     }
     set_field_gradient(context, result, "loads", static_cast<int>(k) + 1, gradient, trouble);

@@ -24,26 +24,36 @@ bool is_double(const std::vector<double>& omega2, std::size_t k) {
   return false;
 }
 
-void differentiate(const AnalysisContext& context, Modes& analysis, const ModesReport& report, AnalysisResult& result) {
+/// `from_model`: the modes are those of the place that the model gives.
+void differentiate(const AnalysisContext& context, Modes& analysis, const ModesReport& report, bool from_model,
+                   AnalysisResult& result) {
   Evaluator& evaluator = analysis.evaluator();
-  const std::vector<double> lambda = balancing_multipliers(evaluator, analysis.time(), analysis.q());
-  SpectrumDerivatives derivatives(evaluator, designs_of(context), static_cast<int>(context.design->names.size()));
+  const auto lambda = balancing_multipliers(evaluator, analysis.time(), analysis.q());
+  SpectrumDerivatives derivatives(evaluator, designs_of(context), static_cast<int>(context.design->names.size()),
+                                  from_model);
   const bool found =
-      derivatives.find({.evaluator = evaluator, .t = analysis.time(), .q = analysis.q(), .lambda = lambda});
+      lambda && derivatives.find({.evaluator = evaluator, .t = analysis.time(), .q = analysis.q(), .lambda = *lambda});
+  const std::vector<double> none(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t k = 0; k < report.omega2.size(); ++k) {
     const int number = static_cast<int>(k) + 1;
-    std::vector<double> gradient(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
-    std::string trouble = derivatives.why();
-    if (found && is_double(report.omega2, k)) {
+    std::optional<std::vector<double>> gradient;
+    std::string trouble;
+    if (found && is_double(report.omega2, k))
       trouble = fmt::format("mode {} is one of two or more with the same frequency, which has no derivative", number);
-    } else if (found) {
-      gradient = derivatives.frequency_gradient(report.omega2[k], report.shapes[k]);
-    }
-    set_field_gradient(context, result, "omega2", number, gradient, trouble);
+    else if (found)
+      gradient = derivatives.gradient(report.omega2[k], report.shapes[k]);
+    if (!gradient && trouble.empty()) trouble = lambda ? derivatives.why() : "constraints are singular at this place";
+    set_field_gradient(context, result, "omega2", number, gradient.value_or(none), trouble);
     // omega = sqrt |omega2|
-    const double factor = (report.omega2[k] < 0 ? -0.5 : 0.5) / report.omega[k];
-    for (double& derivative : gradient) derivative *= factor;
-    set_field_gradient(context, result, "omega", number, gradient, trouble);
+    if (gradient && !(report.omega[k] > 0)) {
+      gradient.reset();
+      trouble = fmt::format("omega of mode {} is zero, where it has a kink; omega2 has a derivative", number);
+    }
+    if (gradient) {
+      const double factor = (report.omega2[k] < 0 ? -0.5 : 0.5) / report.omega[k];
+      for (double& derivative : *gradient) derivative *= factor;
+    }
+    set_field_gradient(context, result, "omega", number, gradient.value_or(none), trouble);
   }
 }
 
@@ -55,6 +65,7 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
   options.count = static_cast<int>(task.number("count", 0));
   Modes analysis(context.model, {}, options);
   SystemState start = context.state;
+  const bool from_model = start.q.empty();
   start.t = frozen_time(context);
   analysis.start_from(start);
   ModesReport report = analysis.run([&] { return !(context.cancel && context.cancel->load()); });
@@ -91,7 +102,7 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
   result.report = report;
   take_rows(result, std::move(info), rows);
   add_field_measures(context, result);
-  if (context.design && report.ok()) differentiate(context, analysis, report, result);
+  if (context.design && report.ok()) differentiate(context, analysis, report, from_model, result);
 }
 
 }  // namespace catena

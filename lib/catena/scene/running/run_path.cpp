@@ -1,4 +1,6 @@
 // path: static equilibria as a parameter changes; one row a point, the parameter first.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -25,7 +27,10 @@ std::vector<double> critical_gradient(const AnalysisContext& context, const std:
   const std::size_t count = context.design->names.size();
   std::vector<double> none(count, std::numeric_limits<double>::quiet_NaN());
   const std::shared_ptr<const Model> model = model_at(context, parameter, place.value);
-  if (!model) return none;
+  if (!model) {
+    trouble = "the scene allows no model at this value";
+    return none;
+  }
   const Evaluator evaluator(plan, *model);
   const DesignModels models = designs_of(context, parameter, ParameterSeed<double>{parameter, place.value});
   const auto gradient =
@@ -92,6 +97,13 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
   take_rows(result, std::move(info), rows);
   for (MeasureResult& measure : measures.results()) {
     measure.t.reset();
+    if (context.design) {
+      measure.gradient.assign(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
+      if (measure.trouble.empty())
+        measure.trouble = "columns along a path have no derivatives: measure an equilibrium, or a critical value";
+    }
+    if (!measure.trouble.empty())
+      result.report.warnings.push_back(fmt::format("measure \"{}\": {}", measure.name, measure.trouble));
     result.measures.push_back(std::move(measure));
   }
   add_field_measures(context, result);
