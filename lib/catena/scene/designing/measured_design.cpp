@@ -15,8 +15,8 @@ class NoRows final : public RowSink {
 
 }  // namespace
 
-std::optional<Status> run_design(const AnalysisContext& context, const ParameterSeeds& seeds,
-                                 const DesignRequest* design, const TakeAnalysis& take) {
+std::optional<Status> run_design(const AnalysisContext& context, ParameterSeeds seeds, const DesignRequest* design,
+                                 const TakeAnalysis& take) {
   SystemState state = context.state;
   NoRows rows;
   for (const AnalysisTask& read : context.task.of) {
@@ -45,6 +45,11 @@ std::optional<Status> run_design(const AnalysisContext& context, const Parameter
     }
     if (!result.report.ok()) return result.report.status;
     if (!take(inner, result)) break;
+    // What an analysis leaves behind, as the last value of a path's parameter, holds for those after it.
+    for (const ParameterSeed<double>& value : within.values_at_end) {
+      std::erase_if(seeds, [&](const auto& seed) { return seed.index == value.index; });
+      seeds.push_back(value);
+    }
   }
   return Status::ok;
 }

@@ -16,8 +16,8 @@ using TakeAnalysis = std::function<bool(const AnalysisTask& analysis, const Anal
 /// fails or `take` is false. `design`: derivatives that are wanted, or nullptr. Returns the status of the last
 /// analysis, `refused` for one that throws; nothing where the scene allows no such model. Nothing of the context
 /// changes, so that several threads may ask for designs at once.
-std::optional<Status> run_design(const AnalysisContext& context, const ParameterSeeds& seeds,
-                                 const DesignRequest* design, const TakeAnalysis& take);
+std::optional<Status> run_design(const AnalysisContext& context, ParameterSeeds seeds, const DesignRequest* design,
+                                 const TakeAnalysis& take);
 
 /// The result of a measure of an analysis; nullptr if it has no value.
 const MeasureResult* value_of(const PlacedMeasure& measure, const AnalysisResult& result);
