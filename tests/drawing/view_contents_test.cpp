@@ -47,9 +47,10 @@ TEST(ViewDocument, UnitsAndWordsAreThoseOfTheColumns) {
 TEST(ViewDocument, HasMeasuresWithTheirDerivatives) {
   const RecordedText run = record_text(R"({"catena": 1, "parameters": {"a": 3}, "bodies": {"p": {}},
     "constraints": [{"type": "revolute", "i": "ground", "j": "p"}],
-    "drivers": [{"type": "absolute_angle", "i": "p", "value": "=a*t"}],
+    "drivers": [{"type": "absolute_angle", "i": "p", "value": {"polynomial": [0, "a"]}}],
     "analyses": [{"type": "sensitivity", "parameters": ["a"],
                   "of": {"type": "kinematics", "until": 2, "measures": {"turned": {"final": "p.angle"}}}}]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
   const json page = json::parse(view_document(run.record()));
   const json& measures = page.at("analyses")[0].at("measures");
   ASSERT_EQ(measures.size(), 1u) << run.outcome.error_text;
