@@ -91,7 +91,7 @@ TEST(FrequencyGradients, OfDoubleOnesAreRefused) {
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
   EXPECT_TRUE(std::isnan(gradient(run, "low", 0)));
   ASSERT_FALSE(run.analysis().report.warnings.empty());
-  EXPECT_NE(run.analysis().report.warnings.back().find("mode 1 is one of two"), std::string::npos);
+  EXPECT_NE(run.analysis().report.warnings.front().find("mode 1 is one of two"), std::string::npos);
 }
 
 // A crank under gravity that turns at w: the drive holds m g L/2 cos(w t), the pin carries m (g - w^2 L/2 sin w t).

@@ -54,7 +54,7 @@ TEST(StartGradients, OfVelocitiesThatDoNotSettleAreRefused) {
 TEST(AssemblyGradients, OfTheNearestPlace) {
   const std::string scene = R"({"catena": 1, "parameters": {"a": 0.9, "b": 1.3},
   "bodies": {"bead": {"particle": true, "mass": 1, "position": ["a", "b"]}},
-  "constraints": [{"type": "absolute_distance", "i": "bead", "value": 1}],
+  "constraints": [{"type": "absolute_distance", "i": "bead", "ground": [0, 0], "value": 1}],
   "outputs": ["bead.x", "bead.y"],
   "analyses": [)";
   const std::string analysis =
@@ -77,7 +77,7 @@ TEST(AssemblyGradients, OfTheNearestPlace) {
 std::string pendulum(const std::string& before) {
   return R"--({"catena": 1, "gravity": [0, -9.81], "parameters": {"s": 0.4, "L": 0.7},
   "bodies": {"bob": {"particle": true, "mass": 2, "position": ["=L*sin(s)", "=-L*cos(s)"]}},
-  "constraints": [{"type": "absolute_distance", "i": "bob", "value": "L"}],
+  "constraints": [{"type": "absolute_distance", "i": "bob", "ground": [0, 0], "value": "L"}],
   "analyses": [)--" +
          before + R"({"type": "sensitivity", "parameters": ["s"],
     "of": {"type": "modes", "measures": {"square": {"field": "omega2[1]"}}}}]})";
