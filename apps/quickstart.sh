@@ -56,7 +56,8 @@ else
 fi
 if [[ $python == ON ]]; then
   echo
-  echo "\$ PYTHONPATH=$build/python python3 -c 'import catena; print(catena.load(\"$shown\").run())'"
-  PYTHONPATH=$build/python python3 -c "import catena; print(catena.load('$shown').run())"
+  interpreter="$(sed -n 's/^Python_EXECUTABLE:[A-Z]*=//p' $build/CMakeCache.txt)"
+  echo "\$ PYTHONPATH=$build/python $interpreter -c 'import catena; print(catena.load(\"$shown\").run())'"
+  PYTHONPATH=$build/python "$interpreter" -c "import catena; print(catena.load('$shown').run())"
 fi
 exit $status

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "catena/results/interrupt.hpp"
+#include "catena/results/terminal/interrupt.hpp"
 #include "run_messages.hpp"
 
 namespace catena::cli {

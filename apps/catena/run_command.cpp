@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "catena/results/csv_writer.hpp"
-#include "catena/results/interrupt.hpp"
-#include "catena/results/text_sink.hpp"
+#include "catena/results/terminal/interrupt.hpp"
+#include "catena/results/terminal/text_sink.hpp"
 #include "catena/scene/running/units_sink.hpp"
 #include "catena/scene/viewing/run_recorder.hpp"
 #include "commands.hpp"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "catena/results/progress_bar.hpp"
+#include "catena/results/terminal/progress_bar.hpp"
 #include "catena/scene/running/scene_runner.hpp"
 
 namespace catena::cli {

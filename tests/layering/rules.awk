@@ -12,6 +12,7 @@
 #   scene     json <- numbers <- describing <- reading <- building <- models <- judging <- running <- designing <- viewing
 #             <- explaining
 #   drawing   shapes <- figures
+#   results   . <- terminal
 
 BEGIN {
   may["base"] = " base "
@@ -45,6 +46,7 @@ BEGIN {
   after("linalg", "factorization", "patterns kernels")
   after("linalg", "block", "patterns kernels")
   after("linalg", "rank", "patterns kernels factorization")
+  after("results", "terminal", ".")
   after("assembly", "systems", ".")
   after("assembly", "design", ".")
   after("elements", "constraints", ".")

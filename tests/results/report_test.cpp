@@ -3,11 +3,11 @@
 #include <cmath>
 #include <csignal>
 
-#include "catena/results/interrupt.hpp"
-#include "catena/results/progress_bar.hpp"
-#include "catena/results/report_text.hpp"
 #include "catena/results/result_storage.hpp"
-#include "catena/results/text_sink.hpp"
+#include "catena/results/terminal/interrupt.hpp"
+#include "catena/results/terminal/progress_bar.hpp"
+#include "catena/results/terminal/report_text.hpp"
+#include "catena/results/terminal/text_sink.hpp"
 #include "results/temporary_folder.hpp"
 
 namespace catena::testing {

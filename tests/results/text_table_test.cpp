@@ -1,4 +1,4 @@
-#include "catena/results/text_table.hpp"
+#include "catena/results/terminal/text_table.hpp"
 
 #include <gtest/gtest.h>
 

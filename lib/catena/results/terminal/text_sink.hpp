@@ -1,10 +1,10 @@
 // Results as text for people, an analysis after the other: outcome, table, report.
 #pragma once
 
-#include "catena/results/report_text.hpp"
 #include "catena/results/result_sink.hpp"
+#include "catena/results/terminal/report_text.hpp"
+#include "catena/results/terminal/text_table.hpp"
 #include "catena/results/text_output.hpp"
-#include "catena/results/text_table.hpp"
 
 namespace catena {
 

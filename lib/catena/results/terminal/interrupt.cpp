@@ -1,4 +1,4 @@
-#include "catena/results/interrupt.hpp"
+#include "catena/results/terminal/interrupt.hpp"
 
 #include <unistd.h>
 

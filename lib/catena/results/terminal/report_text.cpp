@@ -1,4 +1,4 @@
-#include "catena/results/report_text.hpp"
+#include "catena/results/terminal/report_text.hpp"
 
 #include "catena/results/number_format.hpp"
 

@@ -1,4 +1,4 @@
-#include "catena/results/text_sink.hpp"
+#include "catena/results/terminal/text_sink.hpp"
 
 #include <utility>
 

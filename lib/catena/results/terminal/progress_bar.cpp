@@ -1,4 +1,4 @@
-#include "catena/results/progress_bar.hpp"
+#include "catena/results/terminal/progress_bar.hpp"
 
 #include <unistd.h>
 
