@@ -72,7 +72,8 @@ int shapes_of(const Model& model, int element) {
 
 // Every type that the library knows has a look of its own, but those that prescribe or bound something without a place.
 TEST(Drawings, ShowEveryTypeOfElement) {
-  const std::set<std::string_view> placeless{"friction", "stop"};
+  const std::set<std::string_view> placeless{"absolute_angle", "displacement", "friction", "relative_angle",
+                                             "relative_x",     "relative_y",   "stop"};
   for (const ElementDescription& type : element_descriptions()) {
     SCOPED_TRACE(type.type);
     const RecordedText run = record_text(example_scene(type));

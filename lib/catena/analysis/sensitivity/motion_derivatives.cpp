@@ -113,7 +113,7 @@ bool MotionDerivatives::project(Group& group, double t, Side side, Vector& y) {
     for (std::size_t c = 0; c < n_; ++c) bare[c] = part[c].v;
     if (!velocity) {
       for (std::size_t c = 0; c < n_; ++c) {
-        if (plan().column[c] < 0) bare[c] = q[c];
+        if (c >= plan().column.size() || plan().column[c] < 0) bare[c] = q[c];
       }
     }
     if (velocity)

@@ -40,9 +40,9 @@ std::vector<Event> events_of(const AnalysisTask& task, const Model& model) {
   constexpr EventAction actions[] = {EventAction::record, EventAction::stop, EventAction::release, EventAction::engage};
   std::vector<Event> events;
   for (const EventRequest& request : task.events) {
-    Event& event = events.emplace_back(request.name, request.column, request.value, directions[request.direction],
-                                       actions[request.action],
-                                       request.element.empty() ? -1 : model.find_element(request.element));
+    events.push_back({request.name, request.column, request.value, directions[request.direction],
+                      actions[request.action], request.element.empty() ? -1 : model.find_element(request.element)});
+    Event& event = events.back();
     if (!request.impulse) continue;
     event.action = EventAction::strike;
     event.strike = strike_of(*request.impulse, model);
