@@ -94,17 +94,25 @@ void SpectrumDerivatives::fill_residual(Group& group, double t) {
   group.mechanism.add_constraint_loads(group.lambda, group.loads);
 }
 
-// Multipliers balance the forces best wherever the place moves to.
+// Multipliers balance the forces best wherever the place moves to,  W x + Phi_q^T lambda = Q,  Phi_q x = 0:  what they
+// leave over, W x, turns with the constraints, (dPhi_q) x.
 bool SpectrumDerivatives::find_multipliers(Group& group, double t) {
   fill_residual(group, t);
   std::vector<double> f(rest_.size()), b(lambda_.size());
   if (!factor_metric(evaluator(), metric_, values_)) return fail("constraints are singular");
+  for (std::size_t c = 0; c < f.size(); ++c) f[c] = -group.loads[c].v;
+  if (!metric_.solve(f, b)) return fail("constraints are singular");
+  // As the rate of a motion along x, without derivatives of its own.
+  const std::vector<DesignScalar> x(f.begin(), f.end());
+  group.mechanism.set_state(group.q, x);
+  group.mechanism.rows(group.rows);
   for (std::size_t p = 0; p < at(group.count); ++p) {
     for (std::size_t c = 0; c < f.size(); ++c) f[c] = -group.loads[c].d[p];
-    std::fill(b.begin(), b.end(), 0.0);
+    for (std::size_t r = 0; r < b.size(); ++r) b[r] = -group.rows[r].d.d[p];
     if (!metric_.solve(f, b)) return fail("constraints are singular");
     for (std::size_t r = 0; r < b.size(); ++r) group.lambda[r].d[p] = b[r];
   }
+  fill_residual(group, t);
   return true;
 }
 
