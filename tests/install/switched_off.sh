@@ -5,9 +5,9 @@
 set -euo pipefail
 work="$WORK_DIR/switched_off"
 
-# Nothing that is measured here needs optimisation.
+# Nothing is measured here: little optimisation compiles fastest. (g++ 12 wants some for the intrinsics of Eigen.)
 "$CMAKE" -S "$SOURCE_DIR" -B "$work" -G "$GENERATOR" -DCMAKE_CXX_COMPILER="$CXX" -DCMAKE_BUILD_TYPE=Release \
-  -DCATENA_WERROR=ON -DCATENA_OPTIMISATION=-O0 \
+  -DCATENA_WERROR=ON -DCATENA_OPTIMISATION=-O1 \
   -DCATENA_WITH_UMFPACK=OFF -DCATENA_WITH_SPQR=OFF -DCATENA_WITH_IPOPT=OFF -DCATENA_WITH_NLOPT=OFF \
   -DCATENA_WITH_VIEWER=OFF \
   -DCATENA_BUILD_TESTS=OFF -DCATENA_BUILD_BENCH=OFF
