@@ -2,7 +2,7 @@
 # From a fresh clone to a result: installs what is missing, builds the command line and runs a mechanism through it.
 #
 #   apps/quickstart.sh [SCENE]     SCENE: a scene file; without one, the crank-rocker of data/scenes
-#   apps/quickstart.sh --python    builds the Python package too, and runs the scene through it
+#   apps/quickstart.sh --python [SCENE]    builds the Python package too, and runs the scene through it
 #
 # The build goes to build/release, the results to out/<name of the scene>, both in this tree and ignored by git.
 set -euo pipefail
@@ -18,8 +18,7 @@ scene="${1:-$root/data/scenes/crank_rocker.json}"
 [[ "$scene" == /* ]] || scene="$here/$scene"
 cd "$root"
 
-apps/setup.sh
-[[ $python == ON ]] && apps/setup.sh --python
+if [[ $python == ON ]]; then apps/setup.sh --python; else apps/setup.sh; fi
 
 build=build/release
 if [[ ! -f $build/build.ninja ]]; then
@@ -57,7 +56,8 @@ fi
 if [[ $python == ON ]]; then
   echo
   interpreter="$(sed -n 's/^Python_EXECUTABLE:[A-Z]*=//p' $build/CMakeCache.txt)"
-  echo "\$ PYTHONPATH=$build/python $interpreter -c 'import catena; print(catena.load(\"$shown\").run())'"
-  PYTHONPATH=$build/python "$interpreter" -c "import catena; print(catena.load('$shown').run())"
+  code='import sys, catena; print(catena.load(sys.argv[1]).run())'
+  echo "\$ PYTHONPATH=$build/python ${interpreter:-python3} -c '$code' $shown"
+  PYTHONPATH=$build/python "${interpreter:-python3}" -c "$code" "$shown"
 fi
 exit $status

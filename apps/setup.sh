@@ -34,7 +34,6 @@ test_packages=(
   libbenchmark-dev      # apps/bench
   pkgconf               # the installed package is used through pkg-config too
   node-typescript       # the types of the page are checked
-  ccache                # the library is built several times over, mostly alike
 )
 browser_packages=(
   chromium chromium-driver

@@ -129,7 +129,7 @@ void add_common_options(CLI::App& command, Parsed& parsed) {
       ->needs("--output-dir");
   command
       .add_option("--units", run.units,
-                  "units of the table and of CSV files, as angle=deg,length=mm: length, time, angle, force, mass")
+                  "units of the table, of --csv and of files, as angle=deg,length=mm: length, time, angle, force, mass")
       ->delimiter(',')
       ->type_name("KIND=UNIT");
   command.add_option("--view", run.page, "also write a page with the moving mechanism and its plots")

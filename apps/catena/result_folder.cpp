@@ -24,8 +24,8 @@ MakeRowWriter writer_of(const std::string& format) {
 
 }  // namespace
 
-ResultFolder::ResultFolder(std::string path, const std::string& format, OutputUnits::Wishes units)
-    : path_(std::move(path)), rows_(path_, "." + format, writer_of(format)), shown_(rows_, std::move(units)) {}
+ResultFolder::ResultFolder(std::string path, const std::string& format)
+    : path_(std::move(path)), rows_(path_, "." + format, writer_of(format)) {}
 
 std::string ResultFolder::obstacle(const std::string& path) {
   namespace fs = std::filesystem;
@@ -42,11 +42,11 @@ std::string ResultFolder::obstacle(const std::string& path) {
 }
 
 void ResultFolder::begin_run(const RunHeader& header) {
-  shown_.begin_run(header);  // makes the folder
+  rows_.begin_run(header);  // makes the folder
   report_file_.emplace(TextOutput::file((std::filesystem::path(path_) / "report.json").string()));
   report_ = json_result_sink(*report_file_, JsonRows::left_out);
   report_->begin_run(header);
-  tee_.add(shown_);
+  tee_.add(rows_);
   tee_.add(*report_);
 }
 

@@ -5,12 +5,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "catena/results/result_sink.hpp"
 #include "catena/results/row_files.hpp"
 #include "catena/results/text_output.hpp"
-#include "catena/scene/running/units_sink.hpp"
 
 namespace catena::cli {
 
@@ -18,8 +18,7 @@ class ResultFolder final : public ResultSink {
  public:
   /// Formats of the files with rows.
   static constexpr std::array<std::string_view, 3> formats{"csv", "npz", "json"};
-  /// `units`: in which rows are written.
-  ResultFolder(std::string path, const std::string& format, OutputUnits::Wishes units);
+  ResultFolder(std::string path, const std::string& format);
 
   void begin_run(const RunHeader& header) override;
   RowSink& begin_analysis(std::string_view type) override { return tee_.begin_analysis(type); }
@@ -36,7 +35,6 @@ class ResultFolder final : public ResultSink {
  private:
   std::string path_;
   RowFiles rows_;
-  UnitsSink shown_;
   std::optional<TextOutput> report_file_;
   std::unique_ptr<ResultSink> report_;
   TeeSink tee_;

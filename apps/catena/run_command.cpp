@@ -124,19 +124,21 @@ int execute(const RunCommand& command) {
   }
   TextSink table(output, table_limits(command.verbose),
                  "-v shows everything, -o DIR writes files, --json and --csv print every digit");
-  UnitsSink text(table, wishes);
   std::unique_ptr<ResultSink> json = command.json ? json_result_sink(output) : nullptr;
   std::optional<ResultFolder> folder;
   TeeSink sinks;
   sinks.add(before);
   CsvSink csv(output);
-  UnitsSink rows(csv, wishes);
+  // What is in the units that were asked for: all but the JSON on the standard output, and pages.
+  TeeSink converted;
+  UnitsSink shown(converted, std::move(wishes));
+  sinks.add(shown);
   if (command.json) {
     sinks.add(*json);
   } else if (command.csv) {
-    sinks.add(rows);
+    converted.add(csv);
   } else if (!command.quiet) {
-    sinks.add(text);
+    converted.add(table);
   }
   if (!command.directory.empty()) {
     // Checked first, so that hours of results are not lost at their end.
@@ -145,7 +147,7 @@ int execute(const RunCommand& command) {
       return no_file;
     }
   }
-  if (!command.directory.empty()) sinks.add(folder.emplace(command.directory, command.format, wishes));
+  if (!command.directory.empty()) converted.add(folder.emplace(command.directory, command.format));
 
   std::optional<RunRecorder> recorder;
   if (!command.page.empty()) {

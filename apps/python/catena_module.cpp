@@ -10,12 +10,14 @@
 
 #include <atomic>
 #include <chrono>
-#include <deque>
+#include <cmath>
+#include <future>
 #include <memory>
 #include <stdexcept>
 
 #include "catena/base/status.hpp"
 #include "catena/results/result_storage.hpp"
+#include "catena/results/status_word.hpp"
 #include "catena/scene/running/scene_runner.hpp"
 
 namespace py = pybind11;
@@ -23,7 +25,7 @@ namespace py = pybind11;
 namespace catena {
 namespace {
 
-// Ctrl-C is noticed at once by people, and asking costs nothing beside a run.
+// To people that is at once; asking costs nothing beside a run.
 constexpr std::chrono::milliseconds between_signals{50};
 
 /// An error in the text of a scene, or a file that cannot be read.
@@ -40,7 +42,7 @@ class StoringSink final : public ResultSink {
   void end_run() override {}
 
   std::vector<std::pair<std::string, double>> parameters;
-  std::deque<std::shared_ptr<ResultStorage>> rows;
+  std::vector<std::shared_ptr<ResultStorage>> rows;
 };
 
 /// One analysis and its rows.
@@ -48,27 +50,33 @@ struct Analysis {
   AnalysisResult result;
   std::shared_ptr<const ResultStorage> rows;
 
-  /// A view of a column; it keeps the rows alive.
-  py::array column(const std::string& name) const {
+  /// A view of a column; the words of one that holds a status.
+  py::object column(const std::string& name) const {
     const std::optional<std::size_t> found = rows->find(name);
     if (!found) throw py::key_error("there is no column \"" + name + "\" in " + result.type);
-    const std::size_t columns = rows->columns().size(), count = rows->rows();
-    const auto* owner = new std::shared_ptr<const ResultStorage>(rows);
-    const py::capsule keep(owner, [](void* p) { delete static_cast<std::shared_ptr<const ResultStorage>*>(p); });
-    const double* first = count > 0 ? rows->values().data() + *found : nullptr;
-    py::array_t<double> view({count}, {columns * sizeof(double)}, first, keep);
-    view.attr("setflags")(py::arg("write") = false);
-    return view;
+    if (rows->columns()[*found].is_status) return words(*found);
+    return view({rows->rows()}, {rows->columns().size() * sizeof(double)}, *found);
   }
   /// All rows, a line each.
   py::array table() const {
-    const std::size_t columns = rows->columns().size(), count = rows->rows();
-    const auto* owner = new std::shared_ptr<const ResultStorage>(rows);
-    const py::capsule keep(owner, [](void* p) { delete static_cast<std::shared_ptr<const ResultStorage>*>(p); });
-    const std::vector<std::size_t> shape{count, columns}, strides{columns * sizeof(double), sizeof(double)};
-    py::array_t<double> view(shape, strides, rows->values().data(), keep);
-    view.attr("setflags")(py::arg("write") = false);
-    return view;
+    const std::size_t columns = rows->columns().size();
+    return view({rows->rows(), columns}, {columns * sizeof(double), sizeof(double)}, 0);
+  }
+  /// Of the rows from their value number `first` on; it keeps them alive.
+  py::array view(const std::vector<std::size_t>& shape, const std::vector<std::size_t>& strides,
+                 std::size_t first) const {
+    auto owner = std::make_unique<std::shared_ptr<const ResultStorage>>(rows);
+    const py::capsule keep(owner.get(), [](void* p) { delete static_cast<std::shared_ptr<const ResultStorage>*>(p); });
+    static_cast<void>(owner.release());
+    const double* start = rows->rows() > 0 ? rows->values().data() + first : nullptr;
+    py::array_t<double> made(shape, strides, start, keep);
+    made.attr("setflags")(py::arg("write") = false);
+    return made;
+  }
+  py::object words(std::size_t column) const {
+    py::list list;
+    for (std::size_t row = 0; row < rows->rows(); ++row) list.append(std::string(status_word(rows->at(row, column))));
+    return py::module_::import("numpy").attr("array")(list);
   }
   std::vector<std::string> columns() const {
     std::vector<std::string> names;
@@ -118,7 +126,8 @@ py::dict measures_of(const AnalysisResult& result) {
     if (!result.gradient_parameters.empty()) {
       py::dict gradient;
       for (std::size_t k = 0; k < result.gradient_parameters.size(); ++k)
-        gradient[py::str(result.gradient_parameters[k])] = k < measure.gradient.size() ? measure.gradient[k] : NAN;
+        gradient[py::str(result.gradient_parameters[k])] =
+            k < measure.gradient.size() ? measure.gradient[k] : std::nan("");
       one["gradient"] = gradient;
     }
     measures[py::str(measure.name)] = one;
@@ -132,11 +141,10 @@ py::dict fields_of(const AnalysisResult& result) {
   return fields;
 }
 
-/// What a run gave: its analyses, parameters and exit code.
+/// What a run gave.
 struct Outcome {
   std::vector<Analysis> analyses;
   std::vector<std::pair<std::string, double>> parameters;
-  int exit_code = 0;
 };
 
 Outcome run(const std::string& path, const std::optional<std::string>& text,
@@ -146,31 +154,28 @@ Outcome run(const std::string& path, const std::optional<std::string>& text,
   SceneOutcome outcome;
   std::atomic<bool> cancel{false};
   bool interrupted = false;
+  RunOptions options;
+  options.text = text;
+  options.set = set;
+  options.outputs = outputs;
+  options.only = only;
+  options.threads = threads;
+  options.cancel = &cancel;
   {
     const py::gil_scoped_release free;
-    RunOptions options;
-    options.text = text;
-    options.set = set;
-    options.outputs = outputs;
-    options.only = only;
-    options.threads = threads;
-    options.cancel = &cancel;
-    auto asked = std::chrono::steady_clock::now();
-    options.progress = [&](const Progress&) {
-      const auto now = std::chrono::steady_clock::now();
-      if (now - asked < between_signals) return;
-      asked = now;
+    // Signals are for the thread that Python called from: the scene runs beside it.
+    std::future<SceneOutcome> running = std::async(std::launch::async, [&] { return run_scene(path, options, sink); });
+    while (running.wait_for(between_signals) == std::future_status::timeout) {
       const py::gil_scoped_acquire held;
-      if (PyErr_CheckSignals() == 0) return;
+      if (interrupted || PyErr_CheckSignals() == 0) continue;
       interrupted = true;
       cancel = true;
-    };
-    outcome = run_scene(path, options, sink);
+    }
+    outcome = running.get();
   }
   if (interrupted) throw py::error_already_set();
   if (outcome.exit_code >= 2) throw SceneError(outcome.error_text);
   Outcome result;
-  result.exit_code = outcome.exit_code;
   result.parameters = std::move(sink.parameters);
   for (std::size_t k = 0; k < outcome.analyses.size(); ++k)
     result.analyses.push_back({std::move(outcome.analyses[k]), sink.rows[k]});
@@ -211,8 +216,7 @@ PYBIND11_MODULE(_catena, module) {
 
   py::class_<Outcome>(module, "Outcome")
       .def_readonly("analyses", &Outcome::analyses)
-      .def_readonly("parameters", &Outcome::parameters)
-      .def_readonly("exit_code", &Outcome::exit_code);
+      .def_readonly("parameters", &Outcome::parameters);
 
   module.def("run", &run, py::arg("path"), py::arg("text"), py::arg("set"), py::arg("outputs"), py::arg("only"),
              py::arg("threads"));

@@ -1,6 +1,6 @@
 # How every target of the project is compiled.
 #
-# -O3 in every build type: element derivatives come from templates on the scalar that are 8-15 times slower than
+# CATENA_OPTIMISATION, -O3 unless changed, in every build type: element derivatives come from templates on the scalar that are 8-15 times slower than
 # closed forms at -O2 and 1.3-1.6 times at -O3. No -ffast-math: NaN and the order of sums carry meaning here.
 # -fno-math-errno lets sqrt and friends vectorise and changes no value; -fno-semantic-interposition lets functions be
 # inlined within a position-independent unit.

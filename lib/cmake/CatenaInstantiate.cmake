@@ -2,11 +2,7 @@
 # list, instantiated once each (extern template), so that the compile time of an element is paid in one place and
 # touching one element rebuilds one unit.
 #
-# The units go to CATENA_INSTANTIATE_DIR, which several builds may share.
-#
 # catena_instantiate_elements(<out-variable> <folder under lib/catena/elements> <macro>)
-set(CATENA_INSTANTIATE_DIR "${PROJECT_BINARY_DIR}/instantiate" CACHE PATH "Folder of the generated units")
-mark_as_advanced(CATENA_INSTANTIATE_DIR)
 
 function(catena_instantiate_elements out folder macro)
   set(sources)
@@ -29,7 +25,7 @@ function(catena_instantiate_elements out folder macro)
       file(STRINGS "${PROJECT_SOURCE_DIR}/lib/${CATENA_HEADER}" definition REGEX "struct ${CATENA_TYPE}( |{|$)")
       if(definition)
         set(CATENA_MACRO ${macro})
-        set(source "${CATENA_INSTANTIATE_DIR}/${folder}/${name}.cpp")
+        set(source "${PROJECT_BINARY_DIR}/instantiate/${folder}/${name}.cpp")
         configure_file("${PROJECT_SOURCE_DIR}/lib/cmake/instantiate.cpp.in" "${source}" @ONLY)
         list(APPEND sources "${source}")
       else()

@@ -136,6 +136,7 @@ TEST_P(RandomFourBars, HaveGradientsOfMeasuresWhateverTheMode) {
       {"reach", [](const FourBar& g) { return largest(g, &FourBarPose::pen_x, 1); }},
       {"swing",
        [](const FourBar& g) { return largest(g, &FourBarPose::rocker, 1) + largest(g, &FourBarPose::rocker, -1); }}};
+  std::map<std::pair<std::string, std::size_t>, double> in_first_mode;  // the same numbers in the other
   for (const char* mode : {"forward", "adjoint"}) {
     SCOPED_TRACE(mode);
     const TextRun run = run_text(scene_of(f, mode));
@@ -151,8 +152,12 @@ TEST_P(RandomFourBars, HaveGradientsOfMeasuresWhateverTheMode) {
               return exact(moved);
             },
             step);
-        EXPECT_NEAR(gradient(run, name, p), static_cast<double>(expected), 1e-7 * std::max(1.0L, std::abs(expected)))
+        // Of extremes the search in the closed form loses digits more.
+        const double allowed = std::string_view(name) == "area" ? 1e-8 : 1e-7;
+        EXPECT_NEAR(gradient(run, name, p), static_cast<double>(expected), allowed * std::max(1.0L, std::abs(expected)))
             << name << " " << members[p].first;
+        const auto [known, first] = in_first_mode.try_emplace({name, p}, gradient(run, name, p));
+        if (!first) EXPECT_NEAR(gradient(run, name, p), known->second, 1e-10 * std::max(1.0, std::abs(known->second)));
       }
     }
   }

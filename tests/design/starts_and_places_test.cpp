@@ -6,6 +6,7 @@
 #include "catena/scene/models/scene_models.hpp"
 #include "catena/scene/reading/scene_reader.hpp"
 #include "design/measured.hpp"
+#include "oracles/scene_text.hpp"
 
 namespace catena::testing {
 namespace {
@@ -27,6 +28,37 @@ TEST(StartGradients, OfAGivenVelocityOfWhatHasNoMass) {
   EXPECT_NEAR(run.first("a.vx"), 3, 1e-12);
   EXPECT_NEAR(run.first("d(a.vx)/d(w)"), 1, 1e-9);
   EXPECT_NEAR(run.last("d(a.x)/d(w)"), 0.5, 1e-9);
+}
+
+// Assembly before it leaves places behind, not velocities: they are the model's still.
+TEST(StartGradients, OfVelocitiesAfterAnAssembly) {
+  const TextRun run = run_text(R"({"catena": 1, "parameters": {"w": 3},
+  "bodies": {"a": {"particle": true, "mass": 2, "velocity": ["w", 0]}}, "outputs": ["a.vx", "a.x"],
+  "analyses": [{"type": "assemble"},
+    {"type": "sensitivity", "parameters": ["w"], "of": {"type": "dynamics", "until": 0.5, "every": 0.25}}]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  EXPECT_NEAR(run.first("d(a.vx)/d(w)", 1), 1, 1e-9);
+  EXPECT_NEAR(run.last("d(a.x)/d(w)", 1), 0.5, 1e-9);
+}
+
+// Two levers on one gear train: a velocity that is given determines the other, whatever the masses.
+TEST(StartGradients, ByMassesThatChangeNothingAreZero) {
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers random(seed);
+    const TextRun run = run_text(R"({"catena": 1, "parameters": {"m": )" + text_of(std::pow(10, random(-1, 1))) + R"(},
+    "bodies": {"a": {"mass": )" + text_of(std::pow(10, random(-1, 1))) +
+                                 R"(, "inertia": 1, "angular_velocity": 2},
+               "b": {"mass": "m", "inertia": "m", "position": [3, 0]}},
+    "constraints": [{"type": "revolute", "i": "ground", "j": "a"},
+                    {"type": "revolute", "i": ["ground", [3, 0]], "j": "b"},
+                    {"type": "gear", "i": "a", "j": "b", "radius_i": 1, "radius_j": )" +
+                                 text_of(random(0.3, 3)) + R"(}],
+    "outputs": ["b.omega"],
+    "analyses": [{"type": "sensitivity", "parameters": ["m"], "of": {"type": "dynamics", "at": [0]}}]})");
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+    EXPECT_NEAR(run.first("d(b.omega)/d(m)"), 0, 1e-12);
+  }
 }
 
 TEST(StartGradients, OfWhatFollowsWithoutMass) {

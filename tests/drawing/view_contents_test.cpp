@@ -83,20 +83,26 @@ TEST(ViewDocument, AnalysesWithOtherBodiesHaveNamesOfTheirOwn) {
 
 // Whoever draws sees more than the columns need; the columns stay the same to the last digit.
 TEST(ViewDocument, DrawingChangesNoRow) {
-  for (const char* name : {"crank_rocker", "jansen_leg", "six_bar", "slider_crank_joints", "cam_followers"}) {
+  for (const char* name :
+       {"crank_rocker", "jansen_leg", "six_bar", "slider_crank_joints", "cam_followers", "four_bar_gradients"}) {
     SCOPED_TRACE(name);
     const std::string path = std::string(CATENA_DATA_DIR "/scenes/") + name + ".json";
     RunRecorder plain, drawn;
     RunOptions options;
-    run_scene(path, options, plain);
+    ASSERT_EQ(run_scene(path, options, plain).exit_code, 0);
     options.poses = &drawn;
-    run_scene(path, options, drawn);
+    ASSERT_EQ(run_scene(path, options, drawn).exit_code, 0);
     ASSERT_EQ(plain.record().analyses.size(), drawn.record().analyses.size());
     for (std::size_t a = 0; a < plain.record().analyses.size(); ++a) {
       const ThinnedRows &without = plain.record().analyses[a].rows, &with = drawn.record().analyses[a].rows;
       ASSERT_EQ(without.size(), with.size());
+      ASSERT_EQ(plain.record().analyses[a].result.measures.size(), drawn.record().analyses[a].result.measures.size());
+      for (std::size_t m = 0; m < plain.record().analyses[a].result.measures.size(); ++m)
+        EXPECT_EQ(plain.record().analyses[a].result.measures[m].value,
+                  drawn.record().analyses[a].result.measures[m].value);
       for (std::size_t k = 0; k < with.size(); ++k) {
         for (std::size_t c = 0; c < with[k].size(); ++c) {
+          ASSERT_EQ(std::isnan(with[k][c]), std::isnan(without[k][c])) << a << ' ' << k << ' ' << c;
           if (std::isnan(with[k][c])) continue;
           ASSERT_EQ(with[k][c], without[k][c]) << a << ' ' << k << ' ' << c;
         }

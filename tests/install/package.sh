@@ -28,6 +28,14 @@ if [[ -x "$prefix/bin/catena" ]]; then
   "$prefix/bin/catena" --version
 fi
 
+module="$(find "$prefix" -name __init__.py -path '*/catena/*')"
+if [[ -n "$module" ]]; then
+  echo "--- the Python package"
+  # Where an interpreter with this prefix looks for it.
+  [[ "$module" == "$prefix"/lib/python3.*/dist-packages/catena/__init__.py ]]
+  PYTHONPATH="$(dirname "$(dirname "$module")")" "$PYTHON" -c 'import catena; print(catena.loads("{\"catena\": 1}").run())'
+fi
+
 for tree in install build; do
   echo "--- find_package from the $tree tree"
   location="$prefix"

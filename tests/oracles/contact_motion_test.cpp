@@ -3,25 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "oracles/scene_text.hpp"
 #include "scene/run_text.hpp"
 
 namespace catena::testing {
 namespace {
 
 constexpr double g = 9.81;
-
-std::string text_of(double x) {
-  std::ostringstream out;
-  out.precision(17);
-  out << x;
-  return out.str();
-}
-std::string pair_of(double x, double y) { return "[" + text_of(x) + "," + text_of(y) + "]"; }
 
 struct Change {
   std::string name, kind;
@@ -49,15 +40,6 @@ std::vector<double> instants(const TextRun& run, const std::string& kind) {
   return t;
 }
 
-class Random {
- public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  double operator()(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-
- private:
-  std::mt19937 engine_;
-};
-
 /// A line through the origin that falls to the right by `slope`; free above.
 std::string ground_line(double slope) {
   return R"("curve": {"line": {"point": [0,0], "axis": )" + pair_of(std::cos(slope), -std::sin(slope)) + "}}";
@@ -72,7 +54,7 @@ std::string dynamics(const std::vector<double>& at, double tolerance = 1e-11) {
 TEST(ContactMotion, BallsBounceDownSlopes) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE(seed);
-    Random random(seed);
+    RandomNumbers random(seed);
     const double slope = random(-0.6, 0.6), e = random(0.3, 0.95), radius = random(0, 0.1), mass = random(0.1, 5);
     const double height = random(0.1, 1), along = random(-1, 1), up = random(-1, 1), s0 = random(-0.5, 0.5);
     const double c = std::cos(slope), s = std::sin(slope);
@@ -133,7 +115,7 @@ TEST(ContactMotion, AccumulatedBouncesEndInContact) {
 TEST(ContactMotion, DiscsMeet) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE(seed);
-    Random random(seed);
+    RandomNumbers random(seed);
     const double ra = random(0.02, 0.1), rb = random(0.02, 0.1), ma = random(0.2, 3), mb = random(0.2, 3);
     const double e = random(0, 1), speed = random(1, 3), off = random(-0.8, 0.8) * (ra + rb), omega = random(-3, 3);
     const double distance = 0.5, reach = std::sqrt((ra + rb) * (ra + rb) - off * off), t = (distance - reach) / speed;
@@ -161,7 +143,7 @@ TEST(ContactMotion, DiscsMeet) {
 TEST(ContactMotion, CompliantFloorsPressAndRelease) {
   for (unsigned seed = 1; seed <= 30; ++seed) {
     SCOPED_TRACE(seed);
-    Random random(seed);
+    RandomNumbers random(seed);
     const double mass = random(0.5, 4), k = random(5e3, 1e5), zeta = seed % 3 == 0 ? 0 : random(0.01, 0.3);
     const double height = random(0.05, 0.5), c = 2 * zeta * std::sqrt(k * mass);
     const double omega = std::sqrt(k / mass), delta = zeta * omega, damped = omega * std::sqrt(1 - zeta * zeta);
@@ -201,7 +183,7 @@ TEST(ContactMotion, CompliantFloorsPressAndRelease) {
 TEST(ContactMotion, MassesOnSpringsRubToAStop) {
   for (unsigned seed = 1; seed <= 30; ++seed) {
     SCOPED_TRACE(seed);
-    Random random(seed);
+    RandomNumbers random(seed);
     const double mass = random(0.5, 2), k = random(50, 200), mu = random(0.05, 0.3), x0 = random(0.2, 0.5);
     const double omega = std::sqrt(k / mass), shift = mu * mass * g / k;
     double x = x0;
@@ -230,7 +212,7 @@ TEST(ContactMotion, MassesOnSpringsRubToAStop) {
 TEST(ContactMotion, WheelsRollOrSlipDownSlopes) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE(seed);
-    Random random(seed);
+    RandomNumbers random(seed);
     const double slope = random(0.05, 0.7), mass = random(0.5, 4), radius = random(0.05, 0.3), mu = random(0.02, 0.5);
     const double part = random(0.3, 1), inertia = part * mass * radius * radius, t = 1;
     const double c = std::cos(slope), s = std::sin(slope);
@@ -256,7 +238,7 @@ TEST(ContactMotion, WheelsRollOrSlipDownSlopes) {
 TEST(ContactMotion, BlocksSlideToAStop) {
   for (unsigned seed = 1; seed <= 30; ++seed) {
     SCOPED_TRACE(seed);
-    Random random(seed);
+    RandomNumbers random(seed);
     const double slope = random(-0.3, -0.02), mu = random(0.35, 0.6), speed = random(0.5, 2), mass = random(0.5, 3);
     const double c = std::cos(slope), s = std::sin(slope), a = g * (mu * c - s), stop = speed / a;
     const double w = speed * speed / (2 * a), h = 0.03;
@@ -287,7 +269,7 @@ TEST(ContactMotion, BlocksSlideToAStop) {
 TEST(ContactMotion, PinsRubWheelsToAStop) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
-    Random random(seed);
+    RandomNumbers random(seed);
     const double mass = random(1, 20), inertia = random(0.1, 2), mu = random(0.05, 0.3), radius = random(0.005, 0.05);
     const double omega = random(-20, 20), slowing = mu * mass * g * radius / inertia, stop = std::abs(omega) / slowing;
     const TextRun run = run_text(R"({"catena":1, "gravity":[0,-9.81], "bodies": {"wheel": {"mass": )" + text_of(mass) +
@@ -313,7 +295,7 @@ TEST(ContactMotion, PinsRubWheelsToAStop) {
 TEST(ContactMotion, BlocksStickAndSlipOnBelts) {
   for (unsigned seed = 1; seed <= 25; ++seed) {
     SCOPED_TRACE(seed);
-    Random random(seed);
+    RandomNumbers random(seed);
     const double mass = random(0.5, 2), k = random(30, 150), mu = random(0.1, 0.3),
                  more = seed % 5 == 0 ? 1 : random(1.1, 2);
     const double speed = random(0.05, 0.4), omega = std::sqrt(k / mass), centre = mu * mass * g / k;
@@ -353,7 +335,7 @@ TEST(ContactMotion, BlocksStickAndSlipOnBelts) {
 TEST(ContactMotion, StopsLetGo) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
-    Random random(seed);
+    RandomNumbers random(seed);
     // m y'' = f t - m g from t = m g / f on.
     const double mass = random(0.5, 3), rate = random(5, 40), leave = mass * g / rate, later = random(0.1, 0.5);
     const double end = leave + later;

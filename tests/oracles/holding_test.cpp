@@ -3,31 +3,13 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
-#include <sstream>
 #include <string>
 
+#include "oracles/scene_text.hpp"
 #include "scene/run_text.hpp"
 
 namespace catena::testing {
 namespace {
-
-std::string text_of(double x) {
-  std::ostringstream out;
-  out.precision(17);
-  out << x;
-  return out.str();
-}
-std::string pair_of(double x, double y) { return "[" + text_of(x) + "," + text_of(y) + "]"; }
-
-class Random {
- public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  double operator()(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-
- private:
-  std::mt19937 engine_;
-};
 
 /// A line through the origin along (c, s) with a point of a body; free on its left.
 std::string contact(const std::string& name, const std::string& point, double c, double s, const std::string& keys) {
@@ -50,7 +32,7 @@ TEST(Holding, BlocksOnSlopes) {
   int held = 0;
   for (unsigned seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE(seed);
-    Random random(seed);
+    RandomNumbers random(seed);
     const double slope = random(-0.7, 0.7), mu = random(0.1, 0.9), mass = random(0.1, 20);
     const double c = std::cos(slope), s = std::sin(slope);
     // A stiffness is for motion alone: equilibrium and its friction take the place as rigid.
@@ -72,7 +54,7 @@ TEST(Holding, BlocksOnSlopes) {
 TEST(Holding, LaddersAtWalls) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE(seed);
-    Random random(seed);
+    RandomNumbers random(seed);
     const double angle = random(0.3, 1.4), mu = random(0.1, 0.8), length = random(0.5, 10), mass = random(1, 50);
     const double x = length * std::cos(angle) / 2, y = length * std::sin(angle) / 2;
     const std::string keys = R"(, "mu": )" + text_of(mu);
@@ -95,7 +77,7 @@ TEST(Holding, LaddersAtWalls) {
 TEST(Holding, BrakesOfLevers) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE(seed);
-    Random random(seed);
+    RandomNumbers random(seed);
     const double a = random(0.5, 2), b = random(0.2, 1), force = random(10, 200), radius = random(0.1, 0.5);
     const double torque = random(-20, 20), mu = random(0.1, 0.6);
     const TextRun run = run_text(

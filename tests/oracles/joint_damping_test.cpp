@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "catena/elements/all.hpp"
+#include "catena/model/model_add.hpp"
 #include "scene/run_text.hpp"
 
 namespace catena::testing {
@@ -59,6 +61,32 @@ TEST(JointDamping, ActsBetweenMovingBodies) {
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
   for (const double balance : run.column("energy.balance")) EXPECT_NEAR(balance, 0, 1e-8);
   EXPECT_GT(run.last("energy.dissipated"), 0.1);
+}
+
+// No damping yet has a derivative too: an optimisation may start there.
+TEST(JointDamping, HasDerivativesWhereItIsZero) {
+  std::string text = scene(R"({"type": "sensitivity", "parameters": ["turning"],
+    "of": {"type": "dynamics", "at": [1.7], "tolerance": 1e-11, "measures": {"omega": {"final": "pin.omega"}}}})");
+  text.replace(text.find("\"turning\": 0.4"), 14, "\"turning\": 0");
+  const TextRun run = run_text(text);
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  EXPECT_NEAR(run.last("d(pin.omega)/d(turning)"), -1.7 / 2.5 * 3, 1e-8);
+}
+
+// The damper would go on without its joint.
+TEST(JointDamping, GoesNotWithReleases) {
+  const TextRun run = run_text(scene(R"({"type": "dynamics", "until": 1,
+    "events": [{"when": "t", "value": 0.5, "action": "release", "element": "pin"}]})"));
+  EXPECT_EQ(run.outcome.exit_code, 3);
+  EXPECT_NE(run.outcome.error_text.find("\"pin\" has damping"), std::string::npos) << run.outcome.error_text;
+}
+
+TEST(JointDamping, IsNotNegativeInPrograms) {
+  Model model;
+  const int rod = model.add_body("rod", {.mass = 1, .inertia = 1});
+  Revolute<> pin;
+  pin.c = -1;
+  EXPECT_THROW(model.add("pin", pin, ground, rod), ModelError);
 }
 
 TEST(JointDamping, IsNotNegative) {

@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import unittest
 
 import numpy
@@ -97,9 +98,43 @@ class Gradients(unittest.TestCase):
         value, gradient = catena.loads(self.SCENE).value_and_grad("end", ["speed"])([2.5])
         numpy.testing.assert_allclose(gradient, [-numpy.sin(2.5)], rtol=0, atol=1e-12)
 
+    def test_designs_that_cannot_be_analysed_are_no_numbers(self):
+        scene = catena.loads(
+            CRANK.replace('"constraints": [', '"constraints": [{"type": "absolute_distance", "i": "crank.tip",'
+                          ' "ground": [3, 0], "value": "=1.5*length"}, ').replace('"drivers"', '"forces": [], "drivers"')
+            % ('{"type": "assemble"}, {"type": "sensitivity", "parameters": ["length"], "of": '
+               '{"type": "assemble", "measures": {"x": {"final": "crank.tip.x"}}}}')
+        )
+        self.assertTrue(numpy.isnan(scene.function("x", ["length"], analysis=1)([0.1])))
+        value, gradient = scene.value_and_grad("x", ["length"])([0.1])
+        self.assertTrue(numpy.isnan(value) and numpy.isnan(gradient).all())
+        with self.assertRaises(ValueError):
+            scene.function("x", ["length"], analysis=1)([0.1, 2])
+
     def test_values_alone(self):
         function = catena.loads(CRANK % MOTION).function("end", ["length"])
         self.assertAlmostEqual(function([2]), 2 * numpy.cos(2), 13)
+
+
+class Files(unittest.TestCase):
+    def test_npz_is_read_by_numpy(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = os.path.join(folder, "crank.json")
+            with open(scene, "w", encoding="utf-8") as file:
+                file.write(CRANK % MOTION)
+            command = [os.environ["CATENA_EXECUTABLE"], "run", scene, "-o", folder, "--format", "npz", "-q"]
+            subprocess.run(command, check=True)
+            analysis = catena.load(scene).run()["kinematics"]
+            with numpy.load(os.path.join(folder, "kinematics.npz")) as columns:
+                self.assertEqual(columns.files, analysis.columns)
+                for name in columns.files:
+                    numpy.testing.assert_array_equal(columns[name], analysis[name])
+
+
+class Statuses(unittest.TestCase):
+    def test_are_words(self):
+        sweep = '{"type": "sweep", "of": %s, "over": {"length": [1, 2]}}' % MOTION
+        self.assertEqual(list(catena.loads(CRANK % sweep).run()["sweep"]["status"]), ["ok", "ok"])
 
 
 class Errors(unittest.TestCase):
@@ -125,8 +160,18 @@ class Errors(unittest.TestCase):
         self.assertIn("crank", run[0].message)
 
     def test_ctrl_c_ends_a_run(self):
+        self.interrupt('{"type": "kinematics", "until": 1e5, "every": 0.001}')
+
+    def test_ctrl_c_ends_an_optimisation(self):
+        self.interrupt(
+            '{"type": "optimise", "of": {"type": "kinematics", "until": 1e5, "every": 0.001,'
+            ' "measures": {"end": {"final": "crank.tip.x"}}}, "variables": {"length": {"min": 1, "max": 2}},'
+            ' "minimise": "end"}'
+        )
+
+    def interrupt(self, analysis):
         code = "import catena, sys; print('ready', flush=True); catena.loads(sys.argv[1]).run()"
-        long = CRANK % '{"type": "kinematics", "until": 1e5, "every": 0.001}'
+        long = CRANK % analysis
         process = subprocess.Popen(
             [sys.executable, "-c", code, long], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         )

@@ -82,31 +82,37 @@ class Scene:
         """
 
         def value(x):
-            result = self.run(dict(zip(names, x)))[analysis]
-            found = result.measures[measure]["value"] if result.ok else None
+            run = self.run(dict(zip(names, x, strict=True)))
+            found = run[analysis].measures[measure]["value"] if run.ok else None
             return float("nan") if found is None else found
 
         return value
 
-    def value_and_grad(self, measure, names=None, *, analysis="sensitivity"):
+    def value_and_grad(self, measure, names=None):
         """f(x) -> (value, gradient) of a measure, as scipy.optimize.minimize takes it with jac=True.
 
-        The scene has a sensitivity analysis with the measure; `names` are its parameters, unless some are named.
+        The scene's sensitivity analysis has the measure; `names` are its parameters, unless some are named. Without
+        names the scene is run once to find them.
         """
         import numpy
 
+        def measured(parameters):
+            run = self.run(parameters, only="sensitivity")
+            return run["sensitivity"].measures[measure] if run.ok else None
+
+        if names is None:
+            found = measured({})
+            if found is None:
+                raise ValueError("the scene cannot be analysed as it stands: name the parameters")
+            names = list(found["gradient"])
+
         def value(x):
-            wanted = names if names is not None else list(self._gradient_parameters(measure, analysis))
-            found = self.run(dict(zip(wanted, x)), only="sensitivity" if analysis == "sensitivity" else "")[analysis]
-            result = found.measures[measure]
-            if not found.ok or result["value"] is None:
-                return float("nan"), numpy.full(len(wanted), numpy.nan)
-            return result["value"], numpy.array([result["gradient"][name] for name in wanted])
+            result = measured(dict(zip(names, x, strict=True)))
+            if result is None or result["value"] is None:
+                return float("nan"), numpy.full(len(names), numpy.nan)
+            return result["value"], numpy.array([result["gradient"][name] for name in names])
 
         return value
-
-    def _gradient_parameters(self, measure, analysis):
-        return self.run(only="sensitivity")[analysis].measures[measure]["gradient"]
 
     def __repr__(self):
         return f"<Scene {self._path}>"

@@ -96,7 +96,7 @@ export class PlotPanel {
       this.root.append(box);
       this.views.push(view);
     }
-    this.draw();
+    this.drawView(view);
   }
 
   /** Rows of analyses the page does not know, and of sweeps, need not follow each other along x. */
@@ -113,13 +113,13 @@ export class PlotPanel {
     x.addEventListener("change", () => {
       plot.x = Number(x.value);
       plot.resetZoom();
-      this.draw();
+      this.drawView(view);
     });
     const toggle = (label: string, title: string, change: () => boolean) => {
       const element = button(label, title, () => {
         element.setAttribute("aria-pressed", String(change()));
         plot.resetZoom();
-        this.draw();
+        this.drawView(view);
       });
       element.setAttribute("aria-pressed", "false");
       return element;
@@ -131,12 +131,12 @@ export class PlotPanel {
     const columns = button("columns", "which columns", () => {
       const open = box.querySelector(".chooser");
       if (open) open.remove();
-      else box.append(columnChooser(plot, () => (plot.resetZoom(), this.draw())));
+      else box.append(columnChooser(plot, () => (plot.resetZoom(), this.drawView(view))));
     });
     return make("div", { class: "tools" }, x, columns,
                 toggle("log x", "logarithmic horizontal axis", () => (plot.logX = !plot.logX)),
                 toggle("log y", "logarithmic vertical axis", () => (plot.logY = !plot.logY)),
-                button("⤢", "show all (double click)", () => (plot.resetZoom(), this.draw())),
+                button("⤢", "show all (double click)", () => (plot.resetZoom(), this.drawView(view))),
                 button("CSV", "save these columns as CSV",
                        () => save(`${name()}.csv`, this.table.csv([...new Set([plot.x, ...plot.ys])]), "text/csv")),
                 button("PNG", "save as PNG", () => saveCanvas(`${name()}.png`, view.picture.onPaper(this.theme, this.cursor))),
@@ -158,7 +158,7 @@ export class PlotPanel {
     canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
       plot.zoom(Math.exp(-event.deltaY * 0.0015), at(event).x, at(event).y);
-      this.draw();
+      this.drawView(view);
     }, { passive: false });
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
@@ -171,7 +171,7 @@ export class PlotPanel {
       plot.pan(now.x - from.x, now.y - from.y);
       dragged += Math.abs(now.x - from.x) + Math.abs(now.y - from.y);
       from = now;
-      this.draw();
+      this.drawView(view);
     });
     canvas.addEventListener("pointerup", (event) => {
       from = null;
@@ -179,12 +179,12 @@ export class PlotPanel {
       const row = plot.rowNear(at(event).x, at(event).y);
       if (row >= 0) this.chosen(this.table.numberOf(row));
     });
-    canvas.addEventListener("dblclick", () => (plot.resetZoom(), this.draw()));
+    canvas.addEventListener("dblclick", () => (plot.resetZoom(), this.drawView(view)));
     canvas.addEventListener("keydown", (event) => {
       if (event.key === "+" || event.key === "-") {
         plot.zoom(event.key === "+" ? 1.3 : 1 / 1.3, plot.width / 2, plot.height / 2);
         event.stopPropagation();
-        this.draw();
+        this.drawView(view);
       }
     });
   }
@@ -199,8 +199,13 @@ export class PlotPanel {
   }
 
   draw(): void {
-    for (const view of this.views) view.picture.draw(this.theme, this.cursor), this.showLegend(view);
+    for (const view of this.views) this.drawView(view);
     this.parallel?.draw(this.theme, this.cursor);
+  }
+
+  private drawView(view: View): void {
+    view.picture.draw(this.theme, this.cursor);
+    this.showLegend(view);
   }
 
   private showLegend({ plot, legend }: View): void {

@@ -158,10 +158,15 @@ concept HasDamping = E::rows == 2 && requires(const E& joint) {
   joint.c;
 };
 
+/// Whether the joint has any: c = 0 is damping, with a derivative.
+template <class E>
+requires HasDamping<E>
+bool is_damped(const E& joint) { return !std::isnan(value_of(joint.c)); }
+
 /// Gives a joint with damping a force of its own, without a name.
 template <class E, class S>
 void add_damping(BasicModel<S>& model, const ElementEntry<E, S>& joint) {
-  if (value_of(joint.element.c) == 0) return;
+  if (!is_damped(joint.element)) return;
   model.append({}, ElementEntry<JointDamper<S>, S>{damper_of<S>(joint.element), joint.i, joint.j}, ElementKind::force);
 }
 

@@ -12,7 +12,7 @@
 namespace catena {
 namespace {
 
-constexpr std::string_view first_line = "catena checkpoint 2\n";
+constexpr std::string_view first_line = "catena checkpoint 3\n";
 
 std::uint64_t sum_over(std::string_view text, std::uint64_t sum = 0xcbf29ce484222325u) {
   for (const char c : text) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
@@ -23,6 +23,7 @@ std::uint64_t sum_over(std::string_view text, std::uint64_t sum = 0xcbf29ce48422
 template <class Channel>
 void pass(Channel& channel, EventRecord& record) {
   channel.value(record.name);
+  channel.value(record.event);
   channel.value(record.t);
   channel.value(record.row);
 }

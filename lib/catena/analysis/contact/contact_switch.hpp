@@ -26,6 +26,7 @@
 
 #include "catena/analysis/contact/contact_loads.hpp"
 #include "catena/analysis/contact/contact_problem.hpp"
+#include "catena/analysis/contact/strike.hpp"
 #include "catena/analysis/motion/equations_of_motion.hpp"
 #include "catena/analysis/motion/redundant_rows.hpp"
 #include "catena/base/status.hpp"
@@ -37,13 +38,6 @@ struct ContactEvent {
   int element = -1;
   std::string_view kind;  ///< impact, contact, release, stick or slip
   double t = 0;
-};
-
-/// A blow on a point of a body.
-struct Strike {
-  int body = -1;           ///< number in the model
-  Vec2<double> point{};    ///< in the frame of its centroid
-  Vec2<double> impulse{};  ///< in ground axes, N s
 };
 
 class ContactSwitch {

@@ -87,13 +87,12 @@ double DesignSearch::violation_of(const DesignValues& values) const {
 // not, the one that misses them by less.
 void DesignSearch::compare(const Point& point) {
   const double allowed = 10 * options_.tolerance, violation = violation_of(point.values);
-  if (has_best_) {
+  if (improvements_ > 0) {
     const bool good = violation <= allowed, best_good = outcome_.violation <= allowed;
     const bool better = good && best_good ? point.values.objective < outcome_.values.objective
                                           : good || (!best_good && violation < outcome_.violation);
     if (!better) return;
   }
-  has_best_ = true;
   ++improvements_;
   outcome_.x = design(point.u);
   outcome_.values = point.values;
@@ -102,7 +101,7 @@ void DesignSearch::compare(const Point& point) {
 }
 
 bool DesignSearch::complete_best() {
-  if (!has_best_ || gradients_) return has_best_;
+  if (gradients_) return true;
   ++outcome_.evaluations;
   DesignEvaluation evaluation = problem_.evaluate(outcome_.x, true);
   const bool complete = evaluation.failure.empty() && has_values(evaluation.values) &&
@@ -122,11 +121,10 @@ bool DesignSearch::begin(std::vector<double>& u) {
     found = analyse(u, now_);
   }
   if (!found) return false;
-  has_now_ = true;
   const auto row = [&](const std::vector<double>& all, std::size_t k) {
     return all.size() >= (k + 1) * n ? std::span<const double>(all).subspan(k * n, n) : std::span<const double>();
   };
-  if (!has_best_) {
+  if (improvements_ == 0) {
     const DesignValues& values = now_.values;
     objective_size_ = size_of(values.objective, values.gradient, range);
     gradient_size_ = values.gradient.empty() ? 0 : size_of(0, values.gradient, range);
@@ -145,7 +143,7 @@ void DesignSearch::replace_failed(std::span<const double> u) {
   const std::size_t n = u.size();
   Point border = good_, trial;
   double reached = 0, failed = 1;
-  for (int k = 0; k < halvings && outcome_.evaluations < options_.max_evaluations; ++k) {
+  for (int k = 0; k < halvings && go_on(); ++k) {
     const double part = (reached + failed) / 2;
     std::vector<double> between(n);
     for (std::size_t v = 0; v < n; ++v) between[v] = good_.u[v] + part * (u[v] - good_.u[v]);
@@ -178,9 +176,8 @@ void DesignSearch::replace_failed(std::span<const double> u) {
 }
 
 const DesignSearch::Point& DesignSearch::look(std::span<const double> u) {
-  if (has_now_ && std::equal(u.begin(), u.end(), now_.u.begin())) return now_;
+  if (std::ranges::equal(u, now_.u)) return now_;
   Point point;
-  has_now_ = true;
   if (analyse(u, point)) {
     now_ = good_ = std::move(point);
     compare(now_);

@@ -52,7 +52,7 @@ class DesignSearch final : public MinimisationProblem {
   DesignOutcome& outcome_;
   bool gradients_;
   Point now_, good_;
-  bool has_now_ = false, has_best_ = false, cancelled_ = false;
+  bool cancelled_ = false;
   int improvements_ = 0;
   double objective_size_ = 1, gradient_size_ = 0;
   std::vector<double> unequal_size_, equal_size_;

@@ -66,7 +66,7 @@ DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions&
     if (search.was_cancelled()) outcome.end = DesignEnd::cancelled;
     return outcome;
   }
-  if (search.complete_best()) {
+  if (!search.was_cancelled() && search.complete_best()) {
     Stationarity found =
         optimality_of(problem, outcome.x, outcome.values, search.unequal_sizes(), search.gradient_size());
     outcome.optimality = found.optimality;
@@ -77,13 +77,15 @@ DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions&
     if (outcome.x[v] == problem.upper[v]) outcome.at_upper.push_back(static_cast<int>(v));
   }
   const bool feasible = outcome.violation <= 10 * options.tolerance;
-  const bool converged = end == MinimiserEnd::converged || end == MinimiserEnd::rounding;
+  // A method that comes no further for rounding may be at an optimum, or unable to solve its own equations.
+  const bool rounded = end == MinimiserEnd::rounding && (!feasible || !outcome.optimality);
+  const bool converged = end == MinimiserEnd::converged || rounded;
   if (search.was_cancelled())
     outcome.end = DesignEnd::cancelled;
   else if (converged || (feasible && outcome.optimality && *outcome.optimality <= stationary))
     outcome.end = feasible ? DesignEnd::converged : DesignEnd::infeasible;
   else
-    outcome.end = end == MinimiserEnd::failed ? DesignEnd::broken_off : DesignEnd::slow;
+    outcome.end = end == MinimiserEnd::slow ? DesignEnd::slow : DesignEnd::broken_off;
   return outcome;
 }
 

@@ -10,13 +10,27 @@ namespace {
 
 bool is_sampled(SweepKind kind) { return kind != SweepKind::grid && kind != SweepKind::together; }
 
+/// How many values a list or steps have.
+double size(const SweepRange& range) {
+  return range.kind == SweepRange::Kind::steps ? range.count : static_cast<double>(range.values.size());
+}
+
+/// Value k of them.
+double value(const SweepRange& range, std::int64_t k) {
+  if (range.kind != SweepRange::Kind::steps) return range.values[static_cast<std::size_t>(k)];
+  const auto step = static_cast<double>(k), last = range.count - 1;
+  // The last one exactly.
+  return step == last && last > 0 ? range.second
+                                  : range.first + step * (range.second - range.first) / std::max(1.0, last);
+}
+
 /// Designs of a plan, as a number that may be larger than any plan.
 double count(const SweepRequest& request) {
   if (is_sampled(request.kind)) return static_cast<double>(request.samples);
   double product = 1, longest = 1;
   for (const SweepRange& range : request.over) {
-    product *= SweepPlan::size(range);
-    longest = std::max(longest, SweepPlan::size(range));
+    product *= size(range);
+    longest = std::max(longest, size(range));
   }
   return request.kind == SweepKind::grid ? product : longest;
 }
@@ -27,8 +41,10 @@ double value_at(const SweepRange& range, double u) {
     case SweepRange::Kind::normal:
       return range.first + range.second * normal_quantile(u);
     case SweepRange::Kind::uniform:
-    case SweepRange::Kind::steps:
       return range.first + u * (range.second - range.first);
+    case SweepRange::Kind::steps:
+      // A single step is the first value.
+      return range.count > 1 ? range.first + u * (range.second - range.first) : range.first;
     case SweepRange::Kind::list:
       break;
   }
@@ -37,18 +53,6 @@ double value_at(const SweepRange& range, double u) {
 }
 
 }  // namespace
-
-double SweepPlan::size(const SweepRange& range) {
-  return range.kind == SweepRange::Kind::steps ? range.count : static_cast<double>(range.values.size());
-}
-
-double SweepPlan::value(const SweepRange& range, std::int64_t k) {
-  if (range.kind != SweepRange::Kind::steps) return range.values[static_cast<std::size_t>(k)];
-  const auto step = static_cast<double>(k), last = range.count - 1;
-  // The last one exactly.
-  return step == last && last > 0 ? range.second
-                                  : range.first + step * (range.second - range.first) / std::max(1.0, last);
-}
 
 std::optional<std::string> SweepPlan::trouble(const SweepRequest& request) {
   if (request.over.empty()) return "a sweep needs at least one parameter in \"over\"";

@@ -47,10 +47,6 @@ class SweepPlan {
   /// A latin square keeps so many numbers at most, samples times parameters: of 8 bytes each, 0.8 GB.
   static constexpr std::int64_t most_latin_numbers = 100'000'000;
 
-  /// Values of a list or of steps, and value k of them.
-  static double size(const SweepRange& range);
-  static double value(const SweepRange& range, std::int64_t k);
-
   /// Why the request is no plan, in words; nothing if it is one.
   static std::optional<std::string> trouble(const SweepRequest& request);
   /// Throws std::invalid_argument with trouble().

@@ -232,7 +232,7 @@ std::optional<FoundEvent> EventWatch::find(double from, double to, const StateAt
 
 bool EventWatch::take(const FoundEvent& found) {
   const Event& event = events_[static_cast<std::size_t>(found.event)];
-  records_.push_back({event.name, found.t, rows_given ? rows_given() - 1 : 0});
+  records_.push_back({event.name, found.event, found.t, rows_given ? rows_given() - 1 : 0});
   return event.action != EventAction::record;
 }
 

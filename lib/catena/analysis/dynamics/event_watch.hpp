@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "catena/analysis/contact/contact_switch.hpp"
+#include "catena/analysis/contact/strike.hpp"
 #include "catena/analysis/motion/motion_memory.hpp"
 #include "catena/columns/column_set.hpp"
 

@@ -23,17 +23,21 @@ class KinematicLook {
 
   /// Starts from where another evaluator's snapshot is.
   void start_from(const Snapshot& snapshot) {
-    kinematics_.start_from(state_of(snapshot.evaluator, snapshot.t, snapshot.q));
+    start_ = state_of(snapshot.evaluator, snapshot.t, snapshot.q);
     work_ = snapshot.work;
     dissipated_ = snapshot.dissipated;
     initial_energy_ = snapshot.initial_energy;
     driver_work_before_.assign(snapshot.driver_work.begin(), snapshot.driver_work.end());
     driver_work_ = driver_work_before_;
-    follows_ = !needs_.work || kinematics_.sum_up_work().ok();
+    set_out();
   }
   /// The mechanism at t; nothing where the motion cannot be followed there. Valid until the next call.
   std::optional<Snapshot> at(double t) {
-    if (!follows_ || !kinematics_.move_to(t).ok() || !kinematics_.solve_rates(needs_).ok()) return {};
+    if (!follows_ || !kinematics_.move_to(t).ok() || !kinematics_.solve_rates(needs_).ok()) {
+      // It may have come part of the way, with a part of the work.
+      if (follows_) set_out();
+      return {};
+    }
     kinematics_.evaluator().set_configuration(kinematics_.q());
     Snapshot snapshot = kinematics_.snapshot();
     if (needs_.multipliers) snapshot.lambda = kinematics_.lambda();
@@ -48,7 +52,13 @@ class KinematicLook {
   }
 
  private:
+  void set_out() {
+    kinematics_.start_from(start_);
+    follows_ = !needs_.work || kinematics_.sum_up_work().ok();
+  }
+
   Kinematics kinematics_;
+  SystemState start_;
   Needs needs_;
   bool follows_ = true;
   double work_ = 0, dissipated_ = 0, initial_energy_ = 0;  // of the run, where this began

@@ -11,9 +11,9 @@ namespace {
 // A node holds (instant, derivative); data vectors are addressed symbolically through weights on them.
 constexpr int max_nodes = 6;
 using Weights = std::array<double, max_nodes>;
-// Instants nearer to each other than this part of the way ahead are one: the quintic through both would amplify
-// rounding of 1e-16 by the fifth power of the ratio to more than 1e-6.
-constexpr double one_instant = 0.01;
+// Instants nearer to each other than this part of the way ahead are one: the polynomial through both, of degree five
+// where qdd is known and three else, would amplify rounding of 1e-16 by that power of the ratio to more than 1e-6.
+constexpr double one_instant_of_five = 1e-2, one_instant_of_three = 4.6e-4;
 
 struct Nodes {
   int count = 0;
@@ -82,6 +82,7 @@ bool Predictor::predict(double t, std::span<double> q, std::span<double> qd, std
   if (count_ == 0) return false;
   // With derivatives two instants suffice; without, up to four.
   const int instants = std::min(count_, back(0).derivatives > 0 ? 2 : capacity);
+  const double one_instant = back(0).derivatives == 2 ? one_instant_of_five : one_instant_of_three;
   Nodes nodes;
   std::array<const double*, max_nodes> data{};
   for (int k = 0, taken = 0; k < count_ && taken < instants; ++k) {

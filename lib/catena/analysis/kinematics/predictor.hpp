@@ -5,8 +5,9 @@
 //   q known                                     polynomial through up to four instants, h^4
 //
 // The derivatives of the same polynomial predict qd and qdd, so that one refinement each suffices there too. The
-// weights are scalars computed once a step; the vectors are combined in one pass. Never singular: instants coincide
-// only if a caller pushes the same time twice, which replaces the last entry.
+// weights are scalars computed once a step; the vectors are combined in one pass. Never singular: pushing the same time
+// twice replaces the last entry, and of instants that are much nearer to each other than to t the later one counts
+// alone.
 #pragma once
 
 #include <span>

@@ -9,6 +9,8 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 // Gradients of two instants of a tie that differ by less than this part of their size are the same.
 constexpr double same_gradient = 1e-6;
 
+std::string not_a_number_at(double t) { return fmt::format("its column is not a number at t = {:.9g} s", t); }
+
 }  // namespace
 
 void MeasureSet::Account::prepare_path() {
@@ -97,7 +99,10 @@ void MeasureSet::Account::check_ties(MeasureResult& result, const Extreme& extre
 }
 
 void MeasureSet::Account::give_extreme(MeasureResult& result, const Extreme& extreme, double factor) const {
-  if (extreme.empty()) return;
+  if (extreme.empty()) {
+    if (extreme.undefined()) result.trouble = not_a_number_at(*extreme.undefined());
+    return;
+  }
   result.value = result.value.value_or(0) + factor * extreme.best().value[column_];
   result.t = extreme.best().t;
   for (std::size_t p = 0; p < parameters_; ++p) result.gradient[p] += factor * gradient_of(extreme.best(), column_, p);
@@ -125,7 +130,7 @@ void MeasureSet::Account::give_integral(MeasureResult& result) const {
     return;
   }
   const bool mean = request_.kind == MeasureKind::mean;
-  const double value = mean ? sum_ / duration : std::sqrt(std::max(0.0, squares_ / duration));
+  const double value = mean ? sum_ / duration : std::sqrt(squares_ / duration);
   result.value = value;
   for (std::size_t p = 0; p < parameters_ && p < sum_gradient_.size(); ++p) {
     result.gradient[p] = mean ? sum_gradient_[p] / duration : squares_gradient_[p] / (2 * value * duration);
@@ -138,9 +143,13 @@ void MeasureSet::Account::give_path(MeasureResult& result) const {
   std::vector<double> gradient(parameters_, 0.0);
   for (std::size_t k = 0; k < request_.points.size(); ++k) {
     if (request_.timed ? !instants_[k].sample : extremes_[k].empty()) {
-      result.trouble = fmt::format("the motion ended before its point number {}", k + 1);
+      const bool undefined = !request_.timed && extremes_[k].undefined();
+      result.trouble = undefined ? not_a_number_at(*extremes_[k].undefined())
+                                 : fmt::format("the motion ended before its point number {}", k + 1);
       return;
     }
+    if (!request_.timed && extremes_[k].undefined() && result.trouble.empty())
+      result.trouble = "it is taken where its columns are numbers: " + not_a_number_at(*extremes_[k].undefined());
     const MotionSample& sample = request_.timed ? *instants_[k].sample : extremes_[k].best();
     const double x = sample.value[column_] - request_.points[k].x, y = sample.value[second_] - request_.points[k].y;
     squares += x * x + y * y;
@@ -195,18 +204,16 @@ MeasureResult MeasureSet::Account::result(const ColumnInfo& column, bool gradien
     case MeasureKind::mean:
     case MeasureKind::rms:
     case MeasureKind::integral:
-      if (looked)
-        give_integral(result);
-      else
-        result.trouble = "the motion could not be looked at everywhere between its rows";
+      if (looked) give_integral(result);
       break;
     case MeasureKind::field:
       break;
   }
+  if (!looked && wants_samples() && result.trouble.empty())
+    result.trouble = "the motion could not be looked at everywhere between its rows";
   if (result.value && !std::isfinite(*result.value)) {
     if (result.trouble.empty()) {
-      result.trouble = result.t ? fmt::format("its column is not a number at t = {:.9g} s", *result.t)
-                                : "its column is not a number everywhere";
+      result.trouble = result.t ? not_a_number_at(*result.t) : "its column is not a number everywhere";
     }
     result.value.reset();
     result.t.reset();

@@ -93,7 +93,9 @@ bool MotionSamples::fill(const MotionStretch& stretch, const MotionSample& a, co
     part[k + 1] = std::move(*sample);
   }
   for (const MotionSample& sample : part) {
-    for (std::size_t c = 0; c < size_.size(); ++c) size_[c] = std::max(size_[c], std::abs(sample.value[c]));
+    for (std::size_t c = 0; c < size_.size(); ++c) {
+      if (std::isfinite(sample.value[c])) size_[c] = std::max(size_[c], std::abs(sample.value[c]));
+    }
   }
   return true;
 }

@@ -22,8 +22,6 @@ enum class MinimiserMethod { slsqp, mma, bobyqa, cobyla, crs2, isres, direct };
 constexpr bool uses_gradients(MinimiserMethod method) {
   return method == MinimiserMethod::slsqp || method == MinimiserMethod::mma;
 }
-/// Whether it looks for the least value within all of the bounds.
-constexpr bool searches_everywhere(MinimiserMethod method) { return method >= MinimiserMethod::crs2; }
 
 /// What is minimised. Gradients and Jacobians (row-major, a row a constraint) are wanted where their spans are not
 /// empty.

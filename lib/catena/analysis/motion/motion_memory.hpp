@@ -28,9 +28,10 @@ struct IntegratorMemory {
   double usual_ratio = 1e-300;                    ///< largest pivot ratio so far
 };
 
-/// Record of an event: `row` is the number of the row given at that instant, from 0.
+/// Record of an event: `event` its place in the list, `row` the number of the row given at that instant, both from 0.
 struct EventRecord {
   std::string name;
+  int event = 0;
   double t = 0;
   std::int64_t row = 0;
 };

@@ -8,13 +8,13 @@ namespace catena {
 
 class AssemblyDerivatives final : public StateDerivatives {
  public:
-  /// `from_model`: see StartDerivatives.
+  /// `from_model`: the place follows from what the model gives, not from where an earlier analysis ended.
   AssemblyDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters, bool from_model)
       : StateDerivatives(evaluator, models, parameters), from_model_(from_model) {}
 
   bool find(const Snapshot& snapshot) override {
     evaluator().set_time(snapshot.t);
-    StartDerivatives start(evaluator(), from_model_);
+    StartDerivatives start(evaluator(), {.places = from_model_});
     for (Group& group : groups()) {
       lift_state(group, snapshot);
       if (!start.find_places(group.mechanism, group.count, group.q))

@@ -17,11 +17,11 @@ constexpr double a_jump = 1e-3;
 }  // namespace
 
 MotionDerivatives::MotionDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters,
-                                     bool from_model)
+                                     GivenByModel start)
     : StateDerivatives(evaluator, models, parameters),
       n_(at(plan().coordinates())),
       system_(evaluator.shared_plan(), SaddleBlock::diagonal),
-      from_model_(from_model),
+      given_start_(start),
       values_(n_),
       stage_(2 * n_),
       y_(2 * n_) {
@@ -136,7 +136,7 @@ bool MotionDerivatives::start(double t, std::span<const double> q, std::span<con
   started_ = true;
   from_ = to_ = t;
   evaluator().set_time(t);
-  StartDerivatives start(evaluator(), from_model_);
+  StartDerivatives start(evaluator(), given_start_);
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
     Group& group = groups()[k];
     group.mechanism.lift_configuration(q, std::span(tracks_[k].end).first(n_));

@@ -23,8 +23,7 @@ namespace catena {
 
 class MotionDerivatives final : public StateDerivatives {
  public:
-  /// `from_model`: see StartDerivatives.
-  MotionDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters, bool from_model);
+  MotionDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters, GivenByModel start);
 
   void cover(const MotionStretch& stretch) override;
   bool find(const Snapshot& snapshot) override;
@@ -55,7 +54,8 @@ class MotionDerivatives final : public StateDerivatives {
 
   std::size_t n_;  // coordinates
   SaddleSystem system_;
-  bool from_model_, started_ = false, has_step_ = false, interpolant_ready_ = false;
+  GivenByModel given_start_;
+  bool started_ = false, has_step_ = false, interpolant_ready_ = false;
   double from_ = 0, to_ = 0;
   std::vector<Track> tracks_;
   std::vector<double> values_;

@@ -112,7 +112,6 @@ bool SpectrumDerivatives::find_multipliers(Group& group, double t) {
     if (!metric_.solve(f, b)) return fail("constraints are singular");
     for (std::size_t r = 0; r < b.size(); ++r) group.lambda[r].d[p] = b[r];
   }
-  fill_residual(group, t);
   return true;
 }
 
@@ -122,7 +121,7 @@ bool SpectrumDerivatives::find(const Snapshot& snapshot) {
   evaluator().set_configuration(snapshot.q);
   if (is_in_balance() && find_as_equilibrium(snapshot)) return true;
   // No balance, or one that nothing holds: the place follows the given configuration.
-  StartDerivatives start(evaluator(), from_model_);
+  StartDerivatives start(evaluator(), {.places = from_model_});
   for (Group& group : groups()) {
     lift_state(group, snapshot);
     if (!start.find_places(group.mechanism, group.count, group.q))

@@ -27,10 +27,10 @@ bool is_held(const BasicBody<double>& body, int k) {
 
 }  // namespace
 
-StartDerivatives::StartDerivatives(Evaluator& evaluator, bool from_model)
+StartDerivatives::StartDerivatives(Evaluator& evaluator, GivenByModel given)
     : evaluator_(evaluator),
       plan_(evaluator.plan()),
-      from_model_(from_model),
+      by_model_(given),
       assembly_(evaluator.shared_plan(), SaddleBlock::elements),
       velocities_(evaluator.shared_plan(), SaddleBlock::diagonal),
       jacobian_(at(plan_.trash_slot()) + 1),
@@ -62,7 +62,7 @@ bool StartDerivatives::find_places(DesignMechanism& mechanism, int count, std::s
     const auto& design = mechanism.model().bodies[at(plan_.model_body[at(c / 3)])];
     const int k = c % 3;
     weight[at(c)] = (k == 2 ? radius[at(c / 3)] * radius[at(c / 3)] : 1) * (is_held(body, k) ? held_weight : 1);
-    if (!from_model_) continue;
+    if (!by_model_.places) continue;
     estimate[at(c)] = k == 0 ? design.position.x : k == 1 ? design.position.y : design.angle;
     const double turn = 2 * std::numbers::pi;
     // Positions are relative to the given ones; whole turns were taken over before assembly.
@@ -99,7 +99,7 @@ bool StartDerivatives::weigh(std::span<const double> q, std::span<const double> 
   equations.weigh_massless(q);
   evaluator_.set_configuration(q);
   const std::span<const double> none;
-  const WantedVelocities wanted = wanted_velocities(evaluator_, equations.masses(), from_model_ ? none : qd);
+  const WantedVelocities wanted = wanted_velocities(evaluator_, equations.masses(), by_model_.velocities ? none : qd);
   for (int c = 0; c < plan_.columns; ++c) {
     const std::size_t coordinate = at(plan_.coordinate[at(c)]);
     weight_[coordinate] = wanted.weight[at(c)];
@@ -111,7 +111,7 @@ bool StartDerivatives::weigh(std::span<const double> q, std::span<const double> 
 }
 
 DesignScalar StartDerivatives::given_velocity(const DesignMechanism& mechanism, int coordinate) const {
-  if (!from_model_) return {wanted_[at(coordinate)]};
+  if (!by_model_.velocities) return {};
   const auto& body = mechanism.model().bodies[at(plan_.model_body[at(coordinate / 3)])];
   const DesignScalar omega = body.angular_velocity_given ? body.angular_velocity : DesignScalar();
   if (coordinate % 3 == 2) return omega;
@@ -132,7 +132,8 @@ bool StartDerivatives::solve_keeping(std::span<const double> goal, std::span<con
     for (std::size_t c = 0; c < v.size(); ++c) v[c] = weight_[c] * asked[c] + (given_[c] ? 0 : load[c]);
     std::copy(rows.begin(), rows.end(), multipliers.begin());
     if (!velocities_.solve(v, multipliers)) return fail("the equations of its velocities are singular");
-    change = size = 0;
+    // Of all rounds: where the derivative is zero what is left of it is noise.
+    change = 0;
     for (const int coordinate : plan_.coordinate) {
       const std::size_t c = at(coordinate);
       size = std::max(size, std::abs(v[c]));

@@ -19,10 +19,14 @@
 
 namespace catena {
 
+/// What of the start the model gives; the rest comes from an earlier analysis, and no parameter moves it.
+struct GivenByModel {
+  bool places = true, velocities = true;
+};
+
 class StartDerivatives {
  public:
-  /// `from_model`: the motion starts from what the model gives, not from where an earlier analysis ended.
-  StartDerivatives(Evaluator& evaluator, bool from_model);
+  StartDerivatives(Evaluator& evaluator, GivenByModel given);
 
   /// Derivatives into q, which holds the assembled configuration at the evaluator's time; false where there are none.
   /// `count`: how many of the scalar's derivatives are in use.
@@ -50,7 +54,7 @@ class StartDerivatives {
 
   Evaluator& evaluator_;
   const Plan& plan_;
-  bool from_model_;
+  GivenByModel by_model_;
   SaddleSystem assembly_, velocities_;
   std::vector<double> jacobian_, weight_, wanted_;
   std::vector<char> given_, follows_;  // by coordinate

@@ -98,15 +98,17 @@ Extent Figure::extent_with_arrows() const {
 }
 
 // Symbols and arrows have their size on the page, so that the room for them depends on the scale: each pass leaves as
-// much as was needed at the scale before. An arrow takes a quarter of the figure at most; scales fall from pass to pass
-// towards one that is at least half of the first.
+// much as was needed at the scale before, until that does not change any more. An arrow takes a quarter of the figure
+// at most, so that each pass changes the scale by less than half as much as the one before.
 void Figure::choose_scale() {
   const Vec2<double> span = extent_.high - extent_.low;
   double points = figure_.symbol_points;
   Extent shown = extent_;
   Vec2<double> beyond{};  // what arrows need on the page, points
-  constexpr int passes = 20;
-  for (int pass = 0; pass < passes; ++pass) {
+  constexpr int most_passes = 20;
+  double before = 0;
+  for (int pass = 0; pass < most_passes && std::abs(scale_ - before) > 1e-6 * before; ++pass) {
+    before = pass > 0 ? scale_ : 0;
     room_ = symbol_room * points + 2;
     const double inside = figure_.width - 2 * room_;
     const auto fitting = [&](double length, double taken) { return length > 0 ? (inside - taken) / length : INFINITY; };

@@ -7,6 +7,8 @@
 // Source: Haug, section 3.3.
 #pragma once
 
+#include <limits>
+
 #include "catena/elements/element.hpp"
 
 namespace catena {
@@ -26,7 +28,8 @@ struct Revolute {
   static constexpr std::array hessian_pattern = {HessianEntry{2, 2}, HessianEntry{5, 5}};
 
   Vec2<S> s_i{}, s_j{};
-  S c{};  // no part of the equations: a model gives the joint a JointDamper
+  // NaN: not given. No part of the equations: a model gives the joint a JointDamper.
+  S c{std::numeric_limits<double>::quiet_NaN()};
 
   static constexpr auto fields() {
     return std::make_tuple(PointField{"i", &Revolute::s_i, 0, "the pin's place on body i"},
@@ -38,6 +41,8 @@ struct Revolute {
   void draw(Pen& pen) const {
     pen.pin(s_i, s_j);
   }
+
+  const char* check() const { return value_of(c) < 0 ? "its damping c is negative" : nullptr; }
 
   template <class T>
   void phi(const Arguments<T>& a, T* out) const {

@@ -12,6 +12,8 @@
 // Source: Haug, section 3.3.
 #pragma once
 
+#include <limits>
+
 #include "catena/elements/axis_projection.hpp"
 
 namespace catena {
@@ -33,7 +35,8 @@ struct Translational {
 
   Vec2<S> s_i{}, s_j{}, axis_i{};
   Vec2<S> axis_j{};  // zero: left out
-  S c{};             // no part of the equations: a model gives the joint a JointDamper
+  // NaN: not given. No part of the equations: a model gives the joint a JointDamper.
+  S c{std::numeric_limits<double>::quiet_NaN()};
 
   static constexpr UnitKind row_unit(int row) { return row == 1 ? UnitKind::angle : UnitKind::length; }
   static constexpr auto fields() {
@@ -57,6 +60,7 @@ struct Translational {
   }
   const char* check() const {
     if (!has_direction(axis_i)) return "axis_i has no direction";
+    if (value_of(c) < 0) return "its damping c is negative";
     return has_direction(axis_j) ? nullptr : "axis_j has no direction";
   }
 

@@ -18,11 +18,15 @@ class NoRows final : public RowSink {
 std::optional<Status> run_design(const AnalysisContext& context, ParameterSeeds seeds, const DesignRequest* design,
                                  const TakeAnalysis& take) {
   SystemState state = context.state;
+  const ParameterSeeds given = seeds;
   NoRows rows;
   for (const AnalysisTask& read : context.task.of) {
     AnalysisTask inner = read;
+    if (inner.from_initial) {
+      state = {};
+      seeds = given;
+    }
     inner.parameters = context.models->values(*read.table, seeds);
-    if (inner.from_initial) state = {};
     AnalysisContext within{.task = inner,
                            .model = context.models->model(*inner.table, seeds),
                            .state = state,

@@ -113,7 +113,7 @@ void add_fields(AnalysisResult& result, const DesignGoal& goal, const DesignOutc
     result.fields.push_back({"constraints", std::move(constraints)});
     result.fields.push_back({"active", active_limits(goal, outcome, variables)});
     result.fields.push_back({"optimality", outcome.optimality.value_or(std::numeric_limits<double>::quiet_NaN())});
-    if (!outcome.optimality)
+    if (!outcome.optimality && outcome.end != DesignEnd::cancelled)
       result.report.warnings.push_back("optimality is not known: some derivative is missing at the design found");
   }
   result.fields.push_back({"evaluations", std::int64_t{outcome.evaluations}});

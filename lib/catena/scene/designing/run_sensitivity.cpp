@@ -104,7 +104,7 @@ class Comparison {
       const double difference = (above - below) / (2 * step);
       if (!std::isfinite(derivative) || !std::isfinite(difference)) return;
       ++compared_;
-      const double unit = std::max(std::abs(derivative), scale / size);
+      const double unit = std::max({std::abs(derivative), std::abs(difference), scale / size});
       if (unit > 0) largest_ = std::max(largest_, std::abs(derivative - difference) / unit);
     };
     for (std::size_t m = 0; m < result_.measures.size(); ++m) {
@@ -172,6 +172,7 @@ void run_sensitivity(AnalysisContext& context, AnalysisResult& result) {
   if (inner.has("parameter"))
     within.parameter_name = context.models->names().all()[static_cast<std::size_t>(inner.word("parameter"))];
   analysis_function(inner.type())(within, result);
+  context.values_at_end = within.values_at_end;
   result.gradient_parameters = design.names;
   const bool has_rows = std::any_of(result.columns.begin(), result.columns.end(),
                                     [](const ColumnInfo& column) { return column.name.starts_with("d("); });
@@ -183,6 +184,11 @@ void run_sensitivity(AnalysisContext& context, AnalysisResult& result) {
   const Comparison comparison(context, start, design.names, result, kept.kept);
   if (const std::optional<double> deviation = comparison.deviation())
     result.fields.push_back({"deviation", *deviation});
+  if (context.cancel && context.cancel->load()) {
+    result.report.status = Status::cancelled;
+    result.report.message = "stopped while derivatives were verified; they stand";
+    return;
+  }
   for (const std::string& doubt : comparison.doubts()) result.report.warnings.push_back(doubt);
 }
 

@@ -285,7 +285,8 @@ std::string schema_json() {
       "name -> expression over columns, parameters and t");
   json units = json::object();
   for (const std::string_view kind : OutputUnits::kinds) units[std::string(kind)] = {{"type", "string"}};
-  properties["units"] = described(object_of(std::move(units), {}), "units of tables and CSV files, in place of SI");
+  properties["units"] =
+      described(object_of(std::move(units), {}), "units of the table, of --csv and of files, in place of SI");
   json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
               {"title", "catena scene, version 1"},
               {"description", "Planar multibody systems: SI units, radians."}};

@@ -79,10 +79,14 @@ void AnalysisRows::begin() {
   context_.rows.begin(info_);
 }
 
-Needs AnalysisRows::needs() const {
+Needs AnalysisRows::asked_needs() const {
   Needs needs = columns_.needs();
+  return needs |= measured_needs();
+}
+
+Needs AnalysisRows::needs() const {
+  Needs needs = asked_needs();
   if (!drawn_) needs |= drawn_needs();
-  if (!measures_.empty()) needs |= measures_.needs();
   return needs;
 }
 
@@ -129,8 +133,7 @@ void AnalysisRows::look_since_last_row(const Snapshot& snapshot) {
 std::string AnalysisRows::why_no_derivative() const {
   if (!derivatives_->why().empty()) return derivatives_->why();
   if (!derivatives_->lack().empty()) return derivatives_->lack();
-  if (!measures_.empty() && measures_.needs().work)
-    return "work and dissipated energy, which are summed up over time, have no derivative";
+  if (measured_needs().work) return "work and dissipated energy, which are summed up over time, have no derivative";
   return "the derivative of its column is not a number there";
 }
 
@@ -175,8 +178,10 @@ void AnalysisRows::finish(AnalysisResult& result) {
     for (std::string& doubt : gaps_->warnings()) result.report.warnings.push_back(std::move(doubt));
   }
   if (context_.design) result.gradient_parameters = context_.design->names;
-  for (const std::string& why : {derivatives_ ? derivatives_->why() : "", derivatives_ ? derivatives_->lack() : ""}) {
-    if (!why.empty()) result.report.warnings.push_back("derivatives: " + why);
+  if (derivatives_) {
+    for (const std::string& why : {derivatives_->why(), derivatives_->lack()}) {
+      if (!why.empty()) result.report.warnings.push_back("derivatives: " + why);
+    }
   }
   if (row_derivatives_ && columns_.needs().work) {
     result.report.warnings.push_back(

@@ -42,6 +42,10 @@ class AnalysisRows final : public RowObserver {
 
   /// Of the columns, of what measures look at, and of those who draw, unless they look elsewhere.
   Needs needs() const;
+  /// Of what measures look at alone.
+  Needs measured_needs() const { return measures_.empty() ? Needs{} : measures_.needs(); }
+  /// Of the columns and of what measures look at.
+  Needs asked_needs() const;
   /// What those who draw want of what this analysis can give.
   Needs drawn_needs() const;
   bool observe(const Snapshot& snapshot) override;

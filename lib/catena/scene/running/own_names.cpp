@@ -1,5 +1,7 @@
 #include "catena/scene/running/own_names.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -17,10 +19,18 @@ bool is_measure(const AnalysisTask& task, std::string_view name) {
 
 }  // namespace
 
+std::optional<std::string> differentiated(const AnalysisTask& task, std::string_view name,
+                                          const ParameterNames& parameters) {
+  for (const int parameter : task.design_parameters) {
+    const std::string end = fmt::format(")/d({})", parameters.all()[static_cast<std::size_t>(parameter)]);
+    if (name.starts_with("d(") && name.ends_with(end)) return std::string(name.substr(2, name.size() - 2 - end.size()));
+  }
+  return {};
+}
+
 bool has_by_itself(const AnalysisTask& task, std::string_view name, const ParameterNames& parameters) {
   const std::string_view type = task.type();
   const int parameter = parameters.find(name);
-  if (task.description->timed && name == "t") return true;
   if (type == "path" || type == "buckling") return parameter >= 0 && task.word("parameter") == parameter;
   if (type == "modes")
     return has(std::array{"mode", "omega2", "omega"}, name, [](std::string_view own) { return own; });
@@ -39,9 +49,8 @@ bool has_by_itself(const AnalysisTask& task, std::string_view name, const Parame
              return parameters.all()[static_cast<std::size_t>(variable.parameter)];
            });
   }
-  // Derivatives: d(crank.x)/d(a).
-  if (type == "sensitivity") return name.starts_with("d(") || has_by_itself(task.of.front(), name, parameters);
-  return false;
+  // A wrong one may have no inner analysis.
+  return type == "sensitivity" && !task.of.empty() && has_by_itself(task.of.front(), name, parameters);
 }
 
 }  // namespace catena

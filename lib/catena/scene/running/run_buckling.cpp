@@ -77,7 +77,7 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result) {
   analysis.start_from(start);
   BucklingReport report = analysis.run([&] { return !(context.cancel && context.cancel->load()); });
 
-  std::vector<ColumnInfo> info{{std::string(context.parameter_name), UnitKind::none}};
+  std::vector<ColumnInfo> info{{std::string(context.parameter_name), UnitKind::own}};
   std::optional<ShapeColumns> shapes;
   if (!task.outputs.empty()) {
     shapes.emplace(*context.model, analysis.plan(), task.output_names(), task.type());

@@ -30,8 +30,11 @@ Strike strike_of(const EventRequest::Impulse& impulse, const Model& model) {
 
 /// The word of an event's action in the results.
 std::string_view kind_of(const EventRequest& event) {
-  constexpr std::string_view words[] = {"record", "stop", "release", "engage"};
-  return event.impulse ? "impulse" : words[event.action];
+  if (event.impulse) return "impulse";
+  const auto keys = event_keys();
+  const auto action =
+      std::find_if(keys.begin(), keys.end(), [](const AnalysisKey& key) { return key.name == "action"; });
+  return action->words[static_cast<std::size_t>(event.action)];
 }
 
 std::vector<Event> events_of(const AnalysisTask& task, const Model& model) {
@@ -164,7 +167,8 @@ void DynamicsTask::run_or_estimate(Analysis& analysis, const PlanOptions& plan) 
 void DynamicsTask::differentiate(AnalysisRows& rows, const Evaluator& evaluator) const {
   if (!context_.design) return;
   rows.differentiate(std::make_unique<MotionDerivatives>(
-      evaluator, designs_of(context_), static_cast<int>(context_.design->names.size()), context_.state.q.empty()));
+      evaluator, designs_of(context_), static_cast<int>(context_.design->names.size()),
+      GivenByModel{context_.state.q.empty(), context_.state.qd.empty()}));
 }
 
 Pauses DynamicsTask::pauses(std::string& failure) const {
@@ -204,11 +208,10 @@ void DynamicsTask::run_with_events_or_pauses() {
   if (context_.task.events.empty() && !analysis.has_contacts()) return;
   std::vector<std::pair<double, FieldRecord>> found;
   for (const EventRecord& record : analysis.records()) {
-    const auto request = std::find_if(context_.task.events.begin(), context_.task.events.end(),
-                                      [&](const EventRequest& event) { return event.name == record.name; });
+    const EventRequest& request = context_.task.events[static_cast<std::size_t>(record.event)];
     found.push_back(
         {record.t,
-         {{"name", record.name}, {"t", record.t}, {"row", record.row}, {"kind", std::string(kind_of(*request))}}});
+         {{"name", record.name}, {"t", record.t}, {"row", record.row}, {"kind", std::string(kind_of(request))}}});
   }
   for (const ContactEvent& event : analysis.contact_events()) {
     found.push_back(

@@ -61,14 +61,16 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
   const auto prepare = [&](AnalysisRows& rows) {
     rows.watch_gaps(*context.model);
     if (!task.measures.empty()) {
-      look.emplace(context.model, plan, options, rows.needs());
+      look.emplace(context.model, plan, options, rows.measured_needs());
       rows.look_by([&](const Snapshot& snapshot) {
         look->start_from(snapshot);
         return AnalysisRows::Look([&](double t) { return look->at(t); });
       });
     }
     // Rates found on the way would serve as predictions, and rows would differ in their last digits by being drawn.
-    if (const Needs wanted = rows.drawn_needs(); wanted.velocity || wanted.multipliers) {
+    // Where the rows have them anyway nothing more is looked for.
+    const Needs wanted = rows.drawn_needs(), asked = rows.asked_needs();
+    if ((wanted.velocity && !asked.velocity) || (wanted.multipliers && !asked.multipliers)) {
       drawn.emplace(context.model, plan, options, wanted);
       rows.draw_by([&](const Snapshot& snapshot) {
         drawn->start_from(snapshot);

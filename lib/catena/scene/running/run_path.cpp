@@ -62,7 +62,7 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
   start.t = frozen_time(context);
   analysis.start_from(start);
 
-  std::vector<ColumnInfo> info{{std::string(context.parameter_name), UnitKind::none}};
+  std::vector<ColumnInfo> info{{std::string(context.parameter_name), UnitKind::own}};
   info.insert(info.end(), columns.info().begin(), columns.info().end());
   context.rows.begin(info);
   std::vector<double> row(info.size());

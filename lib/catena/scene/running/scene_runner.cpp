@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "catena/columns/own_columns.hpp"
-#include "catena/elements/forces/joint_damper.hpp"
+#include "catena/model/joint_damping.hpp"
 #include "catena/scene/building/build_model.hpp"
 #include "catena/scene/json/near_miss.hpp"
 #include "catena/scene/models/command_text.hpp"
@@ -38,12 +38,6 @@ std::vector<std::string> element_names(const Model& model) {
   return names;
 }
 
-/// The damper of a joint stands behind it in the list.
-bool has_damping(const Model& model, int element) {
-  return element + 1 < static_cast<int>(model.elements.size()) &&
-         model.element_type(element + 1) == JointDamper<double>::type;
-}
-
 void print_iteration(std::string_view method, int iteration, double residual, double change) {
   const std::string line = fmt::format("{} {}: residual {:.3g}, change {:.3g}\n", method, iteration, residual, change);
   std::fputs(line.c_str(), stderr);
@@ -59,6 +53,7 @@ class SceneRun {
  private:
   /// Reads and checks everything; false if anything is wrong.
   bool prepare(SourceText source);
+  std::vector<std::string> asked_outputs() const;
   void read_tasks();
   void check_columns(const std::vector<PlacedName>& names, const Model& model);
   void check_own_columns();
@@ -221,17 +216,28 @@ void SceneRun::check_impulse(const EventRequest::Impulse& impulse, const Model& 
   }
 }
 
+// The outputs that the caller names: what analyses have by themselves is left to them, and a derivative stands for the
+// column that it is of.
+std::vector<std::string> SceneRun::asked_outputs() const {
+  std::vector<std::string> asked;
+  for (std::string name : options_.outputs) {
+    bool own = false;
+    for (const AnalysisTask& task : tasks_) {
+      own = own || has_by_itself(task, name, parameters_.names());
+      if (std::optional<std::string> column = differentiated(task, name, parameters_.names()))
+        name = std::move(*column);
+    }
+    if (!own && std::find(asked.begin(), asked.end(), name) == asked.end()) asked.push_back(std::move(name));
+  }
+  return asked;
+}
+
 void SceneRun::read_tasks() {
   SceneTemplate& scene = *scene_;
   const std::vector<double> values = parameters_.evaluate<double>(scene.expressions, diagnostics_);
   if (scene.outputs) read_outputs(scene.outputs, scene, values, diagnostics_);
   if (scene.analyses) tasks_ = read_analyses(scene.analyses, scene.outputs, scene, parameters_, diagnostics_);
-  std::vector<std::string> asked = options_.outputs;
-  std::erase_if(asked, [&](const std::string& name) {
-    return std::any_of(tasks_.begin(), tasks_.end(),
-                       [&](const AnalysisTask& task) { return has_by_itself(task, name, parameters_.names()); });
-  });
-  if (command_.read_outputs(asked, diagnostics_)) {
+  if (command_.read_outputs(asked_outputs(), diagnostics_)) {
     const std::vector<PlacedName> outputs = read_outputs(command_.outputs(), scene, values, diagnostics_);
     for (AnalysisTask& task : tasks_) {
       if (task.description->find("outputs")) task.outputs = outputs;

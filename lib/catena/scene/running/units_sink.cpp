@@ -19,6 +19,7 @@ void UnitsSink::begin_run(const RunHeader& header) {
 
 RowSink& UnitsSink::begin_analysis(std::string_view type) {
   rows_ = &target_.begin_analysis(type);
+  if (!units_.any()) return *rows_;
   return *this;
 }
 
@@ -40,6 +41,7 @@ bool UnitsSink::row(std::span<const double> values) {
 }
 
 void UnitsSink::end_analysis(const AnalysisResult& result) {
+  if (!units_.any()) return target_.end_analysis(result);
   AnalysisResult shown = result;
   const double seconds = units_.of("s").factor;
   for (ColumnInfo& column : shown.columns) column = converted(column, units_.of(column.unit_text()));
