@@ -1,7 +1,7 @@
 # How every target of the project is compiled.
 #
-# CATENA_OPTIMISATION, -O3 unless changed, in every build type: element derivatives come from templates on the scalar that are 8-15 times slower than
-# closed forms at -O2 and 1.3-1.6 times at -O3. No -ffast-math: NaN and the order of sums carry meaning here.
+# -O3 in every build type: element derivatives come from templates on the scalar that are 8-15 times slower than closed
+# forms at -O2 and 1.3-1.6 times at -O3. No -ffast-math: NaN and the order of sums carry meaning here.
 # -fno-math-errno lets sqrt and friends vectorise and changes no value; -fno-semantic-interposition lets functions be
 # inlined within a position-independent unit.
 function(catena_set_flags target)
@@ -34,6 +34,6 @@ function(catena_set_flags target)
     target_compile_options(${target} PRIVATE -O1 -g1 ${sanitizers})
     target_link_options(${target} PRIVATE ${sanitizers})
   else()
-    target_compile_options(${target} PRIVATE ${CATENA_OPTIMISATION})
+    target_compile_options(${target} PRIVATE -O3)
   endif()
 endfunction()

@@ -97,6 +97,12 @@ TEST_F(Run, WritesRowsInTheFormatAndUnitsAskedFor) {
   const ProgramResult table = run_catena({"run", path, "--units", "length=mm,angle=deg"});
   EXPECT_NE(table.out.find("deg"), std::string::npos) << table.out;
 
+  // Report and files of one folder speak the same units.
+  EXPECT_EQ(run_catena({"run", path, "-o", target, "--format", "csv", "-q", "--units", "length=mm"}).exit_code, 0);
+  const json units = json::parse(read_file(target + "/report.json"))["analyses"][0]["units"];
+  EXPECT_EQ(units, json({"s", "mm", "mm", "rad"}));
+  EXPECT_NE(read_file(target + "/kinematics.csv").find("\n0,500,0,0\r\n"), std::string::npos)
+      << read_file(target + "/kinematics.csv");
   EXPECT_EQ(run_catena({"run", path, "-o", target, "--format", "xls"}).exit_code, 2);
   EXPECT_EQ(run_catena({"run", path, "--format", "npz"}).exit_code, 2);
   EXPECT_EQ(run_catena({"run", path, "--csv", "--json"}).exit_code, 2);

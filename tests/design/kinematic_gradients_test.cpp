@@ -157,7 +157,8 @@ TEST_P(RandomFourBars, HaveGradientsOfMeasuresWhateverTheMode) {
         EXPECT_NEAR(gradient(run, name, p), static_cast<double>(expected), allowed * std::max(1.0L, std::abs(expected)))
             << name << " " << members[p].first;
         const auto [known, first] = in_first_mode.try_emplace({name, p}, gradient(run, name, p));
-        if (!first) EXPECT_NEAR(gradient(run, name, p), known->second, 1e-10 * std::max(1.0, std::abs(known->second)));
+        if (first) continue;
+        EXPECT_NEAR(gradient(run, name, p), known->second, 1e-10 * std::max(1.0, std::abs(known->second)));
       }
     }
   }

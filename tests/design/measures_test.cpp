@@ -86,8 +86,11 @@ TEST(Measures, ListedRowsMayStartLateAndBeInAnyOrder) {
 TEST(Measures, OfWhatIsNoNumberHaveNoValue) {
   const TextRun run =
       run_text(crank(R"--({"end": {"final": "=sqrt(crank.to.y)"}, "area": {"integral": "=sqrt(crank.to.y)"},
-    "most": {"max": "=sqrt(crank.to.y)"}})--"));
+    "most": {"max": "=sqrt(crank.to.y)"}, "size": {"rms": "=sqrt(crank.to.y)"}})--"));
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  EXPECT_FALSE(measure(run, "size").value);
+  EXPECT_NE(measure(run, "size").trouble.find("not a number everywhere"), std::string::npos)
+      << measure(run, "size").trouble;
   EXPECT_FALSE(measure(run, "end").value);
   EXPECT_NE(measure(run, "end").trouble.find("not a number at t = 5"), std::string::npos)
       << measure(run, "end").trouble;

@@ -185,7 +185,7 @@ TEST(MissingDerivatives, OfAMotionThatCannotBeLookedAtAreNotMadeUp) {
   Falling falling;
   const int m = 0;
   MotionDerivatives derivatives(falling.evaluator, falling.models.designs(falling.scene->parameters, {}, {&m, 1}), 1,
-                                true);
+                                GivenByModel{true, true});
   derivatives.cover({0, 0.1, [](double) { return std::optional<Snapshot>(); }});
   const std::vector<double> q = falling.evaluator.given_configuration(), qd(q.size(), 0.0);
   EXPECT_FALSE(derivatives.find({.evaluator = falling.evaluator, .t = 0.1, .q = q, .qd = qd}));

@@ -133,6 +133,33 @@ TEST(Sweep, AMeasureThatIsNoNumberFailsTheDesign) {
   EXPECT_EQ(status[1], static_cast<double>(Status::not_converged));
 }
 
+// A bar on a torsion spring under a torque M, and no weight: its angle is M/k. A path leaves its last torque to what
+// follows, but for an analysis that starts from the scene.
+TEST(Sweep, WhatAPathLeavesHoldsForTheAnalysesAfterIt) {
+  const std::string scene = R"({"catena": 1, "parameters": {"M": 1, "k": 10},
+  "bodies": {"bar": {"mass": 1, "rod": {"from": [0, 0], "to": [1, 0]}}},
+  "constraints": [{"type": "revolute", "i": "ground", "j": "bar.from"}],
+  "forces": [{"type": "torsion_spring", "i": "ground", "j": "bar", "k": "k", "angle": 0},
+             {"type": "torque", "i": "bar", "torque": "M"}],
+  "outputs": ["bar.angle"],
+  "analyses": [)";
+  const std::string inner = R"([{"type": "path", "parameter": "M", "to": 4},
+    {"type": "equilibrium", "measures": {"after": {"final": "bar.angle"}}},
+    {"type": "equilibrium", "from": "initial", "measures": {"anew": {"final": "bar.angle"}}}])";
+  const TextRun swept = run_text(scene + R"({"type": "sweep", "over": {"k": [10, 20]}, "of": )" + inner + "}]}");
+  ASSERT_EQ(swept.outcome.exit_code, 0) << swept.outcome.error_text << swept.analysis().report.message;
+  for (std::size_t design = 0; design < 2; ++design) {
+    const double k = swept.column("k")[design];
+    EXPECT_NEAR(swept.column("after")[design], 4 / k, 1e-9);
+    EXPECT_NEAR(swept.column("anew")[design], 1 / k, 1e-9);
+  }
+  // The same of an analysis that follows the sensitivity of a path.
+  const TextRun after = run_text(scene + R"({"type": "sensitivity", "parameters": ["k"],
+    "of": {"type": "path", "parameter": "M", "to": 4}}, {"type": "equilibrium"}]})");
+  ASSERT_EQ(after.outcome.exit_code, 0) << after.outcome.error_text;
+  EXPECT_NEAR(after.last("bar.angle", 1), 0.4, 1e-9);
+}
+
 TEST(Sweep, ThreadsChangeNothing) {
   const std::string scene = slider + R"("over": {"a": {"uniform": [0.05, 0.2]}, "b": {"normal": [0.3, 0.05]}},
     "design": "latin", "samples": 60, "seed": 3}]})";

@@ -102,14 +102,14 @@ class Gradients(unittest.TestCase):
         scene = catena.loads(
             CRANK.replace('"constraints": [', '"constraints": [{"type": "absolute_distance", "i": "crank.tip",'
                           ' "ground": [3, 0], "value": "=1.5*length"}, ').replace('"drivers"', '"forces": [], "drivers"')
-            % ('{"type": "assemble"}, {"type": "sensitivity", "parameters": ["length"], "of": '
-               '{"type": "assemble", "measures": {"x": {"final": "crank.tip.x"}}}}')
+            % ('{"type": "sensitivity", "parameters": ["length"], "of": {"type": "kinematics", "at": [0], '
+               '"measures": {"x": {"final": "crank.tip.x"}}}}')
         )
-        self.assertTrue(numpy.isnan(scene.function("x", ["length"], analysis=1)([0.1])))
+        self.assertTrue(numpy.isnan(scene.function("x", ["length"])([0.1])))
         value, gradient = scene.value_and_grad("x", ["length"])([0.1])
         self.assertTrue(numpy.isnan(value) and numpy.isnan(gradient).all())
         with self.assertRaises(ValueError):
-            scene.function("x", ["length"], analysis=1)([0.1, 2])
+            scene.function("x", ["length"])([0.1, 2])
 
     def test_values_alone(self):
         function = catena.loads(CRANK % MOTION).function("end", ["length"])

@@ -94,6 +94,20 @@ TEST(DynamicsRows, AtASingularPositionAreTheLimitOfTheMotion) {
   EXPECT_NE(warning.find("grow without bound"), std::string::npos) << warning;
 }
 
+// A release after the flat position begins a new phase: what the first one passed is told at the end all the same.
+TEST(DynamicsRows, SingularPositionsOfEarlierPhasesAreTold) {
+  const TextRun run = run_text(parallelogram(1, 1, -1,
+                                             R"("drivers": [{"type": "absolute_angle", "name": "D", "i": "c",
+        "value": {"polynomial": [1, -1]}}], "outputs": ["q.alpha", "D.load"],
+      "analyses": [{"type": "dynamics", "until": 1.5, "every": 0.5, "tolerance": 1e-8,
+        "events": [{"name": "free", "when": "q.angle", "value": -0.3, "action": "release", "element": "D"}]}])"));
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  EXPECT_EQ(run.column("t").size(), 5u);  // four of the grid, and that of the release
+  std::string warning;
+  for (const std::string& one : run.analysis().report.warnings) warning += one + "; ";
+  EXPECT_NE(warning.find("at t = 1 s the mechanism is in a singular position"), std::string::npos) << warning;
+}
+
 // Started flat, cranks of 1 and 3 kg: alpha = -(m1/2 + m2 + m3/2) g / ((m1 + m3)/3 + m2) = -1.2 g on either crank.
 TEST(DynamicsRows, StartAtASingularPosition) {
   const TextRun run = run_text(parallelogram(0, 3, -1,

@@ -61,6 +61,14 @@ TEST(SceneRunner, AVerbTakesThePlaceOfTheList) {
   EXPECT_NEAR(run.first("O.fy"), 30, 1e-12);
 }
 
+TEST(SceneRunner, OutputsOfASensitivityOfNothingAreAnError) {
+  RunOptions options;
+  options.outputs = {"crank.angle"};
+  const TextRun run = run_text(crank(R"({"type": "sensitivity"})"), options);
+  EXPECT_EQ(run.outcome.exit_code, 3);
+  EXPECT_NE(run.outcome.error_text.find("\"of\""), std::string::npos) << run.outcome.error_text;
+}
+
 TEST(SceneRunner, AFailureEndsTheRunUnlessTheNextStartsAnew) {
   const std::string early = R"({"type": "kinematics", "at": 2}, {"type": "kinematics", "until": 1})";
   TextRun run = run_text(crank(early + R"(, {"type": "kinematics", "at": 1})"));

@@ -11,9 +11,10 @@ namespace {
 // A node holds (instant, derivative); data vectors are addressed symbolically through weights on them.
 constexpr int max_nodes = 6;
 using Weights = std::array<double, max_nodes>;
-// Instants nearer to each other than this part of the way ahead are one: the polynomial through both, of degree five
-// where qdd is known and three else, would amplify rounding of 1e-16 by that power of the ratio to more than 1e-6.
-constexpr double one_instant_of_five = 1e-2, one_instant_of_three = 4.6e-4;
+// Instants nearer to each other than this part of the way ahead are one: the polynomial through both, whose values
+// carry weights of 6 s^5 (qdd known) or 2 s^3 at s times their distance, would amplify their rounding, 2e-16, to more
+// than 1e-6: s = (1e10/12)^(1/5) and (1e10/4)^(1/3).
+constexpr double one_instant_of_five = 1 / 60.8, one_instant_of_three = 1 / 1357.0;
 
 struct Nodes {
   int count = 0;

@@ -10,6 +10,7 @@
 // last. Units: of the column; of an integral times s.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -41,7 +42,10 @@ struct MeasureResult {
   std::optional<double> value, t;  ///< and the instant, s, of what has one
   /// By parameter, where they were asked for; not a number where there is none.
   std::vector<double> gradient;
-  std::string trouble;  ///< why there is no value, or a derivative is missing; a sentence without full stop
+  /// By the last instant of the run, should that move; not a number where this is not known.
+  double by_last_instant = std::numeric_limits<double>::quiet_NaN();
+  bool of_rows_alone = false;  ///< the motion between rows was not looked at
+  std::string trouble;         ///< why there is no value, or a derivative is missing; a sentence without full stop
 };
 
 /// Whether what is measured takes place in time.

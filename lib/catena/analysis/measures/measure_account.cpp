@@ -162,14 +162,42 @@ void MeasureSet::Account::give_path(MeasureResult& result) const {
     result.trouble = "all its points are met exactly: a distance has a kink there";
 }
 
+// The motion goes on over an instant later: integrals grow by what is there; extremes stay unless they are at the end.
+double MeasureSet::Account::by_last_instant(const MeasureResult& result) const {
+  if (!result.value || !last_ || rows_ > 0) return none;
+  if (last_->t != run_.last) return 0;  // it ended before
+  const double v = last_->value[column_], value = *result.value;
+  const auto is_at_end = [&](const Extreme& extreme) { return extreme.best().t == run_.last; };
+  switch (request_.kind) {
+    case MeasureKind::first:
+    case MeasureKind::at:
+      return 0;
+    case MeasureKind::integral:
+      return v;
+    case MeasureKind::mean:
+      return (v - value) / duration_;
+    case MeasureKind::rms:
+      return (v * v - value * value) / (2 * value * duration_);
+    case MeasureKind::maximum:
+    case MeasureKind::minimum:
+    case MeasureKind::range:
+      return std::any_of(extremes_.begin(), extremes_.end(), is_at_end) ? none : 0;
+    case MeasureKind::path:
+      return request_.timed || std::any_of(extremes_.begin(), extremes_.end(), is_at_end) ? none : 0;
+    case MeasureKind::final:
+    case MeasureKind::field:
+      break;
+  }
+  return none;
+}
+
 MeasureResult MeasureSet::Account::result(const ColumnInfo& column, bool gradient_at_last, bool looked) const {
-  MeasureResult result{request_.name,
-                       std::string(column.unit_text()),
-                       request_.kind == MeasureKind::integral,
-                       {},
-                       {},
-                       std::vector<double>(parameters_, 0.0),
-                       {}};
+  MeasureResult result;
+  result.name = request_.name;
+  result.unit = column.unit_text();
+  result.times_second = request_.kind == MeasureKind::integral;
+  result.gradient.resize(parameters_, 0.0);
+  result.of_rows_alone = rows_ > 0;
   switch (request_.kind) {
     case MeasureKind::maximum:
     case MeasureKind::minimum:
@@ -222,6 +250,7 @@ MeasureResult MeasureSet::Account::result(const ColumnInfo& column, bool gradien
     std::fill(result.gradient.begin(), result.gradient.end(), none);
     if (result.trouble.empty()) result.trouble = "the run ended before there was anything to measure";
   }
+  result.by_last_instant = by_last_instant(result);
   return result;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "catena/scene/designing/missing_derivatives.hpp"
+
 namespace catena {
 namespace {
 
@@ -15,42 +17,66 @@ class NoRows final : public RowSink {
 
 }  // namespace
 
+bool run_inner(const AnalysisContext& outer, const AnalysisTask& inner, InnerRun& run, AnalysisResult& result) {
+  AnalysisTask task = inner;
+  if (std::optional<std::string> why = outer.models->set_parameters(task, run.seeds)) {
+    refuse(result, std::move(*why));
+    return false;
+  }
+  std::string no_model;
+  AnalysisContext context{.task = task,
+                          .model = outer.models->model(*task.table, run.seeds, &no_model),
+                          .state = run.state,
+                          .rows = run.rows,
+                          .cancel = outer.cancel,
+                          .progress = {},
+                          .models = outer.models,
+                          .seeds = run.seeds,
+                          .design = run.design};
+  if (!context.model) {
+    refuse(result, std::move(no_model));
+    return false;
+  }
+  if (run.is_shown) {
+    context.progress = outer.progress;
+    context.verbose = outer.verbose;
+    context.trace = outer.trace;
+  }
+  if (task.has("parameter"))
+    context.parameter_name = outer.models->names().all()[static_cast<std::size_t>(task.word("parameter"))];
+  try {
+    analysis_function(task.type())(context, result);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    refuse(result, error.what());
+  }
+  run.values_at_end = std::move(context.values_at_end);
+  return true;
+}
+
 std::optional<Status> run_design(const AnalysisContext& context, ParameterSeeds seeds, const DesignRequest* design,
                                  const TakeAnalysis& take) {
   SystemState state = context.state;
   const ParameterSeeds given = seeds;
   NoRows rows;
-  for (const AnalysisTask& read : context.task.of) {
-    AnalysisTask inner = read;
+  std::optional<MissingDerivatives> missing;
+  if (design) missing.emplace(*context.models, *design);
+  for (const AnalysisTask& inner : context.task.of) {
     if (inner.from_initial) {
       state = {};
       seeds = given;
+      if (missing) missing->start_anew();
     }
-    inner.parameters = context.models->values(*read.table, seeds);
-    AnalysisContext within{.task = inner,
-                           .model = context.models->model(*inner.table, seeds),
-                           .state = state,
-                           .rows = rows,
-                           .cancel = context.cancel,
-                           .progress = {},
-                           .models = context.models,
-                           .seeds = seeds,
-                           .design = design};
-    if (!within.model) return std::nullopt;
-    if (inner.has("parameter"))
-      within.parameter_name = context.models->names().all()[static_cast<std::size_t>(inner.word("parameter"))];
     AnalysisResult result;
-    try {
-      analysis_function(inner.type())(within, result);
-    } catch (const std::bad_alloc&) {
-      throw;
-    } catch (const std::exception&) {
-      return Status::refused;
-    }
+    InnerRun run{.seeds = seeds, .state = state, .rows = rows, .design = design};
+    if (!run_inner(context, inner, run, result)) return std::nullopt;
     if (!result.report.ok()) return result.report.status;
+    if (missing) missing->complete(inner, seeds, result);
     if (!take(inner, result)) break;
+    if (missing) missing->go_on_from(inner, seeds, run.values_at_end);
     // What an analysis leaves behind, as the last value of a path's parameter, holds for those after it.
-    for (const ParameterSeed<double>& value : within.values_at_end) {
+    for (const ParameterSeed<double>& value : run.values_at_end) {
       std::erase_if(seeds, [&](const auto& seed) { return seed.index == value.index; });
       seeds.push_back(value);
     }

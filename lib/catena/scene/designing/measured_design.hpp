@@ -1,4 +1,5 @@
-// The analyses of one design, in order: what their measures come to, or why there are none.
+// Analyses inside of others (sensitivity, optimise, sweep), with other values of parameters: one, or all of a design in
+// order, and what their measures come to, or why there are none.
 #pragma once
 
 #include <functional>
@@ -8,6 +9,21 @@
 #include "catena/scene/running/analysis_run.hpp"
 
 namespace catena {
+
+/// How an inner analysis is to be run.
+struct InnerRun {
+  const ParameterSeeds& seeds;  ///< values of parameters besides those of its table
+  SystemState& state;           ///< where it starts; it leaves behind where it ended
+  RowSink& rows;
+  const DesignRequest* design = nullptr;  ///< derivatives that are wanted, or nullptr
+  bool is_shown = false;           ///< its progress and iterations are told to whom the outer analysis tells its own
+  ParameterSeeds values_at_end{};  ///< what it leaves to the next, as AnalysisContext has it
+};
+
+/// Runs an inner analysis on a model of its own; `refused`, with the message, for one that throws. Its gradients are
+/// those of its equations alone (missing_derivatives.hpp). Returns false, with the reason as message, where the scene
+/// allows no such analysis. Nothing of `outer` changes.
+bool run_inner(const AnalysisContext& outer, const AnalysisTask& inner, InnerRun& run, AnalysisResult& result);
 
 /// Gets an analysis of a design that went well; false ends the design.
 using TakeAnalysis = std::function<bool(const AnalysisTask& analysis, const AnalysisResult& result)>;

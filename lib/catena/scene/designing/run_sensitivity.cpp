@@ -6,7 +6,8 @@
 #include <utility>
 
 #include "catena/results/result_storage.hpp"
-#include "catena/scene/running/analysis_run.hpp"
+#include "catena/scene/designing/measured_design.hpp"
+#include "catena/scene/designing/missing_derivatives.hpp"
 
 namespace catena {
 namespace {
@@ -31,37 +32,6 @@ class KeptRows final : public RowSink {
  private:
   RowSink* target_;
 };
-
-/// The inner analysis at other values of parameters, from the same start.
-AnalysisResult run_at(const AnalysisContext& outer, const SystemState& start, ParameterSeeds seeds, RowSink& rows) {
-  SystemState state = start;
-  AnalysisResult result;
-  AnalysisTask inner = outer.task.of.front();
-  inner.parameters = outer.models->values(*inner.table, seeds);
-  AnalysisContext context{.task = inner,
-                          .model = outer.models->model(*inner.table, seeds),
-                          .state = state,
-                          .rows = rows,
-                          .cancel = outer.cancel,
-                          .progress = {},
-                          .models = outer.models,
-                          .seeds = seeds};
-  if (!context.model) {
-    result.report.status = Status::refused;
-    return result;
-  }
-  if (inner.has("parameter"))
-    context.parameter_name = outer.models->names().all()[static_cast<std::size_t>(inner.word("parameter"))];
-  try {
-    analysis_function(inner.type())(context, result);
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    result.report.status = Status::refused;
-    result.report.message = error.what();
-  }
-  return result;
-}
 
 /// Derivatives against central differences: the largest deviation relative to the larger of the derivative and the size
 /// of the output over that of the parameter.
@@ -94,7 +64,9 @@ class Comparison {
       const double at = value + (side == 0 ? -step : step);
       ParameterSeeds seeds = context_.seeds;
       seeds.push_back({context_.task.design_parameters[p], at});
-      shifted[side] = run_at(context_, start_, std::move(seeds), rows[side]);
+      SystemState state = start_;
+      InnerRun run{.seeds = seeds, .state = state, .rows = rows[side]};
+      run_inner(context_, context_.task.of.front(), run, shifted[side]);
       if (shifted[side].report.ok()) continue;
       return doubt(names_[p], fmt::format("at {:.12g} the analysis ends with {}: {}", at,
                                           to_string(shifted[side].report.status), shifted[side].report.message));
@@ -149,30 +121,21 @@ class Comparison {
 }  // namespace
 
 void run_sensitivity(AnalysisContext& context, AnalysisResult& result) {
-  AnalysisTask inner = context.task.of.front();
-  inner.parameters = context.models->values(*inner.table, context.seeds);
+  const AnalysisTask& inner = context.task.of.front();
   DesignRequest design{context.task.design_parameters, {}, context.task.word("mode") != 2};
   for (const int parameter : design.parameters)
     design.names.push_back(context.models->names().all()[static_cast<std::size_t>(parameter)]);
   const SystemState start = context.state;
   const bool verify = context.task.number("verify", 0) != 0;
   KeptRows kept(&context.rows);
-  AnalysisContext within{.task = inner,
-                         .model = context.models->model(*inner.table, context.seeds),
-                         .state = context.state,
-                         .rows = verify ? static_cast<RowSink&>(kept) : context.rows,
-                         .cancel = context.cancel,
-                         .progress = context.progress,
-                         .verbose = context.verbose,
-                         .trace = context.trace,
-                         .models = context.models,
-                         .seeds = context.seeds,
-                         .design = &design};
-  if (!within.model) return refuse(result, "the scene allows no model for the analysis inside");
-  if (inner.has("parameter"))
-    within.parameter_name = context.models->names().all()[static_cast<std::size_t>(inner.word("parameter"))];
-  analysis_function(inner.type())(within, result);
-  context.values_at_end = within.values_at_end;
+  InnerRun run{.seeds = context.seeds,
+               .state = context.state,
+               .rows = verify ? static_cast<RowSink&>(kept) : context.rows,
+               .design = &design,
+               .is_shown = true};
+  if (!run_inner(context, inner, run, result)) return;
+  MissingDerivatives(*context.models, design).complete(inner, context.seeds, result);
+  context.values_at_end = std::move(run.values_at_end);
   result.gradient_parameters = design.names;
   const bool has_rows = std::any_of(result.columns.begin(), result.columns.end(),
                                     [](const ColumnInfo& column) { return column.name.starts_with("d("); });

@@ -5,6 +5,7 @@
 
 #include "catena/elements/all.hpp"
 #include "catena/scene/building/build_model.hpp"
+#include "catena/scene/reading/task_numbers.hpp"
 
 namespace catena {
 namespace {
@@ -22,6 +23,13 @@ std::vector<double> SceneModels::values(const ParameterTable& table, const Param
   if (diagnostics.ok()) return values;
   tell(diagnostics, why);
   return {};
+}
+
+std::optional<std::string> SceneModels::set_parameters(AnalysisTask& task, const ParameterSeeds& seeds) const {
+  std::string why;
+  task.parameters = values(*task.table, seeds, &why);
+  if (!why.empty()) return why;
+  return evaluate_numbers(task, scene_.expressions, task.parameters);
 }
 
 std::shared_ptr<const Model> SceneModels::model(const ParameterTable& table, const ParameterSeeds& seeds,
@@ -52,6 +60,22 @@ std::vector<std::vector<DesignScalar>> SceneModels::dual_values(const ParameterT
     groups.push_back(table.evaluate<DesignScalar>(scene_.expressions, diagnostics, dual));
   }
   return groups;
+}
+
+std::vector<std::vector<SceneModels::MovingNumber>> SceneModels::moving_numbers(const AnalysisTask& task,
+                                                                                const ParameterSeeds& seeds,
+                                                                                std::span<const int> parameters) const {
+  std::vector<std::vector<MovingNumber>> moving(parameters.size());
+  if (task.varying.empty()) return moving;
+  const auto groups = dual_values(*task.table, seeds, parameters);
+  for (const TaskNumber& number : task.varying) {
+    if (number.place == TaskNumber::Place::key && number.key->name == "tolerance") continue;
+    for (std::size_t p = 0; p < parameters.size(); ++p) {
+      const auto value = evaluate<DesignScalar>(number.value, scene_.expressions, groups[p / parameters_at_once], {});
+      if (const double rate = value.d[p % parameters_at_once]; rate != 0) moving[p].push_back({number, rate});
+    }
+  }
+  return moving;
 }
 
 DesignModels SceneModels::designs(const ParameterTable& table, const ParameterSeeds& seeds,

@@ -6,11 +6,13 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "catena/analysis/sensitivity/state_derivatives.hpp"
+#include "catena/scene/reading/analysis_task.hpp"
 #include "catena/scene/reading/scene_template.hpp"
 
 namespace catena {
@@ -26,6 +28,17 @@ class SceneModels {
   /// Values of all parameters; empty, with the first reason, where one has none or is outside of its limits.
   std::vector<double> values(const ParameterTable& table, const ParameterSeeds& seeds,
                              std::string* why = nullptr) const;
+  /// Gives the task the parameters of its table and `seeds`, and its numbers that depend on them; returns why it cannot
+  /// be made with them.
+  std::optional<std::string> set_parameters(AnalysisTask& task, const ParameterSeeds& seeds) const;
+  /// A number of an analysis and its derivative by a parameter.
+  struct MovingNumber {
+    TaskNumber number;
+    double rate;
+  };
+  /// For each of `parameters`, the numbers of the task itself that change with it; tolerances do not count.
+  std::vector<std::vector<MovingNumber>> moving_numbers(const AnalysisTask& task, const ParameterSeeds& seeds,
+                                                        std::span<const int> parameters) const;
   /// Nothing, with the first reason, where the scene allows no such model.
   std::shared_ptr<const Model> model(const ParameterTable& table, const ParameterSeeds& seeds,
                                      std::string* why = nullptr) const;

@@ -6,15 +6,10 @@
 
 #include "catena/scene/json/near_miss.hpp"
 #include "catena/scene/numbers/evaluation.hpp"
-#include "catena/scene/numbers/number_domain.hpp"
 #include "catena/scene/reading/own_column_reader.hpp"
+#include "catena/scene/reading/task_numbers.hpp"
 
 namespace catena {
-namespace {
-
-constexpr double most_rows = 1e9;
-
-}  // namespace
 
 const AnalysisDescription* AnalysisReader::read_type(const JsonValue& object) {
   const JsonValue type = object.find("type");
@@ -63,20 +58,24 @@ std::vector<PlacedName> AnalysisReader::names(const JsonValue& list, const Field
   return result;
 }
 
-double AnalysisReader::number(const AnalysisKey& key, const JsonValue& value, const FieldName& field) {
+// The value of a number, and where it is kept if parameters change it.
+double AnalysisReader::evaluated(const NumberValue& read, const JsonValue& value, TaskNumber place) {
+  if (read.valid() && !read.is_constant()) {
+    place.value = read;
+    varying_.push_back(place);
+  }
+  return Evaluation<double>(value.source(), scene_.expressions, values_, diagnostics_)(read);
+}
+
+double AnalysisReader::number(const AnalysisKey& key, const JsonValue& value, const FieldName& field,
+                              TaskNumber place) {
   const ExpectedDimension unit = key.unit == UnitKind::none && key.domain == Domain::any
                                      ? ExpectedDimension()
                                      : ExpectedDimension(dimension_of(key.unit));
-  const NumberValue read = reading_.numbers.read(value, unit, field);
-  const Evaluation<double> evaluation(value.source(), scene_.expressions, values_, diagnostics_);
-  const double result = evaluation(read);
+  place.key = &key;
+  const double result = evaluated(reading_.numbers.read(value, unit, field), value, place);
   if (std::isnan(result)) return result;
-  const bool whole = key.kind == KeyKind::whole;
-  if (whole && (result < 1 || result != std::round(result) || result > 2e9)) {
-    error(value, fmt::format("{} must be a whole number above zero; it is {}", field.text(), result));
-  } else if (!whole && !fits(result, key.domain)) {
-    error(value, field.text() + " " + out_of_domain(result, key.domain));
-  }
+  if (const std::optional<std::string> why = out_of_key(key, result)) error(value, field.text() + " " + *why);
   return result;
 }
 
@@ -101,18 +100,21 @@ void AnalysisReader::read_key(const AnalysisKey& key, const JsonValue& value, An
   switch (key.kind) {
     case KeyKind::number:
     case KeyKind::whole:
-      task.numbers[key.name] = number(key, value, field);
+      task.numbers[key.name] = number(key, value, field, {});
       break;
     case KeyKind::time:
-      task.at = std::vector<double>{number(key, value, field)};
+      task.at = std::vector<double>{number(key, value, field, {.place = TaskNumber::Place::instant})};
       break;
     case KeyKind::times:
       task.at.emplace();
       if (!value.is(JsonKind::array)) {
-        task.at->push_back(number(key, value, field));
+        task.at->push_back(number(key, value, field, {.place = TaskNumber::Place::instant}));
         break;
       }
-      for (const JsonValue& instant : value.elements()) task.at->push_back(number(key, instant, field));
+      for (const JsonValue& instant : value.elements()) {
+        const TaskNumber place{.place = TaskNumber::Place::instant, .item = task.at->size()};
+        task.at->push_back(number(key, instant, field, place));
+      }
       if (value.size() == 0) error(value, field.text() + " may not be an empty list");
       break;
     case KeyKind::flag:
@@ -178,9 +180,8 @@ void AnalysisReader::check_times(const std::vector<JsonValue>& values, const Ana
     error(at, fmt::format("{} may not have \"at\" together with \"until\" or \"every\"", task.type()));
   } else if (every && !until) {
     error(every, fmt::format("\"every\" of {} needs \"until\" too", task.type()));
-  } else if (until && every && task.number("every", 1) > 0 &&
-             task.number("until", 0) / task.number("every", 1) > most_rows) {
-    error(every, fmt::format("{} would give more than {} rows", task.type(), most_rows));
+  } else if (const std::optional<std::string> why = too_many_rows(task); why && every) {
+    error(every, *why);
   }
 }
 
@@ -216,6 +217,7 @@ std::optional<AnalysisTask> AnalysisReader::read(const JsonValue& object, const 
     own_outputs = own_outputs || keys[k] == "outputs";
     read_key(known[k], values[k], task);
   }
+  task.varying = std::move(varying_);
   task.from_initial = task.word("from") == 1;
   check_times(values, task);
   if (task.type() == "optimise") check_design(object);

@@ -22,13 +22,14 @@ class AnalysisReader {
  private:
   const AnalysisDescription* read_type(const JsonValue& object);
   void read_key(const AnalysisKey& key, const JsonValue& value, AnalysisTask& task);
-  double number(const AnalysisKey& key, const JsonValue& value, const FieldName& field);
+  double number(const AnalysisKey& key, const JsonValue& value, const FieldName& field, TaskNumber place);
+  double evaluated(const NumberValue& read, const JsonValue& value, TaskNumber place);
   void read_parameters(const JsonValue& set, AnalysisTask& task);
   void read_events(const JsonValue& list, AnalysisTask& task);
   // measure_reader.cpp
   void read_measures(const JsonValue& object, AnalysisTask& task);
   void read_measure(const JsonMember& member, AnalysisTask& task);
-  void read_path(const JsonValue& object, PlacedMeasure& measure);
+  void read_path(const JsonValue& object, std::size_t number, PlacedMeasure& measure);
   bool read_measured_column(const JsonValue& value, PlacedMeasure& measure);
   void read_field_name(const JsonValue& value, PlacedMeasure& measure);
   // design_reader.cpp
@@ -49,7 +50,7 @@ class AnalysisReader {
                   SweepRange& range);
   void check_sweep(const JsonValue& object, AnalysisTask& task);
   void read_event(const JsonValue& object, AnalysisTask& task);
-  EventRequest::Impulse read_impulse(const JsonValue& object);
+  EventRequest::Impulse read_impulse(const JsonValue& object, std::size_t event);
   void check_times(const std::vector<JsonValue>& values, const AnalysisTask& task);
   void error(const JsonValue& value, std::string message) { report(value, std::move(message), diagnostics_); }
 
@@ -57,7 +58,8 @@ class AnalysisReader {
   const ParameterTable& parameters_;
   Diagnostics& diagnostics_;
   SceneReading reading_;
-  std::span<const double> values_;  // of the parameters, for the analysis that is read
+  std::span<const double> values_;   // of the parameters, for the analysis that is read
+  std::vector<TaskNumber> varying_;  // of that analysis
   JsonValue scene_outputs_;
 };
 

@@ -44,6 +44,20 @@ struct PlacedMeasure {
   std::vector<PlacedName> columns;
 };
 
+/// A number of an analysis that is not a constant, and where the task keeps its value.
+struct TaskNumber {
+  enum class Place : unsigned char { key, instant, event, struck_point, impulse, measured_instant, path_point };
+  Place place = Place::key;
+  NumberValue value{};
+  const AnalysisKey* key = nullptr;  ///< of `key`, `instant`, `event`: what it may be
+  std::size_t item = 0;              ///< number of the instant, the event, the measure
+  std::size_t part = 0;              ///< of a pair, x or y; of path points, one pair after the other
+
+  bool is_of_measure() const { return place == Place::measured_instant || place == Place::path_point; }
+  /// `"until"`, `"to" of measure 2`.
+  std::string name() const;
+};
+
 /// A parameter that an optimisation may change.
 struct DesignVariable {
   int parameter = -1;
@@ -86,6 +100,7 @@ struct AnalysisTask {
   std::vector<int> set_parameters;              ///< those that `set` names
   std::vector<AnalysisTask> of;                 ///< the analyses that it differentiates or optimises
   std::vector<int> design_parameters;           ///< by which it differentiates
+  std::vector<TaskNumber> varying;              ///< numbers that depend on parameters
   DesignGoal goal;
   SweepRequest sweep;
 

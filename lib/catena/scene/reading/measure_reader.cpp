@@ -60,7 +60,7 @@ void AnalysisReader::read_field_name(const JsonValue& value, PlacedMeasure& meas
     error(value, fmt::format("{} is no field: after ] may follow a dot and the name of a part", in_quotes(text)));
 }
 
-void AnalysisReader::read_path(const JsonValue& object, PlacedMeasure& measure) {
+void AnalysisReader::read_path(const JsonValue& object, std::size_t number, PlacedMeasure& measure) {
   constexpr std::array<std::string_view, 3> keys{"path", "to", "timed"};
   std::array<JsonValue, keys.size()> v;
   read_members(object, keys, "a measure of a path", v, diagnostics_);
@@ -73,10 +73,14 @@ void AnalysisReader::read_path(const JsonValue& object, PlacedMeasure& measure) 
     error(v[1] ? v[1] : object, "a measure of a path needs \"to\", a list of points [x, y]");
     return;
   }
-  const Evaluation<double> evaluation(object.source(), scene_.expressions, values_, diagnostics_);
+  TaskNumber place{.place = TaskNumber::Place::path_point, .item = number};
   for (const JsonValue& point : v[1].elements()) {
     const auto pair = reading_.numbers.read_pair(point, ExpectedDimension(), {"to", "a measure of a path"});
-    measure.request.points.push_back({evaluation(pair[0]), evaluation(pair[1])});
+    Vec2<double>& read = measure.request.points.emplace_back();
+    read.x = evaluated(pair[0], object, place);
+    ++place.part;
+    read.y = evaluated(pair[1], object, place);
+    ++place.part;
   }
   if (v[2]) measure.request.timed = read_flag(v[2], {"timed", "a measure of a path"}, diagnostics_);
 }
@@ -110,13 +114,14 @@ void AnalysisReader::read_measure(const JsonMember& member, AnalysisTask& task) 
   measure.request.kind = static_cast<MeasureKind>(*kind);
   const JsonValue value = object.find(kinds[*kind]);
   if (measure.request.kind == MeasureKind::path) {
-    read_path(object, measure);
+    read_path(object, task.measures.size(), measure);
   } else if (measure.request.kind == MeasureKind::at) {
     constexpr std::array<std::string_view, 2> keys{"at", "of"};
     std::array<JsonValue, keys.size()> v;
     read_members(object, keys, "a measure at an instant", v, diagnostics_);
-    const AnalysisKey instant{"at", KeyKind::time, "", UnitKind::time, Domain::any};
-    measure.request.at = number(instant, value, {"at", "measure " + in_quotes(member.name())});
+    static const AnalysisKey instant{"at", KeyKind::time, "", UnitKind::time, Domain::any};
+    measure.request.at = number(instant, value, {"at", "measure " + in_quotes(member.name())},
+                                {.place = TaskNumber::Place::measured_instant, .item = task.measures.size()});
     if (v[1])
       read_measured_column(v[1], measure);
     else

@@ -45,10 +45,11 @@ void print_iteration(std::string_view method, int iteration, double residual, do
 
 class SceneRun {
  public:
-  SceneRun(const RunOptions& options, ResultSink& sink, SceneOutcome& outcome)
-      : options_(options), sink_(sink), outcome_(outcome) {}
+  SceneRun(const RunOptions& options, SceneOutcome& outcome) : options_(options), outcome_(outcome) {}
 
-  void run(const std::string& path);
+  /// Reads and checks everything; what is wrong is in the outcome.
+  bool read(const std::string& path);
+  void run(ResultSink& sink);
 
  private:
   /// Reads and checks everything; false if anything is wrong.
@@ -62,10 +63,9 @@ class SceneRun {
   void check_impulse(const EventRequest::Impulse& impulse, const Model& model);
   void check_measure(const PlacedMeasure& measure, const Model& model);
   std::shared_ptr<const Model> build(std::span<const double> parameters);
-  void run_all();
   void save();
   /// The task with the parameters that earlier paths left behind, unless it sets them itself.
-  AnalysisTask with_handed_on(AnalysisTask task, Diagnostics& diagnostics);
+  AnalysisTask with_handed_on(AnalysisTask task, std::optional<std::string>& why_not);
   ParameterSeeds handed_on_to(const AnalysisTask& task) const;
   AnalysisResult run_task(const AnalysisTask& read, int number, SystemState& state, RowSink& rows);
   std::vector<std::pair<std::string, double>> named_parameters(std::span<const double> values) const;
@@ -75,7 +75,6 @@ class SceneRun {
   void refuse(int exit_code, const std::string& why);
 
   const RunOptions& options_;
-  ResultSink& sink_;
   SceneOutcome& outcome_;
   Diagnostics diagnostics_;
   CommandText command_;
@@ -302,10 +301,10 @@ ParameterSeeds SceneRun::handed_on_to(const AnalysisTask& task) const {
   return seeds;
 }
 
-AnalysisTask SceneRun::with_handed_on(AnalysisTask task, Diagnostics& diagnostics) {
+AnalysisTask SceneRun::with_handed_on(AnalysisTask task, std::optional<std::string>& why_not) {
   const ParameterSeeds seeds = handed_on_to(task);
   if (seeds.empty()) return task;
-  task.parameters = task.table->evaluate<double>(scene_->expressions, diagnostics, seeds);
+  why_not = models_->set_parameters(task, seeds);
   task.changes_parameters = true;
   return task;
 }
@@ -319,7 +318,7 @@ std::vector<std::pair<std::string, double>> SceneRun::named_parameters(std::span
 
 AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemState& state, RowSink& rows) {
   AnalysisResult result;
-  Diagnostics unfit(1);
+  std::optional<std::string> unfit;
   const AnalysisTask task = with_handed_on(read, unfit);
   result.type = task.type();
   const AnalysisFunction function = analysis_function(task.type());
@@ -343,9 +342,9 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
         "a checkpoint does not keep the parameter that a path before it ended with: run the whole scene";
     return result;
   }
-  if (!unfit.ok()) {
+  if (unfit) {
     result.report.status = Status::refused;
-    result.report.message = fmt::format("with the parameters that the path before left behind: {}", unfit.text());
+    result.report.message = fmt::format("with the parameters that the path before left behind: {}", *unfit);
     return result;
   }
   CheckpointRequest checkpoint = checkpoints_.request(number);
@@ -396,19 +395,19 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
   return result;
 }
 
-void SceneRun::run_all() {
+void SceneRun::run(ResultSink& sink) {
   SystemState state;
   if (options_.poses) options_.poses->begin_poses(model_);
-  sink_.begin_run({.scene = outcome_.scene,
-                   .description = std::string(scene_->description),
-                   .gravity = {model_->gravity.x, model_->gravity.y},
-                   .bodies = static_cast<int>(model_->bodies.size()),
-                   .elements = static_cast<int>(model_->elements.size()),
-                   .analyses = static_cast<int>(tasks_.size()) - checkpoints_.first_analysis(),
-                   .version = CATENA_VERSION,
-                   .parameters = named_parameters(parameters_.evaluate<double>(scene_->expressions, diagnostics_)),
-                   .set = options_.set,
-                   .units = scene_->units});
+  sink.begin_run({.scene = outcome_.scene,
+                  .description = std::string(scene_->description),
+                  .gravity = {model_->gravity.x, model_->gravity.y},
+                  .bodies = static_cast<int>(model_->bodies.size()),
+                  .elements = static_cast<int>(model_->elements.size()),
+                  .analyses = static_cast<int>(tasks_.size()) - checkpoints_.first_analysis(),
+                  .version = CATENA_VERSION,
+                  .parameters = outcome_.parameters,
+                  .set = options_.set,
+                  .units = scene_->units});
   const auto first = static_cast<std::size_t>(checkpoints_.first_analysis());
   for (std::size_t k = first; k < tasks_.size(); ++k) {
     const AnalysisTask& task = tasks_[k];
@@ -419,14 +418,15 @@ void SceneRun::run_all() {
     } else if (k > first && !outcome_.analyses.back().report.ok()) {
       break;  // there is no state to go on from
     }
-    ColumnExtremes rows(sink_.begin_analysis(task.type()));
+    ColumnExtremes rows(sink.begin_analysis(task.type()));
     outcome_.analyses.push_back(run_task(task, static_cast<int>(k), state, rows));
     outcome_.analyses.back().extremes = rows.extremes();
     outcome_.analyses.back().extremes_have_time = rows.timed();
-    sink_.end_analysis(outcome_.analyses.back());
+    sink.end_analysis(outcome_.analyses.back());
     if (!outcome_.analyses.back().report.ok()) outcome_.exit_code = 1;
   }
-  sink_.end_run();
+  sink.end_run();
+  if (!options_.save.empty()) save();
 }
 
 void SceneRun::refuse(int exit_code, const std::string& why) {
@@ -450,27 +450,31 @@ bool SceneRun::check_dynamics_options() {
   return outcome_.exit_code == 0;
 }
 
-void SceneRun::run(const std::string& path) {
+bool SceneRun::read(const std::string& path) {
   outcome_.scene = stem(path);
   std::optional<SourceText> source;
   try {
     source.emplace(options_.text ? SourceText(path, *options_.text) : SourceText::read(path));
     checkpoints_.prepare(source->text());
   } catch (const FileError& error) {
-    return refuse(4, error.what());
+    refuse(4, error.what());
+    return false;
   } catch (const CheckpointError& error) {
-    return refuse(4, error.what());
+    refuse(4, error.what());
+    return false;
   }
   if (!prepare(std::move(*source))) {
     finish_errors();
-    return;
+    return false;
   }
-  if (!check_dynamics_options()) return;
-  if (tasks_.empty() && !options_.only.empty())
-    return refuse(2, fmt::format("the scene lists no {} in its analyses", options_.only));
+  if (!check_dynamics_options()) return false;
+  if (tasks_.empty() && !options_.only.empty()) {
+    refuse(2, fmt::format("the scene lists no {} in its analyses", options_.only));
+    return false;
+  }
   if (!scene_->name.empty()) outcome_.scene = scene_->name;
-  run_all();
-  if (!options_.save.empty()) save();
+  outcome_.parameters = named_parameters(parameters_.evaluate<double>(scene_->expressions, diagnostics_));
+  return true;
 }
 
 // The scene with the values that optimisations left behind; nothing where one of them failed.
@@ -485,7 +489,14 @@ void SceneRun::save() {
 
 SceneOutcome run_scene(const std::string& path, const RunOptions& options, ResultSink& sink) {
   SceneOutcome outcome;
-  SceneRun(options, sink, outcome).run(path);
+  SceneRun run(options, outcome);
+  if (run.read(path)) run.run(sink);
+  return outcome;
+}
+
+SceneOutcome check_scene(const std::string& path, const RunOptions& options) {
+  SceneOutcome outcome;
+  SceneRun(options, outcome).read(path);
   return outcome;
 }
 

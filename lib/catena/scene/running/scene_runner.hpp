@@ -69,10 +69,14 @@ struct SceneOutcome {
   std::vector<Diagnostic> errors;  ///< the first ones, in the order of the text
   std::string error_text;          ///< what to print: the errors as a compiler prints them, or one sentence
   std::vector<AnalysisResult> analyses;
+  std::vector<std::pair<std::string, double>> parameters;  ///< all of the scene's, with their values
 };
 
 /// Reads the scene and runs its analyses. `sink` sees nothing at all if the scene is wrong.
 SceneOutcome run_scene(const std::string& path, const RunOptions& options, ResultSink& sink);
+
+/// Reads and checks the scene, and runs nothing: the outcome that run_scene() would have for errors.
+SceneOutcome check_scene(const std::string& path, const RunOptions& options);
 
 /// The document that replaces the results of a wrong scene: {"catena":1,"status":"invalid","errors":[...]} and newline.
 std::string invalid_json(const SceneOutcome& outcome);

@@ -1,0 +1,87 @@
+#include "catena/scene/designing/missing_derivatives.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+namespace catena {
+namespace {
+
+/// Whether the results depend on where the analysis starts, and not only on the parameters. Driven motions and
+/// equilibria find their own place; the modes of an equilibrium are differentiated with its place.
+bool depends_on_start(std::string_view type, std::string_view before) {
+  if (before.empty()) return false;
+  if (type == "modes") return before != "equilibrium" && before != "path";
+  return type == "dynamics" || type == "assemble";
+}
+
+}  // namespace
+
+void MissingDerivatives::take_out(MeasureResult& measure, std::size_t parameter, const std::string& why,
+                                  AnalysisResult& result) const {
+  measure.gradient.resize(design_.parameters.size(), std::numeric_limits<double>::quiet_NaN());
+  measure.gradient[parameter] = std::numeric_limits<double>::quiet_NaN();
+  if (!measure.trouble.empty()) return;
+  measure.trouble = why;
+  result.report.warnings.push_back(fmt::format("measure \"{}\": {}", measure.name, why));
+}
+
+void MissingDerivatives::complete(const AnalysisTask& task, const ParameterSeeds& seeds, AnalysisResult& result) const {
+  const auto moving = models_.moving_numbers(task, seeds, design_.parameters);
+  for (std::size_t p = 0; p < moving.size(); ++p) {
+    for (MeasureResult& measure : result.measures) {
+      if (depends_on_start(task.type(), before_)) {
+        take_out(measure, p,
+                 fmt::format("{} goes on from the end of {}, which moves with the parameters: such derivatives are not "
+                             "built; give it \"from\": \"initial\" if it may start from the scene",
+                             task.type(), before_),
+                 result);
+      } else if (!why_[p].empty()) {
+        take_out(measure, p, why_[p], result);
+      }
+      for (const SceneModels::MovingNumber& one : moving[p]) {
+        const TaskNumber& number = one.number;
+        if (number.is_of_measure() && task.measures[number.item].request.name != measure.name) continue;
+        const std::string_view key = number.place == TaskNumber::Place::key ? number.key->name : std::string_view();
+        if (key == "every" && !measure.of_rows_alone) continue;
+        if (key == "until" && std::isfinite(measure.by_last_instant) && p < measure.gradient.size()) {
+          measure.gradient[p] += measure.by_last_instant * one.rate;
+          continue;
+        }
+        take_out(measure, p,
+                 fmt::format("{} of {} depends on \"{}\", and the derivative of this measure by it is not built",
+                             number.name(), task.type(), design_.names[p]),
+                 result);
+      }
+    }
+  }
+}
+
+void MissingDerivatives::go_on_from(const AnalysisTask& task, const ParameterSeeds& seeds,
+                                    const ParameterSeeds& values_at_end) {
+  before_ = task.type();
+  const auto moving = models_.moving_numbers(task, seeds, design_.parameters);
+  // A path that did not end where it was told to ended at a point of its own, which the parameters move.
+  bool ends_by_itself = false;
+  for (const ParameterSeed<double>& value : values_at_end)
+    ends_by_itself = ends_by_itself || value.value != task.number("to", value.value);
+  for (std::size_t p = 0; p < why_.size(); ++p) {
+    if (!moving[p].empty())
+      why_[p] =
+          fmt::format("{} of the {} before depends on \"{}\": derivatives of what goes on from there are not built",
+                      moving[p].front().number.name(), task.type(), design_.names[p]);
+    else if (ends_by_itself)
+      why_[p] = fmt::format(
+          "the {} before ended before its parameter had reached \"to\", at a value that moves with the "
+          "parameters: derivatives of what goes on from there are not built",
+          task.type());
+  }
+}
+
+void MissingDerivatives::start_anew() {
+  before_.clear();
+  why_.assign(why_.size(), {});
+}
+
+}  // namespace catena
