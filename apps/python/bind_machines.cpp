@@ -1,5 +1,7 @@
 // Kinematics, Dynamics and Equilibrium as objects that Python steps.
-#include "machines.hpp"
+#include "dynamics_machine.hpp"
+#include "equilibrium_machine.hpp"
+#include "kinematics_machine.hpp"
 
 namespace catena::python {
 namespace {
@@ -42,6 +44,7 @@ py::tuple frame_at(const Machine& machine, int body) {
 }
 
 py::dict report_of(const EquilibriumMachine& machine) {
+  const AtWork work(machine.busy());
   const EquilibriumReport& report = machine.report();
   py::dict out;
   out["energy"] = report.energy;
@@ -142,7 +145,12 @@ void bind_machines(py::module_& module) {
            py::arg("tolerance"), py::arg("step"))
       .def("advance_to", &Machine::step_to, py::arg("t"), "Integrates to an instant, which is not before the present.")
       .def_property_readonly(
-          "method", [](const DynamicsMachine& m) { return std::string(m.method()); }, "The method of integration.")
+          "method",
+          [](const DynamicsMachine& m) {
+            const AtWork work(m.busy());
+            return std::string(m.method());
+          },
+          "The method of integration.")
       .def_property_readonly("qd", &velocities_of_machine, about_qd);
   py::class_<EquilibriumMachine, Machine>(module, "Equilibrium", "A mechanism at rest under its forces.")
       .def(py::init([](const std::string& path, const Text& text, const Texts& set, const Names& outputs,

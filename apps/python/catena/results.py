@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 from . import _catena, tables
 
@@ -139,7 +139,13 @@ class Run(Sequence[Analysis]):
         #: The values of all parameters in this run.
         self.parameters = dict(outcome.parameters)
 
-    def __getitem__(self, key: Any) -> Any:
+    @overload
+    def __getitem__(self, key: int) -> Analysis: ...
+    @overload
+    def __getitem__(self, key: slice) -> list[Analysis]: ...
+    @overload
+    def __getitem__(self, key: str) -> Analysis: ...
+    def __getitem__(self, key: int | slice | str) -> Analysis | list[Analysis]:
         """An analysis by its place, or the first one of a type."""
         if isinstance(key, str):
             for analysis in self.analyses:
