@@ -65,7 +65,8 @@ def compare(what, model, analysis, repeats, call, aim):
             done = subprocess.run(command, check=True, capture_output=True, text=True)
             compiled = min(compiled, float(done.stdout.split()[0]))
             python = min(python, least(repeats, call))
-    print(f"{what}: C++ {1e3 * compiled:.4g} ms, Python {1e3 * python:.4g} ms, ratio {python / compiled:.3f} (aim {aim})")
+    ratio = python / compiled
+    print(f"{what}: C++ {1e3 * compiled:.4g} ms, Python {1e3 * python:.4g} ms, ratio {ratio:.3f} (aim {aim})")
 
 
 def main():

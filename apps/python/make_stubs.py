@@ -1,4 +1,4 @@
-"""Writes elements.pyi beside elements.py of a built package: types of the classes that are made from the library's lists.
+"""Writes elements.pyi beside elements.py of a built package: types of the classes made from the library's lists.
 
     python3 make_stubs.py FOLDER        FOLDER: the one that holds the package catena
 """

@@ -20,23 +20,27 @@ ROOT = HERE.parent.parent
 
 
 class Types(unittest.TestCase):
-    def run_mypy(self, module, *arguments):
-        with tempfile.TemporaryDirectory() as folder:
-            environment = {**os.environ, "MYPYPATH": str(PACKAGE.parent), "MYPY_CACHE_DIR": folder}
-            return subprocess.run([sys.executable, "-m", module, *arguments], cwd=folder, env=environment,
-                                  capture_output=True, text=True)
-
-    def setUp(self):
+    @classmethod
+    def setUpClass(cls):
         if not importlib.util.find_spec("mypy"):
-            self.skipTest("mypy is not installed")
+            raise unittest.SkipTest("mypy is not installed")
+        cls.cache = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.cache.cleanup)
+
+    def run_mypy(self, module, *arguments):
+        environment = {**os.environ, "MYPYPATH": str(PACKAGE.parent), "MYPY_CACHE_DIR": self.cache.name}
+        return subprocess.run([sys.executable, "-m", module, *arguments], cwd=self.cache.name, env=environment,
+                              capture_output=True, text=True)
 
     def test_of_the_package_are_sound(self):
         done = self.run_mypy("mypy", "--config-file", str(HERE / "mypy.ini"), "-p", "catena")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def test_of_the_stubs_are_those_of_the_module(self):
-        done = self.run_mypy("mypy.stubtest", "catena._catena", "catena.elements", "--mypy-config-file", str(HERE / "mypy.ini"), "--allowlist",
-                             str(HERE / "stubtest_allowed.txt"))
+        done = self.run_mypy(
+            "mypy.stubtest", "catena._catena", "catena.elements", "--mypy-config-file", str(HERE / "mypy.ini"),
+            "--allowlist", str(HERE / "stubtest_allowed.txt"),
+        )
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def test_of_elements_are_checked_where_they_are_used(self):

@@ -101,7 +101,9 @@ class Analysis:
         frame.attrs["units"] = self.units
         return frame
 
-    def plot(self, y: str | Sequence[str] | None = None, x: str | None = None, *, figure: Figure | None = None) -> Figure:
+    def plot(
+        self, y: str | Sequence[str] | None = None, x: str | None = None, *, figure: Figure | None = None
+    ) -> Figure:
         """Columns over each other with matplotlib: a panel for every unit. Without `y` all columns, over the first."""
         from . import figures
 

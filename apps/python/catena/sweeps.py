@@ -119,7 +119,9 @@ def _run_some(scene: Scene, designs: Sequence[Design], only: str) -> list[_Answe
     return [_run_one(scene, design, only) for design in designs]
 
 
-def designs_of(parameters: Mapping[str, Sequence[Value]] | Iterable[Mapping[str, Value]], together: bool) -> list[Design]:
+def designs_of(
+    parameters: Mapping[str, Sequence[Value]] | Iterable[Mapping[str, Value]], together: bool
+) -> list[Design]:
     """The designs that `parameters` stands for."""
     if not isinstance(parameters, Mapping):
         return [dict(design) for design in parameters]
