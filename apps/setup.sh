@@ -34,6 +34,9 @@ test_packages=(
   libbenchmark-dev      # apps/bench
   pkgconf               # the installed package is used through pkg-config too
   node-typescript       # the types of the page are checked
+  python3-pandas        # data frames of results
+  python3-matplotlib    # plots and animations of results
+  mypy                  # the types of the Python package are checked
 )
 browser_packages=(
   chromium chromium-driver

@@ -1,5 +1,6 @@
 // catena_bench: Google Benchmark's options, --table [kinematics | dynamics | statics] for run time against error, or
-// --records <scene> for lines that can be laid beside those of other engines (peer_records.hpp).
+// --records <scene> for lines that can be laid beside those of other engines (peer_records.hpp), or
+// --run FILE TYPE REPEATS for the time of whole runs of a scene (scene_runs.hpp).
 //
 // Figures are processor time, minimum of repeats; build with the preset `native` for the machine at hand.
 #include <benchmark/benchmark.h>
@@ -12,6 +13,7 @@
 #include "dynamics_table.hpp"
 #include "kinematics_table.hpp"
 #include "peer_records.hpp"
+#include "scene_runs.hpp"
 #include "static_table.hpp"
 
 int main(int argc, char** argv) {
@@ -36,6 +38,11 @@ int main(int argc, char** argv) {
     if (bench::print_peer_records(argv[2])) return 0;
     std::fprintf(stderr, "catena_bench: no records of '%s' (acceleration, chain, fourbar, squeezer, equilibrium)\n",
                  argv[2]);
+    return 2;
+  }
+  if (argc == 5 && std::strcmp(argv[1], "--run") == 0) {
+    if (bench::print_scene_runs(argv[2], argv[3], std::atoi(argv[4]))) return 0;
+    std::fprintf(stderr, "catena_bench: '%s' has no %s that is solved\n", argv[2], argv[3]);
     return 2;
   }
   benchmark::Initialize(&argc, argv);

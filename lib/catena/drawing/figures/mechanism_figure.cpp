@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
 #include "catena/drawing/figures/role_colours.hpp"
@@ -35,9 +36,11 @@ struct Arrow {
 
 class Figure {
  public:
-  Figure(const Drawing& drawing, const MechanismFigure& figure) : drawing_(drawing), figure_(figure) {}
+  /// `with_loads`: the poses whose loads are shown.
+  Figure(const Drawing& drawing, const MechanismFigure& figure, std::span<const FigurePose> with_loads);
 
-  std::string draw(const CanvasMaker& make_canvas);
+  std::string draw(const CanvasMaker& make_canvas) const;
+  FilmScale draw_film(const CanvasMaker& make_canvas) const;
 
  private:
   void find_extent();
@@ -47,17 +50,28 @@ class Figure {
   }
   void draw_pose(VectorCanvas& canvas, const FigurePose& pose, double pale) const;
   void draw_line(VectorCanvas& canvas, const DrawnLine& line, const Placement& place, int body, double pale) const;
-  void draw_loads(VectorCanvas& canvas) const;
-  /// Of the last pose.
-  std::vector<Arrow> arrows() const;
+  void draw_traces(VectorCanvas& canvas) const;
+  void draw_loads(VectorCanvas& canvas, const FigurePose& pose) const;
+  std::vector<Arrow> arrows(const FigurePose& pose) const;
   Extent extent_with_arrows() const;
 
   const Drawing& drawing_;
   const MechanismFigure& figure_;
+  std::span<const FigurePose> with_loads_;
+  double largest_load_ = 0;  // the one with the longest arrow
   Extent extent_;
   double scale_ = 1, room_ = 0, width_ = 0, height_ = 0;
   double size_ = 0, longest_arrow_ = 0;  // of symbols and of arrows, m
 };
+
+Figure::Figure(const Drawing& drawing, const MechanismFigure& figure, std::span<const FigurePose> with_loads)
+    : drawing_(drawing), figure_(figure), with_loads_(with_loads) {
+  for (const FigurePose& pose : with_loads_) {
+    for (const Vec2<double>& load : pose.loads) largest_load_ = std::max(largest_load_, norm(load));
+  }
+  find_extent();
+  choose_scale();
+}
 
 // With symbols of no size: they get the room around everything.
 void Figure::find_extent() {
@@ -76,24 +90,23 @@ void Figure::find_extent() {
   if (!(extent_.low.x <= extent_.high.x)) extent_.include({0, 0});
 }
 
-std::vector<Arrow> Figure::arrows() const {
-  const FigurePose& pose = figure_.poses.back();
-  double largest = 0;
-  for (const Vec2<double>& load : pose.loads) largest = std::max(largest, norm(load));
+std::vector<Arrow> Figure::arrows(const FigurePose& pose) const {
   std::vector<Arrow> found;
   for (std::size_t k = 0; k < pose.loads.size(); ++k) {
     const DrawnLoad& load = drawing_.loads[k];
     const Frame<double> frame = frame_of_body(pose.frames, load.body);
     const Vec2<double> force = load.in_body_axes ? frame.axis(pose.loads[k]) : pose.loads[k];
     const double size = norm(force);
-    if (size > 0) found.push_back({frame.point(load.point), force / size, longest_arrow_ * size / largest});
+    if (size > 0) found.push_back({frame.point(load.point), force / size, longest_arrow_ * size / largest_load_});
   }
   return found;
 }
 
 Extent Figure::extent_with_arrows() const {
   Extent extent = extent_;
-  for (const Arrow& arrow : arrows()) extent.include(arrow.tip - arrow.length * arrow.along);
+  for (const FigurePose& pose : with_loads_) {
+    for (const Arrow& arrow : arrows(pose)) extent.include(arrow.tip - arrow.length * arrow.along);
+  }
   return extent;
 }
 
@@ -160,9 +173,17 @@ void Figure::draw_pose(VectorCanvas& canvas, const FigurePose& pose, double pale
   }
 }
 
-void Figure::draw_loads(VectorCanvas& canvas) const {
+void Figure::draw_traces(VectorCanvas& canvas) const {
+  for (const auto& trace : figure_.traces) {
+    std::vector<Vec2<double>> points;
+    for (const Vec2<double>& p : trace) points.push_back(on_page(p));
+    canvas.path(points, false, {.stroke = role_colour(Role::driver, ground), .width = 1.2});
+  }
+}
+
+void Figure::draw_loads(VectorCanvas& canvas, const FigurePose& pose) const {
   const Paint line{.stroke = role_colour(Role::driver, ground), .width = 1.4};
-  for (const Arrow& arrow : arrows()) {
+  for (const Arrow& arrow : arrows(pose)) {
     const Vec2<double>&along = arrow.along, across = perpendicular(along), tip = arrow.tip;
     const double head = std::min(1.5 * size_, arrow.length);
     const Vec2<double> shaft[] = {on_page(tip - arrow.length * along), on_page(tip - head * along)};
@@ -173,31 +194,45 @@ void Figure::draw_loads(VectorCanvas& canvas) const {
   }
 }
 
-std::string Figure::draw(const CanvasMaker& make_canvas) {
-  find_extent();
-  choose_scale();
+std::string Figure::draw(const CanvasMaker& make_canvas) const {
   const std::unique_ptr<VectorCanvas> canvas = make_canvas(width_, height_);
   const auto poses = static_cast<double>(figure_.poses.size());
   for (std::size_t k = 0; k + 1 < figure_.poses.size(); ++k)
     draw_pose(*canvas, figure_.poses[k], palest - 0.35 * static_cast<double>(k) / poses);
   draw_pose(*canvas, figure_.poses.back(), 0);
-  for (const auto& trace : figure_.traces) {
-    std::vector<Vec2<double>> points;
-    for (const Vec2<double>& p : trace) points.push_back(on_page(p));
-    canvas->path(points, false, {.stroke = role_colour(Role::driver, ground), .width = 1.2});
-  }
-  draw_loads(*canvas);
+  draw_traces(*canvas);
+  draw_loads(*canvas, figure_.poses.back());
   return canvas->finish();
+}
+
+FilmScale Figure::draw_film(const CanvasMaker& make_canvas) const {
+  for (const FigurePose& pose : figure_.poses) {
+    const std::unique_ptr<VectorCanvas> canvas = make_canvas(width_, height_);
+    draw_pose(*canvas, pose, 0);
+    draw_traces(*canvas);
+    draw_loads(*canvas, pose);
+    canvas->finish();
+  }
+  return {extent_.low - Vec2<double>{room_, room_} / scale_, scale_, width_, height_};
+}
+
+void fit_guides_to(const MechanismFigure& figure, Drawing& drawing) {
+  if (figure.poses.empty()) throw std::invalid_argument("a figure of a mechanism needs at least one pose");
+  for (const FigurePose& pose : figure.poses) observe_guides(drawing, pose.frames);
+  const double margin = drawing.typical_length > 0 ? 0.2 * drawing.typical_length : 0;
+  fit_guides(drawing, margin);
 }
 
 }  // namespace
 
 std::string draw_mechanism(Drawing drawing, const MechanismFigure& figure, const CanvasMaker& canvas) {
-  if (figure.poses.empty()) throw std::invalid_argument("a figure of a mechanism needs at least one pose");
-  for (const FigurePose& pose : figure.poses) observe_guides(drawing, pose.frames);
-  const double margin = drawing.typical_length > 0 ? 0.2 * drawing.typical_length : 0;
-  fit_guides(drawing, margin);
-  return Figure(drawing, figure).draw(canvas);
+  fit_guides_to(figure, drawing);
+  return Figure(drawing, figure, std::span(figure.poses).last(1)).draw(canvas);
+}
+
+FilmScale draw_film(Drawing drawing, const MechanismFigure& figure, const CanvasMaker& canvas) {
+  fit_guides_to(figure, drawing);
+  return Figure(drawing, figure, figure.poses).draw_film(canvas);
 }
 
 }  // namespace catena

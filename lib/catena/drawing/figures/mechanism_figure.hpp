@@ -2,7 +2,11 @@
 //
 // The last pose is drawn in full; those before it are paler, the earlier the more, and without the supports. Symbols
 // are `symbol_points` tall, smaller where links are short: a quarter of the typical link at most. The scale is equal in
-// x and y and follows from everything that is shown. Lengths m, figure in points of 1/72 inch.
+// x and y and follows from everything that is shown. A film has a figure for every pose, all in one scale:
+//
+//   r = corner + (u, height - v) / scale        (u, v) a place on the page, from its upper left corner, points
+//
+// Lengths m, figure in points of 1/72 inch.
 #pragma once
 
 #include <functional>
@@ -34,5 +38,16 @@ using CanvasMaker = std::function<std::unique_ptr<VectorCanvas>(double width, do
 
 /// The file. `drawing` gets the ends of its guides from the poses. std::invalid_argument without a pose.
 std::string draw_mechanism(Drawing drawing, const MechanismFigure& figure, const CanvasMaker& canvas);
+
+/// Where the pages of a film lie in the ground frame.
+struct FilmScale {
+  Vec2<double> corner{};  ///< the lower left one, m
+  double scale = 1;       ///< points a metre
+  double width = 0, height = 0;
+};
+
+/// Draws every pose in full on a canvas of its own, one call of `canvas` each, with the traces. std::invalid_argument
+/// without a pose.
+FilmScale draw_film(Drawing drawing, const MechanismFigure& figure, const CanvasMaker& canvas);
 
 }  // namespace catena

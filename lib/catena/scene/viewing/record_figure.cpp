@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "catena/drawing/figures/pdf_canvas.hpp"
 #include "catena/drawing/figures/svg_canvas.hpp"
@@ -87,6 +88,39 @@ std::vector<std::size_t> choose_rows(const RecordedAnalysis& analysis, const Dra
   return rows;
 }
 
+/// What is drawn of which model, and when.
+struct ChosenFigure {
+  const Model& model;
+  MechanismFigure figure;
+  std::vector<double> t{};  // of the poses
+  std::vector<std::string> notes{};
+};
+
+ChosenFigure choose_figure(const RunRecord& record, const DrawRequest& request) {
+  const RecordedAnalysis* analysis =
+      choose_analysis(record, request.analysis, [](const RecordedAnalysis& a) { return a.poses.size() > 0; });
+  ChosenFigure chosen{.model = analysis ? *analysis->model : *record.model, .figure = {.width = request.width}};
+  if (analysis && analysis->poses.size() > 0) {
+    for (const std::size_t row : choose_rows(*analysis, request, chosen.notes)) {
+      chosen.figure.poses.push_back(figure_pose(*analysis, row));
+      chosen.t.push_back(analysis->poses[row][PoseLayout::time]);
+    }
+  } else {
+    chosen.figure.poses.push_back({given_poses(chosen.model)});
+    chosen.t.push_back(std::numeric_limits<double>::quiet_NaN());
+    chosen.notes.push_back("no analysis gave a pose: drawn is the given configuration, not assembled");
+  }
+  for (const std::string& trace : request.traces) {
+    const auto [body, local] = find_place(chosen.model, trace);
+    std::vector<Vec2<double>>& path = chosen.figure.traces.emplace_back();
+    for (std::size_t k = 0; analysis && k < analysis->poses.size(); ++k) {
+      const auto q = analysis->poses[k].subspan(PoseLayout::frames + 3 * static_cast<std::size_t>(body), 3);
+      path.push_back(make_frame(q[0], q[1], q[2]).point(local));
+    }
+  }
+  return chosen;
+}
+
 }  // namespace
 
 CanvasMaker canvas_maker(FigureFormat format, std::string title) {
@@ -97,28 +131,14 @@ CanvasMaker canvas_maker(FigureFormat format, std::string title) {
 }
 
 DrawnFigure draw_record(const RunRecord& record, const DrawRequest& request) {
-  DrawnFigure drawn;
-  const RecordedAnalysis* analysis =
-      choose_analysis(record, request.analysis, [](const RecordedAnalysis& a) { return a.poses.size() > 0; });
-  MechanismFigure figure{.width = request.width};
-  const Model& model = analysis ? *analysis->model : *record.model;
-  if (analysis && analysis->poses.size() > 0) {
-    for (const std::size_t row : choose_rows(*analysis, request, drawn.notes))
-      figure.poses.push_back(figure_pose(*analysis, row));
-  } else {
-    figure.poses.push_back({given_poses(model)});
-    drawn.notes.push_back("no analysis gave a pose: drawn is the given configuration, not assembled");
-  }
-  for (const std::string& trace : request.traces) {
-    const auto [body, local] = find_place(model, trace);
-    std::vector<Vec2<double>>& path = figure.traces.emplace_back();
-    for (std::size_t k = 0; analysis && k < analysis->poses.size(); ++k) {
-      const auto q = analysis->poses[k].subspan(PoseLayout::frames + 3 * static_cast<std::size_t>(body), 3);
-      path.push_back(make_frame(q[0], q[1], q[2]).point(local));
-    }
-  }
-  drawn.file = draw_mechanism(draw_model(model), figure, canvas_maker(request.format, record.header.scene));
-  return drawn;
+  ChosenFigure chosen = choose_figure(record, request);
+  return {draw_mechanism(draw_model(chosen.model), chosen.figure, canvas_maker(request.format, record.header.scene)),
+          std::move(chosen.notes)};
+}
+
+DrawnFilm film_record(const RunRecord& record, const DrawRequest& request, const CanvasMaker& canvas) {
+  ChosenFigure chosen = choose_figure(record, request);
+  return {draw_film(draw_model(chosen.model), chosen.figure, canvas), std::move(chosen.t), std::move(chosen.notes)};
 }
 
 namespace {

@@ -34,6 +34,15 @@ struct DrawnFigure {
 
 DrawnFigure draw_record(const RunRecord& record, const DrawRequest& request);
 
+struct DrawnFilm {
+  FilmScale scale;
+  std::vector<double> t;  ///< of every picture, s; NaN where the given configuration is shown
+  std::vector<std::string> notes;
+};
+
+/// The poses asked for, each on a canvas of its own: `format` says nothing here.
+DrawnFilm film_record(const RunRecord& record, const DrawRequest& request, const CanvasMaker& canvas);
+
 struct PlotRequest {
   int analysis = 0;              ///< from 1; 0: the last one that has all columns
   std::string x{};               ///< empty: the first column
