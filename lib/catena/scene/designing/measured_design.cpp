@@ -16,10 +16,10 @@ class NoRows final : public RowSink {
 }  // namespace
 
 std::optional<Status> run_design(const AnalysisContext& context, ParameterSeeds seeds, const DesignRequest* design,
-                                 const TakeAnalysis& take) {
+                                 DesignSink* watch, const TakeAnalysis& take) {
   SystemState state = context.state;
   const ParameterSeeds given = seeds;
-  NoRows rows;
+  NoRows nobody;
   for (const AnalysisTask& read : context.task.of) {
     AnalysisTask inner = read;
     if (inner.from_initial) {
@@ -27,26 +27,31 @@ std::optional<Status> run_design(const AnalysisContext& context, ParameterSeeds 
       seeds = given;
     }
     inner.parameters = context.models->values(*read.table, seeds);
+    std::shared_ptr<const Model> model = context.models->model(*inner.table, seeds);
+    if (!model) return std::nullopt;
     AnalysisContext within{.task = inner,
-                           .model = context.models->model(*inner.table, seeds),
+                           .model = std::move(model),
                            .state = state,
-                           .rows = rows,
+                           .rows = watch ? watch->begin_analysis(inner.type()) : nobody,
                            .cancel = context.cancel,
                            .progress = {},
                            .models = context.models,
                            .seeds = seeds,
-                           .design = design};
-    if (!within.model) return std::nullopt;
+                           .design = design,
+                           .poses = watch ? &watch->poses() : nullptr};
+    if (watch) watch->poses().begin_poses(within.model);
     if (inner.has("parameter"))
       within.parameter_name = context.models->names().all()[static_cast<std::size_t>(inner.word("parameter"))];
     AnalysisResult result;
+    result.type = inner.type();
     try {
       analysis_function(inner.type())(within, result);
     } catch (const std::bad_alloc&) {
       throw;
-    } catch (const std::exception&) {
-      return Status::refused;
+    } catch (const std::exception& error) {
+      refuse(result, error.what());
     }
+    if (watch) watch->end_analysis(result);
     if (!result.report.ok()) return result.report.status;
     if (!take(inner, result)) break;
     // What an analysis leaves behind, as the last value of a path's parameter, holds for those after it.
@@ -64,7 +69,8 @@ const MeasureResult* value_of(const PlacedMeasure& measure, const AnalysisResult
   return found != result.measures.end() && found->value ? &*found : nullptr;
 }
 
-Status measure_design(const AnalysisContext& context, const ParameterSeeds& seeds, std::vector<double>& measures) {
+Status measure_design(const AnalysisContext& context, const ParameterSeeds& seeds, DesignSink* watch,
+                      std::vector<double>& measures) {
   bool measured = true;
   const auto take = [&](const AnalysisTask& inner, const AnalysisResult& result) {
     for (const PlacedMeasure& placed : inner.measures) {
@@ -74,8 +80,15 @@ Status measure_design(const AnalysisContext& context, const ParameterSeeds& seed
     }
     return true;
   };
-  const Status status = run_design(context, seeds, nullptr, take).value_or(Status::refused);
+  const Status status = run_design(context, seeds, nullptr, watch, take).value_or(Status::refused);
   return status == Status::ok && !measured ? Status::not_converged : status;
+}
+
+void show_design(const AnalysisContext& context, const ParameterSeeds& seeds, DesignLabel label,
+                 std::unique_ptr<DesignSink> watch) {
+  const auto all = [](const AnalysisTask&, const AnalysisResult&) { return true; };
+  static_cast<void>(run_design(context, seeds, nullptr, watch.get(), all));  // its analyses say how they ended
+  context.poses->add_design(std::move(label), std::move(watch));
 }
 
 }  // namespace catena

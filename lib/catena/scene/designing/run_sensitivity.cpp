@@ -167,8 +167,10 @@ void run_sensitivity(AnalysisContext& context, AnalysisResult& result) {
                          .trace = context.trace,
                          .models = context.models,
                          .seeds = context.seeds,
-                         .design = &design};
+                         .design = &design,
+                         .poses = context.poses};
   if (!within.model) return refuse(result, "the scene allows no model for the analysis inside");
+  if (within.poses) within.poses->begin_poses(within.model);
   if (inner.has("parameter"))
     within.parameter_name = context.models->names().all()[static_cast<std::size_t>(inner.word("parameter"))];
   analysis_function(inner.type())(within, result);
