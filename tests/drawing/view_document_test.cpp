@@ -91,7 +91,8 @@ void collect_fields(const json& value, std::set<std::string>& names) {
   if (!value.is_object()) return;
   for (const auto& [name, member] : value.items()) {
     names.insert(name);
-    if (name != "fields" && name != "parameters" && name != "set" && name != "gradient" && name != "values")
+    if (name != "fields" && name != "parameters" && name != "set" && name != "gradient" && name != "values" &&
+        name != "words")
       collect_fields(member, names);
   }
 }

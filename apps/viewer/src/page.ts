@@ -114,9 +114,12 @@ export class Page {
   /** Puts the mechanism of an analysis on the stage. */
   private showMotion(analysis: Analysis): void {
     const { behind } = this.entry;
+    const designs = behind ? [] : this.entry.analysis.designs ?? [];
+    const others = designs.map(posedOf).filter((posed): posed is Analysis => posed !== null);
     this.motion = new Motion(this.data, analysis);
     this.poseTable = this.isOwnMotion ? this.table : new Table(analysis, this.motion.units);
-    this.stage.show(this.motion, behind && { name: behind.name, motion: new Motion(this.data, behind.analysis) });
+    this.stage.show(this.motion, behind && { name: behind.name, motion: new Motion(this.data, behind.analysis) },
+                    others.map((other) => new Motion(this.data, other)));
     makeStageTools(this);
     this.player.show(this.motion);
     this.makeMarks();

@@ -136,7 +136,7 @@ export function reportPanel(data: PageData, analysis: Analysis, motion: Motion, 
       fact(name.replace(/_/g, " "), value);
     }
   }
-  fact("computed in", `${short(analysis.seconds)} s`);
+  if (analysis.seconds > 0) fact("computed in", `${short(analysis.seconds)} s`);
   root.append(facts);
   if (analysis.shapes.length > 0) {
     root.append(make("h2", {}, analysis.type === "equilibrium" ? "softest mode" : "shapes"),

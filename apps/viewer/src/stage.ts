@@ -44,7 +44,8 @@ export class Stage {
     this.listen();
   }
 
-  show(motion: Motion, behind: { name: string; motion: Motion } | null): void {
+  /** `others`: motions that may be shown in its place, for which there is to be room. */
+  show(motion: Motion, behind: { name: string; motion: Motion } | null, others: Motion[]): void {
     this.motion = motion;
     this.behind = behind && new MechanismBehind(behind.name, behind.motion);
     if (this.behind && this.behind.shapes > mostOnCanvas) this.behind = null;
@@ -58,7 +59,7 @@ export class Stage {
     this.arrows = new Arrows(motion);
     this.large = drawing.shapes.length > mostOnCanvas ? LargeScene.create(this.glCanvas, drawing, this.shapes) : null;
     this.large?.paint(this.theme);
-    this.findExtent();
+    this.findExtent(others.map((other) => new MechanismBehind("", other)));
   }
 
   get drawing() {
@@ -71,7 +72,7 @@ export class Stage {
   }
 
   /** Over at most some twenty poses: what lies between is not far from them. */
-  private findExtent(): void {
+  private findExtent(others: MechanismBehind[]): void {
     const low: [number, number] = [Infinity, Infinity];
     const high: [number, number] = [-Infinity, -Infinity];
     const samples = this.drawing.shapes.length > mostOnCanvas ? 3 : 24;
@@ -82,6 +83,12 @@ export class Stage {
       this.painter.extent(this.motion.pose, low, high);
       this.behind?.moveWith(this.motion, clock, 0);
       this.behind?.extent(low, high);
+    }
+    for (const other of others) {
+      for (const part of [0, 0.25, 0.5, 0.75, 1]) {
+        other.motion.moveTo(other.motion.begin + part * (other.motion.end - other.motion.begin), 0);
+        other.extent(low, high);
+      }
     }
     if (!(low[0] <= high[0])) [low[0], low[1], high[0], high[1]] = [-1, -1, 1, 1];
     this.extentLow = low;
