@@ -18,7 +18,7 @@ struct DrawCommand {
 
 int draw(const DrawCommand& command) {
   RecordedRun run;
-  run_recorded(command.scene, {}, run);
+  run_recorded(command.scene, {}, run.recorder, run);
   if (!run.usable()) return run.outcome.exit_code;
   std::vector<std::string> notes;
   const auto make = [&](FigureFormat format) {

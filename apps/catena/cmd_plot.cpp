@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "catena/scene/running/units_sink.hpp"
 #include "figure_files.hpp"
 #include "recorded_run.hpp"
 
@@ -14,6 +15,7 @@ namespace {
 
 struct PlotCommand {
   SceneArguments scene;
+  std::vector<std::string> units;
   PlotRequest request;
   FigureFiles files;
   std::string log;
@@ -39,7 +41,8 @@ int print_braille(const Plot& plot) {
 
 int plot(const PlotCommand& command) {
   RecordedRun run;
-  run_recorded(command.scene, outputs_of(command.request), run);
+  UnitsSink shown(run.recorder, read_units(command.units));
+  run_recorded(command.scene, outputs_of(command.request), shown, run);
   if (!run.usable()) return run.outcome.exit_code;
   int exit_code = run.outcome.exit_code;
   try {
@@ -65,6 +68,7 @@ void add_plot_command(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("plot", "Plot columns: in the terminal, as SVG or PDF");
   const auto parsed = std::make_shared<PlotCommand>();
   add_scene_arguments(*command, parsed->scene);
+  add_units(*command, parsed->units, "the axes");
   command->add_option("--x", parsed->request.x, "column of the horizontal axis: the first one unless given")
       ->type_name("COLUMN");
   command->add_option("--y", parsed->request.y, "columns, separated by commas: all unless given")
@@ -85,7 +89,8 @@ void add_plot_command(CLI::App& app, Action& chosen) {
       ->type_name("H")
       ->check(CLI::Range(60.0, 5000.0));
   command->callback([parsed, &chosen] {
-    static_cast<void>(parsed->scene.options());  // a wrong --set is told before anything runs
+    static_cast<void>(parsed->scene.options());  // what is wrong with --set and --units is told before anything runs
+    static_cast<void>(read_units(parsed->units));
     chosen = [parsed] { return plot(*parsed); };
   });
 }

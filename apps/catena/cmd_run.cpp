@@ -108,6 +108,7 @@ constexpr ListVerb list_verbs[] = {
 struct Parsed {
   RunCommand run;
   std::vector<std::string> outputs;  // of a whole scene
+  std::vector<std::string> units;
   SceneArguments scene;
   std::vector<std::pair<std::string, std::vector<std::string>>> keys;
 };
@@ -127,11 +128,7 @@ void add_common_options(CLI::App& command, Parsed& parsed) {
       ->check(CLI::IsMember(std::vector<std::string>(ResultFolder::formats.begin(), ResultFolder::formats.end())))
       ->type_name("FORMAT")
       ->needs("--output-dir");
-  command
-      .add_option("--units", run.units,
-                  "units of the table, of --csv and of files, as angle=deg,length=mm: length, time, angle, force, mass")
-      ->delimiter(',')
-      ->type_name("KIND=UNIT");
+  add_units(command, parsed.units, "the table, of --csv, of files and pages");
   command.add_option("--view", run.page, "also write a page with the moving mechanism and its plots")
       ->type_name("FILE");
   command
@@ -170,6 +167,7 @@ RunCommand complete(const Parsed& parsed, const std::string& analysis) {
   RunCommand run = parsed.run;
   const RunOptions common = parsed.scene.options();
   run.scene = parsed.scene.scene;
+  run.units = read_units(parsed.units);
   run.options.set = common.set;
   run.options.max_elements = common.max_elements;
   run.options.verb = analysis;

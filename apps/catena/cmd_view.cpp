@@ -16,6 +16,7 @@ namespace {
 
 struct ViewCommand {
   SceneArguments scene;
+  std::vector<std::string> units;
   std::string page;
   bool open = false;
 };
@@ -39,11 +40,12 @@ int view(const ViewCommand& command) {
     return usage;
   }
   RecordedRun run;
-  run_recorded(command.scene, {}, run);
+  run_recorded(command.scene, {}, run.recorder, run);
   if (!run.usable()) return run.outcome.exit_code;
   const std::string path =
       command.page.empty() ? std::filesystem::path(command.scene.scene).stem().string() + ".html" : command.page;
-  if (const int written = write_page(path, run.recorder.record()); written != solved) return written;
+  if (const int written = write_page(path, run.recorder.record(), read_units(command.units)); written != solved)
+    return written;
   if (command.open) {
     if (const int opened = open_page(path); opened != solved) return opened;
   }
@@ -56,13 +58,15 @@ void add_view_command(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("view", "Write a page with the moving mechanism and its plots");
   const auto parsed = std::make_shared<ViewCommand>();
   add_scene_arguments(*command, parsed->scene);
+  add_units(*command, parsed->units, "plots, tables and values on the page");
   command
       ->add_option("-o,--page", parsed->page,
                    "the page to write: the scene's name with .html, in the present folder, unless given")
       ->type_name("FILE");
   command->add_flag("--open", parsed->open, "show it in the browser");
   command->callback([parsed, &chosen] {
-    static_cast<void>(parsed->scene.options());  // a wrong --set is told before anything runs
+    static_cast<void>(parsed->scene.options());  // what is wrong with --set and --units is told before anything runs
+    static_cast<void>(read_units(parsed->units));
     chosen = [parsed] { return view(*parsed); };
   });
 }

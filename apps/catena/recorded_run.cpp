@@ -7,7 +7,8 @@
 
 namespace catena::cli {
 
-void run_recorded(const SceneArguments& arguments, const std::vector<std::string>& outputs, RecordedRun& run) {
+void run_recorded(const SceneArguments& arguments, const std::vector<std::string>& outputs, ResultSink& results,
+                  RecordedRun& run) {
   RunOptions options = arguments.options();
   options.outputs = outputs;
   options.poses = &run.recorder;
@@ -15,7 +16,7 @@ void run_recorded(const SceneArguments& arguments, const std::vector<std::string
   ProgressBar bar(true);
   show_progress(bar, options);
   catch_interrupts();
-  run.outcome = run_scene(arguments.scene, options, run.recorder);
+  run.outcome = run_scene(arguments.scene, options, results);
   interrupt_was_noticed();
   bar.clear();
   std::fputs(run.outcome.error_text.c_str(), stderr);

@@ -17,9 +17,10 @@ struct RecordedRun {
   bool usable() const { return recorder.record().model != nullptr; }
 };
 
-/// Runs the scene's analyses, with these columns in place of its own unless there are none. What went wrong has been
-/// said when it returns.
-void run_recorded(const SceneArguments& arguments, const std::vector<std::string>& outputs, RecordedRun& run);
+/// Runs the scene's analyses, with these columns in place of its own unless there are none. `results`: the recorder, or
+/// what changes results on their way to it. What went wrong has been said when it returns.
+void run_recorded(const SceneArguments& arguments, const std::vector<std::string>& outputs, ResultSink& results,
+                  RecordedRun& run);
 
 /// The exit code of a command whose figure cannot be made: where the run failed, that is why.
 inline int exit_code_without_figure(const RecordedRun& run) {

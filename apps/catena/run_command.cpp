@@ -84,18 +84,6 @@ void print_messages(const RunCommand& command, const SceneOutcome& outcome) {
   }
 }
 
-/// Units that the command line asks for, as {"angle=deg", "length=mm"}; what is wrong with them, or nothing.
-std::string read_units(const std::vector<std::string>& texts, OutputUnits::Wishes& wishes) {
-  for (const std::string& text : texts) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos) return fmt::format("wants KIND=UNIT, as angle=deg, not \"{}\"", text);
-    const std::string kind = text.substr(0, equals), unit = text.substr(equals + 1);
-    if (const auto problem = OutputUnits::problem(kind, unit)) return *problem;
-    wishes.emplace_back(kind, unit);
-  }
-  return {};
-}
-
 /// Whether everything could be written; says so if not.
 bool finish_output(const TextOutput& output, const ResultFolder* folder, bool quiet) {
   if (!output.ok() && !output.reader_gone()) complain(fmt::format("catena: {}\n", output.error()));
@@ -117,11 +105,6 @@ int execute(const RunCommand& command) {
   ProgressBar bar(!command.quiet);
   BeforeResults before(bar);
   TextOutput output = TextOutput::standard_output();
-  OutputUnits::Wishes wishes;
-  if (const std::string problem = read_units(command.units, wishes); !problem.empty()) {
-    complain(fmt::format("catena: --units: {}\n", problem));
-    return usage;
-  }
   TextSink table(output, table_limits(command.verbose),
                  "-v shows everything, -o DIR writes files, --json and --csv print every digit");
   std::unique_ptr<ResultSink> json = command.json ? json_result_sink(output) : nullptr;
@@ -129,9 +112,9 @@ int execute(const RunCommand& command) {
   TeeSink sinks;
   sinks.add(before);
   CsvSink csv(output);
-  // What is in the units that were asked for: all but the JSON on the standard output, and pages.
+  // What is in the units that were asked for: all but the JSON on the standard output; pages convert by themselves.
   TeeSink converted;
-  UnitsSink shown(converted, std::move(wishes));
+  UnitsSink shown(converted, command.units);
   sinks.add(shown);
   if (command.json) {
     sinks.add(*json);
@@ -171,7 +154,7 @@ int execute(const RunCommand& command) {
   print_messages(command, outcome);
   bool written = finish_output(output, folder ? &*folder : nullptr, command.quiet);
   if (recorder && recorder->record().model)
-    written = write_page(command.page, recorder->record(), command.quiet) == solved && written;
+    written = write_page(command.page, recorder->record(), command.units, command.quiet) == solved && written;
   if (output.reader_gone()) {
     std::signal(SIGPIPE, SIG_DFL);
     std::raise(SIGPIPE);

@@ -4,16 +4,17 @@
 
 #include <string>
 
+#include "catena/scene/numbers/output_units.hpp"
 #include "catena/scene/running/scene_runner.hpp"
 
 namespace catena::cli {
 
 struct RunCommand {
-  std::string scene;               ///< path
-  std::string directory;           ///< of -o, or empty
-  std::string page;                ///< of --view, or empty
-  std::string format = "csv";      ///< of the files in it
-  std::vector<std::string> units;  ///< of --units: angle=deg
+  std::string scene;           ///< path
+  std::string directory;       ///< of -o, or empty
+  std::string page;            ///< of --view, or empty
+  std::string format = "csv";  ///< of the files in it
+  OutputUnits::Wishes units;   ///< of --units
   bool json = false, csv = false, stats = false, quiet = false, verbose = false;
   RunOptions options;
 };

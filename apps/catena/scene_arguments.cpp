@@ -1,5 +1,7 @@
 #include "scene_arguments.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 
 namespace catena::cli {
@@ -29,6 +31,33 @@ void add_scene_arguments(CLI::App& command, SceneArguments& arguments) {
       ->capture_default_str()
       ->type_name("N")
       ->check(whole_number);
+}
+
+void add_units(CLI::App& command, std::vector<std::string>& texts, const std::string& what) {
+  command
+      .add_option("--units", texts, "units of " + what + ", as angle=deg,length=mm: length, time, angle, force, mass")
+      ->allow_extra_args(false)
+      ->delimiter(',')
+      ->type_name("KIND=UNIT");
+}
+
+OutputUnits::Wishes read_units(const std::vector<std::string>& texts) {
+  OutputUnits::Wishes wishes;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos)
+      throw CLI::ValidationError("--units", fmt::format("wants KIND=UNIT, as angle=deg, not \"{}\"", text));
+    // Blanks about a word come with the comma before it.
+    const auto trimmed = [](std::string word) {
+      word.erase(0, word.find_first_not_of(' '));
+      word.erase(word.find_last_not_of(' ') + 1);
+      return word;
+    };
+    const std::string kind = trimmed(text.substr(0, equals)), unit = trimmed(text.substr(equals + 1));
+    if (const auto problem = OutputUnits::problem(kind, unit)) throw CLI::ValidationError("--units", *problem);
+    wishes.emplace_back(kind, unit);
+  }
+  return wishes;
 }
 
 RunOptions SceneArguments::options() const {

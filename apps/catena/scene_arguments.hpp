@@ -1,9 +1,10 @@
-// What every command that runs a scene takes: the scene, --set, --max-elements.
+// What every command that runs a scene takes: the scene, --set, --max-elements; and --units of those that show numbers.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "catena/scene/numbers/output_units.hpp"
 #include "catena/scene/running/scene_runner.hpp"
 
 namespace CLI {
@@ -23,6 +24,12 @@ struct SceneArguments {
 
 /// `arguments` must live until the command line was read.
 void add_scene_arguments(CLI::App& command, SceneArguments& arguments);
+
+/// --units of a command, as texts. `what`: whose units they are; `texts` must live until the command line was read.
+void add_units(CLI::App& command, std::vector<std::string>& texts, const std::string& what);
+/// Units that the command line asks for, as {"angle=deg", "length=mm"}. Throws CLI::ValidationError that says what is
+/// wrong with them.
+OutputUnits::Wishes read_units(const std::vector<std::string>& texts);
 
 /// The entries of a list that may be written as in a scene: [0.1, 0.2] for 0.1,0.2.
 std::vector<std::string> without_brackets(std::vector<std::string> values);

@@ -14,8 +14,8 @@ std::string viewer_obstacle() {
          "plot\" make figures\n";
 }
 
-int write_page(const std::string& path, const RunRecord& record, bool quiet) {
-  if (const int written = write_file(path, compose_page(view_document(record)), quiet); written != solved)
+int write_page(const std::string& path, const RunRecord& record, const OutputUnits::Wishes& units, bool quiet) {
+  if (const int written = write_file(path, compose_page(view_document(record, units)), quiet); written != solved)
     return written;
   for (const std::string& note : view_notes(record)) {
     if (!quiet) complain(fmt::format("{}: {}\n", path, note));

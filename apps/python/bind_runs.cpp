@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "bindings.hpp"
+#include "catena/results/measure_gradient.hpp"
 #include "catena/results/status_word.hpp"
 
 namespace catena::python {
@@ -117,9 +118,8 @@ py::dict measures_of(const AnalysisResult& result) {
     if (!measure.trouble.empty()) one["trouble"] = measure.trouble;
     if (!result.gradient_parameters.empty()) {
       py::dict gradient;
-      for (std::size_t k = 0; k < result.gradient_parameters.size(); ++k)
-        gradient[py::str(result.gradient_parameters[k])] =
-            k < measure.gradient.size() ? measure.gradient[k] : std::nan("");
+      for (const auto& [parameter, derivative] : named_gradient(result, measure))
+        gradient[py::str(parameter)] = derivative;
       one["gradient"] = gradient;
     }
     measures[py::str(measure.name)] = one;

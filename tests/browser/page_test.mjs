@@ -10,8 +10,9 @@ import { join } from "node:path";
 
 import { startBrowser } from "./webdriver.mjs";
 
-const [catena, driver, browser, data, output] = process.argv.slice(2);
+const [catena, driver, browser, dataFolder, output] = process.argv.slice(2);
 export const outputFolder = output;
+export const data = dataFolder;
 mkdirSync(output, { recursive: true });
 
 let failures = 0;
@@ -57,6 +58,12 @@ export function results(scenePath, ...options) {
 export const draw = (scenePath, ...options) =>
     execFileSync(catena, ["draw", scenePath, ...options], { encoding: "utf8", maxBuffer: 1 << 26 });
 
+/** Ends the program with the outcome of all checks. */
+export function finish() {
+  console.log(`${checks - failures} passed, ${failures} failed`);
+  process.exitCode = failures > 0 ? 1 : 0;
+}
+
 /** Runs a test with a browser and ends the program with its outcome. */
 export async function test(options, body) {
   const page = await startBrowser({ driver, browser, ...options });
@@ -69,8 +76,7 @@ export async function test(options, body) {
   } finally {
     await page.quit();
   }
-  console.log(`${checks - failures} passed, ${failures} failed`);
-  process.exitCode = failures > 0 ? 1 : 0;
+  finish();
 }
 
 /** Waits until the page has drawn what was asked of it. */

@@ -60,6 +60,39 @@ TEST_F(Figures, PlotPrintsWritesAndKnowsColumns) {
   EXPECT_NE(unknown.err.find("did you mean \"crank.omega\"?"), std::string::npos) << unknown.err;
 }
 
+// Axes and values are in the units of the scene, or in those of the command line; poses are places in any case.
+TEST_F(Figures, AreInTheUnitsAskedFor) {
+  const std::string text = crank_scene(R"({"type": "kinematics", "until": 1, "every": 0.1})");
+  const std::string wished = write_scene(
+      folder_ / "wished.json", R"({"units": {"angle": "deg", "time": "ms"}, )" + text.substr(text.find('{') + 1));
+  const std::vector<std::string> asked{"plot", scene_, "--y", "crank.angle", "--units", "angle=deg, time=ms"};
+  const std::vector<std::string> said{"plot", wished, "--y", "crank.angle"};
+  for (const auto& command : {asked, said}) {
+    const ProgramResult plotted = run_catena(command);
+    EXPECT_EQ(plotted.exit_code, 0) << plotted.err;
+    EXPECT_NE(plotted.out.find("crank.angle [deg]"), std::string::npos) << plotted.out;
+    EXPECT_NE(plotted.out.find("over t [ms]"), std::string::npos) << plotted.out;
+    EXPECT_NE(plotted.out.find("1000"), std::string::npos) << plotted.out;
+  }
+  const ProgramResult files = run_catena({"plot", wished, "--y", "crank.angle", "--units", "angle=rev", "--svg",
+                                          folder_ / "u.svg", "--pdf", folder_ / "u.pdf"});
+  EXPECT_EQ(files.exit_code, 0) << files.err;
+  EXPECT_NE(content_of(folder_ / "u.svg").find("[rev]"), std::string::npos) << "the command line comes first";
+  EXPECT_NE(content_of(folder_ / "u.svg").find("t [ms]"), std::string::npos);
+  EXPECT_NE(content_of(folder_ / "u.pdf").find("[rev]"), std::string::npos);
+  EXPECT_EQ(run_catena({"draw", wished, "--at", "0.5"}).out, run_catena({"draw", scene_, "--at", "0.5"}).out);
+  for (const std::string command : {"plot", "view", "run"}) {
+    const ProgramResult wrong = run_catena({command, scene_, "--units", "length=deg"});
+    EXPECT_EQ(wrong.exit_code, 2) << command;
+    EXPECT_NE(wrong.err.find("\"deg\" is not a unit of length"), std::string::npos) << wrong.err;
+    EXPECT_EQ(run_catena({command, scene_, "--units", "deg"}).exit_code, 2) << command;
+  }
+  if (!has_viewer()) return;
+  const ProgramResult viewed = run_catena({"view", scene_, "--units", "angle=deg", "-o", folder_ / "units.html"});
+  EXPECT_EQ(viewed.exit_code, 0) << viewed.err;
+  EXPECT_NE(content_of(folder_ / "units.html").find("\"rad\":{\"unit\":\"deg\""), std::string::npos);
+}
+
 TEST_F(Figures, WrongWordsAreExitCodeTwo) {
   EXPECT_EQ(run_catena({"draw", scene_, "--trace", "crank.nowhere"}).exit_code, 2);
   EXPECT_EQ(run_catena({"draw", scene_, "--analysis", "7"}).exit_code, 2);

@@ -18,13 +18,14 @@ struct RecordedText {
   const RunRecord& record() const { return recorder->record(); }
 };
 
-inline RecordedText record_text(const std::string& text, const RecordLimits& limits = {}) {
+inline RecordedText record_text(const std::string& text, const RecordLimits& limits = {}, int threads = 1) {
   TemporaryFolder folder;
   const std::string path = folder / "scene.json";
   std::ofstream(path, std::ios::binary) << text;
   RecordedText run{std::make_unique<RunRecorder>(limits), {}};
   RunOptions options;
   options.poses = run.recorder.get();
+  options.threads = threads;
   run.outcome = run_scene(path, options, *run.recorder);
   return run;
 }

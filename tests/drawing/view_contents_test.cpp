@@ -83,8 +83,8 @@ TEST(ViewDocument, AnalysesWithOtherBodiesHaveNamesOfTheirOwn) {
 
 // Whoever draws sees more than the columns need; the columns stay the same to the last digit.
 TEST(ViewDocument, DrawingChangesNoRow) {
-  for (const char* name :
-       {"crank_rocker", "jansen_leg", "six_bar", "slider_crank_joints", "cam_followers", "four_bar_gradients"}) {
+  for (const char* name : {"crank_rocker", "jansen_leg", "six_bar", "slider_crank_joints", "cam_followers",
+                           "four_bar_gradients", "path_generation", "two_bar_truss"}) {
     SCOPED_TRACE(name);
     const std::string path = std::string(CATENA_DATA_DIR "/scenes/") + name + ".json";
     RunRecorder plain, drawn;

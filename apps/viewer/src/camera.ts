@@ -32,8 +32,12 @@ export class Camera {
     const dx = high[0] - low[0];
     const dy = high[1] - low[1];
     this.scale = Math.min(dx > 0 ? wide / dx : Infinity, dy > 0 ? tall / dy : Infinity);
-    if (!isFinite(this.scale)) this.scale = 100;
     this.fitted = this.scale;
+    if (!isFinite(this.scale)) {
+      // A single place has no size to go by: its symbols are drawn as large as they become when a view is enlarged.
+      this.scale = 100;
+      this.fitted = this.scale / 8;
+    }
     this.x = (low[0] + high[0]) / 2;
     this.y = (low[1] + high[1]) / 2 + top / 2 / this.scale;
   }

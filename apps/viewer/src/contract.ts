@@ -59,11 +59,28 @@ export interface Poses {
   count: number;
   total: number;
   stride: number;
+  /** Whether velocities and forces were kept, where the analysis gives them. */
+  arrows: boolean;
   t: PackedNumbers;
   frames: PackedFrames;
   velocities?: PackedNumbers;
   reactions?: { elements: number[]; values: PackedNumbers };
   loads?: PackedNumbers;
+}
+
+/** A design of an optimisation or a sweep: its analyses with its values of parameters. */
+export interface Design {
+  name: string;
+  /** Its row of the analysis, where it has one. */
+  row?: number;
+  values: Record<string, number>;
+  analyses: Analysis[];
+}
+
+export interface ShownUnit {
+  unit: string;
+  /** Number in this unit = factor x number in SI. */
+  factor: number;
 }
 
 export type FieldRecord = Record<string, unknown>;
@@ -85,6 +102,7 @@ export interface Analysis {
   columns: Column[];
   poses: Poses;
   shapes: PackedNumbers[];
+  designs?: Design[];
 }
 
 export interface PageData extends Names {
@@ -94,6 +112,8 @@ export interface PageData extends Names {
   description: string;
   gravity: [number, number];
   parameters: Record<string, number>;
+  /** By the SI unit in which the data have the numbers. */
+  units: Record<string, ShownUnit>;
   drawings: Drawing[];
   analyses: Analysis[];
   notes: string[];

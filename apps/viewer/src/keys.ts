@@ -11,10 +11,14 @@ const keys: [string, string][] = [
   ["[ ]", "slower, faster"],
   ["l", "loop"],
   ["+ −", "zoom in, out"],
-  ["arrows on the mechanism with alt", "pan"],
+  ["alt and arrows", "pan"],
   ["f", "show everything"],
+  ["+ − f, alt and arrows on a plot", "the same there"],
   ["n, p", "next, previous analysis"],
   ["m", "next mode"],
+  [". ,", "choose the next, the previous body or element"],
+  ["enter", "plot the columns of what is chosen"],
+  ["b", "the other design behind, of an optimisation"],
   ["1 2 3 4", "plots, report, table, points"],
   ["d", "dark, light"],
   ["?", "this list"],
@@ -42,8 +46,16 @@ function zoom(page: Page, factor: number): void {
 }
 
 function nextAnalysis(page: Page, by: number): void {
-  const count = page.data.analyses.length;
-  if (count > 1) page.showAnalysis((page.data.analyses.indexOf(page.motion.analysis) + by + count) % count);
+  const { entries } = page;
+  const count = entries.length;
+  if (count > 1) page.showEntry(entries[(entries.indexOf(page.entry) + by + count) % count]);
+}
+
+function toggleBehind(page: Page): void {
+  page.stage.showBehind = !page.stage.showBehind;
+  const box = document.getElementById("behind");
+  if (box instanceof HTMLInputElement) box.checked = page.stage.showBehind;
+  page.redraw();
 }
 
 function act(page: Page, event: KeyboardEvent): boolean {
@@ -71,6 +83,10 @@ function act(page: Page, event: KeyboardEvent): boolean {
     "3": () => page.showTab("table"),
     "4": () => page.showTab("points"),
     d: () => page.toggleTheme(),
+    b: () => toggleBehind(page),
+    ".": () => page.choice.step(1),
+    ",": () => page.choice.step(-1),
+    Enter: () => page.choice.plot(),
     "?": () => byId<HTMLDialogElement>("help").showModal(),
   };
   const action = actions[event.key];

@@ -3,6 +3,7 @@
 import { Analysis, Names, PageData } from "./contract";
 import { decodeNumbers, Frames } from "./decode";
 import { Pose } from "./placement";
+import { Units } from "./units";
 
 /** Seconds of a shape's swing to and fro, and of a whole untimed sequence of poses. */
 const swingSeconds = 2;
@@ -26,11 +27,13 @@ export class Motion {
   /** The place of each pose in this order. */
   private readonly place: number[];
   readonly names: Names;
+  readonly units: Units;
   /** Which shape swings; -1: none. */
   shape = -1;
 
   constructor(readonly data: PageData, readonly analysis: Analysis) {
     const poses = analysis.poses;
+    this.units = new Units(data.units);
     const { given, bodies, elements, points } = data.drawings[analysis.drawing];
     this.given = given;
     this.names = { bodies: bodies ?? data.bodies, elements: elements ?? data.elements, points: points ?? data.points };

@@ -21,6 +21,8 @@ export interface Painter {
   text(x: number, y: number, text: string, paint: TextPaint): void;
   clip(x: number, y: number, width: number, height: number): void;
   unclip(): void;
+  /** What follows is drawn faintly: `opacity` below one; one ends it. */
+  fade(opacity: number): void;
 }
 
 export class CanvasPainter implements Painter {
@@ -74,6 +76,10 @@ export class CanvasPainter implements Painter {
 
   unclip(): void {
     this.context.restore();
+  }
+
+  fade(opacity: number): void {
+    this.context.globalAlpha = opacity;
   }
 
   private paint(paint: Paint): void {
@@ -137,6 +143,10 @@ export class SvgPainter implements Painter {
 
   unclip(): void {
     this.out += "</g>\n";
+  }
+
+  fade(opacity: number): void {
+    this.out += opacity < 1 ? `<g opacity="${opacity}">\n` : "</g>\n";
   }
 
   finish(): string {

@@ -2,7 +2,6 @@
 
 import { byId, iconButton, setIcon } from "./dom";
 import { Motion } from "./motion";
-import { short } from "./ticks";
 
 export const speeds = [0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10];
 
@@ -98,7 +97,7 @@ export class Player {
 
   private describe(): string {
     if (this.motion.shape >= 0) return `mode ${this.motion.shape + 1}`;
-    if (this.motion.timed) return `t = ${short(this.clock)} s`;
+    if (this.motion.timed) return `t = ${this.motion.units.text(this.clock, "s")}`;
     if (this.motion.count > 1) return `row ${this.motion.rowNumber(this.motion.nearestPose(this.clock))}`;
     return "at rest";
   }

@@ -143,8 +143,7 @@ export class Plot {
     });
     painter.path([left, top, this.width - right, top, this.width - right, floor, left, floor], true,
                  { stroke: css(theme.faint), width: 1 });
-    const columns = this.table.analysis.columns;
-    const name = withUnit(columns[this.x].name, this.table.unit(this.x));
+    const name = withUnit(this.table.name(this.x), this.table.unit(this.x));
     painter.text((left + this.width - right) / 2, this.height - 6, name,
                  { size: 11, colour: css(theme.ink), anchor: "middle" });
     const units = [...new Set(this.ys.map((y) => this.table.unit(y)))].filter((unit) => unit);
@@ -203,13 +202,21 @@ export class Plot {
   }
 
   private drawMarks(painter: Painter, theme: Theme, ax: Axis, ay: Axis, xs: ArrayLike<number>): void {
+    // Where they crowd, as blows of a bouncing ball, a label that would cover another is left out.
+    const labels: { x: number; y: number; width: number }[] = [];
+    const widthOf = (label: string) => 6 * label.length;
     for (const mark of this.marks) {
       const row = this.table.rowAt(mark.row);
       if (row < 0 || this.ys.length === 0) continue;
       const px = this.pageX(ax, xs[row]);
       const py = this.pageY(ay, this.table.values(this.ys[0])[row]);
       painter.circle(px, py, 5, { stroke: css(theme.warning), width: 2 });
-      painter.text(px + 7, py - 6, mark.label, { size: 10.5, colour: css(theme.warning) });
+      const label = { x: px + 7, y: py - 6, width: widthOf(mark.label) };
+      const covers = labels.some((other) => Math.abs(other.y - label.y) < 11 && label.x < other.x + other.width &&
+                                            other.x < label.x + label.width);
+      if (covers) continue;
+      labels.push(label);
+      painter.text(label.x, label.y, mark.label, { size: 10.5, colour: css(theme.warning) });
     }
   }
 
@@ -217,7 +224,7 @@ export class Plot {
   legend(row: number): { name: string; value: string; unit: string }[] {
     return this.ys.map((y) => {
       const value = row >= 0 && row < this.table.rows ? this.table.text(y, row) : "–";
-      return { name: this.table.analysis.columns[y].name, value, unit: this.table.unit(y) };
+      return { name: this.table.name(y), value, unit: this.table.unit(y) };
     });
   }
 }

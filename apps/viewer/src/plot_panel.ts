@@ -3,11 +3,12 @@
 import { columnChooser, mostListed } from "./column_chooser";
 import { button, make } from "./dom";
 import { save, saveCanvas } from "./files";
+import { listenToPointers } from "./gestures";
 import { SvgPainter } from "./painter";
 import { ParallelPlot } from "./parallel_plot";
 import { Plot, PlotMark } from "./plot";
 import { PlotPicture } from "./plot_picture";
-import { Table } from "./table";
+import { rowNumber, Table } from "./table";
 import { css, Theme } from "./theme";
 
 interface View {
@@ -39,7 +40,7 @@ export class PlotPanel {
       this.root.append(make("p", { class: "note" }, "This analysis has no rows to plot."));
       return;
     }
-    const adder = button("+ plot", "add a plot", () => this.add(0, table.numeric(2).slice(-1), true));
+    const adder = button("+ plot", "add a plot", () => this.add(this.usualX, table.numeric(2).slice(-1), true));
     this.root.append(make("div", {}, adder));
     if (table.analysis.type === "sweep") this.parallel = this.addParallel();
     for (const { x, ys } of this.firstPlots()) this.add(x, ys, false);
@@ -57,13 +58,31 @@ export class PlotPanel {
     return new PlotPicture(plot, canvas);
   }
 
-  /** Columns of one unit together, at most three plots; of a path the load over the first displacement. */
+  /** Over what columns are shown unless their reader wants something else. */
+  private get usualX(): number {
+    if (this.table.analysis.type === "optimise") return rowNumber;
+    return this.table.analysis.type === "sweep" && this.table.numeric(2).length > 1 ? 1 : 0;
+  }
+
+  /** Columns of one unit together, at most three plots; of a path the load over the first displacement; of an
+   * optimisation its objective, then the variables; of a sweep each measure over the first parameter. */
   private firstPlots(): { x: number; ys: number[] }[] {
-    const { table } = this;
-    if (table.analysis.type === "path" && table.names.length > 1) return [{ x: 1, ys: [0] }];
+    const { table, usualX } = this;
+    const { type } = table.analysis;
+    if (type === "path" && table.names.length > 1) return [{ x: 1, ys: [0] }];
     if (table.rows === 1) return [];
+    const numeric = table.numeric(mostListed);
+    if (type === "optimise") {
+      const objective = table.find("objective");
+      return [{ x: usualX, ys: [objective] }, { x: usualX, ys: numeric.filter((c) => c < objective).slice(0, 6) }];
+    }
+    if (type === "sweep") {
+      const parameters = Object.keys(table.analysis.designs?.[0]?.values ?? {}).length || 1;
+      const measures = numeric.filter((c) => c > parameters).slice(0, 3);
+      if (measures.length > 0) return measures.map((c) => ({ x: usualX, ys: [c] }));
+    }
     const groups = new Map<string, number[]>();
-    for (const c of table.numeric(mostListed).slice(1)) {
+    for (const c of numeric.slice(1)) {
       const list = groups.get(table.unit(c)) ?? [];
       if (list.length < 6) list.push(c);
       groups.set(table.unit(c), list);
@@ -77,7 +96,7 @@ export class PlotPanel {
     const ys = this.table.names.map((column, k) => (column.startsWith(name + ".") ? k : -1))
         .filter((k) => k > 0 && this.table.hasNumbers(k));
     if (ys.length === 0 || this.table.rows < 2) return;
-    this.add(0, ys.slice(0, 6), true);
+    this.add(this.usualX, ys.slice(0, 6), true);
   }
 
   private add(x: number, ys: number[], first: boolean): void {
@@ -102,13 +121,13 @@ export class PlotPanel {
   /** Rows of analyses the page does not know, and of sweeps, need not follow each other along x. */
   private isScattered(x: number): boolean {
     if (this.table.analysis.type !== "sweep" && this.table.analysis.type !== "modes") return false;
-    return x === 0 || this.table.rows > 2;
+    return x <= 0 || this.table.rows > 2;
   }
 
   private tools(view: View, box: HTMLElement): HTMLElement {
     const { plot } = view;
     const x = make("select", { title: "horizontal axis", "aria-label": "horizontal axis" });
-    for (const k of this.table.numeric(mostListed)) x.append(new Option(this.table.names[k], String(k)));
+    for (const k of [...this.table.numeric(mostListed), rowNumber]) x.append(new Option(this.table.name(k), String(k)));
     x.value = String(plot.x);
     x.addEventListener("change", () => {
       plot.x = Number(x.value);
@@ -149,49 +168,39 @@ export class PlotPanel {
 
   private listen(view: View): void {
     const { plot, canvas } = view;
-    let dragged = 0;
-    let from: { x: number; y: number } | null = null;
-    const at = (event: MouseEvent) => {
-      const box = canvas.getBoundingClientRect();
-      return { x: event.clientX - box.left, y: event.clientY - box.top };
+    const changed = () => this.drawView(view);
+    const reset = () => (plot.resetZoom(), changed());
+    const zoom = (factor: number, x: number, y: number) => (plot.zoom(factor, x, y), changed());
+    const pan = (dx: number, dy: number) => (plot.pan(dx, dy), changed());
+    listenToPointers(canvas, {
+      zoom, pan, reset,
+      click: (x, y) => {
+        const row = plot.rowNear(x, y);
+        if (row >= 0) this.chosen(this.table.numberOf(row));
+      },
+    });
+    const step = 30;
+    const keys: Record<string, () => void> = {
+      "+": () => zoom(1.3, plot.width / 2, plot.height / 2),
+      "-": () => zoom(1 / 1.3, plot.width / 2, plot.height / 2),
+      "f": reset,
     };
-    canvas.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      plot.zoom(Math.exp(-event.deltaY * 0.0015), at(event).x, at(event).y);
-      this.drawView(view);
-    }, { passive: false });
-    canvas.addEventListener("pointerdown", (event) => {
-      canvas.setPointerCapture(event.pointerId);
-      from = at(event);
-      dragged = 0;
-    });
-    canvas.addEventListener("pointermove", (event) => {
-      if (!from) return;
-      const now = at(event);
-      plot.pan(now.x - from.x, now.y - from.y);
-      dragged += Math.abs(now.x - from.x) + Math.abs(now.y - from.y);
-      from = now;
-      this.drawView(view);
-    });
-    canvas.addEventListener("pointerup", (event) => {
-      from = null;
-      if (dragged > 4) return;
-      const row = plot.rowNear(at(event).x, at(event).y);
-      if (row >= 0) this.chosen(this.table.numberOf(row));
-    });
-    canvas.addEventListener("dblclick", () => (plot.resetZoom(), this.drawView(view)));
+    const withAlt: Record<string, () => void> = {
+      ArrowLeft: () => pan(step, 0), ArrowRight: () => pan(-step, 0),
+      ArrowUp: () => pan(0, step), ArrowDown: () => pan(0, -step),
+    };
     canvas.addEventListener("keydown", (event) => {
-      if (event.key === "+" || event.key === "-") {
-        plot.zoom(event.key === "+" ? 1.3 : 1 / 1.3, plot.width / 2, plot.height / 2);
-        event.stopPropagation();
-        this.drawView(view);
-      }
+      const action = (event.altKey ? withAlt : keys)[event.key];
+      if (!action || event.ctrlKey || event.metaKey) return;
+      action();
+      event.stopPropagation();
+      event.preventDefault();
     });
   }
 
   /** The cursor stands at this row of the analysis. */
   moveCursor(row: number): void {
-    const kept = this.table ? this.table.rowAt(row) : -1;
+    const kept = this.table && row >= 0 ? this.table.rowAt(row) : -1;
     if (kept === this.cursor) return;
     this.cursor = kept;
     for (const view of this.views) view.picture.showCursor(this.theme, kept), this.showLegend(view);

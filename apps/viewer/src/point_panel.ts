@@ -2,7 +2,7 @@
 
 import { make } from "./dom";
 import type { Page } from "./page";
-import { Trace } from "./stage";
+import { Trace } from "./traces";
 
 const mostBodies = 500;
 const mostPoints = 1000;
@@ -10,7 +10,7 @@ const mostPoints = 1000;
 export function pointPanel(page: Page, named: Trace[]): HTMLElement {
   const root = make("div", {}, make("p", { class: "note" }, "Points whose paths are drawn."));
   const centroids = page.motion.names.bodies.slice(0, mostBodies)
-      .map((name, body) => ({ body, u: 0, v: 0, name: `${name} (centroid)` }));
+      .map((name, body) => ({ body, u: 0, v: 0, name: `${name} (centroid)`, owner: name, point: "" }));
   for (const point of [...named, ...centroids].slice(0, mostPoints)) {
     const box = make("input", { type: "checkbox" });
     box.checked = page.stage.traces.some((trace) => trace.name === point.name);

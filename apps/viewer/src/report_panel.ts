@@ -1,9 +1,13 @@
 // The tab with what the analysis says of itself: outcome, warnings, named results, lists of modes and critical points.
 
-import { Analysis, FieldRecord, Measure, PageData } from "./contract";
+import { Analysis, Design, FieldRecord, Measure, PageData } from "./contract";
+import { DataRow, dataTable } from "./data_table";
 import { make } from "./dom";
 import { Motion } from "./motion";
 import { short } from "./ticks";
+import { Units } from "./units";
+
+const mostRecords = 200;
 
 function show(value: unknown): string {
   if (typeof value === "number") return short(value);
@@ -23,16 +27,12 @@ function isRecords(value: unknown): value is FieldRecord[] {
   return Array.isArray(value) && value.length > 0 && typeof value[0] === "object" && value[0] !== null;
 }
 
+/** Rows of named members. Those that the page knows to be instants are marked so: they are in SI. */
 function recordTable(records: FieldRecord[], chosen: (record: FieldRecord) => void): HTMLElement {
   const keys = [...new Set(records.flatMap((record) => Object.keys(record)))];
-  const rows = records.slice(0, 200).map((record) => {
-    const row = make("tr", { tabindex: "0" }, ...keys.map((key) => make("td", {}, show(record[key]))));
-    row.addEventListener("click", () => chosen(record));
-    row.addEventListener("keydown", (event) => event.key === "Enter" && chosen(record));
-    return row;
-  });
-  return make("div", { class: "scroll" },
-              make("table", {}, make("tr", {}, ...keys.map((key) => make("th", {}, key))), ...rows));
+  const rows = records.slice(0, mostRecords)
+      .map((record) => ({ cells: keys.map((key) => show(record[key])), action: () => chosen(record) }));
+  return dataTable(keys.map((key) => (key === "t" ? "t [s]" : key)), rows);
 }
 
 function modeTable(analysis: Analysis, present: number, chosen: (mode: number) => void): HTMLElement {
@@ -45,34 +45,45 @@ function modeTable(analysis: Analysis, present: number, chosen: (mode: number) =
     const squared = omega2[k];
     const frequency = squared === undefined ? "" : squared >= 0 ? short(Math.sqrt(squared) / (2 * Math.PI)) : "grows";
     const cells = loads.length > 0 ? [String(k + 1), show(loads[k])] : [String(k + 1), show(squared), frequency];
-    const row = make("tr", { tabindex: "0", class: k === present ? "chosen" : "" },
-                     ...cells.slice(0, head.length).map((c) => make("td", {}, c)));
-    row.addEventListener("click", () => chosen(k));
-    row.addEventListener("keydown", (event) => event.key === "Enter" && chosen(k));
-    return row;
+    return { cells: cells.slice(0, head.length), chosen: k === present, action: () => chosen(k) };
   });
-  return make("div", { class: "scroll" },
-              make("table", {}, make("tr", {}, ...head.map((h) => make("th", {}, h))), ...rows));
+  return dataTable(head, rows);
 }
 
 /** What the analysis measured, with derivatives by parameters where they were asked for. */
-function measureTable(measures: Measure[], goToTime: (t: number) => void): HTMLElement[] {
+function measureTable(measures: Measure[], units: Units, goToTime: (t: number) => void): HTMLElement[] {
   if (measures.length === 0) return [];
   const parameters = [...new Set(measures.flatMap((measure) => Object.keys(measure.gradient ?? {})))];
   const timed = measures.some((measure) => measure.t !== undefined);
-  const head = ["measure", "value", ...(timed ? ["t [s]"] : []), ...parameters.map((name) => `d/d(${name})`)];
-  const rows = measures.map((measure) => {
-    const cells = [measure.name, `${show(measure.value)} ${measure.unit === "1" ? "" : measure.unit}`,
-                   ...(timed ? [show(measure.t)] : []), ...parameters.map((name) => show(measure.gradient?.[name]))];
-    const row = make("tr", { tabindex: "0" }, ...cells.map((cell) => make("td", {}, cell)));
-    const go = () => measure.t !== undefined && goToTime(measure.t);
-    row.addEventListener("click", go);
-    row.addEventListener("keydown", (event) => event.key === "Enter" && go());
-    return row;
+  const seconds = units.of("s");
+  const head = ["measure", "value", ...(timed ? [`t [${seconds.unit}]`] : []), ...parameters.map((name) => `d/d(${name})`)];
+  const rows = measures.map(({ name, value, unit, t, gradient }) => {
+    // Derivatives are by parameters in SI.
+    const slope = (parameter: string) => {
+      const derivative = gradient?.[parameter];
+      return typeof derivative === "number" ? short(units.of(unit).factor * derivative) : show(derivative);
+    };
+    const cells = [name, value === null ? show(value) : units.text(value, unit),
+                   ...(timed ? [t === undefined ? show(t) : short(seconds.factor * t)] : []), ...parameters.map(slope)];
+    return { cells, action: t === undefined ? undefined : () => goToTime(t) };
   });
-  return [make("h2", {}, "measures"),
-          make("div", { class: "scroll" },
-               make("table", {}, make("tr", {}, ...head.map((h) => make("th", {}, h))), ...rows))];
+  return [make("h2", {}, "measures"), dataTable(head, rows)];
+}
+
+/** Parameters and measures of the start and of what was found, side by side. */
+function comparison(designs: Design[], units: Units): HTMLElement[] {
+  if (designs.length < 2) return [];
+  const measures = (design: Design) => design.analyses.flatMap((analysis) => analysis.measures);
+  const rows: DataRow[] = Object.keys(designs[0].values)
+      .map((name) => ({ cells: [name, ...designs.map(({ values }) => show(values[name]))] }));
+  for (const { name, unit } of measures(designs[designs.length - 1])) {
+    const value = (design: Design) => measures(design).find((measure) => measure.name === name)?.value ?? null;
+    const cells = designs.map(value).map((number) => (number === null ? "–" : units.text(number, unit)));
+    rows.push({ cells: [name, ...cells] });
+  }
+  const outcomes = designs.map(({ analyses }) => analyses.find(({ status }) => status !== "ok")?.status ?? "ok");
+  if (outcomes.some((outcome) => outcome !== "ok")) rows.push({ cells: ["status", ...outcomes] });
+  return [make("h2", {}, "before and after"), dataTable(["", ...designs.map(({ name }) => name)], rows)];
 }
 
 export interface ReportActions {
@@ -96,17 +107,13 @@ function analysisList(data: PageData, present: Analysis, chosen: (number: number
   const rows = data.analyses.map((analysis, k) => {
     const warnings = analysis.warnings.length;
     const cells = [`${k + 1} ${analysis.type}`, analysis.status, warnings > 0 ? `${warnings} warnings` : ""];
-    const row = make("tr", { tabindex: "0", class: analysis === present ? "chosen" : "" },
-                     ...cells.map((c) => make("td", {}, c)));
-    row.addEventListener("click", () => chosen(k));
-    row.addEventListener("keydown", (event) => event.key === "Enter" && chosen(k));
-    return row;
+    return { cells, chosen: analysis === present, action: () => chosen(k) };
   });
-  return [make("h2", {}, "analyses"), make("div", { class: "scroll" }, make("table", {}, ...rows))];
+  return [make("h2", {}, "analyses"), dataTable([], rows)];
 }
 
-export function reportPanel(data: PageData, motion: Motion, actions: ReportActions): HTMLElement {
-  const { analysis, names, shape } = motion;
+export function reportPanel(data: PageData, analysis: Analysis, motion: Motion, actions: ReportActions): HTMLElement {
+  const { names, shape, units } = motion;
   const root = make("div");
   const facts = make("dl");
   const fact = (name: string, value: unknown) => facts.append(make("dt", {}, name), make("dd", {}, show(value)));
@@ -129,14 +136,18 @@ export function reportPanel(data: PageData, motion: Motion, actions: ReportActio
       fact(name.replace(/_/g, " "), value);
     }
   }
-  fact("computed in", `${short(analysis.seconds)} s`);
+  if (analysis.seconds > 0) fact("computed in", `${short(analysis.seconds)} s`);
   root.append(facts);
   if (analysis.shapes.length > 0) {
     root.append(make("h2", {}, analysis.type === "equilibrium" ? "softest mode" : "shapes"),
                 modeTable(analysis, shape, (k) => actions.showShape(k)));
   }
-  root.append(...measureTable(analysis.measures, (t) => actions.goToTime(t)), ...tables, ...analysisList(data, analysis, (k) => actions.showAnalysis(k)),
+  root.append(...measureTable(analysis.measures, units, (t) => actions.goToTime(t)));
+  if (analysis.type === "optimise") root.append(...comparison(analysis.designs ?? [], units));
+  root.append(...tables, ...analysisList(data, analysis, (k) => actions.showAnalysis(k)),
               ...parameters(data, analysis));
+  if (units.any)
+    root.append(make("p", { class: "note" }, "Plots, tables and measures are in the units asked for; other named results are in SI."));
   if (data.description) root.append(make("h2", {}, "scene"), make("p", {}, data.description));
   for (const note of data.notes) root.append(make("p", { class: "note" }, note));
   root.append(make("p", { class: "note" }, `catena ${data.version}`));

@@ -1,25 +1,21 @@
 // The mechanism on its canvas: camera, pictures, pointer.
 
 import { ArrowKind, arrowKinds, Arrows } from "./arrows";
+import { MechanismBehind } from "./behind";
 import { Camera } from "./camera";
 import { byId } from "./dom";
+import { listenToPointers } from "./gestures";
 import { LargeScene } from "./large_scene";
 import { Highlight, MechanismPainter, nothing } from "./mechanism";
 import { Motion } from "./motion";
 import { CanvasPainter, Painter, SvgPainter } from "./painter";
 import { ShapeTable } from "./placement";
 import { css, Theme } from "./theme";
+import { Trace, Traces } from "./traces";
 
 /** More shapes than this in sight go to WebGL: a canvas draws some ten thousand lines a picture. */
 const mostOnCanvas = 4000;
 const room = 46;
-
-export interface Trace {
-  body: number;
-  u: number;
-  v: number;
-  name: string;
-}
 
 export class Stage {
   readonly camera = new Camera();
@@ -34,9 +30,11 @@ export class Stage {
   arrowScale = 1;
   traces: Trace[] = [];
   lit: Highlight = nothing;
+  behind: MechanismBehind | null = null;
+  showBehind = true;
   private extentLow: [number, number] = [0, 0];
   private extentHigh: [number, number] = [0, 0];
-  private paths = new Map<string, Float64Array>();
+  private paths!: Traces;
   /** Pictures drawn so far, for those who measure. */
   pictures = 0;
 
@@ -46,8 +44,12 @@ export class Stage {
     this.listen();
   }
 
-  show(motion: Motion): void {
+  /** `others`: motions that may be shown in its place, for which there is to be room. */
+  show(motion: Motion, behind: { name: string; motion: Motion } | null, others: Motion[]): void {
     this.motion = motion;
+    this.behind = behind && new MechanismBehind(behind.name, behind.motion);
+    if (this.behind && this.behind.shapes > mostOnCanvas) this.behind = null;
+    this.paths = new Traces(motion);
     const { drawing } = this;
     const redundant = new Set<number>();
     const names = new Set(motion.analysis.redundant);
@@ -55,10 +57,9 @@ export class Stage {
     this.shapes = new ShapeTable(drawing.shapes);
     this.painter = new MechanismPainter(drawing, this.shapes, redundant);
     this.arrows = new Arrows(motion);
-    this.paths.clear();
     this.large = drawing.shapes.length > mostOnCanvas ? LargeScene.create(this.glCanvas, drawing, this.shapes) : null;
     this.large?.paint(this.theme);
-    this.findExtent();
+    this.findExtent(others.map((other) => new MechanismBehind("", other)));
   }
 
   get drawing() {
@@ -71,14 +72,23 @@ export class Stage {
   }
 
   /** Over at most some twenty poses: what lies between is not far from them. */
-  private findExtent(): void {
+  private findExtent(others: MechanismBehind[]): void {
     const low: [number, number] = [Infinity, Infinity];
     const high: [number, number] = [-Infinity, -Infinity];
     const samples = this.drawing.shapes.length > mostOnCanvas ? 3 : 24;
     const { begin, end } = this.motion;
     for (let k = 0; k <= samples; ++k) {
-      this.motion.moveTo(begin + (k / samples) * (end - begin), 0);
+      const clock = begin + (k / samples) * (end - begin);
+      this.motion.moveTo(clock, 0);
       this.painter.extent(this.motion.pose, low, high);
+      this.behind?.moveWith(this.motion, clock, 0);
+      this.behind?.extent(low, high);
+    }
+    for (const other of others) {
+      for (const part of [0, 0.25, 0.5, 0.75, 1]) {
+        other.motion.moveTo(other.motion.begin + part * (other.motion.end - other.motion.begin), 0);
+        other.extent(low, high);
+      }
     }
     if (!(low[0] <= high[0])) [low[0], low[1], high[0], high[1]] = [-1, -1, 1, 1];
     this.extentLow = low;
@@ -127,37 +137,24 @@ export class Stage {
   }
 
   private paint(painter: Painter, clock: number, only: number[] | null): void {
+    if (this.behind && this.showBehind) {
+      this.behind.moveWith(this.motion, clock, this.swing);
+      this.behind.draw(painter, this.camera, this.theme, this.traces);
+    }
     this.painter.draw(painter, this.camera, this.motion.pose, this.theme, this.lit, only);
     for (const trace of this.traces) {
-      const { x, y, points } = this.pageTrace(trace);
+      const { x, y, points } = this.paths.onPage(trace, this.camera);
       painter.path(points, false, { stroke: css(this.theme.accent), width: 1.6 });
       painter.circle(x, y, 3.2, { fill: css(this.theme.accent) });
     }
     const pose = this.motion.nearestPose(clock);
+    let many = false;
     for (const kind of arrowKinds) {
       if (this.shownArrows.has(kind) && this.arrows.has(kind) && this.motion.shape < 0)
-        this.arrows.draw(kind, painter, this.camera, this.theme, pose, this.arrowScale);
+        many = this.arrows.draw(kind, painter, this.camera, this.theme, pose, this.arrowScale, this.lit) || many;
     }
-  }
-
-  /** A trace on the page, and where its point is now. */
-  pageTrace(trace: Trace): { x: number; y: number; points: Float64Array } {
-    let path = this.paths.get(trace.name);
-    if (!path) {
-      path = this.motion.path(trace.body, trace.u, trace.v);
-      this.paths.set(trace.name, path);
-    }
-    const points = new Float64Array(path.length);
-    for (let k = 0; k < path.length; k += 2) {
-      points[k] = this.camera.toPageX(path[k]);
-      points[k + 1] = this.camera.toPageY(path[k + 1]);
-    }
-    const { pose } = this.motion;
-    return {
-      x: this.camera.toPageX(pose.pointX(trace.body, trace.u, trace.v)),
-      y: this.camera.toPageY(pose.pointY(trace.body, trace.u, trace.v)),
-      points,
-    };
+    const note = document.getElementById("arrow-note");
+    if (note && note.hidden === many) note.hidden = !many;
   }
 
   svg(clock: number): string {
@@ -191,52 +188,14 @@ export class Stage {
   }
 
   private listen(): void {
-    const pointers = new Map<number, { x: number; y: number }>();
-    let moved = 0;
-    const at = (event: PointerEvent | WheelEvent) => {
-      const box = this.canvas.getBoundingClientRect();
-      return { x: event.clientX - box.left, y: event.clientY - box.top };
-    };
-    this.canvas.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      const p = at(event);
-      this.camera.zoom(Math.exp(-event.deltaY * 0.0015), p.x, p.y);
-      this.changed();
-    }, { passive: false });
-    this.canvas.addEventListener("pointerdown", (event) => {
-      this.canvas.setPointerCapture(event.pointerId);
-      pointers.set(event.pointerId, at(event));
-      moved = 0;
+    listenToPointers(this.canvas, {
+      zoom: (factor, x, y) => (this.camera.zoom(factor, x, y), this.changed()),
+      pan: (dx, dy) => (this.camera.pan(dx, dy), this.changed()),
+      click: (x, y) => this.clicked(this.find(x, y)),
+      reset: () => this.fit(),
+      point: (x, y) => this.hovered(this.find(x, y), x, y),
+      leave: () => this.hovered(-1, 0, 0),
     });
-    this.canvas.addEventListener("pointermove", (event) => {
-      const now = at(event);
-      const before = pointers.get(event.pointerId);
-      if (!before) {
-        this.hovered(this.find(now.x, now.y), now.x, now.y);
-        return;
-      }
-      const others = [...pointers.entries()].filter(([id]) => id !== event.pointerId);
-      if (others.length === 1) {
-        const other = others[0][1];
-        const apart = (p: { x: number; y: number }) => Math.hypot(p.x - other.x, p.y - other.y);
-        const factor = apart(now) / apart(before);
-        if (isFinite(factor) && factor > 0) this.camera.zoom(factor, (now.x + other.x) / 2, (now.y + other.y) / 2);
-      }
-      const share = 1 / pointers.size;
-      this.camera.pan((now.x - before.x) * share, (now.y - before.y) * share);
-      moved += Math.abs(now.x - before.x) + Math.abs(now.y - before.y);
-      pointers.set(event.pointerId, now);
-      this.changed();
-    });
-    const release = (event: PointerEvent) => {
-      const p = at(event);
-      const was = pointers.delete(event.pointerId);
-      if (was && moved < 5 && event.type === "pointerup") this.clicked(this.find(p.x, p.y));
-    };
-    this.canvas.addEventListener("pointerup", release);
-    this.canvas.addEventListener("pointercancel", release);
-    this.canvas.addEventListener("pointerleave", () => this.hovered(-1, 0, 0));
-    this.canvas.addEventListener("dblclick", () => this.fit());
   }
 
   /** Body and element of a shape. */

@@ -3,11 +3,15 @@
 import { Analysis } from "./contract";
 import { decodeNumbers } from "./decode";
 import { short } from "./ticks";
+import { Units } from "./units";
+
+/** Stands for the number of a row where a column is asked for: iterates of an optimisation have no column that counts. */
+export const rowNumber = -1;
 
 export class Table {
   private readonly known = new Map<number, ArrayLike<number>>();
 
-  constructor(readonly analysis: Analysis) {}
+  constructor(readonly analysis: Analysis, private readonly units: Units) {}
 
   get names(): string[] {
     return this.analysis.columns.map((column) => column.name);
@@ -17,23 +21,36 @@ export class Table {
     return this.analysis.rows.count;
   }
 
+  name(column: number): string {
+    if (column === rowNumber) return this.analysis.type === "optimise" ? "iterate" : "row";
+    return this.analysis.columns[column].name;
+  }
+
   unit(column: number): string {
-    const unit = this.analysis.columns[column].unit;
-    return unit === "1" ? "" : unit;
+    return column === rowNumber ? "" : this.units.of(this.analysis.columns[column].unit).unit;
   }
 
   values(column: number): ArrayLike<number> {
     let values = this.known.get(column);
     if (!values) {
-      values = decodeNumbers(this.analysis.columns[column].values);
+      values = column === rowNumber ? Float64Array.from({ length: this.rows }, (_, k) => this.numberOf(k))
+                                    : this.shown(column);
       this.known.set(column, values);
     }
     return values;
   }
 
+  /** As they are shown: in units that need not be those of the data. */
+  private shown(column: number): ArrayLike<number> {
+    const { unit, values } = this.analysis.columns[column];
+    const { factor } = this.units.of(unit);
+    const numbers = decodeNumbers(values);
+    return factor === 1 ? numbers : numbers.map((value) => factor * value);
+  }
+
   /** Whether values have a place along an axis: words have none. */
   hasNumbers(column: number): boolean {
-    return this.analysis.columns[column].words === undefined;
+    return column === rowNumber || this.analysis.columns[column].words === undefined;
   }
 
   /** The columns that can be plotted, `most` at most. */
@@ -44,7 +61,8 @@ export class Table {
   /** A value for people. */
   text(column: number, row: number): string {
     const value = this.values(column)[row];
-    return this.analysis.columns[column].words?.[String(value)] ?? short(value);
+    const words = column === rowNumber ? undefined : this.analysis.columns[column].words;
+    return words?.[String(value)] ?? short(value);
   }
 
   find(name: string): number {
@@ -66,7 +84,7 @@ export class Table {
 
   csv(columns: number[]): string {
     const quoted = (name: string) => (/[",\r\n]/.test(name) ? `"${name.replace(/"/g, '""')}"` : name);
-    const lines = [columns.map((c) => quoted(this.analysis.columns[c].name)).join(",")];
+    const lines = [columns.map((c) => quoted(this.name(c))).join(",")];
     const cell = (c: number, k: number) => {
       const value = this.values(c)[k];
       if (!this.hasNumbers(c)) return quoted(this.text(c, k));

@@ -1,5 +1,6 @@
 // The tab with the rows as a table: what any analysis has, also one this page does not know.
 
+import { DataRow, dataTable } from "./data_table";
 import { button, make } from "./dom";
 import { save } from "./files";
 import { Table, withUnit } from "./table";
@@ -13,15 +14,11 @@ export function tablePanel(table: Table, name: string, chosen: (row: number) => 
   if (names.length === 0 || rows === 0) return make("p", { class: "note" }, "This analysis has no rows.");
   const columns = names.map((_, k) => k).slice(0, mostColumns);
   const step = Math.max(1, Math.ceil(rows / mostRows));
-  const body: HTMLElement[] = [
-    make("tr", {}, ...columns.map((c) => make("th", {}, withUnit(names[c], table.unit(c))))),
-  ];
+  const head = columns.map((c) => withUnit(names[c], table.unit(c)));
+  const lines: DataRow[] = [];
   for (let row = 0; row < rows; row += step) {
-    const line = make("tr", { tabindex: "0" }, ...columns.map((c) => make("td", {}, table.text(c, row))));
     const number = table.numberOf(row);
-    line.addEventListener("click", () => chosen(number));
-    line.addEventListener("keydown", (event) => event.key === "Enter" && chosen(number));
-    body.push(line);
+    lines.push({ cells: columns.map((c) => table.text(c, row)), action: () => chosen(number) });
   }
   const said: string[] = [];
   if (step > 1) said.push(`every ${step}th of ${rows} rows`);
@@ -29,6 +26,6 @@ export function tablePanel(table: Table, name: string, chosen: (row: number) => 
   root.append(make("p", { class: "note" }, said.length > 0 ? `Shown: ${said.join(", ")}. ` : "",
                    button("CSV", "save all rows and columns as CSV",
                           () => save(`${name}.csv`, table.csv(names.map((_, k) => k)), "text/csv"))),
-              make("div", { class: "scroll" }, make("table", {}, ...body)));
+              dataTable(head, lines));
   return root;
 }

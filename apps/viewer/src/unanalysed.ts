@@ -8,7 +8,7 @@ export function unanalysed(): Analysis {
     type: "none", status: "ok", message: "The scene has no analyses: it is shown as it is given.", warnings: [],
     seconds: 0, redundant: [], set: {}, fields: {}, measures: [], drawing: 0, rows: { count: 0, total: 0, stride: 1 }, columns: [],
     poses: {
-      count: 0, total: 0, stride: 1, t: empty,
+      count: 0, total: 0, stride: 1, arrows: true, t: empty,
       frames: { type: "float32", step: [1, 1, 1], base: empty, data: "" },
     },
     shapes: [],

@@ -48,7 +48,7 @@ std::string DesignRuns::take_measures(const AnalysisTask& inner, const AnalysisR
 
 std::string DesignRuns::measure(const ParameterSeeds& seeds, bool gradients, std::vector<Measured>& measures) {
   std::string reason;
-  const std::optional<Status> status = run_design(context_, seeds, gradients ? &request_ : nullptr,
+  const std::optional<Status> status = run_design(context_, seeds, gradients ? &request_ : nullptr, nullptr,
                                                   [&](const AnalysisTask& inner, const AnalysisResult& result) {
                                                     reason = take_measures(inner, result, gradients, measures);
                                                     return reason.empty();

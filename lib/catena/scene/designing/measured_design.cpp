@@ -32,11 +32,13 @@ bool run_inner(const AnalysisContext& outer, const AnalysisTask& inner, InnerRun
                           .progress = {},
                           .models = outer.models,
                           .seeds = run.seeds,
-                          .design = run.design};
+                          .design = run.design,
+                          .poses = run.poses};
   if (!context.model) {
     refuse(result, std::move(no_model));
     return false;
   }
+  if (context.poses) context.poses->begin_poses(context.model);
   if (run.is_shown) {
     context.progress = outer.progress;
     context.verbose = outer.verbose;
@@ -56,10 +58,10 @@ bool run_inner(const AnalysisContext& outer, const AnalysisTask& inner, InnerRun
 }
 
 std::optional<Status> run_design(const AnalysisContext& context, ParameterSeeds seeds, const DesignRequest* design,
-                                 const TakeAnalysis& take) {
+                                 DesignSink* watch, const TakeAnalysis& take) {
   SystemState state = context.state;
   const ParameterSeeds given = seeds;
-  NoRows rows;
+  NoRows nobody;
   std::optional<MissingDerivatives> missing;
   if (design) missing.emplace(*context.models, *design);
   for (const AnalysisTask& inner : context.task.of) {
@@ -69,8 +71,15 @@ std::optional<Status> run_design(const AnalysisContext& context, ParameterSeeds 
       if (missing) missing->start_anew();
     }
     AnalysisResult result;
-    InnerRun run{.seeds = seeds, .state = state, .rows = rows, .design = design};
-    if (!run_inner(context, inner, run, result)) return std::nullopt;
+    result.type = inner.type();
+    InnerRun run{.seeds = seeds,
+                 .state = state,
+                 .rows = watch ? watch->begin_analysis(inner.type()) : nobody,
+                 .design = design,
+                 .poses = watch ? &watch->poses() : nullptr};
+    const bool possible = run_inner(context, inner, run, result);
+    if (watch) watch->end_analysis(result);
+    if (!possible) return std::nullopt;
     if (!result.report.ok()) return result.report.status;
     if (missing) missing->complete(inner, seeds, result);
     if (!take(inner, result)) break;
@@ -90,7 +99,8 @@ const MeasureResult* value_of(const PlacedMeasure& measure, const AnalysisResult
   return found != result.measures.end() && found->value ? &*found : nullptr;
 }
 
-Status measure_design(const AnalysisContext& context, const ParameterSeeds& seeds, std::vector<double>& measures) {
+Status measure_design(const AnalysisContext& context, const ParameterSeeds& seeds, DesignSink* watch,
+                      std::vector<double>& measures) {
   bool measured = true;
   const auto take = [&](const AnalysisTask& inner, const AnalysisResult& result) {
     for (const PlacedMeasure& placed : inner.measures) {
@@ -100,8 +110,15 @@ Status measure_design(const AnalysisContext& context, const ParameterSeeds& seed
     }
     return true;
   };
-  const Status status = run_design(context, seeds, nullptr, take).value_or(Status::refused);
+  const Status status = run_design(context, seeds, nullptr, watch, take).value_or(Status::refused);
   return status == Status::ok && !measured ? Status::not_converged : status;
+}
+
+void show_design(const AnalysisContext& context, const ParameterSeeds& seeds, DesignLabel label,
+                 std::unique_ptr<DesignSink> watch) {
+  const auto all = [](const AnalysisTask&, const AnalysisResult&) { return true; };
+  static_cast<void>(run_design(context, seeds, nullptr, watch.get(), all));  // its analyses say how they ended
+  context.poses->add_design(std::move(label), std::move(watch));
 }
 
 }  // namespace catena

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "catena/scene/designing/design_runs.hpp"
+#include "catena/scene/designing/measured_design.hpp"
 
 namespace catena {
 namespace {
@@ -121,6 +122,25 @@ void add_fields(AnalysisResult& result, const DesignGoal& goal, const DesignOutc
   result.fields.push_back({"solver", std::string(names[static_cast<std::size_t>(method)])});
 }
 
+/// The analyses of the start and of the design found, for who draws.
+void show_designs(const AnalysisContext& context, const DesignRuns& runs, const std::vector<double>& start,
+                  const std::vector<double>& found, std::int64_t rows) {
+  if (!context.poses || found.empty()) return;
+  constexpr std::int64_t both = 2;
+  const auto show = [&](std::string name, std::int64_t number, std::int64_t row, std::span<const double> x) {
+    auto watch = context.poses->watch_design(number, both);
+    if (!watch) return;
+    DesignLabel label{.name = std::move(name), .row = row, .values = {}};
+    for (std::size_t v = 0; v < x.size(); ++v) {
+      const auto parameter = static_cast<std::size_t>(context.task.goal.variables[v].parameter);
+      label.values.emplace_back(context.models->names().all()[parameter], x[v]);
+    }
+    show_design(context, runs.seeds_of(x), std::move(label), std::move(watch));
+  };
+  show("start", 0, -1, start);
+  show("best", 1, rows - 1, found);
+}
+
 }  // namespace
 
 void run_optimise(AnalysisContext& context, AnalysisResult& result) {
@@ -163,6 +183,7 @@ void run_optimise(AnalysisContext& context, AnalysisResult& result) {
   result.columns = std::move(info);
   result.rows = rows;
   add_fields(result, task.goal, outcome, variables, options.method);
+  show_designs(context, runs, problem.start, outcome.x, rows);
   for (std::size_t v = 0; v < outcome.x.size(); ++v)
     context.values_at_end.push_back({task.goal.variables[v].parameter, outcome.x[v]});
 }

@@ -132,7 +132,8 @@ void run_sensitivity(AnalysisContext& context, AnalysisResult& result) {
                .state = context.state,
                .rows = verify ? static_cast<RowSink&>(kept) : context.rows,
                .design = &design,
-               .is_shown = true};
+               .is_shown = true,
+               .poses = context.poses};
   if (!run_inner(context, inner, run, result)) return;
   MissingDerivatives(*context.models, design).complete(inner, context.seeds, result);
   context.values_at_end = std::move(run.values_at_end);

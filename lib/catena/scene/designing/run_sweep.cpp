@@ -10,6 +10,7 @@
 #include <exception>
 #include <limits>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <thread>
 
@@ -23,6 +24,7 @@ namespace {
 struct SweptDesign {
   std::vector<double> row;
   Status status = Status::ok;
+  std::unique_ptr<DesignSink> seen;  // by who draws, if at all
 };
 
 class Sweep {
@@ -39,6 +41,7 @@ class Sweep {
 
  private:
   SweptDesign analyse(std::int64_t k) const;
+  void show(std::int64_t k, SweptDesign& design);
   void work();
   bool take_next(std::int64_t& k);
   void give(std::int64_t k, SweptDesign design);
@@ -69,11 +72,21 @@ SweptDesign Sweep::analyse(std::int64_t k) const {
   ParameterSeeds seeds = context_.seeds;
   for (std::size_t p = 0; p < width_; ++p) seeds.push_back({context_.task.sweep.over[p].parameter, values[p]});
   std::vector<double> measures;
-  design.status = measure_design(context_, seeds, measures);
+  if (context_.poses) design.seen = context_.poses->watch_design(k, count_);
+  design.status = measure_design(context_, seeds, design.seen.get(), measures);
   if (design.status == Status::ok)
     std::copy(measures.begin(), measures.end(), design.row.begin() + static_cast<std::ptrdiff_t>(1 + width_));
   design.row.back() = static_cast<double>(design.status);
   return design;
+}
+
+void Sweep::show(std::int64_t k, SweptDesign& design) {
+  DesignLabel label{.name = fmt::format("design {}", k + 1), .row = k, .values = {}};
+  for (std::size_t p = 0; p < width_; ++p) {
+    const auto parameter = static_cast<std::size_t>(context_.task.sweep.over[p].parameter);
+    label.values.emplace_back(context_.models->names().all()[parameter], design.row[1 + p]);
+  }
+  context_.poses->add_design(std::move(label), std::move(design.seen));
 }
 
 bool Sweep::take_next(std::int64_t& k) {
@@ -89,8 +102,9 @@ void Sweep::give(std::int64_t k, SweptDesign design) {
   waiting_.emplace(k, std::move(design));
   for (auto first = waiting_.begin(); first != waiting_.end() && first->first == given_ && !stopped_;
        first = waiting_.begin()) {
-    const SweptDesign& one = first->second;
+    SweptDesign& one = first->second;
     if (one.status != Status::ok) ++failed_[std::string(to_string(one.status))];
+    if (one.seen) show(given_, one);
     if (!context_.rows.row(one.row)) stopped_ = true;
     waiting_.erase(first);
     ++given_;

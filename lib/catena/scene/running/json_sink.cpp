@@ -2,6 +2,7 @@
 #include <limits>
 #include <optional>
 
+#include "catena/results/measure_gradient.hpp"
 #include "catena/results/status_word.hpp"
 #include "catena/scene/json/json_text.hpp"
 #include "catena/scene/running/field_json.hpp"
@@ -95,10 +96,7 @@ void append_measures(std::string& out, const AnalysisResult& result) {
     out += ": ";
     FieldWriter{out}(record);
     gradients += ": ";
-    std::vector<std::pair<std::string, double>> gradient;
-    for (std::size_t p = 0; p < result.gradient_parameters.size() && p < measure.gradient.size(); ++p)
-      gradient.emplace_back(result.gradient_parameters[p], measure.gradient[p]);
-    append_object(gradients, gradient);
+    append_object(gradients, named_gradient(result, measure));
   }
   out += '}';
   if (result.gradient_parameters.empty()) return;

@@ -53,8 +53,10 @@ void RunRecorder::begin_poses(std::shared_ptr<const Model> model) {
     record_.model = std::move(model);
     return;
   }
-  current().layout = layout_of(*model, limits_.arrow_bodies);
+  current().layout = layout_of(*model, limits_.arrow_parts);
   current().model = std::move(model);
+  // Coordinates take two bytes where they are many, arrows four always.
+  current().poses = ThinnedRows(current().layout.arrows ? limits_.pose_values / 2 : limits_.pose_values);
   current().poses.begin(current().layout.width());
 }
 
@@ -128,6 +130,38 @@ void RunRecorder::shape(const Evaluator& evaluator, std::span<const double> rate
     for (std::size_t k = 0; k < 3; ++k) changes.push_back(rates[3 * static_cast<std::size_t>(p) + k]);
   }
   current().shapes.push_back(std::move(changes));
+}
+
+/// A recorder of its own for one design, with a share of the room.
+class RunRecorder::OfDesign final : public DesignSink {
+ public:
+  explicit OfDesign(const RecordLimits& limits) : recorder_(limits) {}
+
+  RowSink& begin_analysis(std::string_view type) override { return recorder_.begin_analysis(type); }
+  void end_analysis(const AnalysisResult& result) override { recorder_.end_analysis(result); }
+  PoseSink& poses() override { return recorder_; }
+  std::vector<RecordedAnalysis>& analyses() { return recorder_.record_.analyses; }
+
+ private:
+  RunRecorder recorder_;
+};
+
+std::unique_ptr<DesignSink> RunRecorder::watch_design(std::int64_t number, std::int64_t count) const {
+  const std::size_t parts = record_.model->bodies.size() + record_.model->elements.size();
+  const std::size_t most = std::min(limits_.designs, limits_.design_parts / std::max<std::size_t>(parts, 1));
+  constexpr std::size_t fewest = 2;  // one design alone cannot be compared
+  if (most < fewest) return nullptr;
+  const std::int64_t stride = (count + static_cast<std::int64_t>(most) - 1) / static_cast<std::int64_t>(most);
+  if (number % std::max<std::int64_t>(stride, 1) != 0) return nullptr;
+  RecordLimits share = limits_;
+  share.pose_values /= 2 * limits_.designs;
+  share.column_values /= 2 * limits_.designs;
+  return std::make_unique<OfDesign>(share);
+}
+
+void RunRecorder::add_design(DesignLabel label, std::unique_ptr<DesignSink> design) {
+  // Only watch_design() makes them.
+  current().designs.push_back({std::move(label), std::move(static_cast<OfDesign&>(*design).analyses())});
 }
 
 std::vector<Frame<double>> frames_of(const PoseLayout& layout, std::span<const double> pose) {

@@ -2,6 +2,9 @@
 //
 // Poses are rows of numbers (PoseLayout): time, frames of the centroids, and for small scenes velocities, reactions and
 // applied forces as well. Values that an analysis does not give are NaN. Lengths m, angles rad, forces N.
+//
+// Designs of optimisations and sweeps are runs within the run, each with a share of the room. Of many designs every
+// second, third ... is kept.
 #pragma once
 
 #include <memory>
@@ -19,8 +22,10 @@ namespace catena {
 struct RecordLimits {
   std::size_t pose_values = 18'000'000;
   std::size_t column_values = 1'500'000;
-  std::size_t columns = 600;       ///< kept of an analysis, the first ones
-  std::size_t arrow_bodies = 400;  ///< bodies and elements of scenes with arrows: more arrows hide what they point at
+  std::size_t columns = 600;         ///< kept of an analysis, the first ones
+  std::size_t arrow_parts = 4000;    ///< bodies and elements of scenes with arrows, which take 4 bytes a component
+  std::size_t designs = 48;          ///< of an analysis: more cannot be told apart on parallel axes
+  std::size_t design_parts = 20000;  ///< bodies and elements of all of them: each design has a drawing of its own
 };
 
 /// Where the parts of a pose stand in its row.
@@ -37,6 +42,8 @@ struct PoseLayout {
   std::size_t width() const { return load_forces() + 2 * loads.size(); }
 };
 
+struct RecordedDesign;
+
 struct RecordedAnalysis {
   AnalysisResult result;
   std::shared_ptr<const Model> model;
@@ -45,6 +52,12 @@ struct RecordedAnalysis {
   PoseLayout layout;
   ThinnedRows poses;
   std::vector<std::vector<double>> shapes;  ///< changes of the last pose's frames, three a body
+  std::vector<RecordedDesign> designs;      ///< those that are kept, in order
+};
+
+struct RecordedDesign {
+  DesignLabel label;
+  std::vector<RecordedAnalysis> analyses;
 };
 
 struct RunRecord {
@@ -68,8 +81,11 @@ class RunRecorder final : public ResultSink, public PoseSink, private RowSink {
   void pose(const Snapshot& snapshot) override;
   void shape(const Evaluator& evaluator, std::span<const double> rates) override;
   Needs needs() const override;
+  std::unique_ptr<DesignSink> watch_design(std::int64_t number, std::int64_t count) const override;
+  void add_design(DesignLabel label, std::unique_ptr<DesignSink> design) override;
 
  private:
+  class OfDesign;
   void begin(std::span<const ColumnInfo> columns) override;
   bool row(std::span<const double> values) override;
   void take_velocities(const Snapshot& snapshot);

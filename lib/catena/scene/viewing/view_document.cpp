@@ -6,9 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <unordered_map>
 
 #include "catena/drawing/shapes/guide_travel.hpp"
 #include "catena/drawing/shapes/pen.hpp"
+#include "catena/results/measure_gradient.hpp"
 #include "catena/results/status_word.hpp"
 #include "catena/scene/running/field_json.hpp"
 #include "catena/scene/viewing/packed_numbers.hpp"
@@ -17,44 +19,44 @@
 namespace catena {
 namespace {
 
+/// Calls f for every analysis, those of designs among them.
+template <class F>
+void for_each_analysis(const std::vector<RecordedAnalysis>& analyses, F&& f) {
+  for (const RecordedAnalysis& analysis : analyses) {
+    f(analysis);
+    for (const RecordedDesign& design : analysis.designs) for_each_analysis(design.analyses, f);
+  }
+}
+
 /// Drawings by model: analyses with parameters of their own have one of their own.
 class Drawings {
  public:
   explicit Drawings(const RunRecord& record) {
     add(record.model);
-    for (const RecordedAnalysis& analysis : record.analyses) {
+    for_each_analysis(record.analyses, [this](const RecordedAnalysis& analysis) {
       add(analysis.model);
       Drawing& drawing = drawings_[number(analysis.model)];
       for (std::size_t k = 0; k < analysis.poses.size() && !drawing.guides.empty(); ++k)
         observe_guides(drawing, frames_of(analysis.layout, analysis.poses[k]));
-    }
+    });
     for (Drawing& drawing : drawings_) fit_guides(drawing, 0.2 * drawing.typical_length);
   }
 
-  std::size_t number(const std::shared_ptr<const Model>& model) const {
-    return static_cast<std::size_t>(std::find(models_.begin(), models_.end(), model) - models_.begin());
-  }
+  std::size_t number(const std::shared_ptr<const Model>& model) const { return numbers_.at(model.get()); }
   void append_to(ViewJson& json) const {
     json.key("drawings").open('[');
-    const std::string known = names_of(*models_.front());
     for (std::size_t k = 0; k < models_.size(); ++k) {
       json.open('{');
       append_drawing(json, *models_[k], drawings_[k]);
-      if (k > 0 && names_of(*models_[k]) != known) append_names(json, *models_[k]);
+      if (k > 0 && !same_names(*models_[k], *models_.front())) append_names(json, *models_[k]);
       json.close('}');
     }
     json.close(']');
   }
 
  private:
-  static std::string names_of(const Model& model) {
-    std::string out;
-    ViewJson json(out);
-    append_names(json, model);
-    return out;
-  }
   void add(const std::shared_ptr<const Model>& model) {
-    if (number(model) < models_.size()) return;
+    if (!numbers_.emplace(model.get(), models_.size()).second) return;
     models_.push_back(model);
     drawings_.push_back(draw_model(*model));
     observe_guides(drawings_.back(), given_poses(*model));
@@ -62,6 +64,7 @@ class Drawings {
 
   std::vector<std::shared_ptr<const Model>> models_;
   std::vector<Drawing> drawings_;
+  std::unordered_map<const Model*, std::size_t> numbers_;
 };
 
 /// The values of a column that number a status, each with its name.
@@ -99,8 +102,7 @@ void append_measures(ViewJson& json, const AnalysisResult& result) {
     if (measure.t) json.key("t").value(*measure.t);
     if (!result.gradient_parameters.empty()) {
       json.key("gradient").open('{');
-      for (std::size_t p = 0; p < result.gradient_parameters.size() && p < measure.gradient.size(); ++p)
-        json.key(result.gradient_parameters[p]).value(measure.gradient[p]);
+      for (const auto& [parameter, derivative] : named_gradient(result, measure)) json.key(parameter).value(derivative);
       json.close('}');
     }
     json.close('}');
@@ -108,7 +110,25 @@ void append_measures(ViewJson& json, const AnalysisResult& result) {
   json.close(']');
 }
 
-void append_analysis(ViewJson& json, const RecordedAnalysis& analysis, std::size_t drawing) {
+void append_analysis(ViewJson& json, const RecordedAnalysis& analysis, const Drawings& drawings);
+
+/// What an optimisation or a sweep made of some of its designs; nothing for other analyses.
+void append_designs(ViewJson& json, const std::vector<RecordedDesign>& designs, const Drawings& drawings) {
+  if (designs.empty()) return;
+  json.key("designs").open('[');
+  for (const RecordedDesign& design : designs) {
+    json.open('{').key("name").text(design.label.name);
+    if (design.label.row >= 0) json.key("row").value(design.label.row);
+    json.key("values").open('{');
+    for (const auto& [name, value] : design.label.values) json.key(name).value(value);
+    json.close('}').key("analyses").open('[');
+    for (const RecordedAnalysis& analysis : design.analyses) append_analysis(json, analysis, drawings);
+    json.close(']').close('}');
+  }
+  json.close(']');
+}
+
+void append_analysis(ViewJson& json, const RecordedAnalysis& analysis, const Drawings& drawings) {
   const AnalysisReport& report = analysis.result.report;
   json.open('{').key("type").text(analysis.result.type).key("status").text(to_string(report.status));
   json.key("message").text(report.message).key("warnings").open('[');
@@ -123,7 +143,7 @@ void append_analysis(ViewJson& json, const RecordedAnalysis& analysis, std::size
   json.close('}').key("fields").open('{');
   for (const NamedField& field : analysis.result.fields)
     append_field(json.key(field.name).text_of_value(), field.value);
-  json.close('}').key("drawing").count(drawing);
+  json.close('}').key("drawing").count(drawings.number(analysis.model));
   append_measures(json, analysis.result);
   append_columns(json, analysis);
   append_poses(json.key("poses"), analysis);
@@ -133,7 +153,43 @@ void append_analysis(ViewJson& json, const RecordedAnalysis& analysis, std::size
     for (const double value : shape) packed.add_float(value);
     json.packed("float32", packed);
   }
-  json.close(']').close('}');
+  json.close(']');
+  append_designs(json, analysis.designs, drawings);
+  json.close('}');
+}
+
+/// The SI units of this run's numbers that are to be shown in another, with the factor.
+void append_units(ViewJson& json, const RunRecord& record, const OutputUnits::Wishes& wishes) {
+  OutputUnits units;
+  units.ask(record.header.units);
+  units.ask(wishes);
+  json.key("units").open('{');
+  if (units.any()) {
+    std::set<std::string, std::less<>> shown{"m", "s", "rad", "N", "m/s"};  // what the page says of its own accord
+    for_each_analysis(record.analyses, [&](const RecordedAnalysis& analysis) {
+      for (const ColumnInfo& column : analysis.result.columns) shown.emplace(column.unit_text());
+      for (const MeasureResult& measure : analysis.result.measures) shown.emplace(measure.unit);
+    });
+    for (const std::string& si : shown) {
+      const OutputUnits::Conversion to = units.of(si);
+      if (to.unit != si) json.key(si).open('{').key("unit").text(to.unit).key("factor").value(to.factor).close('}');
+    }
+  }
+  json.close('}');
+}
+
+/// What is left out of designs and arrows.
+void note_parts(const RecordedAnalysis& analysis, const std::string& which, std::vector<std::string>& notes) {
+  const std::size_t designs = analysis.designs.size();
+  const bool swept = analysis.result.type == "sweep";
+  if (swept && static_cast<std::int64_t>(designs) < analysis.rows.seen())
+    notes.push_back(
+        fmt::format("{}: the mechanism can be seen in {} of {} designs", which, designs, analysis.rows.seen()));
+  if (analysis.poses.size() > 0 && !analysis.layout.arrows)
+    notes.push_back(
+        fmt::format("{}: no arrows of velocities and forces are in this page, as there are {} bodies and "
+                    "elements",
+                    which, analysis.layout.bodies + analysis.model->elements.size()));
 }
 
 }  // namespace
@@ -152,6 +208,7 @@ std::vector<std::string> view_notes(const RunRecord& record) {
     if (a.columns_kept < a.result.columns.size())
       notes.push_back(fmt::format("{}: the first {} of {} columns are in this page", which, a.columns_kept,
                                   a.result.columns.size()));
+    note_parts(a, which, notes);
   }
   if (static_cast<std::size_t>(record.header.analyses) > record.analyses.size()) {
     const bool stopped = !record.analyses.empty() && record.analyses.back().result.report.status == Status::cancelled;
@@ -162,7 +219,7 @@ std::vector<std::string> view_notes(const RunRecord& record) {
   return notes;
 }
 
-std::string view_document(const RunRecord& record) {
+std::string view_document(const RunRecord& record, const OutputUnits::Wishes& wishes) {
   const Drawings drawings(record);
   std::string out;
   ViewJson json(out);
@@ -172,11 +229,11 @@ std::string view_document(const RunRecord& record) {
   json.key("parameters").open('{');
   for (const auto& [name, value] : record.header.parameters) json.key(name).value(value);
   json.close('}');
+  append_units(json, record, wishes);
   append_names(json, *record.model);
   drawings.append_to(json);
   json.key("analyses").open('[');
-  for (const RecordedAnalysis& analysis : record.analyses)
-    append_analysis(json, analysis, drawings.number(analysis.model));
+  for (const RecordedAnalysis& analysis : record.analyses) append_analysis(json, analysis, drawings);
   json.close(']').key("notes").open('[');
   for (const std::string& note : view_notes(record)) json.text(note);
   json.close(']').close('}');

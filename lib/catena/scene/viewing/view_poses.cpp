@@ -112,6 +112,7 @@ void append_poses(ViewJson& json, const RecordedAnalysis& analysis) {
   for (std::size_t k = 0; k < analysis.poses.size(); ++k) t.add_double(analysis.poses[k][PoseLayout::time]);
   json.key("t").packed("float64", t);
   append_frames(json, analysis);
+  json.key("arrows").value(layout.arrows);
   bool known = false;
   if (const auto packed = part_of(analysis, layout.velocities(), layout.reaction_forces(), known); known)
     json.key("velocities").packed("float32", packed);
