@@ -132,6 +132,7 @@ Report Dynamics::stuck() {
   evaluator_.set_time(integrator_->time());
   evaluator_.set_configuration(integrator_->state().first(q_.size()));
   if (Report sound = watched_.check(); !sound.ok()) return sound;
+  if (Report laws = watched_.check_laws(integrator_->state().subspan(q_.size(), q_.size())); !laws.ok()) return laws;
   report.status = Status::step_too_small;
   const int row = equations_.weakest_row();
   std::string where;

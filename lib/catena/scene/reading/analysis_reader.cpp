@@ -68,7 +68,7 @@ double AnalysisReader::number(const AnalysisKey& key, const JsonValue& value, co
                                      ? ExpectedDimension()
                                      : ExpectedDimension(dimension_of(key.unit));
   const NumberValue read = reading_.numbers.read(value, unit, field);
-  const Evaluation<double> evaluation(value.source(), scene_.expressions, values_, diagnostics_);
+  const Evaluation<double> evaluation(value.source(), scene_.expressions, values_, diagnostics_, tables());
   const double result = evaluation(read);
   if (std::isnan(result)) return result;
   const bool whole = key.kind == KeyKind::whole;

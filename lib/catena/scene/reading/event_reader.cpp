@@ -24,7 +24,7 @@ EventRequest::Impulse AnalysisReader::read_impulse(const JsonValue& object) {
   if (!read_members(object, keys, "an impulse", v, diagnostics_)) return impulse;
   const auto pair_of = [&](const JsonValue& value, UnitKind unit, const FieldName& field) {
     const std::array<NumberValue, 2> read = reading_.numbers.read_pair(value, dimension_of(unit), field);
-    const Evaluation<double> evaluation(value.source(), scene_.expressions, values_, diagnostics_);
+    const Evaluation<double> evaluation(value.source(), scene_.expressions, values_, diagnostics_, tables());
     return std::array<double, 2>{evaluation(read[0]), evaluation(read[1])};
   };
   if (v[0] && v[0].is(JsonKind::array) && v[0].size() == 2) {

@@ -73,7 +73,7 @@ void AnalysisReader::read_path(const JsonValue& object, PlacedMeasure& measure) 
     error(v[1] ? v[1] : object, "a measure of a path needs \"to\", a list of points [x, y]");
     return;
   }
-  const Evaluation<double> evaluation(object.source(), scene_.expressions, values_, diagnostics_);
+  const Evaluation<double> evaluation(object.source(), scene_.expressions, values_, diagnostics_, tables());
   for (const JsonValue& point : v[1].elements()) {
     const auto pair = reading_.numbers.read_pair(point, ExpectedDimension(), {"to", "a measure of a path"});
     measure.request.points.push_back({evaluation(pair[0]), evaluation(pair[1])});
