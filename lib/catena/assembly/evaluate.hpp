@@ -97,6 +97,8 @@ class Evaluator {
   double law_value(int law, std::span<const double> qd) const;
   /// Its derivatives by x, y, phi of a plan body and by their rates.
   std::array<double, 6> law_gradient(int law, int body, std::span<const double> qd) const;
+  /// The first law whose value was not finite when forces were evaluated last, wherever that was; -1: none.
+  int law_without_value() const;
   /// The first table that ends, and was left by what the law reads at this state, with the place `where`; else nullptr.
   const NamedTable<double>* left_table(int law, std::span<const double> qd, double& where) const;
 

@@ -1,4 +1,6 @@
 // Evaluation of laws of state: their values, derivatives and effects.
+#include <cmath>
+
 #include "catena/assembly/evaluate.hpp"
 #include "catena/assembly/law_values.hpp"
 
@@ -89,6 +91,16 @@ void Evaluator::read_laws(std::span<const double> qd) {
   for_each_list(force_values_, [&](auto& data, int) {
     for (const auto& lawful : data.lawful) data.value[at(lawful.place)] = law_value(lawful.law, qd);
   });
+}
+
+int Evaluator::law_without_value() const {
+  int found = -1;
+  for_each_list(force_values_, [&](const auto& data, int) {
+    for (const auto& lawful : data.lawful) {
+      if (found < 0 && !std::isfinite(data.value[at(lawful.place)])) found = lawful.law;
+    }
+  });
+  return found;
 }
 
 std::array<double, 6> Evaluator::law_effect(int law, std::span<const double> qd) const {
