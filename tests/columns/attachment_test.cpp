@@ -1,4 +1,4 @@
-#include "catena/columns/attachment.hpp"
+#include "catena/model/attachment.hpp"
 
 #include <gtest/gtest.h>
 

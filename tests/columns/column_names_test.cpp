@@ -82,11 +82,11 @@ TEST(ColumnNames, SpringsHaveColumnsOfTheirOwn) {
   model.add_force("S", SpringDamper<double>{}, 0, 1);
   model.add_force("T", TorsionSpring<double>{}, 0, 1);
   model.add_force("F", PointForce<double>{}, 0);
-  for (const std::string name : {"S.length", "S.rate", "S.force", "T.angle", "T.torque"})
+  for (const std::string name : {"S.length", "S.rate", "S.force", "T.angle", "T.torque", "T.power", "F.fx", "F.power"})
     EXPECT_EQ(expand(model, name), Names{name});
   EXPECT_EQ(unit(model, "S.force"), UnitKind::force);
   EXPECT_EQ(unit(model, "T.torque"), UnitKind::torque);
-  for (const std::string name : {"S.reaction", "S.lambda1", "T.length", "F.fx", "F"}) unknown(model, name);
+  for (const std::string name : {"S.reaction", "S.lambda1", "T.length", "F.torque", "F"}) unknown(model, name);
 }
 
 TEST(ColumnNames, WrongNamesSayWhatIsWrongAndOfferOthers) {

@@ -73,7 +73,7 @@ violates "elements may not include model" lib/catena/elements/constraints/a.hpp 
 violates "linalg may not include model" lib/catena/linalg/a.cpp '#include "catena/model/model.hpp"'
 violates "model may not include linalg" lib/catena/model/a.cpp '#  include "catena/linalg/solver.hpp"'
 violates "assembly may not include analysis" lib/catena/assembly/a.cpp '#include <catena/analysis/kinematics.hpp>'
-violates "drawing may not include columns" lib/catena/drawing/shapes/a.cpp '#include "catena/columns/column.hpp"'
+violates "drawing may not include columns" lib/catena/drawing/shapes/a.cpp '#include "catena/columns/column_set.hpp"'
 violates "results may not include drawing" lib/catena/results/a.cpp '#include "catena/drawing/shapes/pen.hpp"'
 violates "drawing/shapes may not include drawing/figures" lib/catena/drawing/shapes/a.cpp '#include "catena/drawing/figures/plot.hpp"'
 violates "results may not include scene" lib/catena/results/a.cpp '#include "catena/scene/reader.hpp"'

@@ -79,12 +79,33 @@ void check_mount(const TextRun& run) {
   }
 }
 
+// The brake's torque is a law of the crank's speed alone; what gas and brake do, summed up over the rows, is what the
+// parts gain in speed.
+void check_engine(const TextRun& run) {
+  const std::vector<double> t = run.column("t", 1), omega = run.column("crank.omega", 1),
+                            gas = run.column("pressure.power", 1), load = run.column("load.power", 1),
+                            kinetic = run.column("energy.kinetic", 1), force = run.column("pressure.fx", 1),
+                            speed = run.column("piston.vx", 1), balance = run.column("energy.balance", 1);
+  ASSERT_EQ(t.size(), 1001u);
+  EXPECT_NEAR(force[0], -std::numbers::pi * 0.0016 * 0.55 * 2.4e6, 1e-8);
+  double work = 0;
+  for (std::size_t k = 0; k < t.size(); ++k) {
+    EXPECT_NEAR(load[k], -0.12 * omega[k] * omega[k], 1e-9);
+    EXPECT_NEAR(gas[k], force[k] * speed[k], 1e-7);
+    EXPECT_NEAR(balance[k], 0, 1e-5);
+    if (k > 0) work += (gas[k - 1] + load[k - 1] + gas[k] + load[k]) / 2 * (t[k] - t[k - 1]);
+  }
+  EXPECT_GT(omega.back(), 60);
+  EXPECT_NEAR(work, kinetic.back() - kinetic.front(), 2);
+}
+
 }  // namespace
 
 SceneFacts force_facts() {
   return {{"hardening_spring.json", check_duffing},
           {"engine_mount.json", check_mount},
-          {"leaving_ladder.json", check_ladder}};
+          {"leaving_ladder.json", check_ladder},
+          {"engine_torque.json", check_engine}};
 }
 
 }  // namespace catena::testing

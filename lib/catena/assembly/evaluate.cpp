@@ -87,6 +87,7 @@ void require_same_structure(const Model& known, const Model& model) {
   };
   compare([](const Model& m) -> const auto& { return m.constraints; });
   compare([](const Model& m) -> const auto& { return m.forces; });
+  require_same(known.laws.size(), model.laws.size(), "laws of state");
 }
 
 }  // namespace
@@ -172,6 +173,9 @@ void Evaluator::load_values() {
     data.value.resize(n * functions);
     data.rate.assign(n * functions, 0.0);
     data.timed.clear();
+    data.lawful.clear();
+    data.by_law.clear();
+    data.supplied.clear();
     for (std::size_t e = 0; e < n; ++e) {
       const auto& entry = list[at(block.entry[e])];
       data.element[e] = entry.element;
@@ -188,9 +192,18 @@ void Evaluator::load_values() {
         if (entry.values[k].function >= 0) {
           data.timed.push_back({static_cast<int>(e * functions + k), entry.values[k].function});
         }
+        if (entry.values[k].law >= 0) {
+          data.lawful.push_back({static_cast<int>(e * functions + k), entry.values[k].law});
+        }
       }
+      const auto given = [](const auto& value) { return value.function >= 0 || value.law >= 0; };
+      if (is_conservative(entry.element) && std::any_of(entry.values.begin(), entry.values.end(), given))
+        data.supplied.push_back(static_cast<int>(e));
     }
+    if (!data.lawful.empty()) data.by_law.assign(n * functions, 0);
+    for (const auto& lawful : data.lawful) data.by_law[at(lawful.place)] = 1;
   });
+  laws_ = compile_laws<double>(*model_, model_->laws, plan);
   attachment_radii(&length_scale_);
   if (length_scale_ == 0) length_scale_ = extent(*model_);
   if (length_scale_ == 0) length_scale_ = mean_force_arm(*model_);

@@ -16,6 +16,7 @@
 
 #include "catena/assembly/hessian_slots.hpp"
 #include "catena/assembly/plan.hpp"
+#include "catena/assembly/state_laws.hpp"
 #include "catena/base/counters.hpp"
 #include "catena/base/iteration_trace.hpp"
 
@@ -85,14 +86,26 @@ class Evaluator {
   /// Power lost to damping, W.
   double dissipation(std::span<const double> qd) const;
   /// Power, W, of forces that have neither a potential nor damping: functions of time in force elements, follower
-  /// forces.
-  double load_power(std::span<const double> qd) const;
+  /// forces, laws of state.
+  double load_power(std::span<const double> qd);
   /// Whether every force element has a potential.
   bool conservative() const;
 
-  /// Calls f(body_i, body_j, matrix) with the 6 x 6 stiffness -dQ/dq of every force element.
+  /// Laws of state, as the model numbers them; see law_values.hpp.
+  std::span<const CompiledLaw<double>> laws() const { return laws_; }
+  /// The value of a law at this configuration and time; qd may be empty: at rest.
+  double law_value(int law, std::span<const double> qd) const;
+  /// Its derivatives by x, y, phi of a plan body and by their rates.
+  std::array<double, 6> law_gradient(int law, int body, std::span<const double> qd) const;
+  /// The first law whose value was not finite when forces were evaluated last, wherever that was; -1: none.
+  int law_without_value() const;
+  /// The first table that ends, and was left by what the law reads at this state, with the place `where`; else nullptr.
+  const NamedTable<double>* left_table(int law, std::span<const double> qd, double& where) const;
+
+  /// Calls f(body_i, body_j, matrix) with the 6 x 6 stiffness -dQ/dq of every force element, and then with what laws of
+  /// state add to it: not symmetric, over any two bodies or one body given twice.
   template <class F>
-  void visit_stiffness(std::span<const double> qd, F&& f) const;
+  void visit_stiffness(std::span<const double> qd, F&& f);
   /// Calls f(body_i, body_j, matrix) with sum lambda d2Phi/dq2 of every constraint; lambda: solver's rows.
   template <class F>
   void visit_constraint_hessians(std::span<const double> lambda, F&& f) const;
@@ -143,6 +156,10 @@ class Evaluator {
  private:
   void load_values();
   void spread_functions();
+  /// Gives force elements the values of laws at this state.
+  void read_laws(std::span<const double> qd);
+  /// dQ/dF of a law's force on its bodies i and j.
+  std::array<double, 6> law_effect(int law, std::span<const double> qd) const;
   Measured measure_released(int element, std::span<const double> qd) const;
   /// Place of an element in its block, -1 if it has no rows.
   template <class F>
@@ -158,6 +175,7 @@ class Evaluator {
   std::vector<Frame<double>> frames_;  // relative; the last one is the ground's
   std::vector<int> turns_;             // per moving body, as taken by take_turns(); empty: none
   std::vector<Taylor<double>> function_;
+  std::vector<CompiledLaw<double>> laws_;
   std::vector<int> place_;
   std::vector<int> left_out_, left_out_slot_;  // rows and the places of their entries in Phi_q
   double time_ = 0, length_scale_ = 1;
@@ -179,7 +197,8 @@ class Evaluator::TimeLimit {
 };
 
 template <class F>
-void Evaluator::visit_stiffness(std::span<const double> qd, F&& f) const {
+void Evaluator::visit_stiffness(std::span<const double> qd, F&& f) {
+  if (!laws_.empty()) read_laws(qd);
   for_each_list(plan_->forces, [&](const auto& block, int) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
     const auto& data = std::get<ForceData<E>>(force_values_);
@@ -188,6 +207,23 @@ void Evaluator::visit_stiffness(std::span<const double> qd, F&& f) const {
         ForceOperations<E>::stiffness(block, data, frames_.data(), qd.empty() ? nullptr : qd.data(), e));
     }
   });
+  for (std::size_t k = 0; k < laws_.size(); ++k) {
+    const int law = static_cast<int>(k);
+    const std::array<double, 6> effect = law_effect(law, qd);
+    for (const int read : laws_[k].bodies) {
+      const std::array<double, 6> gradient = law_gradient(law, read, qd);
+      for (std::size_t end = 0; end < 2; ++end) {
+        const int acted = end == 0 ? laws_[k].i : laws_[k].j;
+        if (acted < 0 || acted >= plan_->moving) continue;
+        ElementMatrix matrix{};
+        const std::size_t first = acted == read ? 0 : 3;
+        for (std::size_t row = 0; row < 3; ++row) {
+          for (std::size_t c = 0; c < 3; ++c) matrix[6 * row + first + c] = -effect[3 * end + row] * gradient[c];
+        }
+        f(acted, read, matrix);
+      }
+    }
+  }
 }
 
 template <class F>

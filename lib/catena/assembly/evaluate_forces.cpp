@@ -13,6 +13,7 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 void Evaluator::applied_forces(std::span<const double> qd, std::span<double> Q) {
   ++counters.forces;
   const Plan& plan = *plan_;
+  if (!laws_.empty()) read_laws(qd);
   std::fill(Q.begin(), Q.end(), 0.0);
   const Vec2<double> g = model_->gravity;
   if (g.x != 0 || g.y != 0) {
@@ -50,7 +51,8 @@ double Evaluator::dissipation(std::span<const double> qd) const {
   return sum;
 }
 
-double Evaluator::load_power(std::span<const double> qd) const {
+double Evaluator::load_power(std::span<const double> qd) {
+  if (!laws_.empty()) read_laws(qd);
   double sum = 0;
   for_each_list(plan_->forces, [&](const auto& block, int) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;

@@ -35,6 +35,14 @@ struct ForceData {
   std::vector<double> value;  ///< E::functions an element
   std::vector<double> rate;   ///< their time derivatives
   std::vector<Timed> timed;
+  struct Lawful {
+    int place;
+    int law;
+  };
+  std::vector<Lawful> lawful;  ///< ascending places
+  std::vector<char> by_law;    ///< per place: a law gives it; empty: none does
+  /// Conservative elements that take power from outside: with functions of time or laws, each once, ascending.
+  std::vector<int> supplied;
 };
 
 template <class E>
@@ -53,7 +61,7 @@ struct ForceOperations {
   /// Power lost to damping, W.
   static double dissipation(const Block&, const Data&, const Frame<double>* frames, const double* qd);
   /// Power, W, that the elements take from outside: of non-conservative ones all but damping, of conservative ones what
-  /// their functions of time add to the potential, Q^T qd + dV/dt.
+  /// their functions of time add to the potential, Q^T qd + dV/dt, and what laws add to their forces: these have none.
   static double load_power(const Block&, const Data&, const Frame<double>* frames, const double* qd);
   /// Stiffness -dQ/dq of one element (qd may be nullptr: at rest).
   static ElementMatrix stiffness(const Block&, const Data&, const Frame<double>* frames, const double* qd, int e);
@@ -62,6 +70,9 @@ struct ForceOperations {
                             double* values);
   /// Damping -dQ/dqd of one element.
   static ElementMatrix damping(const Block&, const Data&, const Frame<double>* frames, const double* qd, int e);
+  /// Derivative of [Q_i, Q_j] by function k of one element.
+  static std::array<double, 6> by_function(const Block&, const Data&, const Frame<double>* frames, const double* qd,
+                                           int e, int k);
   /// Whether every element of the block has a potential.
   static bool conservative(const Data&);
 };

@@ -72,10 +72,22 @@ double potential_rate(const E& element, const ForceState<E>& s, const ForceData<
   const Twist<D1> rest;
   std::array<D1, static_cast<std::size_t>(E::functions) + 1> f;
   for (std::size_t k = 0; k < static_cast<std::size_t>(E::functions); ++k) {
-    f[k] = along(s.f[k], data.rate[static_cast<std::size_t>(e * E::functions) + k]);
+    const std::size_t place = static_cast<std::size_t>(e * E::functions) + k;
+    if (data.by_law.empty() || !data.by_law[place]) f[k] = along(s.f[k], data.rate[place]);
   }
   const Frame<D1> i = frame(s.i, s.u), j = frame(s.j, s.v);
   return element.potential(ForceArguments<D1>{i, j, rest, rest, f.data(), s.ground}).d[0];
+}
+
+/// The functions' values of element e as far as they have a potential: zero where a law gives them.
+template <class E>
+std::array<double, static_cast<std::size_t>(E::functions) + 1> lawless_values(const ForceData<E>& data, int e) {
+  std::array<double, static_cast<std::size_t>(E::functions) + 1> f{};
+  for (std::size_t k = 0; k < static_cast<std::size_t>(E::functions); ++k) {
+    const std::size_t place = static_cast<std::size_t>(e * E::functions) + k;
+    if (!data.by_law[place]) f[k] = data.value[place];
+  }
+  return f;
 }
 
 inline Twist<D6> seed_twist(const Twist<double>& t, int first) {
@@ -132,8 +144,13 @@ double ForceOperations<E>::potential(const Block& block, const Data& data, const
   double sum = 0;
   if constexpr (HasPotential<E>) {
     for (int e = 0; e < block.size(); ++e) {
-      const detail::ForceState<E> s(block, data, frames, nullptr, e);
+      detail::ForceState<E> s(block, data, frames, nullptr, e);
       const E& element = data.element[static_cast<std::size_t>(e)];
+      std::array<double, static_cast<std::size_t>(E::functions) + 1> lawless;
+      if (!data.by_law.empty()) {
+        lawless = detail::lawless_values(data, e);
+        s.f = lawless.data();
+      }
       if (is_conservative(element)) sum += element.potential(s.arguments());
     }
   }
@@ -173,12 +190,7 @@ double ForceOperations<E>::load_power(const Block& block, const Data& data, cons
   for (int e = 0; e < block.size(); ++e) {
     if (!is_conservative(data.element[static_cast<std::size_t>(e)])) sum += supplied(e);
   }
-  int last = -1;  // an element with two functions of time counts once
-  for (const auto& timed : data.timed) {
-    const int e = timed.place / std::max(1, E::functions);
-    if (e != last && is_conservative(data.element[static_cast<std::size_t>(e)])) sum += supplied(e);
-    last = e;
-  }
+  for (const int e : data.supplied) sum += supplied(e);
   return sum;
 }
 
@@ -222,7 +234,28 @@ ElementMatrix ForceOperations<E>::damping(const Block& block, const Data& data, 
 }
 
 template <class E>
+std::array<double, 6> ForceOperations<E>::by_function(const Block& block, const Data& data, const Frame<double>* frames,
+                                                      const double* qd, int e, int k) {
+  std::array<double, 6> result{};
+  if constexpr (E::functions > 0) {
+    using detail::D6;
+    const detail::ForceState<E> s(block, data, frames, qd, e);
+    std::array<D6, static_cast<std::size_t>(E::functions)> f;
+    for (std::size_t n = 0; n < f.size(); ++n) f[n] = D6(s.f[n]);
+    f[static_cast<std::size_t>(k)] = D6::variable(s.f[k], 0);
+    const Frame<D6> i = constant_frame<D6>(s.i), j = constant_frame<D6>(s.j);
+    const Twist<D6> u = detail::constant_twist(s.u), v = detail::constant_twist(s.v);
+    Wrench<D6> on_i, on_j;
+    data.element[static_cast<std::size_t>(e)].force(ForceArguments<D6>{i, j, u, v, f.data(), s.ground}, on_i, on_j);
+    const D6* rows[6] = {&on_i.fx, &on_i.fy, &on_i.moment, &on_j.fx, &on_j.fy, &on_j.moment};
+    for (std::size_t r = 0; r < 6; ++r) result[r] = rows[r]->d[0];
+  }
+  return result;
+}
+
+template <class E>
 bool ForceOperations<E>::conservative(const Data& data) {
+  if (!data.lawful.empty()) return false;
   for (const E& element : data.element) {
     if (!is_conservative(element)) return false;
   }

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "catena/assembly/numbering.hpp"
+#include "catena/assembly/state_laws.hpp"
 #include "catena/elements/all.hpp"
 
 namespace catena {
@@ -176,6 +177,12 @@ std::shared_ptr<const Plan> Plan::make(const Model& model, const PlanOptions& op
                      "\" is one-sided: this analysis does not treat it; equilibrium does");
   }
   make_slots(*plan);
+  for (const CompiledLaw<double>& law : compile_laws<double>(model, model.laws, *plan)) {
+    for (const int acted : {law.i, law.j}) {
+      if (acted < 0 || acted >= plan->moving) continue;
+      for (const int read : law.bodies) plan->law_pairs.emplace_back(acted, read);
+    }
+  }
   return plan;
 }
 

@@ -13,6 +13,7 @@
 #include <memory>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "catena/assembly/constraint_block.hpp"
@@ -78,6 +79,8 @@ struct Plan {
   ForceBlocks forces;
   bool constant_jacobian = true;   ///< no entry of Phi_q varies
   std::vector<char> body_has_row;  ///< per plan body: some constraint touches it
+  /// Moving plan bodies that laws of state tie besides: one that a force acts on, and one that its law reads.
+  std::vector<std::pair<int, int>> law_pairs;
 
   bool is_released(int element) const { return !released.empty() && released[static_cast<std::size_t>(element)]; }
   int trash_slot() const { return jacobian.entries(); }  ///< where entries of immobile bodies go

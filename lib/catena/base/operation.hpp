@@ -2,7 +2,7 @@
 //
 //   loads                a constant, a parameter, the variable of a repeated block, a column of results
 //   two operands         a + b, a - b, a b, a / b, a^b, atan2(a, b), min(a, b), max(a, b)
-//   one operand          -a, sin, cos, tan, asin, acos, atan, sqrt, exp, log, abs
+//   one operand          -a, sin, cos, tan, asin, acos, atan, sqrt, exp, log, abs, a table of one's own
 //
 // Angles in radians. Where an operation has no value (division by zero, log of a negative number) the result is not
 // finite, as arithmetic has it: who may not go on with such a number looks at it. min, max and abs take the derivative
@@ -39,7 +39,8 @@ enum class Operation : std::uint8_t {
   sqrt,
   exp,
   log,
-  abs
+  abs,
+  table  ///< which one is said beside the operation: apply() does not know it
 };
 
 /// How many values an operation takes from the stack: none, one or two.

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "catena/base/row_sink.hpp"
-#include "catena/columns/column.hpp"
+#include "catena/model/column.hpp"
 #include "catena/model/model.hpp"
 
 namespace catena {

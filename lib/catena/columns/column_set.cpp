@@ -29,6 +29,7 @@ Needs needs_of(ColumnKind kind) {
     case ColumnKind::joint_omega:
     case ColumnKind::slide_rate:
     case ColumnKind::length_rate:
+    case ColumnKind::supplied_power:
     case ColumnKind::kinetic:
     case ColumnKind::total:
     case ColumnKind::momentum_x:
@@ -49,10 +50,10 @@ Needs needs_of(ColumnKind kind) {
   return needs;
 }
 
-/// Columns that are valid at rest too, but include damping where there are velocities.
+/// Columns that are valid at rest too, but include damping, and laws of velocities, where there are velocities.
 bool uses_velocity(ColumnKind kind) {
   return kind == ColumnKind::tension || kind == ColumnKind::spring_torque ||
-         (kind >= ColumnKind::exerted_x && kind <= ColumnKind::exerted_torque);
+         (kind >= ColumnKind::exerted_x && kind <= ColumnKind::applied_y);
 }
 
 bool needs_mass(ColumnKind kind, const Model& model) {

@@ -1,9 +1,8 @@
 #include "catena/columns/element_columns.hpp"
 
-#include "catena/base/design_scalar.hpp"
-#include "catena/columns/attachment.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/elements/gap_element.hpp"
+#include "catena/model/attachment.hpp"
 
 namespace catena {
 namespace {
@@ -77,6 +76,16 @@ void add_loads(const Entry& entry, std::vector<ElementColumn>& out) {
     out.push_back({"length", UnitKind::length, ColumnKind::length});
     out.push_back({"rate", UnitKind::velocity, ColumnKind::length_rate});
     out.push_back({"force", UnitKind::force, ColumnKind::tension});
+    out.push_back({"power", UnitKind::power, ColumnKind::supplied_power});
+  }
+  if (E::type == "point_force") {
+    out.push_back({"fx", UnitKind::force, ColumnKind::applied_x});
+    out.push_back({"fy", UnitKind::force, ColumnKind::applied_y});
+    out.push_back({"power", UnitKind::power, ColumnKind::supplied_power});
+  }
+  if (E::type == "torque") {
+    out.push_back({"torque", UnitKind::torque, ColumnKind::spring_torque});
+    out.push_back({"power", UnitKind::power, ColumnKind::supplied_power});
   }
   if (E::type == "cable") {
     out.push_back({"length", UnitKind::length, ColumnKind::length});
@@ -86,6 +95,7 @@ void add_loads(const Entry& entry, std::vector<ElementColumn>& out) {
   if (E::type == "torsion_spring") {
     out.push_back({"angle", UnitKind::angle, ColumnKind::turn});
     out.push_back({"torque", UnitKind::torque, ColumnKind::spring_torque});
+    out.push_back({"power", UnitKind::power, ColumnKind::supplied_power});
   }
   if (E::type == "bushing") {
     const auto add = [&](const char* suffix, UnitKind unit, ColumnKind kind, ReactionSide side) {
@@ -99,18 +109,6 @@ void add_loads(const Entry& entry, std::vector<ElementColumn>& out) {
     add("torque", UnitKind::torque, ColumnKind::exerted_torque, on_j);
     add("joint.fx", UnitKind::force, ColumnKind::exerted_x, on_j_in_joint);
     add("joint.fy", UnitKind::force, ColumnKind::exerted_y, on_j_in_joint);
-  }
-}
-
-/// Calls f(entry) for an element of the model, be it a constraint or a force.
-template <class S, class F>
-void with_entry(const BasicModel<S>& model, int element, F&& f) {
-  const ElementRecord& record = model.elements[static_cast<std::size_t>(element)];
-  const auto take = [&](const auto& list) { f(list[static_cast<std::size_t>(record.index)]); };
-  if (record.kind == ElementKind::force) {
-    with_list(model.forces, record.type, take);
-  } else {
-    with_list(model.constraints, record.type, take);
   }
 }
 
@@ -138,15 +136,5 @@ std::vector<ElementColumn> columns_of_element(const Model& model, int element) {
   });
   return out;
 }
-
-template <class S>
-BasicAttachment<S> attachment_of(const BasicModel<S>& model, int element) {
-  BasicAttachment<S> attachment;
-  with_entry(model, element, [&](const auto& entry) { attachment = attachment_of(entry); });
-  return attachment;
-}
-
-template BasicAttachment<double> attachment_of(const BasicModel<double>&, int);
-template BasicAttachment<DesignScalar> attachment_of(const BasicModel<DesignScalar>&, int);
 
 }  // namespace catena

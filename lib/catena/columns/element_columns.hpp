@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "catena/base/unit_kind.hpp"
-#include "catena/columns/column.hpp"
+#include "catena/model/column.hpp"
 #include "catena/model/model.hpp"
 
 namespace catena {

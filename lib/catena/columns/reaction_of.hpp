@@ -2,9 +2,9 @@
 // derivatives where these are dual.
 #pragma once
 
-#include "catena/columns/attachment.hpp"
 #include "catena/columns/reaction.hpp"
 #include "catena/elements/all.hpp"
+#include "catena/model/attachment.hpp"
 
 namespace catena {
 namespace detail {

@@ -14,13 +14,13 @@
 #include <optional>
 #include <vector>
 
-#include "catena/columns/attachment.hpp"
-#include "catena/columns/column.hpp"
 #include "catena/columns/energy_of.hpp"
 #include "catena/columns/own_columns.hpp"
 #include "catena/columns/reaction.hpp"
 #include "catena/columns/spring.hpp"
 #include "catena/elements/all.hpp"
+#include "catena/model/attachment.hpp"
+#include "catena/model/column.hpp"
 
 namespace catena {
 
@@ -118,6 +118,12 @@ class RowValues {
         return exerted(column).y;
       case ColumnKind::exerted_torque:
         return s_.spring_loads(column.index).torque_on_j;
+      case ColumnKind::applied_x:
+        return s_.spring_loads(column.index).force_on_i.x;
+      case ColumnKind::applied_y:
+        return s_.spring_loads(column.index).force_on_i.y;
+      case ColumnKind::supplied_power:
+        return s_.spring_loads(column.index).power;
       case ColumnKind::kinetic:
         return kinetic();
       case ColumnKind::potential:

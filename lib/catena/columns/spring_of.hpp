@@ -2,13 +2,13 @@
 // dual.
 #pragma once
 
-#include "catena/columns/attachment.hpp"
 #include "catena/columns/spring.hpp"
 #include "catena/elements/all.hpp"
+#include "catena/model/attachment.hpp"
 
 namespace catena {
 
-/// `state` gives model(), plan(), time(), frame(plan body) in the ground and twist(plan body).
+/// `state` gives model(), plan(), time(), frame(plan body) in the ground, twist(plan body) and law_value(number).
 template <class State, class S = typename State::Scalar>
 BasicSpringLoads<S> spring_loads_of(const State& state, int element) {
   const BasicModel<S>& model = state.model();
@@ -24,9 +24,13 @@ BasicSpringLoads<S> spring_loads_of(const State& state, int element) {
     S f[functions + 1] = {};  // one more, so that it is never empty
     for (std::size_t k = 0; k < entry.values.size(); ++k) {
       const auto& value = entry.values[k];
-      f[k] = value.function < 0
-                 ? value.constant
-                 : model.functions[static_cast<std::size_t>(value.function)].evaluate(value_of(state.time())).f;
+      if (value.law >= 0) {
+        f[k] = state.law_value(value.law);
+      } else {
+        f[k] = value.function < 0
+                   ? value.constant
+                   : model.functions[static_cast<std::size_t>(value.function)].evaluate(value_of(state.time())).f;
+      }
     }
     const Frame<S> i = state.frame(plan_body(entry.i)), j = state.frame(plan_body(entry.j));
     const Twist<S> u = state.twist(plan_body(entry.i)), v = state.twist(plan_body(entry.j));
@@ -37,6 +41,16 @@ BasicSpringLoads<S> spring_loads_of(const State& state, int element) {
     // Where the points meet the direction is lost.
     if (value_of(squared_norm(h)) > 0) loads.tension = dot(Vec2<S>{on_i.fx, on_i.fy}, h) / norm(h);
     loads.torque = on_i.moment;
+    loads.force_on_i = {on_i.fx, on_i.fy};
+    if constexpr (functions > 0) {
+      const S none[functions + 1] = {};
+      Wrench<S> own_i, own_j;
+      entry.element.force(ForceArguments<S>{i, j, u, v, none, {}}, own_i, own_j);
+      const auto power = [](const Wrench<S>& all, const Wrench<S>& own, const Twist<S>& twist) {
+        return (all.fx - own.fx) * twist.vx + (all.fy - own.fy) * twist.vy + (all.moment - own.moment) * twist.omega;
+      };
+      loads.power = power(on_i, own_i, u) + power(on_j, own_j, v);
+    }
     const auto in_i = [&](const Vec2<S>& vector) { return i.to_local(vector); };
     loads.force_on_j = {on_j.fx, on_j.fy};
     loads.force_on_j_in_i = in_i(loads.force_on_j);

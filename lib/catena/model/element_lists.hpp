@@ -12,11 +12,13 @@
 
 namespace catena {
 
-/// A value that may be a function of time: the constant, or the number of a function in the model.
+/// A value that may be a function of time or, of a force, a law of state: the constant, or the number of a function or
+/// law in the model.
 template <class S>
 struct FunctionValue {
   S constant{};
-  int function = -1;  ///< -1: constant
+  int function = -1;  ///< -1: constant, or a law
+  int law = -1;
 };
 
 /// An element where it stands: which bodies it ties (ground = -1) and the values of its functions of time.

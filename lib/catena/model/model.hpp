@@ -18,6 +18,7 @@
 #include "catena/model/element_lists.hpp"
 #include "catena/model/name_table.hpp"
 #include "catena/model/own_column.hpp"
+#include "catena/model/state_law.hpp"
 
 namespace catena {
 
@@ -63,6 +64,7 @@ class BasicModel {
   NameTable point_names;
   std::vector<int> name_target;  ///< per name: body b >= 0, or -2 - (number in `elements`)
   std::vector<OwnColumn<S>> own_columns;
+  std::vector<StateLaw<S>> laws;  ///< of forces
 
   /// New body; its number is returned. The frame's origin is put at `position`.
   int add_body(std::string_view name, const BodyValues& values);

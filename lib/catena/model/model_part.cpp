@@ -36,6 +36,12 @@ class Extraction {
       const bool ours = (moves(entry.i) && body_[at(entry.i)] >= 0) || (moves(entry.j) && body_[at(entry.j)] >= 0);
       if (ours) add(entry, kind);
     });
+    // Elements that are only read may tie immobile bodies: they come last, and may have laws themselves.
+    for (std::size_t law = 0; law < part_.model.laws.size(); ++law) {
+      std::vector<Column> inputs = part_.model.laws[law].inputs;  // a copy: more laws may come
+      for (Column& input : inputs) bring(input);
+      part_.model.laws[law].inputs = std::move(inputs);
+    }
     return std::move(part_);
   }
 
@@ -56,12 +62,36 @@ class Extraction {
     copy.i = add(entry.i);
     copy.j = add(entry.j);
     for (FunctionValue<double>& value : copy.values) {
+      if (value.law >= 0) {
+        part_.model.laws.push_back(whole_.laws[at(value.law)]);
+        part_.model.laws.back().element = static_cast<int>(part_.model.elements.size());
+        value.law = static_cast<int>(part_.model.laws.size()) - 1;
+      }
       if (value.function < 0) continue;
       part_.model.functions.push_back(whole_.functions[at(value.function)]);
       value.function = static_cast<int>(part_.model.functions.size()) - 1;
     }
     part_.model.append(whole_.element_name(entry.id), copy, kind);
     part_.elements.push_back(entry.id);
+  }
+
+  /// Gives what a law reads its number in the part, where it is put if it is not there.
+  void bring(Column& input) {
+    if (input.kind == ColumnKind::time) return;
+    if (is_body_column(input.kind)) {
+      input.index = add(input.index);
+      if (input.detail < 0) return;
+      part_.model.points.push_back({-1, -1, whole_.points[at(input.detail)].local});
+      input.detail = static_cast<int>(part_.model.points.size()) - 1;
+      return;
+    }
+    auto found = std::find(part_.elements.begin(), part_.elements.end(), input.index);
+    if (found == part_.elements.end()) {
+      const ElementKind kind = whole_.elements[at(input.index)].kind;
+      with_entry(whole_, input.index, [&](const auto& entry) { add(entry, kind); });
+      found = part_.elements.end() - 1;
+    }
+    input.index = static_cast<int>(found - part_.elements.begin());
   }
 
   const Model& whole_;
@@ -85,6 +115,18 @@ std::vector<std::vector<int>> separate_groups(const Model& model) {
     if (fixed(entry.i) || fixed(entry.j)) return;
     leader[at(find(entry.i))] = find(entry.j);
   });
+  for (const StateLaw<double>& law : model.laws) {
+    int first = ground;
+    const auto tie = [&](int body) {
+      if (fixed(body)) return;
+      if (first >= 0) leader[at(find(body))] = find(first);
+      first = body;
+    };
+    const Attachment attachment = attachment_of(model, law.element);
+    tie(attachment.i);
+    if (attachment.bodies == 2) tie(attachment.j);
+    for (const Column& input : law.inputs) visit_read_bodies(model, input, tie);
+  }
   std::vector<int> group(model.bodies.size(), -1);
   std::vector<std::vector<int>> groups;
   for (int body = 0; body < static_cast<int>(model.bodies.size()); ++body) {

@@ -37,7 +37,9 @@ ForceSizes force_sizes(const Evaluator& evaluator) {
       std::array<double, static_cast<std::size_t>(E::functions) + 1> f{};
       for (std::size_t k = 0; k < static_cast<std::size_t>(E::functions); ++k) {
         const auto& value = entry.values[k];
-        f[k] = value.function < 0 ? value.constant : model.functions[at(value.function)].evaluate(evaluator.time()).f;
+        f[k] = value.law >= 0        ? evaluator.law_value(value.law, {})
+               : value.function >= 0 ? model.functions[at(value.function)].evaluate(evaluator.time()).f
+                                     : value.constant;
       }
       const auto plan_body = [&](int b) { return b < 0 ? plan.bodies : plan.plan_body[at(b)]; };
       const int i = plan_body(entry.i), j = plan_body(entry.j);

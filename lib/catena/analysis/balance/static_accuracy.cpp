@@ -36,7 +36,7 @@ std::vector<double> sum_terms(const StaticSystem& system, std::span<const double
 // places.
 void add_stiffness_times_places(StaticSystem& system, std::span<const double> lambda, std::span<double> sum) {
   const Plan& plan = system.plan();
-  const Evaluator& evaluator = system.evaluator();
+  Evaluator& evaluator = system.evaluator();
   const std::span<const Frame<double>> frames = evaluator.frames();
   const auto moves = [&](int b) { return b >= 0 && b < plan.moving; };
   const auto reach = [&](int b) { return moves(b) ? norm(frames[at(b)].origin()) + system.radius()[at(b)] : 0.0; };

@@ -52,6 +52,12 @@ std::optional<Report> find_loose_bodies(const StaticSystem& system, const Evalua
       }
     }
   });
+  // So may laws of state, by what they read: then the search for an equilibrium shows it.
+  for (const CompiledLaw<double>& law : evaluator.laws()) {
+    if (law.bodies.empty()) continue;
+    groups.tie(law.i, plan.bodies);
+    if (law.j >= 0) groups.tie(law.j, plan.bodies);
+  }
   int first = -1, count = 0;
   double load[3] = {0, 0, 0}, size = 0;
   std::string names;

@@ -52,6 +52,8 @@ void drop_whole_turns(StaticSystem& system, std::span<const double> start, std::
   };
   for_each_list(plan.blocks, tie);
   for_each_list(plan.forces, tie);
+  // A law of state may read any angle, turns included.
+  for (const auto& [acted, read] : plan.law_pairs) parent[at(root(read))] = root(plan.moving);
   std::vector<double> taken(at(plan.moving) + 1, std::nan(""));
   taken[at(root(plan.moving))] = 0;
   for (int b = 0; b < plan.moving; ++b) {

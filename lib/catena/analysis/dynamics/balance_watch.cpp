@@ -21,7 +21,7 @@ constexpr double rounding = 1e-13;
 
 bool BalanceWatch::conserves(Evaluator& evaluator) {
   const Model& model = evaluator.model();
-  if (!model.functions.empty()) return false;
+  if (!model.functions.empty() || !model.laws.empty()) return false;
   std::vector<double> motion(static_cast<std::size_t>(evaluator.plan().coordinates()), 0.0);
   // No two coordinates alike, so that nothing cancels by symmetry.
   for (int k = 0; k < 3 * evaluator.plan().moving; ++k) {

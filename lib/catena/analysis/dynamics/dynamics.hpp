@@ -121,6 +121,7 @@ class Dynamics {
   void remember();
   Report give_row(double t, RowObserver& observer);
   std::optional<Snapshot> state_at(double t);
+  Report check_ends_at(std::span<const double> y) const;
   Report check_curve_ends(double from, RowObserver& observer);
   Report find_events(double from, RowObserver& observer);
   Report show(double from, double to, RowObserver& observer);

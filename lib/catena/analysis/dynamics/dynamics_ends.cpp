@@ -12,6 +12,12 @@ constexpr int samples = 4;
 
 }  // namespace
 
+// Curves and tables of elements, and of laws of state, at the evaluator's configuration, which is that of y.
+Report Dynamics::check_ends_at(std::span<const double> y) const {
+  Report report = watched_.check();
+  return report.ok() && watched_.has_law_ends() ? watched_.check_laws(y.subspan(q_.size(), q_.size())) : report;
+}
+
 // Checks the last step, which began at `from`.
 Report Dynamics::check_curve_ends(double from, RowObserver& observer) {
   const auto left_at = [&](double t) {
@@ -20,8 +26,9 @@ Report Dynamics::check_curve_ends(double from, RowObserver& observer) {
     } else {
       integrator_->interpolate(t, y_row_);
     }
+    evaluator_.set_time(t);
     evaluator_.set_configuration(std::span<const double>(y_row_).first(q_.size()));
-    return !watched_.check().ok();
+    return !check_ends_at(y_row_).ok();
   };
   double inside = from, outside = from;
   for (int k = 1; k <= samples && outside == from; ++k) {
@@ -41,8 +48,7 @@ Report Dynamics::check_curve_ends(double from, RowObserver& observer) {
     if (const Report given = give_row(grid_[next_row_++], observer); !given.ok()) return given;
   }
   left_at(outside);
-  evaluator_.set_time(outside);
-  return watched_.check();
+  return check_ends_at(y_row_);
 }
 
 }  // namespace catena

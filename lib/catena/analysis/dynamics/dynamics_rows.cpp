@@ -6,6 +6,7 @@
 #include "catena/analysis/dynamics/dynamics.hpp"
 #include "catena/analysis/pose/mobility.hpp"
 #include "catena/columns/energy.hpp"
+#include "catena/columns/state_laws.hpp"
 
 namespace catena {
 namespace {
@@ -124,6 +125,8 @@ void Dynamics::describe_mobility(AnalysisReport& report) {
 
 Report Dynamics::stuck() {
   Report report;
+  // Steps that end beyond the place where a law ceases to have a value fail, however short they are.
+  const int lost = evaluator_.law_without_value();
   if (std::optional<SingularPoint> point = dead_point_ahead()) {
     singular_points_.push_back(std::move(*point));
     return singular_points_.back().report_lock_up(*model_);
@@ -132,6 +135,13 @@ Report Dynamics::stuck() {
   evaluator_.set_time(integrator_->time());
   evaluator_.set_configuration(integrator_->state().first(q_.size()));
   if (Report sound = watched_.check(); !sound.ok()) return sound;
+  if (Report laws = watched_.check_laws(integrator_->state().subspan(q_.size(), q_.size())); !laws.ok()) return laws;
+  if (lost >= 0) {
+    report.status = Status::singular;
+    report.message = fmt::format("{} is undefined beyond t = {:.9g} s: its expression has no finite value there",
+                                 describe_law(*model_, lost), integrator_->time());
+    return report;
+  }
   report.status = Status::step_too_small;
   const int row = equations_.weakest_row();
   std::string where;

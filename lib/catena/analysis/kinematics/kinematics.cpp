@@ -415,6 +415,9 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& asked, RowObse
     Needs checked = needs;
     if (plan_->rows > plan_->columns && k % rows_between_checks == 0) checked.velocity = checked.acceleration = true;
     if (const Report solved = find_rates(checked); !solved.ok()) return end(solved);
+    if (needs.velocity || needs.acceleration || needs.multipliers) {
+      if (const Report laws = watched_.check_laws(qd_); !laws.ok()) return end(laws);
+    }
     if (!on_bridge_ && solver_.rcond() < suspicious_part) {
       if (std::optional<SingularPoint> point = dead_point_here()) return end(lock_up(std::move(*point)));
     }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/columns/attachment.hpp"
+#include "catena/model/attachment.hpp"
 
 namespace catena {
 namespace {

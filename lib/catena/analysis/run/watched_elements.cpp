@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
+#include <string>
 
+#include "catena/columns/state_laws.hpp"
 #include "catena/elements/all.hpp"
 
 namespace catena {
@@ -25,6 +28,31 @@ WatchedElements::WatchedElements(const Evaluator& evaluator) : evaluator_(evalua
   };
   for_each_list(evaluator.model().constraints, look);
   for_each_list(evaluator.model().forces, look);
+  for (const CompiledLaw<double>& law : evaluator.laws()) has_law_ends_ = has_law_ends_ || law.formula.has_ends();
+}
+
+Report WatchedElements::check_laws(std::span<const double> qd) const {
+  Report report;
+  for (int law = 0; law < static_cast<int>(evaluator_.laws().size()); ++law) {
+    double place = 0;
+    std::string why;
+    if (const NamedTable<double>* table = evaluator_.left_table(law, qd, place)) {
+      const Spline<double>& curve = table->curve;
+      why = fmt::format(
+          "its table \"{}\" reaches from {:.9g} to {:.9g}, and {:.9g} is asked for; end the analysis before, make the "
+          "table longer, or say with \"beyond\" what lies there",
+          table->name, curve.first(), curve.last(), place);
+    } else if (!std::isfinite(evaluator_.law_value(law, qd))) {
+      why = "its expression has no finite value there";
+    } else {
+      continue;
+    }
+    report.status = Status::singular;
+    report.message = fmt::format("{} is undefined at t = {:.9g} s: {}", describe_law(evaluator_.model(), law),
+                                 evaluator_.time(), why);
+    break;
+  }
+  return report;
 }
 
 Report WatchedElements::check() const {

@@ -1,10 +1,11 @@
 // Watches elements whose equations or forces are undefined at some configurations: contacts off their curve, gears
-// whose centres coincide, springs stretched beyond their table.
+// whose centres coincide, springs stretched beyond their table, laws of state that leave theirs.
 //
 // The place on a curve is found to 1e-9 of the curve (curve_search.hpp): a place further beyond the end than that is
 // off the curve.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "catena/assembly/evaluate.hpp"
@@ -23,6 +24,11 @@ class WatchedElements {
   Report check_ends() const;
   /// Whether any element could leave a curve.
   bool has_ends() const { return !ending_.empty(); }
+  /// `singular`, naming the first force whose law of state has no value at the evaluator's configuration and time and
+  /// these velocities (empty: at rest), and why: a table of it is left, or its formula has no finite value.
+  Report check_laws(std::span<const double> qd) const;
+  /// Whether any law could leave a table.
+  bool has_law_ends() const { return has_law_ends_; }
   /// The place of each of these on its curve at the evaluator's configuration: 0 and 1 are the ends; NaN where it does
   /// not use the curve.
   void find_places(std::vector<double>& out) const;
@@ -32,6 +38,7 @@ class WatchedElements {
  private:
   const Evaluator& evaluator_;
   std::vector<int> elements_, ending_;
+  bool has_law_ends_ = false;
 };
 
 }  // namespace catena

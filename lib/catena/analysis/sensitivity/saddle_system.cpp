@@ -24,6 +24,7 @@ std::vector<std::pair<int, int>> tied_pairs(const Plan& plan) {
   };
   for_each_list(plan.blocks, [&](const auto& block, int) { take(block); });
   for_each_list(plan.forces, [&](const auto& block, int) { take(block); });
+  for (const auto& [i, j] : plan.law_pairs) pairs.emplace_back(std::min(i, j), std::max(i, j));
   for (int b = 0; b < plan.moving; ++b) pairs.emplace_back(b, b);
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());

@@ -148,7 +148,7 @@ namespace {
 
 // Calls f(a, b, K_ab) for every pair of moving coordinates in the stiffness of every element, forces and constraints.
 template <class F>
-void visit_entries(const Evaluator& evaluator, std::span<const double> lambda, F&& f) {
+void visit_entries(Evaluator& evaluator, std::span<const double> lambda, F&& f) {
   const int coordinates = 3 * evaluator.plan().moving;
   const auto element = [&](int body_i, int body_j, const auto& matrix) {
     const int body[2] = {body_i, body_j};
@@ -197,7 +197,7 @@ std::vector<double> body_arms(StaticSystem& system, std::span<const double> lamb
 StiffnessFloor::StiffnessFloor(StaticSystem& system, std::span<const double> lambda, double residual,
                                const MotionGroups* groups) {
   const Plan& plan = system.plan();
-  const Evaluator& evaluator = system.evaluator();
+  Evaluator& evaluator = system.evaluator();
   const std::vector<double> arms = body_arms(system, lambda);
   // Per body, without cancellation: stiffness against travel, N/m, and against turning, N m.
   std::vector<double> travel(arms.size(), 0.0), turning(arms.size(), 0.0);

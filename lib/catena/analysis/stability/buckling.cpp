@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "catena/analysis/balance/static_holding.hpp"
+#include "catena/analysis/run/energyless_forces.hpp"
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
@@ -234,10 +235,7 @@ BucklingReport Buckling::run(const std::function<bool()>& go_on) {
   if (outcome.ok()) {
     evaluator_.set_time(t_);
     path_.set_time(t_);
-    outcome = {Status::refused,
-               "follower forces have no energy, and buckling under forces without one is not built; give the forces in "
-               "ground axes",
-               {}};
+    outcome = {Status::refused, refused_without_energy(*model_, "buckling under forces without one is"), {}};
     if (evaluator_.conservative()) outcome = find(report, go_on);
     path_.move_to(point_);
     if (outcome.ok()) outcome = WatchedElements(evaluator_).check_ends();

@@ -7,6 +7,7 @@
 
 #include "catena/analysis/motion/equations_of_motion.hpp"
 #include "catena/analysis/motion/mass_matrix.hpp"
+#include "catena/analysis/run/energyless_forces.hpp"
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
@@ -107,10 +108,7 @@ ModesReport Modes::run(const std::function<bool()>& go_on) {
     return report;
   };
   if (!evaluator_.conservative()) {
-    return end({Status::refused,
-                "follower forces have no energy, and the modes of forces without one are not built; give the forces in "
-                "ground axes",
-                {}});
+    return end({Status::refused, refused_without_energy(*model_, "the modes of forces without one are"), {}});
   }
   if (Report functions = check_time_functions(*model_, {t_, t_}); !functions.ok()) return end(std::move(functions));
   evaluator_.set_time(t_);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "catena/analysis/run/energyless_forces.hpp"
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
@@ -40,10 +41,7 @@ Report Path::follow(PathReport& report, const std::function<bool(double, const S
   evaluator_.set_time(t_);
   path_.set_time(t_);
   if (!evaluator_.conservative()) {
-    return {Status::refused,
-            "follower forces have no energy, and paths of forces without one are not built; give the forces in ground "
-            "axes",
-            {}};
+    return {Status::refused, refused_without_energy(evaluator_.model(), "paths of forces without one are"), {}};
   }
   if (options_.to == options_.from) {
     return {Status::refused, "the path ends where it begins: \"to\" is the present value of the parameter", {}};

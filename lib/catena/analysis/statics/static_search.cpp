@@ -8,6 +8,7 @@
 #include "catena/analysis/balance/static_turns.hpp"
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/pose/whole_turns.hpp"
+#include "catena/analysis/run/energyless_forces.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/statics/static_descent.hpp"
 #include "catena/analysis/statics/static_ipopt.hpp"
@@ -356,7 +357,7 @@ void StaticSearch::describe_point(const StaticResult& result, Report& report) {
             : "; likely cause: a start far off, or an energy without a minimum nearby";
 }
 
-// Forces that follow their body: only the residual is solved, and the result cannot be certified.
+// Forces that follow their body, laws of state: only the residual is solved, and the result cannot be certified.
 StaticResult StaticSearch::find_without_energy(std::vector<double>& q, std::vector<double>& lambda) {
   StaticResult result;
   result.has_energy = false;
@@ -382,9 +383,8 @@ StaticResult StaticSearch::find_without_energy(std::vector<double>& q, std::vect
   }
   warn_of_rounding(accuracy_, result.report);
   drop_whole_turns(system_, start, q);
-  result.report.warnings.emplace_back(
-      "forces that turn with their body have no energy: the forces balance here, but nothing certifies that this "
-      "equilibrium is stable");
+  result.report.warnings.push_back(forces_without_energy(system_.evaluator().model()) +
+                                   ": the forces balance here, but nothing certifies that this equilibrium is stable");
   return result;
 }
 
@@ -397,10 +397,10 @@ StaticResult StaticSearch::find(std::vector<double>& q, std::vector<double>& lam
     if (!system_.has_gaps()) return find_without_energy(q, lambda);
     const int element = plan.row_element[at(plan.gap_rows.front())];
     result.report.status = Status::refused;
-    result.report.message = fmt::format(
-        "forces that turn with their body have no energy, and one-sided elements such as {} \"{}\" are treated by "
-        "minimising one",
-        evaluator.model().element_type(element), evaluator.model().element_name(element));
+    result.report.message =
+        fmt::format("{}, and one-sided elements such as {} \"{}\" are treated by minimising one",
+                    forces_without_energy(evaluator.model()), evaluator.model().element_type(element),
+                    evaluator.model().element_name(element));
     return result;
   }
   const std::vector<double> start = q;

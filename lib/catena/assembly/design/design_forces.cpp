@@ -1,5 +1,6 @@
 // DesignMechanism: forces and energy with derivatives.
 #include "catena/assembly/design/element_motion.hpp"
+#include "catena/assembly/law_values.hpp"
 
 namespace catena {
 namespace {
@@ -8,19 +9,46 @@ using detail::DesignSeries;
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-/// Values of an element's functions of time, one more than there are so that there is always one.
-template <class T, class Entry>
+/// Values of an element's functions of time and laws, one more than there are so that there is always one; law(number)
+/// gives those of laws.
+template <class T, class Entry, class Law>
 std::array<T, Entry::Element::functions + 1> function_values(const Entry& entry,
-                                                             const std::vector<DesignSeries>& functions) {
+                                                             const std::vector<DesignSeries>& functions, Law&& law) {
   std::array<T, Entry::Element::functions + 1> f;
   for (std::size_t k = 0; k < entry.values.size(); ++k) {
     const auto& value = entry.values[k];
-    f[k] = value.function < 0 ? T(value.constant) : T(functions[at(value.function)].f);
+    f[k] = value.law >= 0        ? T(law(value.law))
+           : value.function >= 0 ? T(functions[at(value.function)].f)
+                                 : T(value.constant);
   }
   return f;
 }
 
+/// What laws read: the state of a mechanism with derivatives.
+class DesignView {
+ public:
+  DesignView(const DesignMechanism& mechanism, const std::vector<DesignSeries>& functions)
+      : mechanism_(mechanism), functions_(functions) {}
+
+  DesignScalar time() const { return mechanism_.time(); }
+  Frame<DesignScalar> frame(int plan_body) const { return mechanism_.ground_frame(plan_body); }
+  Twist<DesignScalar> twist(int plan_body) const {
+    const Frame<DesignSeries>& m = mechanism_.motion(plan_body);
+    return {m.x.d, m.y.d, m.phi.d};
+  }
+  DesignScalar function(int number) const { return functions_[at(number)].f; }
+
+ private:
+  const DesignMechanism& mechanism_;
+  const std::vector<DesignSeries>& functions_;
+};
+
 }  // namespace
+
+DesignScalar DesignMechanism::law_value(int law) const {
+  const DesignView view(*this, function_);
+  return LawValues<DesignScalar, DesignScalar, DesignView>(*model_, laws_, view).value(law);
+}
 
 void DesignMechanism::applied_forces(std::span<DesignScalar> Q) const {
   for (DesignScalar& load : Q) load = DesignScalar();
@@ -38,7 +66,7 @@ void DesignMechanism::applied_forces(std::span<DesignScalar> Q) const {
       const auto& entry = list[at(block.entry[at(e)])];
       const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_,
                                                          [&](int body) { return detail::present(motion_[at(body)]); });
-      const auto values = function_values<DesignScalar>(entry, function_);
+      const auto values = function_values<DesignScalar>(entry, function_, [&](int law) { return law_value(law); });
       const int body_i = block.body_i[at(e)], body_j = E::bodies == 2 ? block.body_j[at(e)] : plan_->bodies;
       const Twist<DesignScalar> u = twist(body_i), v = twist(body_j);
       Wrench<DesignScalar> on_i, on_j;
@@ -67,7 +95,8 @@ Taylor<DesignScalar> DesignMechanism::potential() const {
       const auto& entry = list[at(block.entry[at(e)])];
       const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_,
                                                          [&](int body) { return motion_[at(body)]; });
-      const auto values = function_values<DesignSeries>(entry, function_);
+      // Laws have no potential.
+      const auto values = function_values<DesignSeries>(entry, function_, [](int) { return 0.0; });
       if constexpr (requires(const ForceArguments<DesignSeries>& a) { entry.element.potential(a); }) {
         if (is_conservative(entry.element)) {
           sum += entry.element.potential(ForceArguments<DesignSeries>{f.i, f.j, rest, rest, values.data(), f.ground});

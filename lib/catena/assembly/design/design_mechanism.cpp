@@ -43,6 +43,7 @@ DesignMechanism::DesignMechanism(const Evaluator& evaluator, std::shared_ptr<con
     }
   });
   function_.resize(model_->functions.size());
+  laws_ = compile_laws<DesignScalar>(*model_, evaluator.model().laws, *plan_);
   motion_.resize(at(plan_->bodies) + 1);
   place_immobile_bodies();
 }

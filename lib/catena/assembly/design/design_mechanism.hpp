@@ -75,6 +75,8 @@ class DesignMechanism {
   Taylor<DesignScalar> measure(int element) const;
   /// c, c', c'' of an element.
   Taylor<DesignScalar> element_value(int element) const;
+  /// The value of a law of state.
+  DesignScalar law_value(int law) const;
 
  private:
   void place_immobile_bodies();
@@ -82,10 +84,11 @@ class DesignMechanism {
   std::shared_ptr<const Plan> plan_;
   std::shared_ptr<const DesignModel> model_;
   double time_ = 0;
-  std::vector<Vec2<double>> origin_;                 // per plan body, and the ground's
-  std::vector<double> scale_;                        // per element: of its rows
-  std::vector<int> place_;                           // per element: in its block, -1: none
-  std::vector<Taylor<DesignScalar>> function_;       // at the present time
+  std::vector<Vec2<double>> origin_;            // per plan body, and the ground's
+  std::vector<double> scale_;                   // per element: of its rows
+  std::vector<int> place_;                      // per element: in its block, -1: none
+  std::vector<Taylor<DesignScalar>> function_;  // at the present time
+  std::vector<CompiledLaw<DesignScalar>> laws_;
   std::vector<Frame<Taylor<DesignScalar>>> motion_;  // per plan body and the ground, relative to the origins
 };
 

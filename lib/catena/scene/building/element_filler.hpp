@@ -148,6 +148,11 @@ class Filler {
         return;
       }
       const auto& function = builder_.scene().functions[static_cast<std::size_t>(number(at).number())];
+      if (function.kind == FunctionTemplate::Kind::state) {
+        target.law = builder_.state_law(builder_.scene().state_laws[static_cast<std::size_t>(function.state)]);
+        good_ = good_ && target.law >= 0;
+        return;
+      }
       try {
         const TimeFunction<S> made = builder_.function(function);
         if (made.is_constant()) {

@@ -10,6 +10,7 @@ namespace catena {
 
 template <class S>
 BasicModel<S> ModelBuilder<S>::build() {
+  check_tables();
   model_.gravity = {value(scene_.gravity[0]), value(scene_.gravity[1])};
   if (!count_elements()) return std::move(model_);
   add_points(ground, scene_.ground);
@@ -18,10 +19,12 @@ BasicModel<S> ModelBuilder<S>::build() {
   visit(scene_.root, Pass::elements);
   if (has_stops_) visit(scene_.root, Pass::stops);
   for (const OwnColumnTemplate& source : scene_.own_columns) {
-    OwnColumn<S> column{source.name, source.unit, source.expression.template formula<S>(parameters_), {}};
+    OwnColumn<S> column{
+        source.name, source.unit, source.expression.template formula<S>(parameters_, {}, evaluation_.tables()), {}};
     for (const NamedInput& input : source.inputs) column.inputs.push_back(input.name);
     model_.own_columns.push_back(std::move(column));
   }
+  bind_laws();
   return std::move(model_);
 }
 

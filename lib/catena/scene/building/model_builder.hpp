@@ -21,7 +21,8 @@ class ModelBuilder {
         options_(options),
         diagnostics_(diagnostics),
         parameters_(parameters),
-        evaluation_(*scene.source, scene.expressions, parameters, diagnostics) {}
+        evaluation_(*scene.source, scene.expressions, parameters, diagnostics,
+                    scene.parameters.tables<S>(scene.expressions, parameters)) {}
 
   BasicModel<S> build();
 
@@ -42,6 +43,8 @@ class ModelBuilder {
   bool reported(std::size_t offset) const { return diagnostics_.reported(*scene_.source, offset); }
   /// The element that is being built, for messages: `revolute "A"`.
   std::string owner(const ElementTemplate& element) const;
+  /// A law of state, put into the model: its number there; -1, with a report, if its names have no value.
+  int state_law(const StateLawTemplate& source);
   /// Throws std::invalid_argument for data that define no function of time.
   TimeFunction<S> function(const FunctionTemplate& source);
   /// In the author's frame of its body. Throws std::invalid_argument.
@@ -71,6 +74,10 @@ class ModelBuilder {
   void compose(const BodyTemplate& source, std::string_view name, BasicBody<S>& body, Vec2<S>& centroid);
   void add_element(const ElementTemplate& source);
   bool make_name(const NameText& name, std::string& out);
+  /// Reports tables that could not be made.
+  void check_tables();
+  /// Completes the laws of state, once everything else is there.
+  void bind_laws();
   void report_used_name(const NameText& text, std::string_view name);
   bool attach(const ElementTemplate& source, int end, const Vec2<S>* place, int& body, Vec2<S>& local);
   void report_missing_body(const NameText& text, std::string_view name);
@@ -81,10 +88,11 @@ class ModelBuilder {
   std::span<const S> parameters_;
   Evaluation<S> evaluation_;
   BasicModel<S> model_;
-  std::vector<std::uint32_t> name_offset_;  // of every name in the model's table
-  std::string name_, point_name_;           // buffers
-  int searches_ = 0;                        // for names like a missing one
-  bool has_stops_ = false;                  // they name elements, wherever these are: built last
+  std::vector<std::uint32_t> name_offset_;           // of every name in the model's table
+  std::string name_, point_name_;                    // buffers
+  std::vector<const StateLawTemplate*> law_source_;  // of every law in the model
+  int searches_ = 0;                                 // for names like a missing one
+  bool has_stops_ = false;                           // they name elements, wherever these are: built last
 };
 
 /// Builds one element: members from slots, what is missing from the configuration, appended to the model. `points` are

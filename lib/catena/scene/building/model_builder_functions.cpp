@@ -19,6 +19,7 @@ TimeFunction<S> ModelBuilder<S>::function(const FunctionTemplate& source) {
   if (n.empty() && parts.empty()) return S(1.0);
   switch (source.kind) {
     case Kind::constant:
+    case Kind::state:  // no function of time
       break;
     case Kind::polynomial:
       return TimeFunction<S>::polynomial(n);

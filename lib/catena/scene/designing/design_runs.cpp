@@ -62,8 +62,9 @@ std::vector<DesignScalar> DesignRuns::evaluate_formula(const DesignFormula& form
                                                        const std::vector<Measured>& measures) const {
   std::vector<DesignScalar> values;
   for (std::size_t g = 0; g < parameters.size(); ++g) {
+    const std::span<const DesignScalar> group = parameters[g];
     const Formula<DesignScalar> bound =
-        formula.expression.formula<DesignScalar>(std::span<const DesignScalar>(parameters[g]));
+        formula.expression.formula<DesignScalar>(group, {}, context_.models->tables(*context_.task.table, group));
     values.push_back(bound.evaluate([&](std::uint32_t input) {
       const Measured& measured = measures[static_cast<std::size_t>(formula.measures[input])];
       DesignScalar value(measured.value);

@@ -44,7 +44,9 @@ std::string flow(const std::vector<Line>& entries) {
 std::string unit_text(UnitKind unit) { return unit == UnitKind::none ? "a pure number" : std::string(si_unit(unit)); }
 
 /// What may be written for a field: kind, unit, domain.
-std::string form(const FieldDescription& field) {
+std::string form(const FieldDescription& field, bool force) {
+  const std::string_view varying =
+      force ? "a function of time or an expression over columns (catena explain state_law)" : "a function of time";
   switch (field.kind) {
     case FieldKind::point:
       return "\"body\", \"body.point\" or [\"body\", [x', y']]";
@@ -72,9 +74,9 @@ std::string form(const FieldDescription& field) {
           "pairs [{}, {}], or {{\"points\": pairs, \"beyond\": \"error\" (default), \"hold\" or \"line\"}}",
           si_unit(field.unit), si_unit(field.second_unit));
     case FieldKind::function:
-      return unit_text(field.unit) + ", or a function of time";
+      return fmt::format("{}, {}{}", unit_text(field.unit), force ? "" : "or ", varying);
     case FieldKind::function_pair:
-      return fmt::format("[f_x, f_y], each {} or a function of time", unit_text(field.unit));
+      return fmt::format("[f_x, f_y], each {}{} {}", unit_text(field.unit), force ? "," : " or", varying);
   }
   return {};
 }
@@ -104,10 +106,10 @@ std::string explain_element(const ElementDescription& type) {
     if (field.reserved()) continue;
     std::string omitted;
     if (!field.required && field.doc.find("default") == std::string_view::npos &&
-        form(field).find("default") == std::string::npos)
+        form(field, type.force).find("default") == std::string::npos)
       omitted = field.omitted == Omitted::given ? "; default: as in the given configuration" : "; optional";
     if (!field.synonym.empty()) omitted += fmt::format("; also called {}", field.synonym);
-    lines.push_back({std::string(field.key), fmt::format("{}: {}{}", field.doc, form(field), omitted)});
+    lines.push_back({std::string(field.key), fmt::format("{}: {}{}", field.doc, form(field, type.force), omitted)});
   }
   if (type.bodies > 0)
     lines.push_back(

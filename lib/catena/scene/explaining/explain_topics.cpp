@@ -11,7 +11,8 @@ std::span<const ExplainedTopic> explained_topics() {
                   m mm cm km in ft, kg g t lb, s ms min, Hz, rad deg rev, rpm, N kN lbf, Pa psi, J, W;
                   products by a space, /, ^: "6 N m/rad", "-9.81 m/s^2"
   "=crank/2+0.1"  an expression: + - * / ^ ( ) pi sin cos tan asin acos atan atan2 sqrt exp log abs min max,
-                  parameters, and k inside a replicate block; SI units and radians
+                  tables as functions (catena explain tables), parameters, and k inside a replicate block; SI units
+                  and radians
   "crank"         a parameter
 )"},
       {{"parameters"},
@@ -64,6 +65,33 @@ Example
       {{"function", "value"},
        R"(function: a function of time, for the value of a driver or the magnitude of a force
   a number, or one of polynomial, harmonic, step, law, spline, sum, product (catena explain harmonic ...)
+)"},
+      {{"tables"},
+       R"(tables: functions in the scene's expressions, cubic splines through points
+  x, y     the points, x increasing; numbers that may depend on parameters, but not on tables
+  points   in place of both: pairs [x, y], or two columns of a file (catena explain file)
+  end      "natural" (default), "clamped" (zero end slopes) or "periodic"
+  beyond   outside of the points, unless periodic: "error" (default), "hold" the value at the end, or go on along the
+           "line" of the slope there
+  Values have no units of their own: SI and radians, as everything in an expression.
+
+Example
+  "tables": {"gas": {"x": [0, 1.5, 3.14, 6.28], "y": [9e5, 2e5, 1e5, 1e5], "beyond": "hold"}}
+  "torque": "=-0.1*gas(crank.angle)"
+)"},
+      {{"state_law"},
+       R"(state_law: the magnitude of a force as an expression over columns, parameters, tables and t
+  Wherever point_force, torque, spring_damper and torsion_spring take a function of time. Columns that are known before
+  accelerations are may be read: places, angles and velocities of bodies and points (crank.angle, rod.tip.vx), angle and
+  omega of a revolute, slide and slide_rate along an axis, length, rate and force of a spring_damper, angle and torque
+  of a torsion_spring, the torque of a torque, columns of one's own made of these. Reactions, accelerations and the
+  force itself would close an algebraic loop. A name that is no plain identifier stands in single quotes:
+  'long rod'.angle, in a replicate block 'link{k}'.angle.
+  A law has no potential: its power (A.power) counts as work of applied loads in energy.balance. modes, path and
+  buckling refuse it; equilibrium balances forces, and cannot certify stability.
+
+Example
+  "forces": [{"type": "torque", "name": "motor", "i": "arm", "torque": "=-40*(arm.angle - 0.5) - 3*arm.omega"}]
 )"},
       {{"polynomial"},
        R"(polynomial: a function of time

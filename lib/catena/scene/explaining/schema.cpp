@@ -283,6 +283,12 @@ std::string schema_json() {
       map_of({{"anyOf", json::array({expression,
                                      object_of({{"value", expression}, {"unit", {{"type", "string"}}}}, {"value"})})}}),
       "name -> expression over columns, parameters and t");
+  const json table = object_of({{"x", reference("numbersOrFile")},
+                                {"y", reference("numbersOrFile")},
+                                {"points", reference("pairsOrFile")},
+                                {"end", {{"enum", {"natural", "clamped", "periodic"}}}},
+                                {"beyond", reference("beyond")}});
+  properties["tables"] = described(map_of(table), "name -> spline, a function in expressions: \"=p(crank.angle)\"");
   json units = json::object();
   for (const std::string_view kind : OutputUnits::kinds) units[std::string(kind)] = {{"type", "string"}};
   properties["units"] =

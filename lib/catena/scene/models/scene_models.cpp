@@ -68,11 +68,14 @@ std::vector<std::vector<SceneModels::MovingNumber>> SceneModels::moving_numbers(
   std::vector<std::vector<MovingNumber>> moving(parameters.size());
   if (task.varying.empty()) return moving;
   const auto groups = dual_values(*task.table, seeds, parameters);
-  for (const TaskNumber& number : task.varying) {
-    if (number.place == TaskNumber::Place::key && number.key->name == "tolerance") continue;
-    for (std::size_t p = 0; p < parameters.size(); ++p) {
-      const auto value = evaluate<DesignScalar>(number.value, scene_.expressions, groups[p / parameters_at_once], {});
-      if (const double rate = value.d[p % parameters_at_once]; rate != 0) moving[p].push_back({number, rate});
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const std::vector<Formula<DesignScalar>::Table> tables_here = tables(*task.table, groups[g]);
+    for (const TaskNumber& number : task.varying) {
+      if (number.place == TaskNumber::Place::key && number.key->name == "tolerance") continue;
+      const auto value = evaluate<DesignScalar>(number.value, scene_.expressions, groups[g], {}, tables_here);
+      for (std::size_t k = 0; k < parameters_at_once && parameters_at_once * g + k < parameters.size(); ++k) {
+        if (value.d[k] != 0) moving[parameters_at_once * g + k].push_back({number, value.d[k]});
+      }
     }
   }
   return moving;

@@ -45,6 +45,11 @@ class SceneModels {
   /// Values of all parameters with derivatives by `parameters`, by groups of four as in DesignModels.
   std::vector<std::vector<DesignScalar>> dual_values(const ParameterTable& table, const ParameterSeeds& seeds,
                                                      std::span<const int> parameters) const;
+  /// The scene's tables at these values.
+  std::vector<Formula<DesignScalar>::Table> tables(const ParameterTable& table,
+                                                   std::span<const DesignScalar> values) const {
+    return table.tables<DesignScalar>(scene_.expressions, values);
+  }
   /// Models with derivatives by these parameters. Throws std::invalid_argument where there is none at these values.
   DesignModels designs(const ParameterTable& table, const ParameterSeeds& seeds, std::span<const int> parameters) const;
 

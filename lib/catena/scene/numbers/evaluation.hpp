@@ -30,10 +30,10 @@ inline void report_evaluation(const SourceText& source, std::size_t offset, std:
 template <class S>
 class Evaluation {
  public:
-  /// All of these must outlive the evaluation; `parameters` in the order of their names.
+  /// All of these but the tables must outlive the evaluation; `parameters` in the order of their names.
   Evaluation(const SourceText& source, const ExpressionPool& pool, std::span<const S> parameters,
-             Diagnostics& diagnostics)
-      : source_(source), pool_(pool), parameters_(parameters), diagnostics_(diagnostics) {
+             Diagnostics& diagnostics, std::vector<typename Formula<S>::Table> tables = {})
+      : source_(source), pool_(pool), parameters_(parameters), diagnostics_(diagnostics), tables_(std::move(tables)) {
     for (const S& value : parameters) plain_parameters_.push_back(value_of(value));
   }
 
@@ -51,7 +51,7 @@ class Evaluation {
 
   S operator()(const NumberValue& value) const {
     try {
-      return evaluate<S>(value, pool_, parameters_, loop_values_);
+      return evaluate<S>(value, pool_, parameters_, loop_values_, tables_);
     } catch (const ExpressionError& error) {
       // One byte for the "=" before the expression.
       report_evaluation(source_, value.offset(), error.position + 1, error.what(), loop_names_, loop_values_,
@@ -73,6 +73,7 @@ class Evaluation {
 
   std::span<const std::string> loop_names() const { return loop_names_; }
   std::span<const double> loop_values() const { return loop_values_; }
+  TableSet<S> tables() const { return tables_; }
 
  private:
   const SourceText& source_;
@@ -80,6 +81,7 @@ class Evaluation {
   std::span<const S> parameters_;
   std::vector<double> plain_parameters_;  // names are made of plain numbers
   Diagnostics& diagnostics_;
+  std::vector<typename Formula<S>::Table> tables_;
   std::vector<std::string> loop_names_;
   std::vector<double> loop_values_;
 };

@@ -36,6 +36,13 @@ bool is_identifier(std::string_view name) {
   return true;
 }
 
+void Expression::fail_outside(const Instruction& instruction, double x, double first, double last) {
+  throw ExpressionError(
+      instruction.position,
+      fmt::format("the table reaches from {} to {}, and {} is asked for; \"beyond\" says what lies there", first, last,
+                  x));
+}
+
 void Expression::fail(const Instruction& instruction, double a, double b) {
   const Operation operation = instruction.operation;
   if (operation == Operation::divide && b == 0) {

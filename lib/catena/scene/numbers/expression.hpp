@@ -1,8 +1,9 @@
 // Expressions such as crank/2 + 0.1: parsed once into a few instructions of a stack machine, evaluated with any scalar.
 //
 // + - * / ^ with the usual ranks (^ binds to the right and before a sign: -2^2 = -4, 2^-1 = 0.5), parentheses, pi,
-// sin cos tan asin acos atan atan2 sqrt exp log abs min max, parameters by name, and inside replicate blocks the
-// integer variables of the blocks (the innermost first, before a parameter of the same name). SI units and radians.
+// sin cos tan asin acos atan atan2 sqrt exp log abs min max, the scene's tables as functions p(x), parameters by name,
+// and inside replicate blocks the integer variables of the blocks (the innermost first, before a parameter of the same
+// name). SI units and radians.
 //
 // Singular cases: a division by zero, or any operation whose value is not finite, throws ExpressionError at the
 // operation. An operand that is NaN already (a parameter with a reported error) passes silently, so that each error is
@@ -12,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -46,12 +48,16 @@ struct ExpressionScope {
   std::vector<NamedInput>* columns = nullptr;
 };
 
+/// The tables of a scene by their numbers; one that could not be made, which was reported, is null.
+template <class S>
+using TableSet = std::span<const typename Formula<S>::Table>;
+
 struct Instruction {
   Operation operation;
   std::uint32_t position;  // byte in the text, for errors
   union {
     double number;        // constant
-    std::uint32_t index;  // parameter, loop_variable, column
+    std::uint32_t index;  // parameter, loop_variable, column, table
   };
 };
 
@@ -62,11 +68,12 @@ class Expression {
 
   /// The value with the parameters in their order and the loop variables as in the scope. Throws ExpressionError.
   template <class S>
-  S evaluate(std::span<const S> parameters, std::span<const double> loop_variables) const;
+  S evaluate(std::span<const S> parameters, std::span<const double> loop_variables, TableSet<S> tables = {}) const;
 
-  /// The same as a formula over the columns that were named, with the parameters' values in it.
+  /// The same as a formula over the columns that were named, with the values of all else in it. A table that is null
+  /// makes it a number that is not finite.
   template <class S>
-  Formula<S> formula(std::span<const S> parameters) const;
+  Formula<S> formula(std::span<const S> parameters, std::span<const double> loop_variables, TableSet<S> tables) const;
 
   std::span<const Instruction> code() const { return code_; }
 
@@ -75,6 +82,10 @@ class Expression {
   static constexpr std::size_t deepest_stack = Formula<double>::deepest_stack;
 
   [[noreturn]] static void fail(const Instruction& instruction, double a, double b);
+  [[noreturn]] static void fail_outside(const Instruction& instruction, double x, double first, double last);
+  /// A table at x; throws where it ends.
+  template <class S>
+  static S look_up(const Instruction& instruction, TableSet<S> tables, const S& x);
 
   std::vector<Instruction> code_;
 };
@@ -85,7 +96,17 @@ bool is_expression_word(std::string_view name);
 bool is_identifier(std::string_view name);
 
 template <class S>
-S Expression::evaluate(std::span<const S> parameters, std::span<const double> loop_variables) const {
+S Expression::look_up(const Instruction& instruction, TableSet<S> tables, const S& x) {
+  const typename Formula<S>::Table table = instruction.index < tables.size() ? tables[instruction.index] : nullptr;
+  if (!table || std::isnan(value_of(x))) return S(std::numeric_limits<double>::quiet_NaN());
+  if (!table->curve.covers(value_of(x)))
+    fail_outside(instruction, value_of(x), table->curve.first(), table->curve.last());
+  return table->curve.evaluate(x).f;
+}
+
+template <class S>
+S Expression::evaluate(std::span<const S> parameters, std::span<const double> loop_variables,
+                       TableSet<S> tables) const {
   std::array<S, deepest_stack> stack;
   S* top = stack.data();  // one after the last value; parsing has made sure that it stays inside
   for (const Instruction& instruction : code_) {
@@ -100,6 +121,10 @@ S Expression::evaluate(std::span<const S> parameters, std::span<const double> lo
         }
         break;
       case 1: {
+        if (instruction.operation == Operation::table) {
+          top[-1] = look_up<S>(instruction, tables, top[-1]);
+          break;
+        }
         const double a = value_of(top[-1]);  // the operand, for the message
         top[-1] = apply(instruction.operation, top[-1]);
         if (!std::isfinite(value_of(top[-1])) && !std::isnan(a)) fail(instruction, a, 0);
@@ -117,15 +142,25 @@ S Expression::evaluate(std::span<const S> parameters, std::span<const double> lo
 }
 
 template <class S>
-Formula<S> Expression::formula(std::span<const S> parameters) const {
+Formula<S> Expression::formula(std::span<const S> parameters, std::span<const double> loop_variables,
+                               TableSet<S> tables) const {
   Formula<S> formula;
   for (const Instruction& instruction : code_) {
     if (instruction.operation == Operation::constant) {
       formula.push_constant(S(instruction.number));
     } else if (instruction.operation == Operation::parameter) {
       formula.push_constant(parameters[instruction.index]);
+    } else if (instruction.operation == Operation::loop_variable) {
+      formula.push_constant(S(loop_variables[instruction.index]));
     } else if (instruction.operation == Operation::column) {
       formula.push_input(instruction.index);
+    } else if (instruction.operation == Operation::table) {
+      if (instruction.index < tables.size() && tables[instruction.index]) {
+        formula.push_table(tables[instruction.index]);
+      } else {
+        formula.push_constant(S(std::numeric_limits<double>::quiet_NaN()));
+        formula.push(Operation::multiply);
+      }
     } else {
       formula.push(instruction.operation);
     }

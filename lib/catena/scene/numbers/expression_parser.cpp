@@ -164,6 +164,8 @@ class ExpressionParser {
     const bool dotted = at_ < text_.size() && text_[at_] == '.';
     if (scope_.columns && dotted) return column(begin, std::string(found));
     if (const ExpressionFunction* function = find_function(found)) return call(*function, begin);
+    if (const int table = scope_.parameters ? scope_.parameters->find_table(found) : -1; table >= 0)
+      return call_table(table, found, begin);
     if (found == "pi") return emit(Operation::constant, begin, 1, std::numbers::pi);
     Instruction load{Operation::loop_variable, static_cast<std::uint32_t>(begin), {}};
     for (std::size_t i = scope_.loop_variables.size(); i-- > 0;) {
@@ -183,6 +185,7 @@ class ExpressionParser {
     if (next_after_blanks() == '(') {
       NearMiss near(found);
       for (const ExpressionFunction& function : expression_functions) near.consider(function.name);
+      if (scope_.parameters) near.consider_all(scope_.parameters->tables());
       return "unknown function " + in_quotes(found) + near.hint();
     }
     NearMiss near(found);
@@ -215,6 +218,17 @@ class ExpressionParser {
                                      function.values, function.values == 1 ? "" : "s", values));
     }
     return more_allowed || emit(function.operation, begin, 1 - values);
+  }
+
+  bool call_table(int table, std::string_view table_name, std::size_t begin) {
+    const std::size_t bracket = at_;
+    if (!take('(')) return fail(begin, fmt::format("{0} is a table: write {0}(...)", table_name));
+    if (!sum()) return false;
+    if (next_is(',')) return fail(begin, fmt::format("the table {} takes one value", table_name));
+    if (!take(')')) return missing_bracket(bracket);
+    Instruction look_up{Operation::table, static_cast<std::uint32_t>(begin), {}};
+    look_up.index = static_cast<std::uint32_t>(table);
+    return emit(look_up, 0);
   }
 
   bool missing_bracket(std::size_t opened) {

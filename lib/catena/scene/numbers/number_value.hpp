@@ -71,7 +71,7 @@ class ExpressionPool {
 /// ExpressionError.
 template <class S>
 S evaluate(const NumberValue& value, const ExpressionPool& pool, std::span<const S> parameters,
-           std::span<const double> loop_variables) {
+           std::span<const double> loop_variables, TableSet<S> tables = {}) {
   switch (value.kind()) {
     case NumberValue::Kind::constant:
       return S(value.number());
@@ -80,7 +80,7 @@ S evaluate(const NumberValue& value, const ExpressionPool& pool, std::span<const
     case NumberValue::Kind::loop_variable:
       return S(loop_variables[value.index()]);
     case NumberValue::Kind::expression:
-      return pool[value.index()].template evaluate<S>(parameters, loop_variables);
+      return pool[value.index()].template evaluate<S>(parameters, loop_variables, tables);
     case NumberValue::Kind::invalid:
       break;
   }

@@ -1,5 +1,5 @@
-// The names of a scene's parameters, numbered in file order, and what is known of their units. Expressions hold the
-// numbers.
+// The names of a scene's parameters, numbered in file order, and what is known of their units; and the names of its
+// tables, which are functions in expressions. Expressions hold the numbers.
 #pragma once
 
 #include <cstddef>
@@ -33,6 +33,16 @@ class ParameterNames {
   std::span<const std::string> all() const { return names_; }
   std::size_t size() const { return names_.size(); }
 
+  void add_table(std::string_view name) { tables_.emplace_back(name); }
+  /// The number of a table, -1 if there is none of this name.
+  int find_table(std::string_view name) const {
+    for (std::size_t k = 0; k < tables_.size(); ++k) {
+      if (tables_[k] == name) return static_cast<int>(k);
+    }
+    return -1;
+  }
+  std::span<const std::string> tables() const { return tables_; }
+
   /// The dimension of a parameter given as a quantity; unknown for plain numbers and expressions.
   const std::optional<Dimension>& dimension(int index) const { return dimensions_[static_cast<std::size_t>(index)]; }
   void set_dimension(int index, const std::optional<Dimension>& dimension) {
@@ -40,7 +50,7 @@ class ParameterNames {
   }
 
  private:
-  std::vector<std::string> names_;
+  std::vector<std::string> names_, tables_;
   std::vector<std::optional<Dimension>> dimensions_;
   std::map<std::string, int, std::less<>> index_;
 };

@@ -16,8 +16,11 @@ constexpr std::array<std::string_view, 3> keys{"value", "min", "max"};
 
 }  // namespace
 
-ParameterTable ParameterTable::read(const JsonValue& object, ExpressionPool& pool, Diagnostics& diagnostics) {
+ParameterTable ParameterTable::read(const JsonValue& object, ExpressionPool& pool, Diagnostics& diagnostics,
+                                    std::span<const std::string> tables) {
   ParameterTable table;
+  for (const std::string& name : tables) table.names_.add_table(name);
+  if (!object) return table;
   if (!object.is(JsonKind::object)) {
     diagnostics.error(
         object.source(), object.offset(),
@@ -35,8 +38,28 @@ ParameterTable ParameterTable::read(const JsonValue& object, ExpressionPool& poo
   for (const JsonMember member : object.members()) {
     table.read_definition(table.names_.find(member.name()), member.value, reader, diagnostics);
   }
-  table.find_order(pool, diagnostics);
+  if (tables.empty()) table.find_order(pool, diagnostics);
   return table;
+}
+
+void ParameterTable::define_tables(std::vector<TableFunction> tables, const ExpressionPool& pool,
+                                   Diagnostics& diagnostics) {
+  tables_ = std::move(tables);
+  for (TableFunction& table : tables_) {
+    for (std::vector<NumberValue>* list : {&table.x, &table.y}) {
+      for (NumberValue& number : *list) {
+        if (number.kind() != NumberValue::Kind::expression) continue;
+        for (const Instruction& instruction : pool[number.index()].code()) {
+          if (instruction.operation != Operation::table) continue;
+          diagnostics.error(table.place.source(), number.offset(),
+                            fmt::format("the entries of table {} may not use tables", in_quotes(table.name)));
+          number = NumberValue();
+          break;
+        }
+      }
+    }
+  }
+  find_order(pool, diagnostics);
 }
 
 void ParameterTable::read_definition(int index, const JsonValue& value, NumberReader& reader,
@@ -93,12 +116,28 @@ void ParameterTable::set(const JsonValue& object, ExpressionPool& pool, Diagnost
 
 std::vector<int> ParameterTable::needs(int index, const ExpressionPool& pool) const {
   const NumberValue& value = definitions_[static_cast<std::size_t>(index)].value;
-  if (value.kind() == NumberValue::Kind::parameter) return {static_cast<int>(value.index())};
   std::vector<int> found;
-  if (value.kind() == NumberValue::Kind::expression) {
-    for (const Instruction& instruction : pool[value.index()].code()) {
+  const auto collect = [&](const NumberValue& number) {
+    if (number.kind() == NumberValue::Kind::parameter) found.push_back(static_cast<int>(number.index()));
+    if (number.kind() != NumberValue::Kind::expression) return;
+    for (const Instruction& instruction : pool[number.index()].code()) {
       if (instruction.operation == Operation::parameter) found.push_back(static_cast<int>(instruction.index));
     }
+  };
+  collect(value);
+  for (const int used : used_tables(index, pool)) {
+    for (const NumberValue& number : tables_[static_cast<std::size_t>(used)].x) collect(number);
+    for (const NumberValue& number : tables_[static_cast<std::size_t>(used)].y) collect(number);
+  }
+  return found;
+}
+
+std::vector<int> ParameterTable::used_tables(int index, const ExpressionPool& pool) const {
+  const NumberValue& value = definitions_[static_cast<std::size_t>(index)].value;
+  std::vector<int> found;
+  if (tables_.empty() || value.kind() != NumberValue::Kind::expression) return found;
+  for (const Instruction& instruction : pool[value.index()].code()) {
+    if (instruction.operation == Operation::table) found.push_back(static_cast<int>(instruction.index));
   }
   return found;
 }
@@ -166,7 +205,7 @@ std::pair<double, double> ParameterTable::limits(int index, const ExpressionPool
   const Definition& definition = definitions_[static_cast<std::size_t>(index)];
   const auto limit = [&](const std::optional<NumberValue>& number, double none) {
     try {
-      return number ? catena::evaluate<double>(*number, pool, values, {}) : none;
+      return number ? catena::evaluate<double>(*number, pool, values, {}, tables<double>(pool, values)) : none;
     } catch (const ExpressionError&) {
       return none;  // reported where the values were checked
     }
@@ -181,7 +220,7 @@ bool ParameterTable::check_limits(int index, double value, std::span<const doubl
   const auto limit = [&](const std::optional<NumberValue>& number, double none) {
     if (!number) return none;
     try {
-      return catena::evaluate<double>(*number, pool, values, {});
+      return catena::evaluate<double>(*number, pool, values, {}, tables<double>(pool, values));
     } catch (const ExpressionError& error) {
       report(error, *number, *definition.limit_source, diagnostics);
       return none;

@@ -13,6 +13,7 @@
 
 #include "catena/scene/numbers/evaluation.hpp"
 #include "catena/scene/numbers/number_reader.hpp"
+#include "catena/scene/numbers/table_function.hpp"
 
 namespace catena {
 
@@ -27,13 +28,22 @@ class ParameterTable {
  public:
   /// Reads the object "parameters". Errors are reported; parameters with errors exist and are NaN, so that expressions
   /// which use them give no further errors.
-  static ParameterTable read(const JsonValue& object, ExpressionPool& pool, Diagnostics& diagnostics);
+  /// Without an object there are none. Where `tables` are named, they are defined next.
+  static ParameterTable read(const JsonValue& object, ExpressionPool& pool, Diagnostics& diagnostics,
+                             std::span<const std::string> tables = {});
+  /// The tables in the order of their names. Parameters and the entries of tables may depend on each other, in no
+  /// circle.
+  void define_tables(std::vector<TableFunction> tables, const ExpressionPool& pool, Diagnostics& diagnostics);
 
   /// Replaces definitions by those of an object {"P": 3, ...}: the key `set` of an analysis, --set of a command line.
   /// min and max stay. An unknown name is an error. The object's source must outlive the table.
   void set(const JsonValue& object, ExpressionPool& pool, Diagnostics& diagnostics);
 
   const ParameterNames& names() const { return names_; }
+  /// The tables at these values of all parameters; null where one could not be made.
+  template <class S>
+  std::vector<typename Formula<S>::Table> tables(const ExpressionPool& pool, std::span<const S> parameters) const;
+  std::span<const TableFunction> table_functions() const { return tables_; }
   /// What a parameter is given as.
   const NumberValue& definition(int index) const { return definitions_[static_cast<std::size_t>(index)].value; }
   /// min and max of a parameter at these values of all; infinite where it has none.
@@ -56,6 +66,8 @@ class ParameterTable {
   void find_order(const ExpressionPool& pool, Diagnostics& diagnostics);
   /// The parameters on which the value of one depends.
   std::vector<int> needs(int index, const ExpressionPool& pool) const;
+  /// The tables that the definition of one uses.
+  std::vector<int> used_tables(int index, const ExpressionPool& pool) const;
   void report_circle(std::span<const int> circle, Diagnostics& diagnostics) const;
   /// False, with a report, if `value` of parameter `index` is outside its limits.
   bool check_limits(int index, double value, std::span<const double> values, const ExpressionPool& pool,
@@ -65,8 +77,17 @@ class ParameterTable {
 
   ParameterNames names_;
   std::vector<Definition> definitions_;
+  std::vector<TableFunction> tables_;
   std::vector<int> order_;  // every parameter after those it needs; members of circles are left out
 };
+
+template <class S>
+std::vector<typename Formula<S>::Table> ParameterTable::tables(const ExpressionPool& pool,
+                                                               std::span<const S> parameters) const {
+  std::vector<typename Formula<S>::Table> made;
+  for (const TableFunction& table : tables_) made.push_back(try_to_make<S>(table, pool, parameters));
+  return made;
+}
 
 template <class S>
 std::vector<S> ParameterTable::evaluate(const ExpressionPool& pool, Diagnostics& diagnostics,
@@ -75,15 +96,20 @@ std::vector<S> ParameterTable::evaluate(const ExpressionPool& pool, Diagnostics&
   std::vector<S> values(definitions_.size(), nothing);
   std::vector<const S*> seeded(definitions_.size(), nullptr);
   for (const ParameterSeed<S>& seed : seeds) seeded[static_cast<std::size_t>(seed.index)] = &seed.value;
+  std::vector<typename Formula<S>::Table> tables(tables_.size());  // made when the first parameter uses them
   for (const int index : order_) {
     const auto i = static_cast<std::size_t>(index);
+    for (const int used : tables_.empty() ? std::vector<int>() : used_tables(index, pool)) {
+      auto& table = tables[static_cast<std::size_t>(used)];
+      if (!table) table = try_to_make<S>(tables_[static_cast<std::size_t>(used)], pool, values);
+    }
     const Definition& definition = definitions_[i];
     if (seeded[i]) {
       values[i] = *seeded[i];
       continue;
     }
     try {
-      values[i] = catena::evaluate<S>(definition.value, pool, values, {});
+      values[i] = catena::evaluate<S>(definition.value, pool, values, {}, tables);
     } catch (const ExpressionError& error) {
       report(error, definition.value, *definition.source, diagnostics);
     }

@@ -64,7 +64,7 @@ double AnalysisReader::evaluated(const NumberValue& read, const JsonValue& value
     place.value = read;
     varying_.push_back(place);
   }
-  return Evaluation<double>(value.source(), scene_.expressions, values_, diagnostics_)(read);
+  return Evaluation<double>(value.source(), scene_.expressions, values_, diagnostics_, tables())(read);
 }
 
 double AnalysisReader::number(const AnalysisKey& key, const JsonValue& value, const FieldName& field,

@@ -20,6 +20,8 @@ class AnalysisReader {
   std::vector<PlacedName> names(const JsonValue& list, const FieldName& field, std::span<const double> parameters);
 
  private:
+  /// The scene's tables at the parameters of the analysis that is read.
+  std::vector<Formula<double>::Table> tables() const { return parameters_.tables<double>(scene_.expressions, values_); }
   const AnalysisDescription* read_type(const JsonValue& object);
   void read_key(const AnalysisKey& key, const JsonValue& value, AnalysisTask& task);
   double number(const AnalysisKey& key, const JsonValue& value, const FieldName& field, TaskNumber place);

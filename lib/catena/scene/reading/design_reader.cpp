@@ -98,7 +98,7 @@ void AnalysisReader::read_variable(const JsonMember& member, AnalysisTask& task)
   DesignVariable variable;
   variable.parameter = index;
   const std::optional<Dimension>& dimension = parameters_.names().dimension(index);
-  const Evaluation<double> evaluation(member.value.source(), scene_.expressions, values_, diagnostics_);
+  const Evaluation<double> evaluation(member.value.source(), scene_.expressions, values_, diagnostics_, tables());
   const auto [least, greatest] = task.table->limits(index, scene_.expressions, values_);
   const auto take = [&](const JsonValue& value, std::string_view key, double otherwise) {
     return value ? evaluation(reading_.numbers.read(value, dimension, {key, owner})) : otherwise;

@@ -208,7 +208,8 @@ void SceneReading::element(const JsonValue& object, std::string_view list, Block
       element.indirect |= 1u << slot;
     };
     const auto function_at = [&](std::size_t k, const JsonValue& part) {
-      const int number = function(part, dimension_of(field.unit), name_of_field, slots[k]);
+      int number = type->force ? state_law(part, name_of_field) : -1;
+      if (number < 0) number = function(part, dimension_of(field.unit), name_of_field, slots[k]);
       if (number < 0) return;
       slots[k] = NumberValue::constant(number, part.offset());
       element.indirect |= 1u << k;

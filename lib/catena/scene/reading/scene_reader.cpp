@@ -112,6 +112,24 @@ void read_units(const JsonValue& object, SceneTemplate& scene, Diagnostics& diag
   }
 }
 
+/// The names of the tables; expressions may use them wherever they stand.
+std::vector<std::string> table_names(const JsonValue& object, const JsonValue& parameters, Diagnostics& diagnostics) {
+  std::vector<std::string> names;
+  if (object && !object.is(JsonKind::object)) {
+    report(object, fmt::format("\"tables\" must be an object of names and tables; this is {}", describe(object.kind())),
+           diagnostics);
+  }
+  if (!object || !object.is(JsonKind::object)) return names;
+  for (const JsonMember member : object.members()) {
+    std::string problem = parameter_name_problem(member.name());
+    if (problem.empty() && parameters && parameters.is(JsonKind::object) && parameters.find(member.name()))
+      problem = fmt::format("a parameter is called {} already; choose another name", in_quotes(member.name()));
+    if (!problem.empty()) report(member.key, problem, diagnostics);
+    names.emplace_back(member.name());
+  }
+  return names;
+}
+
 }  // namespace
 
 std::unique_ptr<SceneTemplate> read_scene(SourceText source, Diagnostics& diagnostics) {
@@ -128,13 +146,15 @@ std::unique_ptr<SceneTemplate> read_scene(SourceText source, Diagnostics& diagno
   read_version(root, v[0], diagnostics);
   if (v[1]) scene->name = read_string(v[1], {"name"}, diagnostics);
   if (v[2]) scene->description = read_string(v[2], {"description"}, diagnostics);
-  if (v[4]) scene->parameters = ParameterTable::read(v[4], scene->expressions, diagnostics);
+  const std::vector<std::string> tables = table_names(v[15], v[4], diagnostics);
+  scene->parameters = ParameterTable::read(v[4], scene->expressions, diagnostics, tables);
   scene->analyses = v[10];
   scene->outputs = v[11];
 
   if (v[13]) read_own_columns(v[13], *scene, diagnostics);
   if (v[14]) read_units(v[14], *scene, diagnostics);
   SceneReading reading(*scene, diagnostics);
+  if (!tables.empty()) reading.table_functions(v[15], tables);
   scene->gravity[0] = scene->gravity[1] = NumberValue::constant(0);
   if (v[3]) {
     const auto gravity = reading.numbers.read_pair(v[3], dimension_of(UnitKind::acceleration), {"gravity"});

@@ -17,9 +17,9 @@ namespace catena {
 std::unique_ptr<SceneTemplate> read_scene(SourceText source, Diagnostics& diagnostics);
 
 /// The keys of a scene, and those of a replicate block.
-inline constexpr std::array<std::string_view, 15> scene_keys{
+inline constexpr std::array<std::string_view, 16> scene_keys{
     "catena", "name",      "description", "gravity", "parameters", "bodies",  "constraints", "drivers",
-    "forces", "replicate", "analyses",    "outputs", "$schema",    "columns", "units"};
+    "forces", "replicate", "analyses",    "outputs", "$schema",    "columns", "units",       "tables"};
 inline constexpr std::array<std::string_view, 8> block_keys{"count",       "first",   "variable", "bodies",
                                                             "constraints", "drivers", "forces",   "replicate"};
 /// The name of a block's variable, unless the block says another one.

@@ -61,6 +61,11 @@ class SceneReading {
   /// A function of time in `unit`: its number in the scene, or -1 where a plain number was found and put into `plain`.
   /// Functions of a product have no unit of their own.
   int function(const JsonValue& value, const ExpectedDimension& unit, const FieldName& field, NumberValue& plain);
+  /// The object "tables" of the scene, whose names are known.
+  void table_functions(const JsonValue& object, std::span<const std::string> names);
+  /// A law of state, an expression that names columns or t, as a function: its number in the scene; -1 where the value
+  /// is something else.
+  int state_law(const JsonValue& value, const FieldName& field);
   /// A curve in a body frame: its number.
   int curve(const JsonValue& value, const FieldName& field);
   /// A list of numbers, or a column of a file: their values.

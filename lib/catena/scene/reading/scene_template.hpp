@@ -33,13 +33,15 @@ struct NameText {
 };
 
 struct FunctionTemplate {
-  enum class Kind : unsigned char { constant, polynomial, harmonic, step, law, spline, sum, product };
+  /// state: a law of state, for forces alone
+  enum class Kind : unsigned char { constant, polynomial, harmonic, step, law, spline, sum, product, state };
   Kind kind = Kind::constant;
   SplineEnd end = SplineEnd::natural;
   Beyond beyond = Beyond::error;
   int order = 5;  // of a step
   MotionLaw law = MotionLaw::cycloidal;
   std::uint32_t offset = 0;  // of the value in the text
+  int state = -1;            // of a law of state: its number in the scene
   /// constant: 1; polynomial: coefficients; harmonic: amplitude, omega, phase, offset; step, law: t0, t1, from, to;
   /// spline: all times, then all values
   std::vector<NumberValue> numbers;
@@ -155,6 +157,14 @@ struct OwnColumnTemplate {
   JsonValue place;  ///< the text of the expression
 };
 
+/// The magnitude of a force as an expression over columns.
+struct StateLawTemplate {
+  Expression expression;
+  std::vector<NamedInput> inputs;
+  std::vector<int> patterns;  ///< by input: of its name in the scene's patterns, -1: it has no braces
+  JsonValue place;            ///< the text of the expression
+};
+
 struct SceneTemplate {
   std::unique_ptr<SourceText> source;
   std::unique_ptr<JsonDocument> document;  ///< names are views into it
@@ -173,6 +183,7 @@ struct SceneTemplate {
   std::vector<CurveTemplate> curves;
   std::vector<TableTemplate> tables;
   std::vector<OwnColumnTemplate> own_columns;
+  std::vector<StateLawTemplate> state_laws;
   OutputUnits::Wishes units;  ///< in which results are shown
 
   std::vector<std::unique_ptr<SourceText>> data_files;  ///< that tables were read from

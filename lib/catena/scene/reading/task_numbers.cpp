@@ -76,10 +76,12 @@ std::optional<std::string> too_many_rows(const AnalysisTask& task) {
 
 std::optional<std::string> evaluate_numbers(AnalysisTask& task, const ExpressionPool& expressions,
                                             std::span<const double> parameters) {
+  if (task.varying.empty()) return too_many_rows(task);
+  const auto tables = task.table->tables<double>(expressions, parameters);
   for (const TaskNumber& number : task.varying) {
     double value = 0;
     try {
-      value = evaluate<double>(number.value, expressions, parameters, {});
+      value = evaluate<double>(number.value, expressions, parameters, {}, tables);
     } catch (const ExpressionError& error) {
       return fmt::format("{} of {}: {}", number.name(), task.type(), error.what());
     }

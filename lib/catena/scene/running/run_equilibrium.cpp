@@ -3,6 +3,7 @@
 
 #include "catena/analysis/contact/contact_points.hpp"
 #include "catena/analysis/contact/holding.hpp"
+#include "catena/analysis/run/energyless_forces.hpp"
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/sensitivity/static_derivatives.hpp"
@@ -76,10 +77,9 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   Equilibrium analysis(context.model, plan_options(*context.model, task.column_names()), options);
   const bool conservative = analysis.evaluator().conservative();
   if (!conservative && (options.solver == StaticSolver::ipopt || options.solver == StaticSolver::nlopt)) {
-    return refuse(result,
-                  fmt::format("the solver {} minimises an energy, which forces that turn with their body do not "
-                              "have; leave \"solver\" out",
-                              options.solver == StaticSolver::ipopt ? "ipopt" : "nlopt"));
+    return refuse(result, fmt::format("the solver {} minimises an energy, but {}; leave \"solver\" out",
+                                      options.solver == StaticSolver::ipopt ? "ipopt" : "nlopt",
+                                      forces_without_energy(*context.model)));
   }
   if (options.solver == StaticSolver::nlopt && analysis.plan().columns > StaticNloptOptions::most_columns) {
     return refuse(result,

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "catena/columns/attachment.hpp"
 #include "catena/columns/reaction.hpp"
 #include "catena/elements/all.hpp"
+#include "catena/model/attachment.hpp"
 
 namespace catena {
 namespace {
@@ -185,7 +185,8 @@ Vec2<double> load_at(const Model& model, int element, double t) {
   double components[2];
   for (std::size_t k = 0; k < 2; ++k) {
     const FunctionValue<double>& value = list[static_cast<std::size_t>(record.index)].values[k];
-    components[k] = value.constant;
+    // A law of state is not known from the time alone.
+    components[k] = value.law >= 0 ? none : value.constant;
     if (value.function < 0) continue;
     const TimeFunction<double>& function = model.functions[static_cast<std::size_t>(value.function)];
     components[k] = function.domain().contains(t) ? function.evaluate(t).f : none;

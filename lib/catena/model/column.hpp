@@ -56,6 +56,9 @@ enum class ColumnKind : unsigned char {
   exerted_x,  ///< on body j at P_j; detail = ReactionSide
   exerted_y,
   exerted_torque,  ///< about P_j
+  applied_x,       ///< on the body, ground axes
+  applied_y,
+  supplied_power,  ///< of what the element's functions of time or laws add to its force
 
   kinetic,
   potential,
@@ -66,6 +69,9 @@ enum class ColumnKind : unsigned char {
   momentum_y,
   angular_momentum,  ///< about the ground's origin
 };
+
+/// Whether the column shows the place, velocity or acceleration of a body or its point.
+constexpr bool is_body_column(ColumnKind kind) { return kind >= ColumnKind::x && kind <= ColumnKind::alpha; }
 
 /// Which body a reaction acts on, and in which axes it is given.
 enum ReactionSide : int {

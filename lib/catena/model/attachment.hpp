@@ -49,6 +49,18 @@ auto attachment_of(const Entry& entry) {
   return a;
 }
 
+/// Calls f(entry) for an element of the model's list, be it a constraint or a force.
+template <class S, class F>
+void with_entry(const BasicModel<S>& model, int element, F&& f) {
+  const ElementRecord& record = model.elements[static_cast<std::size_t>(element)];
+  const auto take = [&](const auto& list) { f(list[static_cast<std::size_t>(record.index)]); };
+  if (record.kind == ElementKind::force) {
+    with_list(model.forces, record.type, take);
+  } else {
+    with_list(model.constraints, record.type, take);
+  }
+}
+
 /// The same for an element of the model's list, be it a constraint or a force; S is double or DesignScalar.
 template <class S>
 BasicAttachment<S> attachment_of(const BasicModel<S>& model, int element);
