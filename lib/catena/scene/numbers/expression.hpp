@@ -64,7 +64,10 @@ class Expression {
   template <class S>
   S evaluate(std::span<const S> parameters, std::span<const double> loop_variables) const;
 
-  /// The same as a formula over the columns that were named, with the parameters' values in it.
+  /// Puts the values of loop variables in their places. False: none is named.
+  bool bind(std::span<const double> loop_variables);
+
+  /// As a formula over the columns that were named, with the parameters' values in it; loop variables must be bound.
   template <class S>
   Formula<S> formula(std::span<const S> parameters) const;
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "catena/scene/json/near_miss.hpp"
-#include "catena/scene/numbers/evaluation.hpp"
 #include "catena/scene/numbers/number_domain.hpp"
 #include "catena/scene/reading/own_column_reader.hpp"
 
@@ -68,8 +67,7 @@ double AnalysisReader::number(const AnalysisKey& key, const JsonValue& value, co
                                      ? ExpectedDimension()
                                      : ExpectedDimension(dimension_of(key.unit));
   const NumberValue read = reading_.numbers.read(value, unit, field);
-  const Evaluation<double> evaluation(value.source(), scene_.expressions, values_, diagnostics_);
-  const double result = evaluation(read);
+  const double result = evaluation(value)(read);
   if (std::isnan(result)) return result;
   const bool whole = key.kind == KeyKind::whole;
   if (whole && (result < 1 || result != std::round(result) || result > 2e9)) {
@@ -139,6 +137,9 @@ void AnalysisReader::read_key(const AnalysisKey& key, const JsonValue& value, An
       break;
     case KeyKind::events:
       read_events(value, task);
+      break;
+    case KeyKind::event_blocks:
+      read_event_blocks(value, task);
       break;
     case KeyKind::measures:
       read_measures(value, task);

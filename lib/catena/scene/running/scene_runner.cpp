@@ -170,6 +170,11 @@ void SceneRun::check_measure(const PlacedMeasure& measure, const Model& model) {
 }
 
 void SceneRun::check_event(const EventRequest& event, const Model& model) {
+  // In a repeated block a place is reported once.
+  for (const JsonValue& place :
+       {event.place, event.element_place, event.impulse ? event.impulse->place : JsonValue()}) {
+    if (place && diagnostics_.reported(place.source(), place.offset())) return;
+  }
   check_columns({{event.column, event.place}}, model);
   std::vector<NamedColumn> found;
   if (!find_columns(model, event.column, found) && found.size() > 1) {
