@@ -200,12 +200,13 @@ TEST_P(RandomJolts, OfADoublePendulum) {
     "constraints": [{{"type": "revolute", "name": "A", "i": "ground", "j": "a.from"}},
                     {{"type": "revolute", "name": "B", "i": "a.to", "j": "b.from"}}],
     "drivers": [{{"type": "absolute_angle", "name": "motor", "i": "a", "value": {5}}}],
-    "analyses": [{{"type": "dynamics", "at": [0.4, 0.4000000001, 0.5], "tolerance": 1e-11,
+    "analyses": [{{"type": "dynamics", "at": [0.3999999999, 0.4, 0.5], "tolerance": 1e-11,
                   "outputs": ["a.angle", "b.angle", "a.omega", "b.omega"]}}]}})",
                                            number(m1), number(m2), number(l1), number(l1 + l2 * std::cos(a2)),
                                            number(l2 * std::sin(a2)), kinked(v1, v2)));
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
-  const double th1 = run.first("a.angle"), th2 = run.first("b.angle"), c = m2 * l1 * l2 / 2 * std::cos(th2 - th1);
+  const double th1 = run.column("a.angle")[1], th2 = run.column("b.angle")[1],
+               c = m2 * l1 * l2 / 2 * std::cos(th2 - th1);
   const double dw1 = v2 - v1, dw2 = -c * dw1 / (m2 * l2 * l2 / 3);
   EXPECT_NEAR(run.column("b.omega")[1] - run.column("b.omega")[0], dw2, 1e-7);
   const double load = (m1 / 3 + m2) * l1 * l1 * dw1 + c * dw2;

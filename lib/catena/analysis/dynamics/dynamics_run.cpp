@@ -195,6 +195,7 @@ Report Dynamics::start_anew() {
   if (jump > no_jump * fastest(evaluator_, before)) jumping_ = drivers_that_jump(evaluator_, smooth_since_, t_);
   smooth_since_ = t_;
   if (contacts_ && contacts_->holds() && jump > no_speed * contacts_->speed()) {
+    std::copy(before.begin(), before.end(), qd.begin());
     jumped_ = true;
     return {};
   }

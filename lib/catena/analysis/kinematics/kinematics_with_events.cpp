@@ -17,9 +17,10 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-// Places in a piece may be off the cubic through its ends by this, length scales or rad: events are sampled at eight
-// places of it or more, and a dip between two of them is seen where the motion is nearly a parabola there.
-constexpr double largest_bend = 0.02;
+// Places in a piece may be off the cubic through its ends by this, length scales or rad. A body that turns evenly then
+// turns by (384 x 1e-4)^(1/4) = 0.44 rad at most; at eight samples a parabola through three of them, vertex at an end,
+// is off by 0.055^3 / 15 = 1e-5 of a radius: so shallow are the dips that may be overlooked where two pieces meet.
+constexpr double largest_bend = 1e-4;
 // Parts of a piece at which that is checked: of no period that a motion and its pieces could share.
 constexpr std::array<double, 2> checked_parts = {0.3819660112501051, 0.7071067811865476};
 // A piece is halved so often at most: 1e-6 of the way between two rows, at the end of which a motion may lock.

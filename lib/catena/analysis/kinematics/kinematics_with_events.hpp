@@ -4,7 +4,7 @@
 // Kinematics gives the rows; a KinematicLook follows the same motion between them. The way from row to row is divided
 // until places within a piece are those of the cubic through its ends
 //
-//   |q(t) - H(t)| <= 0.02 length scales, rad,     H: Hermite, from q and qd at both ends
+//   |q(t) - H(t)| <= 1e-4 length scales, rad,     H: Hermite, from q and qd at both ends
 //
 // and in every piece EventWatch samples and locates. At an event that releases or engages a constraint the motion goes
 // on with a plan of the same bodies and other rows, from the same places; constraints and drivers must then determine

@@ -121,6 +121,8 @@ void SceneRun::check_own_columns() {
       found.clear();
       const std::optional<UnknownColumn> unknown = find_columns(*model_, input.name, found);
       if (!unknown && found.size() == 1) continue;
+      // In a repeated block a place is reported once.
+      if (diagnostics_.reported(column.place.source(), in_text(column.place, input.position))) continue;
       std::string message = unknown
                                 ? fmt::format("unknown column {}: {}{}", in_quotes(input.name), unknown->message,
                                               NearMiss(input.name).consider_all(unknown->candidates).hint())
