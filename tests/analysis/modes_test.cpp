@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/sanitized.hpp"
 #include "catena/analysis/statics/equilibrium.hpp"
 #include "catena/elements/constraints/absolute_angle.hpp"
 #include "catena/elements/constraints/absolute_x.hpp"
@@ -155,7 +156,7 @@ TEST(Modes, FindEqualModesBelowOthers) {
 }
 
 TEST(Modes, OfAStandingChainAreThoseOfAHangingOneNegated) {
-  const int count = 400;
+  const int count = size_of_test(400, 100);
   const ModesReport hanging = modes_of(vertical_chain(count, -1), count);
   ASSERT_TRUE(hanging.ok()) << hanging.message;
   const ModesReport standing = modes_of(vertical_chain(count, 1), 6);
@@ -168,18 +169,19 @@ TEST(Modes, OfAStandingChainAreThoseOfAHangingOneNegated) {
 }
 
 TEST(Modes, FindFewUnstableOnesInALargeScene) {
-  auto model = vertical_chain(500, -1);
+  const int links = size_of_test(500, 120);
+  auto model = vertical_chain(links, -1);
   for (int k = 0; k < 2; ++k) {
     model->add_body("up" + std::to_string(k), {.mass = 1, .inertia = 0, .position = {5, 1.0}});
-    model->add("", Revolute<double>{.s_i = {5, 0}, .s_j = {0, -1}}, ground, 500 + k);
-    if (k == 1) model->add_force("", torsion_spring(5, 0), ground, 501);
+    model->add("", Revolute<double>{.s_i = {5, 0}, .s_j = {0, -1}}, ground, links + k);
+    if (k == 1) model->add_force("", torsion_spring(5, 0), ground, links + 1);
   }
   const ModesReport report = modes_of(model, 5);
   ASSERT_TRUE(report.ok()) << report.message;
   EXPECT_EQ(report.unstable, 2);
   EXPECT_NEAR(report.omega2[0], -earth, 1e-9);
   EXPECT_NEAR(report.omega2[1], 5 - earth, 1e-9);
-  const ModesReport hanging = modes_of(vertical_chain(500, -1), 3);
+  const ModesReport hanging = modes_of(vertical_chain(links, -1), 3);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(report.omega2[k + 2], hanging.omega2[k], 1e-9 * hanging.omega2[k]);
 }
 
@@ -333,7 +335,7 @@ TEST(Modes, CostOneSymbolicAnalysisAndThreeFactorizations) {
 }
 
 TEST(Modes, StopWhenAsked) {
-  Modes modes(vertical_chain(500, -1), {}, {.count = 10});
+  Modes modes(vertical_chain(size_of_test(500, 100), -1), {}, {.count = 10});
   const ModesReport report = modes.run([] { return false; });
   EXPECT_EQ(report.status, Status::cancelled);
 }

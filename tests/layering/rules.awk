@@ -7,7 +7,7 @@
 # umbrella header lib/catena/catena.hpp. `part[folder]` lists what a folder inside of a layer may include of its own
 # layer; a folder that is not listed there is an error, and so is one of more than 30 files:
 #
-#   analysis  run <- pose <- motion <- {kinematics, contact <- dynamics};  pose <- balance <- spectrum <- statics <- stability
+#   analysis  run <- pose <- motion <- events <- {kinematics, contact <- dynamics};  pose <- balance <- spectrum <- statics <- stability
 #             run <- measures;  motion <- sensitivity;  minimiser <- {statics, design}
 #   scene     json <- numbers <- describing <- reading <- building <- models <- judging <- running <- designing <- viewing
 #             <- explaining
@@ -27,11 +27,11 @@ BEGIN {
   may["scene"] = may["results"] "drawing scene "
   every = may["scene"]
 
-  chain("analysis", "run pose motion")
-  after("analysis", "kinematics", "run pose motion")
+  chain("analysis", "run pose motion events")
+  after("analysis", "kinematics", "run pose motion events")
   after("analysis", "dynamics/integrators", "run pose motion")
-  after("analysis", "contact", "run pose motion")
-  after("analysis", "dynamics", "run pose motion contact dynamics/integrators")
+  after("analysis", "contact", "run pose motion events")
+  after("analysis", "dynamics", "run pose motion events contact dynamics/integrators")
   after("analysis", "balance", "run pose")
   after("analysis", "spectrum", "run pose balance")
   after("analysis", "minimiser", "")

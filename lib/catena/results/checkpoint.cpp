@@ -12,7 +12,7 @@
 namespace catena {
 namespace {
 
-constexpr std::string_view first_line = "catena checkpoint 3\n";
+constexpr std::string_view first_line = "catena checkpoint 4\n";
 
 std::uint64_t sum_over(std::string_view text, std::uint64_t sum = 0xcbf29ce484222325u) {
   for (const char c : text) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
@@ -28,6 +28,23 @@ void pass(Channel& channel, EventRecord& record) {
   channel.value(record.row);
 }
 
+template <class Channel>
+void pass(Channel& channel, ConstraintImpulse& impulse) {
+  channel.value(impulse.element);
+  channel.value(impulse.x);
+  channel.value(impulse.y);
+  channel.value(impulse.moment);
+  channel.value(impulse.load);
+}
+
+template <class Channel>
+void pass(Channel& channel, Jolt& jolt) {
+  channel.value(jolt.t);
+  channel.value(jolt.event);
+  channel.value(jolt.drivers);
+  channel.value(jolt.impulses);
+}
+
 /// Writes a line a value, or reads it back; damage shows as a CheckpointError.
 class Writer {
  public:
@@ -38,6 +55,8 @@ class Writer {
   void value(std::int64_t& number) { text += fmt::format("{}\n", number); }
   void value(int& number) { text += fmt::format("{}\n", number); }
   void value(EventRecord& record) { pass(*this, record); }
+  void value(ConstraintImpulse& impulse) { pass(*this, impulse); }
+  void value(Jolt& jolt) { pass(*this, jolt); }
   template <class T>
   void value(std::vector<T>& list) {
     text += fmt::format("{}\n", list.size());
@@ -54,6 +73,8 @@ class Reader {
   void value(std::int64_t& number) { number = whole<std::int64_t>(10); }
   void value(int& number) { number = whole<int>(10); }
   void value(EventRecord& record) { pass(*this, record); }
+  void value(ConstraintImpulse& impulse) { pass(*this, impulse); }
+  void value(Jolt& jolt) { pass(*this, jolt); }
   template <class T>
   void value(std::vector<T>& list) {
     const auto size = whole<std::size_t>(10);
@@ -119,6 +140,7 @@ void pass(Channel& channel, Checkpoint& checkpoint) {
   channel.value(motion.events.sides);
   channel.value(motion.events.largest);
   channel.value(motion.events.records);
+  channel.value(motion.jolts);
 }
 
 }  // namespace

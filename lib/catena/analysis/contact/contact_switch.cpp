@@ -96,6 +96,7 @@ void ContactSwitch::apply(const Strike& strike, std::span<const double> q, std::
   equations_.solve_motion(load_, nothing_, change, multipliers);
   const double before = speed();
   for (std::size_t k = 0; k < qd.size(); ++k) qd[k] += change[k];
+  for (std::size_t r = 0; r < p_.size(); ++r) p_[r] += multipliers[r];
   work_of_strike_ = (before + speed()) / 2;
 }
 
@@ -185,6 +186,7 @@ bool ContactSwitch::apply(double restitution_part, std::span<double> qd, double&
   if (!problem.solve()) return false;
   for (std::size_t c = 0; c < problem.x.size(); ++c) {
     for (std::size_t n = 0; n < qd.size(); ++n) qd[n] += change_[c][n] * problem.x[c];
+    for (std::size_t r = 0; r < p_.size(); ++r) p_[r] += multipliers_[c][r] * problem.x[c];
   }
   work = 0;
   for (std::size_t r = 0; r < problem.x.size(); ++r) {
@@ -209,11 +211,12 @@ Report ContactSwitch::collide(double t, std::span<double> qd, std::vector<Contac
   std::copy_if(active_.begin(), active_.end(), std::back_inserter(hit), [&](std::size_t k) { return hits(k); });
   if (hit.empty()) return {};
   find_responses();
-  const std::vector<double> before(qd.begin(), qd.end());
+  const std::vector<double> before(qd.begin(), qd.end()), p_before(p_);
   const double energy = kinetic_energy(qd);
   double part = 1, work = 0;
   for (int attempt = 0;; ++attempt) {
     std::copy(before.begin(), before.end(), qd.begin());
+    p_ = p_before;
     if (!apply(part, qd, work)) return wedged(t);
     if (work <= energy_rounding * energy || part == 0) break;
     // Halved at first, then none: without restitution impulses never do work.
@@ -354,13 +357,20 @@ Report ContactSwitch::decide(double t, std::span<const double> q, std::span<doub
     return report;
   }
   look(qd);
+  const bool is_told = cause.jolts || cause.strike;
+  p_.assign(is_told ? nothing_.size() : 0, 0.0);
+  impulses_.clear();
   if (cause.strike) apply(*cause.strike, q, qd);
-  if (cause.jolts || cause.strike) {
+  if (is_told) {
+    const std::vector<double> given(qd.begin(), qd.end());
     equations_.project_velocity(qd, 0);
+    const std::vector<double> p = impulse_of_change(equations_, given, qd);
+    for (std::size_t r = 0; r < p_.size(); ++r) p_[r] += p[r];
     look(qd);
   }
   find_touching(states, cause.place);
   if (Report hit = collide(t, qd, states); !hit.ok()) return hit;
+  if (is_told) impulses_ = impulses_of(equations_, q, qd, p_);
   if (Report chosen = choose(t, q, qd, states, cause); !chosen.ok()) return chosen;
   if (cause.tell) tell_changes(t, before, states);
   return {};

@@ -26,8 +26,9 @@
 
 #include "catena/analysis/contact/contact_loads.hpp"
 #include "catena/analysis/contact/contact_problem.hpp"
-#include "catena/analysis/contact/strike.hpp"
+#include "catena/analysis/events/strike.hpp"
 #include "catena/analysis/motion/equations_of_motion.hpp"
+#include "catena/analysis/motion/impulses.hpp"
 #include "catena/analysis/motion/redundant_rows.hpp"
 #include "catena/base/status.hpp"
 
@@ -69,6 +70,9 @@ class ContactSwitch {
   void know_speed(double speed) { speed_ = std::max(speed_, speed); }
   /// The work of the last strike, J.
   double work_of_strike() const { return work_of_strike_; }
+  /// What constraints exerted at the last decision, where it was about a strike or a jolt: collisions that followed at
+  /// once included.
+  std::vector<ConstraintImpulse> take_impulses() { return std::move(impulses_); }
   /// What happened since this was called last.
   std::vector<ContactEvent> take_events() { return std::move(events_); }
 
@@ -98,6 +102,8 @@ class ContactSwitch {
   EquationsOfMotion equations_;
   RedundantRows redundant_;
   double work_of_strike_ = 0;
+  std::vector<double> p_;  // multipliers of the velocities' jumps, while it decides
+  std::vector<ConstraintImpulse> impulses_;
   double speed_ = 0;                // largest of the motion so far, m/s or rad/s times the length scale
   std::vector<double> bounced_at_;  // by point: when it hit and came back last
   std::vector<double> landing_;     // by point: instant of the `contact` event under way, or NaN

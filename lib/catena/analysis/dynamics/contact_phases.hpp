@@ -36,6 +36,8 @@ class ContactPhases {
   Report change_constraints(const PlanOptions& options, SystemState& state);
   /// A blow: the same. `work`: what it does, J.
   Report strike(const Strike& strike, const PlanOptions& options, SystemState& state, double& work);
+  /// What constraints exerted at the last of these jolts.
+  std::vector<ConstraintImpulse> take_impulses() { return switch_->take_impulses(); }
   /// Functions of time jump, or their rates do: the same.
   Report meet_jump(SystemState& state) { return decide(state, {.jolts = true}); }
   /// The phase ended by a transition: finds the next one.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "catena/analysis/motion/initial_velocities.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
@@ -91,8 +92,16 @@ Report Dynamics::prepare(std::vector<std::string>& warnings) {
     const double speed = start_->point.kind == SingularPoint::Kind::rest ? 0 : 1;
     for (std::size_t k = 0; k < qd_.size(); ++k) qd_[k] = speed * tangent[k];
   }
+  take_note_of_start();
   prepared_ = true;
   return {};
+}
+
+// Where an event engaged constraints, velocities that these change are a blow to the mechanism.
+void Dynamics::take_note_of_start() {
+  const std::string event = std::exchange(jolting_event_, {});
+  if (event.empty() || given_qd_.size() != qd_.size() || !equations_.factorize(t_, Side::after, q_)) return;
+  jolts_.push_back({t_, event, {}, impulses_of(equations_, q_, qd_, impulse_of_change(equations_, given_qd_, qd_))});
 }
 
 double Dynamics::next_breakpoint(double t) const {

@@ -14,11 +14,12 @@
 #include "catena/analysis/contact/contact_loads.hpp"
 #include "catena/analysis/dynamics/balance_watch.hpp"
 #include "catena/analysis/dynamics/dynamics_options.hpp"
-#include "catena/analysis/dynamics/event_watch.hpp"
 #include "catena/analysis/dynamics/integrators/integrator.hpp"
 #include "catena/analysis/dynamics/integrators/motion.hpp"
+#include "catena/analysis/events/event_watch.hpp"
 #include "catena/analysis/motion/energy_account.hpp"
 #include "catena/analysis/motion/equations_of_motion.hpp"
+#include "catena/analysis/motion/impulses.hpp"
 #include "catena/analysis/motion/motion_memory.hpp"
 #include "catena/analysis/motion/redundant_rows.hpp"
 #include "catena/analysis/motion/singular_instant.hpp"
@@ -75,6 +76,8 @@ class Dynamics {
   void watch(EventWatch* events) { events_ = events; }
   /// The event at which the last run ended before the end of its grid, or -1; and the row of the grid that was next.
   int stopped_by() const { return stopped_by_; }
+  /// The events of the list that act there, in its order: those that happened at the same instant.
+  const std::vector<int>& acting() const { return acting_; }
   std::int64_t next_row() const { return next_row_; }
   WorkSoFar work_so_far() const;
   /// What moved in the last run, J, and in those before it of the same motion: errors are compared with the whole.
@@ -82,6 +85,13 @@ class Dynamics {
   void know_energy(double energy) { earlier_motion_ = energy; }
   /// Counts work from an earlier start; energy that is missing against then counts as dissipated (an impact).
   void carry_on(WorkSoFar work) { earlier_ = std::move(work); }
+
+  /// The velocities of the next start are those before `event` acts, and may have to jump.
+  void expect_jolt(std::string event) { jolting_event_ = std::move(event); }
+  /// Where velocities jumped in the last run, its start included if that was expected.
+  const std::vector<Jolt>& jolts() const { return jolts_; }
+  /// Where jumped(): the drivers concerned.
+  const std::vector<int>& jumping_drivers() const { return jumping_; }
 
   /// Where the drivers asked for a motion that cannot be made: at the start, or where the run ended.
   const std::vector<SingularPoint>& singular_points() const { return singular_points_; }
@@ -116,6 +126,8 @@ class Dynamics {
   Report next(RowObserver& observer);
   Report step(RowObserver& observer);
   Report start_anew();
+  void take_note_of_start();
+  void take_note_of_jump(std::span<const double> before);
   Report check_balance();
   Report check_redundant_rows();
   void remember();
@@ -180,6 +192,11 @@ class Dynamics {
   ContactLoads* contacts_ = nullptr;
   std::vector<ContactLoad> contact_loads_;  // of the row, by element
   int stopped_by_ = -1;
+  std::vector<int> acting_;
+  std::string jolting_event_;
+  std::vector<Jolt> jolts_;
+  std::vector<int> jumping_;  // drivers whose velocity jumps at the breakpoint that was met last
+  double smooth_since_ = 0;   // the breakpoint before, s
   std::int64_t next_row_ = 0;
   WorkSoFar earlier_;
 };

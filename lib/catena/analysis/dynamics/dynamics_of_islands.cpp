@@ -86,6 +86,14 @@ class DynamicsOfIslands::Part final : public RowObserver {
     }
     return points;
   }
+  std::vector<Jolt> jolts() const {
+    std::vector<Jolt> jolts = dynamics_.jolts();
+    for (Jolt& jolt : jolts) {
+      for (int& driver : jolt.drivers) driver = part_.elements[at(driver)];
+      for (ConstraintImpulse& impulse : jolt.impulses) impulse.element = part_.elements[at(impulse.element)];
+    }
+    return jolts;
+  }
   /// The instant at which its motion ended: of the dead point, where it locked.
   double end() const {
     const std::vector<SingularPoint>& points = dynamics_.singular_points();
@@ -199,7 +207,7 @@ AnalysisReport DynamicsOfIslands::run(const TimeGrid& grid, const Needs& needs, 
   total.bodies = plan_->bodies;
   total.rows = plan_->rows;
   total.islands = plan_->islands;
-  collect_singular_points(ended ? ended->end() : grid.last());
+  collect_points_in_time(ended ? ended->end() : grid.last());
   std::vector<Part*> in_order;
   for (const auto& part : parts_) in_order.push_back(part.get());
   std::stable_partition(in_order.begin(), in_order.end(), [&](const Part* part) { return part == ended; });
@@ -223,15 +231,22 @@ void DynamicsOfIslands::give_row_at_lock_up(const Part& locked, const Needs& nee
   give_row(t, needs, observer);
 }
 
-// Those up to an instant, in their order in time: some mechanisms have gone past it.
-void DynamicsOfIslands::collect_singular_points(double until) {
+// Singular points and jolts up to an instant, in their order in time: some mechanisms have gone past it.
+void DynamicsOfIslands::collect_points_in_time(double until) {
   for (const auto& part : parts_) {
     for (SingularPoint& point : part->singular_points()) {
       if (point.t <= until) singular_points_.push_back(std::move(point));
     }
   }
-  std::stable_sort(singular_points_.begin(), singular_points_.end(),
-                   [](const SingularPoint& a, const SingularPoint& b) { return a.t < b.t; });
+  const auto earlier = [](const auto& a, const auto& b) { return a.t < b.t; };
+  std::stable_sort(singular_points_.begin(), singular_points_.end(), earlier);
+  jolts_.clear();
+  for (const auto& part : parts_) {
+    for (Jolt& jolt : part->jolts()) {
+      if (jolt.t <= until) jolts_.push_back(std::move(jolt));
+    }
+  }
+  std::stable_sort(jolts_.begin(), jolts_.end(), earlier);
 }
 
 // The mechanisms together at an instant at which each of them gave its row.

@@ -32,6 +32,7 @@ class DynamicsOfIslands {
   void start_from(const SystemState& state);
   /// See Dynamics; drivers by their numbers in the whole model.
   const std::vector<SingularPoint>& singular_points() const { return singular_points_; }
+  const std::vector<Jolt>& jolts() const { return jolts_; }
   /// Where one of them cannot go on all end, with its message; in a dead point with a row of all at that instant.
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
 
@@ -39,13 +40,14 @@ class DynamicsOfIslands {
   class Part;
   bool give_row(double t, const Needs& needs, RowObserver& observer);
   void give_row_at_lock_up(const Part& locked, const Needs& needs, RowObserver& observer);
-  void collect_singular_points(double until);
+  void collect_points_in_time(double until);
 
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const Plan> plan_;
   Evaluator evaluator_;
   std::vector<std::unique_ptr<Part>> parts_;
   std::vector<SingularPoint> singular_points_;
+  std::vector<Jolt> jolts_;
   double t_ = 0;
   std::vector<double> q_, qd_, qdd_, lambda_, driver_work_;  // of all, in the order of plan_
 };

@@ -191,8 +191,10 @@ Report Dynamics::find_events(double from, RowObserver& observer) {
     if (next_row_ < grid_.size() && grid_[next_row_] == found->t) ++next_row_;
     if (const Report given = give_row(found->t, observer); !given.ok()) return given;
     from = found->t;
-    if (!events_->take(*found)) continue;
-    stopped_by_ = found->event;
+    if (events_->take(*found)) acting_.push_back(found->event);
+    // All that happen at the same instant have their rows before one of them acts.
+    if (acting_.empty() || events_->has_simultaneous()) continue;
+    stopped_by_ = acting_.front();
     t_ = found->t;
     return {};
   }

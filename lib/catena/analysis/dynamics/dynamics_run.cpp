@@ -14,6 +14,9 @@ namespace {
 
 // Energies cost as much as a hundredth of a step's evaluations; less often, that is not to be seen.
 constexpr std::int64_t steps_between_checks = 32;
+// Velocities that are projected by less than this part of the largest are those of a smooth motion: steps keep them to
+// 1e-12.
+constexpr double no_jump = 1e-10;
 
 }  // namespace
 
@@ -30,6 +33,9 @@ void Dynamics::begin(const TimeGrid& grid, const Needs& needs) {
   needs_ = needs;
   if (events_) needs_ |= events_->needs();
   stopped_by_ = -1;
+  acting_.clear();
+  jolts_.clear();
+  smooth_since_ = t_;
   next_row_ = 0;
   at_jump_ = paused_ = jumped_ = dependent_ = always_dependent_ = unbounded_ = false;
   singular_rows_ = formal_rows_ = 0;
@@ -181,13 +187,36 @@ Report Dynamics::step(RowObserver& observer) {
 Report Dynamics::start_anew() {
   at_jump_ = false;
   std::copy(integrator_->state().begin(), integrator_->state().end(), y_row_.begin());
-  if (!equations_.factorize(t_, Side::after, std::span(y_row_).first(q_.size()))) return stuck();
-  const double jump = equations_.project_velocity(std::span(y_row_).subspan(q_.size(), q_.size()), 0);
-  if (contacts_ && contacts_->holds() && jump * evaluator_.length_scale() > no_speed * contacts_->speed()) {
+  const std::span<double> q = std::span(y_row_).first(q_.size()), qd = std::span(y_row_).subspan(q_.size(), q_.size());
+  const std::span<const double> before = integrator_->state().subspan(q_.size(), q_.size());
+  if (!equations_.factorize(t_, Side::after, q)) return stuck();
+  const double jump = equations_.project_velocity(qd, 0) * evaluator_.length_scale();
+  jumping_.clear();
+  if (jump > no_jump * fastest(evaluator_, before)) jumping_ = drivers_that_jump(evaluator_, smooth_since_, t_);
+  smooth_since_ = t_;
+  if (contacts_ && contacts_->holds() && jump > no_speed * contacts_->speed()) {
+    std::copy(before.begin(), before.end(), qd.begin());
     jumped_ = true;
     return {};
   }
+  if (!jumping_.empty()) take_note_of_jump(before);
   return integrator_->start(t_, y_row_) ? Report{} : stuck();
+}
+
+// Velocities of drivers jump, and those of the mechanism have from `before` to what y_row_ has.
+void Dynamics::take_note_of_jump(std::span<const double> before) {
+  const std::size_t n = q_.size();
+  const std::span<double> y(y_row_);
+  const std::vector<double> p = impulse_of_change(equations_, before, y.subspan(n, n));
+  if (account_) {
+    std::vector<double> nu_before(p.size()), nu_after(p.size());
+    evaluator_.set_time(t_, Side::before);
+    evaluator_.nu(nu_before);
+    evaluator_.set_time(t_, Side::after);
+    evaluator_.nu(nu_after);
+    account_->add_jolt(p, nu_before, nu_after, y.subspan(2 * n));
+  }
+  jolts_.push_back({t_, {}, jumping_, impulses_of(equations_, y.first(n), y.subspan(n, n), p)});
 }
 
 void Dynamics::remember() {

@@ -6,7 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "catena/analysis/dynamics/engaged_turns.hpp"
+#include "catena/analysis/events/engaged_turns.hpp"
+#include "catena/analysis/events/engagement.hpp"
 #include "catena/analysis/run/report_parts.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 
@@ -15,8 +16,6 @@ namespace {
 
 // Events that act this often without time going on would do so for ever.
 constexpr int most_at_once = 100;
-// A constraint is engaged where it holds already, to this part of the length scale, or rad.
-constexpr double misfit = 1e-6;
 
 /// Passes rows on and counts them.
 class CountingObserver final : public RowObserver {
@@ -97,14 +96,18 @@ Report DynamicsWithEvents::start_contacts() {
   return {};
 }
 
-void DynamicsWithEvents::go_on_from(const SystemState& state, int engaged, bool sum_up_work, double work_of_strike) {
+void DynamicsWithEvents::go_on_from(const SystemState& state, std::span<const int> engaged, bool sum_up_work,
+                                    double work_of_jolt, const WorkByDriver& by_driver) {
   WorkSoFar work = dynamics_->work_so_far();
-  work.supplied += work_of_strike;
-  work.energy += work_of_strike;
+  work.supplied += work_of_jolt;
+  work.energy += work_of_jolt;
+  for (const auto& [driver, own] : by_driver) {
+    if (!work.by_driver.empty()) work.by_driver[static_cast<std::size_t>(driver)] += own;
+  }
   const double energy = dynamics_->energy_in_motion();
   make_dynamics();
   dynamics_->start_from(state);
-  if (engaged >= 0) turn_value_to_bodies(engaged, state);
+  turn_values_to_bodies(engaged, state);
   dynamics_->know_energy(energy);
   if (sum_up_work) dynamics_->carry_on(std::move(work));
 }
@@ -112,14 +115,18 @@ void DynamicsWithEvents::go_on_from(const SystemState& state, int engaged, bool 
 Report DynamicsWithEvents::change_contacts(int transition, bool sum_up_work) {
   SystemState state = dynamics_->state();
   if (Report changed = contacts_.change(transition, state); !changed.ok()) return changed;
-  go_on_from(state, -1, sum_up_work);
+  go_on_from(state, {}, sum_up_work);
   return {};
 }
 
 Report DynamicsWithEvents::meet_jump(bool sum_up_work) {
   SystemState state = dynamics_->state();
   if (Report met = contacts_.meet_jump(state); !met.ok()) return met;
-  go_on_from(state, -1, sum_up_work);
+  jolts_.push_back({state.t, {}, dynamics_->jumping_drivers(), contacts_.take_impulses()});
+  const auto by_driver = work_of_drivers(dynamics_->evaluator(), jolts_.back());
+  double work = 0;
+  for (const auto& [driver, own] : by_driver) work += own;
+  go_on_from(state, {}, sum_up_work, work, by_driver);
   return {};
 }
 
@@ -130,6 +137,7 @@ void DynamicsWithEvents::resume(const MotionMemory& memory) {
   rows_before_ = memory.rows_given;
   plan_options_.released_elements = memory.events.released;
   turned_ = memory.events.turned;
+  jolts_ = memory.jolts;
   watch_->remember(memory.events);
   make_dynamics();
   dynamics_->resume(memory);
@@ -142,71 +150,73 @@ void DynamicsWithEvents::save_and_resume(std::int64_t rows_given, std::int64_t n
   memory.events = watch_->memory();
   memory.events.released = plan_options_.released_elements;
   memory.events.turned = turned_;
+  memory.jolts = jolts_;
   if (pauses_.save) pauses_.save(memory);
   resume(memory);
 }
 
-// Residuals of the rows of an element in the present state.
-std::vector<double> DynamicsWithEvents::residuals_of(int element) {
+// The configuration in the present state, at whose time the evaluator is then.
+std::vector<double> DynamicsWithEvents::place() {
   Evaluator& evaluator = dynamics_->evaluator();
-  const Plan& plan = dynamics_->plan();
   evaluator.set_time(dynamics_->time());
-  evaluator.set_configuration(configuration_of(evaluator, dynamics_->state()));
-  std::vector<double> phi(static_cast<std::size_t>(plan.rows)), own;
-  evaluator.phi(phi);
-  for (std::size_t row = 0; row < phi.size(); ++row) {
-    if (plan.row_element[row] == element) own.push_back(phi[row]);
-  }
-  return own;
+  return configuration_of(evaluator, dynamics_->state());
 }
 
-// The value of an element that was just engaged, moved by the turns that the bodies made without it.
-void DynamicsWithEvents::turn_value_to_bodies(int element, const SystemState& state) {
-  const int turns = whole_turns_of(*model_, element, residuals_of(element));
-  if (turns == 0) return;
-  turned_.resize(model_->elements.size());
-  turned_[static_cast<std::size_t>(element)] += turns;
+// The values of elements that were just engaged, moved by the turns that the bodies made without them.
+void DynamicsWithEvents::turn_values_to_bodies(std::span<const int> engaged, const SystemState& state) {
+  bool any = false;
+  for (const int element : engaged) {
+    const int turns = whole_turns_of(*model_, element, residuals_of(dynamics_->evaluator(), place(), element));
+    if (turns == 0) continue;
+    any = true;
+    turned_.resize(model_->elements.size());
+    turned_[static_cast<std::size_t>(element)] += turns;
+  }
+  if (!any) return;
   make_dynamics();
   dynamics_->start_from(state);
 }
 
-Report DynamicsWithEvents::check_fit(int element) {
-  Report report;
-  const Plan& plan = dynamics_->plan();
-  const double length = dynamics_->evaluator().length_scale();
-  auto row = static_cast<std::size_t>(std::max(0, plan.element_row[static_cast<std::size_t>(element)]));
-  for (const double phi : residuals_of(element)) {
-    const bool angle = plan.row_is_angle[row++] != 0;
-    if (std::abs(phi) <= misfit * (angle ? 1 : length)) continue;
-    report.status = Status::inconsistent;
-    report.message = fmt::format(
-        "\"{}\" cannot be engaged at t = {:.12g} s: it misses by {:.3g} {}; an event must happen where it holds",
-        model_->element_name(element), dynamics_->time(), std::abs(phi), angle ? "rad" : "m");
-    return report;
+Report DynamicsWithEvents::act(const Event& event, SystemState& state, std::vector<int>& engaged, double& work) {
+  if (event.action == EventAction::strike) {
+    double own = 0;
+    if (Report struck = contacts_.strike(event.strike, plan_options_, state, own); !struck.ok()) return struck;
+    jolts_.push_back({state.t, event.name, {}, contacts_.take_impulses()});
+    work += own;
+    return {};
   }
-  return report;
-}
-
-Report DynamicsWithEvents::strike(const Event& event, bool sum_up_work) {
-  SystemState state = dynamics_->state();
-  double work = 0;
-  if (Report struck = contacts_.strike(event.strike, plan_options_, state, work); !struck.ok()) return struck;
-  go_on_from(state, -1, sum_up_work, work);
+  std::vector<int>& released = plan_options_.released_elements;
+  std::erase(released, event.element);
+  std::erase(engaged, event.element);
+  (event.action == EventAction::engage ? engaged : released).push_back(event.element);
+  if (!contacts_.any()) return {};
+  if (Report changed = contacts_.change_constraints(plan_options_, state); !changed.ok()) return changed;
+  jolts_.push_back({state.t, event.name, {}, contacts_.take_impulses()});
   return {};
 }
 
-Report DynamicsWithEvents::act(const Event& event, bool sum_up_work) {
-  if (event.action == EventAction::strike) return strike(event, sum_up_work);
-  std::vector<int>& released = plan_options_.released_elements;
-  const bool engage = event.action == EventAction::engage;
-  std::erase(released, event.element);
-  if (!engage) released.push_back(event.element);
+Report DynamicsWithEvents::act(bool sum_up_work, const Event*& stop) {
   SystemState state = dynamics_->state();
-  if (contacts_.any()) {
-    if (Report changed = contacts_.change_constraints(plan_options_, state); !changed.ok()) return changed;
+  std::vector<int> engaged;
+  double work = 0;
+  std::string engaging;
+  for (const int acting : dynamics_->acting()) {
+    const Event& event = watch_->events()[static_cast<std::size_t>(acting)];
+    if (event.action == EventAction::stop) {
+      stop = &event;
+      end_ = std::move(state);
+      return {};
+    }
+    if (event.action == EventAction::engage) engaging += (engaging.empty() ? "" : ", ") + event.name;
+    if (Report acted = act(event, state, engaged, work); !acted.ok()) return acted;
   }
-  go_on_from(state, engage ? event.element : -1, sum_up_work);
-  return engage ? check_fit(event.element) : Report{};
+  go_on_from(state, engaged, sum_up_work, work);
+  // With contacts these have decided about the jolt already.
+  if (!contacts_.any()) dynamics_->expect_jolt(engaging);
+  for (const int element : engaged) {
+    if (Report fits = check_fit(dynamics_->evaluator(), place(), element); !fits.ok()) return fits;
+  }
+  return {};
 }
 
 AnalysisReport DynamicsWithEvents::run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
@@ -215,6 +225,8 @@ AnalysisReport DynamicsWithEvents::run(const TimeGrid& grid, const Needs& needs,
   AnalysisReport total;
   total.warnings = inactive_;
   singular_points_.clear();
+  end_.reset();
+  if (!resumed_) jolts_.clear();
   std::int64_t next_row = first_row_;
   TimeGrid rest = grid.from_row(next_row);
   if (contacts_.any()) {
@@ -233,6 +245,7 @@ AnalysisReport DynamicsWithEvents::run(const TimeGrid& grid, const Needs& needs,
     add_part(total, dynamics_->run(rest, needs, rows));
     const std::vector<SingularPoint>& points = dynamics_->singular_points();
     singular_points_.insert(singular_points_.end(), points.begin(), points.end());
+    jolts_.insert(jolts_.end(), dynamics_->jolts().begin(), dynamics_->jolts().end());
     const int stopped_by = dynamics_->stopped_by();
     next_row += dynamics_->next_row();
     rest = grid.from_row(next_row);
@@ -246,25 +259,24 @@ AnalysisReport DynamicsWithEvents::run(const TimeGrid& grid, const Needs& needs,
     }
     const bool jumped = dynamics_->jumped();
     if (!total.ok() || (stopped_by < 0 && !jumped)) return total;
-    const bool transition = jumped || watch_->is_transition({stopped_by, 0});
-    const Event* event = transition ? nullptr : &watch_->events()[static_cast<std::size_t>(stopped_by)];
-    if (event && event->action == EventAction::stop) {
-      if (rest.size() > 0)
-        total.message = fmt::format("event \"{}\" ended it at t = {:.12g} s", event->name, dynamics_->time());
-      return total;
-    }
+    const bool acts = !jumped && !watch_->is_transition({stopped_by, 0});
     at_once = dynamics_->time() > last_action ? 1 : at_once + 1;
     last_action = dynamics_->time();
     const bool sum_up_work = needs.work || watch_->needs().work;
-    Report next = jumped  ? meet_jump(sum_up_work)
-                  : event ? act(*event, sum_up_work)
-                          : change_contacts(watch_->transition(stopped_by), sum_up_work);
+    const std::string first = acts ? watch_->events()[static_cast<std::size_t>(stopped_by)].name : std::string();
+    const Event* stop = nullptr;
+    Report next = jumped ? meet_jump(sum_up_work)
+                  : acts ? act(sum_up_work, stop)
+                         : change_contacts(watch_->transition(stopped_by), sum_up_work);
+    if (next.ok() && stop) {
+      if (rest.size() > 0) total.message = fmt::format("event \"{}\" ended it at t = {:.12g} s", stop->name, end_->t);
+      return total;
+    }
     if (next.ok() && at_once > most_at_once) {
       next.status = Status::step_too_small;
-      next.message =
-          fmt::format("{} without end at t = {:.12g} s",
-                      event ? fmt::format("event \"{}\" and others follow each other", event->name) : "contacts change",
-                      last_action);
+      next.message = fmt::format(
+          "{} without end at t = {:.12g} s",
+          acts ? fmt::format("event \"{}\" and others follow each other", first) : "contacts change", last_action);
     }
     if (!next.ok()) {
       total.status = next.status;

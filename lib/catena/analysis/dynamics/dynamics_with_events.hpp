@@ -3,8 +3,10 @@
 // Between events it is Dynamics. At an event that releases or engages a constraint, the motion goes on from there with
 // a plan of the same bodies and other rows. Positions and, on a release, velocities are continuous; on engagement
 // velocities get the least change in the mass metric that meets the constraint (a plastic impact), and the energy lost
-// counts as dissipated. A constraint that an event engages does not hold before. Angles are continuous everywhere: what
-// is engaged after some turns takes its value with it (engaged_turns.hpp). Units as in dynamics.hpp.
+// counts as dissipated. A constraint that an event engages does not hold before. Events of the same instant act in the
+// order of the list, each on the velocities that the one before leaves behind, up to one that stops the analysis.
+// Angles are continuous everywhere: what is engaged after some turns takes its value with it (engaged_turns.hpp). Units
+// as in dynamics.hpp.
 //
 // Contacts, stops and cables are phases of the same kind (contact_phases.hpp): rows that come and go by themselves,
 // with impacts where they close.
@@ -19,6 +21,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "catena/analysis/dynamics/contact_phases.hpp"
@@ -47,34 +50,39 @@ class DynamicsWithEvents {
   /// that are left.
   void resume(const MotionMemory& memory);
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
-  SystemState state() const { return dynamics_->state(); }
+  SystemState state() const { return end_ ? *end_ : dynamics_->state(); }
   /// See Dynamics.
   const std::vector<SingularPoint>& singular_points() const { return singular_points_; }
   const std::vector<EventRecord>& records() const { return watch_->records(); }
+  /// Where velocities jumped, impacts of contacts alone left out: what constraints exerted.
+  const std::vector<Jolt>& jolts() const { return jolts_; }
   /// Changes of contacts, in order of their instants but for accumulated bounces.
   const std::vector<ContactEvent>& contact_events() const { return contacts_.events(); }
   bool has_contacts() const { return contacts_.any(); }
 
  private:
+  using WorkByDriver = std::vector<std::pair<int, double>>;
   void make_dynamics();
   Report start_contacts();
-  /// Goes on from `state` with the rows that hold now; `engaged`: an element that does from now on, or -1.
-  void go_on_from(const SystemState& state, int engaged, bool sum_up_work, double work_of_strike = 0);
-  Report strike(const Event& event, bool sum_up_work);
+  /// Goes on from `state` with the rows that hold now; `engaged`: elements that do from now on.
+  /// `work_of_jolt`: what a blow or drivers did at once, the latter apart as well.
+  void go_on_from(const SystemState& state, std::span<const int> engaged, bool sum_up_work, double work_of_jolt = 0,
+                  const WorkByDriver& by_driver = {});
   /// Ends a phase at a transition, and begins the next one from the state that it leaves behind.
   Report change_contacts(int transition, bool sum_up_work);
   /// The same where the velocity of a driver jumps.
   Report meet_jump(bool sum_up_work);
-  std::vector<double> residuals_of(int element);
   /// Saves the motion where it paused and goes on from what was saved.
   void save_and_resume(std::int64_t rows_given, std::int64_t next_row);
-  /// Releases, engages or strikes what the event says; a report if that cannot be.
-  Report act(const Event& event, bool sum_up_work);
-  void turn_value_to_bodies(int element, const SystemState& state);
-  Report check_fit(int element);
+  /// Releases, engages and strikes what the events say at which the run ended; a report if that cannot be. `stop`: the
+  /// one of them that ends the analysis.
+  Report act(bool sum_up_work, const Event*& stop);
+  Report act(const Event& event, SystemState& state, std::vector<int>& engaged, double& work);
+  void turn_values_to_bodies(std::span<const int> engaged, const SystemState& state);
+  std::vector<double> place();
 
   ContactPhases contacts_;
-  std::optional<SystemState> start_;  // of the first phase
+  std::optional<SystemState> start_, end_;  // of the first phase; where events acted before one that stopped it
   std::shared_ptr<const Model> given_model_;
   std::shared_ptr<const Model> model_;  // with values moved by whole turns
   PlanOptions plan_options_;
@@ -84,6 +92,7 @@ class DynamicsWithEvents {
   std::vector<int> turned_;                     // see EventMemory
   std::vector<std::string> inactive_;           // what is said of elements that are released before they are engaged
   std::vector<SingularPoint> singular_points_;  // of the run, in all its phases
+  std::vector<Jolt> jolts_;                     // the same
   Pauses pauses_;
   bool resumed_ = false;
   std::int64_t first_row_ = 0, rows_before_ = 0;  // of the grid; rows given before the motion was taken up

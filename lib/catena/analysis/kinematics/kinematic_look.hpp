@@ -31,6 +31,21 @@ class KinematicLook {
     driver_work_ = driver_work_before_;
     set_out();
   }
+  /// The same from a state, in which no work was done yet.
+  void start_from(const SystemState& state) {
+    const Evaluator& evaluator = kinematics_.evaluator();
+    start_ = state.q.empty() ? state_of(evaluator, state.t, evaluator.given_configuration()) : state;
+    work_ = dissipated_ = 0;
+    initial_energy_.reset();
+    driver_work_before_.assign(evaluator.model().elements.size(), 0.0);
+    driver_work_ = driver_work_before_;
+    set_out();
+  }
+  /// Where the motion cannot be followed it goes back to its start: from now on to this place, unless work is summed
+  /// up.
+  void return_to(const Snapshot& snapshot) {
+    if (!needs_.work) start_ = state_of(snapshot.evaluator, snapshot.t, snapshot.q);
+  }
   /// The mechanism at t; nothing where the motion cannot be followed there. Valid until the next call.
   std::optional<Snapshot> at(double t) {
     if (!follows_ || !kinematics_.move_to(t).ok() || !kinematics_.solve_rates(needs_).ok()) {
@@ -47,7 +62,7 @@ class KinematicLook {
     snapshot.driver_work = driver_work_;
     snapshot.work += work_;
     snapshot.dissipated += dissipated_;
-    snapshot.initial_energy = initial_energy_;
+    if (initial_energy_) snapshot.initial_energy = *initial_energy_;
     return snapshot;
   }
 
@@ -61,7 +76,8 @@ class KinematicLook {
   SystemState start_;
   Needs needs_;
   bool follows_ = true;
-  double work_ = 0, dissipated_ = 0, initial_energy_ = 0;  // of the run, where this began
+  double work_ = 0, dissipated_ = 0;      // of the run, where this began
+  std::optional<double> initial_energy_;  // the same; nothing: the run begins there
   std::vector<double> driver_work_before_, driver_work_;
 };
 

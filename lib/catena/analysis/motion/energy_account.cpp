@@ -30,6 +30,14 @@ void EnergyAccount::powers_of_one(std::span<const double> qd, int driver, double
   for (std::size_t k = 0; k < drivers_.size(); ++k) out[2 + k] = drivers_[k].element == driver ? power : 0;
 }
 
+void EnergyAccount::add_jolt(std::span<const double> p, std::span<const double> before, std::span<const double> after,
+                             std::span<double> work) const {
+  for (std::size_t k = 0; k < drivers_.size(); ++k) {
+    const auto row = static_cast<std::size_t>(drivers_[k].row);
+    work[2 + k] -= p[row] * (before[row] + after[row]) / 2;
+  }
+}
+
 double EnergyAccount::supplied(std::span<const double> work) {
   double sum = 0;
   for (double w : work.subspan(1)) sum += w;

@@ -24,6 +24,11 @@ class EnergyAccount {
   /// The same where one driver, by its element, does all that drivers do.
   void powers_of_one(std::span<const double> qd, int driver, double power, std::span<double> out);
 
+  /// Adds to `work` what drivers do where velocities jump: -p (nu- + nu+) / 2, with the impulses p of the solver's
+  /// rows; nu before and behind the jump.
+  void add_jolt(std::span<const double> p, std::span<const double> before, std::span<const double> after,
+                std::span<double> work) const;
+
   static double dissipated(std::span<const double> work) { return work[0]; }
   static double& dissipated(std::span<double> work) { return work[0]; }
   /// Of loads and drivers together.

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "catena/analysis/motion/impulses.hpp"
 #include "catena/linalg/patterns/sparse_vectors.hpp"
 
 namespace catena {
@@ -56,6 +57,7 @@ struct MotionMemory {
   IntegratorMemory integrator;
   WorkSoFar earlier;  ///< what was summed up before the last event that acted
   EventMemory events;
+  std::vector<Jolt> jolts;  ///< so far
 };
 
 }  // namespace catena

@@ -31,6 +31,10 @@ const AnalysisKey free_motions{"free",
                                {"refuse", "minimum_norm"}};
 const AnalysisKey branch{"branch", KeyKind::whole, "which of the branches listed where several meet, from 1"};
 const AnalysisKey tolerance{"tolerance", KeyKind::number, "relative error allowed", UnitKind::none, Domain::positive};
+const AnalysisKey events{"events", KeyKind::events, "what to watch for, and what to do then"};
+const AnalysisKey replicated{"replicate", KeyKind::event_blocks,
+                             "blocks of events that are repeated, as those of the scene: {\"count\", \"first\", "
+                             "\"variable\", \"events\", \"replicate\"}"};
 const AnalysisKey measures{"measures", KeyKind::measures, "names and what is measured: {\"peak\": {\"max\": column}}"};
 const AnalysisKey parameter{
     "parameter", KeyKind::parameter, "the parameter that changes", UnitKind::none, Domain::any, {}, true};
@@ -51,11 +55,14 @@ std::vector<AnalysisDescription> describe_all() {
       make("assemble", "The configuration nearest to the given one that meets all constraints.",
            "residual, moved, iterations, misfits (equations that are not met)", false, {outputs, at_time}),
       make("kinematics", "Positions, velocities and accelerations of a driven mechanism over time.",
-           "dof, mobility, singular", true, {outputs, until, every, at_times, free_motions, branch, measures}),
+           "dof, mobility, singular, events", true,
+           {outputs, until, every, at_times, free_motions, branch, events, replicated, measures}),
       make("inverse_dynamics", "Loads of drivers and reactions in a driven mechanism over time.",
-           "dof, mobility, singular", true, {outputs, until, every, at_times, free_motions, branch, measures}),
+           "dof, mobility, singular, events", true,
+           {outputs, until, every, at_times, free_motions, branch, events, replicated, measures}),
       make("dynamics", "Motion under forces over time.",
-           "method, events, estimated_error, singular (dead points), integrated_apart (how many groups of mechanisms "
+           "method, events, impulses (of constraints where velocities jump), estimated_error, singular (dead points), "
+           "integrated_apart (how many groups of mechanisms "
            "had steps of their own)",
            true,
            {outputs,
@@ -79,7 +86,8 @@ std::vector<AnalysisDescription> describe_all() {
             {"estimate_error", KeyKind::flag,
              "whether to run it a second time, at a tenth of the tolerance or half the step: estimated_error is the "
              "largest difference of the two at its rows, which are those of the finer run"},
-            {"events", KeyKind::events, "what to watch for, and what to do then"},
+            events,
+            replicated,
             measures}),
       make("equilibrium", "A configuration at rest, and whether it is stable.",
            "energy, stable, neutral, negative_modes, free_motions and moving_freely (what nothing resists to second "
@@ -201,12 +209,22 @@ const AnalysisKey* AnalysisDescription::find(std::string_view key) const {
 std::span<const AnalysisKey> event_keys() {
   static const Keys keys{
       {"name", KeyKind::word, "its name in the results"},
-      {"when", KeyKind::columns, "the column that is watched", {}, {}, {}, true},
+      {"when", KeyKind::columns, "the column, or the expression of columns, that is watched", {}, {}, {}, true},
       {"value", KeyKind::number, "the value at which the event happens (default 0)", UnitKind::none, Domain::any},
       {"direction", KeyKind::word, "rising, falling or both", {}, {}, {"any", "up", "down"}},
       {"action", KeyKind::word, "what happens then", {}, {}, {"record", "stop", "release", "engage"}},
       {"element", KeyKind::word, "the element that is released or engaged"},
       {"impulse", KeyKind::impulse, "a blow: {\"i\": point, \"value\": [px, py]} in ground axes, N s"}};
+  return keys;
+}
+
+std::span<const AnalysisKey> event_block_keys() {
+  static const Keys keys{
+      {"count", KeyKind::number, "how often the block is repeated", UnitKind::none, Domain::any, {}, true},
+      {"first", KeyKind::number, "first value of k (default 1)", UnitKind::none, Domain::any},
+      {"variable", KeyKind::word, "a name to use in place of k"},
+      events,
+      replicated};
   return keys;
 }
 

@@ -10,24 +10,25 @@
 namespace catena {
 
 enum class KeyKind {
-  number,     ///< in a unit, within a domain
-  whole,      ///< a whole number above zero
-  flag,       ///< true or false
-  word,       ///< one of some words
-  time,       ///< an instant
-  times,      ///< an instant or a list of them
-  columns,    ///< a list of column names
-  parameter,  ///< the name of a parameter
-  set,        ///< parameters and their values
-  events,     ///< a list of events
-  impulse,    ///< of an event: the point that is struck, and the impulse
-  measures,   ///< names and measures
-  analysis,   ///< an analysis, or a list of them
-  names,      ///< a list of parameters
-  variables,  ///< parameters with bounds and starts
-  over,       ///< parameters with values
-  objective,  ///< a measure or an expression over measures and parameters
-  relations,  ///< a list of expressions with <=, >= or ==
+  number,        ///< in a unit, within a domain
+  whole,         ///< a whole number above zero
+  flag,          ///< true or false
+  word,          ///< one of some words
+  time,          ///< an instant
+  times,         ///< an instant or a list of them
+  columns,       ///< a list of column names
+  parameter,     ///< the name of a parameter
+  set,           ///< parameters and their values
+  events,        ///< a list of events
+  event_blocks,  ///< a list of blocks with events that are repeated
+  impulse,       ///< of an event: the point that is struck, and the impulse
+  measures,      ///< names and measures
+  analysis,      ///< an analysis, or a list of them
+  names,         ///< a list of parameters
+  variables,     ///< parameters with bounds and starts
+  over,          ///< parameters with values
+  objective,     ///< a measure or an expression over measures and parameters
+  relations,     ///< a list of expressions with <=, >= or ==
 };
 
 struct AnalysisKey {
@@ -51,6 +52,8 @@ struct AnalysisDescription {
 
 /// A key of one event in the list `events`.
 std::span<const AnalysisKey> event_keys();
+/// A key of a block of events that is repeated, in the list `replicate`.
+std::span<const AnalysisKey> event_block_keys();
 
 std::span<const AnalysisDescription> analysis_descriptions();
 /// The analysis of this name, or nullptr.

@@ -109,6 +109,7 @@ json element_schema(const ElementDescription& type, bool driver) {
 }
 
 json event_schema();
+json event_block_schema();
 
 json key_schema(const AnalysisKey& key) {
   switch (key.kind) {
@@ -133,6 +134,8 @@ json key_schema(const AnalysisKey& key) {
       return described(map_of(reference("number")), key.doc);
     case KeyKind::events:
       return described(list_of(event_schema()), key.doc);
+    case KeyKind::event_blocks:
+      return described(list_of(reference("eventBlock")), key.doc);
     case KeyKind::impulse:
       return described(object_of({{"i", reference("attachment")}, {"value", reference("pair")}}, {"i", "value"}),
                        key.doc);
@@ -175,6 +178,12 @@ json event_schema() {
     if (key.required) required.emplace_back(key.name);
   }
   return object_of(std::move(properties), required);
+}
+
+json event_block_schema() {
+  json properties = json::object();
+  for (const AnalysisKey& key : event_block_keys()) properties[std::string(key.name)] = key_schema(key);
+  return object_of(std::move(properties), {"count"});
 }
 
 json analysis_schema(const AnalysisDescription& type) {
@@ -258,6 +267,7 @@ json definitions() {
   all["positive"] = number_schema({{"exclusiveMinimum", 0}});
   all["notNegative"] = number_schema({{"minimum", 0}});
   all["body"] = body_schema();
+  all["eventBlock"] = event_block_schema();
   all["constraint"] = {{"anyOf", std::move(constraints)}};
   all["driver"] = {{"anyOf", std::move(drivers)}};
   all["force"] = {{"anyOf", std::move(forces)}};

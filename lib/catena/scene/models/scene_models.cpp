@@ -72,7 +72,8 @@ std::vector<std::vector<SceneModels::MovingNumber>> SceneModels::moving_numbers(
     const std::vector<Formula<DesignScalar>::Table> tables_here = tables(*task.table, groups[g]);
     for (const TaskNumber& number : task.varying) {
       if (number.place == TaskNumber::Place::key && number.key->name == "tolerance") continue;
-      const auto value = evaluate<DesignScalar>(number.value, scene_.expressions, groups[g], {}, tables_here);
+      const auto value =
+          evaluate<DesignScalar>(number.value, scene_.expressions, groups[g], number.loop_values, tables_here);
       for (std::size_t k = 0; k < parameters_at_once && parameters_at_once * g + k < parameters.size(); ++k) {
         if (value.d[k] != 0) moving[parameters_at_once * g + k].push_back({number, value.d[k]});
       }

@@ -5,6 +5,7 @@
 #include "catena/scene/numbers/expression_functions.hpp"
 
 namespace catena {
+
 namespace {
 
 std::string_view operator_sign(Operation operation) {
@@ -25,6 +26,17 @@ std::string_view operator_sign(Operation operation) {
 }
 
 }  // namespace
+
+bool Expression::bind(std::span<const double> loop_variables) {
+  bool any = false;
+  for (Instruction& instruction : code_) {
+    if (instruction.operation != Operation::loop_variable) continue;
+    instruction.operation = Operation::constant;
+    instruction.number = loop_variables[instruction.index];
+    any = true;
+  }
+  return any;
+}
 
 bool is_expression_word(std::string_view name) { return name == "pi" || find_function(name) != nullptr; }
 

@@ -70,8 +70,11 @@ class Expression {
   template <class S>
   S evaluate(std::span<const S> parameters, std::span<const double> loop_variables, TableSet<S> tables = {}) const;
 
+  /// Puts the values of loop variables in their places. False: none is named.
+  bool bind(std::span<const double> loop_variables);
+
   /// The same as a formula over the columns that were named, with the values of all else in it. A table that is null
-  /// makes it a number that is not finite.
+  /// makes it a number that is not finite. Loop variables that are bound need no values.
   template <class S>
   Formula<S> formula(std::span<const S> parameters, std::span<const double> loop_variables, TableSet<S> tables) const;
 

@@ -60,11 +60,14 @@ std::vector<PlacedName> AnalysisReader::names(const JsonValue& list, const Field
 
 // The value of a number, and where it is kept if parameters change it.
 double AnalysisReader::evaluated(const NumberValue& read, const JsonValue& value, TaskNumber place) {
+  const double result = evaluation(value)(read);
   if (read.valid() && !read.is_constant()) {
     place.value = read;
-    varying_.push_back(place);
+    place.loop_values = loop_values_;
+    place.as_read = result;
+    varying_.push_back(std::move(place));
   }
-  return Evaluation<double>(value.source(), scene_.expressions, values_, diagnostics_, tables())(read);
+  return result;
 }
 
 double AnalysisReader::number(const AnalysisKey& key, const JsonValue& value, const FieldName& field,
@@ -73,7 +76,7 @@ double AnalysisReader::number(const AnalysisKey& key, const JsonValue& value, co
                                      ? ExpectedDimension()
                                      : ExpectedDimension(dimension_of(key.unit));
   place.key = &key;
-  const double result = evaluated(reading_.numbers.read(value, unit, field), value, place);
+  const double result = evaluated(reading_.numbers.read(value, unit, field), value, std::move(place));
   if (std::isnan(result)) return result;
   if (const std::optional<std::string> why = out_of_key(key, result)) error(value, field.text() + " " + *why);
   return result;
@@ -141,6 +144,9 @@ void AnalysisReader::read_key(const AnalysisKey& key, const JsonValue& value, An
       break;
     case KeyKind::events:
       read_events(value, task);
+      break;
+    case KeyKind::event_blocks:
+      read_event_blocks(value, task);
       break;
     case KeyKind::measures:
       read_measures(value, task);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "catena/scene/numbers/evaluation.hpp"
 #include "catena/scene/reading/analysis_task.hpp"
 #include "catena/scene/reading/scene_reading.hpp"
 
@@ -27,7 +28,16 @@ class AnalysisReader {
   double number(const AnalysisKey& key, const JsonValue& value, const FieldName& field, TaskNumber place);
   double evaluated(const NumberValue& read, const JsonValue& value, TaskNumber place);
   void read_parameters(const JsonValue& set, AnalysisTask& task);
+  /// With the variables of the blocks that are being read.
+  Evaluation<double> evaluation(const JsonValue& value) const;
+  // event_reader.cpp
   void read_events(const JsonValue& list, AnalysisTask& task);
+  void read_event_blocks(const JsonValue& list, AnalysisTask& task);
+  void read_event_block(const JsonValue& object, AnalysisTask& task);
+  void repeat_events(std::int64_t first, std::int64_t count, const JsonValue& events, const JsonValue& blocks,
+                     AnalysisTask& task);
+  std::optional<std::int64_t> whole_number(const AnalysisKey& key, const JsonValue& value);
+  std::string event_text(const JsonValue& value, const FieldName& field);
   // measure_reader.cpp
   void read_measures(const JsonValue& object, AnalysisTask& task);
   void read_measure(const JsonMember& member, AnalysisTask& task);
@@ -60,8 +70,10 @@ class AnalysisReader {
   const ParameterTable& parameters_;
   Diagnostics& diagnostics_;
   SceneReading reading_;
-  std::span<const double> values_;   // of the parameters, for the analysis that is read
-  std::vector<TaskNumber> varying_;  // of that analysis
+  std::span<const double> values_;       // of the parameters, for the analysis that is read
+  std::vector<TaskNumber> varying_;      // of that analysis
+  std::vector<std::string> loop_names_;  // of the blocks around what is read, outermost first
+  std::vector<double> loop_values_;
   JsonValue scene_outputs_;
 };
 

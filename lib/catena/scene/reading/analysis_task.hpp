@@ -46,12 +46,23 @@ struct PlacedMeasure {
 
 /// A number of an analysis that is not a constant, and where the task keeps its value.
 struct TaskNumber {
-  enum class Place : unsigned char { key, instant, event, struck_point, impulse, measured_instant, path_point };
+  enum class Place : unsigned char {
+    key,
+    instant,
+    event,
+    struck_point,
+    impulse,
+    measured_instant,
+    path_point,
+    fixed  ///< kept nowhere: how often events are repeated
+  };
   Place place = Place::key;
   NumberValue value{};
-  const AnalysisKey* key = nullptr;  ///< of `key`, `instant`, `event`: what it may be
-  std::size_t item = 0;              ///< number of the instant, the event, the measure
-  std::size_t part = 0;              ///< of a pair, x or y; of path points, one pair after the other
+  const AnalysisKey* key = nullptr;   ///< of `key`, `instant`, `event`: what it may be
+  std::size_t item = 0;               ///< number of the instant, the event, the measure
+  std::size_t part = 0;               ///< of a pair, x or y; of path points, one pair after the other
+  std::vector<double> loop_values{};  ///< of the blocks around it
+  double as_read = 0;
 
   bool is_of_measure() const { return place == Place::measured_instant || place == Place::path_point; }
   /// `"until"`, `"to" of measure 2`.

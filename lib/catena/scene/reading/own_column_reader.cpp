@@ -18,6 +18,24 @@ void report_in_text(const JsonValue& value, std::size_t position, std::string me
   diagnostics.error(value.source(), value.source().offset_in_string(value.offset(), position), std::move(message));
 }
 
+/// Compiles a text; where it is not the one at `value` places in it are not told.
+bool parse(const JsonValue& value, std::string_view text, const ExpressionScope& scope, OwnColumnTemplate& column,
+           Diagnostics& diagnostics) {
+  const bool as_written = text == value.text();
+  Parsed<Expression> expression = Expression::parse(text.substr(1), scope);
+  if (!expression) {
+    const std::string& message = expression.error.message;
+    if (as_written)
+      report_in_text(value, expression.error.position + 1, message, diagnostics);
+    else
+      report(value, fmt::format("in the expression {}: {}", in_quotes(text), message), diagnostics);
+    return false;
+  }
+  column.expression = std::move(*expression);
+  for (NamedInput& input : column.inputs) input.position = as_written ? input.position : 0;
+  return true;
+}
+
 /// Compiles the expression at `value`; false, with a report, if it is none.
 bool compile(const JsonValue& value, OwnColumnTemplate& column, const SceneTemplate& scene, Diagnostics& diagnostics) {
   column.place = value;
@@ -28,13 +46,7 @@ bool compile(const JsonValue& value, OwnColumnTemplate& column, const SceneTempl
   }
   ExpressionScope scope{&scene.parameters.names()};
   scope.columns = &column.inputs;
-  Parsed<Expression> expression = Expression::parse(value.text().substr(1), scope);
-  if (!expression) {
-    report_in_text(value, expression.error.position + 1, expression.error.message, diagnostics);
-    return false;
-  }
-  column.expression = std::move(*expression);
-  return true;
+  return parse(value, value.text(), scope, column, diagnostics);
 }
 
 /// Values of columns are in SI units and radians, whatever they are called.
@@ -96,16 +108,30 @@ std::string column_name(const JsonValue& value, SceneTemplate& scene, Diagnostic
     report(value, fmt::format("a column is named by a text; this is {}", describe(value.kind())), diagnostics);
     return {};
   }
-  std::string name(value.text());
-  if (!name.starts_with('=')) return name;
-  const bool known = std::any_of(scene.own_columns.begin(), scene.own_columns.end(),
-                                 [&](const OwnColumnTemplate& column) { return column.name == name; });
-  if (known) return name;
+  return column_name(value, std::string(value.text()), {}, scene, diagnostics);
+}
+
+std::string column_name(const JsonValue& place, std::string text, const LoopValues& loop, SceneTemplate& scene,
+                        Diagnostics& diagnostics) {
+  if (!text.starts_with('=')) return text;
+  const auto is_known = [&](const std::string& name) {
+    return std::any_of(scene.own_columns.begin(), scene.own_columns.end(),
+                       [&](const OwnColumnTemplate& column) { return column.name == name; });
+  };
+  if (loop.names.empty() && is_known(text)) return text;
   OwnColumnTemplate column;
-  column.name = name;
-  if (!compile(value, column, scene, diagnostics)) return {};
+  column.place = place;
+  ExpressionScope scope{&scene.parameters.names(), loop.names};
+  scope.columns = &column.inputs;
+  if (!parse(place, text, scope, column, diagnostics)) return {};
+  column.name = text;
+  if (column.expression.bind(loop.values)) {
+    for (std::size_t n = 0; n < loop.names.size(); ++n)
+      column.name += fmt::format("{}{} = {}", n == 0 ? " at " : ", ", loop.names[n], loop.values[n]);
+  }
+  if (is_known(column.name)) return column.name;
   scene.own_columns.push_back(std::move(column));
-  return name;
+  return scene.own_columns.back().name;
 }
 
 }  // namespace catena

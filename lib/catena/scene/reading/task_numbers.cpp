@@ -36,6 +36,8 @@ void set(AnalysisTask& task, const TaskNumber& number, double value) {
       (number.part % 2 == 0 ? task.measures[number.item].request.points[number.part / 2].x
                             : task.measures[number.item].request.points[number.part / 2].y) = value;
       break;
+    case TaskNumber::Place::fixed:
+      break;
   }
 }
 
@@ -45,6 +47,7 @@ std::string TaskNumber::name() const {
   switch (place) {
     case Place::key:
     case Place::instant:
+    case Place::fixed:
       return in_quotes(key->name);
     case Place::event:
       return fmt::format("\"value\" of event {}", item + 1);
@@ -81,7 +84,7 @@ std::optional<std::string> evaluate_numbers(AnalysisTask& task, const Expression
   for (const TaskNumber& number : task.varying) {
     double value = 0;
     try {
-      value = evaluate<double>(number.value, expressions, parameters, {}, tables);
+      value = evaluate<double>(number.value, expressions, parameters, number.loop_values, tables);
     } catch (const ExpressionError& error) {
       return fmt::format("{} of {}: {}", number.name(), task.type(), error.what());
     }
@@ -90,6 +93,11 @@ std::optional<std::string> evaluate_numbers(AnalysisTask& task, const Expression
       if (const std::optional<std::string> why = out_of_key(*number.key, value))
         return fmt::format("{} of {} {}", number.name(), task.type(), *why);
     }
+    if (number.place == TaskNumber::Place::fixed && value != number.as_read)
+      return fmt::format(
+          "{} of repeated events would become {}: their number may not change with a parameter that is "
+          "swept, optimised or left behind by a path",
+          number.name(), value);
     set(task, number, value);
   }
   return too_many_rows(task);

@@ -9,6 +9,7 @@
 #include "catena/analysis/dynamics/paces.hpp"
 #include "catena/analysis/sensitivity/motion_derivatives.hpp"
 #include "catena/scene/running/analysis_run.hpp"
+#include "catena/scene/running/event_entries.hpp"
 #include "catena/scene/running/singular_entries.hpp"
 
 namespace catena {
@@ -18,40 +19,6 @@ constexpr ColumnSources sources{
     .analysis = "dynamics", .timed = true, .velocity = true, .acceleration = true, .multipliers = true, .work = true};
 // Of an analysis: time between checkpoints where none is given.
 constexpr double part_between_checkpoints = 0.05;
-
-Strike strike_of(const EventRequest::Impulse& impulse, const Model& model) {
-  const int body = model.find_body(impulse.body);
-  const Vec2<double>* const named = impulse.point.empty() ? nullptr : model.find_point(body, impulse.point);
-  const Vec2<double> origin = model.bodies[static_cast<std::size_t>(body)].origin;
-  return {body,
-          named ? *named : origin + Vec2<double>{impulse.local[0], impulse.local[1]},
-          {impulse.value[0], impulse.value[1]}};
-}
-
-/// The word of an event's action in the results.
-std::string_view kind_of(const EventRequest& event) {
-  if (event.impulse) return "impulse";
-  const auto keys = event_keys();
-  const auto action =
-      std::find_if(keys.begin(), keys.end(), [](const AnalysisKey& key) { return key.name == "action"; });
-  return action->words[static_cast<std::size_t>(event.action)];
-}
-
-std::vector<Event> events_of(const AnalysisTask& task, const Model& model) {
-  // In the order of the keys' words.
-  constexpr EventDirection directions[] = {EventDirection::any, EventDirection::up, EventDirection::down};
-  constexpr EventAction actions[] = {EventAction::record, EventAction::stop, EventAction::release, EventAction::engage};
-  std::vector<Event> events;
-  for (const EventRequest& request : task.events) {
-    events.push_back({request.name, request.column, request.value, directions[request.direction],
-                      actions[request.action], request.element.empty() ? -1 : model.find_element(request.element)});
-    Event& event = events.back();
-    if (!request.impulse) continue;
-    event.action = EventAction::strike;
-    event.strike = strike_of(*request.impulse, model);
-  }
-  return events;
-}
 
 DynamicsOptions options_of(const AnalysisTask& task) {
   DynamicsOptions options;
@@ -112,6 +79,12 @@ class DynamicsTask {
   /// Has the motion saved now and then; where it cannot be, `failure` says why.
   Pauses pauses(std::string& failure) const;
   void run_apart(const std::vector<std::vector<int>>& classes);
+  /// Of a motion without events and contacts.
+  void add_jolts(const std::vector<Jolt>& jolts) {
+    EventEntries entries(*model_);
+    entries.add(jolts);
+    entries.give(result_, false);
+  }
 
   AnalysisContext& context_;
   AnalysisResult& result_;
@@ -205,22 +178,11 @@ void DynamicsTask::run_with_events_or_pauses() {
   if (!failure.empty()) warnings.push_back("a checkpoint was not saved: " + failure);
   if (!taken_up.empty()) warnings.push_back(taken_up);
   result_.fields.push_back({"method", std::string(to_string(analysis.method()))});
-  if (context_.task.events.empty() && !analysis.has_contacts()) return;
-  std::vector<std::pair<double, FieldRecord>> found;
-  for (const EventRecord& record : analysis.records()) {
-    const EventRequest& request = context_.task.events[static_cast<std::size_t>(record.event)];
-    found.push_back(
-        {record.t,
-         {{"name", record.name}, {"t", record.t}, {"row", record.row}, {"kind", std::string(kind_of(request))}}});
-  }
-  for (const ContactEvent& event : analysis.contact_events()) {
-    found.push_back(
-        {event.t, {{"name", model_->element_name(event.element)}, {"kind", std::string(event.kind)}, {"t", event.t}}});
-  }
-  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<FieldRecord> records;
-  for (auto& [t, record] : found) records.push_back(std::move(record));
-  result_.fields.push_back({"events", std::move(records)});
+  EventEntries entries(*model_);
+  entries.add(context_.task, analysis.records());
+  entries.add(analysis.contact_events());
+  entries.add(analysis.jolts());
+  entries.give(result_, !context_.task.events.empty() || analysis.has_contacts());
 }
 
 /// Mechanisms that have nothing to do with each other, and differ in pace.
@@ -235,6 +197,7 @@ void DynamicsTask::run_apart(const std::vector<std::vector<int>>& classes) {
   }
   result_.fields.push_back({"method", methods});
   result_.fields.push_back({"integrated_apart", static_cast<std::int64_t>(analysis.classes())});
+  add_jolts(analysis.jolts());
 }
 
 void DynamicsTask::run() {
@@ -255,6 +218,7 @@ void DynamicsTask::run() {
   run_or_estimate(analysis, plan);
   add_singular_points(result_, analysis.singular_points(), *model_);
   result_.fields.push_back({"method", std::string(to_string(analysis.method()))});
+  add_jolts(analysis.jolts());
 }
 
 }  // namespace

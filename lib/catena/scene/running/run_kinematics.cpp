@@ -1,8 +1,12 @@
 // kinematics and inverse_dynamics: a driven mechanism over time.
+#include <fmt/format.h>
+
 #include "catena/analysis/kinematics/kinematic_look.hpp"
+#include "catena/analysis/kinematics/kinematics_with_events.hpp"
 #include "catena/analysis/kinematics/minimum_norm_motion.hpp"
 #include "catena/analysis/sensitivity/kinematic_derivatives.hpp"
 #include "catena/scene/running/analysis_run.hpp"
+#include "catena/scene/running/event_entries.hpp"
 #include "catena/scene/running/singular_entries.hpp"
 
 namespace catena {
@@ -23,8 +27,53 @@ bool is_driven(const AnalysisContext& context) {
   return analysis.run(TimeGrid::instant(context.state.t), {}, nothing).status != Status::under_driven;
 }
 
+bool changes_mechanism(const EventRequest& event) {
+  const auto action = static_cast<EventAction>(event.action);
+  return action == EventAction::release || action == EventAction::engage;
+}
+
+/// Nothing, or why a driven motion cannot have these events.
+std::string conflict(const AnalysisContext& context, bool inverse_dynamics) {
+  for (const EventRequest& event : context.task.events) {
+    if (event.impulse) {
+      return fmt::format("event \"{}\": an impulse changes no motion that drivers determine; strike in dynamics",
+                         event.name);
+    }
+    if (!changes_mechanism(event)) continue;
+    if (inverse_dynamics) {
+      return fmt::format(
+          "event \"{}\": velocities may jump where a constraint comes or goes, and no finite load makes them; release "
+          "and engage in kinematics or dynamics",
+          event.name);
+    }
+    if (context.design) return "derivatives are not carried through events that release or engage a constraint";
+  }
+  return {};
+}
+
+/// The same motion with events; rows, measures and derivatives as without.
+void run_with_events(AnalysisContext& context, AnalysisResult& result, const TimeGrid& grid,
+                     const KinematicsOptions& options, const ColumnSources& sources) {
+  const AnalysisTask& task = context.task;
+  std::vector<std::string> reactions = task.column_names();
+  for (const EventRequest& request : task.events) reactions.push_back(request.column);
+  const PlanOptions plan = plan_without_gaps(*context.model, reactions);
+  KinematicsWithEvents analysis(context.model, plan, options, events_of(task, *context.model), sources);
+  run_over_time(context, result, analysis, grid, task.output_names(), sources, [&](AnalysisRows& rows) {
+    rows.watch_gaps(*context.model);
+    if (!context.design) return;
+    rows.differentiate(std::make_unique<KinematicDerivatives>(analysis.evaluator(), designs_of(context),
+                                                              static_cast<int>(context.design->names.size())));
+  });
+  add_singular_points(result, analysis.singular_points(), *context.model);
+  EventEntries entries(*context.model);
+  entries.add(task, analysis.records());
+  entries.give(result, true);
+}
+
 void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics) {
   const AnalysisTask& task = context.task;
+  if (const std::string why = conflict(context, inverse_dynamics); !why.empty()) return refuse(result, why);
   const std::optional<TimeGrid> grid = time_grid(context, result.report);
   if (!grid) return;
   const std::vector<std::string> names = task.output_names();
@@ -49,6 +98,11 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
     }
     if (context.design)
       return refuse(result, "motions that nothing drives have no derivatives yet: leave \"free\" out, or add drivers");
+    if (!task.events.empty()) {
+      return refuse(result,
+                    "events are not looked for in a motion of least velocity, which is not looked at between its rows: "
+                    "leave \"free\" out and add drivers");
+    }
     MinimumNormMotion analysis(context.model, plan);
     run_over_time(context, result, analysis, *grid, names, sources, [&](AnalysisRows& rows) {
       rows.watch_gaps(*context.model);
@@ -56,6 +110,7 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
     });
     return add_singular_points(result, analysis.singular_points(), *context.model);
   }
+  if (!task.events.empty()) return run_with_events(context, result, *grid, options, sources);
   Kinematics analysis(context.model, plan, options);
   std::optional<KinematicLook> look, drawn;
   const auto prepare = [&](AnalysisRows& rows) {

@@ -120,6 +120,8 @@ void SceneRun::check_own_columns() {
       found.clear();
       const std::optional<UnknownColumn> unknown = find_columns(*model_, input.name, found);
       if (!unknown && found.size() == 1) continue;
+      // In a repeated block a place is reported once.
+      if (diagnostics_.reported(column.place.source(), in_text(column.place, input.position))) continue;
       std::string message = unknown
                                 ? fmt::format("unknown column {}: {}{}", in_quotes(input.name), unknown->message,
                                               NearMiss(input.name).consider_all(unknown->candidates).hint())
@@ -169,6 +171,11 @@ void SceneRun::check_measure(const PlacedMeasure& measure, const Model& model) {
 }
 
 void SceneRun::check_event(const EventRequest& event, const Model& model) {
+  // In a repeated block a place is reported once.
+  for (const JsonValue& place :
+       {event.place, event.element_place, event.impulse ? event.impulse->place : JsonValue()}) {
+    if (place && diagnostics_.reported(place.source(), place.offset())) return;
+  }
   check_columns({{event.column, event.place}}, model);
   std::vector<NamedColumn> found;
   if (!find_columns(model, event.column, found) && found.size() > 1) {

@@ -1,4 +1,4 @@
-#include "catena/analysis/dynamics/event_watch.hpp"
+#include "catena/analysis/events/event_watch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -179,7 +179,43 @@ int EventWatch::samples(double from, double to, const StateAt& state_at) {
   return static_cast<int>(std::clamp(std::ceil(turn / turn_between_samples), fewest_samples, most_samples));
 }
 
+// Of those found between two samples the first one, which takes those of the list with it that happen then too; of
+// these the first in the list.
+FoundEvent EventWatch::first_found(const StateAt& state_at) {
+  FoundEvent first = *std::min_element(found_.begin(), found_.end(),
+                                       [](const FoundEvent& a, const FoundEvent& b) { return a.t < b.t; });
+  const auto is_listed = [&](const FoundEvent& found) { return found.event < static_cast<int>(events_.size()); };
+  const std::optional<Snapshot> state = found_.size() > 1 ? state_at(first.t) : std::nullopt;
+  for (const FoundEvent& found : found_) {
+    if (!state || !is_listed(found) || found.event == first.event) continue;
+    const auto k = static_cast<std::size_t>(found.event);
+    if (found.t == first.t || side(k, value_of(k, *state) - target(k)) == 0)
+      simultaneous_.push_back({found.event, first.t});
+  }
+  // What the mechanism does by itself comes after them, and is found again.
+  if (is_listed(first)) simultaneous_.push_back(first);
+  std::sort(simultaneous_.begin(), simultaneous_.end(),
+            [](const FoundEvent& a, const FoundEvent& b) { return a.event > b.event; });
+  if (!simultaneous_.empty()) {
+    first = simultaneous_.back();
+    simultaneous_.pop_back();
+  }
+  const auto take_note = [&](const FoundEvent& found) {
+    int& last_seen = side_[static_cast<std::size_t>(found.event)];
+    last_seen = -last_seen;
+    found_at_[static_cast<std::size_t>(found.event)] = found.t;
+  };
+  take_note(first);
+  std::for_each(simultaneous_.begin(), simultaneous_.end(), take_note);
+  return first;
+}
+
 std::optional<FoundEvent> EventWatch::find(double from, double to, const StateAt& state_at) {
+  if (!simultaneous_.empty()) {
+    const FoundEvent next = simultaneous_.back();
+    simultaneous_.pop_back();
+    return next;
+  }
   if (!(from < to)) return {};
   const int parts = samples(from, to, state_at);
   times_[2] = from;
@@ -196,7 +232,7 @@ std::optional<FoundEvent> EventWatch::find(double from, double to, const StateAt
     const std::optional<Snapshot> state = state_at(times_[2]);
     if (!state) return {};
     sample(*state, g_[2]);
-    std::optional<FoundEvent> first;
+    found_.clear();
     for (std::size_t k = 0; k < side_.size(); ++k) {
       if (side_[k] == 0) {
         side_[k] = side(k, g_[2][k]);
@@ -218,14 +254,9 @@ std::optional<FoundEvent> EventWatch::find(double from, double to, const StateAt
         side_[k] = -side_[k];
         continue;
       }
-      if (!first || t < first->t) first = FoundEvent{static_cast<int>(k), t};
+      found_.push_back({static_cast<int>(k), t});
     }
-    if (first) {
-      int& last_seen = side_[static_cast<std::size_t>(first->event)];
-      last_seen = -last_seen;
-      found_at_[static_cast<std::size_t>(first->event)] = first->t;
-      return first;
-    }
+    if (!found_.empty()) return first_found(state_at);
   }
   return {};
 }

@@ -1,4 +1,4 @@
-#include "catena/analysis/dynamics/engaged_turns.hpp"
+#include "catena/analysis/events/engaged_turns.hpp"
 
 #include <cmath>
 #include <limits>

@@ -6,7 +6,10 @@
 // the fastest body's turn apart at most. A change of sign, or a dip towards zero that a parabola through three samples
 // takes beyond it, is enclosed and the root found to rounding in t on states that meet the constraints, hence as exact
 // as the rows of the run. A column that starts at its value has no event there. A column that crosses its value twice
-// between two samples without a visible dip is missed. Units: those of the columns, s.
+// between two samples without a visible dip is missed.
+//
+// Events of the list are simultaneous if the later ones' columns are at their values, to rounding, when the first one
+// happens: they then have its instant, and come in the order of the list. Units: those of the columns, s.
 #pragma once
 
 #include <array>
@@ -17,7 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "catena/analysis/contact/strike.hpp"
+#include "catena/analysis/events/strike.hpp"
 #include "catena/analysis/motion/motion_memory.hpp"
 #include "catena/columns/column_set.hpp"
 
@@ -72,8 +75,11 @@ class EventWatch {
   /// Whether what was found is a transition, and which.
   bool is_transition(const FoundEvent& found) const { return found.event >= static_cast<int>(events_.size()); }
   int transition(int found) const { return found - static_cast<int>(events_.size()); }
-  /// The first event in (from, to]; `state_at` gives the mechanism at an instant of that interval.
+  /// The first event in (from, to]; `state_at` gives the mechanism at an instant of that interval. Where it has some
+  /// that are simultaneous with it, the next calls give these.
   std::optional<FoundEvent> find(double from, double to, const StateAt& state_at);
+  /// Whether the next call of find() gives one that is simultaneous with the last.
+  bool has_simultaneous() const { return !simultaneous_.empty(); }
   /// Keeps a record of an event that was found and whose row was given. True if it acts: the motion must not continue
   /// unchanged.
   bool take(const FoundEvent& found);
@@ -92,6 +98,7 @@ class EventWatch {
   }
 
  private:
+  FoundEvent first_found(const StateAt& state_at);
   int samples(double from, double to, const StateAt& state_at);
   void sample(const Snapshot& state, std::span<double> g);
   double watched(std::size_t k, double t, const StateAt& state_at);
@@ -113,6 +120,8 @@ class EventWatch {
   std::array<std::vector<double>, 3> g_;  // the last samples, of all columns
   std::array<double, 3> times_{};
   std::vector<double> angles_;  // of moving bodies, where a step begins
+  std::vector<FoundEvent> found_,
+      simultaneous_;  // between two samples; those that are still to be given, the next last
   std::vector<EventRecord> records_;
 };
 
