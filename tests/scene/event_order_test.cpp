@@ -166,7 +166,7 @@ TEST(EventBlocks, WrongOnesAreNamedWithTheirPlace) {
     EXPECT_NE(run.outcome.errors[0].message.find(message), std::string::npos) << run.outcome.errors[0].message;
   };
   expect(R"({"count": 3, "events": [{"when": §"b{k}.x"}]})", "unknown column \"b2.x\"");
-  expect(R"({"count": 3, "events": [{"when": §"=b{k}.x - k"}]})", "unknown column \"b2.x\"");
+  expect(R"({"count": 3, "events": [{"when": "=§b{k}.x - k"}]})", "unknown column \"b2.x\"");
   expect(R"({"count": 3, "events": [{"when": "b1.x", "action": "release", "element": §"pin{k}"}]})",
          "no constraint \"pin2\"");
   expect(R"({"count": 3, "events": [{"when": "b1.x", "impulse": §{"i": "b{k}", "value": [1, 0]}}]})",

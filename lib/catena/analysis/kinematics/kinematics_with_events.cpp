@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "catena/analysis/events/engaged_turns.hpp"
@@ -72,7 +73,12 @@ class KinematicsWithEvents::Rows final : public RowObserver {
  private:
   std::optional<Snapshot> state_at(double t) {
     std::optional<Snapshot> state = look_.at(t);
-    if (!state && row_ && t == row_->t) state.emplace(*row_);  // where the motion locks
+    if (!state && row_ && t == row_->t) {
+      // Where the motion locks: without rates.
+      state.emplace(*row_);
+      no_rates_.assign(row_->q.size(), std::numeric_limits<double>::quiet_NaN());
+      state->qd = no_rates_;
+    }
     if (!state && !unseen_) unseen_ = t;
     return state;
   }
@@ -165,6 +171,7 @@ class KinematicsWithEvents::Rows final : public RowObserver {
   bool cancelled_ = false;
   const Snapshot* row_ = nullptr;  // the next one of the grid
   std::optional<double> row_given_at_, unseen_;
+  std::vector<double> no_rates_;
 };
 
 KinematicsWithEvents::KinematicsWithEvents(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
