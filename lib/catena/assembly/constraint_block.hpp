@@ -15,9 +15,17 @@
 
 namespace catena {
 
+/// The rows of elements that have none of their own, but add to those of others.
+template <class E>
+struct JoinedRows {};
+template <Joining E>
+struct JoinedRows<E> {
+  std::vector<int> joined_row;
+};
+
 /// Structure: element e of the block occupies the rows first_row + e rows ... ; bodies are plan bodies.
 template <class E>
-struct ConstraintBlock {
+struct ConstraintBlock : JoinedRows<E> {
   using Element = E;
   int first_row = 0;
   std::vector<int> entry;   ///< place in the model's vector of this type
@@ -28,7 +36,13 @@ struct ConstraintBlock {
   std::vector<double> constant;
 
   int size() const { return static_cast<int>(entry.size()); }
-  int row(int e) const { return first_row + e * E::rows; }
+  int row(int e) const {
+    if constexpr (Joining<E>) {
+      return this->joined_row[static_cast<std::size_t>(e)];
+    } else {
+      return first_row + e * E::rows;
+    }
+  }
 };
 
 /// Values: the numbers of the block's elements, from the model.

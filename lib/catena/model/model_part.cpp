@@ -60,8 +60,22 @@ class Extraction {
       part_.model.functions.push_back(whole_.functions[at(value.function)]);
       value.function = static_cast<int>(part_.model.functions.size()) - 1;
     }
+    renumber(copy.element);
     part_.model.append(whole_.element_name(entry.id), copy, kind);
     part_.elements.push_back(entry.id);
+  }
+
+  // Elements of a rope name each other; they follow each other in the list, all of them in this part.
+  template <class E>
+  void renumber(E& element) {
+    if constexpr (HasParts<E>) {
+      element.first_part = static_cast<int>(
+          std::get<std::vector<ElementEntry<typename E::Part, double>>>(part_.model.constraints).size());
+    }
+    if constexpr (Joining<E>) {
+      const auto head = std::lower_bound(part_.elements.begin(), part_.elements.end(), element.head);
+      element.head = static_cast<int>(head - part_.elements.begin());
+    }
   }
 
   const Model& whole_;

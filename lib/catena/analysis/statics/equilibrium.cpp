@@ -132,9 +132,11 @@ EquilibriumReport Equilibrium::solve() {
     const std::string name = model_->element_name(plan_->row_element[at(r)]);
     if (report.redundant.empty() || report.redundant.back() != name) report.redundant.push_back(name);
   }
-  if (const WatchedElements watched(evaluator_); result.report.ok() && watched.has_ends()) {
+  if (const WatchedElements watched(evaluator_); result.report.ok()) {
     evaluator_.set_configuration(q_);
-    if (Report left = watched.check_ends(); !left.ok()) result.report = std::move(left);
+    Report left = watched.check_ends();
+    if (left.ok()) left = watched.check_ropes();
+    if (!left.ok()) result.report = std::move(left);
   }
   if (result.report.ok()) {
     const auto& closed = result.gaps.closed;
