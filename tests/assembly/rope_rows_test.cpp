@@ -299,7 +299,7 @@ TEST(RopeRows, WaysThatAreNone) {
     }
     return {};
   };
-  EXPECT_NE(message({.i = {.body = 0}, .j = {}, .over = {{.centre = {0, -1.05}, .radius = 0.1}}})
+  EXPECT_NE(message({.i = {.body = 0}, .j = {}, .over = {{.centre = {0.01, -1.05}, .radius = 0.1}}})
                 .find("its end i and pulley 1"),
             std::string::npos);
   EXPECT_NE(message({.i = {.body = 0}, .j = {}, .over = {{.centre = {0, -0.5}, .radius = 0.1}}}).find("does not bend"),

@@ -15,17 +15,9 @@
 
 namespace catena {
 
-/// The rows of elements that have none of their own, but add to those of others.
-template <class E>
-struct JoinedRows {};
-template <Joining E>
-struct JoinedRows<E> {
-  std::vector<int> joined_row;
-};
-
 /// Structure: element e of the block occupies the rows first_row + e rows ... ; bodies are plan bodies.
 template <class E>
-struct ConstraintBlock : JoinedRows<E> {
+struct ConstraintBlock {
   using Element = E;
   int first_row = 0;
   std::vector<int> entry;   ///< place in the model's vector of this type
@@ -34,11 +26,12 @@ struct ConstraintBlock : JoinedRows<E> {
   std::vector<int> slot;           ///< varying_entries<E>() slots an element into the values of Phi_q
   std::vector<int> constant_slot;  ///< slots of the entries +1 and -1, written once
   std::vector<double> constant;
+  std::vector<int> joined_row;  ///< of elements that join others, which have no rows of their own
 
   int size() const { return static_cast<int>(entry.size()); }
   int row(int e) const {
     if constexpr (Joining<E>) {
-      return this->joined_row[static_cast<std::size_t>(e)];
+      return joined_row[static_cast<std::size_t>(e)];
     } else {
       return first_row + e * E::rows;
     }

@@ -61,7 +61,12 @@ class Extraction {
       value.function = static_cast<int>(part_.model.functions.size()) - 1;
     }
     renumber(copy.element);
-    part_.model.append(whole_.element_name(entry.id), copy, kind);
+    std::string name = whole_.element_name(entry.id);
+    // The later elements of an elastic rope have no name of their own.
+    if constexpr (Sharing<E>) {
+      if (entry.element.pieces == 0) name.clear();
+    }
+    part_.model.append(name, copy, kind);
     part_.elements.push_back(entry.id);
   }
 
