@@ -109,6 +109,34 @@ TEST(GapElements, ContactOnTheLeftOfALine) {
   expect_exact_derivatives(pair);
 }
 
+TEST(GapElements, StretchesOfRopesTouchTheirCircles) {
+  for (const double radius_i : {0.0, 0.3, -0.2}) {
+    for (const double radius_j : {0.0, 0.25, -0.3}) {
+      Rope<double> rope;
+      rope.s_i = {0.3, 0.1};
+      rope.s_j = {-0.2, 0.4};
+      rope.radius_i = radius_i;
+      rope.radius_j = radius_j;
+      rope.turn_i = 0.15;
+      rope.turn_j = -0.4;
+      rope.length = 3;
+      rope.direction = {std::cos(0.9), std::sin(0.9)};
+      rope.angle = 0.9;
+      Pair pair(rope);
+      const Frame<double> a = pair.model.frame(0), b = pair.model.frame(1);
+      const Vec2<double> h = point_of(pair, 1, rope.s_j) - point_of(pair, 0, rope.s_i);
+      const Vec2<double> u = rope.unit(h);
+      EXPECT_NEAR(norm(u), 1, 1e-14);
+      // The line passes both centres at their radii, on the left of its direction.
+      EXPECT_NEAR(dot(perpendicular(u), h), radius_j - radius_i, 1e-14);
+      const double expected = dot(u, h) + (radius_i - radius_j) * std::atan2(u.y, u.x) + 0.15 * a.phi - 0.4 * b.phi;
+      EXPECT_NEAR(pair.psi(pair.q), 3 - expected, 1e-14);
+      EXPECT_NEAR(pair.measured(), 3 - expected, 1e-14);
+      expect_exact_derivatives(pair);
+    }
+  }
+}
+
 TEST(GapElements, CableIsSmoothWhereItsEndsMeet) {
   Cable<double> cable{{0.3, 0.1}, {-0.2, 0.4}, 1.7};
   Pair pair(cable);

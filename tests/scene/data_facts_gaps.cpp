@@ -1,4 +1,4 @@
-// Contacts, stops and cables.
+// Contacts, stops, cables and ropes.
 #include <cmath>
 
 #include "scene/data_facts.hpp"
@@ -58,10 +58,24 @@ void check_net(const TextRun& run) {
   EXPECT_EQ(active(run).size(), 3u);
 }
 
+// One freedom: the weight sinks by R for a radian of the drum, the load rises by r / 2.
+void check_tackle(const TextRun& run) {
+  constexpr double g = 9.81, R = 0.3, r = 0.1, weight = 4, load = 10, inertia = 0.05, t = 0.5;
+  const double a = (weight * g * R - load * g * r / 2) / (inertia + weight * R * R + load * r * r / 4);
+  EXPECT_NEAR(run.last("drum.angle", 1), a * t * t / 2, 1e-8);
+  EXPECT_NEAR(run.last("weight.y", 1), -1 - R * a * t * t / 2, 1e-8);
+  EXPECT_NEAR(run.last("load.y", 1), -2 + r / 2 * a * t * t / 2, 1e-8);
+  EXPECT_NEAR(run.last("pull.force", 1), weight * (g - R * a), 1e-7);
+  EXPECT_NEAR(run.last("lift.force", 1), load * (g + r * a / 2) / 2, 1e-7);
+}
+
 }  // namespace
 
 SceneFacts gap_facts() {
-  return {{"chain_on_floor.json", check_floor}, {"chain_over_drum.json", check_drum}, {"slack_net.json", check_net}};
+  return {{"chain_on_floor.json", check_floor},
+          {"chain_over_drum.json", check_drum},
+          {"slack_net.json", check_net},
+          {"tackle.json", check_tackle}};
 }
 
 }  // namespace catena::testing

@@ -26,9 +26,16 @@ struct ConstraintBlock {
   std::vector<int> slot;           ///< varying_entries<E>() slots an element into the values of Phi_q
   std::vector<int> constant_slot;  ///< slots of the entries +1 and -1, written once
   std::vector<double> constant;
+  std::vector<int> joined_row;  ///< of elements that join others, which have no rows of their own
 
   int size() const { return static_cast<int>(entry.size()); }
-  int row(int e) const { return first_row + e * E::rows; }
+  int row(int e) const {
+    if constexpr (Joining<E>) {
+      return joined_row[static_cast<std::size_t>(e)];
+    } else {
+      return first_row + e * E::rows;
+    }
+  }
 };
 
 /// Values: the numbers of the block's elements, from the model.

@@ -98,6 +98,12 @@ void ConstraintOperations<E>::phi(const Block& block, const Data& data, const Fr
   double* row = out + block.first_row;
   for (int e = 0; e < block.size(); ++e, row += E::rows) {
     const detail::ElementFrames<E> f(block, data, frames, e);
+    if constexpr (Joining<E>) {
+      double part;
+      data.element[static_cast<std::size_t>(e)].phi(Arguments<double>{f.i, f.j, 0, f.ground}, &part);
+      out[block.row(e)] += part;
+      continue;
+    }
     data.element[static_cast<std::size_t>(e)].phi(Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground},
                                                   row);
     if constexpr (HasSquaredValue<E>) row[0] *= detail::scale_at(data, e);
@@ -117,7 +123,13 @@ void ConstraintOperations<E>::jacobian(const Block& block, const Data& data, con
       double entries[jacobian_size<E>];
       if constexpr (HasClosedJacobian<E>) {
         element.jacobian(Arguments<double>{f.i, f.j, c, f.ground}, entries);
-        for (int k = 0; k < varying; ++k) values[slot[k]] = scale * entries[k];
+        for (int k = 0; k < varying; ++k) {
+          if constexpr (Joining<E>) {
+            values[slot[k]] += entries[k];
+          } else {
+            values[slot[k]] = scale * entries[k];
+          }
+        }
       } else {
         constexpr auto pattern = jacobian_pattern<E>();
         detail::derived_jacobian(element, f, c, entries);
@@ -152,7 +164,11 @@ void ConstraintOperations<E>::gamma(const Block& block, const Data& data, const 
     const Rates u = detail::rates_of<E>(block.body_i, qd, e);
     const Rates v = E::bodies == 2 ? detail::rates_of<E>(block.body_j, qd, e) : Rates{};
     const E& element = data.element[static_cast<std::size_t>(e)];
-    if constexpr (HasClosedGamma<E>) {
+    if constexpr (Joining<E>) {
+      double part;
+      element.gamma(Arguments<double>{f.i, f.j, 0, f.ground}, u, v, &part);
+      out[block.row(e)] += part;
+    } else if constexpr (HasClosedGamma<E>) {
       element.gamma(Arguments<double>{f.i, f.j, detail::value_at(data, e).f, f.ground}, u, v, row);
     } else {
       Taylor<double> rows[E::rows];

@@ -272,6 +272,7 @@ void Evaluator::set_configuration(std::span<const double> q) {
   ++counters.configurations;
   update_frames(q.first(at(3 * plan_->moving)), std::span(frames_).first(at(plan_->moving)));
   for (std::size_t b = 0; b < turns_.size(); ++b) frames_[b].phi += turns_[b] * (2 * std::numbers::pi);
+  stretch_ropes();
 }
 
 void Evaluator::take_turns(std::span<double> q) {
@@ -327,6 +328,12 @@ void Evaluator::start_jacobian(std::span<double> values) const {
 
 void Evaluator::jacobian(std::span<double> values) {
   ++counters.jacobians;
+  for_each_list(plan_->blocks, [&](const auto& block, int) {
+    // They add to what others write.
+    if constexpr (Joining<typename std::remove_cvref_t<decltype(block)>::Element>) {
+      for (int slot : block.slot) values[at(slot)] = 0;
+    }
+  });
   for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
     ConstraintOperations<ElementOf<decltype(list)>>::jacobian(block, data, frames_.data(), values.data());
   });

@@ -119,11 +119,16 @@ class Evaluator {
   Measured measure(int element, std::span<const double> qd, std::span<const double> qdd) const;
   /// One scalar equation or gap along the motion, whether it has a row or not: what it measures (of a gap the distance
   /// that is reported; else the residual), its rate, the part of its second derivative that velocities make, and its
-  /// gradient by the coordinates of its two plan bodies.
+  /// gradient by the coordinates of its two plan bodies, and by those of elements that join it.
   struct ScalarMotion {
     double value = 0, rate = 0, bend = 0;
     int body_i = -1, body_j = -1;
     double gradient[6] = {};
+    struct Part {
+      int body_i = -1, body_j = -1;
+      double gradient[6] = {};
+    };
+    std::vector<Part> parts = {};  ///< of elements that join this one
   };
   ScalarMotion scalar_motion(int element, std::span<const double> qd) const;
   /// Dense Phi_q of one element's published equations: rows x 6 (columns 3 ... 5 zero for absolute types), and its
@@ -147,6 +152,9 @@ class Evaluator {
   /// Per plan body: RMS distance of its attachment points from the centroid, length_scale() if none. The mean over all
   /// attachment points goes to `mean` (Lc in apps/manual/dynamics.md#least-reactions).
   std::vector<double> attachment_radii(double* mean = nullptr) const;
+  /// nullptr, or why a rope, elastic or not, means nothing at this configuration, as a phrase: it has no straight line
+  /// between two of its circles, or it holds and no longer touches a pulley.
+  const char* rope_trouble(int element) const;
   /// The length that residuals in metres are compared with: the mean attachment distance, else the extent of the given
   /// positions, else 1 m.
   double length_scale() const { return length_scale_; }
@@ -160,6 +168,7 @@ class Evaluator {
   void read_laws(std::span<const double> qd);
   /// dQ/dF of a law's force on its bodies i and j.
   std::array<double, 6> law_effect(int law, std::span<const double> qd) const;
+  void stretch_ropes();
   Measured measure_released(int element, std::span<const double> qd) const;
   /// Place of an element in its block, -1 if it has no rows.
   template <class F>

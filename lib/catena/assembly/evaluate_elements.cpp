@@ -13,6 +13,21 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
+// Calls f(number) for every element that joins this one.
+template <class F>
+void for_each_part(const Model& model, int element, F&& f) {
+  const ElementRecord& record = model.elements[at(element)];
+  if (record.kind != ElementKind::gap) return;
+  with_list(model.constraints, record.type, [&](const auto& list) {
+    using E = ElementOf<decltype(list)>;
+    if constexpr (HasParts<E>) {
+      const auto& parts = std::get<std::vector<ElementEntry<typename E::Part, double>>>(model.constraints);
+      const auto& head = list[at(record.index)].element;
+      for (int k = 0; k < head.parts; ++k) f(parts[at(head.first_part + k)].id);
+    }
+  });
+}
+
 }  // namespace
 
 // Calls f(block, data, e) where the element is the block's e-th; not at all for one that is in no block.
@@ -79,16 +94,33 @@ Evaluator::ScalarMotion Evaluator::scalar_motion(int element, std::span<const do
       for (std::size_t k = 0; k < 6; ++k) result.gradient[k] = by.d[k];
     }
   });
+  for_each_part(*model_, element, [&](int part) {
+    const ScalarMotion more = scalar_motion(part, qd);
+    result.value += more.value;
+    result.rate += more.rate;
+    result.bend += more.bend;
+    result.parts.push_back({more.body_i, more.body_j});
+    std::copy(std::begin(more.gradient), std::end(more.gradient), result.parts.back().gradient);
+  });
   return result;
 }
 
 Measured Evaluator::measure(int element, std::span<const double> qd, std::span<const double> qdd) const {
-  if (plan_->is_released(element)) return measure_released(element, qd);
   Measured result;
-  with_element(element, [&](const auto& block, const auto& data, int e) {
-    using E = typename std::remove_cvref_t<decltype(block)>::Element;
-    result = ConstraintOperations<E>::measure(block, data, frames_.data(), qd.empty() ? nullptr : qd.data(),
-                                              qdd.empty() ? nullptr : qdd.data(), e);
+  if (plan_->is_released(element)) {
+    result = measure_released(element, qd);
+  } else {
+    with_element(element, [&](const auto& block, const auto& data, int e) {
+      using E = typename std::remove_cvref_t<decltype(block)>::Element;
+      result = ConstraintOperations<E>::measure(block, data, frames_.data(), qd.empty() ? nullptr : qd.data(),
+                                                qdd.empty() ? nullptr : qdd.data(), e);
+    });
+  }
+  for_each_part(*model_, element, [&](int part) {
+    const Measured more = measure(part, qd, qdd);
+    result.value += more.value;
+    result.rate += more.rate;
+    result.second += more.second;
   });
   return result;
 }

@@ -198,6 +198,17 @@ template <class E>
 ElementMatrix ForceOperations<E>::stiffness(const Block& block, const Data& data, const Frame<double>* frames,
                                             const double* qd, int e) {
   const detail::ForceState<E> s(block, data, frames, qd, e);
+  if constexpr (Sharing<E>) {
+    constexpr auto pattern = stiffness_pattern<E>();
+    double entries[pattern.size()];
+    data.element[static_cast<std::size_t>(e)].stiffness(s.arguments(), entries);
+    ElementMatrix matrix{};
+    for (std::size_t k = 0; k < pattern.size(); ++k) {
+      const auto r = static_cast<std::size_t>(pattern[k].row), c = static_cast<std::size_t>(pattern[k].column);
+      matrix[6 * r + c] = matrix[6 * c + r] = entries[k];
+    }
+    return matrix;
+  }
   return detail::differentiate(data.element[static_cast<std::size_t>(e)], s, seed<double, 6>(s.i, 0),
                                seed<double, 6>(s.j, 3), detail::constant_twist(s.u), detail::constant_twist(s.v));
 }

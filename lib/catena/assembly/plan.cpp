@@ -83,6 +83,12 @@ void number_rows(const Model& model, const std::vector<ElementEntry<E, double>>&
                  Plan& plan) {
   block.first_row = plan.rows;
   for (int e = 0; e < block.size(); ++e) {
+    if (block.body_i[at(e)] < plan.bodies) plan.body_has_row[at(block.body_i[at(e)])] = 1;
+    if (block.body_j[at(e)] < plan.bodies) plan.body_has_row[at(block.body_j[at(e)])] = 1;
+    if constexpr (Joining<E>) {
+      block.joined_row.push_back(plan.element_row[at(list[at(block.entry[at(e)])].element.head)]);
+      continue;
+    }
     const int id = list[at(block.entry[at(e)])].id;
     plan.element_row[at(id)] = plan.rows;
     for (int r = 0; r < E::rows; ++r) {
@@ -92,8 +98,6 @@ void number_rows(const Model& model, const std::vector<ElementEntry<E, double>>&
     }
     plan.rows += E::rows;
     if (model.elements[at(id)].kind == ElementKind::driver) plan.driver_rows += E::rows;
-    if (block.body_i[at(e)] < plan.bodies) plan.body_has_row[at(block.body_i[at(e)])] = 1;
-    if (block.body_j[at(e)] < plan.bodies) plan.body_has_row[at(block.body_j[at(e)])] = 1;
   }
 }
 
@@ -135,6 +139,20 @@ void make_slots(Plan& plan) {
   });
 }
 
+// Where an element does not hold, those that join it do not either.
+void release_parts(const Model& model, std::vector<int>& released) {
+  if (released.empty()) return;
+  std::vector<char> is_released(model.elements.size(), 0);
+  for (int e : released) is_released[at(e)] = 1;
+  for_each_list(model.constraints, [&](const auto& list, int) {
+    if constexpr (Joining<ElementOf<decltype(list)>>) {
+      for (const auto& entry : list) {
+        if (is_released[at(entry.element.head)] && !is_released[at(entry.id)]) released.push_back(entry.id);
+      }
+    }
+  });
+}
+
 }  // namespace
 
 std::shared_ptr<const Plan> Plan::make(const Model& model, const PlanOptions& options) {
@@ -150,6 +168,7 @@ std::shared_ptr<const Plan> Plan::make(const Model& model, const PlanOptions& op
     const std::vector<int> dry = model.frictions();
     released.insert(released.end(), dry.begin(), dry.end());
   }
+  release_parts(model, released);
   if (!released.empty()) plan->released.assign(model.elements.size(), 0);
   for (int e : released) plan->released[at(e)] = 1;
   plan->row_element.reserve(2 * model.elements.size());

@@ -92,6 +92,13 @@ void add_loads(const Entry& entry, std::vector<ElementColumn>& out) {
     out.push_back({"force", UnitKind::force, ColumnKind::tension});
     out.push_back({"gap", UnitKind::length, ColumnKind::slack});
   }
+  if constexpr (Sharing<E>) {
+    if (entry.element.pieces > 0) {
+      out.push_back({"length", UnitKind::length, ColumnKind::way});
+      out.push_back({"force", UnitKind::force, ColumnKind::tension});
+      out.push_back({"gap", UnitKind::length, ColumnKind::slack});
+    }
+  }
   if (E::type == "torsion_spring") {
     out.push_back({"angle", UnitKind::angle, ColumnKind::turn});
     out.push_back({"torque", UnitKind::torque, ColumnKind::spring_torque});
@@ -123,6 +130,12 @@ std::vector<ElementColumn> columns_of_element(const Model& model, int element) {
       out.push_back({"friction", angle ? UnitKind::torque : UnitKind::force, ColumnKind::friction});
       out.push_back({"slip", angle ? UnitKind::angular_velocity : UnitKind::velocity, ColumnKind::slip});
       out.push_back({"force", UnitKind::force, ColumnKind::push});
+    } else if constexpr (HasParts<typename Entry::Element>) {
+      out.push_back({"length", UnitKind::length, ColumnKind::way});
+      add_gap(entry, out);
+      out.push_back({"lambda1", UnitKind::force, ColumnKind::multiplier, 0});
+    } else if constexpr (Joining<typename Entry::Element>) {
+      // A stretch of a rope: the rope has the columns.
     } else if constexpr (OneSided<typename Entry::Element>) {
       add_gap(entry, out);
       if (Entry::Element::type == "cable") out.push_back({"length", UnitKind::length, ColumnKind::length});

@@ -78,6 +78,8 @@ class RowValues {
         return S(0.0);
       case ColumnKind::gap:
         return s_.measured(column.index).f;
+      case ColumnKind::way:
+        return way(column.index);
       case ColumnKind::slack:
         return s_.spring_loads(column.index).slack;
       case ColumnKind::value:
@@ -204,6 +206,23 @@ class RowValues {
     with_list(s_.model().constraints, record.type,
               [&](const auto& list) { squared = HasSquaredValue<ElementOf<decltype(list)>>; });
     return squared ? S(-2.0) * s_.prescribed(column.index).f * multiplier : -multiplier;
+  }
+
+  /// The length of a rope's way.
+  S way(int element) const {
+    const ElementRecord& record = s_.model().elements[static_cast<std::size_t>(element)];
+    const bool elastic = record.kind == ElementKind::force;
+    S way = elastic ? -s_.spring_loads(element).slack : -s_.measured(element).f;
+    const auto add_length = [&](const auto& list) {
+      const auto& rope = list[static_cast<std::size_t>(record.index)].element;
+      if constexpr (requires { rope.length; }) way += rope.length;
+    };
+    if (elastic) {
+      with_list(s_.model().forces, record.type, add_length);
+    } else {
+      with_list(s_.model().constraints, record.type, add_length);
+    }
+    return way;
   }
 
   Frame<Taylor<S>> motion(int body) const {

@@ -20,6 +20,11 @@ BasicSpringLoads<S> spring_loads_of(const State& state, int element) {
   BasicSpringLoads<S> loads;
   with_list(model.forces, record.type, [&](const auto& list) {
     const auto& entry = list[static_cast<std::size_t>(record.index)];
+    if constexpr (Sharing<ElementOf<decltype(list)>>) {
+      loads.slack = rope_slack<S>(list, record.index, [&](int body) { return state.frame(plan_body(body)); });
+      if (value_of(loads.slack) < 0) loads.tension = -entry.element.k * loads.slack;
+      return;
+    }
     constexpr int functions = ElementOf<decltype(list)>::functions;
     S f[functions + 1] = {};  // one more, so that it is never empty
     for (std::size_t k = 0; k < entry.values.size(); ++k) {

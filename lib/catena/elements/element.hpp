@@ -26,6 +26,9 @@
 //   trouble(a)             nullptr, or why the row means nothing at this configuration, as a phrase
 //   can_leave_curve()      whether the element uses a curve or table that ends for good
 //   curve_use(a)           where on it the element stands, if it asks anything of it (CurveUse)
+//   joins = true           it has no row of its own but adds to that of element `head`, of a type before it in the
+//   list;
+//                          head names the type as Part, and its elements by first_part and parts  (rope_part.hpp)
 //   draw(pen)              how it looks in figures, by calls of drawing/pen.hpp  (default: a line between its points)
 //
 // Frames carry cosine and sine: no element calls trigonometry. One file an element, plus its lines in list.hpp.
@@ -159,6 +162,18 @@ concept HasCurveUse = requires(const E& e) {
 template <class E>
 concept HasSquaredValue = requires {
   requires E::squared;
+};
+
+/// Adds to the row of another element.
+template <class E>
+concept Joining = requires {
+  requires E::joins;
+};
+
+/// Whose row others add to.
+template <class E>
+concept HasParts = requires(const E& e) {
+  e.first_part;
 };
 
 /// The default of the value c of a scalar constraint.

@@ -67,6 +67,13 @@ struct ColumnField {
   std::string_view doc;
 };
 
+/// The pulleys that a rope runs over: a list of objects.
+struct PulleysField {
+  std::string_view key;
+  std::string_view doc;
+  static constexpr bool required = true;
+};
+
 /// true or false; the member's initial value is the default.
 template <class Member>
 struct FlagField {

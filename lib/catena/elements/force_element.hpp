@@ -15,6 +15,7 @@
 //   potential<T>(a)            V with Q = -V_q at rest and functions frozen; present if the element can have one
 //   conservative()             false where these parameters have no potential (a follower force); default: has
 //   dissipation(a)             power lost to damping, W (default 0)
+//   shares = true              its stiffness is in closed form, from what elements share (elastic_rope.hpp)
 //   complete(i, j), check(), can_leave_curve(), curve_use(a), draw(pen)    as for constraints
 //
 // Frames may be given relative to any common origin; `ground` is where that origin lies. Units: N, N m, J, W.
@@ -66,6 +67,12 @@ consteval auto stiffness_pattern() {
 template <class E>
 concept HasClosedStiffness = requires(const E& e, const ForceArguments<double>& a, double* out) {
   e.stiffness(a, out);
+};
+
+/// One of several elements that are one spring: its stiffness is not the derivative of its own force alone.
+template <class E>
+concept Sharing = requires {
+  requires E::shares;
 };
 
 template <class E>

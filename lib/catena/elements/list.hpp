@@ -36,12 +36,14 @@
   X(Cable)             \
   X(Contact)           \
   X(Friction)          \
+  X(Rope)              \
   X(Stop)
 
-/// All with rows, also those that only C++ can make; they come last.
+/// All with rows, also the further stretches of ropes and those that only C++ can make; they come last.
 #define CATENA_ALL_CONSTRAINTS(X) \
   CATENA_CONSTRAINTS(X)           \
   CATENA_GAPS(X)                  \
+  X(RopePart)                     \
   X(CustomConstraint)
 
 /// CATENA_FORCES(X) expands X(Type) for every force type that a scene may name.
@@ -52,11 +54,12 @@
   X(Torque)              \
   X(TorsionSpring)
 
-/// The same with the types that scenes do not name: the elastic cable, which a scene writes as a cable with a
-/// stiffness, the damping of joints, and those that only C++ can make.
+/// The same with the types that scenes do not name: the elastic cable and rope, which a scene writes as a cable or rope
+/// with a stiffness, the damping of joints, and those that only C++ can make.
 #define CATENA_ALL_FORCES(X) \
   CATENA_FORCES(X)           \
   X(ElasticCable)            \
+  X(ElasticRope)             \
   X(JointDamper)             \
   X(CustomForce)
 

@@ -36,6 +36,7 @@ enum class ColumnKind : unsigned char {
   joint_angle,  ///< phi_j - phi_i
   joint_omega,
   gap,       ///< of a one-sided element
+  way,       ///< of a rope, elastic or not: its present length
   friction,  ///< of a contact, along the curve's direction, or in a joint; on j
   slip,      ///< of the touching material points, j relative to i
   slide,     ///< of P_j seen from P_i, along axis_i

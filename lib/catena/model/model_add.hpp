@@ -139,14 +139,18 @@ int BasicModel<S>::append(std::string_view name, const ElementEntry<E, S>& entry
   require_body(entry.j);
   const int id = static_cast<int>(elements.size());
   const int number = claim_name(name, -2 - id);
-  // Cables are counted as one type, elastic or not.
-  constexpr bool elastic = std::is_same_v<E, ElasticCable<S>>;
-  constexpr int counted = elastic ? detail::constraint_type<S, Cable<S>>() : type;
+  // Cables, and ropes, are counted as one type, elastic or not; of an elastic rope only its first element.
+  constexpr bool rope = std::is_same_v<E, ElasticRope<S>>, elastic = rope || std::is_same_v<E, ElasticCable<S>>;
+  constexpr int counted = rope      ? detail::constraint_type<S, Rope<S>>()
+                          : elastic ? detail::constraint_type<S, Cable<S>>()
+                                    : type;
+  bool counts_as_one = true;
+  if constexpr (rope) counts_as_one = entry.element.pieces > 0;
   std::vector<int>& counts = is_force && !elastic ? force_count_ : constraint_count_;
   counts.resize(std::max(counts.size(), static_cast<std::size_t>(counted) + 1));
   const ElementKind stored = is_force ? ElementKind::force : OneSided<E> ? ElementKind::gap : kind;
   elements.push_back({stored, static_cast<short>(type), static_cast<int>(list.size()), number,
-                      ++counts[static_cast<std::size_t>(counted)]});
+                      counts_as_one ? ++counts[static_cast<std::size_t>(counted)] : 0});
   list.push_back(entry);
   list.back().id = id;
   return id;

@@ -71,7 +71,13 @@ class Extraction {
       part_.model.functions.push_back(whole_.functions[at(value.function)]);
       value.function = static_cast<int>(part_.model.functions.size()) - 1;
     }
-    part_.model.append(whole_.element_name(entry.id), copy, kind);
+    renumber(copy.element);
+    std::string name = whole_.element_name(entry.id);
+    // The later elements of an elastic rope have no name of their own.
+    if constexpr (Sharing<E>) {
+      if (entry.element.pieces == 0) name.clear();
+    }
+    part_.model.append(name, copy, kind);
     part_.elements.push_back(entry.id);
   }
 
@@ -92,6 +98,19 @@ class Extraction {
       found = part_.elements.end() - 1;
     }
     input.index = static_cast<int>(found - part_.elements.begin());
+  }
+
+  // Elements of a rope name each other; they follow each other in the list, all of them in this part.
+  template <class E>
+  void renumber(E& element) {
+    if constexpr (HasParts<E>) {
+      element.first_part = static_cast<int>(
+          std::get<std::vector<ElementEntry<typename E::Part, double>>>(part_.model.constraints).size());
+    }
+    if constexpr (Joining<E>) {
+      const auto head = std::lower_bound(part_.elements.begin(), part_.elements.end(), element.head);
+      element.head = static_cast<int>(head - part_.elements.begin());
+    }
   }
 
   const Model& whole_;

@@ -1,5 +1,6 @@
 #include "catena/analysis/balance/force_sizes.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -33,6 +34,7 @@ ForceSizes force_sizes(const Evaluator& evaluator) {
         if (is_load) sizes.loads[at(3 * p + k)] += std::abs(parts[k]);
       }
     };
+    [[maybe_unused]] double tension = 0;  // of the rope that the elements belong to
     for (const auto& entry : list) {
       std::array<double, static_cast<std::size_t>(E::functions) + 1> f{};
       for (std::size_t k = 0; k < static_cast<std::size_t>(E::functions); ++k) {
@@ -53,7 +55,16 @@ ForceSizes force_sizes(const Evaluator& evaluator) {
       };
       const Frame<double> of_i = near(i), of_j = near(j);
       Wrench<double> on_i, on_j;
-      entry.element.force(ForceArguments<double>{of_i, of_j, rest, rest, f.data(), common}, on_i, on_j);
+      if constexpr (Sharing<E>) {
+        if (entry.element.pieces > 0) {
+          const int head = model.elements[at(entry.id)].index;
+          const auto frame = [&](int b) { return evaluator.ground_frame(plan_body(b)); };
+          tension = entry.element.k * std::max(-rope_slack<double>(list, head, frame), 0.0);
+        }
+        if (tension > 0) entry.element.pull(tension, of_i, of_j, on_i, on_j);
+      } else {
+        entry.element.force(ForceArguments<double>{of_i, of_j, rest, rest, f.data(), common}, on_i, on_j);
+      }
       add(i, on_i);
       if (E::bodies == 2) add(j, on_j);
     }

@@ -21,7 +21,8 @@ template <class E>
 constexpr bool counts_turns =
     std::is_same_v<E, AbsoluteAngle<double>> || std::is_same_v<E, RelativeAngle<double>> ||
     std::is_same_v<E, Weld<double>> || std::is_same_v<E, Gear<double>> || std::is_same_v<E, Belt<double>> ||
-    std::is_same_v<E, RackPinion<double>> || std::is_same_v<E, Stop<double>> ||
+    std::is_same_v<E, RackPinion<double>> || std::is_same_v<E, Stop<double>> || std::is_same_v<E, Rope<double>> ||
+    std::is_same_v<E, RopePart<double>> || std::is_same_v<E, ElasticRope<double>> ||
     std::is_same_v<E, TorsionSpring<double>> || std::is_same_v<E, Bushing<double>> ||
     std::is_same_v<E, CustomForce<double>> || std::is_same_v<E, CustomConstraint<double>>;
 

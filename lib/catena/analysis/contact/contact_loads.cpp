@@ -25,6 +25,12 @@ void scatter_gradient(const Evaluator::ScalarMotion& of, double factor, std::spa
     loads[at(3 * of.body_i + k)] += factor * of.gradient[k];
     loads[at(3 * of.body_j + k)] += factor * of.gradient[3 + k];
   }
+  for (const Evaluator::ScalarMotion::Part& part : of.parts) {
+    for (int k = 0; k < 3; ++k) {
+      loads[at(3 * part.body_i + k)] += factor * part.gradient[k];
+      loads[at(3 * part.body_j + k)] += factor * part.gradient[3 + k];
+    }
+  }
 }
 
 double fastest(const Evaluator& evaluator, std::span<const double> qd) {

@@ -30,6 +30,10 @@ double product(const Evaluator::ScalarMotion& of, std::span<const double> x) {
   double sum = 0;
   for (int k = 0; k < 3; ++k)
     sum += of.gradient[k] * x[at(3 * of.body_i + k)] + of.gradient[3 + k] * x[at(3 * of.body_j + k)];
+  for (const Evaluator::ScalarMotion::Part& part : of.parts) {
+    for (int k = 0; k < 3; ++k)
+      sum += part.gradient[k] * x[at(3 * part.body_i + k)] + part.gradient[3 + k] * x[at(3 * part.body_j + k)];
+  }
   return sum;
 }
 

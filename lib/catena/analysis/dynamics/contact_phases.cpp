@@ -70,6 +70,13 @@ Report ContactPhases::check_depth(std::span<const double> q) {
     const double gap = evaluator.measure(point.element, {}, {}).value;
     if (gap >= -allowed_depth * (point.turns ? 1 : evaluator.length_scale())) continue;
     report.status = Status::inconsistent;
+    if (const std::string_view type = contacts_.model->element_type(point.element); type == "rope" || type == "cable") {
+      report.message = fmt::format(
+          "{} \"{}\" is shorter than its way at the start, by {:.4g} m: make it longer, move its ends, or give it a "
+          "stiffness k",
+          type, contacts_.model->element_name(point.element), -gap);
+      return report;
+    }
     report.message = fmt::format(
         "{} \"{}\" is violated at the start by {:.4g} {}: place the bodies so that they do not penetrate, or give it a "
         "stiffness k",

@@ -1,4 +1,5 @@
-// Dynamics where a curve or a table of an element ends: the run ends at that instant, with the rows before it.
+// Dynamics where a curve or a table of an element ends, or a rope leaves a pulley: the run ends at that instant, with
+// the rows before it.
 #include <algorithm>
 
 #include "catena/analysis/dynamics/dynamics.hpp"

@@ -89,7 +89,7 @@ Report Dynamics::start() {
     balance_->know_energy(earlier_motion_);
     balance_->begin(snapshot(t_, y_row_, {}), options_.tolerance, account_.has_value());
   }
-  if (!watched_.has_ends() && !watched_.has_law_ends()) return {};
+  if (!watched_.may_end()) return {};
   evaluator_.set_configuration(std::span<const double>(y_row_).first(q_.size()));
   return check_ends_at(y_row_);
 }
@@ -170,7 +170,7 @@ Report Dynamics::step(RowObserver& observer) {
   if (const Report pace = check_pace(grid_.last()); !pace.ok()) return pace;
   if (const Report rows = check_redundant_rows(); !rows.ok()) return rows;
   if (const Report balance = check_balance(); !balance.ok()) return balance;
-  if (watched_.has_ends() || watched_.has_law_ends()) {
+  if (watched_.may_end()) {
     if (const Report left = check_curve_ends(before, observer); !left.ok() || stopped_by_ >= 0) return left;
   }
   if (events_) {

@@ -26,6 +26,12 @@ WatchedElements::WatchedElements(const Evaluator& evaluator) : evaluator_(evalua
       }
     }
   };
+  for (const int element : evaluator.model().gaps()) {
+    if (evaluator.model().element_type(element) == Rope<double>::type) ropes_.push_back(element);
+  }
+  for (const auto& entry : std::get<std::vector<ElementEntry<ElasticRope<double>, double>>>(evaluator.model().forces)) {
+    if (entry.element.pieces > 0) ropes_.push_back(entry.id);
+  }
   for_each_list(evaluator.model().constraints, look);
   for_each_list(evaluator.model().forces, look);
   for (const CompiledLaw<double>& law : evaluator.laws()) has_law_ends_ = has_law_ends_ || law.formula.has_ends();
@@ -57,16 +63,25 @@ Report WatchedElements::check_laws(std::span<const double> qd) const {
 
 Report WatchedElements::check() const {
   if (Report ends = check_ends(); !ends.ok()) return ends;
-  Report report;
   for (int element : elements_) {
-    const char* trouble = evaluator_.trouble(element);
-    if (!trouble) continue;
-    const Model& model = evaluator_.model();
-    report.status = Status::singular;
-    report.message = fmt::format("{} \"{}\" is undefined at t = {:.12g} s: {}", model.element_type(element),
-                                 model.element_name(element), evaluator_.time(), trouble);
-    break;
+    if (const char* trouble = evaluator_.trouble(element)) return undefined(element, trouble);
   }
+  return check_ropes();
+}
+
+Report WatchedElements::check_ropes() const {
+  for (int element : ropes_) {
+    if (const char* trouble = evaluator_.rope_trouble(element)) return undefined(element, trouble);
+  }
+  return {};
+}
+
+Report WatchedElements::undefined(int element, const char* why) const {
+  const Model& model = evaluator_.model();
+  Report report;
+  report.status = Status::singular;
+  report.message = fmt::format("{} \"{}\" is undefined at t = {:.12g} s: {}", model.element_type(element),
+                               model.element_name(element), evaluator_.time(), why);
   return report;
 }
 

@@ -1,5 +1,6 @@
 // Watches elements whose equations or forces are undefined at some configurations: contacts off their curve, gears
-// whose centres coincide, springs stretched beyond their table, laws of state that leave theirs.
+// whose centres coincide, springs stretched beyond their table, laws of state that leave theirs, ropes that leave their
+// pulleys.
 //
 // The place on a curve is found to 1e-9 of the curve (curve_search.hpp): a place further beyond the end than that is
 // off the curve.
@@ -22,6 +23,8 @@ class WatchedElements {
   Report check() const;
   /// The part of it about curves and tables that end.
   Report check_ends() const;
+  /// The part of it about ropes.
+  Report check_ropes() const;
   /// Whether any element could leave a curve.
   bool has_ends() const { return !ending_.empty(); }
   /// `singular`, naming the first force whose law of state has no value at the evaluator's configuration and time and
@@ -29,6 +32,8 @@ class WatchedElements {
   Report check_laws(std::span<const double> qd) const;
   /// Whether any law could leave a table.
   bool has_law_ends() const { return has_law_ends_; }
+  /// Whether any could leave a curve, a table or a pulley.
+  bool may_end() const { return has_ends() || has_law_ends_ || !ropes_.empty(); }
   /// The place of each of these on its curve at the evaluator's configuration: 0 and 1 are the ends; NaN where it does
   /// not use the curve.
   void find_places(std::vector<double>& out) const;
@@ -37,7 +42,9 @@ class WatchedElements {
 
  private:
   const Evaluator& evaluator_;
-  std::vector<int> elements_, ending_;
+  Report undefined(int element, const char* why) const;
+
+  std::vector<int> elements_, ending_, ropes_;
   bool has_law_ends_ = false;
 };
 

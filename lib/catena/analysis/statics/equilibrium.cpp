@@ -136,6 +136,7 @@ EquilibriumReport Equilibrium::solve() {
     evaluator_.set_configuration(q_);
     Report left = watched.check_ends();
     if (left.ok()) left = watched.check_laws({});
+    if (left.ok()) left = watched.check_ropes();
     if (!left.ok()) result.report = std::move(left);
   }
   if (result.report.ok()) {

@@ -56,12 +56,25 @@ void DesignMechanism::applied_forces(std::span<DesignScalar> Q) const {
     Q[at(3 * p)] = mass(3 * p) * model_->gravity.x;
     Q[at(3 * p + 1)] = mass(3 * p) * model_->gravity.y;
   }
+  const auto frame_in_ground = [&](int body) {
+    const int p = body < 0 ? plan_->bodies : plan_->plan_body[at(body)];
+    return detail::moved_by(motion_[at(p)], origin_[at(p)]);
+  };
   const auto twist = [&](int body) {
     const Frame<DesignSeries>& m = motion_[at(body)];
     return Twist<DesignScalar>{m.x.d, m.y.d, m.phi.d};
   };
   for_each_list(plan_->forces, model_->forces, [&](const auto& block, const auto& list, int) {
     using E = ElementOf<decltype(list)>;
+    std::vector<DesignScalar> tension;  // by element: what it shares with others
+    if constexpr (Sharing<E>) {
+      for (std::size_t head = 0; head < list.size(); head += at(list[head].element.pieces)) {
+        const DesignScalar slack = rope_slack<DesignScalar>(
+            list, static_cast<int>(head), [&](int body) { return detail::present(frame_in_ground(body)); });
+        const DesignScalar pull = slack < DesignScalar(0.0) ? -slack * list[head].element.k : DesignScalar(0.0);
+        tension.resize(head + at(list[head].element.pieces), pull);
+      }
+    }
     for (int e = 0; e < block.size(); ++e) {
       const auto& entry = list[at(block.entry[at(e)])];
       const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_,
@@ -70,7 +83,12 @@ void DesignMechanism::applied_forces(std::span<DesignScalar> Q) const {
       const int body_i = block.body_i[at(e)], body_j = E::bodies == 2 ? block.body_j[at(e)] : plan_->bodies;
       const Twist<DesignScalar> u = twist(body_i), v = twist(body_j);
       Wrench<DesignScalar> on_i, on_j;
-      entry.element.force(ForceArguments<DesignScalar>{f.i, f.j, u, v, values.data(), f.ground}, on_i, on_j);
+      if constexpr (Sharing<E>) {
+        const DesignScalar& pull = tension[at(block.entry[at(e)])];
+        if (value_of(pull) > 0) entry.element.pull(pull, f.i, f.j, on_i, on_j);
+      } else {
+        entry.element.force(ForceArguments<DesignScalar>{f.i, f.j, u, v, values.data(), f.ground}, on_i, on_j);
+      }
       const auto add = [&](int body, const Wrench<DesignScalar>& wrench) {
         Q[at(3 * body)] += wrench.fx;
         Q[at(3 * body + 1)] += wrench.fy;
@@ -89,8 +107,20 @@ Taylor<DesignScalar> DesignMechanism::potential() const {
     const Frame<DesignSeries> m = detail::moved_by(motion_[at(p)], origin_[at(p)]);
     sum -= DesignSeries(body.mass) * (DesignSeries(model_->gravity.x) * m.x + DesignSeries(model_->gravity.y) * m.y);
   }
+  const auto frame_in_ground = [&](int body) {
+    const int p = body < 0 ? plan_->bodies : plan_->plan_body[at(body)];
+    return detail::moved_by(motion_[at(p)], origin_[at(p)]);
+  };
   const Twist<DesignSeries> rest;
   for_each_list(plan_->forces, model_->forces, [&](const auto& block, const auto& list, int) {
+    if constexpr (Sharing<ElementOf<decltype(list)>>) {
+      for (std::size_t head = 0; head < list.size(); head += at(list[head].element.pieces)) {
+        const DesignSeries slack =
+            rope_slack<DesignSeries>(list, static_cast<int>(head), [&](int body) { return frame_in_ground(body); });
+        if (value_of(slack) < 0) sum += DesignSeries(DesignScalar(0.5) * list[head].element.k) * slack * slack;
+      }
+      return;
+    }
     for (int e = 0; e < block.size(); ++e) {
       const auto& entry = list[at(block.entry[at(e)])];
       const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_,

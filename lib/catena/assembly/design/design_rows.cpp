@@ -46,6 +46,12 @@ void DesignMechanism::rows(std::span<Taylor<DesignScalar>> out) const {
       const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_,
                                                          [&](int body) { return motion_[at(body)]; });
       DesignSeries* row = out.data() + block.row(e);
+      if constexpr (Joining<E>) {
+        DesignSeries part;
+        entry.element.phi(Arguments<DesignSeries>{f.i, f.j, {}, f.ground}, &part);
+        *row += part;
+        continue;
+      }
       entry.element.phi(Arguments<DesignSeries>{f.i, f.j, value_of_entry(entry, function_), f.ground}, row);
       if constexpr (HasSquaredValue<E>) row[0] *= DesignSeries(scale_[at(entry.id)]);
     }
@@ -104,6 +110,14 @@ Taylor<DesignScalar> DesignMechanism::measure(int element) const {
     const auto& entry = list[at(record.index)];
     if constexpr (requires { entry.element.measure(frame(entry.i), frame(entry.j)); }) {
       measured = entry.element.measure(frame(entry.i), frame(entry.j));
+    }
+    using E = ElementOf<decltype(list)>;
+    if constexpr (HasParts<E>) {
+      const auto& parts = std::get<std::vector<ElementEntry<typename E::Part, DesignScalar>>>(model_->constraints);
+      for (int k = 0; k < entry.element.parts; ++k) {
+        const auto& part = parts[at(entry.element.first_part + k)];
+        measured += part.element.measure(frame(part.i), frame(part.j));
+      }
     }
   });
   return measured;

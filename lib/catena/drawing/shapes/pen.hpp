@@ -55,6 +55,8 @@ class Pen {
   void spring(const Vec2<double>& s_i, const Vec2<double>& s_j, bool elastic, bool damped);
   void spiral_spring(const Vec2<double>& s_i, const Vec2<double>& s_j);
   void cable(const Vec2<double>& s_i, const Vec2<double>& s_j);
+  /// A stretch of a rope between two circles, or points where a radius is zero; the second one is drawn with it.
+  void rope(const Vec2<double>& s_i, double radius_i, const Vec2<double>& s_j, double radius_j);
   void bushing(const Vec2<double>& s_i, const Vec2<double>& s_j);
   void force(const Vec2<double>& s_i, bool in_body_axes);
   /// Ends of a slide at these distances along the axis; infinite ones are none.

@@ -108,6 +108,18 @@ void Pen::belt(const Vec2<double>& s_i, double radius_i, const Vec2<double>& s_j
       {{belt}});
 }
 
+// Centres and ends are drawn: where the tangents lie changes as the bodies move.
+void Pen::rope(const Vec2<double>& s_i, double radius_i, const Vec2<double>& s_j, double radius_j) {
+  builder_.attach(i_, s_i);
+  builder_.attach(j_, s_j);
+  span(s_i, s_j, bar_symbol(0, Role::cable));
+  if (i_ < 0 && radius_i == 0) point(ground, s_i, ground, {1, 0}, ground_pin_symbol());
+  if (j_ < 0) point(ground, s_j, ground, {1, 0}, ground_pin_symbol());
+  if (radius_j == 0) return;
+  builder_.add({.element = element_, .body_i = j_},
+               {{{.role = Role::gear, .points = {s_j}, .radius = std::abs(radius_j)}}});
+}
+
 void Pen::rack_and_pinion(const Vec2<double>& s_i, const Vec2<double>& axis_i, const Vec2<double>& s_j, double radius,
                           int side) {
   const int teeth = builder_.teeth_of(radius);

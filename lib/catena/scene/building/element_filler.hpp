@@ -94,7 +94,8 @@ class Filler {
     }
     entry_.element.*field.member = value;
   }
-  void set(const ColumnField&, std::uint32_t, int) {}  // resolved before
+  void set(const ColumnField&, std::uint32_t, int) {}   // resolved before
+  void set(const PulleysField&, std::uint32_t, int) {}  // taken when the rope is made
   template <class M>
   void set(const FlagField<M>& field, std::uint32_t at, int) {
     entry_.element.*field.member = number(at).number() != 0;
@@ -237,6 +238,7 @@ void fill(ModelBuilder<S>& builder, const ElementTemplate& source, const int* bo
     }
   }
   if (!good) return;
+  if constexpr (std::is_same_v<E, Rope<S>>) return builder.append_rope(source, entry);
   builder.append(source, entry, kind);
   if constexpr (HasDamping<E>) add_damping(model, entry);
 }

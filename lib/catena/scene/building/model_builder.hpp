@@ -54,6 +54,8 @@ class ModelBuilder {
   bool find_column(const ElementTemplate& source, ElementEntry<Stop<S>, S>& stop);
   /// The same of the joint that rubs, from its name.
   bool find_column(const ElementTemplate& source, ElementEntry<Friction<S>, S>& friction);
+  /// Adds the elements of a rope whose ends and numbers are in `entry`.
+  void append_rope(const ElementTemplate& source, const ElementEntry<Rope<S>, S>& entry);
   /// Adds an element that is complete, under its name.
   template <class E>
   void append(const ElementTemplate& source, const ElementEntry<E, S>& entry, ElementKind kind);
@@ -79,7 +81,7 @@ class ModelBuilder {
   /// Completes the laws of state, once everything else is there.
   void bind_laws();
   void report_used_name(const NameText& text, std::string_view name);
-  bool attach(const ElementTemplate& source, int end, const Vec2<S>* place, int& body, Vec2<S>& local);
+  bool attach(const AttachmentTemplate& attachment, const Vec2<S>* place, int& body, Vec2<S>& local);
   void report_missing_body(const NameText& text, std::string_view name);
 
   const SceneTemplate& scene_;

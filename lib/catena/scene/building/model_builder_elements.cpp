@@ -35,9 +35,8 @@ void ModelBuilder<S>::report_missing_body(const NameText& text, std::string_view
 }
 
 template <class S>
-bool ModelBuilder<S>::attach(const ElementTemplate& source, int end, const Vec2<S>* place, int& body, Vec2<S>& local) {
+bool ModelBuilder<S>::attach(const AttachmentTemplate& attachment, const Vec2<S>* place, int& body, Vec2<S>& local) {
   using Form = AttachmentTemplate::Form;
-  const AttachmentTemplate& attachment = source.attachment[end];
   body = ground;
   local = {};
   if (attachment.form == Form::absent) return true;
@@ -88,7 +87,7 @@ void ModelBuilder<S>::add_element(const ElementTemplate& source) {
   for (int end = 0; end < type.bodies; ++end) {
     const bool absent = source.attachment[end].form == AttachmentTemplate::Form::absent;
     if (absent && (end == 0 || !type.second_body_optional)) complete = false;  // reported by the reader
-    good = attach(source, end, source.has_at ? &place : nullptr, bodies[end], points[end]) && good;
+    good = attach(source.attachment[end], source.has_at ? &place : nullptr, bodies[end], points[end]) && good;
     if (!good || absent || source.attachment[end].form != AttachmentTemplate::Form::local) continue;
     for (const FieldDescription& field : type.fields) {
       if (field.kind == FieldKind::point && field.body == end)
@@ -101,7 +100,7 @@ void ModelBuilder<S>::add_element(const ElementTemplate& source) {
       report(source.offset, owner(source) + " acts on a body: \"i\" may not be the ground");
     return;
   }
-  if (type.bodies == 2 && bodies[0] == bodies[1]) {
+  if (type.bodies == 2 && bodies[0] == bodies[1] && !type.may_return()) {
     if (!known_wrong(source.offset)) {
       report(source.offset,
              fmt::format("{} ties {} to itself", owner(source),

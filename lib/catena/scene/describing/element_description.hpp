@@ -25,6 +25,7 @@ enum class FieldKind {
   choice,
   curve,
   table,
+  pulleys,
   function,
   function_pair
 };
@@ -59,6 +60,8 @@ struct ElementDescription {
 
   /// Whether its value may be a function of time in the list of drivers.
   bool can_be_driven() const { return !force && rows == 1 && functions == 1; }
+  /// Whether both of its ends may be on one body: what lies between them is.
+  bool may_return() const { return find("over") != nullptr; }
   const FieldDescription* find(std::string_view key) const;
 };
 
@@ -101,6 +104,7 @@ constexpr FieldKind kind_of(const BoundField<M>&) {
   return FieldKind::bound;
 }
 constexpr FieldKind kind_of(const ColumnField&) { return FieldKind::column; }
+constexpr FieldKind kind_of(const PulleysField&) { return FieldKind::pulleys; }
 template <class M>
 constexpr FieldKind kind_of(const FlagField<M>&) {
   return FieldKind::flag;

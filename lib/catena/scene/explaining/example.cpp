@@ -36,6 +36,8 @@ std::string value_of_field(const FieldDescription& field) {
       return R"({"circle": {"centre": [0, 0], "radius": 0.05}})";
     case FieldKind::table:
       return "[[0, 0], [0.1, 20]]";
+    case FieldKind::pulleys:
+      return R"([{"at": ["ground", [0.15, 0.3]], "radius": 0.05}])";
     case FieldKind::function_pair:
       return "[0, " + quantity(field.unit) + "]";
   }

@@ -73,6 +73,10 @@ std::string form(const FieldDescription& field, bool force) {
       return fmt::format(
           "pairs [{}, {}], or {{\"points\": pairs, \"beyond\": \"error\" (default), \"hold\" or \"line\"}}",
           si_unit(field.unit), si_unit(field.second_unit));
+    case FieldKind::pulleys:
+      return "a list of {\"at\": body point, \"radius\": m (default 0), \"side\": 1 where it lies on the left of the "
+             "rope from i to j, or -1 (default: where the way bends to), \"pulley\": \"slides\" (default) or "
+             "\"rolls\", \"mu\": 0}";
     case FieldKind::function:
       return fmt::format("{}, {}{}", unit_text(field.unit), force ? "" : "or ", varying);
     case FieldKind::function_pair:

@@ -54,6 +54,11 @@ json number_schema(json limits) {
   return {{"anyOf", json::array({plain, {{"type", "string"}, {"minLength", 1}}})}};
 }
 
+constexpr std::string_view side_of_pulley =
+    "1: it lies on the left of the rope as that runs from i to j, -1: on the right (default: where the way bends to)";
+constexpr std::string_view way_of_pulley =
+    "slides (default): the rope slides over it without friction; rolls: it turns the pulley's body";
+
 json field_schema(const FieldDescription& field) {
   switch (field.kind) {
     case FieldKind::point:
@@ -79,6 +84,19 @@ json field_schema(const FieldDescription& field) {
       return described(reference("curve"), field.doc);
     case FieldKind::table:
       return described(reference("table"), field.doc);
+    case FieldKind::pulleys: {
+      json pulley = object_of(
+          {{"at", described(reference("attachment"), "its centre")},
+           {"radius", number("radius (default 0: a point)", UnitKind::length, Domain::not_negative)},
+           {"side", {{"enum", {1, -1}}, {"description", side_of_pulley}}},
+           {"pulley", {{"enum", {"slides", "rolls"}}, {"description", way_of_pulley}}},
+           {"mu",
+            number("friction while the rope slides over it: 0 alone so far", UnitKind::none, Domain::not_negative)}},
+          {"at"});
+      json list = list_of(std::move(pulley));
+      list["minItems"] = 1;
+      return described(std::move(list), field.doc);
+    }
     case FieldKind::function:
       return described(reference("function"), in_unit(field.doc, field.unit));
     case FieldKind::function_pair:

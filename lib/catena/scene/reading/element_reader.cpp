@@ -13,8 +13,6 @@ namespace catena {
 namespace {
 
 constexpr std::size_t most_keys = 32;
-// Types that the format has, but this version does not know.
-constexpr std::array<std::string_view, 1> announced{"rope"};
 
 /// `revolute "A"`, or the type alone for an element without a name.
 std::string owner_text(std::string_view type, const JsonValue& name) {
@@ -53,11 +51,7 @@ const ElementDescription* read_type(const JsonValue& object, const JsonValue& ty
     if (near.best().empty()) {
       for (const ElementDescription& d : element_descriptions()) near.consider(d.type);
     }
-    const bool later = std::find(announced.begin(), announced.end(), text) != announced.end();
-    report(type,
-           later ? fmt::format("the type {} is not built yet", in_quotes(text))
-                 : fmt::format("unknown type {} in \"{}\"{}", in_quotes(text), list, near.hint()),
-           diagnostics);
+    report(type, fmt::format("unknown type {} in \"{}\"{}", in_quotes(text), list, near.hint()), diagnostics);
     return nullptr;
   }
   if (const std::string problem = wrong_list(*found, list); !problem.empty()) {
@@ -259,6 +253,9 @@ void SceneReading::element(const JsonValue& object, std::string_view list, Block
         break;
       case FieldKind::table:
         index(table(value, field.unit, field.second_unit, name_of_field));
+        break;
+      case FieldKind::pulleys:
+        index(pulleys(value, name_of_field));
         break;
       case FieldKind::function:
         function_at(slot, value);

@@ -77,6 +77,9 @@ class SceneReading {
   /// A list of pairs, or an object with it and what is beyond its ends: its number.
   int table(const JsonValue& value, UnitKind first, UnitKind second, const FieldName& field);
 
+  /// What a rope runs over: its number.
+  int pulleys(const JsonValue& value, const FieldName& field);
+
   void body(const JsonMember& member, BlockTemplate& block);
   void element(const JsonValue& object, std::string_view list, BlockTemplate& block);
   /// The member `key` of a scene or replicate block that holds bodies, elements or blocks.

@@ -65,6 +65,24 @@ struct TableTemplate {
   std::vector<NumberValue> numbers;
 };
 
+/// Where an element takes hold of a body.
+struct AttachmentTemplate {
+  enum class Form : unsigned char { absent, origin, point, local };
+  NameText body;
+  NameText point;  ///< of the form `point`
+  Form form = Form::absent;
+};
+
+/// One of the pulleys of a rope.
+struct PulleyTemplate {
+  AttachmentTemplate attachment;
+  NumberValue place[2];  ///< of an attachment `local`
+  NumberValue radius, mu;
+  int side = 0;  ///< 0: not given
+  bool rolls = false, has_radius = false, has_mu = false;
+  std::uint32_t offset = 0;
+};
+
 /// The optional numbers of a body, in the order in which they are stored; pairs take two.
 enum class BodyNumber : unsigned char {
   mass,
@@ -114,14 +132,6 @@ struct BodyTemplate {
   bool has(BodyNumber number) const { return (given >> static_cast<int>(number)) & 1; }
 };
 
-/// Where an element takes hold of a body.
-struct AttachmentTemplate {
-  enum class Form : unsigned char { absent, origin, point, local };
-  NameText body;
-  NameText point;  ///< of the form `point`
-  Form form = Form::absent;
-};
-
 struct ElementTemplate {
   NameText name;  ///< may be empty
   std::uint32_t offset = 0;
@@ -130,7 +140,7 @@ struct ElementTemplate {
   short type = 0;                  ///< in element_descriptions()
   std::uint32_t first_number = 0;  ///< first of its slots; after them, if has_at, the place
   std::uint32_t given = 0;         ///< bit k: field k is given
-  std::uint32_t indirect = 0;      ///< bit k: slot k holds the number of a function, curve or table
+  std::uint32_t indirect = 0;      ///< bit k: slot k holds the number of a function, curve, table or list of pulleys
   AttachmentTemplate attachment[2];
 };
 
@@ -182,6 +192,7 @@ struct SceneTemplate {
   std::vector<FunctionTemplate> functions;
   std::vector<CurveTemplate> curves;
   std::vector<TableTemplate> tables;
+  std::vector<std::vector<PulleyTemplate>> ropes;  ///< what each runs over
   std::vector<OwnColumnTemplate> own_columns;
   std::vector<StateLawTemplate> state_laws;
   OutputUnits::Wishes units;  ///< in which results are shown

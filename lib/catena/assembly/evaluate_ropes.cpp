@@ -1,0 +1,116 @@
+// Ropes: what the stretches of an elastic one share, and where ropes leave their pulleys.
+#include "catena/assembly/constraint_operations.hpp"
+#include "catena/assembly/evaluate.hpp"
+#include "catena/elements/all.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// Angles of contact are known to rounding; a rope that only touches its pulley has not left it. rad.
+constexpr double left = 1e-9;
+// Of a rope's length: one with less slack than this is taut.
+constexpr double taut = 1e-9;
+
+}  // namespace
+
+// s and g of every elastic rope at the present configuration.
+void Evaluator::stretch_ropes() {
+  using E = ElasticRope<double>;
+  const auto& block = std::get<ForceBlock<E>>(plan_->forces);
+  if (block.size() == 0) return;
+  const auto& list = std::get<std::vector<ElementEntry<E, double>>>(model_->forces);
+  auto& data = std::get<ForceData<E>>(force_values_);
+  for (std::size_t head = 0; head < list.size(); head += at(list[head].element.pieces)) {
+    const auto piece = [&](int n) { return at(place_[at(list[head + at(n)].id)]); };
+    const int pieces = list[head].element.pieces;
+    double stretch = -data.element[piece(0)].length;
+    for (int n = 0; n < pieces; ++n) {
+      E& element = data.element[piece(n)];
+      std::fill_n(element.g_i, 3, 0.0);
+      std::fill_n(element.g_j, 3, 0.0);
+    }
+    for (int n = 0; n < pieces; ++n) {
+      const std::size_t e = piece(n);
+      const E& span = data.element[e];
+      if (span.bridge) continue;
+      const Frame<double> i = detail::shifted(frames_[at(block.body_i[e])], data.shift[e].i),
+                          j = detail::shifted(frames_[at(block.body_j[e])], data.shift[e].j);
+      stretch += span.extent(i, j);
+      double entries[6];
+      span.gradient(PairGeometry(Arguments<double>{i, j, 0, {}}, span.s_i, span.s_j), entries);
+      const auto add = [&](int body, const double* part) {
+        for (int m = 0; m < pieces; ++m) {
+          const std::size_t of = piece(m);
+          if (block.body_i[of] == body) {
+            for (int k = 0; k < 3; ++k) data.element[of].g_i[k] += part[k];
+          }
+          if (block.body_j[of] == body) {
+            for (int k = 0; k < 3; ++k) data.element[of].g_j[k] += part[k];
+          }
+        }
+      };
+      add(block.body_i[e], entries);
+      add(block.body_j[e], entries + 3);
+    }
+    for (int n = 0; n < pieces; ++n) data.element[piece(n)].stretch = std::max(stretch, 0.0);
+  }
+}
+
+namespace {
+
+// Follows the stretches of a rope and compares their directions where they meet on a circle.
+class Wraps {
+ public:
+  template <class E>
+  void add(const E& span, const Frame<double>& i, const Frame<double>& j) {
+    const Vec2<double> h = separation(i, j, span.s_i, span.s_j);
+    exists_ = exists_ && span.exists(h);
+    const double theta = span.heading(span.line(h).along);
+    const double before = span.next_to.follows ? theta_ : span.next_to.before + i.phi;
+    look(span.radius_i, theta - before);
+    look(span.radius_j, span.next_to.after + j.phi - theta);
+    theta_ = theta;
+  }
+  const char* trouble(bool holds) const {
+    if (!exists_) return "an end or a pulley of it is inside the circle of the next pulley";
+    if (holds && leaves_)
+      return "it leaves a pulley, its angle of contact there has come to zero; end the analysis before, or leave the "
+             "pulley out";
+    return nullptr;
+  }
+
+ private:
+  // A comparison with NaN, where nothing meets, is false.
+  void look(double radius, double turn) { leaves_ = leaves_ || radius * turn < -left * std::abs(radius); }
+  double theta_ = 0;
+  bool exists_ = true, leaves_ = false;
+};
+
+}  // namespace
+
+const char* Evaluator::rope_trouble(int element) const {
+  const ElementRecord& record = model_->elements[at(element)];
+  const auto frame = [&](int body) { return ground_frame(body < 0 ? plan_->bodies : plan_->plan_body[at(body)]); };
+  Wraps wraps;
+  const auto follow = [&](const auto& list, int first, int count) {
+    for (int n = first; n < first + count; ++n) {
+      const auto& entry = list[at(n)];
+      if (!entry.element.bridge) wraps.add(entry.element, frame(entry.i), frame(entry.j));
+    }
+  };
+  if (record.kind == ElementKind::force) {
+    const auto& list = std::get<std::vector<ElementEntry<ElasticRope<double>, double>>>(model_->forces);
+    follow(list, record.index, list[at(record.index)].element.pieces);
+    return wraps.trouble(rope_slack<double>(list, record.index, frame) < 0);
+  }
+  const auto& head = std::get<std::vector<ElementEntry<Rope<double>, double>>>(model_->constraints)[at(record.index)];
+  wraps.add(head.element, frame(head.i), frame(head.j));
+  follow(std::get<std::vector<ElementEntry<RopePart<double>, double>>>(model_->constraints), head.element.first_part,
+         head.element.parts);
+  const bool may_hold = plan_->element_row[at(element)] >= 0;
+  return wraps.trouble(may_hold && measure(element, {}, {}).value < taut * head.element.length);
+}
+
+}  // namespace catena
