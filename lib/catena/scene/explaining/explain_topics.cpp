@@ -67,7 +67,7 @@ Example
   a number, or one of polynomial, harmonic, step, law, spline, sum, product (catena explain harmonic ...)
 )"},
       {{"tables"},
-       R"(tables: functions in the scene's expressions, cubic splines through points
+       R"--(tables: functions in the scene's expressions, cubic splines through points
   x, y     the points, x increasing; numbers that may depend on parameters, but not on tables
   points   in place of both: pairs [x, y], or two columns of a file (catena explain file)
   end      "natural" (default), "clamped" (zero end slopes) or "periodic"
@@ -78,7 +78,7 @@ Example
 Example
   "tables": {"gas": {"x": [0, 1.5, 3.14, 6.28], "y": [9e5, 2e5, 1e5, 1e5], "beyond": "hold"}}
   "torque": "=-0.1*gas(crank.angle)"
-)"},
+)--"},
       {{"state_law"},
        R"(state_law: the magnitude of a force as an expression over columns, parameters, tables and t
   Wherever point_force, torque, spring_damper and torsion_spring take a function of time. Columns that are known before

@@ -66,6 +66,7 @@ FunctionTemplate SceneReading::function_object(const JsonValue& value, const Exp
   };
   switch (result.kind) {
     case Kind::constant:
+    case Kind::state:  // no function of time: read before
       break;
     case Kind::polynomial: {
       if (!data.is(JsonKind::array) || data.size() == 0) {
