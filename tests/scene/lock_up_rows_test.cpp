@@ -28,7 +28,7 @@ LockUp lock_up_of(const TextRun& run) {
 }
 
 /// A particle on a circle of this radius, drawn to the right from x0 by `speed`: it locks at (radius - x0) / speed.
-std::string ball(const std::string& name, double radius, double x0, double speed) {
+std::string ball(const std::string& name, double radius, double x0) {
   return fmt::format(R"("{0}": {{"particle": true, "mass": 1, "position": [{1:.17g}, {2:.17g}]}})", name, x0,
                      std::sqrt(radius * radius - x0 * x0));
 }
@@ -42,7 +42,7 @@ std::string pull(const std::string& name, double x0, double speed) {
 }
 
 TextRun run_one(const std::string& analysis, double radius, double x0, double speed) {
-  return run_text(R"({"catena": 1, "gravity": [0, -9.81], "bodies": {)" + ball("a", radius, x0, speed) +
+  return run_text(R"({"catena": 1, "gravity": [0, -9.81], "bodies": {)" + ball("a", radius, x0) +
                   R"(}, "constraints": [)" + ring("a", radius) + R"(], "drivers": [)" + pull("a", x0, speed) +
                   R"(], "outputs": ["a.x", "a.y", "a.vy", "pull a.value"], "analyses": [)" + analysis + "]}");
 }
@@ -78,7 +78,7 @@ TEST(LockUpRows, StandAtTheInstantOfTheLockUp) {
 TEST(LockUpRows, AfterAnEvent) {
   for (const std::string type : {"kinematics"}) {
     const TextRun run =
-        run_text(R"({"catena": 1, "bodies": {)" + ball("a", 1, 0, 1) + R"(}, "constraints": [)" + ring("a", 1) +
+        run_text(R"({"catena": 1, "bodies": {)" + ball("a", 1, 0) + R"(}, "constraints": [)" + ring("a", 1) +
                  R"(], "drivers": [)" + pull("a", 0, 1) +
                  R"(, {"type": "absolute_x", "name": "fast", "i": "a", "value": {"polynomial": [-1, 3]}}],
       "outputs": ["a.x", "fast.value"],
