@@ -5,7 +5,7 @@
 //   ColumnSet, ResultStorage, RowSink       columns/, results/
 //   KinematicDerivatives, StaticDerivatives, MotionDerivatives    analysis/sensitivity/: of models over DesignScalar
 //   MeasureSet, optimise_design             analysis/measures/, analysis/design/
-//   Scene::load(path).run()                 scene/running/scene.hpp
+//   Scene::load(path).run()                 scene/loading/scene.hpp
 //   run_scene(path, options, sink)          scene/running/scene_runner.hpp
 //   RunRecorder, draw_record, plot_record   scene/viewing/: figures, plots and pages of a run
 //
@@ -25,7 +25,7 @@
 #include "catena/model/model_add.hpp"
 #include "catena/results/column_rows.hpp"
 #include "catena/results/result_storage.hpp"
-#include "catena/scene/running/scene.hpp"
+#include "catena/scene/loading/scene.hpp"
 #include "catena/scene/viewing/record_figure.hpp"
 #include "catena/scene/viewing/view_document.hpp"
 #include "catena/scene/viewing/viewer_page.hpp"

@@ -26,7 +26,7 @@ TEST(Equilibrium, BendsTheElasticaChain) {
   for (const auto& [name, reference] : references.items()) {
     if (!reference.contains("N")) continue;
     const int count = reference.at("N");
-    if (count > size_of_test(count, 100)) continue;
+    if (count > testing::size_of_test(count, 100)) continue;
     Equilibrium rods(testing::elastica_chain(count));
     const EquilibriumReport report = rods.solve();
     ASSERT_TRUE(report.ok()) << name << ": " << report.message;

@@ -97,7 +97,9 @@ TEST(DependentNumbers, HaveTheirPartInDerivatives) {
     EXPECT_NEAR(gradient(run, "size", 1), end / std::sqrt(3), 1e-9);
     EXPECT_NEAR(gradient(run, "least", 0), 0, 1e-12);
     EXPECT_NEAR(gradient(run, "start", 1), 1, 1e-12);
-    if (end > 0.6) EXPECT_NEAR(gradient(run, "top", 0), 0, 1e-9);
+    if (end > 0.6) {
+      EXPECT_NEAR(gradient(run, "top", 0), 0, 1e-9);
+    }
     EXPECT_NEAR(run.last("d(crank.angle)/d(T)"), 0, 1e-12);
     EXPECT_NEAR(run.last("d(crank.angle)/d(w)"), end, 1e-12);
   }

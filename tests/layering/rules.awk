@@ -9,7 +9,7 @@
 #
 #   analysis  run <- pose <- motion <- events <- {kinematics, contact <- dynamics};  pose <- balance <- spectrum <- statics <- stability
 #             run <- measures;  motion <- sensitivity;  minimiser <- {statics, design}
-#   scene     json <- numbers <- describing <- reading <- building <- models <- judging <- running <- designing <- viewing
+#   scene     json <- numbers <- describing <- reading <- building <- models <- judging <- running <- designing <- viewing <- loading
 #             <- explaining
 #   drawing   shapes <- figures
 #   results   . <- terminal
@@ -40,7 +40,7 @@ BEGIN {
   after("analysis", "measures", "run")
   after("analysis", "sensitivity", "run motion")
   after("analysis", "design", "minimiser")
-  chain("scene", "json numbers describing reading building models judging running designing viewing explaining")
+  chain("scene", "json numbers describing reading building models judging running designing viewing explaining loading")
   chain("drawing", "shapes figures")
   chain("linalg", "patterns kernels")
   after("linalg", "factorization", "patterns kernels")

@@ -132,7 +132,7 @@ TEST(ParameterTable, SetMayCloseACircle) {
 
 TEST(ParameterTable, CarriesDerivativesThroughDefinitions) {
   Table t("{\"b\": \"=a^2*c\", \"a\": 3, \"c\": \"=a + 1\", \"d\": \"=b\"}");
-  using D = Dual<double, 2>;
+  using D = Dual<double, 4>;
   const auto& names = t.table.names();
   const ParameterSeed<D> seeds[] = {{names.find("a"), D::variable(3, 0)}, {names.find("c"), D::variable(5, 1)}};
   const auto values = t.table.evaluate<D>(t.pool, t.diagnostics, seeds);

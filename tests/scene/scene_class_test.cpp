@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "catena/scene/running/scene.hpp"
+#include "catena/scene/loading/scene.hpp"
 
 namespace catena::testing {
 namespace {

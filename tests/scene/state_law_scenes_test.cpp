@@ -126,7 +126,8 @@ TEST(Tables, WrongOnesAreReportedWhereTheyStand) {
   expect_error(scene(R"--({"p": §[[0, 1], [1, 2]]})--", law), "table \"p\"");
   expect_error(scene("§[]", law), "\"tables\" must be an object");
   expect_error(scene(R"--({"p": {"x": [0, 1], "y": [1, 2]}})--", law, R"--("=2*§p")--"), "write p(...)");
-  expect_error(scene(R"--({"p": {"x": [0, 1], "y": [1, 2]}})--", law, R"--("=§q(crank.x)")--"), "did you mean \"p\"?");
+  expect_error(scene(R"--({"gas": {"x": [0, 1], "y": [1, 2]}})--", law, R"--("=§gsa(crank.x)")--"),
+               "did you mean \"gas\"?");
   expect_error(scene(R"--({"p": {"x": [0, 1], "y": [1, 2]}})--", law, R"--("=§p(crank.x, 2)")--"), "takes one value");
   const std::string table = R"--({"p": {"x": [0, 1], "y": [1, 2]}})--", crank = R"--("crank.angle")--";
   expect_error(scene(table, law, crank, R"--(, "a": "=1 + §p(3)")--"),
@@ -142,8 +143,8 @@ TEST(StateLaws, AlgebraicLoopsAreRefusedByTheirNames) {
   expect_error(scene(none, torque("=c*§crank.alpha")), "an algebraic loop: " + who + " -> crank.alpha -> " + who);
   expect_error(scene(none, torque("=§drive.load + 1")), "an algebraic loop: " + who + " -> drive.load -> " + who);
   expect_error(scene(none, torque("=§motor.torque")), "an algebraic loop: " + who + " -> motor.torque -> " + who);
-  std::string chain = scene(none, torque("=§s.force*crank.x"));
-  chain.replace(chain.find(R"--("force": 0)--"), 10, R"--("force": "=0.1*motor.torque")--");
+  std::string chain = scene(none, torque("=s.force*crank.x"));
+  chain.replace(chain.find(R"--("force": 0)--"), 10, R"--("force": "=0.1*§motor.torque")--");
   expect_error(chain, "\"force\" of spring_damper \"s\" -> motor.torque");
 }
 

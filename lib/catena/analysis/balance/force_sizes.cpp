@@ -11,6 +11,17 @@ namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
+/// |F| + sum |dF/dq| |q|: the terms of a law of state, which cancel where it holds a body by itself.
+double law_size(const Evaluator& evaluator, int law) {
+  double size = std::abs(evaluator.law_value(law, {}));
+  for (const int body : evaluator.laws()[at(law)].bodies) {
+    const std::array<double, 6> gradient = evaluator.law_gradient(law, body, {});
+    const Frame<double> place = evaluator.ground_frame(body);
+    size += std::abs(gradient[0] * place.x) + std::abs(gradient[1] * place.y) + std::abs(gradient[2] * place.phi);
+  }
+  return size;
+}
+
 }  // namespace
 
 ForceSizes force_sizes(const Evaluator& evaluator) {
@@ -39,7 +50,7 @@ ForceSizes force_sizes(const Evaluator& evaluator) {
       std::array<double, static_cast<std::size_t>(E::functions) + 1> f{};
       for (std::size_t k = 0; k < static_cast<std::size_t>(E::functions); ++k) {
         const auto& value = entry.values[k];
-        f[k] = value.law >= 0        ? evaluator.law_value(value.law, {})
+        f[k] = value.law >= 0        ? law_size(evaluator, value.law)
                : value.function >= 0 ? model.functions[at(value.function)].evaluate(evaluator.time()).f
                                      : value.constant;
       }

@@ -1,4 +1,4 @@
-#include "catena/scene/running/scene.hpp"
+#include "catena/scene/loading/scene.hpp"
 
 #include <fmt/format.h>
 
