@@ -1,5 +1,5 @@
-// Sizes of tests that dense algebra makes long: smaller ones in builds with sanitizers, in which it runs a hundred times
-// slower. The whole sizes run in every other build.
+// Sizes of tests that dense algebra makes long: smaller ones in builds with sanitizers, in which it runs a hundred
+// times slower. The whole sizes run in every other build.
 #pragma once
 
 namespace catena::testing {
