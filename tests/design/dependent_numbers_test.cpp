@@ -138,6 +138,31 @@ TEST(DependentNumbers, AMotionThatGoesOnFromAnotherHasNoDerivativeEither) {
   EXPECT_NEAR(search("slsqp", "initial").last("v"), 1.5, 1e-8);
 }
 
+// The run ends where the crank has turned by r, at r/w: what is measured up to there moves with w, by an instant that
+// is not differentiated.
+TEST(DependentNumbers, ARunThatAnEventEndsHasNoDerivativesOfTheWhole) {
+  const TextRun run = run_text(turning(R"--({"type": "sensitivity", "parameters": ["w"], "of": {"type": "kinematics",
+    "until": 1, "every": 0.1, "events": [{"when": "crank.angle", "value": 0.4, "action": "stop"}], "measures": {
+    "area": {"integral": "crank.angle"}, "most": {"max": "crank.angle"}, "start": {"first": "crank.omega"}}}})--"));
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  EXPECT_NEAR(value(run, "area"), 0.04, 1e-10);
+  EXPECT_TRUE(std::isnan(gradient(run, "area", 0)));
+  EXPECT_TRUE(std::isnan(gradient(run, "most", 0)));
+  EXPECT_TRUE(warns(run, "ended early"));
+  EXPECT_NEAR(gradient(run, "start", 0), 1, 1e-12);
+}
+
+// An analysis inside that starts from the scene does so: x = F t^2 / 2 from t = 0.
+TEST(DependentNumbers, SensitivityStartsWhereItsAnalysisSays) {
+  const TextRun run = run_text(R"({"catena": 1, "parameters": {"F": 3},
+  "bodies": {"b": {"mass": 1, "particle": true}}, "forces": [{"type": "point_force", "i": "b", "force": ["F", 0]}],
+  "outputs": ["b.x"], "analyses": [{"type": "dynamics", "until": 1}, {"type": "sensitivity", "parameters": ["F"],
+    "of": {"type": "dynamics", "from": "initial", "until": 2, "every": 1}}]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  EXPECT_EQ(run.first("t", 1), 0);
+  EXPECT_NEAR(run.last("d(b.x)/d(F)", 1), 2, 1e-9);
+}
+
 TEST(DependentNumbers, AreOptimisedWithoutDerivatives) {
   const auto search = [](const char* solver) {
     return run_text(turning(R"({"type": "optimise", "variables": {"T": {"min": 0.5, "max": 3}}, "solver": ")" +

@@ -379,5 +379,40 @@ TEST(Ropes, Derivatives) {
   EXPECT_LT(field<double>(run, "deviation"), 1e-5);
 }
 
+// A body that winds the rope up over a circle: m.y = -2 + 0.1 t, until the stretch has turned nearly half a turn; there
+// the run ends, before the length jumps by a whole turn's arc.
+TEST(Ropes, WoundFurtherThanIsFollowedEndTheRun) {
+  for (const char* stiffness : {"", R"(, "k": 1e5)"}) {
+    const TextRun run = run_text(std::string(R"({"catena": 1, "gravity": [0, -9.81], "bodies": {
+      "m": {"mass": 1, "particle": true, "position": [0.1, -2]}, "b": {"mass": 1, "inertia": 1, "points": {"p": [1, 0]}}},
+      "constraints": [{"type": "revolute", "i": "ground", "j": "b"}],
+      "drivers": [{"type": "absolute_angle", "i": "b", "value": {"polynomial": [0, 1]}}],
+      "forces": [{"type": "rope", "name": "A", "i": "b.p",
+                  "over": [{"at": ["ground", [0, 0]], "radius": 0.1, "side": -1}], "j": "m")") +
+                                 stiffness + R"(}], "outputs": ["m.y"],
+      "analyses": [{"type": "dynamics", "until": 8, "every": 0.25}]})");
+    EXPECT_EQ(run.analysis().report.status, Status::singular) << run.analysis().report.message;
+    EXPECT_NE(run.analysis().report.message.find("half a turn"), std::string::npos) << run.analysis().report.message;
+    EXPECT_LT(run.last("t"), 2.9);
+    EXPECT_NEAR(run.last("m.y"), -2 + 0.1 * run.last("t"), *stiffness ? 1e-3 : 1e-9);
+  }
+}
+
+TEST(Ropes, ElasticOnesAreNoInputOfLawsNorElementsOfPaths) {
+  const auto with = [](const std::string& force, const std::string& analysis) {
+    return run_text(R"({"catena": 1, "gravity": [0, -9.81], "parameters": {"F": 0}, "bodies": {
+      "a": {"mass": 3, "particle": true, "position": [-0.1, -1]}, "b": {"mass": 2, "particle": true, "position": [0.1, -1]}},
+      "forces": [{"type": "rope", "name": "A", "i": "a", "over": [{"at": ["ground", [0, 0]], "radius": 0.1}], "j": "b",
+                  "k": 500}, {"type": "point_force", "name": "F", "i": "a", "force": [0, )" +
+                    force + R"(]}], "analyses": [)" + analysis + "]}");
+  };
+  const TextRun law = with(R"("=-A.force")", R"({"type": "dynamics", "until": 0.5})");
+  EXPECT_EQ(law.outcome.exit_code, 3);
+  EXPECT_NE(law.outcome.error_text.find("a force cannot read A.force"), std::string::npos) << law.outcome.error_text;
+  const TextRun path = with(R"("F")", R"({"type": "path", "parameter": "F", "to": 3})");
+  EXPECT_EQ(path.analysis().report.status, Status::refused);
+  EXPECT_NE(path.analysis().report.message.find("leaves its pulleys"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace catena::testing

@@ -1,4 +1,6 @@
 // Ropes: what the stretches of an elastic one share, and where ropes leave their pulleys.
+#include <numbers>
+
 #include "catena/assembly/constraint_operations.hpp"
 #include "catena/assembly/evaluate.hpp"
 #include "catena/elements/all.hpp"
@@ -12,6 +14,9 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 constexpr double left = 1e-9;
 // Of a rope's length: one with less slack than this is taut.
 constexpr double taut = 1e-9;
+// From its given direction a stretch at a circle may turn so far, rad: beyond half a turn the arc that it winds would
+// be taken for one a whole turn shorter, and between two looks it turns by less than the rest, 0.3 rad.
+constexpr double most_turned = std::numbers::pi - 0.3;
 
 }  // namespace
 
@@ -69,12 +74,18 @@ class Wraps {
     exists_ = exists_ && span.exists(h);
     const double theta = span.heading(span.line(h).along);
     const double before = span.next_to.follows ? theta_ : span.next_to.before + i.phi;
+    const bool winds = span.radius_i != 0 || span.radius_j != 0;
+    turned_ = turned_ || (winds && std::abs(theta - span.angle) > most_turned);
     look(span.radius_i, theta - before);
     look(span.radius_j, span.next_to.after + j.phi - theta);
     theta_ = theta;
   }
   const char* trouble(bool holds) const {
     if (!exists_) return "an end or a pulley of it is inside the circle of the next pulley";
+    if (turned_)
+      return "a stretch of it at a pulley has turned nearly half a turn from its given direction: how far it winds is "
+             "not "
+             "followed beyond; end the analysis before, or give the rope from a later place";
     if (holds && leaves_)
       return "it leaves a pulley, its angle of contact there has come to zero; end the analysis before, or leave the "
              "pulley out";
@@ -85,7 +96,7 @@ class Wraps {
   // A comparison with NaN, where nothing meets, is false.
   void look(double radius, double turn) { leaves_ = leaves_ || radius * turn < -left * std::abs(radius); }
   double theta_ = 0;
-  bool exists_ = true, leaves_ = false;
+  bool exists_ = true, leaves_ = false, turned_ = false;
 };
 
 }  // namespace

@@ -143,7 +143,7 @@ class Binding {
                              "an algebraic loop: " + who + " -> " + name + " -> " + who +
                                  ": reactions and accelerations follow from all forces, this one among them",
                              {}});
-      } else if (!is_known_before(column.kind)) {
+      } else if (!is_known_before(column.kind) || is_of_rope(column)) {
         problems_.push_back({number,
                              name,
                              "a force cannot read " + name +
@@ -153,6 +153,11 @@ class Binding {
       }
       law.inputs.push_back(column);
     }
+  }
+
+  /// The force of an elastic rope is one of all its stretches, and is not looked up here.
+  bool is_of_rope(const Column& column) const {
+    return reads_spring(column.kind) && model_.element_type(column.index) == ElasticRope<double>::type;
   }
 
   /// Depth first through the springs whose forces are laws.

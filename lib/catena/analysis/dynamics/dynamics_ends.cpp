@@ -1,6 +1,7 @@
 // Dynamics where a curve or a table of an element ends, or a rope leaves a pulley: the run ends at that instant, with
 // the rows before it.
 #include <algorithm>
+#include <cmath>
 
 #include "catena/analysis/dynamics/dynamics.hpp"
 
@@ -10,6 +11,9 @@ namespace {
 // Places within a step that are checked, its end among them: a point that leaves a curve and returns within a quarter
 // of a step moves faster than the step's error allows.
 constexpr int samples = 4;
+// Bodies that are driven turn far in one step: between two places no further than this, rad; ropes are followed over
+// 0.3 (evaluate_ropes.cpp).
+constexpr double most_turn = 0.25;
 
 }  // namespace
 
@@ -31,9 +35,14 @@ Report Dynamics::check_curve_ends(double from, RowObserver& observer) {
     evaluator_.set_configuration(std::span<const double>(y_row_).first(q_.size()));
     return !check_ends_at(y_row_).ok();
   };
+  int places = samples;
+  const std::span<const double> qd = integrator_->state().subspan(q_.size(), q_.size());
+  double turn = 0;
+  for (std::size_t k = 2; k < qd.size(); k += 3) turn = std::max(turn, std::abs(qd[k]) * (t_ - from));
+  places = std::max(places, static_cast<int>(std::ceil(std::min(turn, 1e4) / most_turn)));
   double inside = from, outside = from;
-  for (int k = 1; k <= samples && outside == from; ++k) {
-    const double t = k == samples ? t_ : from + (t_ - from) * k / samples;
+  for (int k = 1; k <= places && outside == from; ++k) {
+    const double t = k == places ? t_ : from + (t_ - from) * k / places;
     (left_at(t) ? outside : inside) = t;
   }
   if (outside == from) return {};

@@ -162,6 +162,17 @@ void MeasureSet::Account::give_path(MeasureResult& result) const {
     result.trouble = "all its points are met exactly: a distance has a kink there";
 }
 
+// A run that an event ended did so at an instant that moves with the parameters, and with it all that is measured up to
+// there; what it had passed before stays.
+void MeasureSet::Account::leave_out_early_end(MeasureResult& result) const {
+  if (parameters_ == 0 || rows_ > 0 || !result.value || !last_ || last_->t == run_.last) return;
+  const auto is_at_end = [&](const Extreme& extreme) { return extreme.best().t >= last_->t; };
+  const bool by_extremes = std::any_of(extremes_.begin(), extremes_.end(), is_at_end);
+  if (!is_integral() && !by_extremes) return;
+  std::fill(result.gradient.begin(), result.gradient.end(), none);
+  if (result.trouble.empty()) result.trouble = "the run ended early, at an instant that changes with the parameters";
+}
+
 // The motion goes on over an instant later: integrals grow by what is there; extremes stay unless they are at the end.
 double MeasureSet::Account::by_last_instant(const MeasureResult& result) const {
   if (!result.value || !last_ || rows_ > 0) return none;
@@ -250,6 +261,7 @@ MeasureResult MeasureSet::Account::result(const ColumnInfo& column, bool gradien
     std::fill(result.gradient.begin(), result.gradient.end(), none);
     if (result.trouble.empty()) result.trouble = "the run ended before there was anything to measure";
   }
+  leave_out_early_end(result);
   result.by_last_instant = by_last_instant(result);
   return result;
 }

@@ -57,6 +57,7 @@ class MeasureSet::Account {
   };
   void prepare_path();
   double by_last_instant(const MeasureResult& result) const;
+  void leave_out_early_end(MeasureResult& result) const;
   double gradient_of(const MotionSample& sample, std::size_t column, std::size_t p) const {
     return sample.derivative.empty() ? std::numeric_limits<double>::quiet_NaN()
                                      : sample.derivative[column * parameters_ + p];

@@ -125,6 +125,7 @@ void run_sensitivity(AnalysisContext& context, AnalysisResult& result) {
   DesignRequest design{context.task.design_parameters, {}, context.task.word("mode") != 2};
   for (const int parameter : design.parameters)
     design.names.push_back(context.models->names().all()[static_cast<std::size_t>(parameter)]);
+  if (inner.from_initial) context.state = {};
   const SystemState start = context.state;
   const bool verify = context.task.number("verify", 0) != 0;
   KeptRows kept(&context.rows);

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "catena/columns/own_columns.hpp"
+#include "catena/elements/all.hpp"
 #include "catena/model/joint_damping.hpp"
 #include "catena/scene/building/build_model.hpp"
 #include "catena/scene/json/near_miss.hpp"
@@ -339,6 +340,16 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
     result.report.message = fmt::format(
         "{} \"{}\" is one-sided: {} does not treat such elements yet; equilibrium, dynamics and kinematics do",
         model_->element_type(gaps.front()), model_->element_name(gaps.front()), task.type());
+    return result;
+  }
+  // At its rows a path would have to see whether a rope leaves its pulleys.
+  const auto goes_far = [](const AnalysisTask& one) { return one.type() == "path" || one.type() == "buckling"; };
+  const bool far = task.of.empty() ? goes_far(task) : std::any_of(task.of.begin(), task.of.end(), goes_far);
+  if (const auto& ropes = std::get<std::vector<ElementEntry<ElasticRope<double>, double>>>(model_->forces);
+      far && !ropes.empty()) {
+    catena::refuse(result, fmt::format("rope \"{}\": path and buckling do not see yet where a rope leaves its pulleys; "
+                                       "equilibrium does",
+                                       model_->element_name(ropes.front().id)));
     return result;
   }
   const auto is_path = [](const AnalysisTask& earlier) { return earlier.type() == "path"; };
