@@ -19,7 +19,7 @@ TextRun rocker_driven(double rate, const json& analysis) {
   json scene = data_scene("crank_rocker");
   scene["drivers"][0]["i"] = "rocker";
   scene["drivers"][0]["value"]["polynomial"] = {start, rate};
-  scene["analyses"] = {analysis};
+  scene["analyses"] = json::array({analysis});
   scene["outputs"] = {"crank.angle", "crank.omega", "rocker.angle"};
   return run_text(scene.dump());
 }
