@@ -6,6 +6,7 @@
 #include "bindings.hpp"
 #include "catena/results/measure_gradient.hpp"
 #include "catena/results/status_word.hpp"
+#include "catena/results/stored_results.hpp"
 
 namespace catena::python {
 
@@ -29,18 +30,6 @@ SceneOutcome run_watched(const std::string& path, RunOptions options, ResultSink
 }
 
 namespace {
-
-/// Keeps the rows of every analysis.
-class StoringSink final : public ResultSink {
- public:
-  void begin_run(const RunHeader& header) override { parameters = header.parameters; }
-  RowSink& begin_analysis(std::string_view) override { return *rows.emplace_back(std::make_shared<ResultStorage>()); }
-  void end_analysis(const AnalysisResult&) override {}
-  void end_run() override {}
-
-  std::vector<std::pair<std::string, double>> parameters;
-  std::vector<std::shared_ptr<ResultStorage>> rows;
-};
 
 const double* first_value(const Analysis& analysis) {
   return analysis.rows->rows() > 0 ? analysis.rows->values().data() : nullptr;
@@ -141,7 +130,7 @@ struct Outcome {
 
 Outcome run(const std::string& path, const std::optional<std::string>& text, const Texts& set,
             const std::vector<std::string>& outputs, const std::string& only, int threads) {
-  StoringSink sink;
+  StoredResults sink;
   RunOptions options;
   options.text = text;
   options.set = set;

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/columns/own_columns.hpp"
 #include "catena/scene/building/build_model.hpp"
 #include "catena/scene/json/near_miss.hpp"
+#include "catena/scene/judging/scene_checks.hpp"
 #include "catena/scene/reading/analysis_task.hpp"
 #include "catena/scene/reading/scene_reader.hpp"
 #include "catena/scene/reading/scene_reading.hpp"
@@ -40,22 +40,10 @@ OpenScene::OpenScene(const std::string& path, const std::optional<std::string>& 
   if (list) names = read_outputs(list, *scene_, values, diagnostics);
   const Model built = build_model<double>(*scene_, values, {max_elements}, diagnostics);
   check(diagnostics);
-  std::vector<NamedColumn> found;
-  for (const PlacedName& placed : names) {
-    found.clear();
-    if (const std::optional<UnknownColumn> unknown = find_columns(built, placed.name, found)) {
-      report(placed.place,
-             "unknown column " + in_quotes(placed.name) + ": " + unknown->message +
-                 NearMiss(placed.name).consider_all(unknown->candidates).hint(),
-             diagnostics);
-    }
-    outputs_.push_back(placed.name);
-  }
-  OwnInputs inputs(built.own_columns.size());
-  for (std::size_t k = 0; k < inputs.size(); ++k) {
-    if (const std::optional<UnknownColumn> wrong = find_own_inputs(built, static_cast<int>(k), inputs))
-      report(scene_->own_columns[k].place, wrong->message, diagnostics);
-  }
+  SceneChecks checks(*scene_, built, diagnostics);
+  checks.check_columns(names);
+  checks.check_own_columns();
+  for (const PlacedName& placed : names) outputs_.push_back(placed.name);
   check(diagnostics);
   models_.emplace(*scene_, max_elements);
 }

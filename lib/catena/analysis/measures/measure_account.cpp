@@ -168,7 +168,7 @@ void MeasureSet::Account::leave_out_early_end(MeasureResult& result) const {
   if (parameters_ == 0 || rows_ > 0 || !result.value || !last_ || last_->t == run_.last) return;
   const auto is_at_end = [&](const Extreme& extreme) { return extreme.best().t >= last_->t; };
   const bool by_extremes = std::any_of(extremes_.begin(), extremes_.end(), is_at_end);
-  if (!is_integral() && !by_extremes) return;
+  if (request_.kind != MeasureKind::final && !is_integral() && !by_extremes) return;
   std::fill(result.gradient.begin(), result.gradient.end(), none);
   if (result.trouble.empty()) result.trouble = "the run ended early, at an instant that changes with the parameters";
 }
@@ -202,7 +202,7 @@ double MeasureSet::Account::by_last_instant(const MeasureResult& result) const {
   return none;
 }
 
-MeasureResult MeasureSet::Account::result(const ColumnInfo& column, bool gradient_at_last, bool looked) const {
+MeasureResult MeasureSet::Account::result(const ColumnInfo& column, bool looked) const {
   MeasureResult result;
   result.name = request_.name;
   result.unit = column.unit_text();
@@ -224,10 +224,6 @@ MeasureResult MeasureSet::Account::result(const ColumnInfo& column, bool gradien
       break;
     case MeasureKind::final:
       if (last_) give(result, *last_);
-      if (!gradient_at_last && parameters_ > 0) {
-        std::fill(result.gradient.begin(), result.gradient.end(), none);
-        result.trouble = "the run ended early, at an instant that changes with the parameters";
-      }
       break;
     case MeasureKind::at:
       if (instants_[0].sample)

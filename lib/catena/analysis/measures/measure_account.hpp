@@ -48,7 +48,7 @@ class MeasureSet::Account {
   void look_at_instants(const MotionSamples& samples, const MotionStretch& stretch);
   void add_row(const MotionSample& sample, bool only_rows);
   /// `looked`: the motion could be looked at everywhere between its rows.
-  MeasureResult result(const ColumnInfo& column, bool gradient_at_last, bool looked) const;
+  MeasureResult result(const ColumnInfo& column, bool looked) const;
 
  private:
   struct Instant {

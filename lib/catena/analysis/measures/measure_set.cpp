@@ -82,7 +82,6 @@ void MeasureSet::take_row(const Snapshot& snapshot, bool only_rows) {
   const bool first = !earliest_row_ || snapshot.t < *earliest_row_;
   if (first) earliest_row_ = snapshot.t;
   const MotionSample sample = samples_->take(snapshot, parameters_ > 0 && (last || first));
-  gradient_at_last_ = gradient_at_last_ || last;
   for (const auto& account : accounts_) account->add_row(sample, only_rows);
 }
 
@@ -92,8 +91,7 @@ std::vector<MeasureResult> MeasureSet::results() const {
     const auto& names = requests_[k].columns;
     const auto info = std::find_if(columns_->info().begin(), columns_->info().end(),
                                    [&](const ColumnInfo& column) { return column.name == names.front(); });
-    results.push_back(
-        accounts_[k]->result(info == columns_->info().end() ? ColumnInfo{} : *info, gradient_at_last_, looked_));
+    results.push_back(accounts_[k]->result(info == columns_->info().end() ? ColumnInfo{} : *info, looked_));
   }
   return results;
 }

@@ -54,8 +54,7 @@ class MeasureSet {
   int parameters_ = 0;
   std::optional<double> earliest_row_;
   bool wants_samples_ = false;  // some measure depends on what is between rows
-  bool gradient_at_last_ = false;
-  bool looked_ = true;  // whether every stretch could be looked at
+  bool looked_ = true;          // whether every stretch could be looked at
 };
 
 }  // namespace catena

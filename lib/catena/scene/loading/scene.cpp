@@ -5,22 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/results/stored_results.hpp"
 #include "catena/scene/json/near_miss.hpp"
 #include "catena/scene/json/source_text.hpp"
 
 namespace catena {
 namespace {
-
-/// Keeps the rows of every analysis.
-class KeepRows final : public ResultSink {
- public:
-  void begin_run(const RunHeader&) override {}
-  RowSink& begin_analysis(std::string_view) override { return *rows.emplace_back(std::make_shared<ResultStorage>()); }
-  void end_analysis(const AnalysisResult&) override {}
-  void end_run() override {}
-
-  std::vector<std::shared_ptr<ResultStorage>> rows;
-};
 
 template <class Names>
 std::out_of_range no_such(std::string_view what, std::string_view name, const Names& known) {
@@ -107,7 +97,7 @@ Scene& Scene::set(std::string_view name, std::string_view value) {
 SceneResults Scene::run(RunOptions options) const {
   options.text = text_;
   options.set.insert(options.set.begin(), set_.begin(), set_.end());
-  KeepRows sink;
+  StoredResults sink;
   SceneOutcome outcome = run_scene(path_, options, sink);
   if (outcome.exit_code >= 2) throw SceneError(outcome);
   std::vector<AnalysisOutcome> analyses;

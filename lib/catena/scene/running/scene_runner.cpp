@@ -6,11 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "catena/columns/own_columns.hpp"
-#include "catena/elements/all.hpp"
-#include "catena/model/joint_damping.hpp"
 #include "catena/scene/building/build_model.hpp"
-#include "catena/scene/json/near_miss.hpp"
+#include "catena/scene/judging/scene_checks.hpp"
 #include "catena/scene/models/command_text.hpp"
 #include "catena/scene/models/scene_models.hpp"
 #include "catena/scene/models/scene_saving.hpp"
@@ -31,14 +28,6 @@ std::string stem(const std::string& path) {
   return dot == std::string::npos || dot == 0 ? name : name.substr(0, dot);
 }
 
-/// For a "did you mean": names of at most some thousand elements.
-std::vector<std::string> element_names(const Model& model) {
-  std::vector<std::string> names;
-  for (int e = 0; e < static_cast<int>(std::min<std::size_t>(model.elements.size(), 2000)); ++e)
-    names.push_back(model.element_name(e));
-  return names;
-}
-
 void print_iteration(std::string_view method, int iteration, double residual, double change) {
   const std::string line = fmt::format("{} {}: residual {:.3g}, change {:.3g}\n", method, iteration, residual, change);
   std::fputs(line.c_str(), stderr);
@@ -57,12 +46,7 @@ class SceneRun {
   bool prepare(SourceText source);
   std::vector<std::string> asked_outputs() const;
   void read_tasks();
-  void check_columns(const std::vector<PlacedName>& names, const Model& model);
-  void check_own_columns();
   void check_task(const AnalysisTask& task);
-  void check_event(const EventRequest& event, const Model& model);
-  void check_impulse(const EventRequest::Impulse& impulse, const Model& model);
-  void check_measure(const PlacedMeasure& measure, const Model& model);
   std::shared_ptr<const Model> build(std::span<const double> parameters);
   void save();
   /// The task with the parameters that earlier paths left behind, unless it sets them itself.
@@ -92,135 +76,14 @@ std::shared_ptr<const Model> SceneRun::build(std::span<const double> parameters)
   return std::make_shared<Model>(build_model<double>(*scene_, parameters, {options_.max_elements}, diagnostics_));
 }
 
-// The names of columns are checked once the model is there; with errors before, half of it may be missing.
-void SceneRun::check_columns(const std::vector<PlacedName>& names, const Model& model) {
-  std::vector<NamedColumn> found;
-  for (const PlacedName& placed : names) {
-    found.clear();
-    const std::optional<UnknownColumn> unknown = find_columns(model, placed.name, found);
-    if (!unknown || diagnostics_.full() || diagnostics_.reported(placed.place.source(), placed.place.offset()))
-      continue;
-    diagnostics_.error(placed.place.source(), placed.place.offset(),
-                       fmt::format("unknown column {}: {}{}", in_quotes(placed.name), unknown->message,
-                                   NearMiss(placed.name).consider_all(unknown->candidates).hint()));
-  }
-}
-
-// Formulas name columns, and may do so in a circle.
-void SceneRun::check_own_columns() {
-  std::vector<NamedColumn> found;
-  const auto in_text = [](const JsonValue& text, std::size_t position) {
-    return text.source().offset_in_string(text.offset(), position + 1);  // one byte for the "=" before it
-  };
-  for (const OwnColumnTemplate& column : scene_->own_columns) {
-    if (model_->names.find(column.name) >= 0) {
-      report(column.place, fmt::format("the name {} is used twice: a body or element has it", in_quotes(column.name)),
-             diagnostics_);
-    }
-    for (const NamedInput& input : column.inputs) {
-      found.clear();
-      const std::optional<UnknownColumn> unknown = find_columns(*model_, input.name, found);
-      if (!unknown && found.size() == 1) continue;
-      // In a repeated block a place is reported once.
-      if (diagnostics_.reported(column.place.source(), in_text(column.place, input.position))) continue;
-      std::string message = unknown
-                                ? fmt::format("unknown column {}: {}{}", in_quotes(input.name), unknown->message,
-                                              NearMiss(input.name).consider_all(unknown->candidates).hint())
-                                : fmt::format("{} stands for {} columns; an expression wants one, such as {}",
-                                              in_quotes(input.name), found.size(), in_quotes(found.front().info.name));
-      if (unknown && input.name.find('.') == std::string::npos) {
-        const std::string hint = NearMiss(input.name).consider_all(parameters_.names().all()).hint();
-        message = fmt::format("there is no column or parameter {}{}", in_quotes(input.name),
-                              hint.empty() ? NearMiss(input.name).consider_all(unknown->candidates).hint() : hint);
-      }
-      diagnostics_.error(column.place.source(), in_text(column.place, input.position), std::move(message));
-    }
-  }
-  if (!diagnostics_.ok()) return;
-  OwnInputs inputs(model_->own_columns.size());
-  for (std::size_t k = 0; k < inputs.size(); ++k) {
-    const std::optional<UnknownColumn> circle = find_own_inputs(*model_, static_cast<int>(k), inputs);
-    if (!circle) continue;
-    report(scene_->own_columns[k].place, circle->message, diagnostics_);
-    return;
-  }
-}
-
 void SceneRun::check_task(const AnalysisTask& task) {
   std::shared_ptr<const Model> model = model_;
   if (task.changes_parameters) {
     model = build(task.parameters);
     if (!diagnostics_.ok()) return;
   }
-  check_columns(task.outputs, *model);
-  for (const EventRequest& event : task.events) check_event(event, *model);
-  for (const PlacedMeasure& measure : task.measures) check_measure(measure, *model);
+  SceneChecks(*scene_, *model, diagnostics_).check_task(task);
   for (const AnalysisTask& inner : task.of) check_task(inner);
-}
-
-void SceneRun::check_measure(const PlacedMeasure& measure, const Model& model) {
-  check_columns(measure.columns, model);
-  std::vector<NamedColumn> found;
-  for (const PlacedName& column : measure.columns) {
-    found.clear();
-    if (find_columns(model, column.name, found) || found.size() == 1) continue;
-    report(column.place,
-           fmt::format("a measure wants one column; {} stands for {} of them, such as {}", in_quotes(column.name),
-                       found.size(), in_quotes(found.front().info.name)),
-           diagnostics_);
-  }
-}
-
-void SceneRun::check_event(const EventRequest& event, const Model& model) {
-  // In a repeated block a place is reported once.
-  for (const JsonValue& place :
-       {event.place, event.element_place, event.impulse ? event.impulse->place : JsonValue()}) {
-    if (place && diagnostics_.reported(place.source(), place.offset())) return;
-  }
-  check_columns({{event.column, event.place}}, model);
-  std::vector<NamedColumn> found;
-  if (!find_columns(model, event.column, found) && found.size() > 1) {
-    report(event.place,
-           fmt::format("\"when\" of an event wants one column; {} stands for {} of them, such as {}",
-                       in_quotes(event.column), found.size(), in_quotes(found.front().info.name)),
-           diagnostics_);
-  }
-  if (event.impulse) check_impulse(*event.impulse, model);
-  if (event.element.empty()) return;
-  const int element = model.find_element(event.element);
-  if (element < 0) {
-    report(event.element_place,
-           fmt::format("there is no constraint {} to release or engage{}", in_quotes(event.element),
-                       NearMiss(event.element).consider_all(element_names(model)).hint()),
-           diagnostics_);
-  } else if (const ElementKind kind = model.elements[static_cast<std::size_t>(element)].kind;
-             kind == ElementKind::force || kind == ElementKind::gap) {
-    report(event.element_place,
-           fmt::format("{} is a force; only constraints and drivers are released or engaged", in_quotes(event.element)),
-           diagnostics_);
-  } else if (has_damping(model, element)) {
-    report(
-        event.element_place,
-        fmt::format("{} has damping \"c\", which would go on without it: a joint that is released or engaged may not "
-                    "have any; give the bodies a bushing instead",
-                    in_quotes(event.element)),
-        diagnostics_);
-  }
-}
-
-void SceneRun::check_impulse(const EventRequest::Impulse& impulse, const Model& model) {
-  const int body = model.find_body(impulse.body);
-  if (body < 0) {
-    NearMiss near(impulse.body);
-    for (const auto& known : model.bodies) near.consider(model.names[known.name]);
-    report(impulse.place,
-           body == ground ? std::string("an impulse acts on a body, not on the ground")
-                          : fmt::format("there is no body {} to strike{}", in_quotes(impulse.body), near.hint()),
-           diagnostics_);
-  } else if (!impulse.point.empty() && !model.find_point(body, impulse.point)) {
-    report(impulse.place, fmt::format("body {} has no point {}", in_quotes(impulse.body), in_quotes(impulse.point)),
-           diagnostics_);
-  }
 }
 
 // The outputs that the caller names: what analyses have by themselves is left to them, and a derivative stands for the
@@ -271,10 +134,11 @@ bool SceneRun::prepare(SourceText source) {
   const std::size_t errors = diagnostics_.count();
   model_ = build(values);
   if (scene_is_sound && diagnostics_.count() == errors) {
-    check_own_columns();
+    SceneChecks checks(*scene_, *model_, diagnostics_);
+    checks.check_own_columns();
     for (const AnalysisTask& task : tasks_) check_task(task);
     if (scene_->outputs && tasks_.empty())
-      check_columns(read_outputs(scene_->outputs, *scene_, values, diagnostics_), *model_);
+      checks.check_columns(read_outputs(scene_->outputs, *scene_, values, diagnostics_));
   }
   return diagnostics_.ok();
 }
@@ -345,11 +209,12 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
   // At its rows a path would have to see whether a rope leaves its pulleys.
   const auto goes_far = [](const AnalysisTask& one) { return one.type() == "path" || one.type() == "buckling"; };
   const bool far = task.of.empty() ? goes_far(task) : std::any_of(task.of.begin(), task.of.end(), goes_far);
-  if (const auto& ropes = std::get<std::vector<ElementEntry<ElasticRope<double>, double>>>(model_->forces);
-      far && !ropes.empty()) {
+  for (int e = 0; far && e < static_cast<int>(model_->elements.size()); ++e) {
+    if (model_->elements[static_cast<std::size_t>(e)].kind != ElementKind::force || model_->element_type(e) != "rope")
+      continue;
     catena::refuse(result, fmt::format("rope \"{}\": path and buckling do not see yet where a rope leaves its pulleys; "
                                        "equilibrium does",
-                                       model_->element_name(ropes.front().id)));
+                                       model_->element_name(e)));
     return result;
   }
   const auto is_path = [](const AnalysisTask& earlier) { return earlier.type() == "path"; };
