@@ -54,6 +54,28 @@ TEST(Measures, IntegralsAreOverTimeNotRows) {
   }
 }
 
+// Rows closer together than the motion asks for are not looked between one by one; what they alone show is not missed:
+// pulses as wide as a few rows, after hundreds of rows without a change.
+TEST(Measures, OfDenseRowsMissNoNarrowPulse) {
+  struct Pulse {
+    std::string of;
+    double area, exact;
+  };
+  const std::string u = "((crank.angle - 2.30037)/0.004)";
+  for (const Pulse& pulse : {Pulse{"=exp(-" + u + "^2)", 0.004 * std::sqrt(pi), 1e-12},
+                             Pulse{"=max(0, 1 - " + u + "^2)", 0.004 * 4 / 3, 1e-10}}) {
+    SCOPED_TRACE(pulse.of);
+    const TextRun run = run_text(crank(R"--({"area": {"integral": ")--" + pulse.of + R"--("}, "top": {"max": ")--" +
+                                           pulse.of + R"--("}, "arc": {"integral": "crank.to.x"}})--",
+                                       0.002));
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+    EXPECT_NEAR(value(run, "top"), 1, 1e-12);
+    EXPECT_NEAR(*measure(run, "top").t, 2.00037, 1e-10);
+    EXPECT_NEAR(value(run, "area"), pulse.area, pulse.exact);
+    EXPECT_NEAR(value(run, "arc"), std::sin(5.3) - std::sin(0.3), 1e-12);
+  }
+}
+
 TEST(Measures, PathsAreMeasuredFromGivenPoints) {
   const TextRun run = run_text(crank(R"({
     "near": {"path": ["crank.to.x", "crank.to.y"], "to": [[0, 1.5], [-2, 0]]},

@@ -25,6 +25,14 @@ void for_each_block(Blocks& blocks, Values& values, Lists& lists, F&& f) {
   });
 }
 
+// The same for those that have elements.
+template <class Blocks, class Values, class Lists, class F>
+void for_each_present_block(Blocks& blocks, Values& values, Lists& lists, F&& f) {
+  for_each_block(blocks, values, lists, [&](auto& block, auto& data, auto& list) {
+    if (block.size() > 0) f(block, data, list);
+  });
+}
+
 double extent(const Model& model) {
   if (model.bodies.empty()) return 0;
   Vec2<double> low = model.bodies.front().position, high = low;
@@ -313,9 +321,10 @@ void Evaluator::leave_out(std::span<const int> rows) {
 
 void Evaluator::phi(std::span<double> out) {
   ++counters.phis;
-  for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
-    ConstraintOperations<ElementOf<decltype(list)>>::phi(block, data, frames_.data(), out.data());
-  });
+  for_each_present_block(
+      plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
+        ConstraintOperations<ElementOf<decltype(list)>>::phi(block, data, frames_.data(), out.data());
+      });
   for (int r : left_out_) out[at(r)] = 0;
 }
 
@@ -334,25 +343,28 @@ void Evaluator::jacobian(std::span<double> values) {
       for (int slot : block.slot) values[at(slot)] = 0;
     }
   });
-  for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
-    ConstraintOperations<ElementOf<decltype(list)>>::jacobian(block, data, frames_.data(), values.data());
-  });
+  for_each_present_block(
+      plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
+        ConstraintOperations<ElementOf<decltype(list)>>::jacobian(block, data, frames_.data(), values.data());
+      });
   for (int k : left_out_slot_) values[at(k)] = 0;
 }
 
 void Evaluator::nu(std::span<double> out) {
   ++counters.nus;
   std::fill(out.begin(), out.end(), 0.0);
-  for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
-    ConstraintOperations<ElementOf<decltype(list)>>::nu(block, data, frames_.data(), out.data());
-  });
+  for_each_present_block(plan_->blocks, values_, model_->constraints,
+                         [&](const auto& block, auto& data, const auto& list) {
+                           ConstraintOperations<ElementOf<decltype(list)>>::nu(block, data, frames_.data(), out.data());
+                         });
 }
 
 void Evaluator::gamma(std::span<const double> qd, std::span<double> out) {
   ++counters.gammas;
-  for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
-    ConstraintOperations<ElementOf<decltype(list)>>::gamma(block, data, frames_.data(), qd.data(), out.data());
-  });
+  for_each_present_block(
+      plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
+        ConstraintOperations<ElementOf<decltype(list)>>::gamma(block, data, frames_.data(), qd.data(), out.data());
+      });
 }
 
 }  // namespace catena

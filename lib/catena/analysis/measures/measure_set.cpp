@@ -76,6 +76,8 @@ void MeasureSet::cover(const MotionStretch& stretch) {
   }) && looked_;
 }
 
+double MeasureSet::pace() const { return wants_samples_ ? samples_->pace() : 0; }
+
 void MeasureSet::take_row(const Snapshot& snapshot, bool only_rows) {
   if (empty()) return;
   const bool last = only_rows || snapshot.t == run_.last;
@@ -83,6 +85,7 @@ void MeasureSet::take_row(const Snapshot& snapshot, bool only_rows) {
   if (first) earliest_row_ = snapshot.t;
   const MotionSample sample = samples_->take(snapshot, parameters_ > 0 && (last || first));
   for (const auto& account : accounts_) account->add_row(sample, only_rows);
+  if (wants_samples_ && !only_rows) samples_->note_row(sample);
 }
 
 std::vector<MeasureResult> MeasureSet::results() const {

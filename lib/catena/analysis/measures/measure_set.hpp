@@ -38,6 +38,8 @@ class MeasureSet {
 
   /// A stretch of the motion, one after the other.
   void cover(const MotionStretch& stretch);
+  /// How long the next stretch may be where rows do not bound it, s.
+  double pace() const;
   /// A row; `only_rows`: there are no stretches.
   void take_row(const Snapshot& snapshot, bool only_rows);
 

@@ -22,11 +22,17 @@ constexpr std::array<std::size_t, 5> known = {0, 2, 4, 6, 8};
 constexpr std::array<std::size_t, 4> foretold = {1, 3, 5, 7};
 // See the header.
 constexpr double allowed_part = 1e-5;
-constexpr int deepest = 12;
-// From so many halvings on, enough for sixteen swings between two rows, a misfit that halving leaves as large in both
-// halves is taken for noise: that of a smooth column falls to 1/32, that of a kink stays in one half alone.
-constexpr int noise_depth = 4;
+constexpr double shortest_part = 0x1p-12;
+// From this part of the distance of rows on, enough for sixteen swings between two of them, a misfit that halving
+// leaves as large in both halves is taken for noise: that of a smooth column falls to 1/32, that of a kink stays in one
+// half alone.
+constexpr double noisy_part = 0x1p-4;
 constexpr double no_progress = 0.5;
+
+// What the polynomial of degree eight may miss rows by, and by how much more it and the quartic miss in a part of twice
+// the length, where half of what is allowed is left for bends yet to come.
+constexpr double allowed_row_part = 1e-9;
+constexpr double quartic_grows_by = 2 * 32, eighth_grows_by = 2 * 512;
 
 double place_of(std::size_t sample) { return sample == 0 ? -1 : sample == 8 ? 1 : places[sample - 1]; }
 
@@ -67,17 +73,44 @@ std::optional<MotionSample> MotionSamples::look(const MotionStretch& stretch, do
   return take(*snapshot, with_derivative);
 }
 
-double MotionSamples::misfit(const Part& part) const {
+MotionSamples::Misfit MotionSamples::misfit(const Part& part) const {
   static const auto weights = foretelling_weights();
   double largest = 0;
   for (std::size_t c = 0; c < size_.size(); ++c) {
     for (std::size_t f = 0; f < foretold.size() && size_[c] > 0; ++f) {
       double value = 0;
       for (std::size_t k = 0; k < known.size(); ++k) value += weights[f][k] * part[known[k]].value[c];
-      const double there = part[foretold[f]].value[c];
-      // Where a column ceases to be a number halving finds the border.
-      if (std::isfinite(value) != std::isfinite(there)) return std::numeric_limits<double>::infinity();
-      largest = std::max(largest, std::abs(value - there) / size_[c]);
+      largest = std::max(largest, miss(value, part[foretold[f]].value[c], c));
+    }
+  }
+  largest /= allowed_part;
+  const double rows = misfit_of_rows(part) / allowed_row_part;
+  return {std::max(largest, rows), std::max(quartic_grows_by * largest, eighth_grows_by * rows)};
+}
+
+double MotionSamples::miss(double foretold, double there, std::size_t column) const {
+  // Where a column ceases to be a number halving finds the border.
+  if (std::isfinite(foretold) != std::isfinite(there)) return std::numeric_limits<double>::infinity();
+  return std::isfinite(there) ? std::abs(foretold - there) / size_[column] : 0;
+}
+
+double MotionSamples::misfit_of_rows(const Part& part) const {
+  const double from = part.front().t, length = part.back().t - from;
+  double largest = 0;
+  for (const MotionSample& row : rows_) {
+    if (!(row.t > from && row.t < part.back().t)) continue;
+    const double x = 2 * (row.t - from) / length - 1;
+    std::array<double, nodes + 2> weight{};
+    for (std::size_t k = 0; k < weight.size(); ++k) {
+      weight[k] = 1;
+      for (std::size_t j = 0; j < weight.size(); ++j) {
+        if (j != k) weight[k] *= (x - place_of(j)) / (place_of(k) - place_of(j));
+      }
+    }
+    for (std::size_t c = 0; c < size_.size(); ++c) {
+      double value = 0;
+      for (std::size_t k = 0; k < weight.size(); ++k) value += weight[k] * part[k].value[c];
+      if (size_[c] > 0) largest = std::max(largest, miss(value, row.value[c], c));
     }
   }
   return largest;
@@ -92,38 +125,58 @@ bool MotionSamples::fill(const MotionStretch& stretch, const MotionSample& a, co
     if (!sample) return false;
     part[k + 1] = std::move(*sample);
   }
-  for (const MotionSample& sample : part) {
-    for (std::size_t c = 0; c < size_.size(); ++c) {
-      if (std::isfinite(sample.value[c])) size_[c] = std::max(size_[c], std::abs(sample.value[c]));
-    }
-  }
+  for (const MotionSample& sample : part) measure_sizes(sample);
   return true;
 }
 
-bool MotionSamples::cover_part(const MotionStretch& stretch, const Part& part, int depth,
+void MotionSamples::measure_sizes(const MotionSample& sample) {
+  for (std::size_t c = 0; c < size_.size(); ++c) {
+    if (std::isfinite(sample.value[c])) size_[c] = std::max(size_[c], std::abs(sample.value[c]));
+  }
+}
+
+void MotionSamples::note_row(MotionSample row) {
+  if (!(row.t > covered_to_)) return;
+  measure_sizes(row);
+  rows_.push_back(std::move(row));
+}
+
+bool MotionSamples::cover_part(const MotionStretch& stretch, const Part& part, double row_distance,
                                const std::function<void(const Part&, const MotionStretch&)>& use) {
-  const double off = misfit(part);
-  if (off <= allowed_part || depth == deepest) {
+  const Misfit off = misfit(part);
+  const double length = part.back().t - part.front().t;
+  if (off.here <= 1 || length <= shortest_part * row_distance) {
+    worst_if_twice_ = std::max(worst_if_twice_, off.if_twice);
+    least_ = std::min(least_, length);
     use(part, stretch);
     return true;
   }
   Part first, second;
   if (!fill(stretch, part.front(), part[4], first) || !fill(stretch, part[4], part.back(), second)) return false;
-  if (depth >= noise_depth && misfit(first) > no_progress * off && misfit(second) > no_progress * off) {
+  if (length <= noisy_part * row_distance && misfit(first).here > no_progress * off.here &&
+      misfit(second).here > no_progress * off.here) {
     use(first, stretch);
     use(second, stretch);
     return true;
   }
-  return cover_part(stretch, first, depth + 1, use) && cover_part(stretch, second, depth + 1, use);
+  return cover_part(stretch, first, row_distance, use) && cover_part(stretch, second, row_distance, use);
 }
 
 bool MotionSamples::cover(const MotionStretch& stretch,
                           const std::function<void(const Part&, const MotionStretch&)>& use) {
+  worst_if_twice_ = 0;
+  least_ = stretch.to - stretch.from;
   const std::optional<MotionSample> a = look(stretch, stretch.from, false);
   if (!a) return false;
   const std::optional<MotionSample> b = look(stretch, stretch.to, false);
   Part whole;
-  return b && fill(stretch, *a, *b, whole) && cover_part(stretch, whole, 0, use);
+  const auto inside = [&](const MotionSample& row) { return row.t > stretch.from && row.t < stretch.to; };
+  const double row_distance = least_ / static_cast<double>(1 + std::count_if(rows_.begin(), rows_.end(), inside));
+  const bool looked = b && fill(stretch, *a, *b, whole) && cover_part(stretch, whole, row_distance, use);
+  covered_to_ = stretch.to;
+  std::erase_if(rows_, [&](const MotionSample& row) { return row.t <= covered_to_; });
+  pace_ = worst_if_twice_ <= 1 ? 2 * least_ : least_;
+  return looked;
 }
 
 }  // namespace catena

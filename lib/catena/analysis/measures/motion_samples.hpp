@@ -3,12 +3,18 @@
 // A stretch [a, b] is looked at at its ends and at the seven nodes of the Gauss-Kronrod rule between them. The quartic
 // through five of these samples must foretell the other four to 1e-5 of the column's size; else the stretch is halved.
 // The quartic's error falls with the fifth power of the length, that of the rule of seven nodes with the eleventh or
-// twelfth: where the one is 1e-5 the other is about 1e-11 of the integral. Halving ends after twelve times, at kinks,
-// and earlier where it meets nothing but rounding. Source: R. Piessens et al., QUADPACK (1983), for the rule.
+// twelfth: where the one is 1e-5 the other is about 1e-11 of the integral. Halving ends at 1/4096 of the distance of
+// rows, at kinks, and earlier where it meets nothing but rounding. Source: R. Piessens et al., QUADPACK (1983), for the
+// rule.
+//
+// Where a motion can be looked at anywhere, rows need not bound the stretches: pace() says how long the next one may be
+// by what the last one showed. Columns at the rows in between are known, and the polynomial through all nine samples
+// must foretell them as well, to 1e-9 of the column's size.
 #pragma once
 
 #include <array>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -43,6 +49,10 @@ class MotionSamples {
     always_ = always;
   }
 
+  /// A row of the motion; it is kept if it lies beyond what is covered.
+  void note_row(MotionSample row);
+  /// Length of the next stretch for which one part is expected to do, s; 0 before the first one.
+  double pace() const { return pace_; }
   /// Calls use(part, stretch) for parts that cover the stretch; false where the motion could not be looked at.
   bool cover(const MotionStretch& stretch, const std::function<void(const Part&, const MotionStretch&)>& use);
   /// The columns at a snapshot, or at an instant of a stretch.
@@ -52,13 +62,25 @@ class MotionSamples {
  private:
   /// Takes the samples between a and b; false where the motion could not be looked at.
   bool fill(const MotionStretch& stretch, const MotionSample& a, const MotionSample& b, Part& part);
-  bool cover_part(const MotionStretch& stretch, const Part& part, int depth,
+  bool cover_part(const MotionStretch& stretch, const Part& part, double row_distance,
                   const std::function<void(const Part&, const MotionStretch&)>& use);
-  /// By how much the quartic misses the samples that it must foretell, in parts of the columns' sizes.
-  double misfit(const Part& part) const;
+  /// By how much the polynomials miss what they must foretell, in parts of what is allowed; and what to expect in a
+  /// part of twice the length.
+  struct Misfit {
+    double here, if_twice;
+  };
+  Misfit misfit(const Part& part) const;
+  /// By how much the polynomial through all samples misses the rows inside, in parts of the columns' sizes.
+  double misfit_of_rows(const Part& part) const;
+  double miss(double foretold, double there, std::size_t column) const;
+  void measure_sizes(const MotionSample& sample);
 
   const ColumnSet& columns_;
   std::vector<double> size_;
+  std::vector<MotionSample> rows_;  // beyond the last stretch
+  double pace_ = 0;
+  double worst_if_twice_ = 0, least_ = 0;  // misfit and length of the parts of this stretch
+  double covered_to_ = -std::numeric_limits<double>::infinity();
   int parameters_ = 0;
   DifferentiateColumns derivatives_;
   bool always_ = false;

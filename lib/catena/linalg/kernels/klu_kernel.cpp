@@ -7,6 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
+
+#include "catena/linalg/kernels/elimination_list.hpp"
 
 namespace catena {
 namespace {
@@ -38,15 +41,15 @@ FactorResult result_of(const klu_common& common) {
   return {FactorStatus::ok, -1};
 }
 
-/// Looks at a column of L below its unit diagonal. KLU keeps the columns of a block in one array of
+/// The largest magnitude of a column of L below its unit diagonal. KLU keeps the columns of a block in one array of
 /// doubles: `length` row indices, padded to whole doubles, then as many values.
-bool multipliers_within_limit(const double* block_factors, int start, int length) {
+double largest_of(const double* block_factors, int start, int length) {
   const std::size_t index_space =
       (static_cast<std::size_t>(length) * sizeof(int) + sizeof(double) - 1) / sizeof(double);
   const double* multiplier = block_factors + start + index_space;
-  bool within = true;
-  for (int k = 0; k < length; ++k) within &= std::abs(multiplier[k]) <= largest_multiplier;
-  return within;
+  double largest = 0;
+  for (int k = 0; k < length; ++k) largest = std::abs(multiplier[k]) <= largest ? largest : std::abs(multiplier[k]);
+  return largest;
 }
 
 /// Orders rows and columns of every diagonal block by AMD, as klu_analyze does, which klu_analyze_given leaves out.
@@ -89,6 +92,7 @@ struct KluKernel::Handles {
   std::vector<int> block_of_place;
   std::vector<double> row_scale, column_unit;  // 1 / R; D, empty: ones
   std::vector<double> entry_scale, scaled;     // per entry of the matrix
+  std::optional<EliminationList> list;         // factors in place of KLU's, where all blocks are small
   double least = 0, largest = 0;               // magnitudes of pivots, not finite if one is not
   double largest_at_first = 0;                 // where the pivots were chosen
 
@@ -104,7 +108,7 @@ struct KluKernel::Handles {
   Handles& operator=(const Handles&) = delete;
 
   std::size_t size() const { return static_cast<std::size_t>(symbolic->n); }
-  const double* pivots() const { return static_cast<const double*>(numeric->Udiag); }
+  const double* pivots() const { return list ? list->pivots().data() : static_cast<const double*>(numeric->Udiag); }
   void choose_scale(const SparsePattern& pattern, std::span<const double> values);
   double* scale(std::span<const double> values);
   std::int64_t measure_pivots();
@@ -179,8 +183,9 @@ bool KluKernel::Handles::column_suits(int place) const {
   if (!(std::abs(pivots()[place]) > 0)) return false;
   const int block = block_of_place[place];
   if (symbolic->R[block + 1] - symbolic->R[block] == 1) return true;  // no L below a single pivot
+  if (list) return list->largest_multiplier(place) <= largest_multiplier;
   const auto* factors = static_cast<const double*>(numeric->LUbx[block]);
-  return multipliers_within_limit(factors, numeric->Lip[place], numeric->Llen[place]);
+  return largest_of(factors, numeric->Lip[place], numeric->Llen[place]) <= largest_multiplier;
 }
 
 KluKernel::KluKernel() : handles_(std::make_unique<Handles>()) {}
@@ -204,6 +209,7 @@ FactorResult KluKernel::analyze(const SparsePattern& pattern, std::span<const in
 FactorResult KluKernel::factor(const SparsePattern& pattern, std::span<const double> values, double pivot_tolerance) {
   Handles& h = *handles_;
   klu_free_numeric(&h.numeric, &h.common);
+  h.list.reset();
   h.common.tol = pivot_tolerance;
   h.choose_scale(pattern, values);
   h.numeric = klu_factor(mutable_data(pattern.column_start), mutable_data(pattern.row_index), h.scale(values),
@@ -215,6 +221,10 @@ FactorResult KluKernel::factor(const SparsePattern& pattern, std::span<const dou
       return {FactorStatus::not_finite, h.symbolic->Q[k]};
     }
   }
+  if (EliminationList::serves(block_starts())) {
+    h.list.emplace(pattern, EliminationList::Order{pivot_rows(), column_order(), block_starts()}, h.entry_scale);
+    h.list->factor(values);
+  }
   h.measure_pivots();
   h.largest_at_first = std::max(h.largest, 1.0);
   return {};
@@ -222,6 +232,10 @@ FactorResult KluKernel::factor(const SparsePattern& pattern, std::span<const dou
 
 bool KluKernel::refactor(const SparsePattern& pattern, std::span<const double> values) {
   Handles& h = *handles_;
+  if (h.list) {
+    h.list->factor(values);
+    return h.pivots_suit();
+  }
   return klu_refactor(mutable_data(pattern.column_start), mutable_data(pattern.row_index), h.scale(values), h.symbolic,
                       h.numeric, &h.common) &&
          h.pivots_suit();
@@ -235,6 +249,11 @@ bool KluKernel::has_factors() const { return handles_->numeric != nullptr; }
 
 void KluKernel::solve(std::span<double> x) {
   Handles& h = *handles_;
+  if (h.list) {
+    for (std::size_t k = 0; k < x.size(); k += h.size())
+      h.list->solve(x.subspan(k, h.size()), h.row_scale, h.column_unit);
+    return;
+  }
   multiply(x, h.row_scale);
   klu_solve(h.symbolic, h.numeric, h.symbolic->n, static_cast<int>(x.size() / h.size()), x.data(), &h.common);
   multiply(x, h.column_unit);
@@ -242,6 +261,11 @@ void KluKernel::solve(std::span<double> x) {
 
 void KluKernel::solve_transposed(std::span<double> x) {
   Handles& h = *handles_;
+  if (h.list) {
+    for (std::size_t k = 0; k < x.size(); k += h.size())
+      h.list->solve_transposed(x.subspan(k, h.size()), h.row_scale, h.column_unit);
+    return;
+  }
   multiply(x, h.column_unit);
   klu_tsolve(h.symbolic, h.numeric, h.symbolic->n, static_cast<int>(x.size() / h.size()), x.data(), &h.common);
   multiply(x, h.row_scale);

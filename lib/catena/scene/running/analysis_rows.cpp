@@ -55,7 +55,8 @@ AnalysisRows::AnalysisRows(const ColumnSet& columns, AnalysisContext& context, c
       timed_(sources.timed),
       first_(run.first),
       last_(run.last),
-      covered_to_(run.first) {}
+      covered_to_(run.first),
+      reached_(run.first) {}
 
 void AnalysisRows::differentiate(std::unique_ptr<StateDerivatives> derivatives) {
   derivatives_ = std::move(derivatives);
@@ -126,8 +127,14 @@ void AnalysisRows::look_since_last_row(const Snapshot& snapshot) {
   if (!look_) look_ = make_look_(snapshot);
   // Rows may be listed in any order of their instants: every part of the motion counts once.
   if (!(snapshot.t > covered_to_)) return;
-  measures_.cover({covered_to_, snapshot.t, look_});
-  covered_to_ = snapshot.t;
+  reached_ = std::max(reached_, snapshot.t);
+  if (snapshot.t - covered_to_ >= measures_.pace() || snapshot.t == last_) look_at_what_is_left();
+}
+
+void AnalysisRows::look_at_what_is_left() {
+  if (!(reached_ > covered_to_)) return;
+  measures_.cover({covered_to_, reached_, look_});
+  covered_to_ = reached_;
 }
 
 std::string AnalysisRows::why_no_derivative() const {
@@ -160,6 +167,7 @@ bool AnalysisRows::observe(const Snapshot& snapshot) {
 }
 
 void AnalysisRows::finish(AnalysisResult& result) {
+  look_at_what_is_left();
   take_rows(result, std::move(info_), rows_);
   for (const std::string& note : columns_.notes()) result.report.warnings.push_back(note);
   for (MeasureResult& measure : measures_.results()) {

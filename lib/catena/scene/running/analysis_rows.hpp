@@ -62,7 +62,9 @@ class AnalysisRows final : public RowObserver {
  private:
   void tell(double t) const;
   void draw(const Snapshot& snapshot) const;
+  /// Between rows, in stretches of as many rows as the motion is smooth over.
   void look_since_last_row(const Snapshot& snapshot);
+  void look_at_what_is_left();
   /// Why a measure's derivative is missing.
   std::string why_no_derivative() const;
 
@@ -78,7 +80,8 @@ class AnalysisRows final : public RowObserver {
   std::vector<ColumnInfo> info_;
   std::vector<double> values_, row_gradients_;  // of one row, kept for their memory
   bool timed_, row_derivatives_ = false, rows_alone_ = false;
-  double first_, last_, covered_to_;     // covered_to_: how far measures have looked between rows
+  double first_, last_;
+  double covered_to_, reached_;          // how far measures have looked between rows, and rows have come
   std::int64_t rows_ = 0, missing_ = 0;  // missing_: rows without derivatives
 };
 
