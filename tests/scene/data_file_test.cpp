@@ -52,6 +52,60 @@ TEST(DataFiles, GiveListsOfNumbersAndPairs) {
   expect_as_written_out(R"({"spline": {"points": {"file": "lift.csv"}}})", "  0   0\n0.5\t0.02\n1 0.01\n");
 }
 
+// Rises by 1 mm a second with a zigzag of 0.1 mm on it: what may be moved by more than that is the line itself.
+TEST(DataFiles, AreSmoothedAsFarAsAsked) {
+  std::string file = "t,lift\n";
+  for (int k = 0; k <= 10; ++k)
+    file += std::to_string(k / 10.0) + "," + std::to_string(k / 10.0 + (k % 2 ? 0.1 : -0.1)) + "\n";
+  const auto lift = [&](const std::string& smooth) {
+    return run_with(R"({"spline": {"points": {"file": "lift.csv", "unit": ["s", "mm"], "smooth": )" + smooth + "}}}",
+                    file);
+  };
+  for (const std::string smooth : {"0.2", "\"0.0002 m\""}) {
+    const TextRun run = lift(smooth);
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+    // The line of least squares through a zigzag of eleven points lies 0.1/11 mm below the middle.
+    const std::vector<double> t{0.25, 0.6, 1};
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(run.column("b.x")[k], 1e-3 * (t[k] - 0.1 / 11), 1e-12);
+    ASSERT_FALSE(run.analysis().report.warnings.empty());
+    EXPECT_NE(run.analysis().report.warnings.front().find("smoothed by 9.9"), std::string::npos)
+        << run.analysis().report.warnings.front();
+  }
+  const double zigzag = lift("0").column("b.x")[1], less = lift("0.05").column("b.x")[1];
+  EXPECT_NEAR(zigzag, 0.5e-3, 1e-15);
+  EXPECT_GT(less, zigzag + 1e-5);
+  EXPECT_LT(less, 0.6e-3);
+  EXPECT_EQ(lift("-1").outcome.exit_code, 3);
+  EXPECT_NE(lift("\"3 s\"").outcome.error_text.find("\"smooth\" must be"), std::string::npos);
+  const TextRun list = run_with(
+      R"({"spline": {"t": [0, 1], "value": {"file": "lift.csv", "columns": [2], "smooth": 1}}})", "0,0\n1,1\n");
+  EXPECT_NE(list.outcome.error_text.find("give both columns of the file as \"points\""), std::string::npos)
+      << list.outcome.error_text;
+  const TextRun backwards = run_with(R"({"spline": {"points": {"file": "lift.csv", "smooth": 1}}})", "0,0\n2,1\n1,3\n");
+  EXPECT_NE(backwards.outcome.error_text.find("places that increase"), std::string::npos)
+      << backwards.outcome.error_text;
+}
+
+TEST(DataFiles, GivePointsOfAPath) {
+  TemporaryFolder folder;
+  std::ofstream(folder / "wanted.csv") << "x,y\n0,1500\n-2000,0\n";
+  const auto near = [&](const std::string& to) {
+    const std::string path = folder / "scene.json";
+    std::ofstream(path) << R"({"catena": 1, "bodies": {"crank": {"rod": {"from": [0, 0], "to": [1, 0]}}},
+      "constraints": [{"type": "revolute", "i": "ground", "j": "crank.from"}],
+      "drivers": [{"type": "absolute_angle", "i": "crank", "value": {"polynomial": [0, 1]}}],
+      "analyses": [{"type": "kinematics", "until": 5, "every": 1,
+        "measures": {"near": {"path": ["crank.to.x", "crank.to.y"], "to": )" +
+                               to + "}}}]}";
+    TextRun run;
+    run.outcome = run_scene(path, {}, run.sink);
+    EXPECT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+    return run.analysis().measures.front().value.value_or(std::nan(""));
+  };
+  EXPECT_NEAR(near(R"({"file": "wanted.csv", "unit": ["mm", "mm"]})"), std::sqrt((0.25 + 1) / 2), 1e-12);
+  EXPECT_NEAR(near(R"([[0, 1.5], ["-2 m", 0]])"), std::sqrt((0.25 + 1) / 2), 1e-12);
+}
+
 TEST(DataFiles, GiveCurvesAndSprings) {
   TemporaryFolder folder;
   std::ofstream(folder / "spring.csv") << "elongation,tension\n0,0\n10,5\n20,20\n";

@@ -162,9 +162,11 @@ Example
            lines, those that begin with #, and a first line of names are left out
   columns  numbers from 1, or names in the file's first line (default: the first ones)
   unit     of each column (default: SI and radians)
+  smooth   of measured pairs: the root mean square by which values may be moved to make the curve smoother, a quantity
+           or a number in the unit of the last column (default: 0); how far they were moved stands in the warnings
 
 Example
-  {"spline": {"points": {"file": "lift.csv", "columns": ["angle", "lift"], "unit": ["deg", "mm"]}, "end": "natural"}}
+  {"spline": {"points": {"file": "lift.csv", "columns": ["angle", "lift"], "unit": ["deg", "mm"], "smooth": 0.02}}}
 )"},
       {{"sum", "product"},
        R"(sum, product: functions of time made of others

@@ -25,14 +25,16 @@ std::string_view fixed_definitions() {
     "at": {"$ref": "#/$defs/number"}, "of": {"type": "string"}}},
   {"type": "object", "additionalProperties": false, "required": ["path", "to"], "properties": {
     "path": {"type": "array", "items": {"type": "string"}, "minItems": 2, "maxItems": 2},
-    "to": {"type": "array", "items": {"$ref": "#/$defs/pair"}, "minItems": 1}, "timed": {"type": "boolean"}}}
+    "to": {"$ref": "#/$defs/pairsOrFile"}, "timed": {"type": "boolean"}}}
 ], "description": "an extreme, value, mean or integral of a column or expression, a distance from a path, a field"},
 "outputs": {"type": "array", "items": {"type": "string"}},
 "file": {"type": "object", "additionalProperties": false, "required": ["file"], "properties": {
   "file": {"type": "string", "description": "a CSV file; its path is relative to the scene's folder"},
   "columns": {"type": "array", "items": {"type": ["integer", "string"]},
     "description": "numbers from 1, or names in the file's first line; by default the first ones"},
-  "unit": {"type": "array", "items": {"type": "string"}, "description": "of each column; by default SI and radians"}}},
+  "unit": {"type": "array", "items": {"type": "string"}, "description": "of each column; by default SI and radians"},
+  "smooth": {"type": ["number", "string"],
+    "description": "root mean square by which values may be moved to be smoother, in the unit of the last column"}}},
 "numbersOrFile": {"anyOf": [{"$ref": "#/$defs/numbers"}, {"$ref": "#/$defs/file"}]},
 "pairsOrFile": {"anyOf": [
   {"type": "array", "items": {"$ref": "#/$defs/pair"}}, {"$ref": "#/$defs/file"}]},

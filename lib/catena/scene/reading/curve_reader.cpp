@@ -2,7 +2,10 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
+#include <stdexcept>
 
+#include "catena/base/smoothing.hpp"
 #include "catena/scene/reading/data_file.hpp"
 #include "catena/scene/reading/scene_reading.hpp"
 
@@ -18,20 +21,28 @@ std::vector<NumberValue> SceneReading::number_list(const JsonValue& value, const
   if (!is_data_file(value)) return numbers.read_list(value, dimension, field);
   std::vector<NumberValue> result;
   const ExpectedDimension dimensions[] = {dimension};
-  for (const std::vector<double>& column : read_data_file(value, dimensions, field, scene, diagnostics)) {
+  const DataColumns columns = read_data_file(value, dimensions, field, scene, diagnostics);
+  if (columns.smooth > 0)
+    error(columns.smooth_place, fmt::format("{}: values are smoothed along their places: give both columns of the file "
+                                            "as \"points\"",
+                                            field.text()));
+  for (const std::vector<double>& column : columns.values) {
     for (const double number : column) result.push_back(NumberValue::constant(number, value.offset()));
   }
   return result;
 }
 
 std::vector<NumberValue> SceneReading::pair_list(const JsonValue& value, const ExpectedDimension& first,
-                                                 const ExpectedDimension& second, const FieldName& field) {
+                                                 const ExpectedDimension& second, const FieldName& field,
+                                                 const PairUse& use) {
   std::vector<NumberValue> result;
   if (is_data_file(value)) {
     const ExpectedDimension dimensions[] = {first, second};
-    const std::vector<std::vector<double>> columns = read_data_file(value, dimensions, field, scene, diagnostics);
-    for (std::size_t row = 0; !columns.empty() && row < columns[0].size(); ++row) {
-      for (std::size_t c = 0; c < 2; ++c) result.push_back(NumberValue::constant(columns[c][row], value.offset()));
+    DataColumns columns = read_data_file(value, dimensions, field, scene, diagnostics);
+    if (columns.smooth > 0 && !columns.empty()) smooth(columns, use, field);
+    for (std::size_t row = 0; !columns.empty() && row < columns.values[0].size(); ++row) {
+      for (std::size_t c = 0; c < 2; ++c)
+        result.push_back(NumberValue::constant(columns.values[c][row], value.offset()));
     }
     return result;
   }
@@ -51,6 +62,29 @@ std::vector<NumberValue> SceneReading::pair_list(const JsonValue& value, const E
     result.push_back(numbers.read(*element, second, field));
   }
   return result;
+}
+
+void SceneReading::smooth(DataColumns& columns, const PairUse& use, const FieldName& field) {
+  std::vector<double> knots = columns.values[0];
+  if (use.places) {
+    knots.assign(1, 0.0);
+    for (std::size_t k = 1; k < columns.values[0].size(); ++k) {
+      knots.push_back(knots.back() + std::hypot(columns.values[0][k] - columns.values[0][k - 1],
+                                                columns.values[1][k] - columns.values[1][k - 1]));
+    }
+  }
+  try {
+    const std::span<std::vector<double>> moved = std::span(columns.values).subspan(use.places ? 0 : 1);
+    const Smoothed smoothed = smooth_values(knots, moved, columns.smooth, use.repeats);
+    std::copy(smoothed.values.begin(), smoothed.values.end(), moved.begin());
+    scene.notes.push_back(fmt::format(
+        "{}: the values of {} are smoothed by {:.6g} (root mean square), at most {:.6g} in number {} of {}, "
+        "in SI",
+        field.text(), in_quotes(scene.data_files.back()->name()), smoothed.rms, smoothed.largest, smoothed.worst + 1,
+        knots.size()));
+  } catch (const std::invalid_argument& wrong) {
+    error(columns.smooth_place, fmt::format("{}: {}", field.text(), wrong.what()));
+  }
 }
 
 int SceneReading::curve(const JsonValue& value, const FieldName& field) {
@@ -92,11 +126,12 @@ int SceneReading::curve(const JsonValue& value, const FieldName& field) {
       result.numbers.push_back(numbers.read(v[1], metre, {names[1], owner}));
       break;
     case CurveTemplate::Kind::spline:
-      result.numbers = pair_list(v[0], metre, metre, {names[0], owner});
       if (v[1]) {
         static constexpr std::array<std::string_view, 2> words{"natural", "periodic"};
         if (read_word(v[1], words, {names[1], owner}, diagnostics) == 1) result.end = SplineEnd::periodic;
       }
+      result.numbers = pair_list(v[0], metre, metre, {names[0], owner},
+                                 {.places = true, .repeats = result.end == SplineEnd::periodic});
       result.beyond = beyond(v[2], result.end, owner);
       break;
     case CurveTemplate::Kind::polar: {
@@ -131,7 +166,7 @@ int SceneReading::table(const JsonValue& value, UnitKind first, UnitKind second,
     result.beyond = beyond(v[1], SplineEnd::natural, owner);
     pairs = v[0];
   }
-  if (pairs) result.numbers = pair_list(pairs, dimension_of(first), dimension_of(second), field);
+  if (pairs) result.numbers = pair_list(pairs, dimension_of(first), dimension_of(second), field, {});
   scene.tables.push_back(std::move(result));
   return static_cast<int>(scene.tables.size()) - 1;
 }

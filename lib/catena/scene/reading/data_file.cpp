@@ -14,7 +14,7 @@
 namespace catena {
 namespace {
 
-constexpr std::array<std::string_view, 3> keys{"file", "columns", "unit"};
+constexpr std::array<std::string_view, 4> keys{"file", "columns", "unit", "smooth"};
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
@@ -55,7 +55,7 @@ class DataFile {
   DataFile(const JsonValue& object, const FieldName& field, SceneTemplate& scene, Diagnostics& diagnostics)
       : object_(object), field_(field.text()), scene_(scene), diagnostics_(diagnostics) {}
 
-  std::vector<std::vector<double>> read(std::span<const ExpectedDimension> dimensions) {
+  DataColumns read(std::span<const ExpectedDimension> dimensions) {
     std::array<JsonValue, keys.size()> v;
     if (!read_members(object_, keys, field_, v, diagnostics_)) return {};
     if (!open(v[0])) return {};
@@ -64,10 +64,11 @@ class DataFile {
     const std::vector<std::size_t> places = find_columns(v[1], dimensions.size(), rows.front().size());
     const std::vector<double> factors = find_units(v[2], dimensions);
     if (places.empty() || factors.empty()) return {};
-    std::vector<std::vector<double>> columns(dimensions.size());
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      for (const std::vector<double>& row : rows) columns[c].push_back(factors[c] * row[places[c]]);
+    DataColumns columns{std::vector<std::vector<double>>(dimensions.size())};
+    for (std::size_t c = 0; c < columns.values.size(); ++c) {
+      for (const std::vector<double>& row : rows) columns.values[c].push_back(factors[c] * row[places[c]]);
     }
+    if (v[3]) read_smoothing(v[3], dimensions.back(), factors.back(), columns);
     return columns;
   }
 
@@ -186,6 +187,24 @@ class DataFile {
     return factors;
   }
 
+  void read_smoothing(const JsonValue& value, const ExpectedDimension& dimension, double unit, DataColumns& columns) {
+    const std::string wanted = fmt::format(
+        "{}: \"smooth\" must be the root mean square by which values may be moved, as a quantity or a number in the "
+        "unit of the last column, not negative",
+        field_);
+    columns.smooth_place = value;
+    if (value.is(JsonKind::number)) {
+      columns.smooth = unit * value.number();
+    } else if (value.is(JsonKind::string)) {
+      const Parsed<Quantity> quantity = parse_quantity(value.text());
+      if (!quantity || (dimension && !(quantity->dimension == *dimension))) return report(value, wanted, diagnostics_);
+      columns.smooth = quantity->value;
+    } else {
+      return report(value, wanted, diagnostics_);
+    }
+    if (!(columns.smooth >= 0)) report(value, wanted, diagnostics_);
+  }
+
   const JsonValue& object_;
   std::string field_;
   SceneTemplate& scene_;
@@ -197,9 +216,8 @@ class DataFile {
 
 bool is_data_file(const JsonValue& value) { return value.is(JsonKind::object) && value.find("file"); }
 
-std::vector<std::vector<double>> read_data_file(const JsonValue& object, std::span<const ExpectedDimension> dimensions,
-                                                const FieldName& field, SceneTemplate& scene,
-                                                Diagnostics& diagnostics) {
+DataColumns read_data_file(const JsonValue& object, std::span<const ExpectedDimension> dimensions,
+                           const FieldName& field, SceneTemplate& scene, Diagnostics& diagnostics) {
   return DataFile(object, field, scene, diagnostics).read(dimensions);
 }
 

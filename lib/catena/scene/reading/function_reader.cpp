@@ -118,10 +118,15 @@ FunctionTemplate SceneReading::function_object(const JsonValue& value, const Exp
       static constexpr std::array<std::string_view, 5> keys{"t", "value", "end", "beyond", "points"};
       std::array<JsonValue, keys.size()> v;
       if (!read_members(data, keys, owner, v, diagnostics)) break;
+      if (v[2]) {
+        if (const int word = read_word(v[2], end_words, {"end", owner}, diagnostics); word >= 0)
+          result.end = static_cast<SplineEnd>(word);
+      }
       std::array<std::vector<NumberValue>, 2> lists;
       if (v[4]) {
         if (v[0] || v[1]) error(v[4], fmt::format("{} has \"points\", or \"t\" and \"value\", not both", owner));
-        const std::vector<NumberValue> pairs = pair_list(v[4], second, unit, {keys[4], owner});
+        const std::vector<NumberValue> pairs =
+            pair_list(v[4], second, unit, {keys[4], owner}, {.repeats = result.end == SplineEnd::periodic});
         for (std::size_t k = 0; k < pairs.size(); ++k) lists[k % 2].push_back(pairs[k]);
       } else {
         for (std::size_t k = 0; k < 2; ++k) {
@@ -133,10 +138,6 @@ FunctionTemplate SceneReading::function_object(const JsonValue& value, const Exp
       if (v[0] && v[1] && !lists[0].empty() && !lists[1].empty() && lists[0].size() != lists[1].size()) {
         error(v[1], fmt::format("{}: {} times, but {} values", owner, lists[0].size(), lists[1].size()));
         result.numbers.clear();
-      }
-      if (v[2]) {
-        if (const int word = read_word(v[2], end_words, {"end", owner}, diagnostics); word >= 0)
-          result.end = static_cast<SplineEnd>(word);
       }
       result.beyond = beyond(v[3], result.end, owner);
       break;

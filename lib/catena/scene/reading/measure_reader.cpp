@@ -6,6 +6,7 @@
 #include "catena/scene/json/near_miss.hpp"
 #include "catena/scene/numbers/evaluation.hpp"
 #include "catena/scene/reading/analysis_reader.hpp"
+#include "catena/scene/reading/data_file.hpp"
 #include "catena/scene/reading/own_column_reader.hpp"
 
 namespace catena {
@@ -69,17 +70,19 @@ void AnalysisReader::read_path(const JsonValue& object, std::size_t number, Plac
     return;
   }
   for (const JsonValue& column : v[0].elements()) read_measured_column(column, measure);
-  if (!v[1] || !v[1].is(JsonKind::array) || v[1].size() == 0) {
-    error(v[1] ? v[1] : object, "a measure of a path needs \"to\", a list of points [x, y]");
+  if (!v[1] || !(is_data_file(v[1]) || (v[1].is(JsonKind::array) && v[1].size() > 0))) {
+    error(v[1] ? v[1] : object,
+          "a measure of a path needs \"to\", a list of points [x, y] or two columns of a {\"file\": ...}");
     return;
   }
   TaskNumber place{.place = TaskNumber::Place::path_point, .item = number};
-  for (const JsonValue& point : v[1].elements()) {
-    const auto pair = reading_.numbers.read_pair(point, ExpectedDimension(), {"to", "a measure of a path"});
+  const std::vector<NumberValue> coordinates =
+      reading_.pair_list(v[1], {}, {}, {"to", "a measure of a path"}, {.places = true});
+  for (std::size_t k = 0; k + 1 < coordinates.size(); k += 2) {
     Vec2<double>& read = measure.request.points.emplace_back();
-    read.x = evaluated(pair[0], object, place);
+    read.x = evaluated(coordinates[k], object, place);
     ++place.part;
-    read.y = evaluated(pair[1], object, place);
+    read.y = evaluated(coordinates[k + 1], object, place);
     ++place.part;
   }
   if (v[2]) measure.request.timed = read_flag(v[2], {"timed", "a measure of a path"}, diagnostics_);

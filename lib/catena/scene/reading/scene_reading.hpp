@@ -40,6 +40,8 @@ int read_word(const JsonValue& value, std::span<const std::string_view> words, c
 /// A text; empty, with a report, if it is none.
 std::string_view read_string(const JsonValue& value, const FieldName& field, Diagnostics& diagnostics);
 
+struct DataColumns;
+
 class SceneReading {
  public:
   SceneReading(SceneTemplate& the_scene, Diagnostics& all_diagnostics)
@@ -71,9 +73,13 @@ class SceneReading {
   /// A list of numbers, or a column of a file: their values.
   std::vector<NumberValue> number_list(const JsonValue& value, const ExpectedDimension& dimension,
                                        const FieldName& field);
+  /// What pairs are, to smooth measured ones: places of a curve, else values over their places; whether they repeat.
+  struct PairUse {
+    bool places = false, repeats = false;
+  };
   /// A list of pairs, or two columns of a file: the numbers of one pair after those of the other.
   std::vector<NumberValue> pair_list(const JsonValue& value, const ExpectedDimension& first,
-                                     const ExpectedDimension& second, const FieldName& field);
+                                     const ExpectedDimension& second, const FieldName& field, const PairUse& use);
   /// A list of pairs, or an object with it and what is beyond its ends: its number.
   int table(const JsonValue& value, UnitKind first, UnitKind second, const FieldName& field);
 
@@ -91,6 +97,8 @@ class SceneReading {
   NumberReader numbers;
 
  private:
+  /// Smooths columns of a file, and notes what is left between both.
+  void smooth(DataColumns& columns, const PairUse& use, const FieldName& field);
   FunctionTemplate function_object(const JsonValue& value, const ExpectedDimension& unit, const FieldName& field);
   FunctionTemplate function_part(const JsonValue& value, const ExpectedDimension& unit, const FieldName& field);
   void part(const JsonValue& object, std::string_view owner);

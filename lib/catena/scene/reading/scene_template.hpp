@@ -198,6 +198,7 @@ struct SceneTemplate {
   OutputUnits::Wishes units;  ///< in which results are shown
 
   std::vector<std::unique_ptr<SourceText>> data_files;  ///< that tables were read from
+  std::vector<std::string> notes;                       ///< what reports are to say of them
 
   JsonValue analyses, outputs;  ///< read by analysis_reader.hpp
   bool may_lack_parts = false;  ///< a key of the scene is none: what is in it is missing, and names in it are unknown

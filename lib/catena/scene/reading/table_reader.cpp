@@ -24,9 +24,14 @@ void SceneReading::table_functions(const JsonValue& object, std::span<const std:
     const std::string owner = "table " + in_quotes(table.name);
     std::array<JsonValue, table_keys.size()> v;
     if (!read_members(member.value, table_keys, owner, v, diagnostics)) continue;
+    if (v[3]) {
+      if (const int word = read_word(v[3], end_words, {"end", owner}, diagnostics); word >= 0)
+        table.end = static_cast<SplineEnd>(word);
+    }
     if (v[2]) {
       if (v[0] || v[1]) error(v[2], fmt::format("{} has \"points\", or \"x\" and \"y\", not both", owner));
-      const std::vector<NumberValue> pairs = pair_list(v[2], {}, {}, {table_keys[2], owner});
+      const std::vector<NumberValue> pairs =
+          pair_list(v[2], {}, {}, {table_keys[2], owner}, {.repeats = table.end == SplineEnd::periodic});
       for (std::size_t k = 0; k < pairs.size(); ++k) (k % 2 == 0 ? table.x : table.y).push_back(pairs[k]);
     } else {
       for (std::size_t k = 0; k < 2; ++k) {
@@ -35,10 +40,6 @@ void SceneReading::table_functions(const JsonValue& object, std::span<const std:
       }
       if (v[0] && v[1] && !table.x.empty() && !table.y.empty() && table.x.size() != table.y.size())
         error(v[1], fmt::format("{}: {} places x, but {} values y", owner, table.x.size(), table.y.size()));
-    }
-    if (v[3]) {
-      if (const int word = read_word(v[3], end_words, {"end", owner}, diagnostics); word >= 0)
-        table.end = static_cast<SplineEnd>(word);
     }
     table.beyond = beyond(v[4], table.end, owner);
   }

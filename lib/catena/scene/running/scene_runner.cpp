@@ -303,6 +303,8 @@ void SceneRun::run(ResultSink& sink) {
     }
     ColumnExtremes rows(sink.begin_analysis(task.type()));
     outcome_.analyses.push_back(run_task(task, static_cast<int>(k), state, rows));
+    std::vector<std::string>& warnings = outcome_.analyses.back().report.warnings;
+    if (k == first) warnings.insert(warnings.begin(), scene_->notes.begin(), scene_->notes.end());
     outcome_.analyses.back().extremes = rows.extremes();
     outcome_.analyses.back().extremes_have_time = rows.timed();
     sink.end_analysis(outcome_.analyses.back());
