@@ -54,7 +54,13 @@ TEST(LockUpRows, StandAtTheInstantOfTheLockUp) {
     const auto draw = [&](double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); };
     const double radius = draw(0.3, 3), x0 = radius * draw(-0.9, 0.9), speed = draw(0.2, 4);
     const double lock = (radius - x0) / speed;
-    const std::vector<std::string> analyses{R"("type": "kinematics")", R"("type": "inverse_dynamics")"};
+    const std::vector<std::string> analyses{R"("type": "kinematics")",
+                                            R"("type": "inverse_dynamics")",
+                                            R"("type": "dynamics")",
+                                            R"("type": "dynamics", "method": "rk5")",
+                                            R"("type": "dynamics", "method": "adams")",
+                                            R"("type": "dynamics", "method": "baumgarte")",
+                                            R"("type": "dynamics", "method": "partitioning")"};
     for (const std::string& analysis : analyses) {
       const TextRun run = run_one(
           fmt::format(R"({{{}, "until": {:.17g}, "every": {:.17g}}})", analysis, 2 * lock, draw(0.1, 0.9) * lock),
@@ -76,7 +82,7 @@ TEST(LockUpRows, StandAtTheInstantOfTheLockUp) {
 
 // In a phase that an event began, and with an event on the way.
 TEST(LockUpRows, AfterAnEvent) {
-  for (const std::string type : {"kinematics"}) {
+  for (const std::string type : {"kinematics", "dynamics"}) {
     const TextRun run =
         run_text(R"({"catena": 1, "bodies": {)" + ball("a", 1, 0) + R"(}, "constraints": [)" + ring("a", 1) +
                  R"(], "drivers": [)" + pull("a", 0, 1) +

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "catena/analysis/dynamics/dynamics.hpp"
 #include "catena/analysis/pose/dead_point.hpp"
@@ -23,28 +24,47 @@ constexpr double not_nothing = 1e-2;
 // How much longer than by its accelerations the way to the dead point may be.
 constexpr double longest_way = 10;
 
+// The combination w of rows that velocities grow with, at (t, q); empty where nu has no part in
+// one. S^-1 nu, S = Phi_q M^-1 Phi_q^T, is w but for terms of the square of the sine at which rows depend on each
+// other: columns that vanish there, where a coordinate alone becomes free, need no scale.
+std::vector<double> vanishing_combination(EquationsOfMotion& equations, double t, std::span<const double> q) {
+  const auto rows = static_cast<std::size_t>(equations.plan().rows);
+  std::vector<double> nu(rows), w(rows), none(q.size(), 0.0), velocities(none);
+  if (!equations.factorize(t, Side::after, q)) return {};
+  equations.evaluator().nu(nu);
+  equations.solve_motion(none, nu, velocities, w);
+  if (!(disagreement(equations.evaluator(), w, nu) > not_nothing)) return {};
+  double largest = 0;
+  for (const double weight : w) largest = std::max(largest, std::abs(weight));
+  for (double& weight : w) weight /= largest;
+  return w;
+}
+
 }  // namespace
 
 // Where no step can be made: the dead point ahead, if drivers ask for a motion that the constraints rule out,
 // w^T Phi_q = 0 but w^T nu != 0 (apps/manual/kinematics.md#singular-configurations).
 std::optional<SingularPoint> Dynamics::dead_point_ahead() {
-  if (plan_->rows == 0 || !(equations_.smallest_pivot_ratio() < nearly_dependent)) return {};
+  if (plan_->rows == 0) return {};
+  if (const double step = std::exchange(options_.step, 0); step > 0) {
+    // A step of fixed size fails far from the place: shorter ones lead on, no further than it was to go.
+    std::unique_ptr<Integrator> shorter = make_integrator(*motion_, grid_.last());
+    options_.step = step;
+    const double end = std::min({integrator_->time() + step, next_breakpoint(integrator_->time()), grid_.last()});
+    if (!shorter->start(integrator_->time(), integrator_->state())) return {};
+    while (shorter->time() < end && shorter->advance(end)) continue;
+    if (!(shorter->time() < end)) return {};
+    integrator_ = std::move(shorter);
+    t_ = integrator_->time();
+  }
+  if (!(equations_.smallest_pivot_ratio() < nearly_dependent)) return {};
   const std::size_t n = q_.size();
   const double t = integrator_->time();
   std::vector<double> q(integrator_->state().begin(), integrator_->state().begin() + static_cast<std::ptrdiff_t>(n));
   const std::span<const double> qd = integrator_->state().subspan(n, n);
-  evaluator_.set_time(t);
-  const std::vector<double> values = jacobian_values(evaluator_, q);
-  RankOptions options;
-  options.tolerance = nearly_dependent;
-  options.most_null_vectors = 0;
-  const RankReport rank = jacobian_rank(evaluator_, plan_->jacobian, values, options);
-  if (!rank.ok()) return {};
-  std::vector<double> nu(static_cast<std::size_t>(plan_->rows));
-  evaluator_.nu(nu);
-  const Opposed opposed = most_opposed(evaluator_, rank, nu);
-  if (!(opposed.part > not_nothing)) return {};
-  const double rest = time_to_dead_point(opposed.w, q);
+  const std::vector<double> w = vanishing_combination(equations_, t, q);
+  if (w.empty()) return {};
+  const double rest = time_to_dead_point(w, q);
   evaluator_.set_time(t + rest);
   std::optional<SingularPoint> point = find_dead_point(evaluator_, q, nearly_dependent);
   if (!point) return {};

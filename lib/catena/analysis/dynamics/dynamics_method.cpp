@@ -135,6 +135,10 @@ Report Dynamics::check_pace(double last) {
     pace_time_ = t_;
   }
   if (!used_up && !hopeless) return report;
+  if (std::optional<SingularPoint> point = dead_point_ahead()) {
+    singular_points_.push_back(std::move(*point));
+    return singular_points_.back().report_lock_up(*model_);
+  }
   // At a hopeless pace the steps are too small; otherwise the bound was reached.
   report.status = hopeless ? Status::step_too_small : Status::not_converged;
   std::string culprit;
