@@ -26,6 +26,10 @@ constexpr int most_rounds = 1000;
 // Of the terms that a multiplier is the sum of.
 constexpr double rounding = 1e-14;
 
+int sign(double x, double none) { return x > none ? 1 : x < -none ? -1 : 0; }
+
+}  // namespace
+
 double product(const Evaluator::ScalarMotion& of, std::span<const double> x) {
   double sum = 0;
   for (int k = 0; k < 3; ++k)
@@ -37,10 +41,6 @@ double product(const Evaluator::ScalarMotion& of, std::span<const double> x) {
   return sum;
 }
 
-int sign(double x, double none) { return x > none ? 1 : x < -none ? -1 : 0; }
-
-}  // namespace
-
 ContactSwitch::ContactSwitch(std::shared_ptr<const Model> model, const std::vector<ContactPoint>& points,
                              const PlanOptions& plan)
     : model_(std::move(model)),
@@ -50,6 +50,7 @@ ContactSwitch::ContactSwitch(std::shared_ptr<const Model> model, const std::vect
       redundant_(equations_),
       bounced_at_(points.size(), -std::numeric_limits<double>::infinity()),
       landing_(points.size(), std::numeric_limits<double>::quiet_NaN()),
+      left_at_(bounced_at_),
       gap_(points.size()),
       slide_(points.size()) {
   const auto coordinates = at(evaluator_.plan().coordinates());
@@ -61,6 +62,7 @@ ContactSwitch::ContactSwitch(std::shared_ptr<const Model> model, const std::vect
 void ContactSwitch::take_over(const ContactSwitch& earlier) {
   know_speed(earlier.speed_);
   bounced_at_ = earlier.bounced_at_;
+  left_at_ = earlier.left_at_;
 }
 
 Report ContactSwitch::prepare(std::span<const double> q) {
@@ -143,6 +145,8 @@ void ContactSwitch::fill(ContactProblem& problem) const {
       if (problem.place[a].has_normal) problem.D(2 * a, c) = product(gap_[active_[a]], change_[c]);
       if (point.has_friction()) problem.D(2 * a + 1, c) = product(slide_[active_[a]], change_[c]);
     }
+    if (!problem.place[a].has_normal || gives_way(a, problem.D(2 * a, 2 * a))) continue;
+    for (std::size_t c = 0; c < 2 * active_.size(); ++c) problem.D(2 * a, c) = problem.D(c, 2 * a) = 0;
   }
 }
 
@@ -221,12 +225,13 @@ Report ContactSwitch::collide(double t, std::span<double> qd, std::vector<Contac
   for (int attempt = 0;; ++attempt) {
     std::copy(before.begin(), before.end(), qd.begin());
     p_ = p_before;
-    if (!apply(part, qd, work)) return wedged(t);
+    if (!apply(part, qd, work)) return is_jammed(false) ? blocked(t, hit) : wedged(t);
     if (work <= energy_rounding * energy || part == 0) break;
     // Halved at first, then none: without restitution impulses never do work.
     part = attempt < 40 ? part / 2 : 0;
   }
   look(qd);
+  if (std::any_of(hit.begin(), hit.end(), [&](std::size_t k) { return hits(k); })) return blocked(t, hit);
   for (const std::size_t k : hit) {
     events_.push_back({points_[k].element, "impact", t});
     const double rebound = gap_[k].rate;
@@ -302,12 +307,14 @@ Report ContactSwitch::choose(double t, std::span<const double> q, std::span<cons
   if (!find_free_accelerations(t, q, qd, loads))
     return failure(t, loads.trouble().empty() ? "accelerations are not finite" : loads.trouble());
   const auto leaves = [&](std::size_t k) {
-    return points_[k].kind == ContactKind::rigid && gap_[k].rate > part_of_speed(k, no_speed);
+    return points_[k].kind == ContactKind::rigid && !returns(t, k, cause) && gap_[k].rate > part_of_speed(k, no_speed);
   };
-  for (const std::size_t k : active_) {
-    if (leaves(k)) states[k] = {};
-  }
-  std::erase_if(active_, leaves);
+  std::erase_if(active_, [&](std::size_t k) {
+    if (!leaves(k)) return false;
+    states[k] = {};
+    left_at_[k] = t;
+    return true;
+  });
   if (cause.opens) {
     states[static_cast<std::size_t>(cause.place)] = {};
     std::erase(active_, static_cast<std::size_t>(cause.place));
@@ -326,7 +333,11 @@ Report ContactSwitch::choose(double t, std::span<const double> q, std::span<cons
       if (static_cast<int>(k) == cause.place && cause.rests) place.slip = cause.leaves;
     }
   }
-  if (Report pressed = press_joints(t, qd, loads, problem); !pressed.ok()) return pressed;
+  if (Report pressed = press_joints(t, qd, loads, problem); !pressed.ok()) {
+    return is_jammed(true) ? blocked(t, active_) : pressed;
+  }
+  if (const std::vector<std::size_t> pushed = pushed_through(t, problem, cause); !pushed.empty())
+    return blocked(t, pushed);
   for (std::size_t a = 0; a < active_.size(); ++a) {
     const std::size_t k = active_[a];
     const bool joint = points_[k].kind != ContactKind::rigid;

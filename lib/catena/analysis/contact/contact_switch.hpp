@@ -12,6 +12,9 @@
 // slides: what the bodies gain is then the work of drivers. Where impacts with friction of several places would do some
 // (Kane's example), the restitution of all is reduced until they do not.
 //
+// Where drivers move on against closed places no impulse stops them: D_nn = 0, or w_n >= 0 has no solution even without
+// friction. The motion ends there, in a lock-up.
+//
 // A place that would bounce slower than its rest speed, or with e = 0, stays closed; had it bounced before, the instant
 // of its landing is when ever smaller bounces would have ended: t + T e / (1 - e), T the time since the last bounce.
 // Units as in contact_points.hpp.
@@ -19,6 +22,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,9 +34,13 @@
 #include "catena/analysis/motion/equations_of_motion.hpp"
 #include "catena/analysis/motion/impulses.hpp"
 #include "catena/analysis/motion/redundant_rows.hpp"
+#include "catena/analysis/pose/singular_point.hpp"
 #include "catena/base/status.hpp"
 
 namespace catena {
+
+/// The gradient of a gap or slide times x, by coordinate.
+double product(const Evaluator::ScalarMotion& of, std::span<const double> x);
 
 /// A change of a contact.
 struct ContactEvent {
@@ -73,6 +81,8 @@ class ContactSwitch {
   /// What constraints exerted at the last decision, where it was about a strike or a jolt: collisions that followed at
   /// once included.
   std::vector<ConstraintImpulse> take_impulses() { return std::move(impulses_); }
+  /// Where drivers ask for a motion that closed places rule out, once decide() has said so.
+  const std::optional<SingularPoint>& blocked() const { return blocked_; }
   /// What happened since this was called last.
   std::vector<ContactEvent> take_events() { return std::move(events_); }
 
@@ -95,6 +105,12 @@ class ContactSwitch {
   double kinetic_energy(std::span<const double> qd) const;
   Report failure(double t, const std::string& why) const;
   Report wedged(double t) const;
+  // Drivers that move on against closed places: contact_jam.cpp.
+  bool gives_way(std::size_t a, double response) const;
+  bool is_jammed(bool accelerates) const;
+  bool returns(double t, std::size_t k, const Cause& cause) const;
+  std::vector<std::size_t> pushed_through(double t, const ContactProblem& problem, const Cause& cause);
+  Report blocked(double t, std::span<const std::size_t> places);
 
   std::shared_ptr<const Model> model_;
   const std::vector<ContactPoint>& points_;
@@ -107,6 +123,8 @@ class ContactSwitch {
   double speed_ = 0;                // largest of the motion so far, m/s or rad/s times the length scale
   std::vector<double> bounced_at_;  // by point: when it hit and came back last
   std::vector<double> landing_;     // by point: instant of the `contact` event under way, or NaN
+  std::vector<double> left_at_;     // by point: when it was last let go, by its speed or by drivers
+  std::optional<SingularPoint> blocked_;
   std::vector<Evaluator::ScalarMotion> gap_, slide_;
   // Of the touching places, two each: what a unit force across and along makes of accelerations and multipliers.
   std::vector<std::size_t> active_;

@@ -44,6 +44,8 @@ class ContactPhases {
   Report change(int transition, SystemState& state);
   /// Why friction could not be found at the last evaluation, or nothing.
   std::string trouble() const { return loads_ ? loads_->trouble() : std::string(); }
+  /// Where drivers moved on against closed places, if that is why the last phase could not be found.
+  const std::optional<SingularPoint>& blocked() const { return switch_->blocked(); }
   const std::vector<ContactEvent>& events() const { return events_; }
 
  private:

@@ -219,6 +219,17 @@ Report DynamicsWithEvents::act(bool sum_up_work, const Event*& stop) {
   return {};
 }
 
+// Drivers moved on against closed contacts: the last row is that place, with the rates before.
+void DynamicsWithEvents::end_in_lock_up(const Needs& needs, RowObserver& rows) {
+  if (!contacts_.any() || !contacts_.blocked()) return;
+  singular_points_.push_back(*contacts_.blocked());
+  WorkSoFar work = dynamics_->work_so_far();
+  dynamics_->watch(nullptr);
+  dynamics_->start_from(dynamics_->state());
+  if (needs.work) dynamics_->carry_on(std::move(work));
+  dynamics_->run(TimeGrid::instant(dynamics_->time()), needs, rows);
+}
+
 AnalysisReport DynamicsWithEvents::run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
   CountingObserver rows(observer, rows_before_);
   watch_->rows_given = [&] { return rows.rows(); };
@@ -233,6 +244,8 @@ AnalysisReport DynamicsWithEvents::run(const TimeGrid& grid, const Needs& needs,
     if (const Report started = start_contacts(); !started.ok()) {
       total.status = started.status;
       total.message = started.message;
+      if (started.status == Status::lock_up && contacts_.started() && contacts_.blocked())
+        singular_points_.push_back(*contacts_.blocked());
       return total;
     }
   }
@@ -281,6 +294,7 @@ AnalysisReport DynamicsWithEvents::run(const TimeGrid& grid, const Needs& needs,
     if (!next.ok()) {
       total.status = next.status;
       total.message = next.message;
+      if (next.status == Status::lock_up) end_in_lock_up(needs, rows);
       return total;
     }
     if (rest.size() == 0) return total;

@@ -80,6 +80,7 @@ class DynamicsWithEvents {
   Report act(const Event& event, SystemState& state, std::vector<int>& engaged, double& work);
   void turn_values_to_bodies(std::span<const int> engaged, const SystemState& state);
   std::vector<double> place();
+  void end_in_lock_up(const Needs& needs, RowObserver& rows);
 
   ContactPhases contacts_;
   std::optional<SystemState> start_, end_;  // of the first phase; where events acted before one that stopped it
