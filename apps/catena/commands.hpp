@@ -25,6 +25,7 @@ void add_schema_command(CLI::App& app, Action& chosen);
 void add_draw_command(CLI::App& app, Action& chosen);
 void add_plot_command(CLI::App& app, Action& chosen);
 void add_view_command(CLI::App& app, Action& chosen);
+void add_bench_command(CLI::App& app, Action& chosen);
 
 /// Prints text to the standard output; returns the exit code.
 int print(const std::string& text);

@@ -95,6 +95,7 @@ int run(int argc, char** argv) {
   add_draw_command(app, chosen);
   add_plot_command(app, chosen);
   add_view_command(app, chosen);
+  add_bench_command(app, chosen);
 
   const std::string first = argc > 1 ? argv[1] : "-";
   const std::vector<std::string> known = command_names(app);

@@ -211,5 +211,30 @@ TEST(PlotFigure, IsWellFormedWithManyLinesAndGaps) {
   }
 }
 
+// Error over run time: every line has its own places, and a dot at each.
+TEST(Plots, LinesMayHavePlacesOfTheirOwn) {
+  Plot plot{.title = "", .x_name = "time", .x_unit = "ms", .x = {}, .panels = {}, .log_x = true, .log_y = true};
+  plot.panels = {{"", {{"a", {1e-3, 1e-6}, {1, 10}, true}, {"b", {1e-4, 1e-5, 1e-6}, {10, 100, 1000}, true}}}};
+  const std::string file = draw_plot(plot, 400, 120, [](double w, double h) -> std::unique_ptr<VectorCanvas> {
+    return std::make_unique<SvgCanvas>(w, h, "plot");
+  });
+  EXPECT_EQ(svg_fault(file), "") << file;
+  const std::vector<SvgCircle> dots = svg_circles(file);
+  ASSERT_EQ(dots.size(), 5u);
+  // Three decades across and three up: a's first dot is the upper left corner, b's last the lower right one.
+  const Vec2<double> across = dots[4].centre - dots[0].centre;
+  const auto expect_at = [&](std::size_t dot, double u, double v) {
+    EXPECT_NEAR(dots[dot].centre.x, dots[0].centre.x + u * across.x, 0.02) << dot;
+    EXPECT_NEAR(dots[dot].centre.y, dots[0].centre.y + v * across.y, 0.02) << dot;
+  };
+  EXPECT_GT(across.x, 300);
+  EXPECT_LT(across.y, -100);
+  expect_at(1, 1 / 3.0, 1);
+  expect_at(2, 1 / 3.0, 1 / 3.0);
+  expect_at(3, 2 / 3.0, 2 / 3.0);
+  const std::string letters = braille_plot(plot, 40, 6, false);
+  EXPECT_NE(letters.find("1e3"), std::string::npos) << letters;
+}
+
 }  // namespace
 }  // namespace catena::testing

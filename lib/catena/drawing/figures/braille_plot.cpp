@@ -113,10 +113,10 @@ std::string draw_panel(const Plot& plot, const PlotPanel& panel, const AxisTicks
   const std::size_t wide = columns > margin + 12 ? columns - margin - 2 : 10;
   DotField field(wide, rows);
   for (std::size_t k = 0; k < panel.lines.size(); ++k) {
-    const std::vector<double>& values_y = panel.lines[k].y;
+    const std::vector<double>&values_y = panel.lines[k].y, &places = places_of(plot, panel.lines[k]);
     double u0 = NAN, v0 = NAN;
-    for (std::size_t row = 0; row < plot.x.size(); ++row) {
-      const double u = x.place(plot.x[row]), v = y.place(values_y[row]);
+    for (std::size_t row = 0; row < places.size(); ++row) {
+      const double u = x.place(places[row]), v = y.place(values_y[row]);
       const bool shown = std::isfinite(u) && std::isfinite(v);
       if (shown) field.draw(std::isfinite(v0) ? u0 : u, std::isfinite(v0) ? v0 : v, u, v, static_cast<int>(k));
       u0 = shown ? u : NAN;
@@ -134,7 +134,8 @@ std::string draw_panel(const Plot& plot, const PlotPanel& panel, const AxisTicks
 }  // namespace
 
 std::string braille_plot(const Plot& plot, std::size_t columns, std::size_t rows, bool colours) {
-  const AxisTicks x = choose_ticks(plot.x, std::max(2, static_cast<int>(columns) / 12), plot.log_x, AxisEnds::tight);
+  const AxisTicks x =
+      choose_ticks(all_places(plot), std::max(2, static_cast<int>(columns) / 12), plot.log_x, AxisEnds::tight);
   std::string out;
   for (const PlotPanel& panel : plot.panels) {
     if (colours) {

@@ -71,9 +71,11 @@ void draw_panel(VectorCanvas& canvas, const Plot& plot, const PlotPanel& panel, 
   draw_axes(canvas, box, x, y, lowest);
   canvas.clip(box.corner, box.size);
   for (std::size_t k = 0; k < panel.lines.size(); ++k) {
+    const PlotLine& line = panel.lines[k];
+    const std::vector<double>& places = places_of(plot, line);
     std::vector<Vec2<double>> points;
-    for (std::size_t row = 0; row < plot.x.size(); ++row)
-      points.push_back(box.at(x.place(plot.x[row]), y.place(panel.lines[k].y[row])));
+    for (std::size_t row = 0; row < places.size(); ++row)
+      points.push_back(box.at(x.place(places[row]), y.place(line.y[row])));
     const Paint paint{.stroke = body_colour(static_cast<int>(k)), .width = 1.2, .dashed = k >= 7};
     canvas.path(points, false, paint);
     // A line of one point, between gaps, would not be seen.
@@ -81,7 +83,7 @@ void draw_panel(VectorCanvas& canvas, const Plot& plot, const PlotPanel& panel, 
       return row < points.size() && std::isfinite(points[row].x + points[row].y);
     };
     for (std::size_t row = 0; row < points.size(); ++row) {
-      if (shown(row) && (row == 0 || !shown(row - 1)) && !shown(row + 1))
+      if (shown(row) && (line.marks || ((row == 0 || !shown(row - 1)) && !shown(row + 1))))
         canvas.circle(points[row], 2, {.fill = paint.stroke});
     }
   }
@@ -94,6 +96,14 @@ void draw_panel(VectorCanvas& canvas, const Plot& plot, const PlotPanel& panel, 
 }
 
 }  // namespace
+
+std::vector<double> all_places(const Plot& plot) {
+  std::vector<double> places = plot.x;
+  for (const PlotPanel& panel : plot.panels) {
+    for (const PlotLine& line : panel.lines) places.insert(places.end(), line.x.begin(), line.x.end());
+  }
+  return places;
+}
 
 std::string with_unit(const std::string& name, const std::string& unit) {
   return unit.empty() ? name : name + " [" + unit + "]";
@@ -109,7 +119,8 @@ std::string draw_plot(const Plot& plot, double width, double panel_height, const
     height += legends.back() + panel_height + between;
   }
   const auto canvas = make_canvas(width, height - between);
-  const AxisTicks x = choose_ticks(plot.x, std::max(2, static_cast<int>(inside / 45)), plot.log_x, AxisEnds::tight);
+  const AxisTicks x =
+      choose_ticks(all_places(plot), std::max(2, static_cast<int>(inside / 45)), plot.log_x, AxisEnds::tight);
   double y = top;
   if (!plot.title.empty()) {
     canvas->text({left, y + 8}, plot.title, {.size = 10});

@@ -1,0 +1,189 @@
+// Gradients and searches through scenes, from text to result: values, derivatives and designs against closed forms.
+//
+//   swing of a crank-rocker: at its ends crank and coupler lie in one line, a triangle of b +- a, c, d:
+//     angle = pi - acos((d^2 + c^2 - (b +- a)^2) / (2 c d))
+//   oscillator: x - 1 = A cos(w t), w^2 = k / m:  dx/dk = -A t sin(w t) w / (2 k),  dx/dm = A t sin(w t) w / (2 m)
+//   path generation: the lengths of the four-bar that drew the points
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "catena/results/stored_results.hpp"
+#include "catena/scene/running/scene_runner.hpp"
+#include "suites/suites.hpp"
+
+namespace bench {
+
+using namespace catena;
+
+namespace {
+
+constexpr const char* four_bar = R"json({"catena": 1, "parameters": {"a": 0.1, "b": 0.25, "c": 0.2, "d": 0.3},
+ "bodies": {"crank": {"points": {"end": ["a", 0]}, "angle": 1},
+  "coupler": {"points": {"end": ["b", 0]}, "position": ["=a*cos(1)", "=a*sin(1)"], "angle": 0.4},
+  "rocker": {"points": {"end": ["c", 0]}, "position": ["d", 0], "angle": 1.6}},
+ "constraints": [{"type": "revolute", "i": "ground", "j": "crank"}, {"type": "revolute", "i": "crank.end", "j": "coupler"},
+  {"type": "revolute", "i": "coupler.end", "j": "rocker.end"}, {"type": "revolute", "i": ["ground", ["d", 0]], "j": "rocker"}],
+ "drivers": [{"type": "absolute_angle", "i": "crank", "value": {"polynomial": [1, 1]}}], "outputs": ["rocker.angle"],
+ "analyses": [{)json";
+constexpr const char* swing =
+    R"json("type": "kinematics", "until": 6.3, "every": 0.1, "measures": {"least": {"min": "rocker.angle"}, "most": {"max": "rocker.angle"}}})json";
+
+constexpr const char* oscillator = R"json({"catena": 1, "parameters": {"k": 50, "m": 2},
+ "bodies": {"b": {"mass": "m", "inertia": 1, "position": [1.3, 0]}},
+ "constraints": [{"type": "absolute_y", "i": "b"}, {"type": "absolute_angle", "i": "b"}],
+ "forces": [{"type": "spring_damper", "i": "ground", "j": "b", "k": "k", "length": 1}], "outputs": ["b.x"],
+ "analyses": [{)json";
+constexpr const char* oscillation =
+    R"json("type": "dynamics", "until": 2, "every": 0.5, "tolerance": 1e-10, "measures": {"end": {"final": "b.x"}}})json";
+
+constexpr const char* path = R"json({"catena": 1, "parameters": {"a": {"value": 0.42, "min": 0.2, "max": 0.6},
+  "b": {"value": 1.05, "min": 0.8, "max": 1.4}, "c": {"value": 0.95, "min": 0.6, "max": 1.2},
+  "d": {"value": 1.2, "min": 0.9, "max": 1.5}},
+ "bodies": {"crank": {"points": {"end": ["a", 0]}},
+  "coupler": {"points": {"end": ["b", 0], "pen": [0.5, 0.3]}, "position": ["a", 0], "angle": 1},
+  "rocker": {"points": {"end": ["c", 0]}, "position": ["d", 0], "angle": 1.8}},
+ "constraints": [{"type": "revolute", "i": "ground", "j": "crank"}, {"type": "revolute", "i": "crank.end", "j": "coupler"},
+  {"type": "revolute", "i": "coupler.end", "j": "rocker.end"}, {"type": "revolute", "i": ["ground", ["d", 0]], "j": "rocker"}],
+ "drivers": [{"type": "absolute_angle", "i": "crank", "value": {"polynomial": [0, 1]}}],
+ "outputs": ["coupler.pen.x", "coupler.pen.y"],
+ "analyses": [{"type": "optimise", "variables": {"a": {}, "b": {}, "c": {}, "d": {}}, "minimise": "=miss^2",
+  "of": {"type": "kinematics", "until": 6.283185307179586, "every": 0.5, "measures": {"miss": {
+   "path": ["coupler.pen.x", "coupler.pen.y"], "timed": true, "to": [)json";
+
+using Values = std::vector<double>;
+
+/// Largest difference; not a number where one is missing.
+double apart(const Values& found, const Values& exact) {
+  if (found.size() != exact.size()) return not_measured;
+  double worst = 0;
+  for (std::size_t k = 0; k < exact.size(); ++k) {
+    const double difference = std::abs(found[k] - exact[k]);
+    if (!(difference <= worst)) worst = difference;
+  }
+  return worst;
+}
+
+/// Runs a text; `read` takes from its only analysis what is to be compared.
+template <class Read>
+void measure(Bench& bench, Row row, const std::string& text, const Values& exact, Read&& read) {
+  row.suite = "design";
+  if (!bench.wants(row)) return;
+  RunOptions options;
+  options.text = text;
+  SceneOutcome outcome;
+  const auto once = [&] {
+    StoredResults rows;
+    outcome = run_scene("design", options, rows);
+  };
+  once();
+  if (outcome.exit_code == 0) {
+    const AnalysisResult& result = outcome.analyses.front();
+    row.counts = named_counts(result.report.counters);
+    row.error = apart(read(result), exact);
+    if (std::isnan(row.error)) row.failure = "values or derivatives are missing";
+    bench.time(row, once);
+  } else {
+    row.failure = outcome.error_text;
+  }
+  bench.add(std::move(row));
+}
+
+Values values_of(const AnalysisResult& result) {
+  Values values;
+  for (const MeasureResult& m : result.measures) values.push_back(m.value.value_or(not_measured));
+  return values;
+}
+
+Values gradients_of(const AnalysisResult& result) {
+  Values values;
+  for (const MeasureResult& m : result.measures) values.insert(values.end(), m.gradient.begin(), m.gradient.end());
+  return values;
+}
+
+/// One end of the swing and its derivatives by a, b, c, d.
+void swing_end(double sign, Values& value, Values& gradient) {
+  const double a = 0.1, b = 0.25, c = 0.2, d = 0.3, s = b + sign * a;
+  const double u = (d * d + c * c - s * s) / (2 * c * d), slope = 1 / std::sqrt(1 - u * u);
+  value.push_back(std::acos(-1.0) - std::acos(u));
+  const double by_s = -s / (c * d) * slope;
+  gradient.insert(gradient.end(), {sign * by_s, by_s, (1 / d - u / c) * slope, (1 / c - u / d) * slope});
+}
+
+void swings(Bench& bench) {
+  Values value, gradient;
+  swing_end(1, value, gradient);   // stretched: the rocker is furthest from the crank's pivot
+  swing_end(-1, value, gradient);  // folded
+  std::sort(value.begin(), value.end());
+  if (gradient[1] > 0) std::rotate(gradient.begin(), gradient.begin() + 4, gradient.end());
+  Row row{.problem = "swing of a crank-rocker", .method = "two measures", .bodies = 3};
+  row.error_of = "ends of the swing, rad";
+  row.reference = "triangle in closed form";
+  row.allowed = 1e-9;
+  measure(bench, row, std::string(four_bar) + swing + "]}", value, values_of);
+  row.method = "two measures, four derivatives each";
+  row.error_of = "derivatives, rad/m";
+  row.allowed = 1e-8;
+  measure(bench, row,
+          std::string(four_bar) + R"json("type": "sensitivity", "parameters": ["a", "b", "c", "d"], "of": {)json" +
+              swing + "}]}",
+          gradient, gradients_of);
+}
+
+void oscillations(Bench& bench) {
+  const double k = 50, m = 2, amplitude = 0.3, t = 2, w = std::sqrt(k / m),
+               slope = amplitude * t * std::sin(w * t) * w / 2;
+  Row row{.problem = "oscillator", .method = "motion", .setting = "1e-10", .bodies = 1};
+  row.error_of = "end, m";
+  row.reference = "closed form";
+  row.allowed = 1e-8;  // ten times the tolerance, for ten radians
+  measure(bench, row, std::string(oscillator) + oscillation + "]}", {1 + amplitude * std::cos(w * t)}, values_of);
+  row.method = "motion, two derivatives";
+  row.error_of = "derivatives, m a N/m and m a kg";
+  measure(bench, row,
+          std::string(oscillator) + R"json("type": "sensitivity", "parameters": ["k", "m"], "of": {)json" +
+              oscillation + "}]}",
+          {-slope / k, slope / m}, gradients_of);
+}
+
+/// The point of the coupler after the crank has turned by `crank`, of the four-bar to be found.
+std::string points_of_path(int count) {
+  const double a = 0.4, b = 1.1, c = 0.9, d = 1.2;
+  std::string text;
+  for (int k = 0; k < count; ++k) {
+    const double crank = 2 * std::acos(-1.0) * k / (count - 1), x = a * std::cos(crank), y = a * std::sin(crank);
+    const double distance = std::hypot(d - x, y);
+    const double angle = std::atan2(-y, d - x) + std::acos((b * b + distance * distance - c * c) / (2 * b * distance));
+    text += fmt::format("{}[{:.17g}, {:.17g}]", k ? ", " : "", x + 0.5 * std::cos(angle) - 0.3 * std::sin(angle),
+                        y + 0.5 * std::sin(angle) + 0.3 * std::cos(angle));
+  }
+  return text;
+}
+
+void path_generation(Bench& bench) {
+  Row row{.problem = "path generation", .method = "optimise, four lengths", .bodies = 3};
+  row.error_of = "lengths, m";
+  row.reference = "the four-bar that drew the points";
+  row.allowed = 1e-5;  // the miss is a square: a gradient of 1e-10 leaves its root
+  measure(bench, row, path + points_of_path(9) + "]}}}}]}", {0.4, 1.1, 0.9, 1.2}, [](const AnalysisResult& result) {
+    Values lengths;
+    for (const NamedField& field : result.fields) {
+      const auto* variables = field.name == "variables" ? std::get_if<FieldRecord>(&field.value) : nullptr;
+      if (!variables) continue;
+      for (const auto& [name, value] : *variables) {
+        if (const double* length = std::get_if<double>(&value)) lengths.push_back(*length);
+      }
+    }
+    return lengths;
+  });
+}
+
+}  // namespace
+
+void design_suite(Bench& bench) {
+  swings(bench);
+  oscillations(bench);
+  path_generation(bench);
+}
+
+}  // namespace bench

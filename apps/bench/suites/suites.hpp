@@ -1,0 +1,32 @@
+// The suites of `catena bench`: each adds its rows to a Bench.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "suites/bench.hpp"
+
+namespace bench {
+
+void kinematics_suite(Bench& bench);   ///< driven linkages against closed forms, by tolerance
+void dynamics_suite(Bench& bench);     ///< every method at tolerances 1e-3 ... 1e-12: error against time
+void equilibrium_suite(Bench& bench);  ///< hanging chains by every solver, small oscillations
+void design_suite(Bench& bench);       ///< gradients and searches against closed forms
+void kernels_suite(Bench& bench);      ///< accelerations, Jacobians, plans, factorizations: a body
+void scaling_suite(Bench& bench);      ///< 10 ... 10^6 bodies, with fitted slopes
+void economy_suite(Bench& bench);      ///< what a scene does not need, and proof that the answer is the full one
+
+struct Suite {
+  std::string_view name;
+  void (*run)(Bench&);
+};
+
+inline constexpr std::array<Suite, 7> suites{{{"kinematics", kinematics_suite},
+                                              {"dynamics", dynamics_suite},
+                                              {"equilibrium", equilibrium_suite},
+                                              {"design", design_suite},
+                                              {"kernels", kernels_suite},
+                                              {"scaling", scaling_suite},
+                                              {"economy", economy_suite}}};
+
+}  // namespace bench
