@@ -82,8 +82,10 @@ class Scaling {
     // Setting up the lanes costs more than the few bodies of a small mechanism.
     std::size_t k = 0;
     if (units.repeat && n >= lanes) k = scan_lanes(units, n, entry, sums);
+    // Of units that repeat fewer than one pass over the lanes is left.
+    const std::size_t first = k;
     for (; k < n; ++k) {
-      const std::size_t u = units.repeat ? k % lanes : k;
+      const std::size_t u = k - first;
       const std::array<double, N> x = entry(k);
       for (std::size_t v = 0; v < N; ++v) {
         const double size = std::abs(x[v]) * units.unit[u], angle = size * units.angle[u];

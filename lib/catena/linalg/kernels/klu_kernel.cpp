@@ -155,14 +155,16 @@ std::int64_t KluKernel::Handles::measure_pivots() {
     few[lane] += magnitude >= harmless_pivot ? 0.0 : 1.0;
   };
   std::size_t k = 0;
-  for (; k + lanes <= size(); k += lanes) {
+  // Of a few pivots setting up the lanes costs more than all else.
+  const std::size_t used = size() < 4 * lanes ? 1 : lanes;
+  for (; used == lanes && k + lanes <= size(); k += lanes) {
     for (std::size_t lane = 0; lane < lanes; ++lane) take(k + lane, lane);
   }
   for (; k < size(); ++k) take(k, 0);
   double total = 0, suspects = 0;
-  for (std::size_t lane = 0; lane < lanes; ++lane) total += sum[lane], suspects += few[lane];
-  least = *std::min_element(low, low + lanes);
-  largest = *std::max_element(high, high + lanes);
+  for (std::size_t lane = 0; lane < used; ++lane) total += sum[lane], suspects += few[lane];
+  least = *std::min_element(low, low + used);
+  largest = *std::max_element(high, high + used);
   if (!std::isfinite(total)) least = largest = std::numeric_limits<double>::quiet_NaN();
   return static_cast<std::int64_t>(suspects);
 }
