@@ -1,8 +1,11 @@
 // Ropes: what the stretches of an elastic one share, and where ropes leave their pulleys.
+#include <algorithm>
+#include <limits>
 #include <numbers>
 
 #include "catena/assembly/constraint_operations.hpp"
 #include "catena/assembly/evaluate.hpp"
+#include "catena/assembly/rope_ways.hpp"
 #include "catena/elements/all.hpp"
 
 namespace catena {
@@ -72,6 +75,9 @@ class Wraps {
   void add(const E& span, const Frame<double>& i, const Frame<double>& j) {
     const Vec2<double> h = separation(i, j, span.s_i, span.s_j);
     exists_ = exists_ && span.exists(h);
+    const double offset = span.radius_j - span.radius_i;
+    const double room = squared_norm(h) / (offset * offset) - 1;
+    if (offset != 0 && !(room >= room_)) room_ = room;
     const double theta = span.heading(span.line(h).along);
     const double before = span.next_to.follows ? theta_ : span.next_to.before + i.phi;
     const bool winds = span.radius_i != 0 || span.radius_j != 0;
@@ -80,6 +86,9 @@ class Wraps {
     look(span.radius_j, span.next_to.after + j.phi - theta);
     theta_ = theta;
   }
+  bool leaves() const { return leaves_; }
+  double widest() const { return widest_; }
+  double room() const { return room_; }
   const char* trouble(bool holds) const {
     if (!exists_) return "an end or a pulley of it is inside the circle of the next pulley";
     if (turned_)
@@ -94,16 +103,17 @@ class Wraps {
 
  private:
   // A comparison with NaN, where nothing meets, is false.
-  void look(double radius, double turn) { leaves_ = leaves_ || radius * turn < -left * std::abs(radius); }
-  double theta_ = 0;
+  void look(double radius, double turn) {
+    leaves_ = leaves_ || radius * turn < -left * std::abs(radius);
+    if (radius != 0 && std::abs(turn) > widest_) widest_ = std::abs(turn);
+  }
+  double theta_ = 0, widest_ = 0, room_ = std::numeric_limits<double>::infinity();
   bool exists_ = true, leaves_ = false, turned_ = false;
 };
 
-}  // namespace
-
-const char* Evaluator::rope_trouble(int element) const {
-  const ElementRecord& record = model_->elements[at(element)];
-  const auto frame = [&](int body) { return ground_frame(body < 0 ? plan_->bodies : plan_->plan_body[at(body)]); };
+template <class FrameOf>
+Wraps wraps_of(const Model& model, int element, FrameOf&& frame) {
+  const ElementRecord& record = model.elements[at(element)];
   Wraps wraps;
   const auto follow = [&](const auto& list, int first, int count) {
     for (int n = first; n < first + count; ++n) {
@@ -112,14 +122,58 @@ const char* Evaluator::rope_trouble(int element) const {
     }
   };
   if (record.kind == ElementKind::force) {
-    const auto& list = std::get<std::vector<ElementEntry<ElasticRope<double>, double>>>(model_->forces);
+    const auto& list = std::get<std::vector<ElementEntry<ElasticRope<double>, double>>>(model.forces);
     follow(list, record.index, list[at(record.index)].element.pieces);
+    return wraps;
+  }
+  const auto& head = std::get<std::vector<ElementEntry<Rope<double>, double>>>(model.constraints)[at(record.index)];
+  wraps.add(head.element, frame(head.i), frame(head.j));
+  follow(std::get<std::vector<ElementEntry<RopePart<double>, double>>>(model.constraints), head.element.first_part,
+         head.element.parts);
+  return wraps;
+}
+
+}  // namespace
+
+namespace {
+
+Wraps present_wraps(const Evaluator& evaluator, int rope) {
+  const Plan& plan = evaluator.plan();
+  return wraps_of(evaluator.model(), rope,
+                  [&](int body) { return evaluator.ground_frame(body < 0 ? plan.bodies : plan.plan_body[at(body)]); });
+}
+
+}  // namespace
+
+bool is_beside_pulley(const Evaluator& evaluator, int rope) { return present_wraps(evaluator, rope).leaves(); }
+
+int rope_at_circle(const Evaluator& evaluator) {
+  constexpr double near = 1e-2;
+  int found = -1;
+  const auto look = [&](int rope) {
+    if (found < 0 && !(present_wraps(evaluator, rope).room() >= near)) found = rope;
+  };
+  const Model& model = evaluator.model();
+  for (const auto& entry : std::get<std::vector<ElementEntry<Rope<double>, double>>>(model.constraints)) look(entry.id);
+  for (const auto& entry : std::get<std::vector<ElementEntry<ElasticRope<double>, double>>>(model.forces)) {
+    if (entry.element.pieces > 0) look(entry.id);
+  }
+  return found;
+}
+
+double widest_contact(const Model& model, int rope) {
+  return wraps_of(model, rope, [&](int body) { return model.frame(body); }).widest();
+}
+
+const char* Evaluator::rope_trouble(int element) const {
+  const ElementRecord& record = model_->elements[at(element)];
+  const auto frame = [&](int body) { return ground_frame(body < 0 ? plan_->bodies : plan_->plan_body[at(body)]); };
+  const Wraps wraps = wraps_of(*model_, element, frame);
+  if (record.kind == ElementKind::force) {
+    const auto& list = std::get<std::vector<ElementEntry<ElasticRope<double>, double>>>(model_->forces);
     return wraps.trouble(rope_slack<double>(list, record.index, frame) < 0);
   }
   const auto& head = std::get<std::vector<ElementEntry<Rope<double>, double>>>(model_->constraints)[at(record.index)];
-  wraps.add(head.element, frame(head.i), frame(head.j));
-  follow(std::get<std::vector<ElementEntry<RopePart<double>, double>>>(model_->constraints), head.element.first_part,
-         head.element.parts);
   const bool may_hold = plan_->element_row[at(element)] >= 0;
   return wraps.trouble(may_hold && measure(element, {}, {}).value < taut * head.element.length);
 }

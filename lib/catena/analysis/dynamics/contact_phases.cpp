@@ -8,6 +8,7 @@
 #include "catena/analysis/motion/initial_velocities.hpp"
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
+#include "catena/assembly/rope_ways.hpp"
 #include "catena/elements/all.hpp"
 
 namespace catena {
@@ -30,6 +31,20 @@ void with_slide_value(M& model, int slide, F&& f) {
   with_list(model.constraints, record.type, [&](auto& list) {
     if constexpr (ElementOf<decltype(list)>::functions == 1) f(list[at(record.index)].values[0].constant);
   });
+}
+
+/// A rope that becomes taut beside a pulley would have been so later: its way is measured over the pulley.
+Report check_way(const Evaluator& evaluator, int element, double t) {
+  Report report;
+  const Model& model = evaluator.model();
+  if (model.element_type(element) != Rope<double>::type || !is_beside_pulley(evaluator, element)) return report;
+  report.status = Status::singular;
+  report.message = fmt::format(
+      "rope \"{}\" is undefined at t = {:.12g} s: it becomes taut beside a pulley, which its length is measured over; "
+      "end "
+      "the analysis before, or leave the pulley out",
+      model.element_name(element), t);
+  return report;
 }
 
 }  // namespace
@@ -164,6 +179,11 @@ Report ContactPhases::decide(SystemState& state, const ContactSwitch::Cause& cau
 
 Report ContactPhases::change(int transition, SystemState& state) {
   const Watched& watched = watched_[at(transition)];
+  if (watched.ends == End::contact && !states_[watched.place].closed) {
+    Evaluator& evaluator = switch_->evaluator();
+    evaluator.set_configuration(configuration_of(evaluator, state));
+    if (Report way = check_way(evaluator, contacts_.points[watched.place].element, state.t); !way.ok()) return way;
+  }
   if (watched.ends == End::pressing) {
     // A compliant place is pressed by a force that its own depth decides about.
     states_[watched.place].closed = !states_[watched.place].closed;

@@ -16,6 +16,21 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 // Rows whose smallest pivot ratio is above this need no rank analysis.
 constexpr double independent_ratio = 1e-8;
 
+// Of the length scale: how far before the circle of a pulley steps end that would go into it. A stretch of length l
+// there turns by D / l, and l is the square root of the distance.
+constexpr double before_circle = 1e-6;
+
+/// Ropes where the motion is about to go. Leaves the evaluator there.
+Report check_ropes_ahead(const WatchedElements& watched, Evaluator& evaluator, std::span<const double> y) {
+  const std::size_t n = at(evaluator.plan().coordinates());
+  std::vector<double> q(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(n));
+  const double speed = fastest(evaluator, y.subspan(n, n));
+  if (!(speed > 0)) return {};
+  for (std::size_t k = 0; k < n; ++k) q[k] += before_circle * evaluator.length_scale() / speed * y[n + k];
+  evaluator.set_configuration(q);
+  return watched.check_ropes();
+}
+
 }  // namespace
 
 Report Dynamics::cancelled(double t) {
@@ -136,6 +151,7 @@ Report Dynamics::stuck() {
   evaluator_.set_configuration(integrator_->state().first(q_.size()));
   if (Report sound = watched_.check(); !sound.ok()) return sound;
   if (Report laws = watched_.check_laws(integrator_->state().subspan(q_.size(), q_.size())); !laws.ok()) return laws;
+  if (Report ropes = check_ropes_ahead(watched_, evaluator_, integrator_->state()); !ropes.ok()) return ropes;
   if (lost >= 0) {
     report.status = Status::singular;
     report.message = fmt::format("{} is undefined beyond t = {:.9g} s: its expression has no finite value there",

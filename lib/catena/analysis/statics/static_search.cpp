@@ -14,6 +14,7 @@
 #include "catena/analysis/statics/static_ipopt.hpp"
 #include "catena/analysis/statics/static_nlopt.hpp"
 #include "catena/analysis/statics/static_settling.hpp"
+#include "catena/assembly/rope_ways.hpp"
 
 namespace catena {
 namespace {
@@ -283,6 +284,7 @@ Report StaticSearch::explain(const StaticOutcome& outcome, const std::vector<dou
   Report report;
   const Evaluator& evaluator = system_.evaluator();
   const Plan& plan = system_.plan();
+  const int rope = rope_at_circle(evaluator);  // where the search ended
   if (outcome.end == StaticEnd::cancelled) {
     report.status = Status::cancelled;
     report.message = fmt::format("stopped after {} iterations, before an equilibrium was found", result.iterations);
@@ -319,6 +321,11 @@ Report StaticSearch::explain(const StaticOutcome& outcome, const std::vector<dou
   }
   report.status = Status::not_converged;
   describe_point(result, report);
+  if (rope >= 0) {
+    report.message +=
+        fmt::format("; an end or a pulley of rope \"{}\" came to the circle of the next pulley, where it has no way",
+                    evaluator.model().element_name(rope));
+  }
   const auto worst = std::min_element(gap.begin(), gap.end());
   if (worst != gap.end() && *worst < -absent_overlap * system_.length()) {
     const int element = plan.row_element[at(plan.gap_rows[static_cast<std::size_t>(worst - gap.begin())])];

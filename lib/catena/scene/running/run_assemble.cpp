@@ -152,6 +152,7 @@ void run_check(AnalysisContext& context, AnalysisResult& result) {
     for (std::string& doubt : violated_gaps(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
     check_velocities(analysis, model, report);
     for (std::string& doubt : gears_that_do_not_fit(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
+    for (std::string& doubt : ropes_in_loops(*context.model)) report.warnings.push_back(std::move(doubt));
   }
   report.counters = analysis.evaluator().counters;
   report.seconds = timer.seconds();
