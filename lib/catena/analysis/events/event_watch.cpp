@@ -14,6 +14,9 @@ constexpr double turn_between_samples = 0.25;
 constexpr double rounding = 1e-13;
 constexpr double smallest = 1e-14;
 constexpr int most_iterations = 80;
+// Of the time between two samples: columns that reach their values within rounding at one instant do so this near to
+// it.
+constexpr double one_instant = 1e-3;
 
 /// Where the parabola through three points has its vertex, and its value there, if that lies between them.
 struct Vertex {
@@ -84,6 +87,7 @@ double EventWatch::value_of(std::size_t k, const Snapshot& state) const {
 
 void EventWatch::watch(std::vector<Transition> transitions, const Needs& needs) {
   transitions_ = std::move(transitions);
+  found_.clear();
   transition_needs_ = needs;
   const std::size_t size = events_.size() + transitions_.size();
   side_.resize(events_.size());
@@ -179,21 +183,34 @@ int EventWatch::samples(double from, double to, const StateAt& state_at) {
   return static_cast<int>(std::clamp(std::ceil(turn / turn_between_samples), fewest_samples, most_samples));
 }
 
-// Of those found between two samples the first one, which takes those of the list with it that happen then too; of
-// these the first in the list.
+// Of those found between two samples, the earliest last, the first one, which takes those of the list with it that
+// happen then too; of these the first in the list. The others stay for the next calls of find().
 FoundEvent EventWatch::first_found(const StateAt& state_at) {
-  FoundEvent first = *std::min_element(found_.begin(), found_.end(),
-                                       [](const FoundEvent& a, const FoundEvent& b) { return a.t < b.t; });
+  FoundEvent first = found_.back();
+  found_.pop_back();
   const auto is_listed = [&](const FoundEvent& found) { return found.event < static_cast<int>(events_.size()); };
-  const std::optional<Snapshot> state = found_.size() > 1 ? state_at(first.t) : std::nullopt;
-  for (const FoundEvent& found : found_) {
-    if (!state || !is_listed(found) || found.event == first.event) continue;
+  const double near = first.t + one_instant * (times_[2] - times_[1]);
+  std::vector<FoundEvent> later;
+  const bool alone = found_.empty() || found_.back().t > near;
+  const std::optional<Snapshot> state = alone ? std::nullopt : state_at(first.t);
+  for (; !found_.empty() && found_.back().t <= near; found_.pop_back()) {
+    const FoundEvent found = found_.back();
     const auto k = static_cast<std::size_t>(found.event);
-    if (found.t == first.t || side(k, value_of(k, *state) - target(k)) == 0)
+    const bool reached =
+        found.t == first.t || (state && is_listed(found) && side(k, value_of(k, *state) - target(k)) == 0);
+    if (is_listed(found) && reached) {
       simultaneous_.push_back({found.event, first.t});
+    } else {
+      later.push_back(found);
+    }
   }
+  found_.insert(found_.end(), later.rbegin(), later.rend());
   // What the mechanism does by itself comes after them, and is found again.
-  if (is_listed(first)) simultaneous_.push_back(first);
+  if (is_listed(first)) {
+    simultaneous_.push_back(first);
+  } else {
+    found_.clear();
+  }
   std::sort(simultaneous_.begin(), simultaneous_.end(),
             [](const FoundEvent& a, const FoundEvent& b) { return a.event > b.event; });
   if (!simultaneous_.empty()) {
@@ -207,6 +224,8 @@ FoundEvent EventWatch::first_found(const StateAt& state_at) {
   };
   take_note(first);
   std::for_each(simultaneous_.begin(), simultaneous_.end(), take_note);
+  // The last one tells up to where they were given.
+  if (!found_.empty()) found_.push_back(first);
   return first;
 }
 
@@ -217,6 +236,11 @@ std::optional<FoundEvent> EventWatch::find(double from, double to, const StateAt
     return next;
   }
   if (!(from < to)) return {};
+  // Found with the last one, in a motion that went on unchanged.
+  if (!found_.empty() && found_.back().t == from && times_[2] <= to) {
+    found_.pop_back();
+    return first_found(state_at);
+  }
   const int parts = samples(from, to, state_at);
   times_[2] = from;
   // A transition knows the side on which it begins, whatever rounding says at once.
@@ -233,6 +257,7 @@ std::optional<FoundEvent> EventWatch::find(double from, double to, const StateAt
     if (!state) return {};
     sample(*state, g_[2]);
     found_.clear();
+    bool dips = false;
     for (std::size_t k = 0; k < side_.size(); ++k) {
       if (side_[k] == 0) {
         side_[k] = side(k, g_[2][k]);
@@ -255,8 +280,15 @@ std::optional<FoundEvent> EventWatch::find(double from, double to, const StateAt
         continue;
       }
       found_.push_back({static_cast<int>(k), t});
+      dips = dips || *beyond != times_[2];
     }
-    if (!found_.empty()) return first_found(state_at);
+    if (found_.empty()) continue;
+    std::sort(found_.begin(), found_.end(),
+              [](const FoundEvent& a, const FoundEvent& b) { return a.t != b.t ? a.t > b.t : a.event > b.event; });
+    const FoundEvent first = first_found(state_at);
+    // A column that comes back before the next sample may pass its value again before the others.
+    if (dips) found_.clear();
+    return first;
   }
   return {};
 }
@@ -264,7 +296,9 @@ std::optional<FoundEvent> EventWatch::find(double from, double to, const StateAt
 bool EventWatch::take(const FoundEvent& found) {
   const Event& event = events_[static_cast<std::size_t>(found.event)];
   records_.push_back({event.name, found.event, found.t, rows_given ? rows_given() - 1 : 0});
-  return event.action != EventAction::record;
+  if (event.action == EventAction::record) return false;
+  found_.clear();
+  return true;
 }
 
 }  // namespace catena
