@@ -44,6 +44,90 @@ TEST_P(EveryMethod, FindsAKnownOptimum) {
   }
 }
 
+/// f with its gradient by differences of fourth order, good to 1e-11.
+DesignProblem problem_of(std::vector<double> lower, std::vector<double> upper, std::vector<double> start,
+                         std::function<double(std::span<const double>)> f) {
+  DesignProblem problem{std::move(lower), std::move(upper), std::move(start), 0, 0, {}};
+  problem.evaluate = [f](std::span<const double> x, bool) {
+    DesignEvaluation e;
+    e.values.objective = f(x);
+    std::vector<double> y(x.begin(), x.end());
+    for (std::size_t v = 0; v < x.size(); ++v) {
+      const double h = 1e-3;
+      const auto at = [&](double step) {
+        y[v] = x[v] + step;
+        return f(y);
+      };
+      const double a = at(-2 * h), b = at(-h), c = at(h), d = at(2 * h);
+      y[v] = x[v];
+      e.values.gradient.push_back((a - 8 * b + 8 * c - d) / (12 * h));
+    }
+    return e;
+  };
+  return problem;
+}
+
+// What is called an optimum is stationary, or says that it is not, whatever the method and its tolerance.
+TEST_P(EveryMethod, CallsNothingAnOptimumThatIsNotStationary) {
+  const auto valley = [](std::span<const double> x) {
+    return std::pow(1 - x[0], 2) + 100 * std::pow(x[1] - x[0] * x[0], 2);
+  };
+  const auto bowl = [](std::span<const double> x) {
+    return 5 + std::pow(x[0] - 0.2, 2) + 3 * std::pow(x[1] - 0.4, 2) + x[0] * x[1];
+  };
+  for (const double tolerance : {1e-8, 1e-4}) {
+    for (const auto& f : {std::function<double(std::span<const double>)>(valley), {bowl}}) {
+      for (const double start : {-1.2, 0.1, 1.9}) {
+        SCOPED_TRACE(fmt::format("tolerance {}, start {}", tolerance, start));
+        DesignOptions options;
+        options.method = GetParam();
+        options.tolerance = tolerance;
+        options.max_evaluations = 3000;
+        const DesignOutcome outcome = optimise_design(problem_of({-2, -2}, {2, 2}, {start, 1}, f), options);
+        ASSERT_TRUE(outcome.optimality.has_value());
+        if (outcome.end != DesignEnd::converged) {
+          EXPECT_FALSE(uses_gradients(GetParam()));
+          continue;
+        }
+        EXPECT_FALSE(outcome.at_kink);
+        EXPECT_LT(*outcome.optimality, tolerance == 1e-8 ? 2e-4 : 2e-2);
+      }
+    }
+  }
+}
+
+// |x - 0.3| + y^2: its slope does not vanish at the optimum, and this is told.
+TEST_P(EveryMethod, TellsAKink) {
+  DesignProblem problem{{-1, -1}, {1, 1}, {0.8, 0.7}, 0, 0, {}};
+  problem.evaluate = [](std::span<const double> x, bool) {
+    DesignEvaluation e;
+    e.values.objective = std::abs(x[0] - 0.3) + x[1] * x[1];
+    e.values.gradient = {x[0] < 0.3 ? -1.0 : 1.0, 2 * x[1]};
+    return e;
+  };
+  DesignOptions options;
+  options.method = GetParam();
+  options.max_evaluations = 3000;
+  const DesignOutcome outcome = optimise_design(problem, options);
+  ASSERT_TRUE(outcome.optimality.has_value());
+  if (outcome.end == DesignEnd::converged) {
+    EXPECT_TRUE(outcome.at_kink);
+    EXPECT_NEAR(outcome.x[0], 0.3, 1e-3);
+  }
+}
+
+// A start at the optimum is one: its gradient is rounding, relative to what the search has seen.
+TEST_P(EveryMethod, KnowsAnOptimumAtItsStart) {
+  DesignOptions options;
+  options.method = GetParam();
+  options.max_evaluations = 2000;
+  const DesignOutcome outcome = optimise_design(
+      problem_of({-2}, {2}, {0.7}, [](std::span<const double> x) { return std::pow(x[0] - 0.7, 2); }), options);
+  ASSERT_TRUE(outcome.optimality.has_value());
+  EXPECT_LT(*outcome.optimality, 1e-4);
+  EXPECT_FALSE(outcome.at_kink);
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
                          ::testing::Values(MinimiserMethod::slsqp, MinimiserMethod::mma, MinimiserMethod::bobyqa,
                                            MinimiserMethod::cobyla, MinimiserMethod::crs2, MinimiserMethod::isres,

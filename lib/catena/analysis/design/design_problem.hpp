@@ -50,8 +50,9 @@ struct DesignOptions {
 
 enum class DesignEnd {
   converged,
-  slow,        ///< max_evaluations reached
-  broken_off,  ///< the method came to an end of its own without an optimum
+  slow,            ///< max_evaluations reached
+  broken_off,      ///< the method came to an end of its own without an optimum
+  not_stationary,  ///< the method counted itself done, but a short step from the best design leads to a better one
   cancelled,
   infeasible,
   failed,  ///< no design could be analysed
@@ -61,8 +62,9 @@ struct DesignOutcome {
   DesignEnd end = DesignEnd::failed;
   std::vector<double> x;  ///< the best design; where the constraints cannot be met, the least infeasible
   DesignValues values;
-  double violation = 0;                 ///< largest of its constraints, in their sizes at the start
-  std::optional<double> optimality;     ///< see optimality_of(); nothing where the gradients there are not known
+  double violation = 0;              ///< largest of its constraints, in their sizes at the start
+  std::optional<double> optimality;  ///< see optimality_of(); nothing where the gradients there are not known
+  bool at_kink = false;  ///< converged where gradients do not vanish, but short steps along them lead to nothing better
   std::vector<int> active_unequal;      ///< inequalities that hold it
   std::vector<int> at_lower, at_upper;  ///< variables at their bounds
   int evaluations = 0;                  ///< designs that were analysed, failed ones included
@@ -74,10 +76,11 @@ DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions&
 
 /// How far a design is from a stationary one: the norm of f_x + sum mu g_x + sum nu h_x + bounds, with the multipliers
 /// (mu >= 0) that make it least, relative to the largest of its terms and of `size`. Derivatives by variables in parts
-/// of their ranges. Zero at a minimum.
+/// of their ranges. Zero at a minimum. `rest`: that sum, whose opposite leads downhill along the active constraints.
 struct Stationarity {
   double optimality = 0;
   std::vector<int> active_unequal;
+  std::vector<double> rest;
 };
 Stationarity optimality_of(const DesignProblem& problem, std::span<const double> x, const DesignValues& values,
                            std::span<const double> unequal_size, double size);

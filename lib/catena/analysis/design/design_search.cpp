@@ -72,7 +72,30 @@ bool DesignSearch::analyse(std::span<const double> u, Point& point) {
   }
   point.u.assign(u.begin(), u.end());
   point.values = std::move(evaluation.values);
+  largest_ = std::max(largest_, point.values.objective);
+  least_ = std::min(least_, point.values.objective);
+  double sum = 0;
+  for (std::size_t v = 0; v < point.values.gradient.size(); ++v)
+    sum += std::pow(point.values.gradient[v] * (problem_.upper[v] - problem_.lower[v]), 2);
+  gradient_size_ = std::max(gradient_size_, std::sqrt(sum));
   return true;
+}
+
+std::vector<double> DesignSearch::best() const {
+  std::vector<double> u(outcome_.x.size());
+  for (std::size_t v = 0; v < u.size(); ++v)
+    u[v] = std::clamp((outcome_.x[v] - problem_.lower[v]) / (problem_.upper[v] - problem_.lower[v]), 0.0, 1.0);
+  return u;
+}
+
+std::optional<double> DesignSearch::change_along(std::span<const double> direction, double allowed) {
+  std::vector<double> u = best();
+  for (std::size_t v = 0; v < u.size(); ++v) u[v] = std::clamp(u[v] + direction[v], 0.0, 1.0);
+  const double before = outcome_.values.objective;
+  Point point;
+  if (!analyse(u, point) || violation_of(point.values) > allowed) return {};
+  compare(point);
+  return point.values.objective - before;
 }
 
 double DesignSearch::violation_of(const DesignValues& values) const {
@@ -127,7 +150,6 @@ bool DesignSearch::begin(std::vector<double>& u) {
   if (improvements_ == 0) {
     const DesignValues& values = now_.values;
     objective_size_ = size_of(values.objective, values.gradient, range);
-    gradient_size_ = values.gradient.empty() ? 0 : size_of(0, values.gradient, range);
     for (std::size_t k = 0; k < unequal_size_.size(); ++k)
       unequal_size_[k] = size_of(values.unequal[k], row(values.unequal_gradient, k), range);
     for (std::size_t k = 0; k < equal_size_.size(); ++k)

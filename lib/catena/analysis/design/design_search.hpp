@@ -6,6 +6,9 @@
 // added with a weight of ten times the objective's size, so that the search turns back without a jump.
 #pragma once
 
+#include <algorithm>
+#include <limits>
+
 #include "catena/analysis/design/design_problem.hpp"
 
 namespace catena {
@@ -26,7 +29,15 @@ class DesignSearch final : public MinimisationProblem {
   /// around it.
   bool begin(std::vector<double>& u);
   std::span<const double> unequal_sizes() const { return unequal_size_; }
-  double gradient_size() const { return gradient_size_; }
+  /// What a derivative by a variable, in parts of its range, is measured against: the largest gradient that was seen,
+  /// and by how much objectives of designs that were seen differ.
+  double gradient_size() const { return std::max(gradient_size_, largest_ - least_); }
+  /// Analyses the design a short step away from the best one, `direction` in parts of the ranges: by how much its
+  /// objective is larger. Nothing where it cannot be analysed, or misses constraints by more than `allowed` of their
+  /// sizes. A better one becomes the best.
+  std::optional<double> change_along(std::span<const double> direction, double allowed);
+  /// The best design in parts of the ranges.
+  std::vector<double> best() const;
   bool was_cancelled() const { return cancelled_; }
   /// How many designs were better than all before.
   int improvements() const { return improvements_; }
@@ -55,6 +66,8 @@ class DesignSearch final : public MinimisationProblem {
   bool cancelled_ = false;
   int improvements_ = 0;
   double objective_size_ = 1, gradient_size_ = 0;
+  double largest_ = -std::numeric_limits<double>::infinity();  // objective so far
+  double least_ = std::numeric_limits<double>::infinity();
   std::vector<double> unequal_size_, equal_size_;
 };
 

@@ -119,6 +119,7 @@ Stationarity optimality_of(const DesignProblem& problem, std::span<const double>
     if (limits[k].unequal >= 0) result.active_unequal.push_back(limits[k].unequal);
   }
   result.optimality = largest > 0 ? norm(rest) / largest : 0;
+  result.rest = std::move(rest);
   return result;
 }
 

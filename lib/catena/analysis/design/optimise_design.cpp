@@ -11,6 +11,20 @@ namespace {
 // A design with an optimality below this is stationary, whatever the method said of its end: gradients are good to
 // 1e-8, and steps of the size of the tolerance leave its root.
 constexpr double stationary = 1e-5;
+// Of the tolerance, the relative gain of a step that ends the method.
+constexpr double part_of_gain = 1e-3;
+
+// A method ends where its steps, or what they gain, fall below its tolerances: a gain of 1e-3 of the tolerance leaves a
+// gradient of its root. A design with an optimality below this many of these is what the method calls done.
+constexpr double roots_of_gain = 30;
+// Steps that tell a design that is not stationary from one at a kink, in parts of the ranges: downhill the objective
+// falls by this part at least of what the gradient promises.
+constexpr double short_steps[] = {1e-3, 1e-5};
+constexpr double kept_promise = 0.1;
+// A design that is nearer to the bottom of its parabola is there: half the digits of a double.
+constexpr double rounding_of_place = 1e-8;
+// How often a method that ends where it could go downhill is begun anew from there.
+constexpr int most_renewals = 2;
 
 /// Of the given start for number 0, random within the bounds for others.
 std::vector<double> start_of(const DesignProblem& problem, std::mt19937_64& random, int number) {
@@ -36,6 +50,62 @@ void require_sound(const DesignProblem& problem) {
   }
 }
 
+MinimiserOptions wanted_of(const DesignOptions& options, const DesignOutcome& outcome, std::size_t variables) {
+  return {.method = options.method,
+          .lower = std::vector<double>(variables, 0.0),
+          .upper = std::vector<double>(variables, 1.0),
+          .x_tolerance = options.tolerance,
+          .f_tolerance = part_of_gain * options.tolerance,
+          .constraint_tolerance = options.tolerance,
+          .max_evaluations = std::max(1, options.max_evaluations - outcome.evaluations),
+          .seed = options.seed};
+}
+
+/// The best design's distance from a stationary one, as far as gradients there tell it.
+std::vector<double> measure(const DesignProblem& problem, DesignSearch& search, DesignOutcome& outcome) {
+  outcome.optimality.reset();
+  outcome.active_unequal.clear();
+  if (search.was_cancelled() || !search.complete_best()) return {};
+  Stationarity found =
+      optimality_of(problem, outcome.x, outcome.values, search.unequal_sizes(), search.gradient_size());
+  outcome.optimality = found.optimality;
+  outcome.active_unequal = std::move(found.active_unequal);
+  return std::move(found.rest);
+}
+
+/// Whether the best design is a stationary one, whatever the method says of it; true where a short step leads to a
+/// better one, to which the outcome then moves.
+bool goes_downhill(const DesignProblem& problem, const DesignOptions& options, DesignSearch& search,
+                   DesignOutcome& outcome) {
+  outcome.at_kink = false;
+  const std::vector<double> rest = measure(problem, search, outcome);
+  const double good_enough = std::max(stationary, roots_of_gain * std::sqrt(part_of_gain * options.tolerance));
+  const double allowed = 10 * options.tolerance;
+  if (!outcome.optimality || *outcome.optimality <= good_enough || outcome.violation > allowed) return false;
+  double slope = 0;
+  for (const double r : rest) slope += r * r;
+  slope = std::sqrt(slope);
+  for (const double step : short_steps) {
+    std::vector<double> direction(rest);
+    for (double& d : direction) d *= -step / slope;
+    // Along curved constraints a step misses them by its square.
+    const std::optional<double> change = search.change_along(direction, std::max(allowed, 10 * step * step));
+    if (!change) continue;
+    if (*change < -kept_promise * slope * step) {
+      measure(problem, search, outcome);
+      return true;
+    }
+    // The bottom of the parabola through it, where the objective is one.
+    const double bend = 2 * (*change + slope * step) / (step * step), distance = slope / bend;
+    if (distance <= std::max(allowed, rounding_of_place)) {
+      outcome.optimality = std::min(*outcome.optimality, distance);
+      return false;
+    }
+  }
+  outcome.at_kink = true;
+  return false;
+}
+
 }  // namespace
 
 DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions& options) {
@@ -50,15 +120,7 @@ DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions&
     const int improvements = search.improvements();
     if (!search.begin(u)) continue;
     analysed = true;
-    const MinimiserOptions wanted{.method = options.method,
-                                  .lower = std::vector<double>(u.size(), 0.0),
-                                  .upper = std::vector<double>(u.size(), 1.0),
-                                  .x_tolerance = options.tolerance,
-                                  .f_tolerance = 1e-3 * options.tolerance,
-                                  .constraint_tolerance = options.tolerance,
-                                  .max_evaluations = std::max(1, options.max_evaluations - outcome.evaluations),
-                                  .seed = options.seed};
-    const MinimiserEnd ended = minimise(search, wanted, u);
+    const MinimiserEnd ended = minimise(search, wanted_of(options, outcome, u.size()), u);
     if (search.improvements() > improvements) end = ended;
   }
   if (!analysed) {
@@ -66,11 +128,12 @@ DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions&
     if (search.was_cancelled()) outcome.end = DesignEnd::cancelled;
     return outcome;
   }
-  if (!search.was_cancelled() && search.complete_best()) {
-    Stationarity found =
-        optimality_of(problem, outcome.x, outcome.values, search.unequal_sizes(), search.gradient_size());
-    outcome.optimality = found.optimality;
-    outcome.active_unequal = std::move(found.active_unequal);
+  bool downhill = goes_downhill(problem, options, search, outcome);
+  for (int n = 0; downhill && end == MinimiserEnd::converged && n < most_renewals && search.go_on(); ++n) {
+    std::vector<double> u = search.best();
+    if (!search.begin(u)) break;
+    end = minimise(search, wanted_of(options, outcome, u.size()), u);
+    downhill = goes_downhill(problem, options, search, outcome);
   }
   for (std::size_t v = 0; v < outcome.x.size(); ++v) {
     if (outcome.x[v] == problem.lower[v]) outcome.at_lower.push_back(static_cast<int>(v));
@@ -82,6 +145,8 @@ DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions&
   const bool converged = end == MinimiserEnd::converged || rounded;
   if (search.was_cancelled())
     outcome.end = DesignEnd::cancelled;
+  else if (converged && feasible && downhill)
+    outcome.end = DesignEnd::not_stationary;
   else if (converged || (feasible && outcome.optimality && *outcome.optimality <= stationary))
     outcome.end = feasible ? DesignEnd::converged : DesignEnd::infeasible;
   else

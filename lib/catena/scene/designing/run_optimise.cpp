@@ -80,6 +80,15 @@ Report report_of(const DesignOutcome& outcome, int max_evaluations, const std::v
           "noise in measures; another \"solver\", such as \"bobyqa\", may go on",
           outcome.evaluations);
       break;
+    case DesignEnd::not_stationary:
+      report.status = Status::not_converged;
+      report.message = fmt::format(
+          "the method counts itself done after {} designs, but its best one is not stationary: its optimality is "
+          "{:.3g}, "
+          "and a short step against the gradient leads to a better design; likely cause: a valley too flat or too "
+          "narrow for the method; a smaller \"tolerance\", another \"solver\" or \"start\" may go on",
+          outcome.evaluations, outcome.optimality.value_or(std::numeric_limits<double>::quiet_NaN()));
+      break;
     case DesignEnd::cancelled:
       report.status = Status::cancelled;
       report.message = "stopped; the best design so far is given";
@@ -96,6 +105,15 @@ Report report_of(const DesignOutcome& outcome, int max_evaluations, const std::v
       report.message = "no design could be analysed, neither the start nor others within the bounds:";
       for (const auto& [reason, count] : outcome.failed) report.message += fmt::format(" {} ({})", reason, count);
       break;
+  }
+  if (outcome.end == DesignEnd::converged && outcome.at_kink) {
+    report.warnings.push_back(
+        fmt::format("the design found is not stationary to first order (optimality {:.3g}), though short steps against "
+                    "its gradient "
+                    "lead to no better one: a kink of the objective or of a constraint holds it there, or a limit that "
+                    "the gradient "
+                    "does not see; check its neighbours, by a \"sweep\"",
+                    *outcome.optimality));
   }
   return report;
 }
