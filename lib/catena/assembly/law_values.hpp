@@ -3,8 +3,11 @@
 // Source files alone include it: this is where laws meet every force element.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
+#include "catena/assembly/careful_dual.hpp"
 #include "catena/assembly/state_laws.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/attachment.hpp"
@@ -22,7 +25,12 @@ class LawValues {
 
   T value(int law) const {
     const CompiledLaw<S>& compiled = laws_[static_cast<std::size_t>(law)];
-    return compiled.formula.evaluate_beyond([&](std::uint32_t k) { return input(compiled.inputs[k]); });
+    const T plain = compiled.formula.evaluate_beyond([&](std::uint32_t k) { return input(compiled.inputs[k]); });
+    if constexpr (requires { plain.d; }) {
+      const auto is_number = [](double derivative) { return std::isfinite(derivative); };
+      if (std::isfinite(plain.v) && !std::all_of(plain.d.begin(), plain.d.end(), is_number)) return carefully(compiled);
+    }
+    return plain;
   }
 
   T input(const LawInput<S>& input) const {
@@ -63,6 +71,28 @@ class LawValues {
   }
 
  private:
+  /// Where a part of the formula has no derivative.
+  T carefully(const CompiledLaw<S>& compiled) const {
+    using C = CarefulDual<T>;
+    const auto depending = [&](std::uint32_t k) {
+      C number(input(compiled.inputs[k]));
+      // Rates depend on places only where they are not zero; what else is read may bend beside its derivative.
+      if (!is_rate(compiled.inputs[k].kind) && compiled.inputs[k].kind != ColumnKind::time) number.depends.fill(true);
+      return number;
+    };
+    return compiled.formula
+        .evaluate_with(depending,
+                       [](const NamedTable<S>& table, const C& place) {
+                         C number = place;
+                         number.x = table.curve.evaluate(place.x).f;
+                         return number.mended();
+                       })
+        .x;
+  }
+  static bool is_rate(ColumnKind kind) {
+    return kind == ColumnKind::vx || kind == ColumnKind::vy || kind == ColumnKind::omega ||
+           kind == ColumnKind::joint_omega || kind == ColumnKind::slide_rate || kind == ColumnKind::length_rate;
+  }
   static Vec2<T> lifted(const Vec2<S>& v) { return {T(v.x), T(v.y)}; }
   Vec2<T> place(const LawInput<S>& input) const { return view_.frame(input.i).point(lifted(input.point_i)); }
   Vec2<T> velocity(const LawInput<S>& input) const {
