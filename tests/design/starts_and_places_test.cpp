@@ -257,5 +257,24 @@ TEST(MeasureGradients, OfTheFirstRowWhereverItIs) {
   EXPECT_NEAR(gradient(run, "final", 0), 1.5, 1e-12);
 }
 
+// A rod that assembly moves and turns to its pin: how much an angle weighs beside a place follows the arm, which moves.
+TEST(StartDerivatives, OfAnAssemblyWhoseWeightsMove) {
+  const auto turned = [](double a) {
+    const TextRun run = run_text(R"({"catena": 1, "parameters": {"a": )" + std::to_string(a) + R"(},
+    "bodies": {"rod": {"mass": 1, "inertia": 0.2, "position": [0.3, 0.4], "angle": 0.5}},
+    "constraints": [{"type": "revolute", "i": ["ground", [0, 0]], "j": ["rod", ["=-a", "=a/3"]]}],
+    "outputs": ["rod.x", "rod.angle"],
+    "analyses": [{"type": "sensitivity", "parameters": ["a"], "of": {"type": "dynamics", "until": 0.1}}]})");
+    EXPECT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+    return run;
+  };
+  const double h = 1e-3;
+  const TextRun run = turned(0.4), below = turned(0.4 - h), above = turned(0.4 + h);
+  for (const std::string column : {"rod.x", "rod.angle"}) {
+    const double difference = (above.first(column) - below.first(column)) / (2 * h);
+    EXPECT_NEAR(run.first("d(" + column + ")/d(a)"), difference, 1e-5) << column;
+  }
+}
+
 }  // namespace
 }  // namespace catena::testing

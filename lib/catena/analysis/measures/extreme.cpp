@@ -85,8 +85,8 @@ void Extreme::consider(MotionSample sample, double value, double reach) {
 void Extreme::add(const MotionSample& sample) { consider(sample, quantity_(sample.value), 0); }
 
 // The top between a and b, `middle` above both.
-std::optional<Extreme::Peak> Extreme::locate(double a, double middle, double b, double length,
-                                             const MotionStretch& stretch, const At& at) const {
+std::optional<Extreme::Peak> Extreme::locate(double a, double middle, double b, double length, const MotionPiece& piece,
+                                             const At& at) const {
   std::optional<double> va = at(a), vm = at(middle), vb = at(b);
   if (!va || !vm || !vb) return {};
   const double h = window * length;
@@ -113,8 +113,8 @@ std::optional<Extreme::Peak> Extreme::locate(double a, double middle, double b, 
     const bool close = useful && std::abs(t - before) < h / 4;
     if (!close) continue;
     // Seven instants around it, inside of the stretch.
-    const double d = h / 3, centre = std::clamp(middle, stretch.from + h, stretch.to - h);
-    if (centre < stretch.from + h || d == 0) continue;
+    const double d = h / 3, centre = std::clamp(middle, piece.from() + h, piece.to() - h);
+    if (centre < piece.from() + h || d == 0) continue;
     std::array<double, 7> around{};
     for (std::size_t k = 0; k < 7; ++k) {
       const std::optional<double> value = at(centre + d * (static_cast<double>(k) - 3));
@@ -133,7 +133,7 @@ std::optional<Extreme::Peak> Extreme::locate(double a, double middle, double b, 
   return Peak{middle, *vm};
 }
 
-void Extreme::add(const MotionSamples& samples, const MotionSamples::Part& part, const MotionStretch& stretch,
+void Extreme::add(const MotionSamples& samples, const MotionSamples::Part& part, const MotionPiece& piece,
                   bool with_derivative) {
   constexpr std::size_t count = MotionSamples::nodes + 2;
   std::array<double, count> v{}, t{};
@@ -146,12 +146,12 @@ void Extreme::add(const MotionSamples& samples, const MotionSamples::Part& part,
       undefined_ = t[k];
   }
   const auto at = [&](double instant) -> std::optional<double> {
-    const std::optional<MotionSample> sample = samples.look(stretch, instant, false);
+    const std::optional<MotionSample> sample = samples.look(piece, instant, false);
     if (!sample) return {};
     return quantity_(sample->value);
   };
   const auto take = [&](double instant) {
-    if (auto sample = samples.look(stretch, instant, with_derivative)) {
+    if (auto sample = samples.look(piece, instant, with_derivative)) {
       const double value = quantity_(sample->value);
       consider(std::move(*sample), value, 2 * (t.back() - t.front()));
     }
@@ -162,7 +162,7 @@ void Extreme::add(const MotionSamples& samples, const MotionSamples::Part& part,
     const bool end = k == 0 || k == count - 1;
     if (!promises(v[k])) continue;
     if (!end && v[k] >= v[k - 1] && v[k] >= v[k + 1] && (v[k] > v[k - 1] || v[k] > v[k + 1])) {
-      if (const auto peak = locate(t[k - 1], t[k], t[k + 1], length, stretch, at)) take(peak->t);
+      if (const auto peak = locate(t[k - 1], t[k], t[k + 1], length, piece, at)) take(peak->t);
     } else if (end) {
       // A top may lie between the end and the sample beside it.
       const std::size_t i = k == 0 ? 0 : count - 3;
@@ -171,7 +171,7 @@ void Extreme::add(const MotionSamples& samples, const MotionSamples::Part& part,
       const bool between = inside && *inside > from && *inside < to;
       const std::optional<double> value = between ? at(*inside) : std::nullopt;
       if (value && *value > std::max(v[k], v[k == 0 ? 1 : count - 2])) {
-        if (const auto peak = locate(from, *inside, to, length, stretch, at)) take(peak->t);
+        if (const auto peak = locate(from, *inside, to, length, piece, at)) take(peak->t);
       } else if (v[k] >= v[k == 0 ? 1 : count - 2] && (!best_ || v[k] > largest_)) {
         take(t[k]);
       }

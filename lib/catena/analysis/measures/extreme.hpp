@@ -22,7 +22,7 @@ class Extreme {
   using Quantity = std::function<double(std::span<const double>)>;
   explicit Extreme(Quantity quantity) : quantity_(std::move(quantity)) {}
 
-  void add(const MotionSamples& samples, const MotionSamples::Part& part, const MotionStretch& stretch,
+  void add(const MotionSamples& samples, const MotionSamples::Part& part, const MotionPiece& piece,
            bool with_derivative);
   /// An instant by itself.
   void add(const MotionSample& sample);
@@ -41,7 +41,7 @@ class Extreme {
     double t, value;
   };
   using At = std::function<std::optional<double>(double)>;
-  std::optional<Peak> locate(double a, double middle, double b, double length, const MotionStretch& stretch,
+  std::optional<Peak> locate(double a, double middle, double b, double length, const MotionPiece& piece,
                              const At& at) const;
   /// Samples within `reach` of the best, s, belong to the same top.
   void consider(MotionSample sample, double value, double reach);

@@ -8,6 +8,10 @@ namespace {
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 // Gradients of two instants of a tie that differ by less than this part of their size are the same.
 constexpr double same_gradient = 1e-6;
+// Gradients of this part of the column's size are rounding, by a parameter of any size up to 1e9.
+constexpr double no_gradient = 1e-11;
+// Limits from both sides of an instant that differ by less than this part of the column's size are the same.
+constexpr double no_jump = 1e-10;
 
 std::string not_a_number_at(double t) { return fmt::format("its column is not a number at t = {:.9g} s", t); }
 
@@ -19,7 +23,7 @@ void MeasureSet::Account::prepare_path() {
     const Vec2<double> point = request_.points[k];
     if (request_.timed) {
       const double part = n > 1 ? static_cast<double>(k) / static_cast<double>(n - 1) : 0;
-      instants_.push_back({k + 1 == n && n > 1 ? run_.last : run_.first + part * (run_.last - run_.first), {}});
+      instants_.push_back({k + 1 == n && n > 1 ? run_.last : run_.first + part * (run_.last - run_.first)});
     } else {
       extremes_.emplace_back([=, x = column_, y = second_](std::span<const double> v) {
         return -(v[x] - point.x) * (v[x] - point.x) - (v[y] - point.y) * (v[y] - point.y);
@@ -28,9 +32,33 @@ void MeasureSet::Account::prepare_path() {
   }
 }
 
-void MeasureSet::Account::add(const MotionSamples& samples, const MotionSamples::Part& part,
-                              const MotionStretch& stretch) {
-  for (Extreme& extreme : extremes_) extreme.add(samples, part, stretch, parameters_ > 0);
+// What an integral up to an instant that moves gains, and loses beyond it.
+void MeasureSet::Account::add_jump(const MotionSamples& samples, double t, double before, double after) {
+  const std::vector<double> moving = samples.moving(t);
+  // Limits of columns that do not jump differ by rounding: where the rate is not known nothing is lost by them.
+  const bool jumps = std::abs(before - after) > no_jump * size_;
+  for (std::size_t p = 0; p < moving.size(); ++p) {
+    if (moving[p] == 0 || !jumps) continue;
+    sum_gradient_[p] += (before - after) * moving[p];
+    squares_gradient_[p] += (before * before - after * after) * moving[p];
+  }
+}
+
+// Begun earlier or later than an instant at which the column jumps, the run has that jump in it or not.
+void MeasureSet::Account::leave_out_start(const MotionSamples& samples, const MotionPiece& piece) {
+  const std::vector<double> moving = samples.moving(run_.first);
+  if (moving.empty()) return;
+  const std::optional<MotionSample> start = samples.look({piece.stretch}, run_.first, true);
+  for (std::size_t p = 0; p < moving.size(); ++p) {
+    if (moving[p] != 0 && (!start || start->change[column_] != 0)) sum_gradient_[p] = squares_gradient_[p] = none;
+  }
+}
+
+void MeasureSet::Account::add(const MotionSamples& samples, const MotionSamples::Part& part, const MotionPiece& piece) {
+  for (Extreme& extreme : extremes_) extreme.add(samples, part, piece, parameters_ > 0);
+  for (const MotionSample& sample : part) {
+    if (std::isfinite(sample.value[column_])) size_ = std::max(size_, std::abs(sample.value[column_]));
+  }
   if (!is_integral()) return;
   const double length = part.back().t - part.front().t;
   sum_gradient_.resize(parameters_, 0.0);
@@ -47,12 +75,27 @@ void MeasureSet::Account::add(const MotionSamples& samples, const MotionSamples:
       squares_gradient_[p] += weight * 2 * v * gradient;
     }
   }
+  if (piece.breaks_before && before_break_ && part.front().t == before_break_->first)
+    add_jump(samples, part.front().t, before_break_->second, part.front().value[column_]);
+  if (piece.breaks_after && part.back().t == piece.to()) before_break_ = {piece.to(), part.back().value[column_]};
+  if (piece.breaks_before && part.front().t == run_.first) leave_out_start(samples, piece);
 }
 
-void MeasureSet::Account::look_at_instants(const MotionSamples& samples, const MotionStretch& stretch) {
+void MeasureSet::Account::look_at_instants(const MotionSamples& samples, const MotionPiece& piece) {
   for (Instant& instant : instants_) {
-    if (instant.sample || instant.t < stretch.from || instant.t > stretch.to) continue;
-    instant.sample = samples.look(stretch, instant.t, parameters_ > 0);
+    if (instant.sample || instant.t < piece.from() || instant.t > piece.to()) continue;
+    const bool differentiated = parameters_ > 0;
+    if (differentiated && piece.breaks_after && instant.t == piece.to()) {
+      instant.moving = samples.moving(instant.t);
+      if (!instant.moving.empty()) {
+        instant.before = samples.limit(piece, instant.t, true);
+        instant.rate_before = samples.rates(piece, instant.t).value_or(std::vector<double>{});
+      }
+    }
+    // At a breakpoint the value is that after it, of the next piece, as that of a row.
+    if (piece.breaks_after && instant.t == piece.to() && instant.t != run_.last) continue;
+    instant.sample = samples.look({piece.stretch}, instant.t, differentiated);
+    if (differentiated) instant.rate = samples.rates(piece, instant.t).value_or(std::vector<double>{});
   }
 }
 
@@ -88,7 +131,8 @@ void MeasureSet::Account::check_ties(MeasureResult& result, const Extreme& extre
   for (const MotionSample& other : extreme.others()) {
     for (std::size_t p = 0; p < parameters_; ++p) {
       const double here = gradient_of(extreme.best(), column_, p), there = gradient_of(other, column_, p);
-      if (std::abs(here - there) <= same_gradient * std::max(std::abs(here), std::abs(there))) continue;
+      const double allowed = same_gradient * std::max(std::abs(here), std::abs(there)) + no_gradient * size_;
+      if (std::abs(here - there) <= allowed) continue;
       result.gradient[p] = none;
       result.trouble = fmt::format(
           "its extreme is reached at t = {:.9g} s and at t = {:.9g} s with different derivatives: which of them counts "
@@ -162,46 +206,6 @@ void MeasureSet::Account::give_path(MeasureResult& result) const {
     result.trouble = "all its points are met exactly: a distance has a kink there";
 }
 
-// A run that an event ended did so at an instant that moves with the parameters, and with it all that is measured up to
-// there; what it had passed before stays.
-void MeasureSet::Account::leave_out_early_end(MeasureResult& result) const {
-  if (parameters_ == 0 || rows_ > 0 || !result.value || !last_ || last_->t == run_.last) return;
-  const auto is_at_end = [&](const Extreme& extreme) { return extreme.best().t >= last_->t; };
-  const bool by_extremes = std::any_of(extremes_.begin(), extremes_.end(), is_at_end);
-  if (request_.kind != MeasureKind::final && !is_integral() && !by_extremes) return;
-  std::fill(result.gradient.begin(), result.gradient.end(), none);
-  if (result.trouble.empty()) result.trouble = "the run ended early, at an instant that changes with the parameters";
-}
-
-// The motion goes on over an instant later: integrals grow by what is there; extremes stay unless they are at the end.
-double MeasureSet::Account::by_last_instant(const MeasureResult& result) const {
-  if (!result.value || !last_ || rows_ > 0) return none;
-  if (last_->t != run_.last) return 0;  // it ended before
-  const double v = last_->value[column_], value = *result.value;
-  const auto is_at_end = [&](const Extreme& extreme) { return extreme.best().t == run_.last; };
-  switch (request_.kind) {
-    case MeasureKind::first:
-    case MeasureKind::at:
-      return 0;
-    case MeasureKind::integral:
-      return v;
-    case MeasureKind::mean:
-      return (v - value) / duration_;
-    case MeasureKind::rms:
-      return (v * v - value * value) / (2 * value * duration_);
-    case MeasureKind::maximum:
-    case MeasureKind::minimum:
-    case MeasureKind::range:
-      return std::any_of(extremes_.begin(), extremes_.end(), is_at_end) ? none : 0;
-    case MeasureKind::path:
-      return request_.timed || std::any_of(extremes_.begin(), extremes_.end(), is_at_end) ? none : 0;
-    case MeasureKind::final:
-    case MeasureKind::field:
-      break;
-  }
-  return none;
-}
-
 MeasureResult MeasureSet::Account::result(const ColumnInfo& column, bool looked) const {
   MeasureResult result;
   result.name = request_.name;
@@ -257,8 +261,6 @@ MeasureResult MeasureSet::Account::result(const ColumnInfo& column, bool looked)
     std::fill(result.gradient.begin(), result.gradient.end(), none);
     if (result.trouble.empty()) result.trouble = "the run ended before there was anything to measure";
   }
-  leave_out_early_end(result);
-  result.by_last_instant = by_last_instant(result);
   return result;
 }
 

@@ -29,7 +29,7 @@ class MeasureSet::Account {
         prepare_path();
         break;
       case MeasureKind::at:
-        instants_.push_back({request.at, {}});
+        instants_.push_back({request.at});
         break;
       default:
         break;
@@ -44,20 +44,32 @@ class MeasureSet::Account {
   bool wants_samples() const { return is_integral() || !extremes_.empty(); }
 
   void set_parameters(int parameters) { parameters_ = static_cast<std::size_t>(parameters); }
-  void add(const MotionSamples& samples, const MotionSamples::Part& part, const MotionStretch& stretch);
-  void look_at_instants(const MotionSamples& samples, const MotionStretch& stretch);
+  void add(const MotionSamples& samples, const MotionSamples::Part& part, const MotionPiece& piece);
+  void look_at_instants(const MotionSamples& samples, const MotionPiece& piece);
   void add_row(const MotionSample& sample, bool only_rows);
   /// `looked`: the motion could be looked at everywhere between its rows.
   MeasureResult result(const ColumnInfo& column, bool looked) const;
+  /// The derivative by the last instant, were it another one; not a number where that is not known.
+  double by_last_instant(const MeasureResult& result, const End* end) const;
+  /// The run ended early, and how its end moves is not known.
+  void leave_out_early_end(MeasureResult& result) const;
+  /// Puts in what moving instants make of the gradient; `measure`: its number.
+  void move(MeasureResult& result, const End* end, const MovingInstants& moving, std::size_t measure) const;
 
  private:
   struct Instant {
     double t;
-    std::optional<MotionSample> sample;
+    std::optional<MotionSample> sample{};
+    std::vector<double> rate{};            // of columns; with derivatives
+    std::optional<MotionSample> before{};  // at a moving jump: the limit from before it
+    std::vector<double> rate_before{}, moving{};
   };
   void prepare_path();
-  double by_last_instant(const MeasureResult& result) const;
-  void leave_out_early_end(MeasureResult& result) const;
+  void add_jump(const MotionSamples& samples, double t, double before, double after);
+  void leave_out_start(const MotionSamples& samples, const MotionPiece& piece);
+  bool is_at_end(const Extreme& extreme) const;
+  bool is_touched_by(const End& end) const;
+  void take_out(MeasureResult& result, std::size_t p, const std::string& why) const;
   double gradient_of(const MotionSample& sample, std::size_t column, std::size_t p) const {
     return sample.derivative.empty() ? std::numeric_limits<double>::quiet_NaN()
                                      : sample.derivative[column * parameters_ + p];
@@ -75,8 +87,9 @@ class MeasureSet::Account {
   std::vector<Instant> instants_;
   std::optional<MotionSample> first_, last_;
   // Integrals of v and v^2 and of their gradients; of rows where there is no time: sums.
-  double sum_ = 0, squares_ = 0, duration_ = 0;
+  double sum_ = 0, squares_ = 0, duration_ = 0, size_ = 0;  // size_: the largest |v|
   std::vector<double> sum_gradient_, squares_gradient_;
+  std::optional<std::pair<double, double>> before_break_;  // the last breakpoint, and the column just before it
   std::int64_t rows_ = 0;
 };
 

@@ -35,7 +35,7 @@ MeasureSet::~MeasureSet() = default;
 
 MeasureSet::MeasureSet(std::vector<MeasureRequest> requests, const Model& model, const Plan& plan,
                        const ColumnSources& sources, const TimeRange& run)
-    : run_(run), requests_(std::move(requests)) {
+    : run_(run), requests_(std::move(requests)), breakpoints_(model.functions) {
   std::erase_if(requests_, [](const MeasureRequest& request) { return request.kind == MeasureKind::field; });
   if (requests_.empty()) return;
   const ColumnPlaces places = places_of(requests_);
@@ -45,7 +45,7 @@ MeasureSet::MeasureSet(std::vector<MeasureRequest> requests, const Model& model,
   if (!columns_->notes().empty()) throw std::invalid_argument("measures: " + columns_->notes().front());
   if (columns_->size() != places.names.size())
     throw std::invalid_argument("measures: a name stands for more than one column");
-  samples_ = std::make_unique<MotionSamples>(*columns_);
+  samples_ = std::make_unique<MotionSamples>(*columns_, run_);
   for (std::size_t k = 0; k < requests_.size(); ++k) {
     if (needs_time(requests_[k].kind) && !sources.timed)
       throw std::invalid_argument(
@@ -56,9 +56,10 @@ MeasureSet::MeasureSet(std::vector<MeasureRequest> requests, const Model& model,
   }
 }
 
-void MeasureSet::differentiate(int parameters, DifferentiateColumns derivatives) {
+void MeasureSet::differentiate(int parameters, DifferentiateColumns derivatives, bool may_end) {
   if (empty()) return;
   parameters_ = parameters;
+  may_end_ = may_end;
   bool integrals = false;
   for (const auto& account : accounts_) {
     account->set_parameters(parameters);
@@ -69,11 +70,43 @@ void MeasureSet::differentiate(int parameters, DifferentiateColumns derivatives)
 
 void MeasureSet::cover(const MotionStretch& stretch) {
   if (empty()) return;
-  for (const auto& account : accounts_) account->look_at_instants(*samples_, stretch);
-  if (!wants_samples_) return;
-  looked_ = samples_->cover(stretch, [&](const MotionSamples::Part& part, const MotionStretch& within) {
-    for (const auto& account : accounts_) account->add(*samples_, part, within);
-  }) && looked_;
+  double from = stretch.from;
+  bool breaks = breakpoints_.contain(from);
+  while (from < stretch.to) {
+    // A breakpoint that rounding puts beside the end is the end's own.
+    double to = std::min(breakpoints_.next(from), stretch.to);
+    if (!(stretch.to - to > 1e-12 * std::abs(to))) to = stretch.to;
+    const bool breaks_after = to < stretch.to || breakpoints_.contain(to);
+    cover_piece({{from, to, stretch.at}, breaks, breaks_after});
+    from = to;
+    breaks = breaks_after;
+  }
+}
+
+void MeasureSet::cover_piece(const MotionPiece& piece) {
+  for (const auto& account : accounts_) account->look_at_instants(*samples_, piece);
+  if (wants_samples_) {
+    looked_ = samples_->cover(piece, [&](const MotionSamples::Part& part, const MotionPiece& within) {
+      for (const auto& account : accounts_) account->add(*samples_, part, within);
+    }) && looked_;
+  }
+  if (parameters_ > 0 && (may_end_ || piece.to() == run_.last)) look_at_end(piece);
+}
+
+void MeasureSet::look_at_end(const MotionPiece& piece) {
+  end_.reset();
+  std::optional<MotionSample> sample =
+      piece.breaks_after ? samples_->limit(piece, piece.to(), true) : samples_->look(piece, piece.to(), true);
+  std::optional<std::vector<double>> rate = samples_->rates(piece, piece.to());
+  if (!sample || !rate) return;
+  end_.emplace(End{piece.to(), std::move(*sample), std::move(*rate), {}, {}});
+  if (!piece.breaks_after) return;
+  end_->moving = samples_->moving(piece.to());
+  if (end_->moving.empty()) return;
+  if (const std::optional<Snapshot> there = piece.stretch.at(piece.to()))
+    end_->change = samples_->take(*there, true).change;
+  else
+    end_.reset();
 }
 
 double MeasureSet::pace() const { return wants_samples_ ? samples_->pace() : 0; }
@@ -83,18 +116,25 @@ void MeasureSet::take_row(const Snapshot& snapshot, bool only_rows) {
   const bool last = only_rows || snapshot.t == run_.last;
   const bool first = !earliest_row_ || snapshot.t < *earliest_row_;
   if (first) earliest_row_ = snapshot.t;
+  latest_row_ = std::max(latest_row_.value_or(snapshot.t), snapshot.t);
   const MotionSample sample = samples_->take(snapshot, parameters_ > 0 && (last || first));
   for (const auto& account : accounts_) account->add_row(sample, only_rows);
   if (wants_samples_ && !only_rows) samples_->note_row(sample);
 }
 
-std::vector<MeasureResult> MeasureSet::results() const {
+std::vector<MeasureResult> MeasureSet::results(const MovingInstants* moving) const {
   std::vector<MeasureResult> results;
   for (std::size_t k = 0; k < accounts_.size(); ++k) {
     const auto& names = requests_[k].columns;
     const auto info = std::find_if(columns_->info().begin(), columns_->info().end(),
                                    [&](const ColumnInfo& column) { return column.name == names.front(); });
-    results.push_back(accounts_[k]->result(info == columns_->info().end() ? ColumnInfo{} : *info, looked_));
+    const Account& account = *accounts_[k];
+    results.push_back(account.result(info == columns_->info().end() ? ColumnInfo{} : *info, looked_));
+    if (parameters_ == 0) continue;
+    const End* end = end_ && latest_row_ && end_->t == *latest_row_ ? &*end_ : nullptr;
+    results.back().by_last_instant = account.by_last_instant(results.back(), end);
+    if (ended_early() && !moving) account.leave_out_early_end(results.back());
+    if (moving) account.move(results.back(), end, *moving, k);
   }
   return results;
 }

@@ -9,6 +9,15 @@
 //   integrals         sum of weights x gradients at the nodes        mean, rms       from these
 //   paths             of each point the nearest instant is fixed     first, final, at
 //
+// Pieces end at breakpoints of functions of time. Where these jump at an instant t* that parameters move, an integral
+// of v has the part (v(t*-) - v(t*+)) dt*/dp besides, and what is largest, or nearest, at t* itself moves with it
+// (motion_samples.hpp). Where the run ends at T, or a measure is taken at an instant, that moves:
+//
+//   dm/dp = (dm/dp) at fixed instants + (dm/dT) dT/dp
+//
+// Where T is itself an instant at which functions jump the two must move together; else m has no derivative if its
+// column jumps there.
+//
 // What a run could not be looked at for (between rows of a motion of least norm) is taken from its rows, and `trouble`
 // says so; integrals over time have no value there. Neither has a measure that is not a number.
 #pragma once
@@ -19,8 +28,16 @@
 
 #include "catena/analysis/measures/extreme.hpp"
 #include "catena/analysis/measures/measure.hpp"
+#include "catena/analysis/run/breakpoints.hpp"
 
 namespace catena {
+
+/// How the instants of a run move with the parameters: dt/dp by parameter.
+struct MovingInstants {
+  std::vector<double> last;                ///< of the end of the run; empty: it stands still
+  std::vector<std::vector<double>> taken;  ///< of the instant at which measure k, kind `at`, is taken; empty, the same
+  std::string why_unknown;                 ///< where a rate is not a number: why
+};
 
 class MeasureSet {
  public:
@@ -33,8 +50,9 @@ class MeasureSet {
   bool empty() const { return requests_.empty(); }
   const ColumnSet& columns() const { return *columns_; }
   const Needs& needs() const { return columns_->needs(); }
-  /// Gradients by so many parameters are wanted, from derivatives of columns(); before anything is taken.
-  void differentiate(int parameters, DifferentiateColumns derivatives);
+  /// Gradients by so many parameters are wanted, from derivatives of columns(); before anything is taken. `may_end`:
+  /// the run may end anywhere.
+  void differentiate(int parameters, DifferentiateColumns derivatives, bool may_end = false);
 
   /// A stretch of the motion, one after the other.
   void cover(const MotionStretch& stretch);
@@ -43,20 +61,38 @@ class MeasureSet {
   /// A row; `only_rows`: there are no stretches.
   void take_row(const Snapshot& snapshot, bool only_rows);
 
-  std::vector<MeasureResult> results() const;
+  /// Whether the run ended before its last instant.
+  bool ended_early() const { return latest_row_ && *latest_row_ != run_.last; }
+  /// Of the measures passed in, those of the kind `field` left out. Without `moving` gradients are those at fixed
+  /// instants, of a run that ended early none.
+  std::vector<MeasureResult> results(const MovingInstants* moving = nullptr) const;
 
  private:
   class Account;
+  void cover_piece(const MotionPiece& piece);
+  void look_at_end(const MotionPiece& piece);
+
+  /// Where the motion has come to: columns there, from before it, and how fast they change.
+  struct End {
+    double t = 0;
+    MotionSample sample;
+    std::vector<double> rate;    ///< by column
+    std::vector<double> moving;  ///< dt/dp of the instant, if functions jump there; empty: it stands still
+    std::vector<double> change;  ///< of columns, across it
+  };
 
   TimeRange run_;
   std::vector<MeasureRequest> requests_;
+  Breakpoints breakpoints_;
   std::unique_ptr<ColumnSet> columns_;
   std::unique_ptr<MotionSamples> samples_;
   std::vector<std::unique_ptr<Account>> accounts_;
   int parameters_ = 0;
-  std::optional<double> earliest_row_;
+  std::optional<double> earliest_row_, latest_row_;
+  std::optional<End> end_;
   bool wants_samples_ = false;  // some measure depends on what is between rows
   bool looked_ = true;          // whether every stretch could be looked at
+  bool may_end_ = false;
 };
 
 }  // namespace catena

@@ -33,6 +33,16 @@ constexpr double no_progress = 0.5;
 // the length, where half of what is allowed is left for bends yet to come.
 constexpr double allowed_row_part = 1e-9;
 constexpr double quartic_grows_by = 2 * 32, eighth_grows_by = 2 * 512;
+// A jump below this part of a column's size so far is rounding.
+constexpr double rounding = 1e-9;
+// Limits at breakpoints are taken from instants at this part of a piece inside, or of t where rounding of instants asks
+// for more: a column that swings a hundred times in the piece bends by (6e-4)^3 there.
+constexpr double inside = 1e-6, inside_of_instant = 1e-11;
+// A derivative along an instant of which its two parts leave so little is zero: rates are good to 1e-9.
+constexpr double cancelled = 1e-8;
+// Differences for rates begin with this part of a piece, and are halved until they settle to the second, or so often.
+constexpr double first_difference = 1.0 / 32, settled = 1e-11;
+constexpr int most_halvings = 14;
 
 double place_of(std::size_t sample) { return sample == 0 ? -1 : sample == 8 ? 1 : places[sample - 1]; }
 
@@ -57,20 +67,98 @@ std::array<std::array<double, 5>, 4> foretelling_weights() {
 const std::array<double, 7>& MotionSamples::weights() { return half_weights; }
 
 MotionSample MotionSamples::take(const Snapshot& snapshot, bool with_derivative) const {
-  MotionSample sample{snapshot.t, std::vector<double>(columns_.size()), {}};
+  MotionSample sample{snapshot.t, std::vector<double>(columns_.size()), {}, {}};
   columns_.evaluate(snapshot, sample.value);
   if (with_derivative && parameters_ > 0) {
-    sample.derivative.assign(columns_.size() * static_cast<std::size_t>(parameters_),
-                             std::numeric_limits<double>::quiet_NaN());
-    derivatives_(snapshot, sample.derivative);
+    sample.derivative.assign(columns_.size() * parameters_, std::numeric_limits<double>::quiet_NaN());
+    sample.change.assign(columns_.size(), 0.0);
+    derivatives_.at(snapshot, sample.derivative, sample.change);
+    for (std::size_t c = 0; c < size_.size(); ++c) {
+      if (std::abs(sample.change[c]) <= rounding * size_[c]) sample.change[c] = 0;
+    }
   }
   return sample;
 }
 
-std::optional<MotionSample> MotionSamples::look(const MotionStretch& stretch, double t, bool with_derivative) const {
-  const std::optional<Snapshot> snapshot = stretch.at(t);
+std::optional<MotionSample> MotionSamples::see(const MotionPiece& piece, double t, bool with_derivative) const {
+  const std::optional<Snapshot> snapshot = piece.stretch.at(t);
   if (!snapshot) return {};
   return take(*snapshot, with_derivative);
+}
+
+std::optional<MotionSample> MotionSamples::limit(const MotionPiece& piece, double t, bool with_derivative) const {
+  const double length = piece.to() - piece.from(), inwards = t == piece.from() ? 1 : -1;
+  const double d = std::min(std::max(inside * length, inside_of_instant * std::abs(t)), length / 8);
+  MotionSample sum{t, std::vector<double>(columns_.size(), 0.0), {}, {}};
+  if (with_derivative) sum.derivative.assign(columns_.size() * parameters_, 0.0);
+  sum.change.assign(columns_.size(), 0.0);
+  constexpr double weights[] = {3, -3, 1};
+  for (int k = 0; k < 3; ++k) {
+    const std::optional<MotionSample> one = see(piece, t + inwards * (k + 1) * d, with_derivative);
+    if (!one) return {};
+    for (std::size_t c = 0; c < sum.value.size(); ++c) sum.value[c] += weights[k] * one->value[c];
+    for (std::size_t c = 0; c < sum.derivative.size(); ++c) sum.derivative[c] += weights[k] * one->derivative[c];
+  }
+  return sum;
+}
+
+std::optional<MotionSample> MotionSamples::look(const MotionPiece& piece, double t, bool with_derivative) const {
+  if (!piece.is_break(t)) return see(piece, t, with_derivative);
+  with_derivative = with_derivative && parameters_ > 0;
+  std::optional<MotionSample> sample = limit(piece, t, with_derivative);
+  if (!sample || !with_derivative || t == run_.last) return sample;
+  const std::vector<double> moves = moving(t);
+  if (moves.empty()) return sample;
+  const std::optional<std::vector<double>> rate = rates(piece, t);
+  if (!rate) return {};
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    for (std::size_t p = 0; p < parameters_; ++p) {
+      if (moves[p] == 0) continue;
+      double& derivative = sample->derivative[c * parameters_ + p];
+      const double along = t == run_.first ? std::numeric_limits<double>::quiet_NaN() : (*rate)[c] * moves[p];
+      const double parts = std::abs(derivative) + std::abs(along);
+      derivative += along;
+      if (std::abs(derivative) <= cancelled * parts) derivative = 0;
+    }
+  }
+  return sample;
+}
+
+std::optional<std::vector<double>> MotionSamples::rates(const MotionPiece& piece, double t) const {
+  const std::size_t columns = columns_.size();
+  const double length = piece.to() - piece.from();
+  std::vector<double> best(columns, 0.0), last(columns, 0.0);
+  std::vector<double> change(columns, std::numeric_limits<double>::infinity());
+  const double room = std::min(t - piece.from(), piece.to() - t);
+  for (int n = 0; n < most_halvings; ++n) {
+    const double d = std::ldexp(first_difference * length, -n);
+    // In the middle of the piece, or from its end inwards.
+    const bool central = room >= 2 * d;
+    const double step = central || t - piece.from() < piece.to() - t ? d : -d;
+    constexpr double about[] = {1, -8, 0, 8, -1}, inwards[] = {-25, 48, -36, 16, -3};
+    std::vector<double> now(columns, 0.0);
+    for (int k = 0; k < 5; ++k) {
+      if (central && k == 2) continue;
+      const double there = k == 0 && !central ? t : t + step * (central ? k - 2 : k);
+      const std::optional<MotionSample> sample =
+          piece.is_break(there) ? limit(piece, there, false) : see(piece, there, false);
+      if (!sample) return {};
+      for (std::size_t c = 0; c < columns; ++c)
+        now[c] += (central ? about : inwards)[k] * sample->value[c] / (12 * step);
+    }
+    bool done = n > 0;
+    for (std::size_t c = 0; c < columns && n > 0; ++c) {
+      const double moved = std::abs(now[c] - last[c]);
+      if (moved < change[c] || !std::isfinite(best[c])) {
+        change[c] = moved;
+        best[c] = now[c];
+      }
+      done = done && change[c] <= settled * std::max(std::abs(best[c]), size_[c] / length);
+    }
+    last = now;
+    if (done) break;
+  }
+  return best;
 }
 
 MotionSamples::Misfit MotionSamples::misfit(const Part& part) const {
@@ -116,12 +204,12 @@ double MotionSamples::misfit_of_rows(const Part& part) const {
   return largest;
 }
 
-bool MotionSamples::fill(const MotionStretch& stretch, const MotionSample& a, const MotionSample& b, Part& part) {
+bool MotionSamples::fill(const MotionPiece& piece, const MotionSample& a, const MotionSample& b, Part& part) {
   part.front() = a;
   part.back() = b;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const double t = a.t + (b.t - a.t) * (1 + places[k]) / 2;
-    std::optional<MotionSample> sample = look(stretch, t, always_);
+    std::optional<MotionSample> sample = see(piece, t, always_);
     if (!sample) return false;
     part[k + 1] = std::move(*sample);
   }
@@ -141,39 +229,38 @@ void MotionSamples::note_row(MotionSample row) {
   rows_.push_back(std::move(row));
 }
 
-bool MotionSamples::cover_part(const MotionStretch& stretch, const Part& part, double row_distance,
-                               const std::function<void(const Part&, const MotionStretch&)>& use) {
+bool MotionSamples::cover_part(const MotionPiece& piece, const Part& part, double row_distance,
+                               const std::function<void(const Part&, const MotionPiece&)>& use) {
   const Misfit off = misfit(part);
   const double length = part.back().t - part.front().t;
   if (off.here <= 1 || length <= shortest_part * row_distance) {
     worst_if_twice_ = std::max(worst_if_twice_, off.if_twice);
     least_ = std::min(least_, length);
-    use(part, stretch);
+    use(part, piece);
     return true;
   }
   Part first, second;
-  if (!fill(stretch, part.front(), part[4], first) || !fill(stretch, part[4], part.back(), second)) return false;
+  if (!fill(piece, part.front(), part[4], first) || !fill(piece, part[4], part.back(), second)) return false;
   if (length <= noisy_part * row_distance && misfit(first).here > no_progress * off.here &&
       misfit(second).here > no_progress * off.here) {
-    use(first, stretch);
-    use(second, stretch);
+    use(first, piece);
+    use(second, piece);
     return true;
   }
-  return cover_part(stretch, first, row_distance, use) && cover_part(stretch, second, row_distance, use);
+  return cover_part(piece, first, row_distance, use) && cover_part(piece, second, row_distance, use);
 }
 
-bool MotionSamples::cover(const MotionStretch& stretch,
-                          const std::function<void(const Part&, const MotionStretch&)>& use) {
+bool MotionSamples::cover(const MotionPiece& piece, const std::function<void(const Part&, const MotionPiece&)>& use) {
   worst_if_twice_ = 0;
-  least_ = stretch.to - stretch.from;
-  const std::optional<MotionSample> a = look(stretch, stretch.from, false);
+  least_ = piece.to() - piece.from();
+  const std::optional<MotionSample> a = look(piece, piece.from(), false);
   if (!a) return false;
-  const std::optional<MotionSample> b = look(stretch, stretch.to, false);
+  const std::optional<MotionSample> b = look(piece, piece.to(), false);
   Part whole;
-  const auto inside = [&](const MotionSample& row) { return row.t > stretch.from && row.t < stretch.to; };
-  const double row_distance = least_ / static_cast<double>(1 + std::count_if(rows_.begin(), rows_.end(), inside));
-  const bool looked = b && fill(stretch, *a, *b, whole) && cover_part(stretch, whole, row_distance, use);
-  covered_to_ = stretch.to;
+  const auto inside_piece = [&](const MotionSample& row) { return row.t > piece.from() && row.t < piece.to(); };
+  const double row_distance = least_ / static_cast<double>(1 + std::count_if(rows_.begin(), rows_.end(), inside_piece));
+  const bool looked = b && fill(piece, *a, *b, whole) && cover_part(piece, whole, row_distance, use);
+  covered_to_ = piece.to();
   std::erase_if(rows_, [&](const MotionSample& row) { return row.t <= covered_to_; });
   pace_ = worst_if_twice_ <= 1 ? 2 * least_ : least_;
   return looked;

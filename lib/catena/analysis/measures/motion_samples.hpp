@@ -10,6 +10,14 @@
 // Where a motion can be looked at anywhere, rows need not bound the stretches: pace() says how long the next one may be
 // by what the last one showed. Columns at the rows in between are known, and the polynomial through all nine samples
 // must foretell them as well, to 1e-9 of the column's size.
+//
+// Pieces end where a function of time has a breakpoint. There columns may jump: what belongs to a piece at its end is
+// their limit from its inside, the parabola through three instants at 1, 2, 3 millionths of the piece,
+//
+//   c(t*) = 3 c(t* - d) - 3 c(t* - 2 d) + c(t* - 3 d) + O(d^3)         dc(t*(p), p)/dp = c_p + c' dt*/dp
+//
+// and the derivative of that limit runs along the instant, where a parameter moves it. c' comes from differences of
+// order 4, halved until they settle.
 #pragma once
 
 #include <array>
@@ -28,10 +36,27 @@ namespace catena {
 struct MotionSample {
   double t = 0;
   std::vector<double> value, derivative;
+  std::vector<double> change;  ///< with derivatives: of each column, by which it jumps here; see DifferentiateColumns
 };
 
-/// Writes the derivatives of all columns at a snapshot, column after column; not a number where there is none.
-using DifferentiateColumns = std::function<void(const Snapshot&, std::span<double>)>;
+/// How columns are differentiated.
+struct DifferentiateColumns {
+  /// Writes the derivatives of all columns at a snapshot, column after column, not a number where there is none; and
+  /// into `change` of each column the value just before less that just after an instant that a parameter moves.
+  std::function<void(const Snapshot&, std::span<double> derivative, std::span<double> change)> at;
+  /// dt/dp of an instant at which functions of time jump; empty where no parameter moves one.
+  std::function<std::vector<double>(double t)> moving;
+};
+
+/// A stretch without breakpoints inside.
+struct MotionPiece {
+  MotionStretch stretch;
+  bool breaks_before = false, breaks_after = false;  ///< it begins, or ends, at a breakpoint
+
+  double from() const { return stretch.from; }
+  double to() const { return stretch.to; }
+  bool is_break(double t) const { return (breaks_before && t == from()) || (breaks_after && t == to()); }
+};
 
 class MotionSamples {
  public:
@@ -40,11 +65,12 @@ class MotionSamples {
   using Part = std::array<MotionSample, nodes + 2>;
   static const std::array<double, nodes>& weights();  ///< of a part of length 1, nodes 1 ... 7 of a Part
 
-  /// `columns` must outlive this object.
-  explicit MotionSamples(const ColumnSet& columns) : columns_(columns), size_(columns.size(), 0.0) {}
-  /// Derivatives by so many parameters are taken as well: at every node (`always`), or where ask() says so.
+  /// `columns` must outlive this object. `run`: the first and the last instant.
+  MotionSamples(const ColumnSet& columns, const TimeRange& run)
+      : columns_(columns), run_(run), size_(columns.size(), 0.0) {}
+  /// Derivatives by so many parameters are taken as well: at every node (`always`), or where look() is told so.
   void differentiate(int parameters, DifferentiateColumns derivatives, bool always) {
-    parameters_ = parameters;
+    parameters_ = static_cast<std::size_t>(parameters);
     derivatives_ = std::move(derivatives);
     always_ = always;
   }
@@ -53,17 +79,27 @@ class MotionSamples {
   void note_row(MotionSample row);
   /// Length of the next stretch for which one part is expected to do, s; 0 before the first one.
   double pace() const { return pace_; }
-  /// Calls use(part, stretch) for parts that cover the stretch; false where the motion could not be looked at.
-  bool cover(const MotionStretch& stretch, const std::function<void(const Part&, const MotionStretch&)>& use);
-  /// The columns at a snapshot, or at an instant of a stretch.
+  /// Calls use(part, piece) for parts that cover the piece; false where the motion could not be looked at.
+  bool cover(const MotionPiece& piece, const std::function<void(const Part&, const MotionPiece&)>& use);
+  /// The columns at a snapshot, or at an instant of a piece; at a breakpoint that ends it the limit from its inside,
+  /// whose derivative is along the instant where that moves. Not where the run begins, in another way if it began
+  /// elsewhere: no derivative; nor where the run ends: at that instant as it is.
   MotionSample take(const Snapshot& snapshot, bool with_derivative) const;
-  std::optional<MotionSample> look(const MotionStretch& stretch, double t, bool with_derivative) const;
+  std::optional<MotionSample> look(const MotionPiece& piece, double t, bool with_derivative) const;
+  /// The limit at an end of a piece from its inside, with derivatives at a fixed instant.
+  std::optional<MotionSample> limit(const MotionPiece& piece, double t, bool with_derivative) const;
+  /// dc/dt of every column at an instant of a piece, from its inside; nothing where it cannot be looked at.
+  std::optional<std::vector<double>> rates(const MotionPiece& piece, double t) const;
+  /// dt/dp of a breakpoint; empty where it stands still or nothing jumps.
+  std::vector<double> moving(double t) const {
+    return parameters_ > 0 && derivatives_.moving ? derivatives_.moving(t) : std::vector<double>{};
+  }
 
  private:
   /// Takes the samples between a and b; false where the motion could not be looked at.
-  bool fill(const MotionStretch& stretch, const MotionSample& a, const MotionSample& b, Part& part);
-  bool cover_part(const MotionStretch& stretch, const Part& part, double row_distance,
-                  const std::function<void(const Part&, const MotionStretch&)>& use);
+  bool fill(const MotionPiece& piece, const MotionSample& a, const MotionSample& b, Part& part);
+  bool cover_part(const MotionPiece& piece, const Part& part, double row_distance,
+                  const std::function<void(const Part&, const MotionPiece&)>& use);
   /// By how much the polynomials miss what they must foretell, in parts of what is allowed; and what to expect in a
   /// part of twice the length.
   struct Misfit {
@@ -74,14 +110,16 @@ class MotionSamples {
   double misfit_of_rows(const Part& part) const;
   double miss(double foretold, double there, std::size_t column) const;
   void measure_sizes(const MotionSample& sample);
+  std::optional<MotionSample> see(const MotionPiece& piece, double t, bool with_derivative) const;
 
   const ColumnSet& columns_;
+  TimeRange run_;
   std::vector<double> size_;
   std::vector<MotionSample> rows_;  // beyond the last stretch
   double pace_ = 0;
   double worst_if_twice_ = 0, least_ = 0;  // misfit and length of the parts of this stretch
   double covered_to_ = -std::numeric_limits<double>::infinity();
-  int parameters_ = 0;
+  std::size_t parameters_ = 0;
   DifferentiateColumns derivatives_;
   bool always_ = false;
 };

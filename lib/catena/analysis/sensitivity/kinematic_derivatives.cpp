@@ -45,8 +45,39 @@ bool KinematicDerivatives::solve_multipliers(Group& group) {
   return true;
 }
 
-bool KinematicDerivatives::find(const Snapshot& snapshot) {
-  evaluator().set_time(snapshot.t);
+bool KinematicDerivatives::solve_values(Group& group, const Snapshot& snapshot) {
+  const std::span<double> f = loads_scratch(), b = rows_scratch();
+  DesignMechanism& mechanism = group.mechanism;
+  const auto solve = [&](int level, std::vector<DesignScalar>& target) {
+    mechanism.rows(group.rows);
+    std::fill(f.begin(), f.end(), 0.0);
+    for (std::size_t r = 0; r < b.size(); ++r) b[r] = -(level == 1 ? group.rows[r].d : group.rows[r].dd).v;
+    if (!system_.solve(f, b)) return false;
+    std::fill(target.begin(), target.end(), DesignScalar());
+    for (const int c : plan().coordinate) target[static_cast<std::size_t>(c)] = f[static_cast<std::size_t>(c)];
+    return true;
+  };
+  mechanism.set_state(group.q);
+  if (snapshot.qd.empty()) return true;
+  if (!solve(1, group.qd)) return false;
+  mechanism.set_state(group.q, group.qd);
+  if (snapshot.qdd.empty()) return true;
+  if (!solve(2, group.qdd)) return false;
+  if (snapshot.lambda.empty()) return true;
+  mechanism.applied_forces(group.loads);
+  for (std::size_t c = 0; c < f.size(); ++c) f[c] = group.loads[c].v;
+  for (int c = 0; c < 3 * plan().moving; ++c) {
+    const auto k = static_cast<std::size_t>(c);
+    f[k] -= mechanism.mass(c).v * group.qdd[k].v;
+  }
+  std::fill(b.begin(), b.end(), 0.0);
+  if (!system_.solve(f, b)) return false;
+  lift(b, group.lambda);
+  return true;
+}
+
+bool KinematicDerivatives::find_at(const Snapshot& snapshot, Side side) {
+  evaluator().set_time(snapshot.t, side);
   evaluator().set_configuration(snapshot.q);
   const std::span<const double> phi_q = jacobian();
   bool regular = system_.begin(phi_q) && system_.factorize();
@@ -62,8 +93,9 @@ bool KinematicDerivatives::find(const Snapshot& snapshot) {
   const bool velocity = !snapshot.qd.empty(), acceleration = velocity && !snapshot.qdd.empty();
   for (Group& group : groups()) {
     DesignMechanism& mechanism = group.mechanism;
-    mechanism.set_time(snapshot.t);
+    mechanism.set_time(snapshot.t, side);
     lift_state(group, snapshot);
+    if (side == Side::before && !solve_values(group, snapshot)) return singular();
     mechanism.set_state(group.q);
     if (!solve_level(group, 0, group.q)) return singular();
     if (velocity) {

@@ -19,9 +19,17 @@ class KinematicDerivatives final : public StateDerivatives {
  public:
   KinematicDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters);
 
-  bool find(const Snapshot& snapshot) override;
+  bool find(const Snapshot& snapshot) override { return find_at(snapshot, Side::after); }
+
+ protected:
+  bool find_before(const Snapshot& snapshot) override { return find_at(snapshot, Side::before); }
+  int seen_order() const override { return 3; }
 
  private:
+  bool find_at(const Snapshot& snapshot, Side side);
+  /// Rates of the group, and multipliers, on the other side of an instant at which functions of time jump: the
+  /// snapshot has those after it.
+  bool solve_values(Group& group, const Snapshot& snapshot);
   /// Series coefficient `level` of the rows (0: Phi, 1, 2) to the derivatives of q, qd or qdd.
   bool solve_level(Group& group, int level, std::vector<DesignScalar>& target);
   bool solve_multipliers(Group& group);

@@ -4,15 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace catena {
 namespace {
 
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
-// A velocity that differs by more than this part of it from the one at the end of the step before has jumped: that a
-// driver jumps; projections change less.
-constexpr double a_jump = 1e-3;
 
 }  // namespace
 
@@ -27,8 +24,7 @@ MotionDerivatives::MotionDerivatives(const Evaluator& evaluator, const DesignMod
       y_(2 * n_) {
   for (std::size_t k = 0; k < groups().size(); ++k) {
     Track& track = tracks_.emplace_back();
-    track.begin.resize(2 * n_);
-    track.end.resize(2 * n_);
+    for (Vector* y : {&track.begin, &track.end, &track.before, &track.after}) y->resize(2 * n_);
     track.stage.assign(16, Vector(2 * n_));
     track.interpolant.assign(7, Vector(2 * n_));
   }
@@ -145,6 +141,17 @@ bool MotionDerivatives::start(double t, std::span<const double> q, std::span<con
                     std::span(tracks_[k].end).subspan(n_)))
       return fail("the start of the motion has no derivative: " + start.why());
   }
+  const MovingInstant& instant = instant_at(t);
+  if (!instant.moves()) return true;
+  lack_derivatives(
+      fmt::format("the motion begins at t = {:.9g} s, where a function of time jumps at an instant that moves with the "
+                  "parameters: earlier or later are different motions",
+                  t));
+  for (std::size_t p = 0; p < instant.rate.size(); ++p) {
+    if (instant.rate[p] == 0) continue;
+    for (DesignScalar& y : tracks_[p / parameters_at_once].end)
+      y.d[p % parameters_at_once] = std::numeric_limits<double>::quiet_NaN();
+  }
   return true;
 }
 
@@ -167,16 +174,14 @@ bool MotionDerivatives::make_step(double h) {
   return true;
 }
 
-// Values are the motion's own: angles may have been moved by whole turns, velocities by a jump.
-bool MotionDerivatives::take_values(const MotionStretch& stretch, double t, bool& jumped) {
+// Values are the motion's own: angles may have been moved by whole turns.
+bool MotionDerivatives::take_values(const MotionStretch& stretch, double t, Vector Track::*y) {
   const std::optional<Snapshot> state = stretch.at(t);
   if (!state) return not_shown(t);
-  jumped = false;
   for (Track& track : tracks_) {
     for (std::size_t c = 0; c < n_; ++c) {
-      jumped = jumped || std::abs(track.end[n_ + c].v - state->qd[c]) > a_jump * std::abs(state->qd[c]);
-      track.end[c].v = state->q[c];
-      track.end[n_ + c].v = state->qd[c];
+      (track.*y)[c].v = state->q[c];
+      (track.*y)[n_ + c].v = state->qd[c];
     }
   }
   return true;
@@ -202,15 +207,80 @@ void MotionDerivatives::cover(const MotionStretch& stretch) {
     }
     if (!start(stretch.from, state->q, state->qd)) return;
   }
-  bool jumped = false;
-  if (!take_values(stretch, stretch.from, jumped)) return;
-  if (jumped && !project_end(stretch.from, Side::after)) return;
-  for (Track& track : tracks_) track.begin.swap(track.end);
+  const auto begin = crossed_ == stretch.from ? &Track::after : &Track::end;
+  if (!take_values(stretch, stretch.from, begin)) return;
+  for (Track& track : tracks_) track.begin = track.*begin;
   from_ = stretch.from;
   to_ = stretch.to;
   has_step_ = true;
   interpolant_ready_ = false;
-  if (make_step(to_ - from_) && take_values(stretch, to_, jumped)) project_end(to_, Side::before);
+  if (!make_step(to_ - from_) || !take_values(stretch, to_, &Track::end) || !project_end(to_, Side::before)) return;
+  const MovingInstant& instant = instant_at(to_);
+  if (instant.order == 1 || instant.moves()) cross();
+}
+
+bool MotionDerivatives::cross() {
+  crossed_ = to_;
+  const std::vector<double> rate = instant_at(to_).rate;
+  std::size_t first = 0;
+  for (std::size_t k = 0; k < tracks_.size(); ++k) {
+    Group& group = groups()[k];
+    const auto count = static_cast<std::size_t>(group.count);
+    if (!cross(group, tracks_[k], std::span(rate).subspan(first, count))) return singular(to_);
+    first += count;
+  }
+  return true;
+}
+
+// The factors are those of the step's end: neither Phi_q nor the masses change.
+bool MotionDerivatives::cross(Group& group, Track& track, std::span<const double> rate) {
+  DesignMechanism& mechanism = group.mechanism;
+  const std::span<double> f = loads_scratch(), b = rows_scratch();
+  track.before = track.end;
+  track.after = track.before;
+  const std::span<const DesignScalar> q_before = std::span(track.before).first(n_);
+  const std::span<const DesignScalar> qd_before = std::span(track.before).subspan(n_);
+  const std::span<DesignScalar> q = std::span(track.after).first(n_), qd = std::span(track.after).subspan(n_);
+  if (!derivative(group, to_, Side::before, track.before, stage_)) return false;
+  std::vector<double> jump_of_acceleration(n_);
+  for (std::size_t c = 0; c < n_; ++c) jump_of_acceleration[c] = stage_[n_ + c].v;
+  // Velocities after, and the blow that makes them.
+  mechanism.set_time(to_, Side::after);
+  mechanism.set_state(q_before);
+  mechanism.rows(group.rows);
+  for (std::size_t c = 0; c < n_; ++c)
+    f[c] = c < at(3 * plan().moving) ? mechanism.mass(static_cast<int>(c)).v * qd_before[c].v : 0;
+  for (std::size_t r = 0; r < b.size(); ++r) b[r] = -group.rows[r].d.v;
+  if (!system_.solve(f, b)) return false;
+  for (const int c : plan().coordinate) qd[at(c)] = f[at(c)];
+  std::vector<DesignScalar> blow(b.begin(), b.end());
+  if (!derivative(group, to_, Side::after, track.after, stage_)) return false;
+  for (std::size_t c = 0; c < n_; ++c) jump_of_acceleration[c] -= stage_[n_ + c].v;
+  // Along the moving instant, where the blow acts.
+  Vector q_there(q_before.begin(), q_before.end());
+  for (const int c : plan().coordinate) {
+    for (std::size_t p = 0; p < rate.size(); ++p) {
+      q_there[at(c)].d[p] += qd_before[at(c)].v * rate[p];
+      q[at(c)].d[p] += (qd_before[at(c)].v - qd[at(c)].v) * rate[p];
+    }
+  }
+  std::fill(group.loads.begin(), group.loads.end(), DesignScalar());
+  mechanism.set_state(q_there);
+  mechanism.add_constraint_loads(blow, group.loads);
+  mechanism.set_state(q, qd);
+  mechanism.rows(group.rows);
+  for (std::size_t p = 0; p < rate.size(); ++p) {
+    for (std::size_t c = 0; c < n_; ++c) {
+      f[c] = -group.loads[c].d[p];
+      if (c >= at(3 * plan().moving)) continue;
+      const DesignScalar& m = mechanism.mass(static_cast<int>(c));
+      f[c] += m.v * (qd_before[c].d[p] + jump_of_acceleration[c] * rate[p]) - m.d[p] * (qd[c].v - qd_before[c].v);
+    }
+    for (std::size_t r = 0; r < b.size(); ++r) b[r] = -group.rows[r].d.d[p];
+    if (!system_.solve(f, b)) return false;
+    for (const int c : plan().coordinate) qd[at(c)].d[p] = f[at(c)];
+  }
+  return true;
 }
 
 // See runge_kutta_interpolant.cpp.
@@ -260,25 +330,42 @@ bool MotionDerivatives::find(const Snapshot& snapshot) {
     }
     interpolant_ready_ = true;
   }
+  // At a jump the motion may show velocities of either side: its own are those after it.
+  const bool jumps = crossed_ == snapshot.t;
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
-    Group& group = groups()[k];
-    y_ = has_step_ && snapshot.t == from_ ? tracks_[k].begin : tracks_[k].end;
+    y_ = jumps ? tracks_[k].after : has_step_ && snapshot.t == from_ ? tracks_[k].begin : tracks_[k].end;
     if (inside) interpolate(tracks_[k], snapshot.t, y_);
     for (std::size_t c = 0; c < n_; ++c) {
       y_[c].v = snapshot.q[c];
-      y_[n_ + c].v = snapshot.qd[c];
+      if (!jumps) y_[n_ + c].v = snapshot.qd[c];
     }
     if (k == 0 && !factorize(snapshot.t, Side::after, std::span(y_).first(n_))) return singular(snapshot.t);
-    if (!project(group, snapshot.t, Side::after, y_)) return singular(snapshot.t);
-    std::copy_n(y_.begin(), n_, group.q.begin());
-    std::copy_n(y_.begin() + static_cast<std::ptrdiff_t>(n_), n_, group.qd.begin());
-    if (snapshot.qdd.empty()) {
-      group.mechanism.set_state(group.q, group.qd);
-      continue;
-    }
-    if (!derivative(group, snapshot.t, Side::after, y_, stage_)) return singular(snapshot.t);
-    if (!system_.dependent_rows().empty()) leave_out_reactions(group);
+    if (!project(groups()[k], snapshot.t, Side::after, y_)) return singular(snapshot.t);
+    if (!take_state(groups()[k], snapshot, Side::after, y_)) return false;
   }
+  return true;
+}
+
+bool MotionDerivatives::find_before(const Snapshot& snapshot) {
+  if (crossed_ != snapshot.t || !why().empty()) return false;
+  for (std::size_t k = 0; k < tracks_.size(); ++k) {
+    const Vector& y = tracks_[k].before;
+    if (k == 0 && !factorize(snapshot.t, Side::before, std::span(y).first(n_))) return singular(snapshot.t);
+    if (!take_state(groups()[k], snapshot, Side::before, y)) return false;
+  }
+  return true;
+}
+
+bool MotionDerivatives::take_state(Group& group, const Snapshot& snapshot, Side side, const Vector& y) {
+  std::copy_n(y.begin(), n_, group.q.begin());
+  std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(n_), n_, group.qd.begin());
+  group.mechanism.set_time(snapshot.t, side);
+  if (snapshot.qdd.empty()) {
+    group.mechanism.set_state(group.q, group.qd);
+    return true;
+  }
+  if (!derivative(group, snapshot.t, side, y, stage_)) return singular(snapshot.t);
+  if (!system_.dependent_rows().empty()) leave_out_reactions(group);
   return true;
 }
 

@@ -8,11 +8,21 @@
 // is recomputed from the state at the step's start. At the step's end positions and velocities are those of the motion,
 // and their derivatives are projected as these were: Phi_q q_p = -Phi_p, and the same for velocities, changed least in
 // the metric of the masses. What a projection's own bending adds is of the size of the drift that it removes, that is
-// of the tolerance. Between ends of steps derivatives follow from the interpolant of order 7 of their stages. Limits: a
-// breakpoint of a function of time that moves with a parameter, where accelerations jump and the motion is free to
-// follow, lacks the part of that jump; so does an instant at which an event acts. Source: apps/manual/sensitivity.md;
-// E. Hairer, S. Norsett, G. Wanner, Solving Ordinary Differential Equations I, section I.14.
+// of the tolerance. Between ends of steps derivatives follow from the interpolant of order 7 of their stages.
+//
+// At an instant t* at which functions of time jump, and which parameters move, the state's derivatives jump:
+//
+//   q_p+  = q_p- + (qd- - qd+) t*_p
+//   [ M      Phi_q^T ] [ qd_p+ ]   [ M (qd_p- + (qdd- - qdd+) t*_p) - M_p (qd+ - qd-) - (Phi_q^T mu)_p ]
+//   [ Phi_q  0       ] [ mu_p  ] = [ nu_p - (Phi_q qd+)_p                                             ]
+//
+// M (qd+ - qd-) + Phi_q^T mu = 0 the blow of drivers whose velocities jump, its partials along q_p- + qd- t*_p.
+// Singular where two functions jump at once that move apart, and where the motion begins at such an instant: no
+// derivatives. An instant at which an event acts is not followed. Source: apps/manual/sensitivity.md; E. Hairer, S.
+// Norsett, G. Wanner, Solving Ordinary Differential Equations I, section I.14.
 #pragma once
+
+#include <optional>
 
 #include "catena/analysis/motion/tableau.hpp"
 #include "catena/analysis/sensitivity/saddle_system.hpp"
@@ -28,17 +38,26 @@ class MotionDerivatives final : public StateDerivatives {
   void cover(const MotionStretch& stretch) override;
   bool find(const Snapshot& snapshot) override;
 
+ protected:
+  bool find_before(const Snapshot& snapshot) override;
+  int seen_order() const override { return 3; }
+
  private:
   using Vector = std::vector<DesignScalar>;
-  /// Of one group: y = [q, qd] where the present step begins, where it ends, its stages and interpolant.
+  /// Of one group: y = [q, qd] where the present step begins, where it ends, its stages and interpolant; and at the
+  /// last instant at which functions of time jump, just before it and after.
   struct Track {
-    Vector begin, end;
+    Vector begin, end, before, after;
     std::vector<Vector> stage, interpolant;
   };
 
   bool start(double t, std::span<const double> q, std::span<const double> qd);
-  /// Positions and velocities of the motion at t to the ends of the tracks; `jumped`: the velocities had.
-  bool take_values(const MotionStretch& stretch, double t, bool& jumped);
+  /// Positions and velocities of the motion at t to y of all tracks.
+  bool take_values(const MotionStretch& stretch, double t, Vector Track::*y);
+  /// Past the jump of functions of time where the step ends.
+  bool cross();
+  /// From y just before it to y after, with what this leaves of M (qd+ - qd-) + Phi_q^T mu = 0.
+  bool cross(Group& group, Track& track, std::span<const double> rate);
   bool project_end(double t, Side side);
   bool make_step(double h);
   /// y' at stage (or end) `y` of a group.
@@ -49,6 +68,8 @@ class MotionDerivatives final : public StateDerivatives {
   /// Projects the derivatives in y onto the constraints at its values.
   bool project(Group& group, double t, Side side, Vector& y);
   bool factorize(double t, Side side, std::span<const DesignScalar> q);
+  /// State, accelerations and multipliers of a group from y, where they are wanted.
+  bool take_state(Group& group, const Snapshot& snapshot, Side side, const Vector& y);
   bool singular(double t);
   bool not_shown(double t);
 
@@ -57,6 +78,7 @@ class MotionDerivatives final : public StateDerivatives {
   GivenByModel given_start_;
   bool started_ = false, has_step_ = false, interpolant_ready_ = false;
   double from_ = 0, to_ = 0;
+  std::optional<double> crossed_;  // where functions of time jumped last
   std::vector<Track> tracks_;
   std::vector<double> values_;
   Vector stage_, y_;

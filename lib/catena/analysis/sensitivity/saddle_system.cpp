@@ -1,6 +1,8 @@
 #include "catena/analysis/sensitivity/saddle_system.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "catena/linalg/rank/rank_revealing.hpp"
@@ -175,7 +177,12 @@ bool SaddleSystem::solve(std::span<double> f, std::span<double> b) {
   const std::size_t columns = at(plan_->columns);
   for (std::size_t c = 0; c < columns; ++c) solution_[c] = f[at(plan_->coordinate[c])];
   for (std::size_t k = 0; k < rows_.size(); ++k) solution_[columns + k] = b[at(rows_[k])];
-  if (!factorization_.solve_checked(values_, solution_, counters_).ok()) return false;
+  // A side that is not a number, of a parameter that has no derivatives, has a solution that is none.
+  const bool is_number = std::all_of(solution_.begin(), solution_.end(), [](double x) { return !std::isnan(x); });
+  if (!is_number)
+    std::fill(solution_.begin(), solution_.end(), std::numeric_limits<double>::quiet_NaN());
+  else if (!factorization_.solve_checked(values_, solution_, counters_).ok())
+    return false;
   for (std::size_t c = 0; c < columns; ++c) f[at(plan_->coordinate[c])] = solution_[c];
   std::fill(b.begin(), b.end(), 0.0);
   for (std::size_t k = 0; k < rows_.size(); ++k) b[at(rows_[k])] = solution_[columns + k];

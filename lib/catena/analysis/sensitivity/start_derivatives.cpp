@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "catena/analysis/motion/initial_velocities.hpp"
+#include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {
@@ -20,6 +22,58 @@ constexpr double settled = 1e-9;
 constexpr double missed = 1e-6;
 // Coordinates that assembly may not change: in weights of the others.
 constexpr double held_weight = 1e8;
+
+/// The points at which one body is attached: by constraints, or by forces where these have none.
+struct AttachedPoints {
+  DesignScalar held, forced;
+  int holding = 0, forcing = 0;
+};
+
+/// Calls f(local point, body) for every attachment point of an element with derivatives; see attachment_points.hpp.
+template <class E, class F>
+void visit_design_points(const ElementEntry<E, DesignScalar>& entry, F&& f) {
+  const auto visit = [&](const auto& field) {
+    if constexpr (requires { field.body; }) {
+      if constexpr (
+          requires { entry.element.*field.member + Vec2<DesignScalar>{}; } && !requires { field.required; }) {
+        f(entry.element.*field.member, field.body == 0 ? entry.i : entry.j);
+      }
+    }
+  };
+  std::apply([&](const auto&... field) { (visit(field), ...); }, E::fields());
+}
+
+/// rho^2 of every plan body with derivatives, as Evaluator::attachment_radii() has it; a constant where no point of the
+/// body lies off its origin.
+std::vector<DesignScalar> squared_radii(const DesignModel& model, const Plan& plan, std::span<const double> radius) {
+  std::vector<AttachedPoints> points(at(plan.bodies));
+  for_each_list(model.constraints, [&](const auto& list, int) {
+    for (const auto& entry : list) {
+      visit_design_points(entry, [&](const Vec2<DesignScalar>& local, int body) {
+        if (body < 0) return;
+        points[at(plan.plan_body[at(body)])].held += squared_norm(local);
+        ++points[at(plan.plan_body[at(body)])].holding;
+      });
+    }
+  });
+  for_each_list(model.forces, [&](const auto& list, int) {
+    for (const auto& entry : list) {
+      visit_design_points(entry, [&](const Vec2<DesignScalar>& local, int body) {
+        if (body < 0) return;
+        points[at(plan.plan_body[at(body)])].forced += squared_norm(local);
+        ++points[at(plan.plan_body[at(body)])].forcing;
+      });
+    }
+  });
+  std::vector<DesignScalar> squares(points.size());
+  for (std::size_t b = 0; b < points.size(); ++b) {
+    const AttachedPoints& of = points[b];
+    squares[b] = of.held.v > 0     ? of.held / DesignScalar(of.holding)
+                 : of.forced.v > 0 ? of.forced / DesignScalar(of.forcing)
+                                   : DesignScalar(radius[b] * radius[b]);
+  }
+  return squares;
+}
 
 bool is_held(const BasicBody<double>& body, int k) {
   return k == 0 ? body.hold_x : k == 1 ? body.hold_y : body.hold_angle;
@@ -55,6 +109,7 @@ bool StartDerivatives::find_places(DesignMechanism& mechanism, int count, std::s
   const auto singular = [&] { return fail("constraints are singular where it was assembled"); };
   const std::vector<double> radius = evaluator_.attachment_radii();
   const auto phi_q = std::span<const double>(jacobian_).first(at(plan_.trash_slot()));
+  const std::vector<DesignScalar> square = squared_radii(mechanism.model(), plan_, radius);
   std::vector<double> apart(q.size(), 0.0), weight(q.size(), 0.0), f(q.size()), b(at(plan_.rows), 0.0);
   std::vector<DesignScalar> estimate(q.size());
   for (int c = 0; c < 3 * plan_.moving; ++c) {
@@ -85,7 +140,12 @@ bool StartDerivatives::find_places(DesignMechanism& mechanism, int count, std::s
   mechanism.rows(rows);
   mechanism.add_constraint_loads(mu, loads);
   for (std::size_t p = 0; p < at(count); ++p) {
-    for (std::size_t c = 0; c < f.size(); ++c) f[c] = weight[c] * estimate[c].d[p] - loads[c].d[p];
+    for (std::size_t c = 0; c < f.size(); ++c) {
+      f[c] = weight[c] * estimate[c].d[p] - loads[c].d[p];
+      // Angles weigh more or less where attachments move.
+      if (c % 3 == 2 && c / 3 < square.size() && weight[c] > 0)
+        f[c] -= weight[c] / square[c / 3].v * square[c / 3].d[p] * apart[c];
+    }
     for (std::size_t r = 0; r < b.size(); ++r) b[r] = -rows[r].f.d[p];
     if (!assembly_.solve(f, b)) return singular();
     for (const int c : plan_.coordinate) q[at(c)].d[p] = f[at(c)];

@@ -1,14 +1,14 @@
 // Derivatives of where a motion starts: of the assembled configuration and of velocities that the constraints allow.
 //
 //   assembly     min 1/2 (q - e)^T W (q - e),  Phi(q) = 0       =>  W (q - e) + Phi_q^T mu = 0
-//                [ W + sum mu Phi_qq  Phi_q^T; Phi_q  0 ] [q_p; mu_p] = [ W e_p - (Phi_q^T)_p mu; -Phi_p ]
+//                [ W + sum mu Phi_qq  Phi_q^T; Phi_q  0 ] [q_p; mu_p] = [ W e_p - W_p (q-e) - (Phi_q^T)_p mu; -Phi_p ]
 //   velocities   given ones kept, omitted ones of least kinetic energy:  M v + Phi_q^T mu = 0 for the latter
 //                M v_p + Phi_q^T mu_p = -M_p v - (Phi_q^T)_p mu,   Phi_q v_p = nu_p - (Phi_q v)_p
 //
-// e is the given estimate, W = diag(1, 1, rho^2) as in assembly, rho a constant. Given velocities are held as there by
-// a weight of 10^4 masses and by adding what is missing to what is asked for, until nothing is; massless coordinates
-// weigh what they do there. Starts that an earlier analysis left are constants. Refused: given velocities that the
-// constraints do not allow, where the nearest ones depend on what they are changed by. Source:
+// e is the given estimate, W = diag(1, 1, rho^2) as in assembly, rho of the body's attachments. Given velocities are
+// held as there by a weight of 10^4 masses and by adding what is missing to what is asked for, until nothing is;
+// massless coordinates weigh what they do there. Starts that an earlier analysis left are constants. Refused: given
+// velocities that the constraints do not allow, where the nearest ones depend on what they are changed by. Source:
 // apps/manual/sensitivity.md; analysis/motion/initial_velocities.hpp.
 #pragma once
 

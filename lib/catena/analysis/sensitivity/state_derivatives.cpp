@@ -1,13 +1,30 @@
 #include "catena/analysis/sensitivity/state_derivatives.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
 #include "catena/columns/design_state.hpp"
+#include "catena/columns/state_laws.hpp"
 
 namespace catena {
+namespace {
+
+// Values and derivatives of a column on both sides of an instant that differ by less than this part are the same:
+// motions keep to their tolerance, 1e-8 unless it is asked for less.
+constexpr double same_on_both_sides = 1e-6;
+
+// So much of an instant is none: what a column changes by in it is rounding of zero.
+constexpr double no_time = 1e-9;
+
+bool differ(double a, double b, double rounding) {
+  return !(std::abs(a - b) <= same_on_both_sides * std::max(std::abs(a), std::abs(b)) + rounding);
+}
+
+}  // namespace
 
 StateDerivatives::~StateDerivatives() = default;
 
@@ -52,18 +69,93 @@ void StateDerivatives::lift_state(Group& group, const Snapshot& snapshot) {
   lift(snapshot.lambda, group.lambda);
 }
 
-void StateDerivatives::differentiate(const ColumnSet& columns, const Snapshot& snapshot, std::span<double> out) {
+void StateDerivatives::differentiate(const ColumnSet& columns, const Snapshot& snapshot, std::span<double> out,
+                                     std::span<double> values) {
   values_.resize(columns.size());
   const auto parameters = static_cast<std::size_t>(parameters_);
   std::size_t first = 0;
   for (Group& group : groups_) {
     columns.differentiate(DesignState(group.mechanism, snapshot, group.qdd, group.lambda), values_);
     for (std::size_t k = 0; k < values_.size(); ++k) {
+      if (first == 0 && !values.empty()) values[k] = values_[k].v;
       for (std::size_t p = 0; p < static_cast<std::size_t>(group.count); ++p)
         out[k * parameters + first + p] = values_[k].d[p];
     }
     first += static_cast<std::size_t>(group.count);
   }
+}
+
+const MovingInstant& StateDerivatives::instant_at(double t) {
+  if (t == instant_) return at_instant_;
+  instant_ = t;
+  at_instant_.order = 0;
+  at_instant_.rate.assign(static_cast<std::size_t>(parameters_), 0.0);
+  std::size_t first = 0;
+  for (const Group& group : groups_) {
+    MovingInstant here{0, std::vector<double>(static_cast<std::size_t>(group.count), 0.0)};
+    for (const auto& function : group.mechanism.model().functions) {
+      const FunctionJump jump = jump_of(function, t);
+      if (jump.order <= seen_order()) here.add(jump, 0);
+    }
+    at_instant_.order = here.order;  // the same in all groups
+    std::copy(here.rate.begin(), here.rate.end(), at_instant_.rate.begin() + static_cast<std::ptrdiff_t>(first));
+    first += here.rate.size();
+  }
+  return at_instant_;
+}
+
+bool StateDerivatives::derive(const ColumnSet& columns, const Snapshot& snapshot, std::span<double> out,
+                              std::span<double> change) {
+  std::fill(change.begin(), change.end(), 0.0);
+  jump_.clear();
+  if (!instant_at(snapshot.t).moves()) {
+    if (!find(snapshot)) return false;
+    differentiate(columns, snapshot, out);
+    // A law of state that has a value and no derivative takes those of all that it acts on: it is named.
+    const bool lacks = std::any_of(out.begin(), out.end(), [](double d) { return std::isnan(d); });
+    for (std::size_t k = 0; lacks && lack_.empty() && k < evaluator_.model().laws.size(); ++k) {
+      for (const Group& group : groups_) {
+        const DesignScalar force = group.mechanism.law_value(static_cast<int>(k));
+        const bool has = std::all_of(force.d.begin(), force.d.end(), [](double d) { return std::isfinite(d); });
+        if (has || !std::isfinite(force.v)) continue;
+        lack_ = fmt::format("the expression of {} has no derivative at t = {:.9g} s, where its value is {:.9g}",
+                            describe_law(evaluator_.model(), static_cast<int>(k)), snapshot.t, force.v);
+      }
+    }
+    return true;
+  }
+  const std::vector<double> rate = instant_at(snapshot.t).rate;
+  before_.assign(out.size(), std::numeric_limits<double>::quiet_NaN());
+  column_before_.assign(columns.size(), std::numeric_limits<double>::quiet_NaN());
+  column_after_ = column_before_;
+  if (find_before(snapshot)) differentiate(columns, snapshot, before_, column_before_);
+  if (!find(snapshot)) return false;
+  differentiate(columns, snapshot, out, column_after_);
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    // What the columns change by as fast as with the parameters, which move the instant at their rates.
+    double rounding = 0;
+    const double moment = no_time * std::max(std::abs(snapshot.t), 1e-3);
+    for (std::size_t p = 0; p < rate.size(); ++p) {
+      const double steepest = std::max(std::abs(before_[k * rate.size() + p]), std::abs(out[k * rate.size() + p]));
+      if (rate[p] != 0 && std::isfinite(steepest / rate[p]))
+        rounding = std::max(rounding, moment * steepest / std::abs(rate[p]));
+    }
+    const bool jumps = differ(column_before_[k], column_after_[k], rounding);
+    const double size = std::max(std::abs(column_before_[k]), std::abs(column_after_[k]));
+    if (!change.empty() && jumps) change[k] = column_before_[k] - column_after_[k];
+    for (std::size_t p = 0; p < rate.size(); ++p) {
+      double& derivative = out[k * rate.size() + p];
+      if (rate[p] == 0 || std::isnan(derivative)) continue;
+      const double small = no_time * size * std::abs(rate[p]) / std::max(std::abs(snapshot.t), 1e-3);
+      if (!jumps && !differ(before_[k * rate.size() + p], derivative, std::isfinite(small) ? small : 0)) continue;
+      derivative = std::numeric_limits<double>::quiet_NaN();
+      jump_ = fmt::format(
+          "at t = {:.9g} s a function of time jumps, at an instant that moves with the parameters: columns that jump "
+          "or bend there have no derivative at it",
+          snapshot.t);
+    }
+  }
+  return true;
 }
 
 }  // namespace catena

@@ -3,17 +3,22 @@
 //   find(snapshot)                q_p, qd_p, qdd_p, lambda_p of that state, by the equations of the analysis
 //   differentiate(columns, ...)   of any columns, dO/dp = O_q q_p + O_qd qd_p + ... + O_p at fixed t
 //                                 (apps/manual/sensitivity.md)
+//   derive(columns, ...)          both; at an instant at which functions of time jump and which a parameter moves, a
+//                                 column has a derivative by it only if its value and derivative are the same on both
+//                                 sides
 //
 // Parameters come in groups of four (base/design_scalar.hpp), each with a model that carries derivatives by its own.
 // The state of the analysis is only read: evaluators and factors here are copies of their own.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "catena/analysis/run/row_observer.hpp"
+#include "catena/analysis/sensitivity/moving_instants.hpp"
 #include "catena/assembly/design/design_mechanism.hpp"
 #include "catena/columns/column_set.hpp"
 
@@ -44,10 +49,30 @@ class StateDerivatives {
   std::span<const DesignScalar> configuration(std::size_t group) const { return groups_[group].q; }
 
   /// out[k x parameters + p]: derivative of column k by parameter p at the state of the last find(), which was that of
-  /// this snapshot.
-  void differentiate(const ColumnSet& columns, const Snapshot& snapshot, std::span<double> out);
+  /// this snapshot. `values`, if it is not empty: the columns themselves there.
+  void differentiate(const ColumnSet& columns, const Snapshot& snapshot, std::span<double> out,
+                     std::span<double> values = {});
+  /// find() and differentiate() of a row; not a number where there is none. `change`, if it is not empty: of every
+  /// column the value just before the instant less that just after, where a parameter moves the instant; else zero.
+  /// False where there are none at all, and why() says it.
+  bool derive(const ColumnSet& columns, const Snapshot& snapshot, std::span<double> out, std::span<double> change = {});
+  /// Why the last derive() left out columns at an instant that moves; empty if it did not.
+  const std::string& jump() const { return jump_; }
+  /// What the functions of time do at t.
+  const MovingInstant& instant_at(double t);
 
  protected:
+  /// The state just before the snapshot's instant, at which functions of time jump; false where it is not known.
+  virtual bool find_before(const Snapshot& snapshot) {
+    static_cast<void>(snapshot);
+    return false;
+  }
+  /// Up to which derivative of a function of time its jumps are seen: functions that stand still have values alone,
+  /// whose derivatives by parameters jump where their rates do.
+  virtual int seen_order() const { return 1; }
+  /// Where a motion begins at an instant that moves: no derivatives by these parameters.
+  void lack_derivatives(std::string why) { lack_ = std::move(why); }
+
   /// A group of parameters: the mechanism with derivatives by them, and the state.
   struct Group {
     explicit Group(DesignMechanism design) : mechanism(std::move(design)) {}
@@ -82,7 +107,10 @@ class StateDerivatives {
   std::vector<Group> groups_;
   std::vector<double> jacobian_, f_, b_;
   std::vector<DesignScalar> values_;
-  std::string why_, lack_;
+  std::vector<double> before_, column_before_, column_after_;  // of derive(), kept for their memory
+  double instant_ = std::numeric_limits<double>::quiet_NaN();
+  MovingInstant at_instant_;  // what functions do there
+  std::string why_, lack_, jump_;
 };
 
 }  // namespace catena

@@ -92,7 +92,10 @@ void DesignMechanism::set_time(double t, Side side) {
   time_ = t;
   for (std::size_t k = 0; k < function_.size(); ++k) {
     const TimeRange domain = model_->functions[k].domain();
-    function_[k] = model_->functions[k].evaluate(std::clamp(t, domain.first, domain.last), side);
+    const double there = std::clamp(t, domain.first, domain.last);
+    // At the inner knots of a table derivatives by parameters have two sides, the function itself has one.
+    function_[k] = side == Side::after ? model_->functions[k].evaluate(there)
+                                       : model_->functions[k].continue_from(there, side, there);
   }
 }
 

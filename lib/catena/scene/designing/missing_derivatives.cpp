@@ -16,6 +16,19 @@ bool depends_on_start(std::string_view type, std::string_view before) {
   return type == "dynamics" || type == "assemble";
 }
 
+/// Whether what follows from the number is in the measure's gradient already, or the measure does not depend on it.
+bool is_in_gradient(const AnalysisTask& task, const TaskNumber& number, const MeasureResult& measure) {
+  if (measure.of_rows_alone) return false;
+  // analysis_rows.cpp adds what a moving instant makes of it, or takes it out.
+  if (number.place == TaskNumber::Place::measured_instant) return true;
+  if (number.place != TaskNumber::Place::event) return false;
+  // Events that are recorded leave the motion alone; one that stopped it is in the instant at which the run ended.
+  const EventRequest& event = task.events[number.item];
+  constexpr int record_action = 0, stop_action = 1;
+  const bool is_field = std::isnan(measure.by_last_instant);
+  return !event.impulse && (event.action == record_action || event.action == stop_action) && !is_field;
+}
+
 }  // namespace
 
 void MissingDerivatives::take_out(MeasureResult& measure, std::size_t parameter, const std::string& why,
@@ -42,6 +55,7 @@ void MissingDerivatives::complete(const AnalysisTask& task, const ParameterSeeds
       }
       for (const SceneModels::MovingNumber& one : moving[p]) {
         const TaskNumber& number = one.number;
+        if (is_in_gradient(task, number, measure)) continue;
         if (number.is_of_measure() && task.measures[number.item].request.name != measure.name) continue;
         const std::string_view key = number.place == TaskNumber::Place::key ? number.key->name : std::string_view();
         if (key == "every" && !measure.of_rows_alone) continue;
@@ -54,6 +68,13 @@ void MissingDerivatives::complete(const AnalysisTask& task, const ParameterSeeds
                              number.name(), task.type(), design_.names[p]),
                  result);
       }
+    }
+  }
+  // No measure is without a derivative and without a reason.
+  for (MeasureResult& measure : result.measures) {
+    for (std::size_t p = 0; p < measure.gradient.size() && measure.trouble.empty(); ++p) {
+      if (std::isnan(measure.gradient[p]))
+        take_out(measure, p, fmt::format("the derivative of what {} reports here is not built", task.type()), result);
     }
   }
 }

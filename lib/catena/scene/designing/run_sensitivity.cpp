@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -14,6 +15,8 @@ namespace {
 
 // Differences of second order: the step that balances rounding (1e-12 of a run) with the cube of the step.
 constexpr double part_of_parameter = 1e-4;
+// Instants of rows are multiples of a step, rounded to 1e-16.
+constexpr double same_instant = 1e-12;
 
 /// Passes rows on and keeps them.
 class KeptRows final : public RowSink {
@@ -56,21 +59,47 @@ class Comparison {
     doubts_.push_back(fmt::format("\"verify\" of the derivatives by \"{}\": {}", name, why));
   }
 
-  void compare(std::size_t p, double value) {
-    const double size = value != 0 ? std::abs(value) : 1, step = part_of_parameter * size;
-    KeptRows rows[2] = {KeptRows(nullptr), KeptRows(nullptr)};
-    AnalysisResult shifted[2];
-    for (int side = 0; side < 2; ++side) {
+  /// The analysis with the parameter on either side; false, and told, where it cannot be analysed there.
+  bool run_beside(std::size_t p, double value, double step, const AnalysisTask& task, std::array<KeptRows, 2>& rows,
+                  std::array<AnalysisResult, 2>& shifted) {
+    for (std::size_t side = 0; side < 2; ++side) {
       const double at = value + (side == 0 ? -step : step);
       ParameterSeeds seeds = context_.seeds;
       seeds.push_back({context_.task.design_parameters[p], at});
       SystemState state = start_;
       InnerRun run{.seeds = seeds, .state = state, .rows = rows[side]};
-      run_inner(context_, context_.task.of.front(), run, shifted[side]);
+      run_inner(context_, task, run, shifted[side]);
       if (shifted[side].report.ok()) continue;
-      return doubt(names_[p], fmt::format("at {:.12g} the analysis ends with {}: {}", at,
-                                          to_string(shifted[side].report.status), shifted[side].report.message));
+      doubt(names_[p], fmt::format("at {:.12g} the analysis ends with {}: {}", at,
+                                   to_string(shifted[side].report.status), shifted[side].report.message));
+      return false;
     }
+    return true;
+  }
+
+  /// The task with its rows at the instants that they have now, whatever the parameters; nothing where none move.
+  std::optional<AnalysisTask> with_fixed_rows(std::size_t p) const {
+    AnalysisTask task = context_.task.of.front();
+    const auto is_of_rows = [](const TaskNumber& number) {
+      return number.place == TaskNumber::Place::instant ||
+             (number.place == TaskNumber::Place::key &&
+              (number.key->name == "every" || number.key->name == "until" || number.key->name == "at"));
+    };
+    if (context_.models->set_parameters(task, context_.seeds)) return std::nullopt;
+    const int parameters[] = {context_.task.design_parameters[p]};
+    const auto moving = context_.models->moving_numbers(task, context_.seeds, parameters);
+    const bool any = std::any_of(moving.front().begin(), moving.front().end(),
+                                 [&](const SceneModels::MovingNumber& one) { return is_of_rows(one.number); });
+    if (!any) return std::nullopt;
+    std::erase_if(task.varying, is_of_rows);
+    return task;
+  }
+
+  void compare(std::size_t p, double value) {
+    const double size = value != 0 ? std::abs(value) : 1, step = part_of_parameter * size;
+    std::array<KeptRows, 2> rows{KeptRows(nullptr), KeptRows(nullptr)};
+    std::array<AnalysisResult, 2> shifted;
+    if (!run_beside(p, value, step, context_.task.of.front(), rows, shifted)) return;
     const std::int64_t before = compared_;
     const auto take = [&](double derivative, double below, double above, double scale) {
       const double difference = (above - below) / (2 * step);
@@ -85,26 +114,51 @@ class Comparison {
       if (below && above && result_.measures[m].value && p < result_.measures[m].gradient.size())
         take(result_.measures[m].gradient[p], *below, *above, std::abs(*result_.measures[m].value));
     }
+    // Derivatives of rows are those at fixed instants.
+    if (const std::optional<AnalysisTask> fixed = with_fixed_rows(p)) {
+      rows = {KeptRows(nullptr), KeptRows(nullptr)};
+      shifted = {};
+      if (!run_beside(p, value, step, *fixed, rows, shifted)) return;
+    }
     compare_rows(names_[p], rows[0].kept, rows[1].kept, take);
     if (compared_ == before) doubt(names_[p], "there was nothing to compare: no derivative that is a number");
   }
 
+  /// The row of `rows` at the instant of row r of the run itself: that of the same number where there is no time;
+  /// nothing where there is no such row, as that of an event which came elsewhere.
+  std::optional<std::size_t> row_like(const ResultStorage& rows, std::size_t r) const {
+    const auto t = rows_.find("t"), other = rows.find("t");
+    if (!t || !other) return rows.rows() == rows_.rows() ? std::optional(r) : std::nullopt;
+    for (std::size_t k = 0; k < rows.rows(); ++k) {
+      const double here = rows_.at(r, *t), there = rows.at(k, *other);
+      if (std::abs(here - there) <= same_instant * std::max(std::abs(here), std::abs(there))) return k;
+    }
+    return std::nullopt;
+  }
+
   template <class Take>
   void compare_rows(const std::string& parameter, const ResultStorage& below, const ResultStorage& above, Take&& take) {
-    bool counted = false;
+    // Rows that have partners on both sides.
+    std::vector<std::array<std::size_t, 3>> matched;
+    for (std::size_t r = 0; r < rows_.rows(); ++r) {
+      const auto low = row_like(below, r), high = row_like(above, r);
+      if (low && high) matched.push_back({r, *low, *high});
+    }
+    bool has_derivatives = false;
     for (std::size_t c = 0; c < below.columns().size(); ++c) {
       const std::string& name = below.columns()[c].name;
       const auto column = rows_.find(fmt::format("d({})/d({})", name, parameter)), plain = rows_.find(name);
       const auto other = above.find(name);
       if (!column || !plain || !other) continue;
-      if (below.rows() != rows_.rows() || above.rows() != rows_.rows()) {
-        if (!std::exchange(counted, true)) doubt(parameter, "rows were not compared: their number changes with it");
-        continue;
-      }
+      has_derivatives = true;
       double scale = 0;
       for (std::size_t r = 0; r < rows_.rows(); ++r) scale = std::max(scale, std::abs(rows_.at(r, *plain)));
-      for (std::size_t r = 0; r < rows_.rows(); ++r)
-        take(rows_.at(r, *column), below.at(r, c), above.at(r, *other), scale);
+      for (const auto& [r, low, high] : matched)
+        take(rows_.at(r, *column), below.at(low, c), above.at(high, *other), scale);
+    }
+    if (has_derivatives && matched.size() < rows_.rows()) {
+      doubt(parameter, fmt::format("{} of {} rows were not compared: they lie at instants that move with it",
+                                   rows_.rows() - matched.size(), rows_.rows()));
     }
   }
 

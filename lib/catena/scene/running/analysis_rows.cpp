@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
+#include "catena/analysis/sensitivity/joint_jumps.hpp"
 #include "catena/scene/numbers/quantity.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 
@@ -41,6 +43,42 @@ std::optional<double> reported(const AnalysisResult& result, const MeasureReques
   return {};
 }
 
+// The word of an event's action that stops the run; see event_entries.cpp.
+constexpr int stop_action = 1;
+// An event's column is at its value where it was found, to rounding of the instant: within this part of its size.
+constexpr double at_its_value = 1e-9;
+
+// How far an instant is moved to see what goes with it: of it, or of 1 s. Rounding of instants is 1e-13.
+constexpr double short_way = 1e-6;
+
+/// Whether parameter p of the design request moves all that jumps at t with the same rate.
+bool moves_as_one(const AnalysisContext& context, std::size_t p, double t, double rate) {
+  const double way = short_way * std::max(std::abs(t), 1.0);
+  const std::vector<double> values = context.models->values(*context.task.table, context.seeds);
+  const auto index = static_cast<std::size_t>(context.design->parameters[p]);
+  for (const double by : {way, -way}) {
+    const auto model = model_at(context, context.design->parameters[p], values[index] + by / rate);
+    // A parameter at its limit moves one way only.
+    if (model) return jumps_together(model->functions, t, by);
+  }
+  return false;
+}
+
+bool stops(const EventRequest& event) { return event.action == stop_action && !event.impulse; }
+
+/// What is measured: what is asked for, and, where derivatives are wanted, the columns of events that stop.
+std::vector<MeasureRequest> requests_of(const AnalysisContext& context) {
+  std::vector<MeasureRequest> requests = context.task.measure_requests();
+  if (!context.design || requests.empty()) return requests;
+  for (const EventRequest& event : context.task.events) {
+    MeasureRequest request;
+    request.kind = MeasureKind::final;
+    request.columns = {event.column};
+    if (stops(event)) requests.push_back(std::move(request));
+  }
+  return requests;
+}
+
 }  // namespace
 
 AnalysisRows::~AnalysisRows() = default;
@@ -49,22 +87,45 @@ AnalysisRows::AnalysisRows(const ColumnSet& columns, AnalysisContext& context, c
                            const ColumnSources& sources, const TimeRange& run)
     : columns_(columns),
       context_(context),
-      measures_(context.task.measure_requests(), model, plan, sources, run),
+      measures_(requests_of(context), model, plan, sources, run),
       sources_(sources),
       info_(columns.info().begin(), columns.info().end()),
       timed_(sources.timed),
       first_(run.first),
       last_(run.last),
       covered_to_(run.first),
-      reached_(run.first) {}
+      reached_(run.first) {
+  if (!context.design || measures_.empty()) return;
+  for (std::size_t e = 0; e < context.task.events.size(); ++e) {
+    if (stops(context.task.events[e])) stops_.push_back(e);
+  }
+}
 
 void AnalysisRows::differentiate(std::unique_ptr<StateDerivatives> derivatives) {
   derivatives_ = std::move(derivatives);
   row_derivatives_ = context_.design->rows;
   if (measures_.empty()) return;
-  measures_.differentiate(derivatives_->parameters(), [this](const Snapshot& snapshot, std::span<double> out) {
-    if (derivatives_->find(snapshot)) derivatives_->differentiate(measures_.columns(), snapshot, out);
-  });
+  DifferentiateColumns columns;
+  columns.at = [this](const Snapshot& snapshot, std::span<double> out, std::span<double> change) {
+    derivatives_->derive(measures_.columns(), snapshot, out, change);
+    if (measured_jump_.empty()) measured_jump_ = derivatives_->jump();
+  };
+  columns.moving = [this, known = std::map<double, std::vector<double>>()](double t) mutable {
+    const auto found = known.find(t);
+    if (found != known.end()) return found->second;
+    const MovingInstant& instant = derivatives_->instant_at(t);
+    std::vector<double> rates = instant.moves() ? instant.rate : std::vector<double>{};
+    for (std::size_t p = 0; p < rates.size(); ++p) {
+      // Where columns bend alone, integrals have no part of it.
+      if (rates[p] == 0 || instant.order > 2 || moves_as_one(context_, p, t, rates[p])) continue;
+      rates[p] = std::numeric_limits<double>::quiet_NaN();
+      measured_jump_ = fmt::format(
+          "at t = {:.9g} s functions of time jump together, at instants that move apart with the parameters", t);
+    }
+    known.emplace(t, rates);
+    return rates;
+  };
+  measures_.differentiate(derivatives_->parameters(), std::move(columns), !stops_.empty());
 }
 
 void AnalysisRows::begin() {
@@ -140,6 +201,7 @@ void AnalysisRows::look_at_what_is_left() {
 std::string AnalysisRows::why_no_derivative() const {
   if (!derivatives_->why().empty()) return derivatives_->why();
   if (!derivatives_->lack().empty()) return derivatives_->lack();
+  if (!measured_jump_.empty()) return measured_jump_;
   if (measured_needs().work) return "work and dissipated energy, which are summed up over time, have no derivative";
   return "the derivative of its column is not a number there";
 }
@@ -155,10 +217,8 @@ bool AnalysisRows::observe(const Snapshot& snapshot) {
     const std::size_t plain = columns_.size(), first = plain > 0 && info_[0].unit == UnitKind::time ? 1 : 0;
     const auto parameters = static_cast<std::size_t>(derivatives_->parameters());
     row_gradients_.assign(plain * parameters, std::numeric_limits<double>::quiet_NaN());
-    if (derivatives_->find(snapshot))
-      derivatives_->differentiate(columns_, snapshot, row_gradients_);
-    else
-      ++missing_;
+    if (!derivatives_->derive(columns_, snapshot, row_gradients_)) ++missing_;
+    if (jump_.empty()) jump_ = derivatives_->jump();
     std::copy(row_gradients_.begin() + static_cast<std::ptrdiff_t>(first * parameters), row_gradients_.end(),
               values_.begin() + static_cast<std::ptrdiff_t>(plain));
   }
@@ -166,11 +226,88 @@ bool AnalysisRows::observe(const Snapshot& snapshot) {
   return context_.rows.row(values_) && proceed(snapshot.t);
 }
 
+// The run ends where h(t, p) = value: dT/dp = -(h_p - value_p) / h'.
+std::vector<double> AnalysisRows::end_by_event(const std::vector<MeasureResult>& results, std::string& why) const {
+  std::vector<double> rate(static_cast<std::size_t>(derivatives_->parameters()),
+                           std::numeric_limits<double>::quiet_NaN());
+  why = "the run ended early, at an instant whose derivative is not known";
+  const std::size_t first = results.size() - stops_.size();
+  const MeasureResult* stopped = nullptr;
+  std::size_t event = 0;
+  for (std::size_t k = 0; k < stops_.size(); ++k) {
+    const MeasureResult& column = results[first + k];
+    const double value = context_.task.events[stops_[k]].value;
+    if (!column.value || !column.t) continue;
+    const double size = std::max(std::abs(value), std::abs(column.by_last_instant) * (*column.t - first_));
+    if (std::abs(*column.value - value) > at_its_value * size) continue;
+    if (stopped) {
+      why = "the run ended where two events came together, at an instant that has no derivative";
+      return rate;
+    }
+    stopped = &column;
+    event = stops_[k];
+  }
+  if (!stopped) return rate;
+  const auto moving = context_.models->moving_numbers(context_.task, context_.seeds, context_.design->parameters);
+  for (std::size_t p = 0; p < rate.size(); ++p) {
+    double by_value = 0;
+    for (const SceneModels::MovingNumber& one : moving[p]) {
+      if (one.number.place == TaskNumber::Place::event && one.number.item == event) by_value += one.rate;
+    }
+    const double rest = stopped->gradient[p] - by_value;
+    rate[p] = rest == 0 ? 0 : -rest / stopped->by_last_instant;
+    if (!std::isfinite(rate[p])) rate[p] = std::numeric_limits<double>::quiet_NaN();
+  }
+  return rate;
+}
+
+MovingInstants AnalysisRows::moving_instants(const std::vector<MeasureResult>& results) const {
+  MovingInstants instants;
+  const auto moving = context_.models->moving_numbers(context_.task, context_.seeds, context_.design->parameters);
+  const std::size_t parameters = moving.size();
+  const auto& all = context_.task.measures;
+  std::vector<std::size_t> place(all.size());  // of a measure among those that are not fields
+  for (std::size_t m = 0, next = 0; m < all.size(); ++m) {
+    place[m] = next;
+    next += all[m].request.kind != MeasureKind::field;
+  }
+  instants.last.assign(parameters, 0.0);
+  instants.taken.resize(results.size());
+  for (std::size_t p = 0; p < parameters; ++p) {
+    for (const SceneModels::MovingNumber& one : moving[p]) {
+      const TaskNumber& number = one.number;
+      if (number.place == TaskNumber::Place::key && number.key->name == "until") instants.last[p] += one.rate;
+      if (number.place == TaskNumber::Place::measured_instant) {
+        std::vector<double>& rates = instants.taken[place[number.item]];
+        rates.resize(parameters, 0.0);
+        rates[p] += one.rate;
+      }
+    }
+  }
+  if (measures_.ended_early()) instants.last = end_by_event(results, instants.why_unknown);
+  return instants;
+}
+
+std::vector<MeasureResult> AnalysisRows::measured() const {
+  std::vector<MeasureResult> results = measures_.results();
+  if (!derivatives_ || !timed_ || rows_alone_ || results.empty()) {
+    results.resize(results.size() - stops_.size());
+    return results;
+  }
+  const MovingInstants still;
+  const MovingInstants instants = moving_instants(measures_.results(&still));
+  results = measures_.results(&instants);
+  results.resize(results.size() - stops_.size());
+  // What the last instant adds is in the gradients.
+  for (MeasureResult& result : results) result.by_last_instant = 0;
+  return results;
+}
+
 void AnalysisRows::finish(AnalysisResult& result) {
   look_at_what_is_left();
   take_rows(result, std::move(info_), rows_);
   for (const std::string& note : columns_.notes()) result.report.warnings.push_back(note);
-  for (MeasureResult& measure : measures_.results()) {
+  for (MeasureResult& measure : measured()) {
     if (timed_ && rows_alone_ && measure.trouble.empty())
       measure.trouble = "taken from the rows alone: this motion is not looked at between them";
     if (measure.times_second) measure.unit = times_second(measure.unit);
@@ -187,7 +324,7 @@ void AnalysisRows::finish(AnalysisResult& result) {
   }
   if (context_.design) result.gradient_parameters = context_.design->names;
   if (derivatives_) {
-    for (const std::string& why : {derivatives_->why(), derivatives_->lack()}) {
+    for (const std::string& why : {derivatives_->why(), derivatives_->lack(), jump_}) {
       if (!why.empty()) result.report.warnings.push_back("derivatives: " + why);
     }
   }
@@ -213,8 +350,9 @@ void add_field_measures(const AnalysisContext& context, AnalysisResult& result) 
     if (!measure.value) {
       std::string names;
       for (const NamedField& field : result.fields) names += (names.empty() ? "" : ", ") + field.name;
-      measure.trouble = fmt::format("{} reports no number {}{} (it has {})", context.task.type(), request.field,
-                                    request.number > 0 ? fmt::format("[{}]", request.number) : "", names);
+      measure.trouble = fmt::format("{} reports no number {}{}{} (it has {})", context.task.type(), request.field,
+                                    request.number > 0 ? fmt::format("[{}]", request.number) : "",
+                                    request.part.empty() ? "" : "." + request.part, names.empty() ? "none" : names);
       result.report.warnings.push_back(fmt::format("measure \"{}\": {}", request.name, measure.trouble));
     }
     measure.unit = request.field == "energy"   ? "J"

@@ -67,6 +67,11 @@ class AnalysisRows final : public RowObserver {
   void look_at_what_is_left();
   /// Why a measure's derivative is missing.
   std::string why_no_derivative() const;
+  /// How the instants of the run and its measures move with the parameters. `results`: of all measures and of the
+  /// columns of events that stop.
+  MovingInstants moving_instants(const std::vector<MeasureResult>& results) const;
+  std::vector<double> end_by_event(const std::vector<MeasureResult>& results, std::string& why) const;
+  std::vector<MeasureResult> measured() const;
 
   const ColumnSet& columns_;
   AnalysisContext& context_;
@@ -83,6 +88,9 @@ class AnalysisRows final : public RowObserver {
   double first_, last_;
   double covered_to_, reached_;          // how far measures have looked between rows, and rows have come
   std::int64_t rows_ = 0, missing_ = 0;  // missing_: rows without derivatives
+  std::string jump_;                     // why columns have none in the first row that lacks some for a jump
+  std::string measured_jump_;            // the same of instants at which measures look
+  std::vector<std::size_t> stops_;       // events that stop it, whose columns are measured after all that is asked for
 };
 
 /// Measures of the kind `field`, from the fields of the result; those that it has not are told as such.

@@ -223,6 +223,9 @@ void DynamicsTask::run() {
 
 }  // namespace
 
-void run_dynamics(AnalysisContext& context, AnalysisResult& result) { DynamicsTask(context, result).run(); }
+void run_dynamics(AnalysisContext& context, AnalysisResult& result) {
+  DynamicsTask(context, result).run();
+  add_field_measures(context, result);
+}
 
 }  // namespace catena

@@ -142,7 +142,13 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
 
 }  // namespace
 
-void run_kinematics(AnalysisContext& context, AnalysisResult& result) { run(context, result, false); }
-void run_inverse_dynamics(AnalysisContext& context, AnalysisResult& result) { run(context, result, true); }
+void run_kinematics(AnalysisContext& context, AnalysisResult& result) {
+  run(context, result, false);
+  add_field_measures(context, result);
+}
+void run_inverse_dynamics(AnalysisContext& context, AnalysisResult& result) {
+  run(context, result, true);
+  add_field_measures(context, result);
+}
 
 }  // namespace catena

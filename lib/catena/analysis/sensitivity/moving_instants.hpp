@@ -1,0 +1,43 @@
+// Instants at which functions of time jump, and how fast they move with design parameters.
+//
+//   f-^(k-1)(t*(p), p) = f+^(k-1)(t*(p), p)    =>    dt*/dp = -(f-,p^(k-1) - f+,p^(k-1)) / (f-^(k) - f+^(k))
+//
+// f- and f+ are the function just before and just after t*, k = 1, 2 or 3 the lowest derivative that jumps there: below
+// it the two sides agree whatever the parameters are, and this moves the instant. What depends on the motion then has,
+// beside its derivative at a fixed t, the part (c- - c+) dt*/dp in integrals of a column c, and (y'- - y'+) dt*/dp in a
+// state y that a motion carries on. Singular where two jumps that move apart meet: the rate is not a number there.
+// Units: s over the unit of the parameter. Source: apps/manual/sensitivity.md.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "catena/base/design_scalar.hpp"
+#include "catena/base/time_function.hpp"
+
+namespace catena {
+
+/// What a function does at an instant.
+struct FunctionJump {
+  int order = 0;  ///< of the lowest derivative that jumps: 1, 2 or 3; 0: none does
+  std::array<double, parameters_at_once> rate{};
+};
+FunctionJump jump_of(const TimeFunction<DesignScalar>& function, double t);
+
+/// What the functions of a model do together at an instant.
+struct MovingInstant {
+  int order = 0;             ///< the lowest of those that jump; 0: none does
+  std::vector<double> rate;  ///< dt*/dp by parameter; not a number where functions jump together that move apart
+  bool jumps() const { return order > 0; }
+  /// Whether some parameter moves it.
+  bool moves() const {
+    for (const double r : rate) {
+      if (r != 0) return true;
+    }
+    return false;
+  }
+  /// Puts another function's jump beside, whose parameters begin with number `first`.
+  void add(const FunctionJump& jump, std::size_t first);
+};
+
+}  // namespace catena
