@@ -14,8 +14,10 @@ namespace {
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Rows whose smallest pivot ratio is above this need no rank analysis: rounding leaves ratios of 1e-16, and assembled
-// places that miss the constraints by 1e-12 ones of 1e-24.
+// places that miss the constraints by 1e-12 ones of 1e-24 ...
 constexpr double independent_ratio = 1e-8;
+// ... but where masses are very unequal rounding is that of the largest diagonal: so many times the ratio of diagonals.
+constexpr double rounding_of_pivots = 1e-14;
 // Length of the probe, rad or length scales: far enough that a rank found there is not that of a singular position
 // nearby (sine 0.1), near enough to be assembled.
 constexpr double probe_distance = 0.1;
@@ -154,6 +156,14 @@ class Exchange {
   std::vector<Entry> merged_;
 };
 
+// Whether the pivots of the factors leave no doubt that rows are independent.
+bool are_independent(const EquationsOfMotion& equations) {
+  const std::vector<double> sizes = equations.row_sizes();
+  const auto [least, largest] = std::minmax_element(sizes.begin(), sizes.end());
+  const double spread = *largest / *least;
+  return equations.smallest_pivot_ratio() > std::max(independent_ratio, rounding_of_pivots * spread * spread);
+}
+
 }  // namespace
 
 RedundantRows::RedundantRows(EquationsOfMotion& equations) : equations_(equations), plan_(equations.plan()) {}
@@ -183,7 +193,7 @@ void RedundantRows::find(std::span<const double> q, const GenericPlace* generic)
   const double t = evaluator.time();
   equations_.leave_out({});
   if (plan_.rows == 0 || !equations_.factorize(t, Side::after, q)) return;
-  if (equations_.smallest_pivot_ratio() > independent_ratio) return;
+  if (are_independent(equations_)) return;
   std::vector<int> rows = dependent_rows(q);
   Vector place(q.begin(), q.end()), other(place);
   const auto go_elsewhere = [&] {

@@ -10,7 +10,8 @@ namespace {
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double regularisation = 1e-12;  // part of the diagonal that is added
-constexpr double singular_ratio = 1e-10;  // below this pivot ratio it is
+constexpr double singular_ratio = 1e-10;  // below this pivot ratio it is ...
+constexpr double clearly_more = 10;       // ... until the ratio is so many times this, or what the addition can make
 // Rounds in which a residual that shrinks to a half, at least, comes to rounding.
 constexpr int most_massless_rounds = 52;
 constexpr double massless_rounding = 1e-15;
@@ -46,6 +47,7 @@ void SchurSystem::set_masses(std::span<const double> masses, std::span<const dou
     inverse_masses_[c] = mass > 0 ? 1 / mass : 0;
     if (!(masses[c] > 0) && mass > 0) massless_.push_back(static_cast<int>(c));
   }
+  regularised_ = false;
   unequal_ = largest[0] > unequal_masses * least[0] || largest[1] > unequal_masses * least[1];
   if (!massless_.empty() || unequal_) {
     rest_Q_.resize(masses.size());
@@ -66,6 +68,7 @@ void SchurSystem::leave_out(SparseVectors directions) {
   add_squares(-1);
   left_out_ = std::move(directions);
   add_squares(1);
+  regularised_ = false;
   place_left_out();
 }
 
@@ -159,14 +162,25 @@ bool SchurSystem::factorize(std::span<const double> jacobian, Counters& counters
     constants_known_ = true;
   }
   // Equations that depended on each other at the last factorization probably still do.
-  fill(regularised_ ? regularisation : 0);
+  const bool before = regularised_;
+  fill(before ? regularisation : 0);
   if (!factor_values(counters)) return false;
+  if (before) {
+    // What is added to a large diagonal shows in the pivots of small ones: a ratio that it makes says nothing of the
+    // equations, and whether they are regular is seen without it.
+    const auto [least, largest] = std::minmax_element(diagonal_values_.begin(), diagonal_values_.end());
+    regularised_ = smallest_ratio_ < clearly_more * std::max(singular_ratio, regularisation * *largest / *least);
+    if (!regularised_) {
+      fill(0);
+      if (!factor_values(counters)) return false;
+    }
+  }
   if (smallest_ratio_ < singular_ratio && !regularised_) {
     fill(regularisation);
     regularised_ = true;
-    return factor_values(counters) && smallest_ratio_ > 0;
+    if (!factor_values(counters) || !(smallest_ratio_ > 0)) return false;
   }
-  regularised_ = smallest_ratio_ < singular_ratio || (regularised_ && smallest_ratio_ < 10 * singular_ratio);
+  if (regularised_) smallest_ratio_ = std::min(smallest_ratio_, singular_ratio);
   return true;
 }
 
