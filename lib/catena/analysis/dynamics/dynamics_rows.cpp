@@ -15,6 +15,8 @@ std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Rows whose smallest pivot ratio is above this need no rank analysis.
 constexpr double independent_ratio = 1e-8;
+// Below this one, a sine of 0.1, what is interpolated may be much worse than the steps, and is checked by itself.
+constexpr double nearly_singular = 1e-2;
 
 // Of the length scale: how far before the circle of a pulley steps end that would go into it. A stretch of length l
 // there turns by D / l, and l is the square root of the distance.
@@ -63,6 +65,10 @@ Snapshot Dynamics::snapshot(double t, std::span<const double> y, const Needs& ne
 Report Dynamics::give_row(double t, RowObserver& observer) {
   const std::optional<Snapshot> state = state_at(t);
   if (!state) return stuck();
+  if (balance_ && t != integrator_->time() && equations_.smallest_pivot_ratio() < nearly_singular) {
+    balance_->observe(*state);
+    if (Report balance = balance_->check(t); !balance.ok()) return balance;
+  }
   return observer.observe(*state) ? Report{} : cancelled(t);
 }
 

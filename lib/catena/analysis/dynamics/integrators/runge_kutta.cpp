@@ -29,6 +29,7 @@ RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options) : motion
   interpolant_.assign(7, std::vector<double>(size, 0.0));
   error_.resize(2 * motion_.coordinates());
   error_low_.resize(2 * motion_.coordinates());
+  stage_ratio_.assign(stage_.size(), 1.0);
   scale_.step_tolerance = options.tolerance;
   scale_.horizon = options.horizon;
   scale_.length = motion_.equations().evaluator().length_scale();
@@ -163,11 +164,22 @@ bool RungeKutta::evaluate_stages(double h) {
     if (!derivative(t, side, y_stage_, stage_[s])) return false;
     smallest_stage_ratio_ = std::min(smallest_stage_ratio_, pivot_ratio());
     largest_stage_ratio_ = std::max(largest_stage_ratio_, pivot_ratio());
+    if (projecting_stages_) stage_ratio_[s] = pivot_ratio();
   }
+  if (projecting_stages_) find_roughness();
   combine(table.b, h, y_.data(), y_new_);
   combine(table.error, 1, nullptr, error_);
   if (table.order == 8) combine(table.error_low, 1, nullptr, error_low_);
   return true;
+}
+
+void RungeKutta::find_roughness() {
+  roughness_ = 0;
+  stage_ratio_[0] = start_ratio_;
+  for (const StageTerm& term : tableau().b) {
+    const double sine = std::sqrt(stage_ratio_[static_cast<std::size_t>(term.stage)]);
+    roughness_ += std::abs(term.weight) / (sine * sine * sine);
+  }
 }
 
 // Integrates y' = f(P(y)), P the projection: a smooth extension of the equations whose order is the method's, but in

@@ -81,6 +81,7 @@ class RungeKutta final : public Integrator {
   /// out = from + h sum weight stage; `from` may be nullptr.
   void combine(const StageSum& sum, double h, const double* from, std::span<double> out) const;
   bool evaluate_stages(double h);
+  void find_roughness();
   bool project_stage(double t, Side side);
   bool solve_dependent(double t, Side side, std::span<double> y) {
     return partition_->solve(t, side, motion_.q(y), motion_.qd(y));
@@ -89,15 +90,18 @@ class RungeKutta final : public Integrator {
   double error_size(double h);
   double filtered_error(double h, double raw);
   bool finish_step();
-  bool detour(double h);
+  bool detour(double h, bool across);
+  double rounding_of_crossing(double h) const;
   void repeat_with_projected_stages(double h);
-  bool try_crossing(double h, double error);
+  bool try_crossing(double h, double error, double rounding);
   double compared_with_end(double h, double error);
   void reject(double h);
   void accept(double growth, double proposed);
   void observe_ratio();
   void observe_rates();
-  void prepare_interpolant();
+  bool prepare_interpolant();
+  bool integrate_to(double t, std::span<double> y);
+  void evaluate_interpolant(double t, std::span<double> y);
 
   Motion motion_;
   std::unique_ptr<CoordinatePartition> partition_;  // only where it is asked for
@@ -108,13 +112,15 @@ class RungeKutta final : public Integrator {
   std::vector<std::vector<double>> stage_;
   std::vector<std::vector<double>> interpolant_;
   std::vector<double> error_, error_low_;  // [q, qd]
-  bool interpolant_ready_ = false, step_was_low_order_ = false, passing_singular_ = false, projecting_stages_ = false,
+  std::vector<double> detour_steps_, stage_ratio_;
+  double roughness_ = 0;  // of the last stages: sum of |weight| ratio^-1.5
+  bool interpolant_ready_ = false, by_ends_ = false, passing_singular_ = false, projecting_stages_ = false,
        crossing_ = false, long_steps_ = false;
   int low_order_left_ = 0, rejections_ = 0, detours_ = 0;
   std::int64_t low_order_steps_ = 0, projected_steps_ = 0;
   double accepted_error_ = 1, best_error_ = 0, best_step_ = 0;
-  double smallest_stage_ratio_ = 1, largest_stage_ratio_ = 1, start_ratio_ = 1, undisturbed_step_ = 0,
-         singular_ratio_ = 0, usual_ratio_ = 1e-300;
+  double smallest_stage_ratio_ = 1, largest_stage_ratio_ = 1, start_ratio_ = 1, singular_ratio_ = 0,
+         usual_ratio_ = 1e-300;
 };
 
 }  // namespace catena

@@ -1,19 +1,37 @@
-// RungeKutta::interpolate: the state between the last two, from the stages of the step.
+// RungeKutta::interpolate: the state between the last two, from the stages of the step or from its ends.
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
 
 namespace catena {
+namespace {
+
+// Between the ends of a step across a singular position its stages may say much less than the step itself: tolerances
+// of a step below which rounding alone leaves too much, 1e-10 of the motion and more; and the position residual, in
+// these tolerances (fifty are a tenth of the run's), that what is interpolated may have otherwise.
+constexpr double fine_tolerance = 2e-11, largest_residual = 50;
+
+}  // namespace
 
 // Order 8: the interpolant of order 7 of DOP853, three more evaluations.
 //   y(t0 + s h) = y0 + s (r1 + (1-s) (r2 + s (r3 + (1-s) (r4 + s (r5 + (1-s) (r6 + s r7))))))
-void RungeKutta::prepare_interpolant() {
+// False: a stage cannot be evaluated.
+bool RungeKutta::prepare_interpolant() {
   const Tableau& table = dormand_prince_8();
   const double h = t_ - t_before_;
   stage_[12] = slope_;
   for (std::size_t s = 13; s < 16; ++s) {
     combine(table.a[s], h, y_before_.data(), y_stage_);
-    motion_.derivative(t_before_ + table.c[s] * h, Side::after, y_stage_, stage_[s]);
+    const double t = t_before_ + table.c[s] * h;
+    const auto evaluate = [&](bool projected) {
+      return (!projected || project_stage(t, Side::after)) && motion_.derivative(t, Side::after, y_stage_, stage_[s]);
+    };
+    if (!evaluate(projecting_stages_)) return false;
+    // The step's own stages may have kept clear of a singular position that lies near this one.
+    smallest_stage_ratio_ = std::min(smallest_stage_ratio_, pivot_ratio());
+    if (!projecting_stages_ && meets_constraints() && dips() && !evaluate(true)) return false;
   }
   for (std::size_t i = 0; i < y_.size(); ++i) {
     const double difference = y_[i] - y_before_[i], bend = h * stage_[0][i] - difference;
@@ -22,14 +40,56 @@ void RungeKutta::prepare_interpolant() {
     interpolant_[2][i] = difference - h * slope_[i] - bend;
   }
   for (std::size_t k = 0; k < 4; ++k) combine(table.interpolant[k], h, nullptr, interpolant_[3 + k]);
+  return true;
+}
+
+// A step across a singular position, cut at t: from its start or from its end, whichever has stages further from that
+// position. False: neither can be made.
+bool RungeKutta::integrate_to(double t, std::span<double> y) {
+  bool found = false;
+  double least = std::numeric_limits<double>::infinity();
+  by_ends_ = true;  // the step's own stages are overwritten
+  const auto try_from_present_end = [&] {
+    t_new_ = t;
+    if (!evaluate_stages(t - t_) || !(roughness_ < least)) return;
+    found = true;
+    least = roughness_;
+    std::copy(y_new_.begin(), y_new_.end(), y.begin());
+  };
+  const auto exchange_ends = [&] {
+    y_.swap(y_before_);
+    std::swap(t_, t_before_);
+  };
+  exchange_ends();
+  try_from_present_end();
+  exchange_ends();
+  stage_[0].swap(slope_);
+  try_from_present_end();
+  stage_[0].swap(slope_);
+  return found;
 }
 
 void RungeKutta::interpolate(double t, std::span<double> y) {
+  const bool fine = scale_.step_tolerance < fine_tolerance;
+  if (projecting_stages_ && fine && integrate_to(t, y)) return;
+  evaluate_interpolant(t, y);
+  if (!projecting_stages_ || fine) return;
+  EquationsOfMotion& equations = motion_.equations();
+  equations.evaluator().set_time(t);
+  if (!(equations.position_residual(motion_.q(std::span<const double>(y))) <
+        largest_residual * scale_.step_tolerance)) {
+    integrate_to(t, y);
+  }
+}
+
+void RungeKutta::evaluate_interpolant(double t, std::span<double> y) {
   const double h = t_ - t_before_;
   const double s = (t - t_before_) / h, r = 1 - s;
-  if (!step_was_low_order_) {
-    if (!interpolant_ready_) prepare_interpolant();
-    interpolant_ready_ = true;
+  if (!by_ends_ && !interpolant_ready_) {
+    interpolant_ready_ = prepare_interpolant();
+    by_ends_ = !interpolant_ready_;
+  }
+  if (!by_ends_) {
     const auto& c = interpolant_;
     for (std::size_t i = 0; i < y.size(); ++i) {
       y[i] =
@@ -38,8 +98,8 @@ void RungeKutta::interpolate(double t, std::span<double> y) {
     }
     return;
   }
-  // Order 5: positions by the quintic through positions, velocities and accelerations at both ends, velocities by its
-  // derivative, the rest by cubics.
+  // Order 5, or stages that cannot be evaluated: positions by the quintic through positions, velocities and
+  // accelerations at both ends, velocities by its derivative, the rest by cubics.
   const std::size_t n = motion_.coordinates();
   for (std::size_t i = 0; i < y.size(); ++i) {
     const bool position = i < n, velocity = i >= n && i < 2 * n;
