@@ -23,7 +23,8 @@ bool lower(const Mode& a, const Mode& b) { return a.omega2 < b.omega2; }
 
 }  // namespace
 
-DenseModes::DenseModes(StaticSystem& system, MotionGroups& groups, std::span<const double> mass)
+DenseModes::DenseModes(StaticSystem& system, MotionGroups& groups, std::span<const double> mass,
+                       const std::function<bool()>& go_on)
     : system_(system), groups_(groups) {
   // Coordinates without mass get the weight of a length; their groups are made orthonormal in M below.
   std::vector<double> weight(mass.begin(), mass.end());
@@ -35,11 +36,11 @@ DenseModes::DenseModes(StaticSystem& system, MotionGroups& groups, std::span<con
       if (!complete) weight[at(c)] = arm * arm;
     }
   }
-  groups_.orthonormalise(weight);
-  for (int k = 0; k < static_cast<int>(groups_.groups().size()) && !massless_; ++k) {
+  cancelled_ = !groups_.orthonormalise(weight, go_on);
+  for (int k = 0; k < static_cast<int>(groups_.groups().size()) && !massless_ && !cancelled_; ++k) {
     MotionGroup& group = groups_.groups()[at(k)];
     if (group.freedoms() == 0 || !use_masses(group, mass)) continue;
-    solve(group, k);
+    solve(group, k, go_on);
   }
   std::sort(found_.begin(), found_.end(), [](const Found& a, const Found& b) { return a.value < b.value; });
 }
@@ -94,10 +95,14 @@ bool DenseModes::use_masses(MotionGroup& group, std::span<const double> mass) {
   return true;
 }
 
-void DenseModes::solve(MotionGroup& group, int number) {
+void DenseModes::solve(MotionGroup& group, int number, const std::function<bool()>& go_on) {
+  const auto stopped = [&] { return cancelled_ = go_on && !go_on(); };
   Basis z = basis_of(group);
+  if (stopped()) return;
   reduce_stiffness(system_.matrix(), group, reduced_);
+  if (stopped()) return;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(Basis(reduced_.data(), z.cols(), z.cols()));
+  if (stopped()) return;
   ok_ = ok_ && solver.info() == Eigen::Success && solver.eigenvalues().allFinite();
   z = (z * solver.eigenvectors()).eval();
   for (Eigen::Index k = 0; k < z.cols(); ++k) {

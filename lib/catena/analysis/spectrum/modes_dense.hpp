@@ -8,6 +8,7 @@
 // wrong by the square of the shapes' errors only; one that cannot be distinguished from rounding (StiffnessFloor) is 0.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -23,8 +24,12 @@ struct Mode {
 
 class DenseModes {
  public:
-  /// The matrix must hold K; `mass`: per column.
-  DenseModes(StaticSystem& system, MotionGroups& groups, std::span<const double> mass);
+  /// The matrix must hold K; `mass`: per column. `go_on`: called between decompositions; false cancels.
+  DenseModes(StaticSystem& system, MotionGroups& groups, std::span<const double> mass,
+             const std::function<bool()>& go_on = {});
+
+  /// Then there are no results.
+  bool cancelled() const { return cancelled_; }
 
   /// A column of the motion that moves no mass, if there is one: then there are no other results.
   std::optional<int> massless_column() const { return massless_; }
@@ -39,14 +44,14 @@ class DenseModes {
     int group = 0, place = 0;
   };
   bool use_masses(MotionGroup& group, std::span<const double> mass);
-  void solve(MotionGroup& group, int number);
+  void solve(MotionGroup& group, int number, const std::function<bool()>& go_on);
 
   StaticSystem& system_;
   MotionGroups& groups_;
   std::vector<Found> found_;  // ascending
   std::vector<double> reduced_;
   std::optional<int> massless_;
-  bool ok_ = true;
+  bool ok_ = true, cancelled_ = false;
 };
 
 }  // namespace catena

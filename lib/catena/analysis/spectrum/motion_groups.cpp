@@ -85,11 +85,12 @@ int MotionGroups::freedoms() const {
   return sum;
 }
 
-void MotionGroups::orthonormalise(std::span<const double> weight) {
+bool MotionGroups::orthonormalise(std::span<const double> weight, const std::function<bool()>& go_on) {
   const Plan& plan = system_.plan();
   const std::span<const double> jacobian = system_.jacobian();
   std::vector<int> place(at(plan.rows), -1);
   for (MotionGroup& g : groups_) {
+    if (go_on && !go_on()) return false;
     const auto n = static_cast<Eigen::Index>(g.columns.size()), r = static_cast<Eigen::Index>(g.rows.size());
     Eigen::VectorXd scale(n);
     for (Eigen::Index c = 0; c < n; ++c) scale[c] = 1 / std::sqrt(weight[at(g.columns[static_cast<std::size_t>(c)])]);
@@ -113,10 +114,12 @@ void MotionGroups::orthonormalise(std::span<const double> weight) {
         transposed.col(k).normalize();
       }
       const Eigen::HouseholderQR<Eigen::MatrixXd> factors(transposed);
+      if (go_on && !go_on()) return false;
       basis.applyOnTheLeft(factors.householderQ());
     }
     basis = scale.asDiagonal() * basis;
   }
+  return true;
 }
 
 void reduce_stiffness(const KktMatrix& matrix, const MotionGroup& group, std::vector<double>& reduced) {

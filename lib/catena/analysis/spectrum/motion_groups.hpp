@@ -9,6 +9,7 @@
 // Units: those of the coordinates, m and rad. Source: G. Golub, C. Van Loan, Matrix Computations, 4th ed., 5.2 and 8.7.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -33,8 +34,8 @@ class MotionGroups {
   /// Whether dense algebra is affordable for all of them: a second or so at the limits.
   bool are_small(int most_freedoms = usual_freedoms) const;
   int freedoms() const;
-  /// Fills the bases.
-  void orthonormalise(std::span<const double> weight);
+  /// Fills the bases. `go_on`: called between decompositions; where it gives false so does this, and bases are missing.
+  bool orthonormalise(std::span<const double> weight, const std::function<bool()>& go_on = {});
 
   std::vector<MotionGroup>& groups() { return groups_; }
   const std::vector<MotionGroup>& groups() const { return groups_; }

@@ -71,13 +71,13 @@ Report Modes::find_modes(const MassMatrix& masses, std::span<const double> mass,
   // For nearly all modes of a larger mechanism dense algebra is faster as well.
   const bool most_of_all = 3 * static_cast<std::int64_t>(count) >= groups.freedoms();
   if (groups.are_small(most_of_all ? most_complete_freedoms : MotionGroups::usual_freedoms)) {
-    const DenseModes dense(system_, groups, mass);
+    const DenseModes dense(system_, groups, mass, go_on);
+    if (dense.cancelled()) return {Status::cancelled, "stopped while modes were looked for", {}};
     if (dense.massless_column()) return undetermined(plan_->coordinate[at(*dense.massless_column())]);
     if (!dense.ok()) {
       return {
           Status::not_converged, "the eigenvalues of the stiffness did not settle: is a number in it infinite?", {}};
     }
-    if (go_on && !go_on()) return {Status::cancelled, "stopped while modes were looked for", {}};
     modes = dense.lowest(count, floor);
     return {};
   }
