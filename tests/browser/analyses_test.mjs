@@ -216,7 +216,12 @@ await test({}, async (page) => {
     await settle(page);
     equal(await page.run(noNumber), false, `NaN on the page of ${name}`);
     await page.screenshot(`${outputFolder}/${name}.png`);
+    const nothing = (await page.run("return document.getElementById('stage').innerText")).includes("no bodies");
+    equal(nothing, name === "empty", `that there is nothing to draw is said on the page of ${name}`);
   }
+  // A long message leaves the name of the scene its room.
+  check((await page.run("const h = document.querySelector('h1'); return h.scrollWidth <= h.clientWidth + 1")),
+        "the name of the scene beside a long message");
   const status = await page.run("return document.getElementById('status').textContent");
   check(/^(lock_up|singular|not_assembled|bifurcation): ./.test(status), `status of the run that got stuck: ${status}`);
   check((await page.run("return catena.motion.count")) > 5, "poses up to where it got stuck");

@@ -103,6 +103,25 @@ await test({ reducedMotion: true }, async (page) => {
   await page.point(x, y, true);
   await settle(page);
   equal(await page.run("return catena.designRow"), 16, "the design that was clicked");
+  // By keys alone: the parallel axes are reached by tab, arrows go from design to design.
+  await page.run("catena.plots.root.querySelector('canvas[aria-label^=parallel]').focus()");
+  equal(await page.run("return document.activeElement.getAttribute('aria-label').split(';')[0]"), "parallel coordinates",
+        "the parallel axes have the focus");
+  const clock = await page.run("return catena.player.clock");
+  const [left, right, home, end] = ["\uE012", "\uE014", "\uE011", "\uE010"];
+  for (const [key, row] of [[right, 17], [right, 18], [left, 17], [end, 21], [right, 21], [left, 20]]) {
+    await page.keys(key);
+    await settle(page);
+    equal(await page.run("return catena.designRow"), row, `the design after ${key.charCodeAt(0)}`);
+    equal(await page.run("return catena.plots.cursor"), row, "the line that is lit");
+  }
+  equal(await page.run("return catena.player.clock"), clock, "the motion stays where it is");
+  check((await page.run("return getComputedStyle(document.activeElement).outlineStyle")) !== "none", "the focus shows");
+  await page.screenshot(`${outputFolder}/parallel_focus.png`);
+  await page.keys(home);
+  await settle(page);
+  const first = await page.run("return catena.designRow");
+  check(first >= 0 && first <= 4, `the first design that can be seen: ${first}`);
   // A design that does not assemble: the mechanism stays as it was given, and nothing breaks.
   await page.run("catena.goToRow(0)");
   await settle(page);

@@ -8,7 +8,7 @@ const waitMilliseconds = 20000;
 /** What a browser says because a test looks at its pixels, not because of the page. */
 const ofTests = ["GPU stall", "Multiple readback operations using getImageData"];
 
-export async function startBrowser({ driver, browser, width = 1280, height = 720, reducedMotion = false }) {
+export async function startBrowser({ driver, browser, width = 1280, height = 720, reducedMotion = false, phone = false }) {
   const process = spawn(driver, ["--port=0"], { stdio: ["ignore", "pipe", "inherit"] });
   const port = await new Promise((resolve, reject) => {
     let text = "";
@@ -24,6 +24,8 @@ export async function startBrowser({ driver, browser, width = 1280, height = 720
                  `--window-size=${width},${height}`];
   if (reducedMotion) flags.push("--force-prefers-reduced-motion");
   const options = { binary: browser, args: flags };
+  // A window of the desktop is no narrower than 500 px.
+  if (phone) options.mobileEmulation = { deviceMetrics: { width, height, pixelRatio: 3, touch: true } };
   const capabilities = { alwaysMatch: { browserName: "chrome", "goog:chromeOptions": options,
                                         "goog:loggingPrefs": { browser: "ALL" } } };
   const base = `http://127.0.0.1:${port}/session`;

@@ -14,6 +14,7 @@ const keys: [string, string][] = [
   ["alt and arrows", "pan"],
   ["f", "show everything"],
   ["+ − f, alt and arrows on a plot", "the same there"],
+  ["← → on parallel axes", "from design to design"],
   ["n, p", "next, previous analysis"],
   ["m", "next mode"],
   [". ,", "choose the next, the previous body or element"],

@@ -1,7 +1,7 @@
 // The page as a whole: which analysis is shown, what happens at keys and buttons.
 
 import { Choice } from "./choice";
-import { Analysis, PageData } from "./contract";
+import { Analysis, Design, PageData } from "./contract";
 import { button, byId, make, setIcon } from "./dom";
 import { entriesOf, Entry, posedOf } from "./entries";
 import { listenToKeys } from "./keys";
@@ -50,7 +50,7 @@ export class Page {
                            (shape) => this.choice.choose(shape));
     this.choice = new Choice(this);
     this.player = new Player(() => this.redraw());
-    this.plots = new PlotPanel(this.plotRoot, theme, (row) => this.goToRow(row));
+    this.plots = new PlotPanel(this.plotRoot, theme, (row) => this.goToRow(row), (by) => this.stepDesign(by));
     this.entries = entriesOf(data);
     this.makeChoices();
     listenToKeys(this);
@@ -130,9 +130,22 @@ export class Page {
     return this.motion.analysis === this.entry.analysis;
   }
 
+  /** The designs of a sweep whose mechanism can be seen. */
+  private get seenDesigns(): Design[] {
+    return (this.entry.analysis.designs ?? []).filter((design) => design.row !== undefined && posedOf(design));
+  }
+
+  /** To the next design that can be seen, or the one before; to the last or the first by infinity. */
+  private stepDesign(by: number): void {
+    const rows = this.seenDesigns.map(({ row }) => row ?? 0);
+    if (rows.length === 0) return;
+    const next = rows.indexOf(this.designRow) + by;
+    this.goToRow(rows[Math.min(rows.length - 1, Math.max(0, next))]);
+  }
+
   /** The design of this row of a sweep; the nearest one where not all are there. */
   private showDesign(row: number): void {
-    const seen = (this.entry.analysis.designs ?? []).filter((design) => design.row !== undefined && posedOf(design));
+    const seen = this.seenDesigns;
     const away = (of: number | undefined) => Math.abs((of ?? Infinity) - row);
     const nearest = seen.reduce((a, b) => (away(b.row) < away(a.row) ? b : a), seen[0]);
     const moving = nearest && posedOf(nearest);

@@ -205,13 +205,16 @@ export class Plot {
     // Where they crowd, as blows of a bouncing ball, a label that would cover another is left out.
     const labels: { x: number; y: number; width: number }[] = [];
     const widthOf = (label: string) => 6 * label.length;
+    const end = this.width - right;
     for (const mark of this.marks) {
       const row = this.table.rowAt(mark.row);
       if (row < 0 || this.ys.length === 0) continue;
       const px = this.pageX(ax, xs[row]);
       const py = this.pageY(ay, this.table.values(this.ys[0])[row]);
       painter.circle(px, py, 5, { stroke: css(theme.warning), width: 2 });
-      const label = { x: px + 7, y: py - 6, width: widthOf(mark.label) };
+      const width = widthOf(mark.label);
+      // Near the end of the axis it stands to the left of its mark.
+      const label = { x: px + 7 + width > end ? px - 7 - width : px + 7, y: py - 6, width };
       const covers = labels.some((other) => Math.abs(other.y - label.y) < 11 && label.x < other.x + other.width &&
                                             other.x < label.x + label.width);
       if (covers) continue;

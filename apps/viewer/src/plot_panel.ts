@@ -27,7 +27,7 @@ export class PlotPanel {
   private parallel: PlotPicture | null = null;
 
   constructor(private readonly root: HTMLElement, public theme: Theme,
-              private readonly chosen: (row: number) => void) {}
+              private readonly chosen: (row: number) => void, private readonly stepDesign: (by: number) => void) {}
 
   show(table: Table, marks: PlotMark[], unstable: boolean[] | null): void {
     this.table = table;
@@ -49,10 +49,20 @@ export class PlotPanel {
   private addParallel(): PlotPicture | null {
     const plot = new ParallelPlot(this.table);
     if (!plot.worthwhile) return null;
-    const canvas = make("canvas", { role: "img", "aria-label": "parallel coordinates" });
+    const what = "parallel coordinates; arrow keys go from design to design";
+    const canvas = make("canvas", { tabindex: "0", role: "img", "aria-label": what });
     canvas.addEventListener("click", (event) => {
       const box = canvas.getBoundingClientRect();
       this.chosen(this.table.numberOf(plot.rowNear(event.clientX - box.left, event.clientY - box.top)));
+    });
+    const steps: Record<string, number> = {
+      ArrowLeft: -1, ArrowUp: -1, ArrowRight: 1, ArrowDown: 1, Home: -Infinity, End: Infinity,
+    };
+    canvas.addEventListener("keydown", (event) => {
+      if (steps[event.key] === undefined || event.altKey || event.ctrlKey || event.metaKey) return;
+      this.stepDesign(steps[event.key]);
+      event.stopPropagation();
+      event.preventDefault();
     });
     this.root.append(make("div", { class: "plot" }, canvas));
     return new PlotPicture(plot, canvas);

@@ -98,7 +98,7 @@ function parameters(data: PageData, analysis: Analysis): HTMLElement[] {
   if (names.length === 0) return [];
   const list = make("dl");
   for (const [name, value] of names.slice(0, 100)) list.append(make("dt", {}, name), make("dd", {}, show(value)));
-  return [make("h2", {}, "parameters"), list];
+  return [make("h2", {}, "parameters, SI"), list];
 }
 
 /** All analyses of the run, how they ended and what was said of them. */
@@ -133,7 +133,7 @@ export function reportPanel(data: PageData, analysis: Analysis, motion: Motion, 
         else if (typeof record.t === "number") actions.goToTime(record.t);
       }));
     } else {
-      fact(name.replace(/_/g, " "), value);
+      fact(name === "energy" ? "energy [J]" : name.replace(/_/g, " "), value);
     }
   }
   if (analysis.seconds > 0) fact("computed in", `${short(analysis.seconds)} s`);

@@ -18,6 +18,8 @@ export function makeStageTools(page: Page): void {
       button("PNG", "save the picture as PNG", () => saveCanvas(`${data.scene}.png`, stage.picture(page.player.clock))),
       button("SVG", "save the picture as SVG",
              () => save(`${data.scene}.svg`, stage.svg(page.player.clock), "image/svg+xml")));
+  if (page.motion.names.bodies.length === 0)
+    tools.append(make("span", { class: "said" }, "the scene has no bodies: there is nothing to draw"));
   if (page.designName) tools.append(make("span", { class: "said", id: "design" }, page.designName));
   const shown = arrowKinds.filter((kind) => stage.arrows.has(kind));
   for (const kind of shown) {
