@@ -51,7 +51,7 @@ function dataOf(page) {
   return JSON.parse(text.slice(from, text.indexOf("</script>", from)));
 }
 
-const scenes = ["crank_rocker", "path_generation", "two_bar_truss", "four_bar_gradients", "bouncing_ball", "chain_on_floor",
+const scenes = ["crank_rocker", "path_generation", "two_bar_truss", "four_bar_gradients", "bouncing_ball", "chain_on_floor", "tackle",
                 "planetary_gear", "engine_mount", "excavator_arm", "windscreen_wiper"].map((name) => [name, scene(name)]);
 scenes.push(["empty", writeScene("empty", { catena: 1, name: "empty" })]);
 for (const [name, path] of scenes) {

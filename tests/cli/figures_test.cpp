@@ -46,6 +46,15 @@ TEST_F(Figures, DrawWritesFilesOrPrints) {
   EXPECT_EQ(printed.out.substr(0, 4), "<svg");
 }
 
+TEST_F(Figures, DrawRefusesWhatIsNoInstant) {
+  for (const char* instant : {"nan", "inf", "0,nan"}) {
+    const ProgramResult refused = run_catena({"draw", scene_, "--at", instant});
+    EXPECT_EQ(refused.exit_code, 2) << instant;
+    EXPECT_EQ(refused.out, "");
+    EXPECT_NE(refused.err.find("is no instant"), std::string::npos) << refused.err;
+  }
+}
+
 TEST_F(Figures, PlotPrintsWritesAndKnowsColumns) {
   const ProgramResult printed = run_catena({"plot", scene_, "--x", "t", "--y", "crank.omega,crank.angle"});
   EXPECT_EQ(printed.exit_code, 0) << printed.err;

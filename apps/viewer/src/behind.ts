@@ -17,7 +17,7 @@ export class MechanismBehind {
 
   constructor(readonly name: string, readonly motion: Motion) {
     const drawing = motion.data.drawings[motion.analysis.drawing];
-    this.painter = new MechanismPainter(drawing, new ShapeTable(drawing.shapes), new Set());
+    this.painter = new MechanismPainter(drawing, new ShapeTable(drawing), new Set());
     this.traces = new Traces(motion);
   }
 

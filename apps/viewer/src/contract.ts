@@ -21,7 +21,7 @@ export interface Line {
   width?: number;
 }
 
-/** anchor, symbol, element, body i, x, y, body j, x, y */
+/** anchor, symbol, element, body i, x, y, body j, x, y; of a rope the number of its way in place of body i */
 export type Shape = [number, number, number, number, number, number, number, number, number];
 
 /** Names of bodies, elements and points: the page's own, and a drawing's where its model has others. */
@@ -31,10 +31,18 @@ export interface Names {
   points: { body: number[]; name: string[]; at: number[] };
 }
 
+export interface Rope {
+  /** Body, x, y and radius of each, the radius positive where the circle is on the left of the rope. */
+  nodes: number[];
+  /** The last node belongs to the next part of the rope. */
+  leads_on: boolean;
+}
+
 export interface Drawing extends Partial<Names> {
   symbols: { lines: Line[] }[];
   shapes: Shape[];
   loads: { element: number; body: number; point: [number, number]; in_body_axes: boolean }[];
+  ropes?: Rope[];
   typical_length: number;
   given: number[];
 }

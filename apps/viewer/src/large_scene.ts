@@ -5,7 +5,7 @@
 // Symbols, which stand at points, come behind all links and are left out while they are smaller than a pixel.
 
 import { Camera } from "./camera";
-import { Drawing } from "./contract";
+import { Drawing, Line } from "./contract";
 import { symbolSize } from "./mechanism";
 import { anchorPoint, Placement, Pose, ShapeTable } from "./placement";
 import { Rgb, Theme } from "./theme";
@@ -38,6 +38,8 @@ function compile(gl: WebGLRenderingContext): WebGLProgram | null {
   gl.linkProgram(program);
   return gl.getProgramParameter(program, gl.LINK_STATUS) ? program : null;
 }
+
+const isLeftOut = (line: Line) => line.radius !== undefined || line.role === "wheel";
 
 /** Whether WebGL is computed by the processor: smooth edges then cost half of the pictures (4.4 a second, not 9.5,
  * with 10^5 links on two shared cores). */
@@ -73,7 +75,7 @@ export class LargeScene {
     let segments = 0;
     const symbols: number[] = [];
     for (let k = 0; k < shapes.count; ++k) {
-      segments += this.segmentsOf(shapes.symbol[k]);
+      segments += this.segmentsOf(k);
       (shapes.anchor[k] === anchorPoint ? symbols : this.order).push(k);
     }
     this.links = this.order.length;
@@ -84,12 +86,17 @@ export class LargeScene {
     this.colourBuffer = gl.createBuffer();
   }
 
-  private segmentsOf(symbol: number): number {
+  /** Its lines but circles, which are pins, too small to be seen, and areas of wheels, whose rims are drawn. */
+  private linesOf(shape: number): Line[] {
+    const { lines } = this.drawing.symbols[this.shapes.symbol[shape]];
+    return lines.some(isLeftOut) ? lines.filter((line) => !isLeftOut(line)) : lines;
+  }
+
+  private segmentsOf(shape: number): number {
+    const rope = this.shapes.ropes.get(shape);
+    if (rope) return rope.corners - 1;
     let segments = 0;
-    for (const line of this.drawing.symbols[symbol].lines) {
-      if (line.radius) continue;  // circles are pins, too small to be seen
-      segments += line.points.length / 2 - (line.closed ? 0 : 1);
-    }
+    for (const line of this.linesOf(shape)) segments += line.points.length / 2 - (line.closed ? 0 : 1);
     return segments;
   }
 
@@ -98,7 +105,7 @@ export class LargeScene {
     let at = 0;
     for (const k of this.order) {
       const base: Rgb = theme.body(this.shapes.bodyOf(k));
-      const corners = 2 * this.segmentsOf(this.shapes.symbol[k]);
+      const corners = 2 * this.segmentsOf(k);
       for (let n = 0; n < corners; ++n) {
         for (let c = 0; c < 3; ++c) this.colours[at++] = base[c];
       }
@@ -144,9 +151,9 @@ export class LargeScene {
       this.shapes.place(shape, pose, size, p);
       const x = p.x - camera.x;
       const y = p.y - camera.y;
-      for (const line of this.drawing.symbols[this.shapes.symbol[shape]].lines) {
-        if (line.radius) continue;
-        const q = line.points;
+      const rope = this.shapes.ropes.get(shape)?.at(pose);
+      for (const line of this.linesOf(shape)) {
+        const q = rope ?? line.points;
         const pieces = q.length / 2 - (line.closed ? 0 : 1);
         for (let k = 0; k < pieces; ++k) {
           const a = 2 * k;
@@ -155,6 +162,8 @@ export class LargeScene {
           corners[at++] = y + p.uy * q[a] + p.vy * q[a + 1];
           corners[at++] = x + p.ux * q[b] + p.vx * q[b + 1];
           corners[at++] = y + p.uy * q[b] + p.vy * q[b + 1];
+          // A rope has gaps, which are no lines.
+          if (rope && !isFinite(q[a] + q[b])) corners.fill(0, at - 4, at);
         }
       }
     }

@@ -38,7 +38,7 @@ export class MechanismPainter {
     for (let n = 0; n < count; ++n) {
       const k = only ? only[n] : n;
       this.shapes.place(k, pose, size, this.placement);
-      for (const line of this.linesOf(k)) this.line(painter, camera, theme, k, line, size, lit);
+      for (const line of this.linesOf(k)) this.line(painter, camera, pose, theme, k, line, size, lit);
     }
   }
 
@@ -46,7 +46,12 @@ export class MechanismPainter {
     return this.drawing.symbols[this.shapes.symbol[k]].lines;
   }
 
-  private line(painter: Painter, camera: Camera, theme: Theme, k: number, line: Line, size: number,
+  /** Corners of a line in the frame of its shape. */
+  private cornersOf(k: number, line: Line, pose: Pose): ArrayLike<number> {
+    return this.shapes.ropes.get(k)?.at(pose) ?? line.points;
+  }
+
+  private line(painter: Painter, camera: Camera, pose: Pose, theme: Theme, k: number, line: Line, size: number,
                lit: Highlight): void {
     const body = this.shapes.bodyOf(k);
     const element = this.shapes.element[k];
@@ -64,7 +69,7 @@ export class MechanismPainter {
       painter.circle(x, y, radius, { stroke: edge, fill, width: thin });
       return;
     }
-    const points = this.onPage(line, camera);
+    const points = this.onPage(k, line, pose, camera);
     const width = (line.width ?? 0) * size * camera.scale;
     const closed = line.closed === true;
     if (width > 2.4) {
@@ -77,14 +82,15 @@ export class MechanismPainter {
     }
   }
 
-  private onPage(line: Line, camera: Camera): Float64Array {
+  private onPage(k: number, line: Line, pose: Pose, camera: Camera): Float64Array {
     const p = this.placement;
-    const out = new Float64Array(line.points.length);
-    for (let k = 0; k < out.length; k += 2) {
-      const u = line.points[k];
-      const v = line.points[k + 1];
-      out[k] = camera.toPageX(p.x + p.ux * u + p.vx * v);
-      out[k + 1] = camera.toPageY(p.y + p.uy * u + p.vy * v);
+    const corners = this.cornersOf(k, line, pose);
+    const out = new Float64Array(corners.length);
+    for (let n = 0; n < out.length; n += 2) {
+      const u = corners[n];
+      const v = corners[n + 1];
+      out[n] = camera.toPageX(p.x + p.ux * u + p.vx * v);
+      out[n + 1] = camera.toPageY(p.y + p.uy * u + p.vy * v);
     }
     return out;
   }
@@ -96,9 +102,10 @@ export class MechanismPainter {
       this.shapes.place(n, pose, 0, p);
       for (const line of this.linesOf(n)) {
         const around = (line.radius ?? 0) * Math.hypot(p.vx, p.vy);
-        for (let k = 0; k < line.points.length; k += 2) {
-          const x = p.x + p.ux * line.points[k] + p.vx * line.points[k + 1];
-          const y = p.y + p.uy * line.points[k] + p.vy * line.points[k + 1];
+        const corners = this.cornersOf(n, line, pose);
+        for (let k = 0; k < corners.length; k += 2) {
+          const x = p.x + p.ux * corners[k] + p.vx * corners[k + 1];
+          const y = p.y + p.uy * corners[k] + p.vy * corners[k + 1];
           if (!isFinite(x) || !isFinite(y)) continue;
           low[0] = Math.min(low[0], x - around);
           low[1] = Math.min(low[1], y - around);
@@ -141,7 +148,7 @@ export class MechanismPainter {
     for (let k = this.shapes.count - 1; k >= 0; --k) {
       this.shapes.place(k, pose, size, this.placement);
       for (const line of this.linesOf(k)) {
-        const away = this.distance(line, camera, px, py, size);
+        const away = this.distance(k, line, camera, pose, px, py, size);
         if (away < reach && away < best - 1) {
           best = away;
           found = k;
@@ -151,8 +158,9 @@ export class MechanismPainter {
     return found;
   }
 
-  private distance(line: Line, camera: Camera, px: number, py: number, size: number): number {
-    const points = this.onPage(line, camera);
+  private distance(shape: number, line: Line, camera: Camera, pose: Pose, px: number, py: number,
+                   size: number): number {
+    const points = this.onPage(shape, line, pose, camera);
     const scale = Math.hypot(this.placement.vx, this.placement.vy) * camera.scale;
     if (line.radius) {
       const away = Math.hypot(points[0] - px, points[1] - py);
@@ -162,7 +170,8 @@ export class MechanismPainter {
     const corners = points.length / 2;
     for (let k = 0; k < (line.closed ? corners : corners - 1); ++k) {
       const m = (k + 1) % corners;
-      best = Math.min(best, toSegment(px, py, points[2 * k], points[2 * k + 1], points[2 * m], points[2 * m + 1]));
+      const away = toSegment(px, py, points[2 * k], points[2 * k + 1], points[2 * m], points[2 * m + 1]);
+      if (away < best) best = away;  // not where a corner is no number
     }
     if (line.closed && line.filled && isInside(points, px, py)) return 0;
     return Math.max(0, best - ((line.width ?? 0) * size * camera.scale) / 2);

@@ -1,7 +1,8 @@
 // Where a shape stands at a configuration: the same frames (origin, e_u, e_v) as in
 // lib/catena/drawing/shapes/placement.hpp.
 
-import { Shape } from "./contract";
+import { Drawing } from "./contract";
+import { RopeWay } from "./rope";
 
 export interface Placement {
   x: number;
@@ -41,6 +42,7 @@ export class Pose {
 export const anchorBody = 0;
 export const anchorPoint = 1;
 export const anchorSpan = 2;
+const anchorRope = 4;
 
 /** The shapes of a drawing as arrays of numbers: a picture of 10^5 links reads each of them. */
 export class ShapeTable {
@@ -52,8 +54,10 @@ export class ShapeTable {
   readonly bodyJ: Int32Array;
   /** x, y on body i, then on body j. */
   readonly at: Float64Array;
+  /** By shape. */
+  readonly ropes = new Map<number, RopeWay>();
 
-  constructor(shapes: Shape[]) {
+  constructor({ shapes, ropes }: Drawing) {
     this.count = shapes.length;
     this.anchor = Uint8Array.from(shapes, (shape) => shape[0]);
     this.symbol = Int32Array.from(shapes, (shape) => shape[1]);
@@ -62,6 +66,14 @@ export class ShapeTable {
     this.bodyJ = Int32Array.from(shapes, (shape) => shape[6]);
     this.at = new Float64Array(4 * shapes.length);
     shapes.forEach((shape, k) => this.at.set([shape[4], shape[5], shape[7], shape[8]], 4 * k));
+    shapes.forEach((shape, k) => {
+      if (shape[0] !== anchorRope) return;
+      const rope = ropes?.[shape[3]];
+      if (rope) this.ropes.set(k, new RopeWay(rope));
+      // Its corners are places on the ground.
+      this.anchor[k] = anchorBody;
+      this.bodyI[k] = -1;
+    });
   }
 
   /** The body whose colour a shape has. */

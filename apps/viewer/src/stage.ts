@@ -54,7 +54,7 @@ export class Stage {
     const redundant = new Set<number>();
     const names = new Set(motion.analysis.redundant);
     if (names.size > 0) motion.names.elements.name.forEach((name, k) => names.has(name) && redundant.add(k));
-    this.shapes = new ShapeTable(drawing.shapes);
+    this.shapes = new ShapeTable(drawing);
     this.painter = new MechanismPainter(drawing, this.shapes, redundant);
     this.arrows = new Arrows(motion);
     this.large = drawing.shapes.length > mostOnCanvas ? LargeScene.create(this.glCanvas, drawing, this.shapes) : null;

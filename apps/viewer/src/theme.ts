@@ -13,7 +13,7 @@ const bodyColours: Rgb[] = [
   [140, 122, 43],
 ];
 
-const ofBody = new Set(["link", "gear", "curve"]);
+const ofBody = new Set(["link", "gear", "curve", "wheel"]);
 
 function mix(a: Rgb, b: Rgb, part: number): Rgb {
   return [a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1]), a[2] + part * (b[2] - a[2])];
@@ -52,6 +52,8 @@ export class Theme {
   }
 
   edge(role: string, body: number): string {
+    // The rim of a wheel is drawn apart from its area.
+    if (role === "wheel") return this.fill(role, body);
     return this.remember("edge", role, body, () => {
       if (ofBody.has(role)) return mix(this.body(body), this.ink, this.dark ? 0.35 : 0.3);
       if (role === "driver") return this.dark ? [255, 120, 120] : [176, 42, 42];
@@ -63,7 +65,7 @@ export class Theme {
 
   fill(role: string, body: number): string {
     return this.remember("fill", role, body, () => {
-      if (role === "gear") return mix(this.body(body), this.paper, 0.82);
+      if (role === "gear" || role === "wheel") return mix(this.body(body), this.paper, 0.82);
       if (ofBody.has(role)) return mix(this.body(body), this.paper, this.dark ? 0.5 : 0.6);
       if (role === "driver") return this.dark ? [255, 120, 120] : [176, 42, 42];
       if (role === "support" || role === "rod") return mix(this.faint, this.paper, 0.65);

@@ -18,6 +18,7 @@
 #include "catena/model/element_lists.hpp"
 #include "catena/model/name_table.hpp"
 #include "catena/model/own_column.hpp"
+#include "catena/model/rope_path.hpp"
 #include "catena/model/state_law.hpp"
 
 namespace catena {
@@ -59,6 +60,7 @@ class BasicModel {
   ForceLists<S> forces;
   std::vector<TimeFunction<S>> functions;
   std::vector<BodyShape> shapes;        ///< what bodies look like in figures
+  std::vector<RopePath> rope_paths;     ///< where ropes run in figures, in the order of their elements
   std::vector<ElementRecord> elements;  ///< file order
   NameTable names;                      ///< of bodies, constraints, drivers, forces
   NameTable point_names;

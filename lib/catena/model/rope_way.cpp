@@ -46,9 +46,19 @@ class Way {
     for (int first = 0, end = 1; first < last_; first = end++) {
       while (end < last_ && !nodes_[at(end)].rolls) ++end;
       RopeStretch<S> stretch = between(first, end);
-      if (!stretch.straight.empty()) all.push_back(std::move(stretch));
+      if (stretch.straight.empty()) {
+        // Figures show what is no element with the stretch before it, or with the first one.
+        if (!all.empty()) append_nodes(all.back(), first + 1, end);
+        continue;
+      }
+      append_nodes(stretch, all.empty() ? 0 : first, end);
+      all.push_back(std::move(stretch));
     }
     if (all.empty()) throw ModelError("it ties together what does not move relative to each other");
+    for (std::size_t k = 0; k + 1 < all.size(); ++k) {
+      all[k].nodes.push_back(all[k + 1].nodes[1]);
+      all[k].leads_on = true;
+    }
     return all;
   }
 
@@ -63,6 +73,10 @@ class Way {
   bool together(int k) const { return nodes_[at(k)].body == nodes_[at(k + 1)].body || (stands(k) && stands(k + 1)); }
   std::string name(int k) const {
     return k == 0 ? "its end i" : k == last_ ? "its end j" : "pulley " + std::to_string(k) + " of \"over\"";
+  }
+
+  void append_nodes(RopeStretch<S>& stretch, int first, int last) const {
+    for (int k = first; k <= last; ++k) stretch.nodes.push_back(nodes_[at(k)]);
   }
 
   void choose_sides() {
@@ -282,6 +296,18 @@ int add_elastic(BasicModel<S>& model, std::string_view name, const RopeStretch<S
   return id;
 }
 
+template <class S>
+RopePath path_of(const RopeStretch<S>& stretch, int element) {
+  RopePath path{.element = element, .leads_on = stretch.leads_on};
+  for (const RopePulley<S>& node : stretch.nodes) {
+    path.nodes.push_back({.body = node.body,
+                          .centre = {value_of(node.centre.x), value_of(node.centre.y)},
+                          .radius = node.side * value_of(node.radius),
+                          .rolls = node.rolls});
+  }
+  return path;
+}
+
 }  // namespace
 
 template <class S>
@@ -298,6 +324,7 @@ int add_rope(BasicModel<S>& model, std::string_view name, const std::vector<Rope
         name.empty() || k == 0 ? std::string(name) : std::string(name) + ":" + std::to_string(k + 1);
     const int id = value_of(values.k) > 0 ? add_elastic(model, own, stretches[k], values)
                                           : add_inextensible(model, own, stretches[k], values);
+    model.rope_paths.push_back(path_of(stretches[k], id));
     if (k == 0) first = id;
   }
   return first;

@@ -46,6 +46,8 @@ struct RopeStretch {
   };
   std::vector<Straight> straight;
   S way{};
+  std::vector<RopePulley<S>> nodes{};  ///< its ends and what is between, for figures
+  bool leads_on = false;               ///< the last of them belongs to the next stretch (rope_path.hpp)
 };
 
 template <class S>

@@ -8,6 +8,7 @@
 #include "catena/drawing/figures/role_colours.hpp"
 #include "catena/drawing/shapes/guide_travel.hpp"
 #include "catena/drawing/shapes/placement.hpp"
+#include "catena/drawing/shapes/rope_points.hpp"
 
 namespace catena {
 namespace {
@@ -50,6 +51,8 @@ class Figure {
   }
   void draw_pose(VectorCanvas& canvas, const FigurePose& pose, double pale) const;
   void draw_line(VectorCanvas& canvas, const DrawnLine& line, const Placement& place, int body, double pale) const;
+  /// Those of a symbol, ropes by where they run in this pose.
+  std::vector<DrawnLine> lines_of(const DrawnShape& shape, const FigurePose& pose) const;
   void draw_traces(VectorCanvas& canvas) const;
   void draw_loads(VectorCanvas& canvas, const FigurePose& pose) const;
   std::vector<Arrow> arrows(const FigurePose& pose) const;
@@ -78,7 +81,7 @@ void Figure::find_extent() {
   for (const FigurePose& pose : figure_.poses) {
     for (const DrawnShape& shape : drawing_.shapes) {
       const Placement placement = place(shape, pose.frames, 0);
-      for (const DrawnLine& line : drawing_.symbols[static_cast<std::size_t>(shape.symbol)].lines) {
+      for (const DrawnLine& line : lines_of(shape, pose)) {
         const double around = line.radius * norm(placement.e_v);
         for (const Vec2<double>& p : line.points) extent_.include(placement(p), around);
       }
@@ -88,6 +91,13 @@ void Figure::find_extent() {
     for (const Vec2<double>& p : trace) extent_.include(p);
   }
   if (!(extent_.low.x <= extent_.high.x)) extent_.include({0, 0});
+}
+
+std::vector<DrawnLine> Figure::lines_of(const DrawnShape& shape, const FigurePose& pose) const {
+  std::vector<DrawnLine> lines = drawing_.symbols[static_cast<std::size_t>(shape.symbol)].lines;
+  if (shape.anchor == Anchor::rope)
+    lines.front().points = rope_points(drawing_.ropes[static_cast<std::size_t>(shape.rope)], pose.frames);
+  return lines;
 }
 
 std::vector<Arrow> Figure::arrows(const FigurePose& pose) const {
@@ -166,7 +176,7 @@ void Figure::draw_pose(VectorCanvas& canvas, const FigurePose& pose, double pale
   for (const DrawnShape& shape : drawing_.shapes) {
     const Placement placement = place(shape, pose.frames, size_);
     const int body = shape.anchor == Anchor::point && shape.body_j >= 0 ? shape.body_j : shape.body_i;
-    for (const DrawnLine& line : drawing_.symbols[static_cast<std::size_t>(shape.symbol)].lines) {
+    for (const DrawnLine& line : lines_of(shape, pose)) {
       const bool support = line.role == Role::support || line.role == Role::driver;
       if (pale == 0 || !support) draw_line(canvas, line, placement, body, pale);
     }

@@ -22,10 +22,16 @@ inline Colour body_colour(int body) {
 }
 
 /// Whether a line of this role takes the colour of its body.
-inline bool has_body_colour(Role role) { return role == Role::link || role == Role::gear || role == Role::curve; }
+inline bool has_body_colour(Role role) {
+  return role == Role::link || role == Role::gear || role == Role::curve || role == Role::wheel;
+}
+
+/// The colour inside of the rims of wheels.
+inline Colour wheel_colour(int body) { return mixed(body_colour(body), white, 0.82); }
 
 /// The colour of edges and lines.
 inline Colour role_colour(Role role, int body) {
+  if (role == Role::wheel) return wheel_colour(body);  // its edge is the rim, which is drawn apart
   if (has_body_colour(role)) return mixed(body_colour(body), black, 0.25);
   switch (role) {
     case Role::support:
@@ -45,7 +51,7 @@ inline Colour role_colour(Role role, int body) {
 /// The colour inside of areas.
 inline Colour role_fill(Role role, int body) {
   if (role == Role::driver) return role_colour(role, body);
-  if (role == Role::gear) return mixed(body_colour(body), white, 0.82);
+  if (role == Role::gear || role == Role::wheel) return wheel_colour(body);
   if (has_body_colour(role)) return mixed(body_colour(body), white, 0.6);
   if (role == Role::support || role == Role::rod) return {0xdd, 0xdd, 0xdd};
   return white;

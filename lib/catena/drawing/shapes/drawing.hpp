@@ -10,6 +10,7 @@
 //   point     r_P       s A_j axis                           R e_u
 //   span      r_P       r_Q - r_P                            s R (r_Q - r_P) / |r_Q - r_P|
 //   centres   r_P       (r_Q - r_P) / |r_Q - r_P|, m         R e_u, m
+//   rope      0         x axis of the ground, m              its y axis, m: corners from rope_points.hpp
 //
 // P is fixed in body i at point_i, Q in body j at point_j; the ground's frame is that of body -1. s is the size of
 // symbols in m, which whoever draws chooses, so that pins look alike on a watch and on a crane; R turns by a quarter.
@@ -21,13 +22,15 @@
 
 #include "catena/base/vec2.hpp"
 #include "catena/model/body.hpp"
+#include "catena/model/rope_path.hpp"
 
 namespace catena {
 
 /// What a line stands for; pages and figures give every role its colour and its place above or below others, in this
-/// order from the lowest.
-enum class Role { support, guide, curve, link, belt, gear, cable, spring, rod, joint, driver, measure };
-inline constexpr int roles = 12;
+/// order from the lowest. The area of a wheel lies below everything, so that it hides no cam and no arm; its rim is a
+/// gear.
+enum class Role { wheel, support, guide, curve, link, belt, gear, cable, spring, rod, joint, driver, measure };
+inline constexpr int roles = 13;
 
 /// The name of a role in the data of pages.
 const char* role_name(Role role);
@@ -48,7 +51,7 @@ struct DrawnSymbol {
   std::vector<DrawnLine> lines;
 };
 
-enum class Anchor { body, point, span, centres };
+enum class Anchor { body, point, span, centres, rope };
 
 /// One symbol at its place.
 struct DrawnShape {
@@ -57,6 +60,7 @@ struct DrawnShape {
   int element = -1;  ///< number in the model; -1: a body itself
   int body_i = ground, body_j = ground;
   Vec2<double> point_i{}, point_j{};  ///< of the anchor `point`, point_j is the axis
+  int rope = -1;                      ///< of the anchor `rope`: number of its way
 };
 
 /// A force whose arrow follows its functions of time.
@@ -69,7 +73,8 @@ struct DrawnLoad {
 
 /// A straight guide whose ends follow from how far the motion goes along it.
 struct DrawnGuide {
-  int shape = 0;  ///< a span between its ends, both on body i
+  int shape = 0;    ///< a span between its ends, both on body i
+  int member = -1;  ///< a span of body i itself, from point_i along the whole guide; -1: none
   int body_i = ground, body_j = ground;
   Vec2<double> point_i{}, axis_i{}, point_j{};
   bool observed = false;
@@ -83,6 +88,7 @@ struct Drawing {
   std::vector<DrawnShape> shapes;  ///< those drawn first come first
   std::vector<DrawnLoad> loads;
   std::vector<DrawnGuide> guides;
+  std::vector<RopePath> ropes;
   double typical_length = 0;  ///< median length of the links, m; 0: there are none
 };
 

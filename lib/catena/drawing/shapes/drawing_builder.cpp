@@ -48,10 +48,23 @@ int DrawingBuilder::symbol(DrawnSymbol symbol) {
   return number;
 }
 
-void DrawingBuilder::add_guide(DrawnGuide guide, const DrawnShape& shape, DrawnSymbol look) {
+void DrawingBuilder::add_guide(DrawnGuide guide, const DrawnShape& shape, DrawnSymbol look, double member_width) {
+  if (guide.body_i >= 0 && member_width > 0) {
+    guide.member = static_cast<int>(drawing_.shapes.size());
+    add({.anchor = Anchor::span, .body_i = guide.body_i, .body_j = guide.body_i}, bar_symbol(member_width, Role::link));
+  }
   guide.shape = static_cast<int>(drawing_.shapes.size());
   add(shape, std::move(look));
   drawing_.guides.push_back(guide);
+}
+
+void DrawingBuilder::add_rope(RopePath path, DrawnSymbol look) {
+  DrawnShape shape{.anchor = Anchor::rope, .element = path.element};
+  shape.body_i = path.nodes.front().body;
+  shape.body_j = path.nodes.back().body;
+  shape.rope = static_cast<int>(drawing_.ropes.size());
+  add(shape, std::move(look));
+  drawing_.ropes.push_back(std::move(path));
 }
 
 void DrawingBuilder::follow(int element, int body, const Vec2<double>& local) {
@@ -127,8 +140,21 @@ void DrawingBuilder::add_links() {
   for (int body = 0; body < static_cast<int>(bodies); ++body) {
     std::vector<Vec2<double>> own;
     for (; place != places_.end() && place->first == body; ++place) own.push_back(place->second);
-    add_link(body, convex_hull(std::move(own)));
+    add_link(body, convex_hull(beyond_discs(body, std::move(own))));
   }
+}
+
+// A wheel is its own link to what lies on it: a bar would only stick out of its rim.
+std::vector<Vec2<double>> DrawingBuilder::beyond_discs(int body, std::vector<Vec2<double>> places) const {
+  std::vector<Vec2<double>> centres;
+  for (const Disc& disc : discs_) {
+    if (disc.body != body) continue;
+    constexpr double alike = 1 + 1e-9;  // of the radius: points of the rim
+    std::erase_if(places, [&](const Vec2<double>& p) { return norm(p - disc.centre) <= alike * disc.radius; });
+    if (std::find(centres.begin(), centres.end(), disc.centre) == centres.end()) centres.push_back(disc.centre);
+  }
+  if (!places.empty() || centres.size() > 1) places.insert(places.end(), centres.begin(), centres.end());
+  return places;
 }
 
 // One place: a rod from there to the centroid, where the mass is; none: the mass alone.
@@ -149,8 +175,27 @@ void DrawingBuilder::add_link(int body, std::vector<Vec2<double>> places) {
       bar_symbol(link_width, Role::link));
 }
 
+/// Where nothing is a link: the diameter of the largest wheel or disc of a body, or else the longest spring.
+double DrawingBuilder::usual_size() const {
+  double wheel = 0, spring = 0;
+  for (const DrawnShape& shape : drawing_.shapes) {
+    if (shape.anchor == Anchor::body && shape.body_i >= 0) {
+      for (const DrawnLine& line : drawing_.symbols[static_cast<std::size_t>(shape.symbol)].lines)
+        wheel = std::max(wheel, 2 * line.radius);
+    } else if (shape.anchor == Anchor::span && shape.body_i != shape.body_j) {
+      const Vec2<double> p = model_.frame(shape.body_i).point(shape.point_i),
+                         q = model_.frame(shape.body_j).point(shape.point_j);
+      spring = std::max(spring, norm(q - p));
+    }
+  }
+  return wheel > 0 ? wheel : spring;
+}
+
 void DrawingBuilder::find_typical_length() {
-  if (lengths_.empty()) return;
+  if (lengths_.empty()) {
+    drawing_.typical_length = usual_size();
+    return;
+  }
   const auto middle = lengths_.begin() + static_cast<std::ptrdiff_t>(lengths_.size() / 2);
   std::nth_element(lengths_.begin(), middle, lengths_.end());
   drawing_.typical_length = *middle;
@@ -170,7 +215,10 @@ void DrawingBuilder::sort_shapes() {
     sorted.push_back(drawing_.shapes[k]);
   }
   drawing_.shapes = std::move(sorted);
-  for (DrawnGuide& guide : drawing_.guides) guide.shape = now[static_cast<std::size_t>(guide.shape)];
+  for (DrawnGuide& guide : drawing_.guides) {
+    guide.shape = now[static_cast<std::size_t>(guide.shape)];
+    if (guide.member >= 0) guide.member = now[static_cast<std::size_t>(guide.member)];
+  }
 }
 
 Drawing DrawingBuilder::finish() {

@@ -26,13 +26,17 @@ class DrawingBuilder {
     drawing_.shapes.push_back(shape);
   }
   void add_load(const DrawnLoad& load) { drawing_.loads.push_back(load); }
-  /// `guide.shape` is set here.
-  void add_guide(DrawnGuide guide, const DrawnShape& shape, DrawnSymbol look);
+  /// `guide.shape` is set here, and `guide.member` where the guide belongs to a body that moves: what of the body
+  /// bears it, `member_width` wide; zero: nothing.
+  void add_guide(DrawnGuide guide, const DrawnShape& shape, DrawnSymbol look, double member_width = 0);
+  void add_rope(RopePath path, DrawnSymbol look);
   /// The guides of an element along which something fixed in this body goes reach as far as this point of it does.
   void follow(int element, int body, const Vec2<double>& local);
 
   /// The body's link reaches to this place.
   void attach(int body, const Vec2<double>& local);
+  /// A round area about a place of the body: what lies on it needs no link.
+  void add_disc(int body, const Vec2<double>& centre, double radius) { discs_.push_back({body, centre, radius}); }
   /// The body has a look of its own, a gear say: without two places to join it gets no mark at its centroid.
   void has_look(int body);
   /// A pin holds these bodies together here: where a torsion spring between them is drawn.
@@ -66,7 +70,14 @@ class DrawingBuilder {
     Vec2<double> otherwise;
     DrawnSymbol look;
   };
+  struct Disc {
+    int body;
+    Vec2<double> centre;
+    double radius;
+  };
   void add_links();
+  std::vector<Vec2<double>> beyond_discs(int body, std::vector<Vec2<double>> places) const;
+  double usual_size() const;
   void add_link(int body, std::vector<Vec2<double>> places);
   void add_given_shapes();
   void add_symbols_at_pins();
@@ -81,6 +92,7 @@ class DrawingBuilder {
   std::map<std::pair<int, int>, Pin> pins_;
   std::vector<AtPin> at_pins_;
   std::vector<Wheel> wheels_;
+  std::vector<Disc> discs_;
   double smallest_wheel_ = 0;    // radius of a gear or pinion
   std::vector<double> lengths_;  // of links
 };

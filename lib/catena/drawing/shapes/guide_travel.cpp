@@ -56,6 +56,10 @@ void fit_guides(Drawing& drawing, double least_margin) {
     const Vec2<double> along = guide.axis_i / norm(guide.axis_i);
     shape.point_i = guide.point_i + low * along;
     shape.point_j = guide.point_i + high * along;
+    if (guide.member < 0) continue;
+    DrawnShape& member = drawing.shapes[static_cast<std::size_t>(guide.member)];
+    member.point_i = guide.point_i + std::min(low, 0.0) * along;
+    member.point_j = guide.point_i + std::max(high, 0.0) * along;
   }
 }
 

@@ -4,6 +4,7 @@
 //
 // Every pose that will be shown is observed, then the drawing takes the ends over. The margin is a tenth of the travel
 // and at least `least_margin`, m, so that a guide is seen where nothing moves. A rack gets its teeth over that length.
+// What of a moving body bears the guide goes on to P_i, where the body has its place for it.
 #pragma once
 
 #include <span>

@@ -42,8 +42,11 @@ void Pen::weld(const Vec2<double>& s_i, const Vec2<double>& s_j) {
 
 void Pen::slide(const Vec2<double>& s_i, const Vec2<double>& axis_i, const Vec2<double>& s_j,
                 const Vec2<double>& axis_j) {
+  constexpr double between_rails = 1.7;
   builder_.add_guide({.body_i = i_, .body_j = j_, .point_i = s_i, .axis_i = axis_i, .point_j = s_j},
-                     {.anchor = Anchor::span, .element = element_, .body_i = i_, .body_j = i_}, guide_symbol(i_ < 0));
+                     {.anchor = Anchor::span, .element = element_, .body_i = i_, .body_j = i_}, guide_symbol(i_ < 0),
+                     between_rails);
+  builder_.attach(i_, s_i);
   if (j_ < 0) return point(ground, s_j, ground, axis_j, block_symbol());
   builder_.attach(j_, s_j);
   builder_.has_look(j_);
@@ -51,8 +54,10 @@ void Pen::slide(const Vec2<double>& s_i, const Vec2<double>& axis_i, const Vec2<
 }
 
 void Pen::slot(const Vec2<double>& s_i, const Vec2<double>& axis_i, const Vec2<double>& s_j) {
+  constexpr double around_slot = 3;
   builder_.add_guide({.body_i = i_, .body_j = j_, .point_i = s_i, .axis_i = axis_i, .point_j = s_j},
-                     {.anchor = Anchor::span, .element = element_, .body_i = i_, .body_j = i_}, slot_symbol());
+                     {.anchor = Anchor::span, .element = element_, .body_i = i_, .body_j = i_}, slot_symbol(i_ < 0),
+                     around_slot);
   builder_.attach(i_, s_i);
   builder_.attach(j_, s_j);
   if (j_ < 0) point(ground, s_j, ground, {1, 0}, ground_pin_symbol());

@@ -55,7 +55,8 @@ class Pen {
   void spring(const Vec2<double>& s_i, const Vec2<double>& s_j, bool elastic, bool damped);
   void spiral_spring(const Vec2<double>& s_i, const Vec2<double>& s_j);
   void cable(const Vec2<double>& s_i, const Vec2<double>& s_j);
-  /// A stretch of a rope between two circles, or points where a radius is zero; the second one is drawn with it.
+  /// A rope, along the whole way that the model keeps for it; where it keeps none, between two circles, or points
+  /// where a radius is zero. The circles are drawn with it.
   void rope(const Vec2<double>& s_i, double radius_i, const Vec2<double>& s_j, double radius_j);
   void bushing(const Vec2<double>& s_i, const Vec2<double>& s_j);
   void force(const Vec2<double>& s_i, bool in_body_axes);
@@ -66,6 +67,7 @@ class Pen {
   void span(const Vec2<double>& s_i, const Vec2<double>& s_j, DrawnSymbol look);
   /// A symbol at a place of `body`, along an axis of `axis_body`.
   void point(int body, const Vec2<double>& local, int axis_body, const Vec2<double>& axis, DrawnSymbol look);
+  void pulley(const RopeNode& node);
   void wheel(int body, const Vec2<double>& centre, DrawnLine rim, double spoke);
   void toothed_wheel(const DrawingBuilder::Wheel& wheel, bool ring);
   void curve_on(int body, const BodyCurve<double>& curve, int side);

@@ -1,4 +1,5 @@
 // Gears, belts and racks: pitch circles with teeth that mesh as they do in the given configuration.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -40,6 +41,12 @@ double wrap_angle(double radius_i, double radius_j, double distance, bool crosse
 void Pen::wheel(int body, const Vec2<double>& centre, DrawnLine rim, double spoke) {
   builder_.attach(body, centre);
   builder_.has_look(body);
+  if (rim.filled) {
+    DrawnLine area = rim;
+    area.role = Role::wheel;
+    builder_.add({.element = element_, .body_i = body}, {{std::move(area)}});
+    rim.filled = false;
+  }
   DrawnSymbol look{{std::move(rim)}};
   // One spoke shows the turning.
   if (spoke > 0) look.lines.push_back({.role = Role::gear, .points = {centre, centre + Vec2<double>{spoke, 0}}});
@@ -54,6 +61,7 @@ void Pen::toothed_wheel(const DrawingBuilder::Wheel& known, bool ring) {
     DrawnLine outside{.role = Role::gear, .points = {known.centre}, .radius = 1.1 * known.radius};
     builder_.add({.element = element_, .body_i = known.body}, {{outside}});
   }
+  if (!ring) builder_.add_disc(known.body, known.centre, known.radius);
   wheel(known.body, known.centre, std::move(rim), ring ? 0 : 0.7 * known.radius);
 }
 
@@ -88,6 +96,8 @@ void Pen::gears(const Vec2<double>& s_i, double radius_i, const Vec2<double>& s_
 }
 
 void Pen::belt(const Vec2<double>& s_i, double radius_i, const Vec2<double>& s_j, double radius_j, bool crossed) {
+  builder_.add_disc(i_, s_i, radius_i);
+  builder_.add_disc(j_, s_j, radius_j);
   wheel(i_, s_i, {.role = Role::gear, .points = {s_i}, .radius = radius_i, .filled = true}, 0.7 * radius_i);
   wheel(j_, s_j, {.role = Role::gear, .points = {s_j}, .radius = radius_j, .filled = true}, 0.7 * radius_j);
   // In the axes of the line of centres the belt stands still: joints hold the centres at this distance.
@@ -108,16 +118,34 @@ void Pen::belt(const Vec2<double>& s_i, double radius_i, const Vec2<double>& s_j
       {{belt}});
 }
 
-// Centres and ends are drawn: where the tangents lie changes as the bodies move.
 void Pen::rope(const Vec2<double>& s_i, double radius_i, const Vec2<double>& s_j, double radius_j) {
-  builder_.attach(i_, s_i);
-  builder_.attach(j_, s_j);
-  span(s_i, s_j, bar_symbol(0, Role::cable));
-  if (i_ < 0 && radius_i == 0) point(ground, s_i, ground, {1, 0}, ground_pin_symbol());
-  if (j_ < 0) point(ground, s_j, ground, {1, 0}, ground_pin_symbol());
-  if (radius_j == 0) return;
-  builder_.add({.element = element_, .body_i = j_},
-               {{{.role = Role::gear, .points = {s_j}, .radius = std::abs(radius_j)}}});
+  const std::vector<RopePath>& paths = builder_.model().rope_paths;
+  const auto known = std::lower_bound(paths.begin(), paths.end(), element_,
+                                      [](const RopePath& path, int element) { return path.element < element; });
+  RopePath path{.element = element_, .nodes = {{i_, s_i, radius_i}, {j_, s_j, radius_j}}};
+  if (known != paths.end() && known->element == element_) path = *known;
+  const std::size_t own = path.nodes.size() - (path.leads_on ? 1 : 0);
+  for (std::size_t k = 0; k < own; ++k) {
+    const RopeNode& node = path.nodes[k];
+    builder_.attach(node.body, node.centre);
+    if (k == 0 && node.radius != 0) continue;  // drawn by the part of the rope that ends there
+    if (node.body < 0) point(ground, node.centre, ground, {1, 0}, ground_pin_symbol());
+    if (node.radius != 0) pulley(node);
+  }
+  builder_.add_rope(std::move(path), {{{.role = Role::cable}}});
+}
+
+// A rope that slides says nothing of how its pulley turns; one that rolls turns it, which a spoke shows.
+void Pen::pulley(const RopeNode& node) {
+  const double radius = std::abs(node.radius);
+  if (node.rolls) {
+    builder_.add_disc(node.body, node.centre, radius);
+    return wheel(node.body, node.centre,
+                 {.role = Role::gear, .points = {node.centre}, .radius = radius, .filled = true}, 0.7 * radius);
+  }
+  for (const Role role : {Role::wheel, Role::gear})
+    builder_.add({.element = element_, .body_i = node.body},
+                 {{{.role = role, .points = {node.centre}, .radius = radius, .filled = role == Role::wheel}}});
 }
 
 void Pen::rack_and_pinion(const Vec2<double>& s_i, const Vec2<double>& axis_i, const Vec2<double>& s_j, double radius,

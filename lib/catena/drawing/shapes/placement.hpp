@@ -24,6 +24,7 @@ inline Frame<double> frame_of_body(std::span<const Frame<double>> frames, int bo
 /// `size`: that of symbols, m.
 inline Placement place(const DrawnShape& shape, std::span<const Frame<double>> frames, double size) {
   const Frame<double> i = frame_of_body(frames, shape.body_i), j = frame_of_body(frames, shape.body_j);
+  if (shape.anchor == Anchor::rope) return {{0, 0}, {1, 0}, {0, 1}};
   if (shape.anchor == Anchor::body) return {i.origin(), {i.c, i.s}, {-i.s, i.c}};
   const Vec2<double> p = i.point(shape.point_i);
   if (shape.anchor == Anchor::point) {

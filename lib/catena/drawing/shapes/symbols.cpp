@@ -56,8 +56,8 @@ void add_dashpot(DrawnSymbol& symbol, double v) {
 }  // namespace
 
 const char* role_name(Role role) {
-  constexpr const char* names[roles] = {"support", "guide",  "curve", "link",  "belt",   "gear",
-                                        "cable",   "spring", "rod",   "joint", "driver", "measure"};
+  constexpr const char* names[roles] = {"wheel", "support", "guide", "curve", "link",   "belt",   "gear",
+                                        "cable", "spring",  "rod",   "joint", "driver", "measure"};
   return names[static_cast<int>(role)];
 }
 
@@ -176,10 +176,10 @@ DrawnSymbol guide_symbol(bool on_ground) {
   return symbol;
 }
 
-DrawnSymbol slot_symbol() {
+// That of a moving body is cut into its link, which it lies upon.
+DrawnSymbol slot_symbol(bool on_ground) {
   constexpr double half = 0.8;
-  return {{line(Role::guide, {{0, half}, {1, half}}), line(Role::guide, {{0, -half}, {1, -half}}),
-           line(Role::guide, {{0, half}, {0, -half}}), line(Role::guide, {{1, half}, {1, -half}})}};
+  return {{area(on_ground ? Role::guide : Role::joint, {{0, half}, {1, half}, {1, -half}, {0, -half}})}};
 }
 
 }  // namespace catena

@@ -25,7 +25,7 @@ DrawnSymbol bushing_symbol();
 DrawnSymbol face_symbol();  ///< a flat face along u, its body below
 DrawnSymbol limit_symbol();
 DrawnSymbol guide_symbol(bool on_ground);  ///< span
-DrawnSymbol slot_symbol();                 ///< span
+DrawnSymbol slot_symbol(bool on_ground);   ///< span
 
 /// Short slanted strokes below the line from (u0, v) to (u1, v), `depth` deep; `slant` is how far they lean.
 void add_hatching(DrawnSymbol& symbol, double u0, double u1, double v, int strokes, double slant, double depth);

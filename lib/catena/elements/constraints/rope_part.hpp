@@ -26,10 +26,9 @@ struct RopePart : RopeSpan<S> {
     return std::make_tuple(PointField{"i", &RopePart::s_i, 0, "the centre of its first circle"},
                            PointField{"j", &RopePart::s_j, 1, "the centre of its second circle"});
   }
+  /// Its rope draws it.
   template <class Pen>
-  void draw(Pen& pen) const {
-    if (!bridge) pen.rope(this->s_i, value_of(this->radius_i), this->s_j, value_of(this->radius_j));
-  }
+  void draw(Pen&) const {}
 
   template <class T>
   T measure(const Frame<T>& i, const Frame<T>& j) const {

@@ -38,7 +38,7 @@ struct ElasticRope : RopeSpan<S> {
   }
   template <class Pen>
   void draw(Pen& pen) const {
-    if (!bridge) pen.rope(this->s_i, value_of(this->radius_i), this->s_j, value_of(this->radius_j));
+    if (pieces > 0) pen.rope(this->s_i, value_of(this->radius_i), this->s_j, value_of(this->radius_j));
   }
   /// f; zero for a bridge.
   template <class T>

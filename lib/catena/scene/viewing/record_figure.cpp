@@ -8,6 +8,7 @@
 
 #include "catena/drawing/figures/pdf_canvas.hpp"
 #include "catena/drawing/figures/svg_canvas.hpp"
+#include "catena/drawing/shapes/guide_travel.hpp"
 #include "catena/drawing/shapes/pen.hpp"
 #include "catena/scene/json/near_miss.hpp"
 
@@ -65,6 +66,7 @@ FigurePose figure_pose(const RecordedAnalysis& analysis, std::size_t row) {
 
 /// The row nearest to an instant; a note where there is none at it.
 std::size_t nearest_row(const RecordedAnalysis& analysis, double t, std::vector<std::string>& notes) {
+  if (!std::isfinite(t)) throw FigureError(fmt::format("{} is no instant: figures are drawn at a finite time", t));
   std::size_t best = 0;
   const auto time = [&](std::size_t k) { return analysis.poses[k][PoseLayout::time]; };
   for (std::size_t k = 1; k < analysis.poses.size(); ++k) {
@@ -88,30 +90,48 @@ std::vector<std::size_t> choose_rows(const RecordedAnalysis& analysis, const Dra
   return rows;
 }
 
+/// The analysis whose poses are drawn: itself; of an optimisation the last one of the design that is kept last, its
+/// best.
+const RecordedAnalysis* posed_of(const RecordedAnalysis& analysis) {
+  if (analysis.poses.size() > 0) return &analysis;
+  if (analysis.result.type != "optimise" || analysis.designs.empty()) return nullptr;
+  const std::vector<RecordedAnalysis>& best = analysis.designs.back().analyses;
+  const auto posed = std::find_if(best.rbegin(), best.rend(), [](const auto& a) { return a.poses.size() > 0; });
+  return posed == best.rend() ? nullptr : &*posed;
+}
+
 /// What is drawn of which model, and when.
 struct ChosenFigure {
-  const Model& model;
+  Drawing drawing;
   MechanismFigure figure;
   std::vector<double> t{};  // of the poses
   std::vector<std::string> notes{};
 };
 
 ChosenFigure choose_figure(const RunRecord& record, const DrawRequest& request) {
-  const RecordedAnalysis* analysis =
-      choose_analysis(record, request.analysis, [](const RecordedAnalysis& a) { return a.poses.size() > 0; });
-  ChosenFigure chosen{.model = analysis ? *analysis->model : *record.model, .figure = {.width = request.width}};
-  if (analysis && analysis->poses.size() > 0) {
+  const RecordedAnalysis* asked =
+      choose_analysis(record, request.analysis, [](const RecordedAnalysis& a) { return posed_of(a) != nullptr; });
+  const RecordedAnalysis* analysis = asked ? posed_of(*asked) : nullptr;
+  const Model& model = analysis ? *analysis->model : *record.model;
+  ChosenFigure chosen{.drawing = draw_model(model), .figure = {.width = request.width}};
+  if (analysis) {
+    // Guides reach as far as the whole motion goes, so that figures of its instants fit each other and the page.
+    for (std::size_t k = 0; k < analysis->poses.size() && !chosen.drawing.guides.empty(); ++k)
+      observe_guides(chosen.drawing, frames_of(analysis->layout, analysis->poses[k]));
+    if (analysis != asked)
+      chosen.notes.push_back(
+          fmt::format("drawn is the design \"{}\" of {}", asked->designs.back().label.name, asked->result.type));
     for (const std::size_t row : choose_rows(*analysis, request, chosen.notes)) {
       chosen.figure.poses.push_back(figure_pose(*analysis, row));
       chosen.t.push_back(analysis->poses[row][PoseLayout::time]);
     }
   } else {
-    chosen.figure.poses.push_back({given_poses(chosen.model)});
+    chosen.figure.poses.push_back({given_poses(model)});
     chosen.t.push_back(std::numeric_limits<double>::quiet_NaN());
     chosen.notes.push_back("no analysis gave a pose: drawn is the given configuration, not assembled");
   }
   for (const std::string& trace : request.traces) {
-    const auto [body, local] = find_place(chosen.model, trace);
+    const auto [body, local] = find_place(model, trace);
     std::vector<Vec2<double>>& path = chosen.figure.traces.emplace_back();
     for (std::size_t k = 0; analysis && k < analysis->poses.size(); ++k) {
       const auto q = analysis->poses[k].subspan(PoseLayout::frames + 3 * static_cast<std::size_t>(body), 3);
@@ -132,13 +152,13 @@ CanvasMaker canvas_maker(FigureFormat format, std::string title) {
 
 DrawnFigure draw_record(const RunRecord& record, const DrawRequest& request) {
   ChosenFigure chosen = choose_figure(record, request);
-  return {draw_mechanism(draw_model(chosen.model), chosen.figure, canvas_maker(request.format, record.header.scene)),
+  return {draw_mechanism(std::move(chosen.drawing), chosen.figure, canvas_maker(request.format, record.header.scene)),
           std::move(chosen.notes)};
 }
 
 DrawnFilm film_record(const RunRecord& record, const DrawRequest& request, const CanvasMaker& canvas) {
   ChosenFigure chosen = choose_figure(record, request);
-  return {draw_film(draw_model(chosen.model), chosen.figure, canvas), std::move(chosen.t), std::move(chosen.notes)};
+  return {draw_film(std::move(chosen.drawing), chosen.figure, canvas), std::move(chosen.t), std::move(chosen.notes)};
 }
 
 namespace {

@@ -48,9 +48,23 @@ void append_symbol(ViewJson& json, const DrawnSymbol& symbol) {
 
 void append_shape(ViewJson& json, const DrawnShape& shape) {
   json.open('[').value(static_cast<std::int64_t>(shape.anchor)).value(std::int64_t{shape.symbol});
-  json.value(std::int64_t{shape.element}).value(std::int64_t{shape.body_i});
+  json.value(std::int64_t{shape.element});
+  json.value(std::int64_t{shape.anchor == Anchor::rope ? shape.rope : shape.body_i});
   json.rounded(shape.point_i.x).rounded(shape.point_i.y).value(std::int64_t{shape.body_j});
   json.rounded(shape.point_j.x).rounded(shape.point_j.y).close(']');
+}
+
+void append_ropes(ViewJson& json, const std::vector<RopePath>& ropes) {
+  json.key("ropes").open('[');
+  for (const RopePath& rope : ropes) {
+    json.open('{').key("nodes").open('[');
+    for (const RopeNode& node : rope.nodes) {
+      json.value(std::int64_t{node.body});
+      json.rounded(node.centre.x).rounded(node.centre.y).rounded(node.radius);
+    }
+    json.close(']').key("leads_on").value(rope.leads_on).close('}');
+  }
+  json.close(']');
 }
 
 }  // namespace
@@ -66,7 +80,9 @@ void append_drawing(ViewJson& json, const Model& model, const Drawing& drawing) 
     json.key("point").open('[').rounded(load.point.x).rounded(load.point.y).close(']');
     json.key("in_body_axes").value(load.in_body_axes).close('}');
   }
-  json.close(']').key("typical_length").rounded(drawing.typical_length).key("given").open('[');
+  json.close(']');
+  if (!drawing.ropes.empty()) append_ropes(json, drawing.ropes);
+  json.key("typical_length").rounded(drawing.typical_length).key("given").open('[');
   for (const Frame<double>& frame : given_poses(model)) json.value(frame.x).value(frame.y).value(frame.phi);
   json.close(']');
 }
