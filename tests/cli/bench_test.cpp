@@ -58,6 +58,18 @@ TEST(BenchReferences, TheExactChainAgreesWithTheReferenceInHighPrecision) {
   EXPECT_NEAR(static_cast<double>(chain.angular_accelerations()[0]), value("alpha_1"), 1e-11);
 }
 
+// A tail of level rods in place of rods that are level to 64 bits changes nothing.
+TEST(BenchReferences, TheTailOfAnExactChainPullsAsItsRodsDo) {
+  bench::ExactChain whole(200), with_tail(80), cut(80);
+  with_tail.tail = 120;
+  for (bench::ExactChain* chain : {&whole, &with_tail, &cut}) chain->move(0.1L, 10);
+  for (std::size_t k = 0; k < 80; ++k) {
+    EXPECT_NEAR(static_cast<double>(whole.angle[k] - with_tail.angle[k]), 0, 1e-16) << k;
+    EXPECT_NEAR(static_cast<double>(whole.rate[k] - with_tail.rate[k]), 0, 1e-15) << k;
+  }
+  EXPECT_GT(std::abs(whole.angle[0] - cut.angle[0]), 1e-4) << "the pull of the far rods matters";
+}
+
 TEST(BenchReferences, ExactShapeAtRestAgreesWithTheReferenceInHighPrecision) {
   // 1.5 m between pins 1 m apart, in rods of 1.5 / 10 m; the exact shape is that of rods of 1 m.
   const auto ends = bench::ends_at_rest(10, 1 / 1.5L);

@@ -59,6 +59,12 @@ std::vector<Real> ExactChain::solve(Vector& tip) const {
     next[k] = inverse * upper;
     held[k] = inverse * right;
   }
+  if (tail > 0) {
+    // F_n-1 = held - next F_n with F_n = pull F_n-1.
+    const Matrix pull{static_cast<Real>(tail) / (tail + 1), 0, 0, 0}, carried = next[n - 1] * pull;
+    const Vector last = Matrix{1 + carried.xx, carried.xy, carried.yx, 1 + carried.yy}.inverse() * held[n - 1];
+    force[n] = pull * last;
+  }
   for (std::size_t k = n; k-- > 0;) force[k] = held[k] - next[k] * force[k + 1];
   std::vector<Real> alpha(n);
   for (std::size_t k = 0; k < n; ++k) {

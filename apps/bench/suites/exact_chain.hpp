@@ -20,6 +20,9 @@ namespace bench {
 
 struct ExactChain {
   std::vector<long double> angle, rate;
+  /// So many further rods at the end, level and falling freely: a straight tail moves along itself as one mass, M, and
+  /// pulls at the last rod with F_n = (M / (M + 1) F_n-1,x, 0). Right as long as the last angle and rate are zero.
+  int tail = 0;
 
   explicit ExactChain(int rods, long double start = 0)
       : angle(static_cast<std::size_t>(rods), start), rate(angle.size()) {}
