@@ -340,5 +340,17 @@ TEST(Modes, StopWhenAsked) {
   EXPECT_EQ(report.status, Status::cancelled);
 }
 
+TEST(Modes, OfDenseAlgebraStopBetweenAnyTwoDecompositions) {
+  int calls = 0;
+  Modes whole(vertical_chain(20, -1), {}, {.count = 10});
+  ASSERT_TRUE(whole.run([&] { return ++calls > 0; }).ok());
+  EXPECT_GE(calls, 5);
+  for (int last = 1; last <= calls; ++last) {
+    Modes modes(vertical_chain(20, -1), {}, {.count = 10});
+    int call = 0;
+    EXPECT_EQ(modes.run([&] { return ++call < last; }).status, Status::cancelled) << last << " of " << calls;
+  }
+}
+
 }  // namespace
 }  // namespace catena
