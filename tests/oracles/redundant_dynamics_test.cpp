@@ -32,5 +32,32 @@ TEST_P(MasslessMotion, IsTheKnownOne) {
 }
 INSTANTIATE_TEST_SUITE_P(Kinds, MasslessMotion, ::testing::Range(0, all_massless_kinds));
 
+// What was wrong once: rows within steps across flat positions, dependent equations beside very unequal masses that
+// were taken for independent, and steps whose stages lay beside a flat position.
+TEST(RedundantMotions, OfCasesThatWereWrong) {
+  struct Case {
+    bool massless;
+    int kind;
+    unsigned seed;
+    IntegrationMethod method;
+    double tolerance;
+  };
+  using enum IntegrationMethod;
+  for (const Case& c :
+       {Case{true, 4, 4, rk5, 1e-5}, Case{true, 4, 4, rk5, 1e-12}, Case{true, 4, 4, baumgarte, 1e-5},
+        Case{true, 4, 4, baumgarte, 1e-12}, Case{true, 5, 1, baumgarte, 1e-10}, Case{false, 0, 20020, rk5, 1e-8},
+        Case{false, 0, 10023, baumgarte, 1e-11}, Case{false, 0, 10023, partitioning, 1e-12},
+        Case{false, 1, 10012, rk8, 1e-12}, Case{false, 1, 10018, adams, 1e-12}}) {
+    const std::optional<KnownMotion> motion =
+        c.massless ? draw_massless(c.kind, c.seed) : draw_redundant(c.kind, c.seed);
+    ASSERT_TRUE(motion);
+    const TrialOutcome outcome = run_trial_of(*motion, known_rows(*motion),
+                                              {.method = c.method, .tolerance = c.tolerance, .max_steps = 100'000});
+    EXPECT_TRUE(outcome.ok && !outcome.wrong)
+        << motion->kind << ", seed " << c.seed << ", " << to_string(c.method) << ", tolerance " << c.tolerance << ": "
+        << outcome.message << ", error " << outcome.ratio << " times what is allowed";
+  }
+}
+
 }  // namespace
 }  // namespace catena
