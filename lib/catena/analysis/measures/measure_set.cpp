@@ -90,7 +90,7 @@ void MeasureSet::cover_piece(const MotionPiece& piece) {
       for (const auto& account : accounts_) account->add(*samples_, part, within);
     }) && looked_;
   }
-  if (parameters_ > 0 && (may_end_ || piece.to() == run_.last)) look_at_end(piece);
+  if (parameters_ > 0 && (may_end_ || (piece.breaks_after && piece.to() == run_.last))) look_at_end(piece);
 }
 
 void MeasureSet::look_at_end(const MotionPiece& piece) {

@@ -125,7 +125,13 @@ void AnalysisRows::differentiate(std::unique_ptr<StateDerivatives> derivatives) 
     known.emplace(t, rates);
     return rates;
   };
-  measures_.differentiate(derivatives_->parameters(), std::move(columns), !stops_.empty());
+  bool end_moves = !stops_.empty();
+  for (const auto& moving :
+       context_.models->moving_numbers(context_.task, context_.seeds, context_.design->parameters)) {
+    for (const SceneModels::MovingNumber& one : moving)
+      end_moves = end_moves || (one.number.place == TaskNumber::Place::key && one.number.key->name == "until");
+  }
+  measures_.differentiate(derivatives_->parameters(), std::move(columns), end_moves);
 }
 
 void AnalysisRows::begin() {
