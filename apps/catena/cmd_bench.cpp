@@ -3,10 +3,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <memory>
 #include <optional>
 
+#include "catena/results/terminal/interrupt.hpp"
 #include "catena/scene/json/diagnostic.hpp"
 #include "catena/scene/json/near_miss.hpp"
 #include "catena/scene/json/source_text.hpp"
@@ -58,6 +60,10 @@ bench::Document run_suites(const BenchCommand& command) {
     complain(bench::table_head());
     options.progress = [](const bench::Row& row) { complain(bench::table_line(row)); };
   }
+  catch_interrupts();
+  // A row may take longer than the patience of other loops; a second signal still ends the program.
+  std::signal(SIGALRM, SIG_IGN);
+  options.cancelled = [] { return interrupt_flag().load(std::memory_order_relaxed); };
   bench::Bench bench(options);
   const auto wanted = [&](std::string_view name) {
     return std::any_of(command.suites.begin(), command.suites.end(),
@@ -66,7 +72,10 @@ bench::Document run_suites(const BenchCommand& command) {
   for (const bench::Suite& suite : bench::suites) {
     if (wanted(suite.name)) suite.run(bench);
   }
-  bench::add_peers(bench, wanted);
+  if (options.cancelled())
+    bench.remark("stopped by a signal: the rows so far are kept");
+  else
+    bench::add_peers(bench, wanted);
   return bench::make_document(bench.rows(), bench.notes(), options.brief);
 }
 
@@ -110,7 +119,8 @@ int run_bench(const BenchCommand& command) {
       complain("catena: no row has these words in its name\n");
       return usage;
     }
-    return exit_code == solved && failed > 0 ? static_cast<int>(not_solved) : exit_code;
+    const bool complete = failed == 0 && !interrupt_flag().load(std::memory_order_relaxed);
+    return exit_code == solved && !complete ? static_cast<int>(not_solved) : exit_code;
   } catch (const FileError& error) {
     complain(fmt::format("catena: {}\n", error.what()));
     return no_file;

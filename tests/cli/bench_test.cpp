@@ -2,12 +2,15 @@
 // looked at nowhere.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <thread>
 
 #include "cli/program.hpp"
 #include "results/temporary_folder.hpp"
@@ -307,6 +310,22 @@ TEST(Bench, WrongWordsAndFilesAreNamed) {
   document["rows"][2]["method"] = "m";
   document["rows"][2]["seconds"] = "fast";
   refused(document.dump(), "row 3 has no \"seconds\" that is a number");
+}
+
+// Kernels with a second of repeats each: the signal comes while the first ones are measured.
+TEST(Bench, CtrlCKeepsTheRowsSoFar) {
+  TemporaryFolder folder;
+  const std::string document = folder / "rows.json";
+  const ProgramResult result = run_catena({"bench", "kernels", "-q", "--budget", "1", "--json", document},
+                                          {.standard_output = {}, .during = [](int process) {
+                                             std::this_thread::sleep_for(std::chrono::milliseconds(500));
+                                             ::kill(process, SIGINT);
+                                           }});
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  const json written = json::parse(std::ifstream(document));
+  EXPECT_GE(written["rows"].size(), 1u);
+  EXPECT_LT(written["rows"].size(), 6u);
+  expect_said(written["notes"].dump(), "stopped by a signal");
 }
 
 }  // namespace

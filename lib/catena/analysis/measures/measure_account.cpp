@@ -83,7 +83,7 @@ void MeasureSet::Account::add(const MotionSamples& samples, const MotionSamples:
 
 void MeasureSet::Account::look_at_instants(const MotionSamples& samples, const MotionPiece& piece) {
   for (Instant& instant : instants_) {
-    if (instant.sample || instant.t < piece.from() || instant.t > piece.to()) continue;
+    if ((instant.sample && !instant.of_row) || instant.t < piece.from() || instant.t > piece.to()) continue;
     const bool differentiated = parameters_ > 0;
     if (differentiated && piece.breaks_after && instant.t == piece.to()) {
       instant.moving = samples.moving(instant.t);
@@ -95,7 +95,9 @@ void MeasureSet::Account::look_at_instants(const MotionSamples& samples, const M
     // At a breakpoint the value is that after it, of the next piece, as that of a row.
     if (piece.breaks_after && instant.t == piece.to() && instant.t != run_.last) continue;
     instant.sample = samples.look({piece.stretch}, instant.t, differentiated);
-    if (differentiated) instant.rate = samples.rates(piece, instant.t).value_or(std::vector<double>{});
+    instant.of_row = false;
+    if (differentiated && instants_move_)
+      instant.rate = samples.rates(piece, instant.t).value_or(std::vector<double>{});
   }
 }
 
@@ -104,7 +106,9 @@ void MeasureSet::Account::add_row(const MotionSample& sample, bool only_rows) {
   if (!first_ || sample.t < first_->t) first_ = sample;
   if (!last_ || sample.t >= last_->t) last_ = sample;
   for (Instant& instant : instants_) {
-    if (!instant.sample && instant.t == sample.t) instant.sample = sample;
+    if (instant.sample || instant.t != sample.t) continue;
+    instant.sample = sample;
+    instant.of_row = true;
   }
   if (!only_rows) return;
   for (Extreme& extreme : extremes_) extreme.add(sample);

@@ -43,7 +43,11 @@ class MeasureSet::Account {
   /// Whether it depends on what is between rows, single instants apart.
   bool wants_samples() const { return is_integral() || !extremes_.empty(); }
 
-  void set_parameters(int parameters) { parameters_ = static_cast<std::size_t>(parameters); }
+  /// `instants_move`: with the parameters, so that rates are needed there.
+  void set_parameters(int parameters, bool instants_move) {
+    parameters_ = static_cast<std::size_t>(parameters);
+    instants_move_ = instants_move;
+  }
   void add(const MotionSamples& samples, const MotionSamples::Part& part, const MotionPiece& piece);
   void look_at_instants(const MotionSamples& samples, const MotionPiece& piece);
   void add_row(const MotionSample& sample, bool only_rows);
@@ -60,6 +64,7 @@ class MeasureSet::Account {
   struct Instant {
     double t;
     std::optional<MotionSample> sample{};
+    bool of_row = false;                   // `sample` is a row's, until the motion is looked at there
     std::vector<double> rate{};            // of columns; with derivatives
     std::optional<MotionSample> before{};  // at a moving jump: the limit from before it
     std::vector<double> rate_before{}, moving{};
@@ -82,6 +87,7 @@ class MeasureSet::Account {
 
   MeasureRequest request_;
   std::size_t column_, second_, parameters_ = 0;
+  bool instants_move_ = false;
   TimeRange run_;
   std::vector<Extreme> extremes_;
   std::vector<Instant> instants_;

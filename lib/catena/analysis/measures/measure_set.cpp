@@ -56,13 +56,13 @@ MeasureSet::MeasureSet(std::vector<MeasureRequest> requests, const Model& model,
   }
 }
 
-void MeasureSet::differentiate(int parameters, DifferentiateColumns derivatives, bool may_end) {
+void MeasureSet::differentiate(int parameters, DifferentiateColumns derivatives, bool may_end, bool instants_move) {
   if (empty()) return;
   parameters_ = parameters;
   may_end_ = may_end;
   bool integrals = false;
   for (const auto& account : accounts_) {
-    account->set_parameters(parameters);
+    account->set_parameters(parameters, instants_move);
     integrals = integrals || account->is_integral();
   }
   samples_->differentiate(parameters, std::move(derivatives), integrals);

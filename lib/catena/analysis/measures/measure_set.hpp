@@ -51,8 +51,9 @@ class MeasureSet {
   const ColumnSet& columns() const { return *columns_; }
   const Needs& needs() const { return columns_->needs(); }
   /// Gradients by so many parameters are wanted, from derivatives of columns(); before anything is taken. `may_end`:
-  /// the run may end anywhere.
-  void differentiate(int parameters, DifferentiateColumns derivatives, bool may_end = false);
+  /// the run may end anywhere. `instants_move`: with the parameters, those at which measures look.
+  void differentiate(int parameters, DifferentiateColumns derivatives, bool may_end = false,
+                     bool instants_move = false);
 
   /// A stretch of the motion, one after the other.
   void cover(const MotionStretch& stretch);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "catena/base/smoothing.hpp"
+#include "catena/scene/reading/smoothing.hpp"
 #include "catena/scene/reading/data_file.hpp"
 #include "catena/scene/reading/scene_reading.hpp"
 

@@ -8,7 +8,7 @@
 // read as numbers. Every line must have as many numbers as the first.
 //
 // "smooth" is the root mean square by which values may be moved to make the curve through them smoother (see
-// base/smoothing.hpp), as a quantity or in the unit of the last column.
+// scene/reading/smoothing.hpp), as a quantity or in the unit of the last column.
 #pragma once
 
 #include "catena/scene/reading/scene_reading.hpp"

@@ -125,13 +125,17 @@ void AnalysisRows::differentiate(std::unique_ptr<StateDerivatives> derivatives) 
     known.emplace(t, rates);
     return rates;
   };
-  bool end_moves = !stops_.empty();
+  bool end_moves = !stops_.empty(), instants_move = false;
   for (const auto& moving :
        context_.models->moving_numbers(context_.task, context_.seeds, context_.design->parameters)) {
-    for (const SceneModels::MovingNumber& one : moving)
-      end_moves = end_moves || (one.number.place == TaskNumber::Place::key && one.number.key->name == "until");
+    for (const SceneModels::MovingNumber& one : moving) {
+      const bool until = one.number.place == TaskNumber::Place::key && one.number.key->name == "until";
+      end_moves = end_moves || until;
+      // Those of a timed path are spread over the run.
+      instants_move = instants_move || until || one.number.place == TaskNumber::Place::measured_instant;
+    }
   }
-  measures_.differentiate(derivatives_->parameters(), std::move(columns), end_moves);
+  measures_.differentiate(derivatives_->parameters(), std::move(columns), end_moves, instants_move);
 }
 
 void AnalysisRows::begin() {

@@ -30,6 +30,7 @@ RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options) : motion
   error_.resize(2 * motion_.coordinates());
   error_low_.resize(2 * motion_.coordinates());
   stage_ratio_.assign(stage_.size(), 1.0);
+  detour_steps_.reserve(most_detours);
   scale_.step_tolerance = options.tolerance;
   scale_.horizon = options.horizon;
   scale_.length = motion_.equations().evaluator().length_scale();

@@ -101,6 +101,7 @@ class RungeKutta final : public Integrator {
   void observe_rates();
   bool prepare_interpolant();
   bool integrate_to(double t, std::span<double> y);
+  void get_interpolant_ready();
   void evaluate_interpolant(double t, std::span<double> y);
 
   Motion motion_;
@@ -112,6 +113,7 @@ class RungeKutta final : public Integrator {
   std::vector<std::vector<double>> stage_;
   std::vector<std::vector<double>> interpolant_;
   std::vector<double> error_, error_low_;  // [q, qd]
+  static constexpr std::size_t most_detours = 8;
   std::vector<double> detour_steps_, stage_ratio_;
   double roughness_ = 0;  // of the last stages: sum of |weight| ratio^-1.5
   bool interpolant_ready_ = false, by_ends_ = false, passing_singular_ = false, projecting_stages_ = false,

@@ -12,6 +12,9 @@ namespace {
 // of a step below which rounding alone leaves too much, 1e-10 of the motion and more; and the position residual, in
 // these tolerances (fifty are a tenth of the run's), that what is interpolated may have otherwise.
 constexpr double fine_tolerance = 2e-11, largest_residual = 50;
+// What rounding may make of a cut step, in tolerances: one that ends beside the singular position makes more of it than
+// the interpolant across.
+constexpr double largest_rounding = 1;
 
 }  // namespace
 
@@ -44,14 +47,13 @@ bool RungeKutta::prepare_interpolant() {
 }
 
 // A step across a singular position, cut at t: from its start or from its end, whichever has stages further from that
-// position. False: neither can be made.
+// position. False: neither can be made, or both end too near to it.
 bool RungeKutta::integrate_to(double t, std::span<double> y) {
   bool found = false;
   double least = std::numeric_limits<double>::infinity();
-  by_ends_ = true;  // the step's own stages are overwritten
   const auto try_from_present_end = [&] {
     t_new_ = t;
-    if (!evaluate_stages(t - t_) || !(roughness_ < least)) return;
+    if (!evaluate_stages(t - t_) || !(roughness_ < least) || rounding_of_crossing(t - t_) > largest_rounding) return;
     found = true;
     least = roughness_;
     std::copy(y_new_.begin(), y_new_.end(), y.begin());
@@ -71,6 +73,8 @@ bool RungeKutta::integrate_to(double t, std::span<double> y) {
 
 void RungeKutta::interpolate(double t, std::span<double> y) {
   const bool fine = scale_.step_tolerance < fine_tolerance;
+  // Cut steps overwrite the step's own stages.
+  if (projecting_stages_) get_interpolant_ready();
   if (projecting_stages_ && fine && integrate_to(t, y)) return;
   evaluate_interpolant(t, y);
   if (!projecting_stages_ || fine) return;
@@ -82,13 +86,16 @@ void RungeKutta::interpolate(double t, std::span<double> y) {
   }
 }
 
+void RungeKutta::get_interpolant_ready() {
+  if (by_ends_ || interpolant_ready_) return;
+  interpolant_ready_ = prepare_interpolant();
+  by_ends_ = !interpolant_ready_;
+}
+
 void RungeKutta::evaluate_interpolant(double t, std::span<double> y) {
   const double h = t_ - t_before_;
   const double s = (t - t_before_) / h, r = 1 - s;
-  if (!by_ends_ && !interpolant_ready_) {
-    interpolant_ready_ = prepare_interpolant();
-    by_ends_ = !interpolant_ready_;
-  }
+  get_interpolant_ready();
   if (!by_ends_) {
     const auto& c = interpolant_;
     for (std::size_t i = 0; i < y.size(); ++i) {

@@ -35,6 +35,7 @@ void RungeKutta::reject(double h) {
 
 // Another step size in place of h, so that neither its end nor a stage lies beside a singular position.
 bool RungeKutta::detour(double h, bool across) {
+  static_assert(std::size(gaps) + std::size(other_steps) <= most_detours);
   if (detours_ == 0) {
     detour_steps_.clear();
     // Pivots fall with the square of the distance.

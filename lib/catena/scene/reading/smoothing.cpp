@@ -1,4 +1,4 @@
-#include "catena/base/smoothing.hpp"
+#include "catena/scene/reading/smoothing.hpp"
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>

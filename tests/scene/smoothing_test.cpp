@@ -1,5 +1,5 @@
 // Smoothing against dense algebra of the defining problem, and known limits.
-#include "catena/base/smoothing.hpp"
+#include "catena/scene/reading/smoothing.hpp"
 
 #include <gtest/gtest.h>
 
