@@ -5,9 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "catena/scene/reading/smoothing.hpp"
 #include "catena/scene/reading/data_file.hpp"
 #include "catena/scene/reading/scene_reading.hpp"
+#include "catena/scene/reading/smoothing.hpp"
 
 namespace catena {
 namespace {
