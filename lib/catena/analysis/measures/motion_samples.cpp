@@ -176,10 +176,10 @@ MotionSamples::Misfit MotionSamples::misfit(const Part& part) const {
   return {std::max(largest, rows), std::max(quartic_grows_by * largest, eighth_grows_by * rows)};
 }
 
-double MotionSamples::miss(double foretold, double there, std::size_t column) const {
+double MotionSamples::miss(double expected, double there, std::size_t column) const {
   // Where a column ceases to be a number halving finds the border.
-  if (std::isfinite(foretold) != std::isfinite(there)) return std::numeric_limits<double>::infinity();
-  return std::isfinite(there) ? std::abs(foretold - there) / size_[column] : 0;
+  if (std::isfinite(expected) != std::isfinite(there)) return std::numeric_limits<double>::infinity();
+  return std::isfinite(there) ? std::abs(expected - there) / size_[column] : 0;
 }
 
 double MotionSamples::misfit_of_rows(const Part& part) const {
