@@ -304,7 +304,7 @@ TEST_P(RandomLaws, GradientsAgreeWithDifferencesOfWholeRuns) {
   const bool free = type == "dynamics";
   const std::string inner = R"({"type": ")" + type + R"(", "until": 2.113, "every": 0.37, )" +
                             (free ? R"("tolerance": 1e-11, )" : "") + measured + "}";
-  int compared = 0, skipped = 0;
+  int compared = 0, skipped = 0, refused = 0;
   for (unsigned seed = 1; seed <= 8; ++seed) {
     SCOPED_TRACE(seed);
     RandomNumbers random(1000 + seed);
@@ -328,6 +328,11 @@ TEST_P(RandomLaws, GradientsAgreeWithDifferencesOfWholeRuns) {
           ++skipped;
           continue;
         }
+        // An extreme beside a jump may be told from it by rounding alone: none is given then, and said.
+        if (!std::isfinite(m.gradient[p]) && !m.trouble.empty()) {
+          ++refused;
+          continue;
+        }
         ++compared;
         EXPECT_NEAR(m.gradient[p], richardson, 1e-6 * size) << m.name << " by " << (p == 0 ? "T" : "w");
       }
@@ -335,6 +340,7 @@ TEST_P(RandomLaws, GradientsAgreeWithDifferencesOfWholeRuns) {
   }
   EXPECT_GT(compared, 100);
   EXPECT_LT(skipped, compared / 8);
+  EXPECT_LE(refused, 3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Analyses, RandomLaws, ::testing::Values("kinematics", "inverse_dynamics", "dynamics"));
