@@ -129,7 +129,10 @@ class Comparison {
   std::optional<std::size_t> row_like(const ResultStorage& rows, std::size_t r) const {
     const auto t = rows_.find("t"), other = rows.find("t");
     if (!t || !other) return rows.rows() == rows_.rows() ? std::optional(r) : std::nullopt;
-    for (std::size_t k = 0; k < rows.rows(); ++k) {
+    // It has the same number or, beside a row that only one of the two has, nearly the same: outwards from there.
+    const std::size_t count = rows.rows();
+    for (std::size_t n = 0; n < count; ++n) {
+      const std::size_t away = (n + 1) / 2, k = (r % count + (n % 2 == 0 ? away : count - away)) % count;
       const double here = rows_.at(r, *t), there = rows.at(k, *other);
       if (std::abs(here - there) <= same_instant * std::max(std::abs(here), std::abs(there))) return k;
     }
