@@ -156,7 +156,7 @@ void kernels_suite(Bench& bench) {
     plan(bench, bodies);
     jacobian(bench, bodies);
     measure_accelerations(bench, "kernels", bodies);
-    factorization(bench, bodies / 2, "KLU", Kernel::klu);
+    factorization(bench, bodies / 2, "KLU's pivots, lists", Kernel::klu);
     if (is_compiled_in(Kernel::umfpack)) factorization(bench, bodies / 2, "UMFPACK", Kernel::umfpack);
   }
 }

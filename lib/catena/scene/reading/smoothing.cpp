@@ -13,8 +13,8 @@ using Vector = Eigen::VectorXd;
 
 // The misfit is met to this part: the curve's shape follows it with a power below one.
 constexpr double enough = 1e-10;
-// Beyond this many halvings of the bracket nothing is left of it: 2^-60 of a factor of 1e60.
-constexpr int most_halvings = 260;
+// Halvings after which the logarithm of the bracket's ends, 138 at first, is rounding.
+constexpr int most_halvings = 60;
 constexpr double widest = 1e30;
 
 /// Of n knots: R (m x m) and Q (n x m); m = n - 2 inner knots, or all n of a closed curve.
