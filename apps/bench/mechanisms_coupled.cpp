@@ -17,7 +17,7 @@ using namespace catena;
 
 namespace {
 
-std::string name(const char* kind, int k) { return kind + std::to_string(k); }
+std::string coupled_name(const char* kind, int k) { return kind + std::to_string(k); }
 
 TimeFunction<double> swing(double middle, double amplitude) {
   return TimeFunction<double>::harmonic(amplitude, 1.5, 0, middle);
@@ -72,15 +72,16 @@ std::shared_ptr<Model> camshaft(int cams) {
   int previous = -1;
   for (int k = 0; k < cams; ++k) {
     const Vec2<double> centre{0.1 * k, 0};
-    const int cam = add_wheel(*model, name("cam", k), centre);
+    const int cam = add_wheel(*model, coupled_name("cam", k), centre);
     const double phase = 0.7 * k, offset = 0.01, radius = 0.03;
     const Vec2<double> eccentric{offset * std::cos(phase), offset * std::sin(phase)};
-    const int follower = model->add_body(name("follower", k),
+    const int follower = model->add_body(coupled_name("follower", k),
                                          {.mass = 1, .inertia = 0.01, .position = {centre.x, eccentric.y + radius}});
-    model->add(name("guide", k), Translational<>{.s_i = centre, .axis_i = {0, 1}, .axis_j = {0, 1}}, ground, follower);
-    model->add(name("contact", k), CamFlat<>{.axis_j = {1, 0}, .curve = Curve<double>::circle(eccentric, radius)}, cam,
+    model->add(coupled_name("guide", k), Translational<>{.s_i = centre, .axis_i = {0, 1}, .axis_j = {0, 1}}, ground,
                follower);
-    if (k > 0) model->add(name("shaft", k), RelativeAngle<>{}, previous, cam, 0.0);
+    model->add(coupled_name("contact", k),
+               CamFlat<>{.axis_j = {1, 0}, .curve = Curve<double>::circle(eccentric, radius)}, cam, follower);
+    if (k > 0) model->add(coupled_name("shaft", k), RelativeAngle<>{}, previous, cam, 0.0);
     previous = cam;
   }
   model->add_driver("drive", AbsoluteAngle<>{}, 0, ground, swing(0, 0.5));
@@ -92,8 +93,8 @@ std::shared_ptr<Model> gear_train(int gears) {
   double x = 0;
   for (int k = 0; k < gears; ++k) {
     const double radius = k % 2 ? 0.04 : 0.06;
-    add_wheel(*model, name("gear", k), {x, 0});
-    if (k > 0) model->add(name("mesh", k), Gear<>{.radius_i = 0.1 - radius, .radius_j = radius}, k - 1, k);
+    add_wheel(*model, coupled_name("gear", k), {x, 0});
+    if (k > 0) model->add(coupled_name("mesh", k), Gear<>{.radius_i = 0.1 - radius, .radius_j = radius}, k - 1, k);
     x += 0.1;
   }
   model->add_driver("drive", AbsoluteAngle<>{}, 0, ground, swing(0, 0.5));

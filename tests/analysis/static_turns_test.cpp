@@ -10,6 +10,7 @@
 
 #include "catena/analysis/statics/equilibrium.hpp"
 #include "catena/analysis/statics/static_ipopt.hpp"
+#include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/model_add.hpp"
 #include "oracles/static_scenes.hpp"
@@ -20,8 +21,6 @@ namespace {
 using namespace testing;
 
 constexpr double turn = 2 * std::numbers::pi;
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 /// Ties bodies i and j, i may be the ground, by something that counts their turns, or not.
 void tie(Model& model, int what, int i, int j, bool counts) {

@@ -197,7 +197,7 @@ TEST(ConstraintValues, EveryScalarConstraintIsDriven) {
     for (std::size_t r = 0; r < rows; ++r) {
       const int element = evaluator.plan().row_element[r];
       const std::string_view type = model.element_type(element);
-      SCOPED_TRACE(testing::Message() << type << " at " << t);
+      SCOPED_TRACE(::testing::Message() << type << " at " << t);
       const double measured = evaluator.measure(element, {}, {}).value;
       const bool squared = type == "absolute_distance" || type == "relative_distance" || type == "coupler";
       // Scaled by 1/(2 c), c at time zero.

@@ -61,7 +61,7 @@ struct Evaluated {
 };
 
 template <class E>
-class ElementJacobian : public testing::Test {};
+class ElementJacobian : public ::testing::Test {};
 
 struct Names {
   template <class E>
@@ -72,11 +72,11 @@ struct Names {
 
 template <class... Types>
 struct ListOf {
-  using type = testing::Types<Types...>;
+  using type = ::testing::Types<Types...>;
 };
 template <class First, class... Types>
 struct ListOf<First, Types...> {
-  using type = testing::Types<Types...>;
+  using type = ::testing::Types<Types...>;
 };
 #define CATENA_TYPE(Type) , Type<double>
 // Stops have bounds in place of fields: see gap_elements_test.cpp.

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "catena/assembly/evaluate.hpp"
+#include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/model_add.hpp"
 #include "catena/model/model_part.hpp"
@@ -14,8 +15,6 @@
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double step = 1e-5, stiffness = 300;
 

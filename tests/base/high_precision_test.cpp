@@ -37,7 +37,7 @@ std::array<double, 3> exact_derivatives(const F& f, double x) {
 template <class F>
 void expect_exact(const char* name, const F& f, std::initializer_list<double> places, double tolerance = 4e-15) {
   for (const double x : places) {
-    SCOPED_TRACE(testing::Message() << name << " at " << x);
+    SCOPED_TRACE(::testing::Message() << name << " at " << x);
     const std::array<double, 3> exact = exact_derivatives(f, x);
     const Nested dual = f(Nested(Dual<double, 1>(x, {1.0}), {Dual<double, 1>(1.0)}));
     const Taylor<double> taylor = f(Taylor<double>(x, 1.0, 0.0));
@@ -53,7 +53,7 @@ void expect_exact(const char* name, const F& f, std::initializer_list<double> pl
 template <class F>
 void expect_exact_dual(const char* name, const F& f, std::initializer_list<double> places, double tolerance = 4e-15) {
   for (const double x : places) {
-    SCOPED_TRACE(testing::Message() << name << " at " << x);
+    SCOPED_TRACE(::testing::Message() << name << " at " << x);
     const std::array<double, 3> exact = exact_derivatives(f, x);
     const Nested dual = f(Nested(Dual<double, 1>(x, {1.0}), {Dual<double, 1>(1.0)}));
     EXPECT_NEAR(dual.v.v, exact[0], tolerance * (1 + std::abs(exact[0])));
@@ -151,7 +151,7 @@ TEST(HighPrecision, SplinesOfEveryEnd) {
         values(y.begin(), y.begin() + static_cast<long>(points));
     values.back() = values.front();
     for (const SplineEnd end : {SplineEnd::natural, SplineEnd::clamped, SplineEnd::periodic}) {
-      SCOPED_TRACE(testing::Message() << points << " points, end " << static_cast<int>(end));
+      SCOPED_TRACE(::testing::Message() << points << " points, end " << static_cast<int>(end));
       const std::vector<Exact> m = exact_second_derivatives(knots, values, end);
       const Spline<double> spline(knots, values, end);
       for (std::size_t k = 0; k + 1 < points; ++k) {

@@ -40,7 +40,7 @@ void expect_design_derivatives(const MakeDual& dual, const MakePlain& plain, con
   for (const double t : {0.11, 0.77, 1.37, 1.9}) {
     const Taylor<D> found = f.evaluate(t);
     for (std::size_t k = 0; k < 4; ++k) {
-      SCOPED_TRACE(testing::Message() << "parameter " << k << " at " << t);
+      SCOPED_TRACE(::testing::Message() << "parameter " << k << " at " << t);
       std::vector<double> more = p, less = p;
       more[k] += h;
       less[k] -= h;

@@ -70,7 +70,7 @@ TEST(TimeFunction, SumsAndProductsOfEverything) {
   const std::vector<F> kinds = one_of_each();
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     for (std::size_t j = 0; j < kinds.size(); ++j) {
-      SCOPED_TRACE(testing::Message() << i << ", " << j);
+      SCOPED_TRACE(::testing::Message() << i << ", " << j);
       for (const double t : {-0.83, 0.4, 2.9}) {
         const Taylor<double> a = kinds[i].evaluate(t), b = kinds[j].evaluate(t);
         expect_equal(F::sum({kinds[i], kinds[j]}).evaluate(t), a + b);

@@ -27,11 +27,11 @@ struct Over<E<T>, S> {
 
 template <class... Types>
 struct ListOf {
-  using type = testing::Types<Types...>;
+  using type = ::testing::Types<Types...>;
 };
 template <class First, class... Types>
 struct ListOf<First, Types...> {
-  using type = testing::Types<Types...>;
+  using type = ::testing::Types<Types...>;
 };
 #define CATENA_TYPE(Type) , Type<double>
 using AllConstraints = ListOf<void CATENA_CONSTRAINTS(CATENA_TYPE)>::type;
@@ -110,7 +110,7 @@ std::array<double, static_cast<std::size_t>(E::rows)> row_sizes(const Jacobian& 
 }
 
 template <class E>
-class ConstraintContract : public testing::Test {
+class ConstraintContract : public ::testing::Test {
  protected:
   using Rows = std::array<double, static_cast<std::size_t>(E::rows)>;
 
@@ -119,7 +119,7 @@ class ConstraintContract : public testing::Test {
   void for_random_cases(const Test& test) {
     for (unsigned seed = 0; seed < draws; ++seed) {
       const double size = std::array{1e-3, 1.0, 1e3}[seed % 3];
-      SCOPED_TRACE(testing::Message() << "seed " << seed);
+      SCOPED_TRACE(::testing::Message() << "seed " << seed);
       const ConstraintCase<E> x = random_case<E>(seed, size);
       const auto jacobian = exact_jacobian(x);
       test(x, jacobian, row_sizes<E>(jacobian, size), size);
@@ -135,7 +135,7 @@ class ConstraintContract : public testing::Test {
 
   void TearDown() override {
     for (const auto& [what, error] : worst_)
-      RecordProperty(std::string("error of ") + what, testing::PrintToString(error));
+      RecordProperty(std::string("error of ") + what, ::testing::PrintToString(error));
   }
 
   std::map<std::string, double> worst_;
@@ -160,7 +160,7 @@ TYPED_TEST(ConstraintContract, RowsAndJacobian) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
       this->expect_exact(rows[r], exact_phi[r], row_size[r], 16, "phi");
       for (std::size_t k = 0; k < 3 * E::bodies; ++k) {
-        SCOPED_TRACE(testing::Message() << "row " << r << " column " << k);
+        SCOPED_TRACE(::testing::Message() << "row " << r << " column " << k);
         const double entry_size = row_size[r] / (k % 3 == 2 ? 1 : size);
         const double entry = derived.entries[r * 3 * E::bodies + k];
         this->expect_exact(entry, exact[r][k], entry_size, 16, "derived Jacobian");
@@ -213,7 +213,7 @@ TYPED_TEST(ConstraintContract, SecondDerivatives) {
         ConstraintOperations<E>::hessian(stored.block, stored.data, stored.frames.data(), lambda, 0);
     for (std::size_t a = 0; a < 3 * E::bodies; ++a) {
       for (std::size_t b = 0; b < 3 * E::bodies; ++b) {
-        SCOPED_TRACE(testing::Message() << "entry " << a << ", " << b);
+        SCOPED_TRACE(::testing::Message() << "entry " << a << ", " << b);
         const double unit = (a % 3 == 2 ? 1 : size) * (b % 3 == 2 ? 1 : size);
         this->expect_exact(found[6 * a + b], exact_second_derivative(x, lambda, a, b), 1 / unit, 64, "Hessian");
       }
@@ -224,7 +224,7 @@ TYPED_TEST(ConstraintContract, SecondDerivatives) {
       x.element.hessian(Arguments<double>{stored.frames[0], stored.frames[1], x.c.f, x.ground}, lambda, closed);
     for (std::size_t a = 0, next = 0; a < 3 * E::bodies; ++a) {
       for (std::size_t b = 0; b <= a; ++b) {
-        SCOPED_TRACE(testing::Message() << "entry " << a << ", " << b);
+        SCOPED_TRACE(::testing::Message() << "entry " << a << ", " << b);
         const double unit = (a % 3 == 2 ? 1 : size) * (b % 3 == 2 ? 1 : size);
         const bool listed = next < pattern.size() && static_cast<std::size_t>(pattern[next].row) == a &&
                             static_cast<std::size_t>(pattern[next].column) == b;
@@ -335,7 +335,7 @@ TYPED_TEST(ConstraintContract, ParameterDerivatives) {
   using ED = typename Over<E, D>::type;
   constexpr double step = 1e-4, weights[4] = {4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
   for (unsigned seed = 0; seed < draws; ++seed) {
-    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
     ConstraintCase<E> x = random_case<E>(seed, 1);
     const auto frame = [&]<class T>(std::size_t k, T) { return make_frame(T(x.q[k]), T(x.q[k + 1]), T(x.q[k + 2])); };
     const auto rows_of = [&]<class Element, class T>(const Element& element, T, T* out) {

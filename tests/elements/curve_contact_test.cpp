@@ -150,7 +150,7 @@ Curve<double> round_spline(double radius) {
 TEST(CamCam, CirclesKeepTheirCentresApart) {
   for (const bool inside : {false, true}) {
     for (const bool spline : {false, true}) {
-      SCOPED_TRACE(testing::Message() << (inside ? "inside" : "outside") << (spline ? ", splines" : ""));
+      SCOPED_TRACE(::testing::Message() << (inside ? "inside" : "outside") << (spline ? ", splines" : ""));
       const double r_i = 0.5, r_j = 0.2, apart = inside ? r_i - r_j : r_i + r_j;
       CamCam<double> cams{.curve_i = spline ? round_spline(r_i) : Curve<double>::circle({}, r_i),
                           .curve_j = spline ? round_spline(r_j) : Curve<double>::circle({}, r_j)};

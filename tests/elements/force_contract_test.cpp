@@ -19,11 +19,11 @@ constexpr unsigned draws = 30;
 
 template <class... Types>
 struct ListOf {
-  using type = testing::Types<Types...>;
+  using type = ::testing::Types<Types...>;
 };
 template <class First, class... Types>
 struct ListOf<First, Types...> {
-  using type = testing::Types<Types...>;
+  using type = ::testing::Types<Types...>;
 };
 #define CATENA_TYPE(Type) , Type<double>
 using AllForces = ListOf<void CATENA_FORCES(CATENA_TYPE) CATENA_TYPE(ElasticCable) CATENA_TYPE(JointDamper)>::type;
@@ -100,14 +100,14 @@ Offsets along(std::size_t k, const Exact& step) {
 }
 
 template <class E>
-class ForceContract : public testing::Test {
+class ForceContract : public ::testing::Test {
  protected:
   using Operations = ForceOperations<E>;
 
   template <class Test>
   void for_random_cases(const Test& test) {
     for (unsigned seed = 0; seed < draws; ++seed) {
-      SCOPED_TRACE(testing::Message() << "seed " << seed);
+      SCOPED_TRACE(::testing::Message() << "seed " << seed);
       test(Case<E>(seed));
     }
   }

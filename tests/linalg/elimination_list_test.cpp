@@ -6,14 +6,13 @@
 #include <cmath>
 #include <numeric>
 
+#include "catena/base/at.hpp"
 #include "catena/linalg/factorization/factorization.hpp"
 #include "linalg/counted_heap.hpp"
 #include "linalg/matrices.hpp"
 
 namespace catena::testing {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 void shuffle(std::vector<int>& order, int first, int end, Random& random) {
   for (int k = end - 1; k > first; --k) std::swap(order[at(k)], order[at(first + random.below(k - first + 1))]);

@@ -54,47 +54,47 @@ struct ElasticChainSolution {
 };
 
 inline ElasticChainSolution solve_elastic_chain(const ElasticChain& c) {
-  using Real = long double;
-  const auto segment = [&](Real h, Real v, Real& x, Real& y) {
-    const Real t = std::sqrt(h * h + v * v), long_ = c.length + t / c.stiffness;
+  using Long = long double;
+  const auto segment = [&](Long h, Long v, Long& x, Long& y) {
+    const Long t = std::sqrt(h * h + v * v), long_ = c.length + t / c.stiffness;
     x = h / t * long_;
     y = v / t * long_;
   };
-  const auto vertical = [&](Real v, int j) { return std::max(v - j * static_cast<Real>(c.weight), Real(0)); };
-  const auto sums = [&](Real h, Real v, Real& x, Real& y) {
+  const auto vertical = [&](Long v, int j) { return std::max(v - j * static_cast<Long>(c.weight), Long(0)); };
+  const auto sums = [&](Long h, Long v, Long& x, Long& y) {
     x = y = 0;
     for (int j = 0; j < c.count; ++j) {
-      Real dx, dy;
+      Long dx, dy;
       segment(h, vertical(v, j), dx, dy);
       x += dx;
       y += dy;
     }
   };
-  const Real largest = c.stiffness * (c.reach + c.height + c.count * c.length) + c.count * static_cast<Real>(c.weight);
-  const auto lift_at = [&](Real h) {
-    Real low = 0, high = largest;
+  const Long largest = c.stiffness * (c.reach + c.height + c.count * c.length) + c.count * static_cast<Long>(c.weight);
+  const auto lift_at = [&](Long h) {
+    Long low = 0, high = largest;
     for (int k = 0; k < 100; ++k) {
-      const Real v = (low + high) / 2;
-      Real x, y;
+      const Long v = (low + high) / 2;
+      Long x, y;
       sums(h, v, x, y);
       (y < c.height ? low : high) = v;
     }
     return (low + high) / 2;
   };
-  Real low = 1e-12L * c.weight, high = largest;
+  Long low = 1e-12L * c.weight, high = largest;
   for (int k = 0; k < 130; ++k) {
-    const Real h = std::sqrt(low * high);
-    Real x, y;
+    const Long h = std::sqrt(low * high);
+    Long x, y;
     sums(h, lift_at(h), x, y);
     (x < c.reach ? low : high) = h;
   }
-  const Real h = std::sqrt(low * high), v = lift_at(h);
+  const Long h = std::sqrt(low * high), v = lift_at(h);
   ElasticChainSolution solution{.node = std::vector<Vec2<double>>(static_cast<std::size_t>(c.count) - 1),
                                 .pull = static_cast<double>(h),
                                 .lift = static_cast<double>(v)};
-  Real x = c.reach, y = c.height;
+  Long x = c.reach, y = c.height;
   for (int j = 0; j + 1 < c.count; ++j) {
-    Real dx, dy;
+    Long dx, dy;
     segment(h, vertical(v, j), dx, dy);
     x -= dx;
     y -= dy;

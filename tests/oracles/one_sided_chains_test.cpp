@@ -4,12 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "catena/base/at.hpp"
 #include "oracles/one_sided_scenes.hpp"
 
 namespace catena::testing {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Reactions of the ends on the chain: forces that "left" and "right" exert on their link.
 struct Ends {

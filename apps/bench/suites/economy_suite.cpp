@@ -9,7 +9,7 @@ namespace bench {
 
 namespace {
 
-double apart(const std::vector<double>& a, const std::vector<double>& b) {
+double answers_apart(const std::vector<double>& a, const std::vector<double>& b) {
   if (a.size() != b.size()) return std::numeric_limits<double>::infinity();
   double worst = 0;
   for (std::size_t k = 0; k < a.size(); ++k) {
@@ -26,7 +26,7 @@ void economy_suite(Bench& bench) {
   if (!obstacle.empty() && bench.options().instructions) bench.remark("economy: no instructions: " + obstacle);
   for (const EconomyCase& c : economy_cases()) {
     const EconomyOutcome lean = c.lean.prepare()(), full = c.full.prepare()();
-    const double difference = apart(lean.answer, full.answer);
+    const double difference = answers_apart(lean.answer, full.answer);
     for (const EconomyVariant& variant : {c.lean, c.full}) {
       const EconomyOutcome& outcome = variant.prepare == c.lean.prepare ? lean : full;
       Row row{.suite = "economy", .problem = c.feature, .method = variant.name};

@@ -47,7 +47,7 @@ std::string cell(double value, const char* format) {
   return "<td class=\"n\">" + (value == value ? fmt::format(fmt::runtime(format), value) : std::string("-")) + "</td>";
 }
 
-void append_row(std::string& out, const Row& row) {
+void append_html_row(std::string& out, const Row& row) {
   std::string counts;
   for (const auto& [name, value] : row.counts)
     counts += fmt::format("{}{} {:.6g}", counts.empty() ? "" : ", ", name, value);
@@ -93,7 +93,7 @@ std::string page_of(const Document& document) {
   for (const Suite& suite : suites) {
     std::string rows;
     for (const Row& row : document.rows) {
-      if (row.suite == suite.name) append_row(rows, row);
+      if (row.suite == suite.name) append_html_row(rows, row);
     }
     if (rows.empty()) continue;
     out += fmt::format(

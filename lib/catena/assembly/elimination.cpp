@@ -1,11 +1,10 @@
 #include "catena/assembly/elimination.hpp"
 
+#include "catena/base/at.hpp"
 #include "catena/elements/constraints/weld.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // The pose that the weld gives body j (or, followed backwards, body i) when the other one's is known.
 Frame<double> welded_pose(const ElementEntry<Weld<double>, double>& weld, const Frame<double>& known, bool forward) {

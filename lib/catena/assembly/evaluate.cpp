@@ -8,13 +8,12 @@
 #include <string>
 
 #include "catena/assembly/attachment_points.hpp"
+#include "catena/base/at.hpp"
 #include "catena/base/sincos.hpp"
 #include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Calls f(block, data, list) for every constraint type.
 template <class Blocks, class Values, class Lists, class F>

@@ -5,13 +5,12 @@
 #include "catena/assembly/attachment_points.hpp"
 #include "catena/assembly/constraint_operations.hpp"
 #include "catena/assembly/evaluate.hpp"
+#include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/elements/gap_element.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Calls f(number) for every element that joins this one.
 template <class F>

@@ -2,13 +2,9 @@
 #include <algorithm>
 
 #include "catena/assembly/evaluate.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
-namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
-}  // namespace
 
 void Evaluator::applied_forces(std::span<const double> qd, std::span<double> Q) {
   ++counters.forces;

@@ -3,11 +3,10 @@
 
 #include "catena/assembly/evaluate.hpp"
 #include "catena/assembly/law_values.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 using D6 = Dual<double, 6>;
 

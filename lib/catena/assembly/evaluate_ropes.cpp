@@ -6,12 +6,11 @@
 #include "catena/assembly/constraint_operations.hpp"
 #include "catena/assembly/evaluate.hpp"
 #include "catena/assembly/rope_ways.hpp"
+#include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Angles of contact are known to rounding; a rope that only touches its pulley has not left it. rad.
 constexpr double left = 1e-9;

@@ -4,13 +4,13 @@
 #include <cstdlib>
 #include <numeric>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
 namespace {
 
 // Mean distance of tied bodies above which the given order is not local enough to keep.
 constexpr double acceptable_distance = 8;
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 double mean_distance(std::span<const BodyPair> ties, const std::vector<int>& place) {
   double sum = 0;

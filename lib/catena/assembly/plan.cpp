@@ -5,12 +5,11 @@
 
 #include "catena/assembly/numbering.hpp"
 #include "catena/assembly/state_laws.hpp"
+#include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 std::vector<char> welds_to_keep(const Model& model, const PlanOptions& options) {
   const auto& welds = std::get<std::vector<ElementEntry<Weld<double>, double>>>(model.constraints);

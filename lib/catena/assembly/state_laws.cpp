@@ -2,14 +2,13 @@
 
 #include <algorithm>
 
+#include "catena/base/at.hpp"
 #include "catena/base/design_scalar.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/attachment.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 template <class S>
 LawInput<S> compile_input(const BasicModel<S>& model, const Column& column, const Plan& plan) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "catena/base/at.hpp"
 #include "catena/base/design_scalar.hpp"
 #include "catena/columns/column_names.hpp"
 #include "catena/elements/all.hpp"
@@ -10,8 +11,6 @@
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 /// A law's formula with those of own columns put in.
 template <class S>

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <numeric>
 
+#include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/model_add.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 /// Calls f(entry, kind) for every element in file order.
 template <class F>

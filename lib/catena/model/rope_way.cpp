@@ -5,13 +5,12 @@
 #include <numbers>
 #include <string>
 
+#include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/model_add.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double turn = 2 * std::numbers::pi;
 // An angle of contact this little short of a whole turn is none: rounding of one that is zero.

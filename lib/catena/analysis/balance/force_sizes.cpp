@@ -4,12 +4,11 @@
 #include <array>
 #include <cmath>
 
+#include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 /// |F| + sum |dF/dq| |q|: the terms of a law of state, which cancel where it holds a body by itself.
 double law_size(const Evaluator& evaluator, int law) {

@@ -6,11 +6,10 @@
 #include <vector>
 
 #include "catena/analysis/balance/force_sizes.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // A residual above this part of the loads changes the third digit of some force: not an equilibrium.
 constexpr double shown = 1e-3;

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
-namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
-}  // namespace
 
 StaticHessian::StaticHessian(StaticSystem& system) : system_(system) {
   const Plan& plan = system.plan();

@@ -7,12 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Groups of plan bodies tied together; immobile bodies and the ground share the last place.
 class Groups {

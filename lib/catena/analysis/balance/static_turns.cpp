@@ -7,12 +7,11 @@
 #include <type_traits>
 #include <vector>
 
+#include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double turn = 2 * std::numbers::pi;
 

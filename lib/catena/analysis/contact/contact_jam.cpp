@@ -12,11 +12,10 @@
 #include <limits>
 
 #include "catena/analysis/contact/contact_switch.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Of D_nn without constraints: what the solution of the constrained system leaves of nothing is rounding, 1e-16 times
 // the condition of that system.

@@ -7,11 +7,10 @@
 #include <cmath>
 
 #include "catena/analysis/motion/equations_of_motion.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Newton's method on forces that are nearly linear in each other: without joints one step is exact, with joints the
 // error is squared in every step.

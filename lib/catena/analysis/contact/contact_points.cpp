@@ -1,13 +1,12 @@
 #include "catena/analysis/contact/contact_points.hpp"
 
 #include "catena/analysis/contact/slide_law.hpp"
+#include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/model_add.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 /// What an element says of impacts and stiffness; not all have all.
 template <class E>

@@ -10,7 +10,7 @@ namespace {
 // Sweeps over all places. Two places of a body converge within some dozen, a stack of n within some n^2.
 constexpr int most_sweeps = 100000;
 // Changes of this part of the largest x are rounding.
-constexpr double settled = 1e-15;
+constexpr double settled_change = 1e-15;
 // The answer of all places at once replaces that of the sweeps where it keeps every inequality to this part.
 constexpr double tolerated = 1e-9;
 
@@ -156,7 +156,7 @@ bool ContactProblem::solve() {
       size = std::max({size, std::abs(x[2 * k]), std::abs(x[2 * k + 1])});
     }
     if (!std::isfinite(size)) return false;
-    if (change <= settled * size) break;
+    if (change <= settled_change * size) break;
     if (sweep == most_sweeps) return false;
   }
   const std::vector<double> swept = x;

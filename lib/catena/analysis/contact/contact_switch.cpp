@@ -7,10 +7,10 @@
 #include <iterator>
 #include <limits>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // A gap of this part of the length scale (or rad) is closed: instants of impacts are found to rounding, configurations
 // are given to some ten digits.
@@ -24,7 +24,7 @@ constexpr double energy_rounding = 1e-12;
 // rounding where that part is up to 0.96.
 constexpr int most_rounds = 1000;
 // Of the terms that a multiplier is the sum of.
-constexpr double rounding = 1e-14;
+constexpr double multiplier_rounding = 1e-14;
 
 int sign(double x, double none) { return x > none ? 1 : x < -none ? -1 : 0; }
 
@@ -280,7 +280,7 @@ Report ContactSwitch::press_joints(double t, std::span<const double> qd, const C
       place.kinetic = points_[active_[a]].mu * normal;
     }
     if (!problem.solve()) return wedged(t);
-    if (change <= rounding * size) return {};
+    if (change <= multiplier_rounding * size) return {};
     for (std::size_t r = 0; r < lambda.size(); ++r) {
       lambda[r] = free[r];
       terms[r] = std::abs(free[r]);

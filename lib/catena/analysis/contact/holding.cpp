@@ -10,16 +10,15 @@
 #include "catena/analysis/contact/contact_loads.hpp"
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
 // Of the loads: what is left unbalanced by rounding.
 constexpr double balanced = 1e-11;
 // A place within this part of the length scale is closed.
-constexpr double closed_gap = 1e-6;
+constexpr double closed_place = 1e-6;
 // Friction beyond this is as good as any: the edges of the cone are then along the tangent to this part.
 constexpr double most_friction = 1e8;
 
@@ -120,7 +119,7 @@ Holding ContactHolding::find(const SystemState& state, std::vector<double>& q) {
   std::vector<Edge> edges;
   for (const ContactPoint& point : contacts_.points) {
     const Evaluator::ScalarMotion gap = evaluator_->scalar_motion(point.element, rest);
-    if (gap.value > closed_gap * length) continue;
+    if (gap.value > closed_place * length) continue;
     const auto unit_force = [&](const Evaluator::ScalarMotion& of) {
       std::vector<double> by(q.size(), 0.0);
       scatter_gradient(of, 1, by);

@@ -9,12 +9,11 @@
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/assembly/rope_ways.hpp"
+#include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // A depth of this part of the length scale (or rad) at the start is an estimate of a closed place, more an error.
 constexpr double allowed_depth = 1e-6;

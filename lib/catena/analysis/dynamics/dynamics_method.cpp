@@ -7,11 +7,10 @@
 #include "catena/analysis/dynamics/dynamics.hpp"
 #include "catena/analysis/dynamics/integrators/adams.hpp"
 #include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Part of the tolerance that a step may contribute; see the calibration in tests/oracles.
 constexpr double step_part = 0.002;

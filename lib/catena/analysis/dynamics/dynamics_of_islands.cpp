@@ -4,12 +4,11 @@
 
 #include "catena/analysis/run/report_parts.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
+#include "catena/base/at.hpp"
 #include "catena/base/flush_denormals.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 void add(std::optional<int>& sum, const std::optional<int>& value) {
   if (value) sum = sum.value_or(0) + *value;

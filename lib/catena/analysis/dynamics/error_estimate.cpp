@@ -9,8 +9,8 @@
 namespace catena {
 namespace {
 
-constexpr double finer_part = 0.1;       // of the tolerance
-constexpr double largest_multiple = 10;  // of the tolerance that an error may come to, as it is calibrated
+constexpr double finer_tolerance_part = 0.1;  // of the tolerance
+constexpr double largest_multiple = 10;       // of the tolerance that an error may come to, as it is calibrated
 
 /// Records a difference and the size of the quantity.
 void note(ErrorOfMotion& kind, double difference, int body, double t) {
@@ -33,12 +33,12 @@ DynamicsOptions finer_options(const DynamicsOptions& options) {
     finer.step = options.step / 2;
     return finer;
   }
-  finer.tolerance = finer_part * options.tolerance;
+  finer.tolerance = finer_tolerance_part * options.tolerance;
   if (finer.tolerance < DynamicsOptions::least_tolerance) {
     throw std::invalid_argument(fmt::format(
         "the error at tolerance {:.3g} cannot be estimated: double precision leaves no run at a tenth of it; give at "
         "least {:.0e}",
-        options.tolerance, DynamicsOptions::least_tolerance / finer_part));
+        options.tolerance, DynamicsOptions::least_tolerance / finer_tolerance_part));
   }
   return finer;
 }

@@ -5,13 +5,12 @@
 #include <numeric>
 
 #include "catena/assembly/evaluate.hpp"
+#include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/model_part.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Paces that differ by less than this share their steps.
 constexpr double one_class = 3;

@@ -6,10 +6,10 @@
 #include <limits>
 #include <numeric>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr int max_iterations = 25;
 constexpr int max_refinements = 10;

@@ -9,11 +9,10 @@
 #include <cmath>
 
 #include "catena/analysis/kinematics/driven_solver.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // An exchange is worth its factorization above this factor; so many of them, over so many rows left over, are tried.
 constexpr double worthwhile = 1.5;

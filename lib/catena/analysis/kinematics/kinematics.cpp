@@ -12,12 +12,11 @@
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
+#include "catena/base/at.hpp"
 #include "catena/columns/energy.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // A given configuration is taken as near to the assembled one if Newton's first correction is at most this large
 // (length scales, rad) and every further one at most this part of the one before.

@@ -8,20 +8,20 @@ namespace catena {
 namespace {
 
 constexpr int most_data = 3 * MotionBridge::capacity;
-using Weights = std::array<double, most_data>;
+using BridgeWeights = std::array<double, most_data>;
 
 // Weights of the data (three an instant) in the value and the first two derivatives at x of Hermite's polynomial,
 // by Newton's divided differences of the data sets that are 1 at one datum and 0 at the others.
-std::array<Weights, 3> hermite_weights(std::span<const double> instants, double x) {
+std::array<BridgeWeights, 3> hermite_weights(std::span<const double> instants, double x) {
   const std::size_t n = 3 * instants.size();
   const auto place = [&](std::size_t k) { return instants[k / 3]; };
-  std::array<Weights, 3> weights{};
+  std::array<BridgeWeights, 3> weights{};
   for (std::size_t datum = 0; datum < n; ++datum) {
     // Entry d of an instant's data is a derivative of order d; repeated differences need it over d!.
     const auto given = [&](std::size_t node, std::size_t derivative) {
       return 3 * (node / 3) + derivative == datum ? (derivative == 2 ? 0.5 : 1.0) : 0.0;
     };
-    Weights f{}, newton{};
+    BridgeWeights f{}, newton{};
     for (std::size_t k = 0; k < n; ++k) f[k] = given(k, 0);
     newton[0] = f[0];
     for (std::size_t order = 1; order < n; ++order) {
@@ -65,7 +65,7 @@ void MotionBridge::evaluate(double t, std::span<double> q, std::span<double> qd,
   std::array<double, capacity> instants{};
   for (std::size_t k = 0; k < nodes_.size(); ++k) instants[k] = (nodes_[k].t - centre) / unit;
   const auto weights = hermite_weights(std::span(instants).first(nodes_.size()), (t - centre) / unit);
-  const auto combine = [&](std::span<double> out, const Weights& w, double factor) {
+  const auto combine = [&](std::span<double> out, const BridgeWeights& w, double factor) {
     std::fill(out.begin(), out.end(), 0.0);
     for (std::size_t k = 0; k < nodes_.size() && !out.empty(); ++k) {
       const double a = factor * w[3 * k], b = factor * unit * w[3 * k + 1], c = factor * unit * unit * w[3 * k + 2];

@@ -13,11 +13,10 @@
 
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/analysis/pose/departure.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // The branch is entered over this much motion (rad, length scales); it must be found this near to its tangent, as part
 // of its distance from the nearest other branch. Further nodes may be off by this part of the motion.

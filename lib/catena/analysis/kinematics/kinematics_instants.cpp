@@ -8,11 +8,10 @@
 #include <numeric>
 
 #include "catena/analysis/kinematics/kinematics.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr int samples = 9;
 // A pivot whose least size is below this part of its size at the ends vanishes.

@@ -15,11 +15,10 @@
 #include <limits>
 
 #include "catena/analysis/kinematics/kinematics.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 /// Instants in steps from t*, and the weights by which values there make the one at t*, exact for polynomials of
 /// degree 5.
@@ -37,8 +36,8 @@ constexpr double unbounded = 1e-7;
 // Part of the loads that limits may leave unbalanced.
 constexpr double unbalanced = 1e-6;
 // The same for least reactions a little away from t*.
-constexpr double balanced = 1e-9;
-constexpr std::size_t most_names = 6;
+constexpr double balanced_beside = 1e-9;
+constexpr std::size_t most_joints = 6;
 
 }  // namespace
 
@@ -54,7 +53,7 @@ bool Kinematics::multipliers_on_bridge(double t, std::span<double> lambda) {
   if (!minimum_norm_) minimum_norm_.emplace(evaluator_);
   if (!minimum_norm_->factorize()) return false;
   for (int c = 0; c < plan_->columns; ++c) applied_[at(plan_->coordinate[at(c)])] = loads_[at(c)];
-  return minimum_norm_->solve(applied_, lambda) <= balanced;
+  return minimum_norm_->solve(applied_, lambda) <= balanced_beside;
 }
 
 void Kinematics::find_limit_of_multipliers() {
@@ -111,10 +110,10 @@ void Kinematics::find_limit_of_multipliers() {
   }
   if (limit_rows_++ == 0) limit_t_ = t_;
   if (!without_limit_.empty()) return;
-  for (std::size_t k = 0; k < without.size() && k < most_names; ++k) {
+  for (std::size_t k = 0; k < without.size() && k < most_joints; ++k) {
     without_limit_ += fmt::format("{}\"{}\"", k > 0 ? ", " : "", model_->element_name(without[k]));
   }
-  if (without.size() > most_names) without_limit_ += fmt::format(" and {} more", without.size() - most_names);
+  if (without.size() > most_joints) without_limit_ += fmt::format(" and {} more", without.size() - most_joints);
 }
 
 void Kinematics::remark_on_limits(std::vector<std::string>& warnings) const {

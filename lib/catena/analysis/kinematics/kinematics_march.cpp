@@ -15,11 +15,10 @@
 
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // A prediction may be off by this angle (the constraints are linear in positions), a correction may be this part of the
 // one before: Newton's iteration then stays where it contracts.

@@ -15,11 +15,10 @@
 
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/analysis/pose/departure.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // The prediction of a node may be off by this part of the bridge's motion. Whether the nodes lie on one branch is
 // tested by the constraints along the polynomial.
@@ -27,7 +26,7 @@ constexpr double allowance = 0.2;
 // Residual of the polynomial, in length scales or rad, above rounding.
 constexpr double bridge_tolerance = 2e-12;
 constexpr double rounded_place = 16 * std::numeric_limits<double>::epsilon();
-constexpr int samples = 9;
+constexpr int bridge_samples = 9;
 // Part of a bridge after which drivers that rest at the singular instant are evaluated again: they have begun to move,
 // while the mechanism has not moved visibly.
 constexpr double moment = 2e-3;
@@ -94,8 +93,8 @@ bool Kinematics::follows_constraints(const MotionBridge& bridge, double from, do
   // Lengths of a mechanism described far from the origin carry the rounding of its places: redundant links agree no
   // better than that.
   const double tolerance = bridge_tolerance + 1e-14 * extent + rounded_place * place / evaluator_.length_scale();
-  for (int k = 0; k < samples; ++k) {
-    const double t = from + (to - from) * k / (samples - 1);
+  for (int k = 0; k < bridge_samples; ++k) {
+    const double t = from + (to - from) * k / (bridge_samples - 1);
     evaluator_.set_time(t);
     bridge.evaluate(t, q, {}, {});
     if (!(solver_.residual_at(q) <= tolerance)) return false;

@@ -7,11 +7,10 @@
 
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/analysis/pose/jacobian_rank.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Residual of redundant equations, in length scales or rad, above which they contradict the others.
 constexpr double contradiction = 1e-8;

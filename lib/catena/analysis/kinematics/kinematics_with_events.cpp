@@ -12,17 +12,16 @@
 #include "catena/analysis/events/engagement.hpp"
 #include "catena/analysis/run/report_parts.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Places in a piece may be off the cubic through its ends by this, length scales or rad. A body that turns evenly then
 // turns by (384 x 1e-4)^(1/4) = 0.44 rad at most; at eight samples a parabola through three of them, vertex at an end,
 // is off by some 0.055^3 / 15 = 1e-5 of a radius: shallow dips may be overlooked where two pieces meet (measured: 6 of
 // 191 that were 5e-5 of a radius deep, none of 5e-3).
-constexpr double largest_bend = 1e-4;
+constexpr double largest_event_bend = 1e-4;
 // Parts of a piece at which that is checked: of no period that a motion and its pieces could share.
 constexpr std::array<double, 2> checked_parts = {0.3819660112501051, 0.7071067811865476};
 // A piece is halved so often at most: 1e-6 of the way between two rows, at the end of which a motion may lock.
@@ -109,7 +108,7 @@ class KinematicsWithEvents::Rows final : public RowObserver {
       for (std::size_t k = 0; k < from.q.size(); ++k) {
         const double cubic = a * from.q[k] + b * from.qd[k] + c * to.q[k] + d * to.qd[k];
         const double bend = std::abs(state->q[k] - cubic) / (k % 3 == 2 ? 1 : evaluator.length_scale());
-        if (!(bend <= largest_bend)) return false;  // nor where rates have no bounds
+        if (!(bend <= largest_event_bend)) return false;  // nor where rates have no bounds
       }
     }
     return true;

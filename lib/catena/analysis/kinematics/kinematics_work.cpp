@@ -23,7 +23,7 @@ namespace {
 constexpr double longest_stretch = 0.2;
 // Parts of the energy exchanged so far: the error allowed in a stretch, above which it is repeated in shorter ones; and
 // the total error above which results carry a warning. Both include rounding of energies.
-constexpr double allowed_error = 1e-10, doubtful_error = 1e-6, rounding = 1e-13;
+constexpr double allowed_error = 1e-10, doubtful_error = 1e-6, work_rounding = 1e-13;
 constexpr double shortest_part = 1.0 / 4096;
 // The cubic part of the powers in a stretch, of the largest of them.
 constexpr double roughest = 0.05;
@@ -134,7 +134,7 @@ Report Kinematics::move_and_sum_up(double t) {
       const double exchanged_before = exchanged_;
       double error = 0;
       if (Report summed = sum_up_stretch(to, error, total.warnings); !summed.ok()) return summed;
-      const double allowed = allowed_error * exchanged_ + rounding * energy_scale();
+      const double allowed = allowed_error * exchanged_ + work_rounding * energy_scale();
       if (error > allowed && stretch_part_ > shortest_part && bridge_.empty()) {
         // Repeated in shorter stretches; but not across a singular configuration, which is passed only once.
         if (Report moved = follow_to(from); !moved.ok()) return moved;

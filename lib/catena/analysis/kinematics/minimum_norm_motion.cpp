@@ -15,25 +15,24 @@
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
-constexpr double tolerance = 1e-13;         // of a step's error, length scales or rad
-constexpr double largest_residual = 1e-11;  // of positions after a step
-constexpr double longest_step = 0.5;        // rad, length scales
-constexpr double smallest_step = 1e-13;     // part of the time, or of the time a motion of 1 takes
+constexpr double tolerance = 1e-13;           // of a step's error, length scales or rad
+constexpr double largest_residual = 1e-11;    // of positions after a step
+constexpr double longest_norm_step = 0.5;     // rad, length scales
+constexpr double smallest_norm_step = 1e-13;  // part of the time, or of the time a motion of 1 takes
 constexpr double safety = 0.9, largest_growth = 4, largest_cut = 0.1;
 // Velocities larger than this multiple of their average are taken to grow without bound.
 constexpr double runaway = 30;
-constexpr std::size_t most_names = 4;  // in a message
+constexpr std::size_t most_branches = 4;  // in a message
 // Steps that would have to be shorter than this (rad, length scales) may be near a place where branches meet: it is
 // jumped over by one of `reaches`, with an error that is this many tolerances at most.
 constexpr double suspicious_step = 0.03;
-constexpr double reaches[] = {0.05, 0.1, 0.03, 0.2, 0.15};
-constexpr double allowance = 1e4;
+constexpr double norm_reaches[] = {0.05, 0.1, 0.03, 0.2, 0.15};
+constexpr double rate_allowance = 1e4;
 
 }  // namespace
 
@@ -96,7 +95,7 @@ Report MinimumNormMotion::no_velocity() {
   Report report;
   std::string names;
   const std::vector<int> elements = least_.worst_elements();
-  for (std::size_t k = 0; k < elements.size() && k < most_names; ++k) {
+  for (std::size_t k = 0; k < elements.size() && k < most_branches; ++k) {
     names +=
         fmt::format("{}{} \"{}\"", k ? ", " : "", model_->element_type(elements[k]), model_->element_name(elements[k]));
   }
@@ -222,7 +221,7 @@ double MinimumNormMotion::try_step(double end, bool lands_on_break, bool on_cons
   constexpr double none = std::numeric_limits<double>::infinity();
   if (!evaluate_stages(end - t_, end, lands_on_break, on_constraints)) return none;
   const double error = error_size(end - t_);
-  if (!(error <= (on_constraints ? allowance : 1))) return error;
+  if (!(error <= (on_constraints ? rate_allowance : 1))) return error;
   const double residual = least_.project(end, Side::before, trial_);
   if (!(residual <= largest_residual)) return none;
   residual_ = residual;
@@ -232,10 +231,10 @@ double MinimumNormMotion::try_step(double end, bool lands_on_break, bool on_cons
 // Across a place where branches meet. Off the constraints the velocities mean nothing there; those of v(t, P(t, q)), P
 // the projection onto the constraints, are the same ones on them and as smooth as the branch.
 std::optional<double> MinimumNormMotion::jump(double limit, bool breaks, double rate) {
-  for (double reach : reaches) {
+  for (double reach : norm_reaches) {
     const double h = reach / rate, remaining = std::abs(limit - t_);
     const double end = h < remaining ? t_ + std::copysign(h, limit - t_) : limit;
-    if (try_step(end, breaks && end == limit, true) <= allowance) return end;
+    if (try_step(end, breaks && end == limit, true) <= rate_allowance) return end;
   }
   return std::nullopt;
 }
@@ -257,11 +256,11 @@ Report MinimumNormMotion::move_to(double t, RowObserver& observer) {
     }
     const double rate = least_.size(stage_[0]);
     if (step_ == 0) step_ = rate > 0 ? 0.2 * std::pow(tolerance, 1.0 / 8) / rate : std::abs(limit - t_);
-    const double smallest = smallest_step * std::max(std::abs(t_), rate > 0 ? 1 / rate : 0.0);
+    const double smallest = smallest_norm_step * std::max(std::abs(t_), rate > 0 ? 1 / rate : 0.0);
     bool rejected = false;
     while (true) {
       const double remaining = std::abs(limit - t_);
-      double h = std::min(step_, rate > 0 ? longest_step / rate : step_);
+      double h = std::min(step_, rate > 0 ? longest_norm_step / rate : step_);
       const bool lands = h >= remaining * (1 - 1e-9);
       if (lands) h = remaining;
       double end = lands ? limit : t_ + direction * h;

@@ -6,7 +6,7 @@
 namespace catena {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 // Two instants whose rates differ by less than this part move together: rates of jumps are good to 1e-8.
 constexpr double together = 1e-6;
 
@@ -20,14 +20,14 @@ bool MeasureSet::Account::is_at_end(const Extreme& extreme) const {
 // there; what it had passed before stays.
 void MeasureSet::Account::leave_out_early_end(MeasureResult& result) const {
   if (rows_ > 0 || !result.value || result.by_last_instant == 0) return;
-  std::fill(result.gradient.begin(), result.gradient.end(), none);
+  std::fill(result.gradient.begin(), result.gradient.end(), no_value);
   if (result.trouble.empty()) result.trouble = "the run ended early, at an instant that changes with the parameters";
 }
 
 // The motion goes on over an instant later: integrals grow by what is there, values by their rates; extremes stay
 // unless they are at the end.
 double MeasureSet::Account::by_last_instant(const MeasureResult& result, const End* end) const {
-  if (!result.value || !last_ || rows_ > 0) return none;
+  if (!result.value || !last_ || rows_ > 0) return no_value;
   const bool at_end = std::any_of(extremes_.begin(), extremes_.end(), [&](const Extreme& e) { return is_at_end(e); });
   const double value = *result.value;
   double sum = 0;
@@ -36,34 +36,34 @@ double MeasureSet::Account::by_last_instant(const MeasureResult& result, const E
     case MeasureKind::at:
       return 0;
     case MeasureKind::integral:
-      return end ? end->sample.value[column_] : none;
+      return end ? end->sample.value[column_] : no_value;
     case MeasureKind::mean:
-      return end ? (end->sample.value[column_] - value) / duration_ : none;
+      return end ? (end->sample.value[column_] - value) / duration_ : no_value;
     case MeasureKind::rms:
-      return end ? (std::pow(end->sample.value[column_], 2) - value * value) / (2 * value * duration_) : none;
+      return end ? (std::pow(end->sample.value[column_], 2) - value * value) / (2 * value * duration_) : no_value;
     case MeasureKind::final:
-      return end ? end->rate[column_] : none;
+      return end ? end->rate[column_] : no_value;
     case MeasureKind::maximum:
     case MeasureKind::minimum:
     case MeasureKind::range:
       if (!at_end) return 0;
-      if (!end) return none;
+      if (!end) return no_value;
       for (std::size_t k = 0; k < extremes_.size(); ++k)
         sum += is_at_end(extremes_[k]) ? (k == 0 ? 1 : -1) * end->rate[column_] : 0;
       return sum;
     case MeasureKind::path:
       break;
     case MeasureKind::field:
-      return none;
+      return no_value;
   }
   if (!request_.timed && !at_end) return 0;
   for (std::size_t k = 0; k < request_.points.size(); ++k) {
     const bool moves = request_.timed ? k > 0 : is_at_end(extremes_[k]);
     if (!moves) continue;
     const bool last = !request_.timed || k + 1 == request_.points.size();
-    if (last && !end) return none;
+    if (last && !end) return no_value;
     const std::vector<double>& rate = last ? end->rate : instants_[k].rate;
-    if (rate.empty()) return none;
+    if (rate.empty()) return no_value;
     const MotionSample& sample = request_.timed ? *instants_[k].sample : extremes_[k].best();
     const double part = last ? 1 : static_cast<double>(k) / static_cast<double>(request_.points.size() - 1);
     sum += part * ((sample.value[column_] - request_.points[k].x) * rate[column_] +
@@ -82,7 +82,7 @@ bool MeasureSet::Account::is_touched_by(const End& end) const {
 }
 
 void MeasureSet::Account::take_out(MeasureResult& result, std::size_t p, const std::string& why) const {
-  result.gradient[p] = none;
+  result.gradient[p] = no_value;
   if (result.trouble.empty()) result.trouble = why;
 }
 
@@ -93,7 +93,7 @@ void MeasureSet::Account::move(MeasureResult& result, const End* end, const Movi
   const bool is_final = request_.kind == MeasureKind::final;
   if (early && is_final) {
     for (std::size_t p = 0; p < parameters_; ++p)
-      result.gradient[p] = end ? gradient_of(end->sample, column_, p) : none;
+      result.gradient[p] = end ? gradient_of(end->sample, column_, p) : no_value;
   }
   for (std::size_t p = 0; p < parameters_; ++p) {
     const double by = moving.last.empty() ? 0 : moving.last[p], jump = jump_moves ? end->moving[p] : 0;
@@ -128,7 +128,7 @@ void MeasureSet::Account::move(MeasureResult& result, const End* end, const Movi
     if (with_jump && instant.before && instant.sample->change[column_] == 0 && !instant.rate_before.empty())
       result.gradient[p] = gradient_of(*instant.before, column_, p) + instant.rate_before[column_] * by;
     else
-      result.gradient[p] += instant.rate.empty() ? none : instant.rate[column_] * by;
+      result.gradient[p] += instant.rate.empty() ? no_value : instant.rate[column_] * by;
     if (!std::isfinite(result.gradient[p]))
       take_out(
           result, p,

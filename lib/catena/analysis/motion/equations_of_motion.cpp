@@ -7,11 +7,10 @@
 #include <limits>
 
 #include "catena/assembly/systems/seen_mass.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // The mass that replaces zero, as a part of the constrained mass r: four rounds of refinement then reach rounding, at
 // the cost of four digits in every solve; a ratio up to a hundred times larger is accepted and takes eight rounds more.

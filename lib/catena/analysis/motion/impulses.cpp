@@ -5,13 +5,12 @@
 
 #include "catena/analysis/pose/jacobian_rank.hpp"
 #include "catena/analysis/pose/minimum_norm.hpp"
+#include "catena/base/at.hpp"
 #include "catena/columns/reaction.hpp"
 #include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Impulses below this part of the largest, or of the largest momentum, are rounding: velocities are known to 1e-12 of
 // the largest, and a system of a condition of 10^2 leaves this.

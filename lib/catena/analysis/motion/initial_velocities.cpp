@@ -9,11 +9,10 @@
 #include "catena/analysis/pose/dead_point.hpp"
 #include "catena/analysis/pose/scaling.hpp"
 #include "catena/assembly/systems/constraint_projector.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double given_weight = 1e4;
 constexpr int most_rounds = rounds_of_velocities;

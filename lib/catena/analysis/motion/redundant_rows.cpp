@@ -7,11 +7,10 @@
 
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/pose/jacobian_rank.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Rows whose smallest pivot ratio is above this need no rank analysis: rounding leaves ratios of 1e-16, and assembled
 // places that miss the constraints by 1e-12 ones of 1e-24 ...

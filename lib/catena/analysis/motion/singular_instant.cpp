@@ -5,11 +5,10 @@
 #include <cmath>
 
 #include "catena/analysis/pose/jacobian_rank.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Equations this near to dependence (sine) count as dependent; the resulting error of accelerations is of the same
 // size.

@@ -8,11 +8,10 @@
 #include <random>
 
 #include "catena/analysis/pose/whole_turns.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr int max_iterations = 200;
 constexpr int max_approach_iterations = 60;

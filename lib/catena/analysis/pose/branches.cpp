@@ -7,11 +7,10 @@
 
 #include "catena/analysis/pose/quadratics.hpp"
 #include "catena/assembly/systems/constraint_projector.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double vanishing = Quadratics::vanishing;
 

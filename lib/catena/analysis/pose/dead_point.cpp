@@ -6,11 +6,10 @@
 #include <random>
 
 #include "catena/analysis/pose/quadratics.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 /// Left null vectors as rows, lengths in length scales, of length one.
 Eigen::MatrixXd left_null_rows(const Evaluator& evaluator, const RankReport& rank) {

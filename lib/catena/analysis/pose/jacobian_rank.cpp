@@ -1,11 +1,8 @@
 #include "catena/analysis/pose/jacobian_rank.hpp"
 
+#include "catena/base/at.hpp"
+
 namespace catena {
-namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
-}  // namespace
 
 std::vector<double> jacobian_values(Evaluator& evaluator, std::span<const double> q) {
   std::vector<double> values(at(evaluator.plan().trash_slot()) + 1);

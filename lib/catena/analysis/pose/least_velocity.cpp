@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Of the right-hand side: rows left with more than this are not met.
 constexpr double contradiction = 1e-8;

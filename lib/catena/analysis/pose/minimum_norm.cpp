@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/base/at.hpp"
 #include "catena/model/attachment.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double regularisation = 1e-12;
 // A reaction counts as ambiguous if a random set of multipliers differs from the least equivalent one by this part.

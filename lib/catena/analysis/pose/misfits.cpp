@@ -6,11 +6,10 @@
 #include <cmath>
 
 #include "catena/analysis/pose/scaling.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr std::size_t most_misfits = 10;
 // A large scene gets fewer steps: each costs a factorization.
@@ -18,13 +17,13 @@ constexpr int most_steps = 600, least_steps = 60, steps_times_rows = 4000000;
 // eps as a part of the largest misfit at the start: first value, factor, last value.
 constexpr double first_smoothing = 0.1, smoothing_fall = 0.3, last_smoothing = 1e-6;
 constexpr double enough_progress = 1e-6;  // of the sum in one step: else eps falls
-constexpr double largest_turn = 0.3;      // rad, in one step
+constexpr double turn_in_a_step = 0.3;    // rad, in one step
 constexpr double most_damping = 1e8;
 // Of the largest misfit: below it a constraint counts as met.
 constexpr double negligible = 1e-3;
 // Of the largest multiplier: above it a constraint takes part in the conflict.
 constexpr double carries = 1e-2;
-constexpr std::size_t most_names = 6;  // in a message
+constexpr std::size_t most_culprits = 6;  // in a message
 
 class MisfitSearch {
  public:
@@ -154,7 +153,7 @@ class MisfitSearch {
       for (int c = 0; c < plan_.columns; ++c) {
         if (plan_.coordinate[at(c)] % 3 == 2) turn = std::max(turn, std::abs(step_[at(c)]));
       }
-      const double factor = turn > largest_turn ? largest_turn / turn : 1;
+      const double factor = turn > turn_in_a_step ? turn_in_a_step / turn : 1;
       std::copy(q_.begin(), q_.end(), trial_.begin());
       for (int c = 0; c < plan_.columns; ++c) trial_[at(plan_.coordinate[at(c)])] -= factor * step_[at(c)];
       const double then = cost(trial_, eps);
@@ -199,7 +198,7 @@ std::string describe_held(const Model& model) {
   std::string names;
   std::size_t count = 0;
   const auto add = [&](bool held, std::size_t body, const char* column) {
-    if (!held || ++count > most_names) return;
+    if (!held || ++count > most_culprits) return;
     names += fmt::format("{}{}.{}", count > 1 ? ", " : "", model.body_name(static_cast<int>(body)), column);
   };
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -207,7 +206,7 @@ std::string describe_held(const Model& model) {
     add(model.bodies[b].hold_y, b, "y");
     add(model.bodies[b].hold_angle, b, "angle");
   }
-  if (count > most_names) names += ", ...";
+  if (count > most_culprits) names += ", ...";
   return count > 0 ? fmt::format("\"hold\" does not let assembly change {}; or ", names) : names;
 }
 
@@ -218,10 +217,10 @@ std::string describe_cause(const Model& model, const Conflict& conflict) {
   }
   const auto list = [&](const std::vector<int>& elements) {
     std::string names;
-    for (std::size_t k = 0; k < elements.size() && k < most_names; ++k) {
+    for (std::size_t k = 0; k < elements.size() && k < most_culprits; ++k) {
       names += fmt::format("{}\"{}\"", k ? ", " : "", model.element_name(elements[k]));
     }
-    return elements.size() > most_names ? names + ", ..." : names;
+    return elements.size() > most_culprits ? names + ", ..." : names;
   };
   if (drivers.size() > 1) {
     return fmt::format("the drivers {} contradict each other, or an estimate too far off", list(drivers));

@@ -8,11 +8,10 @@
 
 #include "catena/analysis/pose/jacobian_rank.hpp"
 #include "catena/analysis/pose/redundancy.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Phi_q without the rows of drivers.
 int rank_without_drivers(const Evaluator& evaluator, std::span<const double> values, int full_rank) {

@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
-namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
-}  // namespace
 
 NullSpaces find_null_spaces(Evaluator& evaluator, std::span<const double> q, double threshold) {
   const Plan& plan = evaluator.plan();

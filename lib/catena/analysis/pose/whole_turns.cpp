@@ -4,6 +4,7 @@
 #include <numbers>
 #include <vector>
 
+#include "catena/base/at.hpp"
 #include "catena/elements/constraints/absolute_angle.hpp"
 #include "catena/elements/constraints/belt.hpp"
 #include "catena/elements/constraints/gear.hpp"
@@ -12,8 +13,6 @@
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 /// A body whose angle follows that of another: by the same turns, or with a
 /// turn + b other = 0 in a pair that rolls, up to whole periods 2 pi (a + b),

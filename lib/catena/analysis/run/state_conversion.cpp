@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 /// Throws unless `values` are three finite numbers a body, or none.
 void check_values(const Model& model, std::span<const double> values, const char* what) {

@@ -4,12 +4,11 @@
 #include <array>
 #include <cmath>
 
+#include "catena/analysis/sensitivity/moving_instants.hpp"
+
 namespace catena {
 namespace {
 
-// As in moving_instants.cpp: a derivative that changes by less than this part of its size around does not jump.
-constexpr double no_jump = 1e-8;
-constexpr int looks = 24;
 // Jumps are looked for within so many times the way that the instant moves, and may miss its place by this part of it.
 constexpr double neighbourhood = 3, same_place = 0.01;
 
@@ -20,7 +19,7 @@ bool jumps_at(const TimeFunction<double>& function, double t) {
   std::array<double, 2> size{std::max(std::abs(before.d), std::abs(after.d)),
                              std::max(std::abs(before.dd), std::abs(after.dd))};
   double distance = std::max(std::abs(t), 1.0);
-  for (int k = 0; k < looks; ++k, distance /= 2) {
+  for (int k = 0; k < jump_looks; ++k, distance /= 2) {
     for (const double there : {t - distance, t + distance}) {
       if (!domain.contains(there)) continue;
       const Taylor<double> f = function.evaluate(there);
@@ -28,7 +27,8 @@ bool jumps_at(const TimeFunction<double>& function, double t) {
       size[1] = std::max(size[1], std::abs(f.dd));
     }
   }
-  return std::abs(before.d - after.d) > no_jump * size[0] || std::abs(before.dd - after.dd) > no_jump * size[1];
+  return std::abs(before.d - after.d) > no_jump_part * size[0] ||
+         std::abs(before.dd - after.dd) > no_jump_part * size[1];
 }
 
 }  // namespace

@@ -3,11 +3,10 @@
 #include <cmath>
 
 #include "catena/analysis/sensitivity/spectrum_derivatives.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // |w^T F_P| below this part of |w| |F_P|: the load does no work on the mode, as at branch points of symmetric
 // structures.

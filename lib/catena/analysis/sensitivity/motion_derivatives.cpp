@@ -6,12 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
-namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
-}  // namespace
 
 MotionDerivatives::MotionDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters,
                                      GivenByModel start)

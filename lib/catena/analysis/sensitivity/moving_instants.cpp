@@ -9,11 +9,6 @@
 namespace catena {
 namespace {
 
-// A derivative that changes by less than this part of its size around the instant does not jump: both sides are
-// polynomials or sines whose values there are rounded to 1e-16 x condition (1e-13 seen with laws of 1e3 s).
-constexpr double no_jump = 1e-8;
-// Sizes are looked for at 2^-k of the instant's own distance from zero, or of 1 s, on both sides.
-constexpr int looks = 24;
 // Differences for f''' take this part of the piece after the instant: their error is its fourth power. Of two that
 // differ by less than the second part of their size neither is told from the other.
 constexpr double part_of_piece = 1e-3, no_kink = 1e-6;
@@ -46,7 +41,7 @@ double third_derivative(const TimeFunction<DesignScalar>& function, double t, Si
 /// Where f'' is continuous, but bends.
 FunctionJump kink_of(const TimeFunction<DesignScalar>& function, double t, const DesignScalar& change,
                      const std::array<double, parameters_at_once>& size, FunctionJump jump) {
-  const auto moves = [&](std::size_t p) { return std::abs(change.d[p]) > no_jump * size[p]; };
+  const auto moves = [&](std::size_t p) { return std::abs(change.d[p]) > no_jump_part * size[p]; };
   bool any = false;
   for (std::size_t p = 0; p < parameters_at_once; ++p) any = any || moves(p);
   if (!any) return jump;
@@ -72,16 +67,16 @@ FunctionJump jump_of(const TimeFunction<DesignScalar>& function, double t) {
   sizes.take(before);
   sizes.take(after);
   double distance = std::max(std::abs(t), 1.0);
-  for (int k = 0; k < looks; ++k, distance /= 2) {
+  for (int k = 0; k < jump_looks; ++k, distance /= 2) {
     for (const double there : {t - distance, t + distance}) {
       if (domain.contains(there)) sizes.take(function.evaluate(there));
     }
   }
   const DesignScalar change[] = {before.f - after.f, before.d - after.d, before.dd - after.dd};
-  const auto jumps = [&](std::size_t k) { return std::abs(change[k].v) > no_jump * sizes.value[k]; };
+  const auto jumps = [&](std::size_t k) { return std::abs(change[k].v) > no_jump_part * sizes.value[k]; };
   jump.order = jumps(1) ? 1 : jumps(2) ? 2 : 0;
   const auto moves = [&](std::size_t k, std::size_t p) {
-    return std::abs(change[k].d[p]) > no_jump * sizes.derivative[k][p];
+    return std::abs(change[k].d[p]) > no_jump_part * sizes.derivative[k][p];
   };
   if (jump.order == 0) {
     for (std::size_t p = 0; p < parameters_at_once; ++p) {

@@ -17,6 +17,12 @@
 
 namespace catena {
 
+// A derivative that changes by less than this part of its size around the instant does not jump: both sides are
+// polynomials or sines whose values there are rounded to 1e-16 x condition (1e-13 seen with laws of 1e3 s).
+constexpr double no_jump_part = 1e-8;
+// Sizes are looked for at 2^-k of the instant's own distance from zero, or of 1 s, on both sides.
+constexpr int jump_looks = 24;
+
 /// What a function does at an instant.
 struct FunctionJump {
   int order = 0;  ///< of the lowest derivative that jumps: 1, 2 or 3; 0: none does

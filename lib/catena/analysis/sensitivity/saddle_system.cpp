@@ -5,12 +5,11 @@
 #include <limits>
 #include <utility>
 
+#include "catena/base/at.hpp"
 #include "catena/linalg/rank/rank_revealing.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Pivots further apart than this, in a matrix scaled by rows, are rounding: the matrix is singular.
 constexpr double regular = 1e-15;

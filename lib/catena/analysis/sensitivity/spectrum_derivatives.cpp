@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "catena/analysis/sensitivity/start_derivatives.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Forces are in balance if what is left of them is at most this part: what modes take for balance, see modes.cpp.
 constexpr double balanced = 1e-6;

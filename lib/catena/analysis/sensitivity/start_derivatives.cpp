@@ -8,12 +8,11 @@
 #include <tuple>
 
 #include "catena/analysis/motion/initial_velocities.hpp"
+#include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Velocities whose last round changed them by more than this part are not settled: derivatives are good to it.
 constexpr double settled = 1e-9;

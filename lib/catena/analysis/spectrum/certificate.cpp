@@ -10,11 +10,10 @@
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/analysis/spectrum/motion_groups.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double neutral_part = 1e-10;
 // Modes softer than this part of the stiffest are tested for rounding: far above any rounding.

@@ -8,11 +8,10 @@
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/spectrum/modes_dense.hpp"
 #include "catena/analysis/spectrum/static_balance.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Part of the largest travel in a motion that a body must have to take part in it: rounding of shapes is far below.
 constexpr double least_share = 1e-8;

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 using Basis = Eigen::Map<Eigen::MatrixXd>;
 
@@ -18,8 +18,6 @@ Basis basis_of(MotionGroup& group) {
 
 // Part of a motion, in lengths, that must be that of coordinates with mass: the same measure as for ranks.
 constexpr double least_part = 1e-10;
-
-bool lower(const Mode& a, const Mode& b) { return a.omega2 < b.omega2; }
 
 }  // namespace
 

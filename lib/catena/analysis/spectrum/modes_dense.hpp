@@ -21,6 +21,7 @@ struct Mode {
   double omega2 = 0;
   std::vector<double> shape;  ///< over columns, v^T M v = 1
 };
+inline bool lower(const Mode& a, const Mode& b) { return a.omega2 < b.omega2; }
 
 class DenseModes {
  public:

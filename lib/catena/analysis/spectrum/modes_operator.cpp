@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr int most_corrections = 30, projections = 3;
 // A correction that is not below this part of the one before is rounding.

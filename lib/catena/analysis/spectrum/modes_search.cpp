@@ -33,8 +33,6 @@ std::vector<int> choose(std::span<const double> theta, int below, int above) {
   return chosen;
 }
 
-bool lower(const Mode& a, const Mode& b) { return a.omega2 < b.omega2; }
-
 }  // namespace
 
 ModeSearch::ModeSearch(StaticSystem& system, std::span<const double> lambda, std::vector<double> mass,

@@ -4,13 +4,9 @@
 #include <limits>
 
 #include "catena/analysis/spectrum/modes_search.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
-namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
-}  // namespace
 
 std::vector<Mode> ModeSearch::modes_of(Lanczos& lanczos, double sigma, int count) const {
   std::vector<std::pair<double, int>> order;  // omega^2 and the number of its theta

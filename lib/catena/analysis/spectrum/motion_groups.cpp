@@ -7,11 +7,10 @@
 #include <numeric>
 
 #include "catena/analysis/pose/jacobian_rank.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Columns up to which dense algebra takes about a second whatever the freedoms.
 constexpr int most_columns = 2000;

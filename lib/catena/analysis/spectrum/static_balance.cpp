@@ -6,16 +6,15 @@
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/analysis/spectrum/motion_groups.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
 // Constraints met to this, in length scales or rad, need no assembly.
 constexpr double assembled = 1e-12;
 // Residual forces below this part of the largest force count as none.
-constexpr double negligible_part = 1e-7, rounding_part = 1e-13;
+constexpr double negligible_part = 1e-7, balance_rounding = 1e-13;
 
 }  // namespace
 
@@ -64,7 +63,7 @@ Imbalance balance_loads(StaticSystem& system, std::span<double> lambda) {
       left.force = force;
       left.column = c;
     }
-    left.rounding = std::max(left.rounding, rounding_part * std::abs(forces[at(c)]) / arm(c) * system.extent());
+    left.rounding = std::max(left.rounding, balance_rounding * std::abs(forces[at(c)]) / arm(c) * system.extent());
     double own = std::abs(system.gradient()[at(c)]);
     for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k) {
       own = std::max(own, std::abs(system.jacobian()[at(k)] * lambda[at(plan.jacobian.row_index[at(k)])]));

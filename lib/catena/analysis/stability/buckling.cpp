@@ -14,11 +14,10 @@
 #include "catena/analysis/run/watched_elements.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/analysis/spectrum/static_balance.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Steps of the parameter that are tried until its effect on K exceeds rounding.
 constexpr double steps[] = {1, 1e6, 1e12};

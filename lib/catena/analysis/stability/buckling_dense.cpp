@@ -15,11 +15,10 @@
 
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/stability/buckling.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Change of the stiffness, in parts of itself, at the first step: far above rounding, well before the first load.
 constexpr double least_change = 0.02, most_change = 0.5;

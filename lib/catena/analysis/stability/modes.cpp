@@ -17,11 +17,10 @@
 #include "catena/analysis/spectrum/modes_dense.hpp"
 #include "catena/analysis/spectrum/modes_search.hpp"
 #include "catena/analysis/spectrum/static_balance.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr int default_count = 10;
 // Degrees of freedom up to which all modes are computed at once where a third of them or more are wanted: some ten

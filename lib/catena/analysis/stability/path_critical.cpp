@@ -4,19 +4,18 @@
 #include <cmath>
 
 #include "catena/analysis/spectrum/modes_operator.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
 // Parts of s: accuracy of a critical point, and the distance beyond it at which the search continues.
-constexpr double located = 1e-11, beyond = 1e-6;
+constexpr double critical_accuracy = 1e-11, beyond = 1e-6;
 constexpr int most_trials = 80, power_steps = 3;
 // Part of |v_i d_i| that <v, d> must have at a limit point, and part of |v| |d| below which d has no component along v.
 constexpr double limit_part = 1e-5, no_overlap = 1e-9;
 // Below this part of the mechanism's forces a change of the residual over the parameter's range is rounding.
-constexpr double no_change = 1e-9;
+constexpr double no_force_change = 1e-9;
 
 // The quantities at one place of the step.
 struct Trial {
@@ -97,7 +96,7 @@ class Locator {
     }
     const double range = system_.along_parameter(1).p;
     return std::abs(sum) <= limit_part * terms || terms <= no_overlap * std::sqrt(v * d) ||
-           terms * range <= no_change * system_.statics().force_size() * travel;
+           terms * range <= no_force_change * system_.statics().force_size() * travel;
   }
 
   void forget_mode() { mode_.clear(); }
@@ -121,7 +120,7 @@ std::optional<Trial> locate(Locator& locator, Trial low, Trial high) {
   if (!low.found || low.singular) return low.singular ? std::optional(low) : std::nullopt;
   low.g = locator.test_function();
   Trial before = low, last = high;
-  for (int k = 0; k < most_trials && high.s - low.s > located * width; ++k) {
+  for (int k = 0; k < most_trials && high.s - low.s > critical_accuracy * width; ++k) {
     double s = 0.5 * (low.s + high.s);
     const double secant = last.s - last.g * (last.s - before.s) / (last.g - before.g);
     // Every third trial halves the bracket: the secant alone may close it from one side only.
@@ -131,7 +130,7 @@ std::optional<Trial> locate(Locator& locator, Trial low, Trial high) {
     if (!trial.found) return {};
     if (trial.singular) return trial;
     trial.g = locator.test_function();
-    const bool settled = use_secant && std::abs(s - last.s) <= located * width;
+    const bool settled = use_secant && std::abs(s - last.s) <= critical_accuracy * width;
     before = last;
     last = trial;
     (trial.modes == low.modes ? low : high) = trial;

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double shortest_step = 1e-9;
 // Steps shorter than this part of the usual one are kept though a critical point in them could not be located.

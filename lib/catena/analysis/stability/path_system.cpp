@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "catena/analysis/spectrum/modes_operator.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr int most_iterations = 12;
 // Solved: residual forces in parts of the largest force, constraints in length scales, the place on the path.

@@ -12,11 +12,10 @@
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/analysis/run/watched_elements.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Reactions balance the loads if no more than this part of them is left.
 constexpr double balanced = 1e-9;

@@ -6,11 +6,10 @@
 #include <numbers>
 
 #include "catena/analysis/statics/equilibrium.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Starts: some for every scene, more for every equilibrium wanted.
 constexpr int least_starts = 30, starts_each = 15;

@@ -5,11 +5,10 @@
 #include <set>
 
 #include "catena/analysis/statics/static_gaps.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr int most_sets = 200, most_sets_at_once = 15;
 // Forces below this part of the largest one, and gaps below this many length scales, may be rounding.

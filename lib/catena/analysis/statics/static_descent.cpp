@@ -5,11 +5,10 @@
 #include <limits>
 
 #include "catena/analysis/spectrum/motion_groups.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr double largest_turn = 0.7;
 constexpr double smallest_factor = 1e-4;

@@ -4,15 +4,14 @@
 #include <cmath>
 
 #include "catena/analysis/statics/static_active_set.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
-constexpr double largest_turn = 1;
+constexpr double gap_turn = 1;
 // Changes below this, length scales or rad, are followed by the exact K.
-constexpr double near_change = 0.3;
+constexpr double followed_change = 0.3;
 // No step is longer than this many sizes of the mechanism; one that has moved so many away is not held.
 constexpr double largest_stride = 1, lost_sizes = 1e5;
 // The smoothing begins with one of these, L being the size of the mechanism: where many gaps share a load a large t
@@ -151,15 +150,15 @@ StaticOutcome follow_smoothing(StaticSystem& system, std::span<double> q, std::s
     const double factor =
         std::isfinite(change) ? std::min(1.0, largest_stride * size / (system.length() * change)) : 0.0;
     if (factor > 0) {
-      system.foresee(step.change, factor, largest_turn);
-      system.advance(q, step.change, factor, largest_turn);
+      system.foresee(step.change, factor, gap_turn);
+      system.advance(q, step.change, factor, gap_turn);
       for (std::size_t r = 0; r < lambda.size(); ++r) lambda[r] += factor * (step.lambda[r] - lambda[r]);
       system.move_to(q);
     }
     outcome.step = change;
     if (const IterationTrace* trace = system.evaluator().trace)
       (*trace)("gaps", outcome.iterations, gaps.left_over(lambda, t), change);
-    near = change <= near_change;
+    near = change <= followed_change;
     ++steps;
     if (farthest(q, start) > lost_sizes * size) {
       outcome.end = StaticEnd::unbounded;

@@ -11,14 +11,13 @@
 #include <vector>
 
 #include "catena/analysis/balance/static_hessian.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
 using Ipopt::Index;
 using Ipopt::Number;
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Ipopt takes any value beyond 1e19 as no bound.
 constexpr double no_bound = 2e19;

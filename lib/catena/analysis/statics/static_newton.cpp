@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
 namespace {
 
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
-constexpr double largest_turn = 1;
+constexpr double newton_turn = 1;
 // Changes, in length scales or rad: below the first the exact K is worth trying, below the second one more correction
 // with the same factors reaches rounding.
-constexpr double near_change = 0.3;
-constexpr double polishing_change = 1e-4;
+constexpr double exact_change = 0.3;
+constexpr double polished_change = 1e-4;
 constexpr int polishing_steps = 4;
 // Part of the residual that a correction may leave, rounding of forces, and the multiple of it that still counts as
 // rounding.
@@ -57,7 +57,7 @@ bool first_tensions(StaticSystem& system, std::span<double> lambda) {
   StaticStep step = system.newton_step(first_tolerance);
   if (system.change_norm(step.change) <= still) step = system.newton_step(0);
   std::copy(step.lambda.begin(), step.lambda.end(), lambda.begin());
-  system.foresee(step.change, 1, largest_turn);
+  system.foresee(step.change, 1, newton_turn);
   return true;
 }
 
@@ -81,7 +81,7 @@ void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda,
     const double change = system.change_norm(step.change);
     q_before.assign(q.begin(), q.end());
     lambda_before.assign(lambda.begin(), lambda.end());
-    system.advance(q, step.change, 1, largest_turn);
+    system.advance(q, step.change, 1, newton_turn);
     for (std::size_t r = 0; r < lambda.size(); ++r) lambda[r] += step.lambda[r];
     system.move_to(q);
     const double then = size();
@@ -176,13 +176,13 @@ StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::sp
       std::copy(q.begin(), q.end(), q_before.begin());
       std::copy(lambda.begin(), lambda.end(), lambda_before.begin());
     }
-    system.foresee(step.change, 1, largest_turn);
-    system.advance(q, step.change, 1, largest_turn);
+    system.foresee(step.change, 1, newton_turn);
+    system.advance(q, step.change, 1, newton_turn);
     std::copy(step.lambda.begin(), step.lambda.end(), lambda.begin());
     system.move_to(q);
     measure();
     // Along motions that nothing resists a step consists of rounding.
-    if (balanced && change > polishing_change && !(outcome.residual <= no_gain * residual_before)) {
+    if (balanced && change > polished_change && !(outcome.residual <= no_gain * residual_before)) {
       std::copy(q_before.begin(), q_before.end(), q.begin());
       std::copy(lambda_before.begin(), lambda_before.end(), lambda.begin());
       system.move_to(q);
@@ -193,7 +193,7 @@ StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::sp
     outcome.step = change;
     if (const IterationTrace* trace = system.evaluator().trace)
       (*trace)("newton", outcome.iterations, outcome.residual, change);
-    near = change <= near_change;
+    near = change <= exact_change;
     if (!(force <= std::max(largest_multiplier * system.load_size(), largest_of_sum * system.total_load()))) {
       outcome.end = StaticEnd::diverged;
       return outcome;
@@ -203,7 +203,7 @@ StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::sp
     const auto is_small = [&] { return is_balanced(outcome.step <= last_change ? system.rounding_force() : 0); };
     balanced = is_balanced(0);
     // One step ends a linear problem, whatever its length.
-    if (change > polishing_change && !(linear && outcome.exact && is_small())) continue;
+    if (change > polished_change && !(linear && outcome.exact && is_small())) continue;
     polish(system, q, lambda, outcome);
     force = system.force_scale(lambda);
     if (is_small() || change <= last_change) {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // An energy this far below the start, in units of force times length, has no bottom.
 constexpr double bottomless = 1e9;

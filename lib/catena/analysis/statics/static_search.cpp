@@ -15,11 +15,10 @@
 #include "catena/analysis/statics/static_nlopt.hpp"
 #include "catena/analysis/statics/static_settling.hpp"
 #include "catena/assembly/rope_ways.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Degrees of freedom up to which the energy is followed downhill from the start: the work grows with them, that of
 // Newton's method does not.

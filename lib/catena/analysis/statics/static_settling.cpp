@@ -3,22 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
 namespace {
 
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
-constexpr double largest_turn = 0.5;
+constexpr double settling_turn = 0.5;
 // Of a step, in extents of the scene.
 constexpr double largest_travel = 0.5;
 // E times the stiffness.
 constexpr double regularisation = 1e-11;
 // Growth of the residual allowed in an accepted step, and the change of the damping from step to step.
-constexpr double tolerated_growth = 3, fastest_fading = 0.05, stiffening = 8;
+constexpr double tolerated_growth = 3, fastest_fading = 0.05, settling_stiffening = 8;
 constexpr double largest_damping = 1e12, least_damping = 1e-14;
-constexpr double lost_extents = 1e5;
+constexpr double settling_lost_extents = 1e5;
 // Without damping no further gain is possible below this, length scales or rad.
-constexpr double last_change = 1e-10;
+constexpr double settling_last_change = 1e-10;
 
 // The unsymmetric matrix, its pattern from the plan.
 class Tangent {
@@ -128,7 +128,7 @@ StaticOutcome solve_by_settling(StaticSystem& system, std::span<double> q, std::
       return outcome;
     }
     if (!tangent.factorize(lambda, damping, stiffness)) {
-      damping = std::max(stiffening * damping, 1e-6 * stiffness);
+      damping = std::max(settling_stiffening * damping, 1e-6 * stiffness);
       if (damping > largest_damping * stiffness) break;
       continue;
     }
@@ -141,12 +141,12 @@ StaticOutcome solve_by_settling(StaticSystem& system, std::span<double> q, std::
       double& largest = plan.coordinate[at(c)] % 3 == 2 ? turn : travel;
       largest = std::max(largest, std::abs(change[at(c)]));
     }
-    const double factor = std::min({1.0, largest_turn / turn, largest_travel * extent / travel});
+    const double factor = std::min({1.0, settling_turn / turn, largest_travel * extent / travel});
     q_before.assign(q.begin(), q.end());
     lambda_before.assign(lambda.begin(), lambda.end());
     double then = now;
     if (solved && std::isfinite(turn + travel)) {
-      system.advance(q, change, factor, largest_turn);
+      system.advance(q, change, factor, settling_turn);
       for (std::size_t r = 0; r < lambda.size(); ++r) lambda[r] += factor * x[columns + r];
       system.move_to(q);
       outcome.step = system.change_norm(change);
@@ -160,23 +160,23 @@ StaticOutcome solve_by_settling(StaticSystem& system, std::span<double> q, std::
       std::copy(lambda_before.begin(), lambda_before.end(), lambda.begin());
       system.move_to(q);
       now = size();
-      damping = std::max(stiffening * damping, 1e-6 * stiffness);
+      damping = std::max(settling_stiffening * damping, 1e-6 * stiffness);
       if (damping > largest_damping * stiffness) break;
       continue;
     }
     const double ratio = then / std::max(now, 1e-300);
-    damping *= factor < 1 ? 2 : std::clamp(ratio, fastest_fading, stiffening);
+    damping *= factor < 1 ? 2 : std::clamp(ratio, fastest_fading, settling_stiffening);
     if (damping < least_damping * stiffness) damping = 0;
     now = then;
     for (std::size_t k = 0; k < q.size(); ++k) {
-      if (k % 3 != 2 && std::abs(q[k] - start[k]) > lost_extents * extent) {
+      if (k % 3 != 2 && std::abs(q[k] - start[k]) > settling_lost_extents * extent) {
         outcome.end = StaticEnd::unbounded;
         return outcome;
       }
     }
     // Rounding of the stiffest spring may be the whole force of a soft one: then the step decides.
     const double scale = std::max(system.force_scale(lambda), force);
-    const double rounding = damping == 0 && outcome.step <= last_change ? system.rounding_force() : 0;
+    const double rounding = damping == 0 && outcome.step <= settling_last_change ? system.rounding_force() : 0;
     if (outcome.residual <= options.tolerance * scale + rounding &&
         system.phi_norm() <= std::max(options.tolerance, 10 * system.rounding_change())) {
       outcome.end = StaticEnd::stationary;

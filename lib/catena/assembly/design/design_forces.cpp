@@ -1,13 +1,12 @@
 // DesignMechanism: forces and energy with derivatives.
 #include "catena/assembly/design/element_motion.hpp"
 #include "catena/assembly/law_values.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
 using detail::DesignSeries;
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 /// Values of an element's functions of time and laws, one more than there are so that there is always one; law(number)
 /// gives those of laws.

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // The pose that a weld gives one body when the other one's is known; see elimination.cpp.
 Frame<DesignScalar> welded_pose(const Weld<DesignScalar>& weld, const Frame<DesignScalar>& known, bool forward) {

@@ -1,12 +1,11 @@
 // DesignMechanism: constraints, their loads and what they measure, with derivatives.
 #include "catena/assembly/design/element_motion.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
 using detail::DesignSeries;
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 /// c(t) of an element's entry.
 template <class Entry>

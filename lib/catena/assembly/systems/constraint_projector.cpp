@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Part of its diagonal added to every row: far below the accuracy of a row's own products, enough for a factorization.
 constexpr double regularisation = 1e-12;

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr int triangle = 21;
 

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // rho in units of the stiffness of the bodies that a row touches.
 constexpr double augmentation = 4;
 // eps rho: small enough that two refinements remove its effect, large enough to stand out from rounding.
-constexpr double regularisation = 1e-10;
+constexpr double row_regularisation = 1e-10;
 // Bodies much softer than the stiffest one count as this part of it, so that pivots stay away from zero.
 constexpr double softest_part = 1e-9;
 
@@ -114,7 +114,7 @@ void KktMatrix::choose_augmentation(double least_stiffness) {
   }
   for (std::size_t r = 0; r < rho_.size(); ++r) {
     if (!(rho_[r] > 0)) rho_[r] = least > 0 ? least : 1.0;
-    eps_[r] = regularisation / rho_[r];
+    eps_[r] = row_regularisation / rho_[r];
   }
 }
 

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <new>
 
+#include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/linalg/factorization/symmetric_factorization.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr int turning_only = -2, nowhere = -1;
 

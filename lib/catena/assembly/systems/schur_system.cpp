@@ -4,14 +4,14 @@
 #include <cmath>
 #include <random>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
 namespace {
 
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
-constexpr double regularisation = 1e-12;  // part of the diagonal that is added
-constexpr double singular_ratio = 1e-10;  // below this pivot ratio it is ...
-constexpr double clearly_more = 10;       // ... until the ratio is so many times this, or what the addition can make
+constexpr double schur_regularisation = 1e-12;  // part of the diagonal that is added
+constexpr double singular_ratio = 1e-10;        // below this pivot ratio it is ...
+constexpr double clearly_more = 10;  // ... until the ratio is so many times this, or what the addition can make
 // Rounds in which a residual that shrinks to a half, at least, comes to rounding.
 constexpr int most_massless_rounds = 52;
 constexpr double massless_rounding = 1e-15;
@@ -163,20 +163,20 @@ bool SchurSystem::factorize(std::span<const double> jacobian, Counters& counters
   }
   // Equations that depended on each other at the last factorization probably still do.
   const bool before = regularised_;
-  fill(before ? regularisation : 0);
+  fill(before ? schur_regularisation : 0);
   if (!factor_values(counters)) return false;
   if (before) {
     // What is added to a large diagonal shows in the pivots of small ones: a ratio that it makes says nothing of the
     // equations, and whether they are regular is seen without it.
     const auto [least, largest] = std::minmax_element(diagonal_values_.begin(), diagonal_values_.end());
-    regularised_ = smallest_ratio_ < clearly_more * std::max(singular_ratio, regularisation * *largest / *least);
+    regularised_ = smallest_ratio_ < clearly_more * std::max(singular_ratio, schur_regularisation * *largest / *least);
     if (!regularised_) {
       fill(0);
       if (!factor_values(counters)) return false;
     }
   }
   if (smallest_ratio_ < singular_ratio && !regularised_) {
-    fill(regularisation);
+    fill(schur_regularisation);
     regularised_ = true;
     if (!factor_values(counters) || !(smallest_ratio_ > 0)) return false;
   }

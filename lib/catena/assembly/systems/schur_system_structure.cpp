@@ -2,14 +2,10 @@
 #include <algorithm>
 
 #include "catena/assembly/systems/schur_system.hpp"
+#include "catena/base/at.hpp"
 #include "catena/linalg/kernels/cholmod_kernel.hpp"
 
 namespace catena {
-namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
-}  // namespace
 
 bool SchurSystem::analyze(Counters& counters) {
   const Plan& plan = *plan_;

@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
-namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
-}  // namespace
 
 std::vector<double> seen_masses(const Plan& plan, std::span<const double> masses, std::span<const double> jacobian) {
   const SparsePattern& a = plan.jacobian;

@@ -6,10 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 std::uint64_t bit(int k) { return std::uint64_t{1} << k; }
 std::uint64_t bits_above(int k) { return k == 63 ? 0 : ~std::uint64_t{0} << (k + 1); }

@@ -74,7 +74,7 @@ ElementDescription describe_element(int number) {
   return d;
 }
 
-std::vector<ElementDescription> describe_all() {
+std::vector<ElementDescription> describe_elements() {
   std::vector<ElementDescription> all;
   int number = 0;
 #define CATENA_DESCRIBE(Type) all.push_back(describe_element<Type<double>>(number++));
@@ -97,7 +97,7 @@ const FieldDescription* ElementDescription::find(std::string_view key) const {
 }
 
 std::span<const ElementDescription> element_descriptions() {
-  static const std::vector<ElementDescription> all = describe_all();
+  static const std::vector<ElementDescription> all = describe_elements();
   return all;
 }
 

@@ -10,7 +10,7 @@
 namespace catena {
 namespace {
 
-constexpr std::size_t most_sentences = 5;
+constexpr std::size_t most_rope_sentences = 5;
 // A rope round a pulley turns by up to half a turn and what its ends lean; a loop crosses itself.
 constexpr double loop = 1.5 * std::numbers::pi;
 
@@ -20,7 +20,7 @@ std::vector<std::string> ropes_in_loops(const Model& model) {
   std::vector<std::string> doubts;
   const auto look = [&](int element) {
     const double contact = widest_contact(model, element);
-    if (!(contact > loop) || doubts.size() == most_sentences) return;
+    if (!(contact > loop) || doubts.size() == most_rope_sentences) return;
     doubts.push_back(
         fmt::format("rope \"{}\" winds {:.4g} rad round a pulley as given: if it is to lie beside it, give the other "
                     "\"side\", or leave the pulley out",

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view block_owner = "a block of events";
 // As deep as blocks of the scene; and as many events as can be watched in a reasonable time.
-constexpr std::size_t deepest_block = 8;
+constexpr std::size_t deepest_event_block = 8;
 constexpr std::int64_t most_events = 1'000'000;
 constexpr double largest_whole = 1e9;
 
@@ -60,7 +60,7 @@ void AnalysisReader::read_event_block(const JsonValue& object, AnalysisTask& tas
   std::vector<std::string_view> keys;
   for (const AnalysisKey& key : words) keys.push_back(key.name);
   std::vector<JsonValue> v(keys.size());
-  if (loop_names_.size() >= deepest_block) return error(object, "replicate blocks are nested too deeply");
+  if (loop_names_.size() >= deepest_event_block) return error(object, "replicate blocks are nested too deeply");
   if (!read_members(object, keys, block_owner, v, diagnostics_)) return;
   if (!v[0]) return error(object, "a block of events needs \"count\"");
   if (!v[3] && !v[4]) return error(object, "a block of events repeats \"events\"; this one has none");

@@ -12,7 +12,7 @@
 namespace catena {
 namespace {
 
-constexpr std::array<std::string_view, 2> keys{"value", "unit"};
+constexpr std::array<std::string_view, 2> own_column_keys{"value", "unit"};
 
 void report_in_text(const JsonValue& value, std::size_t position, std::string message, Diagnostics& diagnostics) {
   diagnostics.error(value.source(), value.source().offset_in_string(value.offset(), position), std::move(message));
@@ -90,8 +90,8 @@ void read_own_columns(const JsonValue& object, SceneTemplate& scene, Diagnostics
     }
     JsonValue value = member.value;
     if (value.is(JsonKind::object)) {
-      std::array<JsonValue, keys.size()> v;
-      read_members(value, keys, "column " + in_quotes(column.name), v, diagnostics);
+      std::array<JsonValue, own_column_keys.size()> v;
+      read_members(value, own_column_keys, "column " + in_quotes(column.name), v, diagnostics);
       if (v[1]) read_unit(v[1], column, diagnostics);
       if (!v[0]) {
         report(value, fmt::format("column {} needs a \"value\"", in_quotes(column.name)), diagnostics);

@@ -8,7 +8,7 @@
 namespace catena {
 namespace {
 
-constexpr std::array<std::string_view, 5> keys{"at", "radius", "side", "pulley", "mu"};
+constexpr std::array<std::string_view, 5> pulley_keys{"at", "radius", "side", "pulley", "mu"};
 constexpr std::array<std::string_view, 2> ways{"slides", "rolls"};
 
 }  // namespace
@@ -32,8 +32,8 @@ int SceneReading::pulleys(const JsonValue& value, const FieldName& field) {
     const std::string owner = fmt::format("pulley {} of {}", all.size() + 1, field.text());
     PulleyTemplate& pulley = all.emplace_back();
     pulley.offset = static_cast<std::uint32_t>(object.offset());
-    std::array<JsonValue, keys.size()> v;
-    if (!read_members(object, keys, owner, v, diagnostics)) continue;
+    std::array<JsonValue, pulley_keys.size()> v;
+    if (!read_members(object, pulley_keys, owner, v, diagnostics)) continue;
     const auto& [at, radius, side, way, mu] = v;
     if (at) {
       attachment(at, "at", owner, false, pulley.attachment, pulley.place);

@@ -11,7 +11,7 @@ namespace catena {
 namespace {
 
 constexpr std::array<std::string_view, 5> table_keys{"x", "y", "points", "end", "beyond"};
-constexpr std::array<std::string_view, 3> end_words{"natural", "clamped", "periodic"};
+constexpr std::array<std::string_view, 3> table_end_words{"natural", "clamped", "periodic"};
 
 }  // namespace
 
@@ -25,7 +25,7 @@ void SceneReading::table_functions(const JsonValue& object, std::span<const std:
     std::array<JsonValue, table_keys.size()> v;
     if (!read_members(member.value, table_keys, owner, v, diagnostics)) continue;
     if (v[3]) {
-      if (const int word = read_word(v[3], end_words, {"end", owner}, diagnostics); word >= 0)
+      if (const int word = read_word(v[3], table_end_words, {"end", owner}, diagnostics); word >= 0)
         table.end = static_cast<SplineEnd>(word);
     }
     if (v[2]) {

@@ -14,12 +14,12 @@ namespace catena {
 namespace {
 
 // Frequencies nearer to each other than this part count as double: their vectors, known to 1e-8, turn into each other.
-constexpr double apart = 1e-6;
+constexpr double frequencies_apart = 1e-6;
 
 bool is_double(const std::vector<double>& omega2, std::size_t k) {
   for (std::size_t other = 0; other < omega2.size(); ++other) {
     const double size = std::max(std::abs(omega2[k]), std::abs(omega2[other]));
-    if (other != k && std::abs(omega2[k] - omega2[other]) <= apart * size) return true;
+    if (other != k && std::abs(omega2[k] - omega2[other]) <= frequencies_apart * size) return true;
   }
   return false;
 }

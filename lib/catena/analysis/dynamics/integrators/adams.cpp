@@ -12,13 +12,13 @@ namespace {
 // Errors of the method with steps of one length: order k of the predictor, for a change of f by one.
 constexpr double steady_error[] = {0,      0.5,     0.0833,  0.0417,  0.0264,  0.0188,  0.0143,
                                    0.0114, 0.00936, 0.00789, 0.00679, 0.00592, 0.00524, 0.00468};
-constexpr double first_step = 0.25;        // parts of the time scale, times the root of the tolerance
-constexpr double forbidden_part = 0.1;     // that counts of an error which the projection removes
-constexpr double singular_ratio = 1e-2;    // of pivots: below it, and below ...
-constexpr double ratio_dip = 0.3;          // ... this part of what was usual before, Runge-Kutta takes over
-constexpr double forgotten = 0.97;         // of what was usual, at every step
-constexpr double largest_residual = 1e-6;  // of positions after their projection, in length scales or rad
-constexpr std::size_t block = 256;         // entries that stay in the first cache while all differences are added
+constexpr double first_step = 0.25;      // parts of the time scale, times the root of the tolerance
+constexpr double removed_part = 0.1;     // that counts of an error which the projection removes
+constexpr double singular_ratio = 1e-2;  // of pivots: below it, and below ...
+constexpr double unusual_dip = 0.3;      // ... this part of what was usual before, Runge-Kutta takes over
+constexpr double forgotten = 0.97;       // of what was usual, at every step
+constexpr double residual_bound = 1e-6;  // of positions after their projection, in length scales or rad
+constexpr std::size_t block = 256;       // entries that stay in the first cache while all differences are added
 
 }  // namespace
 
@@ -69,7 +69,7 @@ void Adams::observe_ratio() {
 
 bool Adams::dips() const {
   const double ratio = motion_.equations().smallest_pivot_ratio();
-  return ratio < std::min(singular_ratio * usual_ratio_, ratio_dip * largest_ratio_);
+  return ratio < std::min(singular_ratio * usual_ratio_, unusual_dip * largest_ratio_);
 }
 
 // Positions, velocities and derivatives that the polynomial through the last k points gives for t_new_.
@@ -159,7 +159,7 @@ double Adams::error_of_step(double h) {
 // The error without most of the part that the projection at the step's end will remove.
 double Adams::filtered(double h, double raw) {
   motion_.equations().remove_forbidden(std::span(change_).first(motion_.moving()));
-  return std::min(raw, std::max(error_of_step(h), forbidden_part * raw));
+  return std::min(raw, std::max(error_of_step(h), removed_part * raw));
 }
 
 // Corrects, projects with the factors of the predicted point, and evaluates.
@@ -174,7 +174,7 @@ bool Adams::finish(double h) {
     if (c < n) y_new_[c] += twice * change;
   }
   position_residual_ = equations.project_position(motion_.q(std::span(y_new_)), 4);
-  if (!(position_residual_ < largest_residual)) return false;
+  if (!(position_residual_ < residual_bound)) return false;
   equations.project_velocity(motion_.qd(std::span(y_new_)), scale_.rate());
   return motion_.derivative(t_new_, Side::before, y_new_, slope_);
 }

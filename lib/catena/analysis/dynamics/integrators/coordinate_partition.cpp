@@ -6,11 +6,10 @@
 #include <random>
 
 #include "catena/analysis/pose/mobility.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // Rows whose smallest pivot ratio is above this need no rank analysis.
 constexpr double independent_ratio = 1e-8;

@@ -11,7 +11,7 @@ namespace {
 // Between the ends of a step across a singular position its stages may say much less than the step itself: tolerances
 // of a step below which rounding alone leaves too much, 1e-10 of the motion and more; and the position residual, in
 // these tolerances (fifty are a tenth of the run's), that what is interpolated may have otherwise.
-constexpr double fine_tolerance = 2e-11, largest_residual = 50;
+constexpr double fine_tolerance = 2e-11, interpolated_residual = 50;
 // What rounding may make of a cut step, in tolerances: one that ends beside the singular position makes more of it than
 // the interpolant across.
 constexpr double largest_rounding = 1;
@@ -81,7 +81,7 @@ void RungeKutta::interpolate(double t, std::span<double> y) {
   EquationsOfMotion& equations = motion_.equations();
   equations.evaluator().set_time(t);
   if (!(equations.position_residual(motion_.q(std::span<const double>(y))) <
-        largest_residual * scale_.step_tolerance)) {
+        interpolated_residual * scale_.step_tolerance)) {
     integrate_to(t, y);
   }
 }

@@ -1,0 +1,45 @@
+# Tests compiled several to a unit: their headers are read, and what these hold is compiled, once for all of them.
+#
+# Each file keeps a scope of its own: a unit includes every header first, then each test file inside a namespace named
+# after its place, in which catena and catena::testing show what the true ones hold. Names that two files give to their
+# own helpers do not meet. A file that replaces operator new, which may stand in no namespace, is compiled alone.
+#
+# catena_batch_tests(<list of units> <target> <files to a unit> <sources...>)
+function(catena_batch_tests out target size)
+  set(result)
+  set(batched)
+  foreach(source IN LISTS ARGN)
+    file(STRINGS "${source}" alone REGEX "operator new")
+    if(NOT source MATCHES "_test\\.cpp$" OR alone)
+      list(APPEND result "${source}")
+    else()
+      list(APPEND batched "${source}")
+    endif()
+  endforeach()
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${batched})
+
+  list(LENGTH batched count)
+  set(number 0)
+  while(count GREATER 0)
+    list(SUBLIST batched 0 ${size} members)
+    list(REMOVE_ITEM batched ${members})
+    list(LENGTH batched count)
+    set(headers)
+    set(text "")
+    set(place 0)
+    foreach(member IN LISTS members)
+      file(STRINGS "${member}" lines REGEX "^#include")
+      list(APPEND headers ${lines})
+      math(EXPR place "${place} + 1")
+      string(APPEND text "namespace unit_${place} {\nnamespace catena {\nusing namespace ::catena;\nnamespace testing {\n"
+             "using namespace ::catena::testing;\n}\n}\n#include \"${member}\"\n}  // namespace unit_${place}\n")
+    endforeach()
+    list(REMOVE_DUPLICATES headers)
+    list(JOIN headers "\n" headers)
+    math(EXPR number "${number} + 1")
+    set(unit "${CMAKE_CURRENT_BINARY_DIR}/batches/${target}_${number}.cpp")
+    file(CONFIGURE OUTPUT "${unit}" @ONLY CONTENT "${headers}\nnamespace catena::testing {}\n${text}")
+    list(APPEND result "${unit}")
+  endwhile()
+  set(${out} ${result} PARENT_SCOPE)
+endfunction()
