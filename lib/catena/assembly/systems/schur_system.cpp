@@ -241,11 +241,13 @@ void SchurSystem::solve_with_masses(std::span<const double> Q, std::span<const d
   }
 }
 
-// The unbalanced force at massless coordinates, rest_Q_, compared with the largest force of all.
+// The unbalanced force at massless coordinates, rest_Q_, compared with the largest force of all: those of inertia too,
+// of the small masses as well (accelerations are -extra_qdd_), since nothing else may act in a motion without loads.
 double SchurSystem::find_massless_residual(std::span<const double> Q, std::span<const double> lambda) {
   double largest = 0, left = 0;
   for (std::size_t c = 0; c < rest_Q_.size(); ++c) {
     double sum = std::abs(Q[c]);
+    if (inverse_masses_[c] > 0) sum += std::abs(extra_qdd_[c]) / inverse_masses_[c];
     for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) {
       sum += std::abs(jacobian_[at(k)] * lambda[at(plan_->jacobian.row_index[at(k)])]);
     }
@@ -278,6 +280,7 @@ void SchurSystem::refine_motion(std::span<const double> Q, std::span<const doubl
       }
       rest_Q_[c] = rest;
     }
+    for (std::size_t c = 0; c < rest_Q_.size(); ++c) extra_qdd_[c] = -qdd[c];
     if (!massless_.empty()) {
       const double before = massless_residual_;
       massless_residual_ = find_massless_residual(Q, lambda);
@@ -285,7 +288,6 @@ void SchurSystem::refine_motion(std::span<const double> Q, std::span<const doubl
       if (!(massless_residual_ > massless_rounding) || !shrinks || round == most_massless_rounds) return;
     }
     std::copy(gamma.begin(), gamma.end(), rest_gamma_.begin());
-    for (std::size_t c = 0; c < rest_Q_.size(); ++c) extra_qdd_[c] = -qdd[c];
     multiply_add(extra_qdd_, rest_gamma_);
     add_left_out(1, lambda, rest_gamma_);
     solve_with_masses(rest_Q_, rest_gamma_, extra_qdd_, extra_lambda_, counters);
