@@ -9,8 +9,6 @@
 namespace catena {
 namespace {
 
-// Weight of the part of an error estimate that the projection will remove: it affects the other stages.
-constexpr double forbidden_part = 0.1, forbidden_square = 1000;
 // A step with a stage whose pivot ratio is below this is repeated with all stages projected ...
 constexpr double projection_ratio = 1e-2;
 // ... if the ratio of other stages is this much larger: light parts make it small without any singularity.
@@ -19,6 +17,12 @@ constexpr double ratio_dip = 0.3;
 constexpr double singular_end = 1e-7, lost_digits = 2e-11;
 constexpr double largest_residual = 1e-6;  // of positions after their projection, in length scales or rad
 constexpr double largest_drift = 1e-2;     // of positions that are not projected
+
+// What drivers do follows from multipliers, which a singular position leaves open.
+bool is_driven(EquationsOfMotion& equations) {
+  const auto& elements = equations.evaluator().model().elements;
+  return std::any_of(elements.begin(), elements.end(), [](const auto& e) { return e.kind == ElementKind::driver; });
+}
 
 }  // namespace
 
@@ -30,6 +34,8 @@ RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options) : motion
   error_.resize(2 * motion_.coordinates());
   error_low_.resize(2 * motion_.coordinates());
   stage_ratio_.assign(stage_.size(), 1.0);
+  stage_power_.assign(stage_.size(), 0.0);
+  direction_.resize(motion_.moving());
   detour_steps_.reserve(most_detours);
   scale_.step_tolerance = options.tolerance;
   scale_.horizon = options.horizon;
@@ -38,6 +44,10 @@ RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options) : motion
   if (options.keeping == ConstraintKeeping::partition) {
     partition_ = std::make_unique<CoordinatePartition>(motion_.equations());
   }
+  for (std::size_t c = 0; c < direction_.size(); c += 3) weight_ += motion_.equations().masses().mass[c];
+  const Vec2<double> gravity = motion_.equations().evaluator().model().gravity;
+  weight_ *= std::hypot(gravity.x, gravity.y) * scale_.length;
+  keeps_energy_ = options.fixed_step == 0 && !motion_.equations().state_loads() && !is_driven(motion_.equations());
   singular_ratio_ = std::max(singular_end, std::pow(lost_digits / std::sqrt(options.tolerance), 2.0 / 3));
 }
 
@@ -152,6 +162,12 @@ void RungeKutta::combine(const StageSum& sum, double h, const double* from, std:
 
 bool RungeKutta::evaluate_stages(double h) {
   const Tableau& table = tableau();
+  const bool watching = watches_energy();
+  if (watching) {
+    motion_.equations().evaluator().set_time(t_, h > 0 ? Side::after : Side::before);
+    motion_.equations().evaluator().set_configuration(motion_.q(std::span<const double>(y_)));
+    note_power(0, y_);
+  }
   smallest_stage_ratio_ = std::numeric_limits<double>::infinity();
   largest_stage_ratio_ = start_ratio_;
   for (std::size_t s = 1; s < static_cast<std::size_t>(table.stages); ++s) {
@@ -165,22 +181,14 @@ bool RungeKutta::evaluate_stages(double h) {
     if (!derivative(t, side, y_stage_, stage_[s])) return false;
     smallest_stage_ratio_ = std::min(smallest_stage_ratio_, pivot_ratio());
     largest_stage_ratio_ = std::max(largest_stage_ratio_, pivot_ratio());
-    if (projecting_stages_) stage_ratio_[s] = pivot_ratio();
+    stage_ratio_[s] = pivot_ratio();
+    if (watching) note_power(s, y_stage_);
   }
-  if (projecting_stages_) find_roughness();
+  if (projecting_stages_ || watching) find_roughness();
   combine(table.b, h, y_.data(), y_new_);
   combine(table.error, 1, nullptr, error_);
   if (table.order == 8) combine(table.error_low, 1, nullptr, error_low_);
   return true;
-}
-
-void RungeKutta::find_roughness() {
-  roughness_ = 0;
-  stage_ratio_[0] = start_ratio_;
-  for (const StageTerm& term : tableau().b) {
-    const double sine = std::sqrt(stage_ratio_[static_cast<std::size_t>(term.stage)]);
-    roughness_ += std::abs(term.weight) / (sine * sine * sine);
-  }
 }
 
 // Integrates y' = f(P(y)), P the projection: a smooth extension of the equations whose order is the method's, but in
@@ -201,44 +209,6 @@ bool RungeKutta::factorize_new_point() {
          motion_.equations().factorize(t_new_, Side::before, motion_.q(std::span<const double>(y_new_)));
 }
 
-double RungeKutta::error_size(double h) {
-  const std::size_t moving = motion_.moving(), offset = motion_.coordinates();
-  const double* v = motion_.qd(std::span<const double>(y_)).data();
-  const bool two = tableau().order == 8;
-  double high = 0, low = 0;
-  for (std::size_t c = 0; c < moving; ++c) {
-    const double v_unit = scale_.velocity_unit(c, h, v[c]);
-    // Where nothing has moved yet velocities have no scale; positions are then used.
-    const double q_scale = 1 / scale_.position_unit(c, h), v_scale = v_unit > 0 ? 1 / v_unit : 0;
-    const double q_error = error_[c] * q_scale, v_error = error_[offset + c] * v_scale;
-    const double size = q_error * q_error + v_error * v_error;
-    if (!(size <= high)) {
-      high = size;
-      culprit_ = static_cast<int>(c);
-    }
-    if (!two) continue;
-    const double q_low = error_low_[c] * q_scale, v_low = error_low_[offset + c] * v_scale;
-    low = std::max(low, q_low * q_low + v_low * v_low);
-  }
-  if (!two) return std::abs(h) * std::sqrt(high);
-  const double denominator = high + 0.01 * low;
-  return denominator == 0 ? 0 : std::abs(h) * high / std::sqrt(denominator);
-}
-
-// The error without most of the part that the projection at the step's end will remove.
-double RungeKutta::filtered_error(double h, double raw) {
-  const std::size_t moving = motion_.moving(), offset = motion_.coordinates();
-  EquationsOfMotion& equations = motion_.equations();
-  for (std::vector<double>* error : {&error_, &error_low_}) {
-    if (error == &error_low_ && tableau().order == 5) break;
-    equations.remove_forbidden(std::span(*error).first(moving));
-    equations.remove_forbidden(std::span(*error).subspan(offset, moving));
-  }
-  // With projected stages the errors across the constraints enter only squared.
-  const double spoilt = projecting_stages_ ? forbidden_square * raw * raw * scale_.tolerance() : forbidden_part * raw;
-  return std::min(raw, std::max(error_size(h), spoilt));
-}
-
 // Projects the new point and evaluates it; the stages stay as they are for the interpolant.
 bool RungeKutta::finish_step() {
   EquationsOfMotion& equations = motion_.equations();
@@ -254,6 +224,7 @@ bool RungeKutta::finish_step() {
   position_residual_ = equations.project_position(motion_.q(std::span(y_new_)), 4);
   if (!(position_residual_ < largest_residual)) return false;
   equations.project_velocity(motion_.qd(std::span(y_new_)), scale_.rate());
+  if (watches_energy() && !restore_energy(t_new_ - t_)) return false;
   return derivative(t_new_, Side::before, y_new_, slope_new_);
 }
 

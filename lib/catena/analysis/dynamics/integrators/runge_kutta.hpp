@@ -12,11 +12,12 @@
 // Partition: independent coordinates are integrated, the others solved for at every stage (coordinate_partition.hpp).
 //   Across singular positions, where no choice of independent coordinates holds, steps are projected as well.
 //
-// Passing singular positions (flat four-bars) without knowing of them takes four things, all found by experiment
+// Passing singular positions (flat four-bars) without knowing of them takes five things, all found by experiment
 // (apps/manual/numerics.md#singular-passages): the part of an error estimate that the projection removes does not
 // count; a step across such a position is made with all its stages projected; none ends where a pivot of the Schur
 // complement keeps less than 1e-7 of itself, or than a limit that follows from the tolerance; where order 8 fails
-// repeatedly, order 5 takes over for a while. One object an integration; nothing allocates after construction.
+// repeatedly, order 5 takes over for a while; and the speed behind a step near such a position is the one that its
+// balance of energy gives (runge_kutta_energy.cpp). One object an integration; nothing allocates after construction.
 #pragma once
 
 #include <cstdint>
@@ -90,7 +91,18 @@ class RungeKutta final : public Integrator {
   double error_size(double h);
   double filtered_error(double h, double raw);
   bool finish_step();
-  bool detour(double h, bool across);
+  bool watches_energy() const;
+  void note_power(std::size_t stage, std::span<const double> y);
+  struct Energy {
+    double kinetic = 0, potential = 0;
+  };
+  Energy energy_of(std::span<const double> y);
+  void find_direction();
+  double explained_by_errors(double h) const;
+  bool restore_energy(double h);
+  bool detour(double h, double error);
+  bool passes() const;
+  double rounding_of_velocity(double h) const;
   double rounding_of_crossing(double h) const;
   void repeat_with_projected_stages(double h);
   bool try_crossing(double h, double error, double rounding);
@@ -101,6 +113,7 @@ class RungeKutta final : public Integrator {
   void observe_rates();
   bool prepare_interpolant();
   bool integrate_to(double t, std::span<double> y);
+  bool finish_cut();
   void get_interpolant_ready();
   void evaluate_interpolant(double t, std::span<double> y);
 
@@ -115,9 +128,12 @@ class RungeKutta final : public Integrator {
   std::vector<double> error_, error_low_;  // [q, qd]
   static constexpr std::size_t most_detours = 8;
   std::vector<double> detour_steps_, stage_ratio_;
-  double roughness_ = 0;  // of the last stages: sum of |weight| ratio^-1.5
+  std::vector<double> stage_power_, direction_;  // W; see runge_kutta_energy.cpp
+  double roughness_ = 0;                         // of the last stages: sum of |weight| ratio^-1.5
+  bool keeps_energy_ = false;                    // its balance says how fast the mechanism moves
+  double weight_ = 0;                            // of all bodies, times the length scale, J
   bool interpolant_ready_ = false, by_ends_ = false, passing_singular_ = false, projecting_stages_ = false,
-       crossing_ = false, long_steps_ = false;
+       crossing_ = false, long_steps_ = false, best_passes_ = false;
   int low_order_left_ = 0, rejections_ = 0, detours_ = 0;
   std::int64_t low_order_steps_ = 0, projected_steps_ = 0;
   double accepted_error_ = 1, best_error_ = 0, best_step_ = 0;

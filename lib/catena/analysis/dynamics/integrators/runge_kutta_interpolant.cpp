@@ -12,9 +12,6 @@ namespace {
 // of a step below which rounding alone leaves too much, 1e-10 of the motion and more; and the position residual, in
 // these tolerances (fifty are a tenth of the run's), that what is interpolated may have otherwise.
 constexpr double fine_tolerance = 2e-11, interpolated_residual = 50;
-// What rounding may make of a cut step, in tolerances: one that ends beside the singular position makes more of it than
-// the interpolant across.
-constexpr double largest_rounding = 1;
 
 }  // namespace
 
@@ -46,6 +43,15 @@ bool RungeKutta::prepare_interpolant() {
   return true;
 }
 
+// Projects and balances the end of a cut step like that of a whole one.
+bool RungeKutta::finish_cut() {
+  EquationsOfMotion& equations = motion_.equations();
+  if (!equations.factorize(t_new_, Side::after, motion_.q(std::span<const double>(y_new_)))) return false;
+  equations.project_position(motion_.q(std::span(y_new_)), 4);
+  equations.project_velocity(motion_.qd(std::span(y_new_)), scale_.rate());
+  return !watches_energy() || restore_energy(t_new_ - t_);
+}
+
 // A step across a singular position, cut at t: from its start or from its end, whichever has stages further from that
 // position. False: neither can be made, or both end too near to it.
 bool RungeKutta::integrate_to(double t, std::span<double> y) {
@@ -53,7 +59,7 @@ bool RungeKutta::integrate_to(double t, std::span<double> y) {
   double least = std::numeric_limits<double>::infinity();
   const auto try_from_present_end = [&] {
     t_new_ = t;
-    if (!evaluate_stages(t - t_) || !(roughness_ < least) || rounding_of_crossing(t - t_) > largest_rounding) return;
+    if (!evaluate_stages(t - t_) || !(roughness_ < least) || !finish_cut()) return;
     found = true;
     least = roughness_;
     std::copy(y_new_.begin(), y_new_.end(), y.begin());

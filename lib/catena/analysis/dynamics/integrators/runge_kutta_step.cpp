@@ -13,10 +13,13 @@ constexpr double largest_growth = 2.5, largest_cut = 0.2;
 // Where no step across a singular position is good enough, the best is taken if its error is below this.
 constexpr double largest_crossing_error = 300;
 constexpr double other_steps[] = {0.8, 0.6, 1.15, 0.4, 0.9, 1.3};  // what is tried instead of h ...
-// ... and before them, across a singular position, steps that have it in the middle of the widest gaps between stages
-// of order 8, 0.333 ... 0.6 and 0.651 ... 0.857 of a step, if they are not very different from h.
+// ... and before them, near a singular position, steps that have it in the middle of the widest gaps between stages of
+// order 8, 0.333 ... 0.6 and 0.651 ... 0.857 of a step, if they are not very different from h and their error, which
+// grows with the eighth power, may stay below what is taken at last.
 constexpr double gaps[] = {0.467, 0.754};
-constexpr double least_aimed = 0.3, largest_aimed = 1.6;
+constexpr double least_aimed = 0.3, largest_aimed = 3;
+// A step whose smallest pivot ratio is this part of the one at its end has the singular position within it.
+constexpr double passed = 0.3;
 // Pivot ratios below which all methods project, and above which they cease to.
 constexpr double nearly_singular = 0.1, regular = 0.2;
 constexpr int rejections_before_low_order = 8, low_order_run = 30;
@@ -34,15 +37,16 @@ void RungeKutta::reject(double h) {
 }
 
 // Another step size in place of h, so that neither its end nor a stage lies beside a singular position.
-bool RungeKutta::detour(double h, bool across) {
+bool RungeKutta::detour(double h, double error) {
   static_assert(std::size(gaps) + std::size(other_steps) <= most_detours);
   if (detours_ == 0) {
     detour_steps_.clear();
     // Pivots fall with the square of the distance.
-    const double before = std::sqrt(start_ratio_), after = std::sqrt(pivot_ratio());
+    const double before = std::sqrt(start_ratio_), after = std::sqrt(pivot_ratio()) * (passes() ? 1 : -1);
+    const double largest = std::min(largest_aimed, std::pow(largest_crossing_error / error, 0.125));
     for (const double gap : gaps) {
       const double part = before / ((before + after) * gap);
-      if (across && part > least_aimed && part < largest_aimed) detour_steps_.push_back(part * h);
+      if (part > least_aimed && part < largest) detour_steps_.push_back(part * h);
     }
     for (const double part : other_steps) detour_steps_.push_back(part * h);
   }
@@ -52,44 +56,36 @@ bool RungeKutta::detour(double h, bool across) {
   return true;
 }
 
-// What rounding of places makes of the accelerations of stages beside a singular position, as the error of the step: at
-// a sine d, of which the pivot ratio is the square, eps / d^3 of an acceleration. The largest is rate^2 x length.
-double RungeKutta::rounding_of_crossing(double h) const {
-  return std::numeric_limits<double>::epsilon() * roughness_ * std::abs(h) * scale_.rate() / scale_.tolerance();
-}
+bool RungeKutta::passes() const { return smallest_stage_ratio_ < passed * pivot_ratio(); }
 
 void RungeKutta::repeat_with_projected_stages(double h) {
   projecting_stages_ = true;
   best_error_ = std::numeric_limits<double>::infinity();
   best_step_ = 0;
+  best_passes_ = false;
   h_ = h;
 }
 
 // Repeats a step of size h that failed near a singular position: with projected stages; with other sizes; at last takes
-// the best of those if it is acceptable. False: none succeeds, h_ is unchanged. `error` is without that of rounding.
+// the best of those if it is acceptable. One that has the position behind it is better than all that only come nearer:
+// from there the passage would be worse. False: none succeeds, h_ is unchanged. `error` is without that of rounding.
 bool RungeKutta::try_crossing(double h, double error, double rounding) {
   if (!projecting_stages_) {
     repeat_with_projected_stages(h);
     return true;
   }
-  if (error < largest_crossing_error && std::max(error, rounding) < best_error_) {
+  const bool better = passes() == best_passes_ ? std::max(error, rounding) < best_error_ : passes();
+  if (error < largest_crossing_error && better) {
     best_error_ = std::max(error, rounding);
     best_step_ = h;
+    best_passes_ = passes();
   }
-  if (detour(h, true)) return true;
+  if (detour(h, error)) return true;
   if (best_step_ == 0) return false;
   h_ = best_step_;
   accepted_error_ = 1.1 * best_error_;
   best_step_ = 0;
   return true;
-}
-
-// The error compared with the motion at the step's end, where that is faster.
-double RungeKutta::compared_with_end(double h, double error) {
-  const std::size_t last = static_cast<std::size_t>(tableau().stages) - 1;
-  const std::span<const double> y(y_new_), k(stage_[last]);
-  return scale_.compare_with_end(motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()), error,
-                                 [&] { return error_size(h); });
 }
 
 bool RungeKutta::advance(double limit) {
@@ -156,7 +152,7 @@ bool RungeKutta::advance(double limit) {
     const double ratio = pivot_ratio();
     if (ratio > 10 * singular_ratio_) passing_singular_ = false;
     if (ratio < singular_ratio_ && !passing_singular_ && !lands && !fixed && projects()) {
-      if (detour(h, false)) continue;
+      if (detour(h, error)) continue;
       passing_singular_ = true;
     }
     if (!finish_step()) {

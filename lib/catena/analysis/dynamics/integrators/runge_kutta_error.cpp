@@ -1,0 +1,84 @@
+// The errors of a step of RungeKutta in units of what it may have: that of the method, and that of rounding near a
+// singular position.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
+
+namespace catena {
+namespace {
+
+// Weight of the part of an error estimate that the projection will remove: it affects the other stages.
+constexpr double forbidden_part = 0.1, forbidden_square = 1000;
+
+}  // namespace
+
+double RungeKutta::error_size(double h) {
+  const std::size_t moving = motion_.moving(), offset = motion_.coordinates();
+  const double* v = motion_.qd(std::span<const double>(y_)).data();
+  const bool two = tableau().order == 8;
+  double high = 0, low = 0;
+  for (std::size_t c = 0; c < moving; ++c) {
+    const double v_unit = scale_.velocity_unit(c, h, v[c]);
+    // Where nothing has moved yet velocities have no scale; positions are then used.
+    const double q_scale = 1 / scale_.position_unit(c, h), v_scale = v_unit > 0 ? 1 / v_unit : 0;
+    const double q_error = error_[c] * q_scale, v_error = error_[offset + c] * v_scale;
+    const double size = q_error * q_error + v_error * v_error;
+    if (!(size <= high)) {
+      high = size;
+      culprit_ = static_cast<int>(c);
+    }
+    if (!two) continue;
+    const double q_low = error_low_[c] * q_scale, v_low = error_low_[offset + c] * v_scale;
+    low = std::max(low, q_low * q_low + v_low * v_low);
+  }
+  if (!two) return std::abs(h) * std::sqrt(high);
+  const double denominator = high + 0.01 * low;
+  return denominator == 0 ? 0 : std::abs(h) * high / std::sqrt(denominator);
+}
+
+// The error without most of the part that the projection at the step's end will remove.
+double RungeKutta::filtered_error(double h, double raw) {
+  const std::size_t moving = motion_.moving(), offset = motion_.coordinates();
+  EquationsOfMotion& equations = motion_.equations();
+  for (std::vector<double>* error : {&error_, &error_low_}) {
+    if (error == &error_low_ && tableau().order == 5) break;
+    equations.remove_forbidden(std::span(*error).first(moving));
+    equations.remove_forbidden(std::span(*error).subspan(offset, moving));
+  }
+  // With projected stages the errors across the constraints enter only squared.
+  const double spoilt = projecting_stages_ ? forbidden_square * raw * raw * scale_.tolerance() : forbidden_part * raw;
+  return std::min(raw, std::max(error_size(h), spoilt));
+}
+
+// The error compared with the motion at the step's end, where that is faster.
+double RungeKutta::compared_with_end(double h, double error) {
+  const std::size_t last = static_cast<std::size_t>(tableau().stages) - 1;
+  const std::span<const double> y(y_new_), k(stage_[last]);
+  return scale_.compare_with_end(motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()), error,
+                                 [&] { return error_size(h); });
+}
+
+void RungeKutta::find_roughness() {
+  roughness_ = 0;
+  stage_ratio_[0] = start_ratio_;
+  for (const StageTerm& term : tableau().b) {
+    const double sine = std::sqrt(stage_ratio_[static_cast<std::size_t>(term.stage)]);
+    roughness_ += std::abs(term.weight) / (sine * sine * sine);
+  }
+}
+
+// What rounding of places makes of the accelerations of stages beside a singular position, as the error of velocities:
+// at a sine d, of which the pivot ratio is the square, eps / d^3 of an acceleration. The largest is rate^2 x length.
+double RungeKutta::rounding_of_velocity(double h) const {
+  return std::numeric_limits<double>::epsilon() * roughness_ * std::abs(h) * scale_.rate() / scale_.tolerance();
+}
+
+// The same as the error of the step: where velocities are mended by the balance of energy, that of places, which have
+// moved with the wrong ones meanwhile.
+double RungeKutta::rounding_of_crossing(double h) const {
+  return rounding_of_velocity(h) * (watches_energy() ? std::min(1.0, scale_.rate() * std::abs(h)) : 1);
+}
+
+}  // namespace catena
