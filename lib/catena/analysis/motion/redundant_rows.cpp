@@ -23,9 +23,10 @@ constexpr double probe_distance = 0.1;
 constexpr int most_probes = 4;
 // Exchanges are made until the volume would grow by less than this factor.
 constexpr double worthwhile = 1.1;
-// A choice is made anew when bodies have moved this far, rad or length scales: directions that turned away from their w
-// by this angle keep nine tenths of the pivot. So many solves cost less than a step; where there are more directions
-// the choice is also delayed until pivots have become half as large.
+// A choice is made anew when bodies have moved this far, rad or length scales, or when pivots have become half as
+// large: directions that turned away from their w by this angle keep nine tenths of the pivot, but another choice may
+// be many times as good near a position in which the present one is singular and the mechanism is not. So many solves
+// cost less than a step; where there are more directions both must hold.
 constexpr double noticeable_move = 0.3, worse = 0.5;
 constexpr int few = 16;
 // Entries of W below this part of the largest are rounding and do not affect the choice.
@@ -265,11 +266,12 @@ double RedundantRows::moved(std::span<const double> q) const {
 }
 
 void RedundantRows::follow(std::span<const double> q) {
-  if (count() == 0 || moved(q) < noticeable_move || equations_.is_singular()) return;
-  chosen_at_.assign(q.begin(), q.end());
+  if (count() == 0 || equations_.is_singular()) return;
   const double ratio = equations_.smallest_pivot_ratio();
   usual_ratio_ = std::max(usual_ratio_, ratio);
-  if (count() > few && ratio > worse * usual_ratio_) return;
+  const bool fell = ratio<worse * usual_ratio_, far = moved(q)> noticeable_move;
+  if (count() > few ? !(fell && far) : !(fell || far)) return;
+  chosen_at_.assign(q.begin(), q.end());
   usual_ratio_ = 0;
   choose();
 }

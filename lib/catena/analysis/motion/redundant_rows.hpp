@@ -10,7 +10,8 @@
 // the volume |det c^T w| grows by the length of w_k at an element when c_k moves there, along w_k; this is repeated
 // until no length exceeds 1.1 (a pivoted elimination whose pivots are blocks). It needs a factorization and p solves,
 // at any place on the constraints. In exact arithmetic no result depends on the choice, so that a new one needs no
-// restart; it is made when bodies have moved by 0.3 rad or length scales and W has grown.
+// restart; it is made when bodies have moved by 0.3 rad or length scales, or pivots have become half as large (both,
+// where there are many directions).
 //
 // p is the rank deficiency at a place where the mechanism is not singular by accident: a start in a flat position shows
 // too low a rank, so that the rank is also taken 0.1 rad along the drivers' or a free motion, and the larger one
