@@ -4,7 +4,7 @@
 #   tests/run.sh           Release build, every test but the long ones (stress, fuzz, bench, browser)
 #   tests/run.sh --all     also: a build by clang with AddressSanitizer and UndefinedBehaviorSanitizer in which the tests
 #                          labelled quick run, and the format of the sources
-#   tests/run.sh --long    only the long tests
+#   tests/run.sh --long    only the long tests, and the fuzzers of the readers: CATENA_FUZZ_SECONDS each, 30 by default
 #
 # Installs what is missing (apps/setup.sh). A stage that fails does not keep the later ones from running; the exit code
 # is 0 only when all of them passed. Builds go to build/<preset>.
@@ -14,7 +14,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 mode="${1:-}"
 case "$mode" in
   "") packages=--tests ;;
-  --long) packages=--browser ;;
+  --long) packages=--all ;;
   --all) packages=--all ;;
   *)
     echo "usage: tests/run.sh [--all | --long]" >&2
@@ -62,6 +62,10 @@ sanitized_build() { build sanitize; }
 sanitized_tests() {
   ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1 run_ctest sanitize --label-regex '^quick$'
 }
+fuzzers_build() { cmake --preset fuzz && cmake --build build/fuzz --parallel "$jobs" --target fuzzers; }
+fuzzers_run() {
+  ctest --test-dir build/fuzz --timeout $((${CATENA_FUZZ_SECONDS:-30} + 120)) --no-tests=error --label-regex '^fuzz$'
+}
 format() {
   find lib apps tests \( -name '*.hpp' -o -name '*.cpp' \) -print0 | xargs -0 clang-format --dry-run --Werror &&
     echo "every source is formatted as .clang-format says"
@@ -71,6 +75,8 @@ stage "Debian packages" apps/setup.sh $packages
 if [[ "$mode" == --long ]]; then
   stage "Release build" release_build
   stage "long tests" long_tests
+  stage "fuzzers by clang" fuzzers_build
+  stage "fuzzing" fuzzers_run
 else
   if [[ "$mode" == --all ]]; then
     stage "format" format
