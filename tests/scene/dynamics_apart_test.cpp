@@ -160,5 +160,20 @@ TEST(DynamicsApart, ByPaceNotByNumber) {
   EXPECT_NEAR(run.last("a.angle"), alone.last("a.angle"), 1e-9);
 }
 
+// Where joints are redundant or parts massless, work is summed up for a check of its own though no column shows it.
+TEST(DynamicsApart, WorkThatIsSummedUpUnasked) {
+  const Mechanism door{R"("door": {"rod": {"from": [0, 0], "to": [1, 0]}, "mass": 1})",
+                       R"({"type": "revolute", "i": "ground", "j": "door.from"},
+                          {"type": "revolute", "i": "ground", "j": "door.from"})",
+                       "", R"({"type": "torsion_spring", "i": "ground", "j": "door", "k": 1, "c": 0.5})",
+                       R"("door.angle")"};
+  const std::string keys = R"("every": 0.5)";
+  const TextRun run = run_text(scene({door, ball}, keys, R"("ball.x")")),
+                alone = run_text(scene({door}, keys, R"("door.x")"));
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+  EXPECT_EQ(apart(run), 2);
+  EXPECT_NEAR(run.last("door.angle"), alone.last("door.angle"), 1e-7);
+}
+
 }  // namespace
 }  // namespace catena

@@ -116,9 +116,9 @@ class DynamicsOfIslands::Part final : public RowObserver {
     for (std::size_t r = 0; r < std::min(row_.size(), s.lambda.size()); ++r) {
       owner_.lambda_[at(row_[r])] = factor_[r] * s.lambda[r];
     }
-    for (std::size_t e = 0; e < s.driver_work.size(); ++e) {
-      owner_.driver_work_[at(part_.elements[e])] = s.driver_work[e];
-    }
+    // A part keeps account of work for its own checks, too, where no row is to show it.
+    const std::size_t shown = owner_.driver_work_.empty() ? 0 : s.driver_work.size();
+    for (std::size_t e = 0; e < shown; ++e) owner_.driver_work_[at(part_.elements[e])] = s.driver_work[e];
     residual = s.residual;
     work = s.work;
     dissipated = s.dissipated;
