@@ -2,6 +2,7 @@
 // looked at nowhere.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -95,6 +96,63 @@ TEST(BenchReferences, MissingValuesAreNamed) {
   }
 }
 
+/// Where a value is not as a schema says, of the words that catena-bench-1.schema.json uses; empty: it is.
+std::string schema_fault(const json& value, const json& schema, const std::string& where) {
+  if (schema.contains("const") && value != schema["const"]) return where + " is " + value.dump();
+  if (schema.contains("enum") && std::count(schema["enum"].begin(), schema["enum"].end(), value) == 0)
+    return where + " is " + value.dump();
+  if (schema.contains("type")) {
+    const json types = schema["type"].is_array() ? schema["type"] : json::array({schema["type"]});
+    const bool known = std::any_of(types.begin(), types.end(), [&](const std::string& type) {
+      return type == value.type_name() || (type == "integer" && value.is_number_integer());
+    });
+    if (!known) return where + " is a " + value.type_name();
+  }
+  if (schema.contains("minimum") && value < schema["minimum"]) return where + " is " + value.dump();
+  if (value.is_array() && schema.contains("items")) {
+    for (const json& entry : value) {
+      if (const std::string fault = schema_fault(entry, schema["items"], where + "[]"); !fault.empty()) return fault;
+    }
+  }
+  if (!value.is_object()) return "";
+  for (const std::string key : schema.value("required", json::array())) {
+    if (!value.contains(key)) return where + " has no " + key;
+  }
+  for (const auto& [key, entry] : value.items()) {
+    const bool named = schema.contains("properties") && schema["properties"].contains(key);
+    const json inner = named ? schema["properties"][key] : schema.value("additionalProperties", json(true));
+    if (inner == false) return where + " has " + key;
+    if (!inner.is_object()) continue;
+    if (const std::string fault = schema_fault(entry, inner, where + "." + key); !fault.empty()) return fault;
+  }
+  return "";
+}
+const json& bench_schema() {
+  static const json schema = json::parse(read_file(CATENA_DATA_DIR "/schema/catena-bench-1.schema.json"));
+  return schema;
+}
+
+TEST(Bench, DocumentsAreAsTheirSchemaSays) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(CATENA_DATA_DIR "/bench")) {
+    if (entry.path().extension() != ".json") continue;
+    ++files;
+    EXPECT_EQ(schema_fault(json::parse(read_file(entry.path())), bench_schema(), "document"), "") << entry.path();
+  }
+  EXPECT_GE(files, 2);
+  json document = json::parse(bench::to_json(made_document(1)));
+  EXPECT_EQ(schema_fault(document, bench_schema(), "document"), "");
+  EXPECT_FALSE(document["growth"].empty());
+  for (const auto& [key, wrong] : std::map<std::string, json>{
+           {"seconds", "fast"}, {"suite", "other"}, {"bodies", -1}, {"repeats", 0.5}, {"unknown", 1}}) {
+    json changed = document;
+    changed["rows"][0][key] = wrong;
+    EXPECT_NE(schema_fault(changed, bench_schema(), "document"), "") << key;
+  }
+  document["rows"][0].erase("error");
+  expect_said(schema_fault(document, bench_schema(), "document"), "has no error");
+}
+
 /// Larger errors than these are wrong whatever a row allows itself.
 double largest_error(const json& row) {
   const std::string suite = row.at("suite");
@@ -115,6 +173,7 @@ TEST(Bench, BriefRunOfAllSuitesIsRight) {
   expect_said(run.out, " 0 without a right answer");
   expect_said(run.out, "peers: none was run");
   const json document = json::parse(read_file(folder / "b.json"));
+  EXPECT_EQ(schema_fault(document, bench_schema(), "document"), "");
   EXPECT_EQ(document.at("catena_bench"), 1);
   EXPECT_EQ(document.at("catena"), CATENA_VERSION);
   EXPECT_EQ(document.at("brief"), true);
