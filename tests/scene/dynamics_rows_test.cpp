@@ -236,5 +236,22 @@ TEST(DynamicsRows, WarningsHaveUnitsAndReasons) {
   EXPECT_TRUE(says(caught.analysis(), " rad/s (body \"b\")"));
 }
 
+// A frame that nothing can move, of independent constraints: what rounding leaves of the velocities is no motion, and
+// its energy none to be watched.
+TEST(DynamicsRows, VelocitiesThatNothingAllowsAreNoMotion) {
+  for (const char* speed : {"1e-18", "1e-6", "1", "1000"}) {
+    const TextRun run = run_text(R"({"catena": 1, "parameters": {"v": )" + std::string(speed) + R"(}, "bodies": {
+      "a": {"mass": 2, "inertia": 3, "position": [1.3, 0.7], "angle": 0.3, "velocity": ["v", "=-0.3*v"],
+            "angular_velocity": "=0.7*v"}},
+      "constraints": [{"type": "revolute", "i": "ground", "j": "a", "at": [0.123, 0.456]},
+                      {"type": "coupler", "i": ["ground", [3.1, 1.7]], "j": ["a", [0.3, 0.77]]}],
+      "outputs": ["a.vx", "a.omega", "a.angle"], "analyses": [{"type": "dynamics", "until": 1}]})");
+    ASSERT_EQ(run.outcome.exit_code, 0) << speed << run.outcome.error_text << run.analysis().report.message;
+    EXPECT_EQ(run.last("a.vx"), 0) << speed;
+    EXPECT_EQ(run.last("a.omega"), 0) << speed;
+    EXPECT_NEAR(run.last("a.angle"), 0.3, 1e-12) << speed;
+  }
+}
+
 }  // namespace
 }  // namespace catena::testing

@@ -21,6 +21,9 @@ constexpr int most_rounds = rounds_of_velocities;
 constexpr double given_massless_weight = 1e8;
 // Velocities are corrected until the constraints' residual no longer shrinks, at most so many times.
 constexpr int most_corrections = 4;
+// Velocities of which constraints leave no more than this part are forbidden altogether: what is left is rounding, some
+// hundred of it, and no motion whose energy could be watched.
+constexpr double nothing_left = 1e-13;
 
 }  // namespace
 
@@ -110,8 +113,10 @@ VelocityOutcome find_initial_velocities(EquationsOfMotion& equations, std::span<
       projector.solve(rest, step, lambda, evaluator.counters);
       for (std::size_t c = 0; c < step.size(); ++c) velocity[c] += step[c];
     }
-    const double scale = std::max(
-        {column_norm(plan, velocity, length), column_norm(plan, wanted.velocity, length), row_norm(plan, nu, length)});
+    const double asked_size = column_norm(plan, wanted.velocity, length), driven = row_norm(plan, nu, length);
+    if (driven == 0 && column_norm(plan, velocity, length) <= nothing_left * asked_size)
+      std::fill(velocity.begin(), velocity.end(), 0.0);
+    const double scale = std::max({column_norm(plan, velocity, length), asked_size, driven});
     if (!(left <= 1e-9 * scale)) {
       outcome.dead_point = find_dead_point(evaluator, q);
       if (outcome.dead_point) {
