@@ -23,18 +23,20 @@ struct RandomRope {
   Model model;
   RopeWay<double> way;
   int element = -1;
-  double least_contact = 0;
+  double least_contact = 0, most_contact = 0;
   std::mt19937 engine;
 
   double random(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); }
 
   RandomRope(unsigned seed, bool elastic) : engine(seed) {
-    // Angles of contact away from none and from whole turns, where they are told apart.
+    // Angles of contact away from none and from whole turns, where they are told apart; beyond 4 pi / 3 the rope lies
+    // beside the pulley where its ends cross.
     do {
       draw(seed);
       least_contact = 10;
+      most_contact = 0;
       measure([&](int body) { return model.frame(body); });
-    } while (least_contact < 0.5);
+    } while (least_contact < 0.5 || most_contact > 4);
     auto stretches = rope_stretches(model, way);
     // Taut throughout.
     RopeValues<double> values;
@@ -91,6 +93,7 @@ struct RandomRope {
         double arc = std::fmod(nodes[k].side * (angle - before), 2 * std::numbers::pi);
         if (arc < 0) arc += 2 * std::numbers::pi;
         sum += nodes[k].radius * arc;
+        if (nodes[k].radius > 0) most_contact = std::max(most_contact, arc);
         if (nodes[k].radius > 0) least_contact = std::min({least_contact, arc, 2 * std::numbers::pi - arc});
       }
       before = angle;

@@ -144,7 +144,13 @@ Wraps present_wraps(const Evaluator& evaluator, int rope) {
 
 }  // namespace
 
-bool is_beside_pulley(const Evaluator& evaluator, int rope) { return present_wraps(evaluator, rope).leaves(); }
+std::vector<Frame<double>> frames_of(const Evaluator& evaluator, const RopeRoute& route) {
+  const Plan& plan = evaluator.plan();
+  std::vector<Frame<double>> frames;
+  for (const RopePulley<double>& node : route.nodes)
+    frames.push_back(evaluator.ground_frame(node.body < 0 ? plan.bodies : plan.plan_body[at(node.body)]));
+  return frames;
+}
 
 int rope_at_circle(const Evaluator& evaluator) {
   constexpr double near = 1e-2;

@@ -2,15 +2,16 @@
 //
 //   f = straight stretches + R theta,   theta the angle of contact of a pulley: below zero the rope lies beside it,
 //
-// and its way is shorter than f. Such a rope is slack as long as it can be: f counts only where it holds.
+// and runs past it (rope_routes.hpp). Here: what searches and checks ask of the way that a model has.
 #pragma once
 
 #include "catena/assembly/evaluate.hpp"
+#include "catena/model/rope_routes.hpp"
 
 namespace catena {
 
-/// Whether a pulley of the rope has an angle of contact below zero at the evaluator's configuration.
-bool is_beside_pulley(const Evaluator& evaluator, int rope);
+/// The frames of the bodies that a route passes, by node, at the evaluator's configuration.
+std::vector<Frame<double>> frames_of(const Evaluator& evaluator, const RopeRoute& route);
 
 /// A rope of which an end or a pulley is inside the circle of the next one, or at it: a stretch has |h|^2 / D^2 - 1 of
 /// less than a hundredth (rope_span.hpp), from where searches do not come nearer, or none

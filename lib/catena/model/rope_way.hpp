@@ -4,7 +4,8 @@
 //
 // A pulley that rolls is the end of one rope and the beginning of another, both of which wind on it: its stretches have
 // tensions of their own. What lies between two places of one body, or of bodies that stand still, is no element: it
-// adds to the length, or to what the body's turning winds. Units: m. Errors: ModelError, as a phrase about the rope.
+// adds to the length, or to what the body's turning winds. A pulley beside which the rope lies is passed over; which
+// these are may change in motion (rope_routes.hpp). Units: m. Errors: ModelError, as a phrase about the rope.
 #pragma once
 
 #include <string_view>
@@ -45,6 +46,7 @@ struct RopeStretch {
     RopeSpan<S> span;
   };
   std::vector<Straight> straight;
+  std::vector<Straight> skeleton{};  ///< bodies of its straight lines on all of its pulleys, also those it lies beside
   S way{};
   std::vector<RopePulley<S>> nodes{};  ///< its ends and what is between, for figures
   bool leads_on = false;               ///< the last of them belongs to the next stretch (rope_path.hpp)

@@ -8,7 +8,6 @@
 #include "catena/analysis/motion/initial_velocities.hpp"
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
-#include "catena/assembly/rope_ways.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 
@@ -32,23 +31,11 @@ void with_slide_value(M& model, int slide, F&& f) {
   });
 }
 
-/// A rope that becomes taut beside a pulley would have been so later: its way is measured over the pulley.
-Report check_way(const Evaluator& evaluator, int element, double t) {
-  Report report;
-  const Model& model = evaluator.model();
-  if (model.element_type(element) != Rope<double>::type || !is_beside_pulley(evaluator, element)) return report;
-  report.status = Status::singular;
-  report.message = fmt::format(
-      "rope \"{}\" is undefined at t = {:.12g} s: it becomes taut beside a pulley, which its length is measured over; "
-      "end "
-      "the analysis before, or leave the pulley out",
-      model.element_name(element), t);
-  return report;
-}
-
 }  // namespace
 
-ContactPhases::ContactPhases(std::shared_ptr<const Model> model) : contacts_(contact_points(std::move(model))) {
+ContactPhases::ContactPhases(std::shared_ptr<const Model> model, bool ropes)
+    : contacts_(contact_points(std::move(model))), first_(contacts_.model) {
+  if (ropes) ropes_.emplace(*contacts_.model);
   states_.resize(contacts_.points.size());
   anchors_.assign(contacts_.points.size(), 0.0);
 }
@@ -103,6 +90,7 @@ Report ContactPhases::check_depth(std::span<const double> q) {
 
 // Makes the switch anew, for a plan in which no row of a contact holds.
 void ContactPhases::make_switch(const PlanOptions& options) {
+  options_ = options;
   PlanOptions open = options;
   add_rows(open, std::vector<ContactState>(states_.size()));
   switch_ = std::make_unique<ContactSwitch>(contacts_.model, contacts_.points, open);
@@ -112,10 +100,18 @@ Report ContactPhases::start(SystemState& state, const PlanOptions& options) {
   states_.assign(contacts_.points.size(), {});
   events_.clear();
   make_switch(options);
+  std::vector<double> q = configuration_of(switch_->evaluator(), state);
+  switch_->evaluator().set_time(state.t);
+  if (const AssemblyOutcome assembled = Assembler(switch_->evaluator()).assemble(q); !assembled.ok()) return assembled;
+  if (ropes_ && ropes_->any()) {
+    switch_->evaluator().set_configuration(q);
+    if (Report found = ropes_->start(switch_->evaluator(), contacts_.model); !found.ok()) return found;
+    const SystemState assembled = state_of(switch_->evaluator(), state.t, q);
+    make_switch(options);
+    q = configuration_of(switch_->evaluator(), assembled);
+    switch_->evaluator().set_time(state.t);
+  }
   Evaluator& evaluator = switch_->evaluator();
-  std::vector<double> q = configuration_of(evaluator, state);
-  evaluator.set_time(state.t);
-  if (const AssemblyOutcome assembled = Assembler(evaluator).assemble(q); !assembled.ok()) return assembled;
   if (Report prepared = switch_->prepare(q); !prepared.ok()) return prepared;
   std::vector<double> qd(q.size(), 0.0);
   if (Report depth = check_depth(q); !depth.ok()) return depth;
@@ -177,12 +173,8 @@ Report ContactPhases::decide(SystemState& state, const ContactSwitch::Cause& cau
 }
 
 Report ContactPhases::change(int transition, SystemState& state) {
+  if (at(transition) >= watched_.size()) return change_way(at(transition) - watched_.size(), state);
   const Watched& watched = watched_[at(transition)];
-  if (watched.ends == End::contact && !states_[watched.place].closed) {
-    Evaluator& evaluator = switch_->evaluator();
-    evaluator.set_configuration(configuration_of(evaluator, state));
-    if (Report way = check_way(evaluator, contacts_.points[watched.place].element, state.t); !way.ok()) return way;
-  }
   if (watched.ends == End::pressing) {
     // A compliant place is pressed by a force that its own depth decides about.
     states_[watched.place].closed = !states_[watched.place].closed;
@@ -193,6 +185,17 @@ Report ContactPhases::change(int transition, SystemState& state) {
   // What stuck goes the way that friction no longer prevents; by rounding alone the limit might seem not to be reached.
   if (cause.rests && states_[watched.place].direction == 0) cause.leaves = loads_->friction(watched.place) > 0 ? -1 : 1;
   return decide(state, cause);
+}
+
+// Velocities meet the other way of a rope as well as this one; accelerations, and what presses, may differ.
+Report ContactPhases::change_way(std::size_t transition, SystemState& state) {
+  Evaluator& evaluator = switch_->evaluator();
+  evaluator.set_time(state.t);
+  evaluator.set_configuration(configuration_of(evaluator, state));
+  if (Report changed = ropes_->change(transition, evaluator, contacts_.model); !changed.ok()) return changed;
+  for (ContactEvent& event : ropes_->take_events()) events_.push_back(event);
+  if (Report renewed = renew_switch(PlanOptions(options_), state); !renewed.ok()) return renewed;
+  return decide(state, {});
 }
 
 void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std::vector<Transition>& transitions,
@@ -239,6 +242,7 @@ void ContactPhases::attach(Dynamics& dynamics, EventWatch& watch) {
   watched_.clear();
   Needs needs{.velocity = true};
   for (std::size_t k = 0; k < states_.size(); ++k) add_transitions(k, dynamics, transitions, needs);
+  if (ropes_) ropes_->add_transitions(transitions);
   watch.watch(std::move(transitions), needs);
 }
 

@@ -6,6 +6,8 @@
 //   pressing           what presses                   slides             the slip, in its direction
 //   sticks             mu_static N - |T|
 //
+// and where a rope meets or leaves a pulley (rope_phases.hpp).
+//
 // There contact_switch.hpp finds impacts and what every contact does next. Units as in contact_points.hpp.
 #pragma once
 
@@ -14,14 +16,16 @@
 
 #include "catena/analysis/contact/contact_switch.hpp"
 #include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/dynamics/rope_phases.hpp"
 
 namespace catena {
 
 class ContactPhases {
  public:
-  explicit ContactPhases(std::shared_ptr<const Model> model);
+  /// `ropes`: follow their ways over pulleys.
+  ContactPhases(std::shared_ptr<const Model> model, bool ropes);
 
-  bool any() const { return !contacts_.points.empty(); }
+  bool any() const { return !contacts_.points.empty() || (ropes_ && ropes_->any()); }
   /// Assembles, makes velocities consistent and finds what every contact does at the start; `state` is changed to that.
   /// `options`: of the plan, without the contacts.
   Report start(SystemState& state, const PlanOptions& options);
@@ -61,13 +65,17 @@ class ContactPhases {
   Report renew_switch(const PlanOptions& options, const SystemState& state);
   Report decide(SystemState& state, const ContactSwitch::Cause& cause);
   Report check_depth(std::span<const double> q);
+  Report change_way(std::size_t transition, SystemState& state);
 
   ContactModel contacts_;
+  std::shared_ptr<const Model> first_;  // as it was at first: others refer to it
+  std::optional<RopePhases> ropes_;
+  PlanOptions options_;  // the last ones, without the contacts
   std::unique_ptr<ContactSwitch> switch_;
   std::unique_ptr<ContactLoads> loads_;
   std::vector<ContactState> states_;
   std::vector<double> anchors_;   // by point: the value of the slide's equation while it sticks
-  std::vector<Watched> watched_;  // by transition
+  std::vector<Watched> watched_;  // by transition; behind these are those of ropes
   std::vector<ContactEvent> events_;
 };
 

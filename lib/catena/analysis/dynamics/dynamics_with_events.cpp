@@ -39,8 +39,8 @@ class CountingObserver final : public RowObserver {
 
 DynamicsWithEvents::DynamicsWithEvents(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
                                        const DynamicsOptions& options, std::vector<Event> events,
-                                       const ColumnSources& sources)
-    : contacts_(model),
+                                       const ColumnSources& sources, bool ropes)
+    : contacts_(model, ropes),
       given_model_(std::move(model)),
       model_(given_model_),
       plan_options_(plan_options),

@@ -36,9 +36,11 @@ struct Pauses {
 
 class DynamicsWithEvents {
  public:
-  /// Throws as EventWatch does. `sources`: what columns of dynamics can be made of. `events` may be empty.
+  /// Throws as EventWatch does. `sources`: what columns of dynamics can be made of. `events` may be empty. `ropes`:
+  /// their ways change in motion; else the run ends where one leaves a pulley.
   DynamicsWithEvents(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
-                     const DynamicsOptions& options, std::vector<Event> events, const ColumnSources& sources);
+                     const DynamicsOptions& options, std::vector<Event> events, const ColumnSources& sources,
+                     bool ropes = true);
 
   const Plan& plan() const { return dynamics_->plan(); }
   IntegrationMethod method() const { return dynamics_->method(); }

@@ -8,6 +8,7 @@
 #include "catena/analysis/dynamics/error_estimate.hpp"
 #include "catena/analysis/dynamics/paces.hpp"
 #include "catena/analysis/sensitivity/motion_derivatives.hpp"
+#include "catena/model/rope_routes.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 #include "catena/scene/running/event_entries.hpp"
 #include "catena/scene/running/singular_entries.hpp"
@@ -64,6 +65,7 @@ class DynamicsTask {
         used_options_(options_),
         names_(context.task.output_names()),
         touches_(!model_->gaps().empty() || !model_->frictions().empty()),
+        routes_(rope_routes(*model_)),
         estimates_(context.estimate_error || context.task.number("estimate_error", 0) != 0) {}
 
   void run();
@@ -79,6 +81,8 @@ class DynamicsTask {
   /// Has the motion saved now and then; where it cannot be, `failure` says why.
   Pauses pauses(std::string& failure) const;
   void run_apart(const std::vector<std::vector<int>>& classes);
+  /// Whether ropes are followed over pulleys: not where other runs or later ones would have to do the same.
+  bool follows_ropes() const { return !routes_.empty() && !estimates_ && !context_.checkpoint && !context_.design; }
   /// Of a motion without events and contacts.
   void add_jolts(const std::vector<Jolt>& jolts) {
     EventEntries entries(*model_);
@@ -93,6 +97,7 @@ class DynamicsTask {
   std::vector<std::string> names_;
   std::optional<TimeGrid> grid_;
   bool touches_;  // it has contacts, or friction
+  std::vector<RopeRoute> routes_;
   bool estimates_;
 };
 
@@ -109,6 +114,16 @@ std::string DynamicsTask::conflict() const {
   if (touches_ && estimates_) {
     return "the error cannot be estimated where contacts open and close: they would do so at other instants in the "
            "second run";
+  }
+  const auto lies_beside = [](const RopeRoute& route) {
+    return std::find(route.off.begin(), route.off.end(), 1) != route.off.end();
+  };
+  if (const auto found = std::find_if(routes_.begin(), routes_.end(), lies_beside);
+      found != routes_.end() && !follows_ropes()) {
+    return fmt::format(
+        "rope \"{}\" lies beside a pulley, and where it meets one is not followed with derivatives, checkpoints or an "
+        "estimate of the error: leave these out, or the pulley",
+        model_->element_name(found->element));
   }
   if (touches_ && context_.checkpoint)
     return "checkpoints do not keep the state of contacts: run without --checkpoint and --restart";
@@ -162,7 +177,7 @@ void DynamicsTask::run_with_events_or_pauses() {
   std::vector<std::string> reactions = context_.task.column_names();
   for (const EventRequest& request : context_.task.events) reactions.push_back(request.column);
   const PlanOptions plan = plan_options(*model_, reactions);
-  DynamicsWithEvents analysis(model_, plan, used_options_, events_of(context_.task, *model_), sources);
+  DynamicsWithEvents analysis(model_, plan, used_options_, events_of(context_.task, *model_), sources, follows_ropes());
   std::string failure, taken_up;
   if (context_.checkpoint) {
     analysis.pause(pauses(failure));
@@ -207,7 +222,8 @@ void DynamicsTask::run() {
   grid_ = time_grid(context_, result_.report);
   if (!grid_) return;
   if (estimates_) used_options_ = finer_options(options_);
-  if (!context_.task.events.empty() || context_.checkpoint || touches_) return run_with_events_or_pauses();
+  if (!context_.task.events.empty() || context_.checkpoint || touches_ || follows_ropes())
+    return run_with_events_or_pauses();
   // A fixed step is the same for all; two runs that are compared must be divided alike.
   const bool looked_at = context_.design || !context_.task.measures.empty();
   if (!estimates_ && options_.step == 0 && !looked_at) {

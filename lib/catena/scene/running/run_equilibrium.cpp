@@ -5,6 +5,7 @@
 #include "catena/analysis/contact/holding.hpp"
 #include "catena/analysis/run/energyless_forces.hpp"
 #include "catena/analysis/run/process_time.hpp"
+#include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/sensitivity/static_derivatives.hpp"
 #include "catena/analysis/statics/equilibrium.hpp"
@@ -47,6 +48,41 @@ void run_holding(AnalysisContext& context, AnalysisResult& result) {
   add_field_measures(context, result);
 }
 
+// A rope's way is one way of many: as the energy goes on smoothly from one to the next, that of a place of rest is
+// found by solving with the way of the last place until it stays. Ropes beside many pulleys take a pass for each at
+// most.
+constexpr int most_passes = 50;
+
+/// Gives the context the model whose ropes lie as they do at rest; `start`: becomes that place where they lie
+/// otherwise. The report of a search that failed, if so: it need not be made again.
+std::optional<EquilibriumReport> find_ways_at_rest(AnalysisContext& context, const EquilibriumOptions& options,
+                                                   SystemState& start) {
+  RopeWaysAt ways(context.model);
+  std::optional<EquilibriumReport> failed;
+  if (!ways.any()) return failed;
+  ways.find(start);
+  EquilibriumOptions one = options;
+  one.find = 1;
+  for (int pass = 0; pass < most_passes; ++pass) {
+    Equilibrium trial(ways.model(), plan_options(*ways.model(), context.task.column_names()), one);
+    trial.start_from(start);
+    EquilibriumReport report = trial.solve();
+    trial.evaluator().set_configuration(trial.q());
+    const bool failed_inside = report.status == Status::not_converged;
+    if (failed_inside || !ways.find(trial.evaluator())) {
+      if (!report.ok() && options.find == 1) failed = std::move(report);
+      break;
+    }
+    start = trial.state();
+  }
+  if (context.design && ways.model() != context.model)
+    throw ModelError(
+        "derivatives are those of ropes that lie as in the given configuration; here one meets or leaves a "
+        "pulley: give the bodies a place nearer to rest");
+  context.model = ways.model();
+  return failed;
+}
+
 }  // namespace
 
 void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
@@ -74,6 +110,9 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   options.tolerance = task.number("tolerance", options.tolerance);
   options.accept = task.word("accept") == 0 ? Accept::stable : Accept::stationary;
   const std::vector<std::string> names = task.output_names();
+  SystemState start = context.state;
+  start.t = frozen_time(context);
+  const std::optional<EquilibriumReport> failed = find_ways_at_rest(context, options, start);
   Equilibrium analysis(context.model, plan_options(*context.model, task.column_names()), options);
   const bool conservative = analysis.evaluator().conservative();
   if (!conservative && (options.solver == StaticSolver::ipopt || options.solver == StaticSolver::nlopt)) {
@@ -88,8 +127,6 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   }
   const ColumnSources sources{.analysis = task.type(), .multipliers = true};
   const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), names, sources);
-  SystemState start = context.state;
-  start.t = frozen_time(context);
   analysis.start_from(start);
   if (context.trace) analysis.evaluator().trace = &context.trace;
   AnalysisRows rows(columns, context, *context.model, analysis.plan(), sources, {start.t, start.t});
@@ -103,7 +140,7 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   rows.begin();
   Needs needs = rows.needs();
   needs.multipliers = needs.multipliers || derivatives;
-  EquilibriumReport report = analysis.run(TimeGrid::instant(start.t), needs, rows);
+  EquilibriumReport report = failed ? *failed : analysis.run(TimeGrid::instant(start.t), needs, rows);
   context.state = analysis.state();
   if (const int friction = first_friction(*context.model); friction >= 0) {
     report.warnings.push_back(fmt::format(

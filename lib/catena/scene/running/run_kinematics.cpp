@@ -4,6 +4,7 @@
 #include "catena/analysis/kinematics/kinematic_look.hpp"
 #include "catena/analysis/kinematics/kinematics_with_events.hpp"
 #include "catena/analysis/kinematics/minimum_norm_motion.hpp"
+#include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/sensitivity/kinematic_derivatives.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 #include "catena/scene/running/event_entries.hpp"
@@ -17,6 +18,65 @@ PlanOptions plan_without_gaps(const Model& model, const std::vector<std::string>
   PlanOptions options = plan_options(model, outputs);
   options.released_elements = model.gaps();
   return options;
+}
+
+/// A driven motion whose ropes meet and leave pulleys: they take no part in it, but their columns do.
+template <class Analysis>
+class WithRopes {
+ public:
+  WithRopes(Analysis& analysis, std::shared_ptr<const Model> model) : analysis_(analysis), ways_(std::move(model)) {}
+
+  const Plan& plan() const { return analysis_.plan(); }
+  Evaluator& evaluator() { return analysis_.evaluator(); }
+  void start_from(const SystemState& state) { analysis_.start_from(state); }
+  SystemState state() const { return analysis_.state(); }
+  AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& rows) {
+    if (!ways_.any()) return analysis_.run(grid, needs, rows);
+    Rows followed(*this, rows);
+    return analysis_.run(grid, needs, followed);
+  }
+
+ private:
+  class Rows final : public RowObserver {
+   public:
+    Rows(WithRopes& owner, RowObserver& target) : owner_(owner), target_(target) {}
+    bool observe(const Snapshot& snapshot) override {
+      owner_.follow(snapshot.q);
+      return target_.observe(snapshot);
+    }
+    bool proceed(double t) override { return target_.proceed(t); }
+    bool wants_stretches() const override { return target_.wants_stretches(); }
+    bool cover(const MotionStretch& stretch) override { return target_.cover(stretch); }
+
+   private:
+    WithRopes& owner_;
+    RowObserver& target_;
+  };
+  void follow(std::span<const double> q) {
+    Evaluator& evaluator = analysis_.evaluator();
+    const std::shared_ptr<const Model> before = ways_.model();
+    if (!ways_.follow(evaluator)) return;
+    evaluator.set_model(*ways_.model());
+    evaluator.set_configuration(q);
+    kept_.push_back(before);
+  }
+
+  Analysis& analysis_;
+  RopeWaysAt ways_;
+  std::vector<std::shared_ptr<const Model>> kept_;  // columns refer to the first
+};
+
+/// Nothing, or why the ropes cannot be followed.
+std::string trouble_of_ropes(const AnalysisContext& context) {
+  for (const RopeRoute& route : rope_routes(*context.model)) {
+    const bool beside = std::find(route.off.begin(), route.off.end(), 1) != route.off.end();
+    if (!beside || (!route.elastic && !context.design)) continue;
+    return fmt::format(
+        "rope \"{}\" lies beside a pulley, and where it meets one is not followed {}: leave the pulley out",
+        context.model->element_name(route.element),
+        route.elastic ? "in driven motions where it has a stiffness" : "with derivatives");
+  }
+  return {};
 }
 
 /// Whether constraints and drivers determine the motion where the analysis starts.
@@ -74,6 +134,7 @@ void run_with_events(AnalysisContext& context, AnalysisResult& result, const Tim
 void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics) {
   const AnalysisTask& task = context.task;
   if (const std::string why = conflict(context, inverse_dynamics); !why.empty()) return refuse(result, why);
+  if (const std::string why = trouble_of_ropes(context); !why.empty()) return refuse(result, why);
   const std::optional<TimeGrid> grid = time_grid(context, result.report);
   if (!grid) return;
   const std::vector<std::string> names = task.output_names();
@@ -104,7 +165,8 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
                     "leave \"free\" out and add drivers");
     }
     MinimumNormMotion analysis(context.model, plan);
-    run_over_time(context, result, analysis, *grid, names, sources, [&](AnalysisRows& rows) {
+    WithRopes followed(analysis, context.model);
+    run_over_time(context, result, followed, *grid, names, sources, [&](AnalysisRows& rows) {
       rows.watch_gaps(*context.model);
       rows.take_rows_alone();
     });
@@ -136,7 +198,8 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
     rows.differentiate(std::make_unique<KinematicDerivatives>(analysis.evaluator(), designs_of(context),
                                                               static_cast<int>(context.design->names.size())));
   };
-  run_over_time(context, result, analysis, *grid, names, sources, prepare);
+  WithRopes followed(analysis, context.model);
+  run_over_time(context, result, followed, *grid, names, sources, prepare);
   add_singular_points(result, analysis.singular_points(), *context.model);
 }
 

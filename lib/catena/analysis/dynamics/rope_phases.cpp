@@ -1,0 +1,95 @@
+#include "catena/analysis/dynamics/rope_phases.hpp"
+
+#include <fmt/format.h>
+
+#include "catena/assembly/rope_ways.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+// A tangent's angle is known within half a turn of the one from which it is counted; from this one on, rad, it is
+// counted anew. Between two samples of a step it turns by less than what is left.
+constexpr double most_turned = 2;
+
+Report undefined(const Model& model, const RopeRoute& route, double t, const char* why) {
+  Report report;
+  report.status = Status::singular;
+  report.message =
+      fmt::format("rope \"{}\" is undefined at t = {:.12g} s: {}", model.element_name(route.element), t, why);
+  return report;
+}
+
+}  // namespace
+
+Report RopePhases::lay_out(std::size_t route, const Evaluator& evaluator, Model& model) {
+  const std::vector<Frame<double>> frames = frames_of(evaluator, routes_[route]);
+  try {
+    lay(model, routes_[route], frames);
+    watches_[route] = std::make_shared<RouteWatch>(model, routes_[route], frames);
+  } catch (const ModelError& error) {
+    return undefined(model, routes_[route], evaluator.time(), error.what());
+  }
+  return {};
+}
+
+Report RopePhases::start(const Evaluator& evaluator, std::shared_ptr<const Model>& model) {
+  if (!any()) return {};
+  const auto changed = std::make_shared<Model>(*model);
+  watches_.assign(routes_.size(), nullptr);
+  events_.clear();
+  for (std::size_t r = 0; r < routes_.size(); ++r) {
+    try {
+      find_off(*changed, routes_[r], frames_of(evaluator, routes_[r]));
+    } catch (const ModelError& error) {
+      return undefined(*changed, routes_[r], evaluator.time(), error.what());
+    }
+    if (Report laid = lay_out(r, evaluator, *changed); !laid.ok()) return laid;
+  }
+  model = changed;
+  return {};
+}
+
+void RopePhases::add_transitions(std::vector<Transition>& transitions) {
+  watched_.clear();
+  for (std::size_t r = 0; r < routes_.size(); ++r) {
+    const std::shared_ptr<const RouteWatch> tangents = watches_[r];
+    const RopeRoute* route = &routes_[r];
+    const auto watch = [&](int node, End ends, auto value) {
+      transitions.push_back({[route, value](const Snapshot& s) { return value(frames_of(s.evaluator, *route)); }, 1});
+      watched_.push_back({r, node, ends});
+    };
+    for (const int node : tangents->pulleys()) {
+      const double sign = route->off[at(node)] ? -1 : 1;
+      watch(node, End::contact,
+            [tangents, node, sign](const std::vector<Frame<double>>& f) { return sign * tangents->contact(node, f); });
+    }
+    watch(-1, End::circle, [tangents](const std::vector<Frame<double>>& f) { return tangents->room(f); });
+    watch(-1, End::turned,
+          [tangents](const std::vector<Frame<double>>& f) { return most_turned - tangents->turned(f); });
+  }
+}
+
+Report RopePhases::change(std::size_t k, const Evaluator& evaluator, std::shared_ptr<const Model>& model) {
+  const Watched ended = watched_[k];
+  RopeRoute& route = routes_[ended.route];
+  const auto changed = std::make_shared<Model>(*model);
+  if (ended.ends == End::circle) {
+    return undefined(*model, route, evaluator.time(),
+                     "an end or a pulley of it comes into the circle of the next pulley");
+  }
+  const std::vector<Frame<double>> frames = frames_of(evaluator, route);
+  for (const int node : watches_[ended.route]->pulleys())
+    route.memory.contact[at(node)] = watches_[ended.route]->contact(node, frames);
+  if (ended.ends == End::contact) {
+    char& off = route.off[at(ended.node)];
+    off = !off;
+    events_.push_back({route.element, off ? "unwrap" : "wrap", evaluator.time()});
+  }
+  if (Report laid = lay_out(ended.route, evaluator, *changed); !laid.ok()) return laid;
+  model = changed;
+  return {};
+}
+
+}  // namespace catena

@@ -1,0 +1,37 @@
+// The model of an analysis that begins at some state: its ropes lie there as they can (model/rope_routes.hpp).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "catena/analysis/run/system_state.hpp"
+#include "catena/assembly/evaluate.hpp"
+#include "catena/model/rope_routes.hpp"
+
+namespace catena {
+
+/// The ways of a model's ropes, place by place.
+class RopeWaysAt {
+ public:
+  explicit RopeWaysAt(std::shared_ptr<const Model> model) : model_(std::move(model)), routes_(rope_routes(*model_)) {}
+
+  bool any() const { return !routes_.empty(); }
+  const std::shared_ptr<const Model>& model() const { return model_; }
+  /// Finds them where the evaluator is, or at a state; true: some have changed, and so has model(). Throws ModelError
+  /// where a rope has none, with its name.
+  bool find(const Evaluator& evaluator);
+  bool find(const SystemState& state);
+  /// The same for those without stiffness alone, along a motion that is looked at now and then: from one look to the
+  /// next no tangent may turn by half a turn.
+  bool follow(const Evaluator& evaluator);
+
+ private:
+  std::shared_ptr<const Model> model_;
+  bool follow(RopeRoute& route, std::shared_ptr<const RouteWatch>& watch, const Evaluator& evaluator,
+              std::shared_ptr<Model>& changed);
+
+  std::vector<RopeRoute> routes_;
+  std::vector<std::shared_ptr<const RouteWatch>> watches_;  // by route, once they are followed
+};
+
+}  // namespace catena

@@ -1,0 +1,180 @@
+#include "catena/model/rope_routes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "catena/elements/all.hpp"
+#include "catena/model/rope_pieces.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+RopePulley<double> pulley_of(const RopeNode& node) {
+  return {.body = node.body,
+          .centre = node.centre,
+          .radius = std::abs(node.radius),
+          .side = node.radius < 0 ? -1 : 1,
+          .rolls = node.rolls};
+}
+
+RopeLayout<double> layout_of(const Model& model, const RopeRoute& route, const std::vector<Frame<double>>& frames) {
+  RopeLayout<double> layout(model, route.nodes, frames);
+  layout.off = route.off;
+  return layout;
+}
+
+std::vector<Frame<double>> given(const Model& model, const RopeRoute& route) {
+  std::vector<Frame<double>> frames;
+  for (const RopePulley<double>& node : route.nodes) frames.push_back(model.frame(node.body));
+  return frames;
+}
+
+/// Of a path, the part between pulleys that roll in which bodies move.
+std::vector<RopePulley<double>> stretch_of(const Model& model, const RopePath& path) {
+  const std::size_t count = path.nodes.size() - (path.leads_on ? 1 : 0);
+  for (std::size_t first = 0, end = 1; end < count; first = end++) {
+    while (end + 1 < count && !path.nodes[end].rolls) ++end;
+    bool all_together = true;
+    for (std::size_t k = first; k < end; ++k) {
+      const int a = path.nodes[k].body, b = path.nodes[k + 1].body;
+      all_together = all_together && (a == b || (!moves(model, a) && !moves(model, b)));
+    }
+    if (all_together) continue;
+    std::vector<RopePulley<double>> nodes;
+    for (std::size_t k = first; k <= end; ++k) nodes.push_back(pulley_of(path.nodes[k]));
+    return nodes;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<RopeRoute> rope_routes(const Model& model) {
+  std::vector<RopeRoute> routes;
+  for (const RopePath& path : model.rope_paths) {
+    if (model.element_type(path.element) != Rope<double>::type) continue;
+    RopeRoute route{.element = path.element,
+                    .elastic = model.elements[at(path.element)].kind == ElementKind::force,
+                    .nodes = stretch_of(model, path)};
+    const auto is_circle = [](const RopePulley<double>& node) { return node.radius > 0; };
+    if (std::none_of(route.nodes.begin(), route.nodes.end(), is_circle)) continue;
+    route.off.assign(route.nodes.size(), 0);
+    find_off(model, route, given(model, route));
+    routes.push_back(std::move(route));
+  }
+  return routes;
+}
+
+bool find_off(const Model& model, RopeRoute& route, const std::vector<Frame<double>>& frames) {
+  RopeLayout<double> layout = layout_of(model, route, frames);
+  layout.choose_off(0, layout.last());
+  const bool changed = layout.off != route.off;
+  route.off = layout.off;
+  // What winds on ends that roll counts from the given configuration.
+  const RopeMemory before = route.memory;
+  route.memory = {};
+  static_cast<void>(layout.between(0, layout.last(), route.memory));
+  if (before.known()) {
+    route.memory.theta = before.theta + std::remainder(route.memory.theta - before.theta, 2 * std::numbers::pi);
+    route.memory.wound_i = before.wound_i;
+    route.memory.wound_j = before.wound_j;
+  }
+  return changed;
+}
+
+void lay(Model& model, RopeRoute& route, const std::vector<Frame<double>>& frames) {
+  const RopeLayout<double> layout = layout_of(model, route, frames);
+  RopeStretch<double> stretch = layout.between(0, layout.last(), route.memory);
+  stretch.skeleton = layout.skeleton(0, layout.last()).straight;
+  const std::vector<RopePiece<double>> pieces = padded(model, stretch, route.elastic);
+  const std::size_t first = at(model.elements[at(route.element)].index);
+  if (route.elastic) {
+    auto& list = std::get<std::vector<ElementEntry<ElasticRope<double>, double>>>(model.forces);
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+      auto& entry = list[first + k];
+      entry.i = pieces[k].i;
+      entry.j = pieces[k].j;
+      pieces[k].give(entry.element);
+    }
+    return;
+  }
+  auto& head = std::get<std::vector<ElementEntry<Rope<double>, double>>>(model.constraints)[first];
+  auto& parts = std::get<std::vector<ElementEntry<RopePart<double>, double>>>(model.constraints);
+  head.i = pieces.front().i;
+  head.j = pieces.front().j;
+  static_cast<RopeSpan<double>&>(head.element) = pieces.front().span;
+  for (std::size_t k = 1; k < pieces.size(); ++k) {
+    auto& part = parts[at(head.element.first_part) + k - 1];
+    part.i = pieces[k].i;
+    part.j = pieces[k].j;
+    static_cast<RopeSpan<double>&>(part.element) = pieces[k].span;
+    part.element.bridge = pieces[k].bridge;
+  }
+}
+
+RouteWatch::RouteWatch(const Model& model, const RopeRoute& route, const std::vector<Frame<double>>& frames) {
+  const RopeLayout<double> layout = layout_of(model, route, frames);
+  std::vector<double> out(route.nodes.size(), 0.0);  // theta behind each node that is touched
+  std::vector<int> behind(route.nodes.size(), -1);
+  for (const RopePulley<double>& node : route.nodes) side_.push_back(node.side);
+  const auto add = [&](int a, int b, double near) {
+    Tangent tangent{a, b, layout.line(a, b)};
+    tangent.span.angle = near + std::remainder(tangent.span.angle - near, 2 * std::numbers::pi);
+    tangents_.push_back(tangent);
+    return static_cast<int>(tangents_.size()) - 1;
+  };
+  double theta = route.memory.theta;
+  for (int a = 0; a < layout.last(); a = layout.after(a)) {
+    const double contact = route.memory.contact[at(a)];
+    if (a > 0) theta += side_[at(a)] * contact;
+    out[at(a)] = theta;
+    behind[at(a)] = add(a, layout.after(a), theta);
+    if (a == 0 || !layout.can_leave(a)) continue;
+    pulleys_.push_back(a);
+    in_.push_back(behind[at(layout.before(a))]);
+    out_.push_back(behind[at(a)]);
+  }
+  for (int k = 1; k < layout.last(); ++k) {
+    if (!route.off[at(k)]) continue;
+    // A pulley that an end lies within meets no rope until it comes out again.
+    const int a = layout.before(k), b = layout.after(k);
+    const int in = add(a, k, out[at(a)]);
+    const double contact = route.memory.contact[at(k)];
+    const double near =
+        std::isnan(contact) ? tangents_[at(in)].span.angle : tangents_[at(in)].span.angle + side_[at(k)] * contact;
+    pulleys_.push_back(k);
+    in_.push_back(in);
+    out_.push_back(add(k, b, near));
+  }
+}
+
+double RouteWatch::theta(const Tangent& tangent, const std::vector<Frame<double>>& frames) const {
+  const Vec2<double> h = separation(frames[at(tangent.a)], frames[at(tangent.b)], tangent.span.s_i, tangent.span.s_j);
+  return tangent.span.heading(tangent.span.line(h).along);
+}
+
+double RouteWatch::contact(int node, const std::vector<Frame<double>>& frames) const {
+  const auto found = std::find(pulleys_.begin(), pulleys_.end(), node) - pulleys_.begin();
+  const auto k = static_cast<std::size_t>(found);
+  return side_[at(node)] * (theta(tangents_[at(out_[k])], frames) - theta(tangents_[at(in_[k])], frames));
+}
+
+double RouteWatch::room(const std::vector<Frame<double>>& frames) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Tangent& t : tangents_) {
+    const double offset = t.span.radius_j - t.span.radius_i;
+    const Vec2<double> h = separation(frames[at(t.a)], frames[at(t.b)], t.span.s_i, t.span.s_j);
+    least = std::min(least, squared_norm(h) - offset * offset);
+  }
+  return least;
+}
+
+double RouteWatch::turned(const std::vector<Frame<double>>& frames) const {
+  double most = 0;
+  for (const Tangent& tangent : tangents_) most = std::max(most, std::abs(theta(tangent, frames) - tangent.span.angle));
+  return most;
+}
+
+}  // namespace catena
