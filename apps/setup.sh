@@ -21,6 +21,7 @@ packages=(
   nlohmann-json3-dev    # scene files
   libcli11-dev          # the command line
   libfmt-dev            # text reports
+  libxsimd-dev          # batches of designs in SIMD lanes
   esbuild               # the page of `catena view`
 )
 python_packages=(

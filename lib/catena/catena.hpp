@@ -12,6 +12,7 @@
 // Units SI, radians. Numerical outcomes are values (base/status.hpp); exceptions are for misuse and bad scenes.
 #pragma once
 
+#include "catena/analysis/batch/batch.hpp"
 #include "catena/analysis/design/design_problem.hpp"
 #include "catena/analysis/dynamics/dynamics.hpp"
 #include "catena/analysis/kinematics/kinematics.hpp"

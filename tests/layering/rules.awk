@@ -8,7 +8,7 @@
 # layer; a folder that is not listed there is an error, and so is one of more than 30 files:
 #
 #   analysis  run <- pose <- motion <- events <- {kinematics, contact <- dynamics};  pose <- balance <- spectrum <- statics <- stability
-#             run <- measures;  motion <- sensitivity;  minimiser <- {statics, design}
+#             run <- measures;  motion <- sensitivity;  minimiser <- {statics, design};  kinematics <- batch
 #   scene     json <- numbers <- describing <- reading <- building <- models <- judging <- running <- designing <- viewing <- loading
 #             <- explaining
 #   drawing   shapes <- figures
@@ -40,6 +40,7 @@ BEGIN {
   after("analysis", "measures", "run")
   after("analysis", "sensitivity", "run motion")
   after("analysis", "design", "minimiser")
+  after("analysis", "batch", "run pose motion events kinematics")
   chain("scene", "json numbers describing reading building models judging running designing viewing explaining loading")
   chain("drawing", "shapes figures")
   chain("linalg", "patterns kernels")

@@ -115,9 +115,11 @@ std::optional<Extreme::Peak> Extreme::locate(double a, double middle, double b, 
     // Seven instants around it, inside of the stretch.
     const double d = h / 3, centre = std::clamp(middle, piece.from() + h, piece.to() - h);
     if (centre < piece.from() + h || d == 0) continue;
-    std::array<double, 7> around{};
+    std::array<double, 7> around{}, t_around{};
+    for (std::size_t k = 0; k < 7; ++k) t_around[k] = centre + d * (static_cast<double>(k) - 3);
+    piece.stretch.announce(t_around);
     for (std::size_t k = 0; k < 7; ++k) {
-      const std::optional<double> value = at(centre + d * (static_cast<double>(k) - 3));
+      const std::optional<double> value = at(t_around[k]);
       if (!value) return {};
       around[k] = *value;
     }

@@ -77,7 +77,7 @@ void MeasureSet::cover(const MotionStretch& stretch) {
     double to = std::min(breakpoints_.next(from), stretch.to);
     if (!(stretch.to - to > 1e-12 * std::abs(to))) to = stretch.to;
     const bool breaks_after = to < stretch.to || breakpoints_.contain(to);
-    cover_piece({{from, to, stretch.at}, breaks, breaks_after});
+    cover_piece({{from, to, stretch.at, stretch.expect}, breaks, breaks_after});
     from = to;
     breaks = breaks_after;
   }

@@ -207,9 +207,11 @@ double MotionSamples::misfit_of_rows(const Part& part) const {
 bool MotionSamples::fill(const MotionPiece& piece, const MotionSample& a, const MotionSample& b, Part& part) {
   part.front() = a;
   part.back() = b;
+  std::array<double, places.size()> t{};
+  for (std::size_t k = 0; k < places.size(); ++k) t[k] = a.t + (b.t - a.t) * (1 + places[k]) / 2;
+  piece.stretch.announce(t);
   for (std::size_t k = 0; k < places.size(); ++k) {
-    const double t = a.t + (b.t - a.t) * (1 + places[k]) / 2;
-    std::optional<MotionSample> sample = see(piece, t, always_);
+    std::optional<MotionSample> sample = see(piece, t[k], always_);
     if (!sample) return false;
     part[k + 1] = std::move(*sample);
   }

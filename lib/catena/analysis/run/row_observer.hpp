@@ -14,6 +14,13 @@ namespace catena {
 struct MotionStretch {
   double from = 0, to = 0;
   std::function<std::optional<Snapshot>(double)> at;
+  /// May be empty. Told of instants of the stretch that will be asked for next, at most eight: who can look at several
+  /// at once does so. Nobody has to ask for them.
+  std::function<void(std::span<const double>)> expect = {};
+
+  void announce(std::span<const double> instants) const {
+    if (expect) expect(instants);
+  }
 };
 
 class RowObserver {

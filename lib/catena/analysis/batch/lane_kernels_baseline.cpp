@@ -1,0 +1,8 @@
+#include "catena/analysis/batch/lane_kernel.hpp"
+#include "catena/analysis/batch/lane_kernels.hpp"
+
+namespace catena {
+
+const LaneKernels lane_kernels_baseline = make_lane_kernels<xsimd::batch<double, xsimd::default_arch>>("baseline");
+
+}  // namespace catena

@@ -1,0 +1,87 @@
+// The motions of a group of designs, followed side by side from row to row: positions, velocities, accelerations.
+//
+// Every lane steps from one of its rows to the next under the rules by which Kinematics accepts a step
+// (kinematics/kinematics_march.cpp): the prediction was close, Newton contracted well, no body turned far, and no
+// block's determinant changed its sign or fell towards zero. A lane that breaks one halves its own step while the
+// others wait; one that cannot go on, or comes so near to a singular position that more is needed than a step, leaves
+// the group with the reason, and nothing of the others changes. Such designs are for Kinematics itself. Allocates when
+// it is made, and where a group has more rows than any before.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+
+#include "catena/analysis/batch/lane_solver.hpp"
+
+namespace catena {
+
+class LaneMotion {
+ public:
+  static constexpr unsigned all_lanes = (1U << lane_count) - 1;
+
+  /// `program` must outlive this object.
+  explicit LaneMotion(const LaneProgram& program);
+
+  /// Puts a design into a lane, at its given configuration. The model must outlive the motion. Lanes that nobody uses
+  /// hold the first design once more. False where a number of it is not finite.
+  bool set_design(int lane, const Model& model, double length_scale);
+  LaneSolver& solver() { return solver_; }
+  /// Another configuration to start from: x, y, phi of the moving bodies in the ground frame.
+  void set_start(int lane, std::span<const double> q);
+
+  /// Solves for positions at t, one instant a lane, from the start in every lane. Returns the lanes in which the start
+  /// was so near that the assembled configuration is the nearest one, as Kinematics judges it.
+  unsigned assemble(const std::array<double, lane_count>& t);
+  /// Goes through the rows of lanes, all as many, from where they were assembled: instant(row, lane). Lanes that leave
+  /// the group are no longer in alive().
+  template <class Instant>
+  void run(unsigned lanes, int rows, Instant&& instant) {
+    begin(lanes, rows);
+    for (int k = 0; k < rows && alive_ != 0; ++k) {
+      std::array<double, lane_count> t{};
+      for (int lane = 0; lane < lane_count; ++lane) t[static_cast<std::size_t>(lane)] = instant(k, lane);
+      move_to(t);
+      keep_row(k);
+    }
+  }
+
+  unsigned alive() const { return alive_; }
+  /// Why a lane left the group.
+  const std::string& why(int lane) const { return why_[static_cast<std::size_t>(lane)]; }
+  /// A row that was computed elsewhere: x, y, phi in the ground frame, and rates where there are some.
+  void put_row(int row, int lane, std::span<const double> q, std::span<const double> qd, std::span<const double> qdd);
+  /// Rows without numbers.
+  void clear_rows(int lane, int rows);
+  int coordinates() const { return coordinates_; }
+  int tails() const { return tails_; }
+  /// x, y, phi of the moving bodies of all lanes at a row, from the origin of the frames; their rates.
+  const double* q(int row) const { return rows_q_[row * coordinates_]; }
+  const double* qd(int row) const { return rows_qd_[row * coordinates_]; }
+  const double* qdd(int row) const { return rows_qdd_[row * coordinates_]; }
+  const double* margin(int row) const { return rows_margin_[row * tails_]; }
+
+ private:
+  void begin(unsigned lanes, int rows);
+  void move_to(const std::array<double, lane_count>& t);
+  void advance(unsigned lanes, const std::array<double, lane_count>& t, int depth);
+  unsigned attempt(unsigned lanes, const std::array<double, lane_count>& t);
+  void foretell(const std::array<double, lane_count>& t);
+  bool is_sound(int lane) const;
+  bool heads_for_singularity(int lane, double t) const;
+  void take(unsigned lanes);
+  void leave(unsigned lanes, const char* why);
+  void watch_margins();
+  void keep_row(int row);
+
+  LaneSolver solver_;
+  int coordinates_, tails_;
+  LaneNumbers largest_margin_, rows_q_, rows_qd_, rows_qdd_, rows_margin_;
+  int kept_rows_ = 0;
+  LaneState before_, now_, next_;
+  std::array<bool, lane_count> has_before_{};
+  std::array<std::string, lane_count> why_;
+  unsigned alive_ = 0;
+};
+
+}  // namespace catena

@@ -1,0 +1,63 @@
+// The plan of a mechanism as the kernels of a batch read it (lane_code.hpp), and the numbers of designs put into it.
+//
+// Not every mechanism can be computed in lanes: make() says why not. It must be driven by as many independent equations
+// as it has coordinates, all of types that lanes know, without particles, and no loop of it may hang together with so
+// many others that a block's tail exceeds largest_tail.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "catena/analysis/batch/lane_code.hpp"
+#include "catena/analysis/batch/lane_numbers.hpp"
+#include "catena/assembly/plan.hpp"
+
+namespace catena {
+
+class LaneProgram {
+ public:
+  /// Nothing, with the reason, where the mechanism cannot be computed in lanes.
+  static std::unique_ptr<const LaneProgram> make(const Model& model, std::shared_ptr<const Plan> plan,
+                                                 std::string& why_not);
+
+  const Plan& plan() const { return *plan_; }
+  const LaneCode& code() const { return code_; }
+  int fields() const { return fields_; }        ///< numbers of a group's parameters
+  int functions() const { return functions_; }  ///< numbers of its values c, c', c''
+  int slots() const { return code_.slots; }
+
+  /// Puts the parameters of a design into a lane: of a model of the same structure. `length_scale` in m. False where a
+  /// point, an axis or a constant is not finite.
+  bool put(const Model& model, double length_scale, int lane, LaneNumbers& field, LaneNumbers& function,
+           LaneNumbers& frame) const;
+  /// The given pose of a moving body, from the origin of the frames.
+  Frame<double> given_pose(const Model& model, int plan_body) const;
+  /// Puts c, c', c'' at t into a lane.
+  void put_functions(const Model& model, double t, int lane, LaneNumbers& function) const;
+  /// Copies those of lane 0 to all others.
+  void spread_functions(LaneNumbers& function) const;
+
+ private:
+  struct Timed {
+    int place, function;  ///< in the numbers of functions; of the model
+  };
+  LaneProgram() = default;
+  bool list_elements(const Model& model, std::string& why_not);
+  bool list_pivots(const Model& model, std::string& why_not);
+  void close();
+
+  std::shared_ptr<const Plan> plan_;
+  LaneCode code_{};
+  int fields_ = 0, functions_ = 0;
+  bool has_immobile_ = false;
+  std::vector<LaneElement> element_;
+  std::vector<int> slot_, constant_slot_, list_, outside_, coordinate_;
+  std::vector<double> constant_, initial_;
+  std::vector<LaneBlock> block_;
+  std::vector<LanePivot> pivot_;
+  std::vector<LaneTail> tail_;
+  std::vector<Timed> timed_;
+};
+
+}  // namespace catena

@@ -1,0 +1,64 @@
+// Solves for positions and rates of a group of designs, each lane at its own instant, from starts that are given.
+//
+// Owns the numbers of the designs and the scratch of the kernels. Allocates when it is made.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "catena/analysis/batch/lane_program.hpp"
+
+namespace catena {
+
+/// A group of designs at one instant each. Coordinates as in LaneCode: x, y, phi of the moving bodies.
+struct LaneState {
+  explicit LaneState(const LaneProgram& program)
+      : q(3 * program.code().moving),
+        qd(3 * program.code().moving),
+        qdd(3 * program.code().moving),
+        margin(program.code().tails) {}
+
+  std::array<double, lane_count> t{};
+  LaneNumbers q, qd, qdd;
+  LaneNumbers margin;  ///< determinants of the blocks' tails
+};
+
+class LaneSolver {
+ public:
+  /// `program` must outlive this object.
+  explicit LaneSolver(const LaneProgram& program);
+
+  const LaneProgram& program() const { return program_; }
+  int coordinates() const { return coordinates_; }
+  /// Puts the parameters of a design into a lane; the model must outlive their use. All lanes must have one. False
+  /// where one is not finite.
+  bool set_design(int lane, const Model& model, double length_scale);
+  /// Functions of time, and the instants, are the same in all lanes: they are evaluated once.
+  void share_functions(bool shared) { shared_ = shared; }
+
+  /// q, from where it is, and all rates, at the instants of the state, in the first lanes.
+  void solve(LaneState& state, int lanes = lane_count);
+  /// q at the instants of `state` by the quintic through two states; in lanes where both are at one instant the later
+  /// state's own.
+  void foretell(const LaneState& before, const LaneState& after, LaneState& state);
+
+  // Of the last solve:
+  bool converged(int lane) const { return converged_[0][lane] == 1; }
+  double first_size(int lane) const { return first_size_[0][lane]; }    ///< of the first correction
+  double first_turn(int lane) const { return first_turn_[0][lane]; }    ///< its largest angle, rad
+  double contraction(int lane) const { return contraction_[0][lane]; }  ///< largest ratio of corrections
+  double residual(int lane) const { return residual_[0][lane]; }        ///< rad or length scales
+
+  double tolerance = 1e-12;  ///< of residuals, relative to the length scale
+
+ private:
+  const LaneProgram& program_;
+  int coordinates_;
+  LaneNumbers field_, function_, frame_, unit_, matrix_, right_, tail_, exchange_;
+  LaneNumbers converged_, first_size_, first_turn_, contraction_, residual_, u_, h_;
+  LaneJob job_{};
+  std::array<const Model*, lane_count> model_{};
+  bool shared_ = false;
+};
+
+}  // namespace catena

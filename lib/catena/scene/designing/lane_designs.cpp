@@ -1,0 +1,213 @@
+#include "catena/scene/designing/lane_designs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+
+#include "catena/analysis/pose/assemble.hpp"
+
+namespace catena {
+namespace {
+
+std::size_t at(int k) { return static_cast<std::size_t>(k); }
+
+constexpr ColumnSources kinematic_sources{
+    .analysis = "kinematics", .timed = true, .velocity = true, .acceleration = true};
+
+PlanOptions options_of(const AnalysisTask& task, const Model& model) {
+  PlanOptions options = plan_options(model, task.column_names());
+  options.released_elements = model.gaps();
+  return options;
+}
+
+/// Empty, or why the analysis itself cannot be computed in lanes.
+std::string obstacle_of(const AnalysisContext& context) {
+  if (context.task.of.size() != 1) return "it repeats more than one analysis";
+  const AnalysisTask& inner = context.task.of.front();
+  if (inner.type() != "kinematics") return fmt::format("{} is not computed in lanes, only kinematics is", inner.type());
+  if (context.poses) return "its designs are drawn";
+  if (!context.state.q.empty() || context.state.t != 0) return "it goes on from where an analysis before it ended";
+  if (!inner.events.empty()) return "its analysis has events";
+  if (inner.word("free") != 0) return "its analysis allows motions that nothing drives";
+  for (const PlacedMeasure& measure : inner.measures) {
+    if (measure.request.kind == MeasureKind::field)
+      return fmt::format("measure \"{}\" is of a field, not of a column", measure.request.name);
+    const auto& columns = measure.request.columns;
+    // What rounding leaves of the equations is another number in every order of operations.
+    if (std::find(columns.begin(), columns.end(), "residual") != columns.end())
+      return fmt::format("measure \"{}\" is of rounding", measure.request.name);
+  }
+  return {};
+}
+
+class Nobody final : public RowSink {
+ public:
+  void begin(std::span<const ColumnInfo>) override {}
+  bool row(std::span<const double>) override { return true; }
+};
+
+}  // namespace
+
+std::unique_ptr<LaneDesigns> LaneDesigns::make(const AnalysisContext& context, std::string& why_not) {
+  why_not = obstacle_of(context);
+  if (!why_not.empty()) return nullptr;
+  const AnalysisTask& inner = context.task.of.front();
+  std::shared_ptr<const Model> model = context.models->model(*inner.table, context.seeds, &why_not);
+  if (!model) return nullptr;
+  if (!model->laws.empty()) {
+    why_not = "it has forces by laws of state, which are checked along the motion";
+    return nullptr;
+  }
+  try {
+    std::shared_ptr<const Plan> plan = Plan::make(*model, options_of(inner, *model));
+    std::unique_ptr<const LaneProgram> program = LaneProgram::make(*model, plan, why_not);
+    if (!program) return nullptr;
+    // Throws for columns that such an analysis does not give.
+    const MeasureSet measures(inner.measure_requests(), *model, *plan, kinematic_sources, {});
+    return std::unique_ptr<LaneDesigns>(
+        new LaneDesigns(context, std::move(model), std::move(plan), std::move(program)));
+  } catch (const std::invalid_argument& error) {
+    why_not = error.what();
+    return nullptr;
+  }
+}
+
+LaneDesigns::LaneDesigns(const AnalysisContext& context, std::shared_ptr<const Model> model,
+                         std::shared_ptr<const Plan> plan, std::unique_ptr<const LaneProgram> program)
+    : outer_(context),
+      model_(std::move(model)),
+      program_(std::move(program)),
+      evaluator_(std::move(plan), *model_),
+      motion_(*program_),
+      look_(*program_, evaluator_) {
+  for (Lane& lane : lanes_) lane.task = context.task.of.front();
+}
+
+AnalysisContext LaneDesigns::context_of(const Lane& lane) {
+  static Nobody nobody;
+  return {
+      .task = lane.task, .model = lane.model, .state = start_, .rows = nobody, .progress = {}, .models = outer_.models};
+}
+
+std::string LaneDesigns::prepare(Lane& lane, const ParameterSeeds& seeds) {
+  if (std::optional<std::string> why = outer_.models->set_parameters(lane.task, seeds)) return *why;
+  std::string why;
+  std::shared_ptr<const Model> model = outer_.models->model(*lane.task.table, seeds, &why);
+  if (!model) return why;
+  lane.model = std::move(model);
+  try {
+    evaluator_.set_model(*lane.model);
+  } catch (const std::invalid_argument&) {
+    evaluator_.set_model(*model_);
+    return "it has other bodies or elements than the scene";
+  }
+  lane.length_scale = evaluator_.length_scale();
+  Report report;
+  const std::optional<TimeGrid> grid = time_grid(context_of(lane), report);
+  if (!grid) return report.message;
+  lane.instants.clear();
+  for (std::int64_t k = 0; k < grid->size(); ++k) lane.instants.push_back((*grid)[k]);
+  for (std::size_t k = 0; k < lane.instants.size(); ++k) {
+    if (!(lane.instants[k] > (k == 0 ? -1e-300 : lane.instants[k - 1]))) return "its instants are not in order";
+  }
+  return {};
+}
+
+unsigned LaneDesigns::assemble(unsigned lanes, std::span<Outcome> outcomes) {
+  const auto& bodies = model_->bodies;
+  const bool held =
+      std::any_of(bodies.begin(), bodies.end(), [](const auto& b) { return b.hold_x || b.hold_y || b.hold_angle; });
+  unsigned near = motion_.assemble({});
+  if (held) near = 0;
+  const unsigned far = lanes & ~near;
+  if (far == 0) return lanes;
+  for (int lane = 0; lane < lane_count; ++lane) {
+    if (!(far & 1U << lane)) continue;
+    evaluator_.set_model(*lanes_[at(lane)].model);
+    evaluator_.set_time(0);
+    std::vector<double> q = evaluator_.given_configuration();
+    if (!Assembler(evaluator_).assemble(q).ok()) {
+      outcomes[at(lane)].why_not = "it is not assembled by Newton's method alone";
+      lanes &= ~(1U << lane);
+      continue;
+    }
+    for (int b = 0; b < motion_.coordinates() / 3; ++b) {
+      q[at(3 * b)] += evaluator_.origin(b).x;
+      q[at(3 * b + 1)] += evaluator_.origin(b).y;
+    }
+    motion_.set_start(lane, q);
+  }
+  near = motion_.assemble({});
+  for (int lane = 0; lane < lane_count; ++lane) {
+    if (lanes & ~near & 1U << lane)
+      outcomes[at(lane)].why_not = "its assembled configuration is near to a singular one";
+  }
+  return lanes & near;
+}
+
+void LaneDesigns::measure(std::span<const ParameterSeeds> designs, std::span<Outcome> outcomes) {
+  unsigned lanes = 0;
+  int first = -1;
+  for (int lane = 0; lane < static_cast<int>(designs.size()); ++lane) {
+    Outcome& outcome = outcomes[at(lane)];
+    outcome = {std::nullopt, prepare(lanes_[at(lane)], designs[at(lane)])};
+    if (!outcome.why_not.empty()) continue;
+    if (first < 0) first = lane;
+    if (lanes_[at(lane)].instants.size() != lanes_[at(first)].instants.size()) {
+      outcome.why_not = "it has another number of rows than the designs beside it";
+      continue;
+    }
+    lanes |= 1U << lane;
+  }
+  if (lanes == 0) return;
+  const auto design_of = [&](int lane) -> const Lane& { return lanes_[at(lanes & 1U << lane ? lane : first)]; };
+  for (int lane = 0; lane < lane_count; ++lane)
+    motion_.set_design(lane, *design_of(lane).model, design_of(lane).length_scale);
+  lanes = assemble(lanes, outcomes);
+  if (lanes == 0) return;
+  motion_.run(lanes, static_cast<int>(lanes_[at(first)].instants.size()),
+              [&](int row, int lane) { return design_of(lane).instants[at(row)]; });
+  for (int lane = 0; lane < lane_count; ++lane) {
+    if (!(lanes & 1U << lane)) continue;
+    if (motion_.alive() & 1U << lane)
+      take_measures(lane, outcomes[at(lane)]);
+    else
+      outcomes[at(lane)].why_not = motion_.why(lane);
+  }
+}
+
+void LaneDesigns::take_measures(int lane, Outcome& outcome) {
+  const Lane& design = lanes_[at(lane)];
+  const std::vector<double>& instants = design.instants;
+  evaluator_.set_model(*design.model);
+  look_.follow(motion_, lane, *design.model, instants);
+  MeasureSet measures(design.task.measure_requests(), *design.model, evaluator_.plan(), kinematic_sources,
+                      {0, instants.back()});
+  // As AnalysisRows does.
+  double covered_to = 0;
+  for (std::size_t k = 0; k < instants.size() && !look_.lost(); ++k) {
+    const double t = instants[k];
+    if (t > covered_to && (t - covered_to >= measures.pace() || t == instants.back())) {
+      measures.cover({covered_to, t, [&](double instant) { return look_.at(instant); },
+                      [&](std::span<const double> next) { look_.expect(next); }});
+      covered_to = t;
+    }
+    measures.take_row(look_.row(k), false);
+  }
+  if (look_.lost()) {
+    outcome.why_not = "its motion between rows is too rough for lanes";
+    return;
+  }
+  std::vector<double> values;
+  for (const MeasureResult& result : measures.results()) {
+    if (!result.value) {
+      outcome.why_not = fmt::format("measure \"{}\": {}", result.name, result.trouble);
+      return;
+    }
+    values.push_back(*result.value);
+  }
+  outcome.measures = std::move(values);
+}
+
+}  // namespace catena
