@@ -4,10 +4,14 @@
 //     angle = pi - acos((d^2 + c^2 - (b +- a)^2) / (2 c d))
 //   oscillator: x - 1 = A cos(w t), w^2 = k / m:  dx/dk = -A t sin(w t) w / (2 k),  dx/dm = A t sin(w t) w / (2 m)
 //   path generation: the lengths of the four-bar that drew the points
+//   four-bars in lanes: angles of coupler and rocker from two triangles, their rates from the closed loop
 #include <fmt/format.h>
 
 #include <cmath>
 
+#include "catena/analysis/batch/batch.hpp"
+#include "catena/elements/all.hpp"
+#include "catena/model/model_add.hpp"
 #include "catena/results/stored_results.hpp"
 #include "catena/scene/running/scene_runner.hpp"
 #include "suites/suites.hpp"
@@ -178,12 +182,118 @@ void path_generation(Bench& bench) {
   });
 }
 
+/// A four-bar whose crank turns at 2 pi a second, and where its rocker is at the angle `crank`: angle, rate, and the
+/// rate of that, rad and s.
+struct FourBar {
+  double a, b, c, d;
+
+  std::array<double, 2> angles(double crank) const {
+    const double x = d - a * std::cos(crank), y = -a * std::sin(crank), r2 = x * x + y * y;
+    const double coupler = std::atan2(y, x) + std::acos((b * b + r2 - c * c) / (2 * b * std::sqrt(r2)));
+    return {coupler, std::atan2(b * std::sin(coupler) - y, b * std::cos(coupler) - x)};
+  }
+  std::array<double, 3> rocker(double crank) const {
+    const double w = 2 * std::acos(-1.0);
+    const auto [u, v] = angles(crank);
+    const double su = std::sin(u), cu = std::cos(u), sv = std::sin(v), cv = std::cos(v), sin_uv = su * cv - cu * sv;
+    const double st = std::sin(crank), ct = std::cos(crank);
+    const double du = a * w * (sv * ct - cv * st) / (b * sin_uv), dv = a * w * (su * ct - cu * st) / (c * sin_uv);
+    const double x = a * ct * w * w + b * cu * du * du - c * cv * dv * dv;
+    const double y = a * st * w * w + b * su * du * du - c * sv * dv * dv;
+    return {v, dv, -(cu * x + su * y) / (c * sin_uv)};
+  }
+};
+
+/// Designs that all turn fully: lengths within 5 % of 1 : 2.5 : 2 : 3, spread by golden parts.
+FourBar design_number(std::int64_t k) {
+  const auto around = [k](double middle, double step) {
+    const double part = step * static_cast<double>(k);
+    return middle * (0.95 + 0.1 * (part - std::floor(part)));
+  };
+  return {around(1, 0.6180339887498949), around(2.5, 0.7548776662466927), around(2, 0.8191725133961645),
+          around(3, 0.8566748838545029)};
+}
+
+void write_design(const FourBar& bar, Model& model) {
+  auto& pins = std::get<std::vector<ElementEntry<Revolute<double>, double>>>(model.constraints);
+  pins[1].element.s_i.x = bar.a;
+  pins[2].element.s_i.x = bar.b;
+  pins[2].element.s_j.x = bar.c;
+  pins[3].element.s_i.x = bar.d;
+  const auto [coupler, rocker] = bar.angles(0);
+  model.bodies[1].position = {bar.a, 0};
+  model.bodies[1].angle = coupler;
+  model.bodies[2].position = {bar.d, 0};
+  model.bodies[2].angle = rocker;
+}
+
+void lanes(Bench& bench) {
+  const std::int64_t designs = bench.brief() ? 16 : 2000;
+  constexpr int positions = 100;
+  Row row{.suite = "design", .problem = "four-bars, 100 positions each", .method = "in lanes, a position", .bodies = 3};
+  row.setting = "one thread";
+  row.error_of = "rates of the rocker, relative";
+  row.reference = "two triangles and the closed loop";
+  row.allowed = 1e-11;
+  if (!bench.wants(row)) return;
+  auto model = std::make_shared<Model>();
+  for (const char* name : {"crank", "coupler", "rocker"}) model->add_body(name, {});
+  const int ends[4][2] = {{ground, 0}, {0, 1}, {1, 2}, {ground, 2}};
+  for (const auto& [i, j] : ends) model->add("", Revolute<double>{}, i, j);
+  const std::vector<double> turning{0, 2 * std::acos(-1.0)};
+  model->add_driver("drive", AbsoluteAngle<double>{}, 0, ground, TimeFunction<double>::polynomial(turning));
+  write_design(design_number(0), *model);
+  BatchOptions options;
+  options.same_functions = true;
+  Batch batch(model, options);
+  const TimeGrid grid = TimeGrid::range(0, 0.99, 0.01);
+  double error = 0, largest = 0;
+  const auto follow = [&](const Batch::Take& take) {
+    const auto write = [](std::int64_t k, Model& design) { write_design(design_number(k), design); };
+    return batch.run(designs, grid, write, take);
+  };
+  const BatchReport report = follow([&](const BatchRows& rows) {
+    for (int lane = 0; lane < rows.designs; ++lane) {
+      const FourBar bar = design_number(rows.first + lane);
+      for (int k = 0; k < rows.rows; ++k) {
+        const std::array<double, 3> exact = bar.rocker(turning[1] * grid[k]);
+        error = std::max({error, std::abs(rows.positions(k, 2, 2)[lane] - exact[0]),
+                          std::abs(rows.velocities(k, 2, 2)[lane] - exact[1]) / turning[1],
+                          std::abs(rows.accelerations(k, 2, 2)[lane] - exact[2]) / (turning[1] * turning[1])});
+      }
+    }
+  });
+  row.error = error;
+  row.counts = {{"in lanes", static_cast<double>(report.in_lanes)}, {"failed", static_cast<double>(report.failed)}};
+  const double parts = static_cast<double>(designs) * positions;
+  bench.time(
+      row, [&] { follow([&](const BatchRows& rows) { largest = std::max(largest, rows.velocities(9, 2, 2)[0]); }); },
+      parts);
+  bench.add(row);
+  row.engine = "closed form by hand";
+  row.method = "one after the other, a position";
+  row.counts.clear();
+  row.error = not_measured;
+  bench.time(
+      row,
+      [&] {
+        for (std::int64_t k = 0; k < designs; ++k) {
+          const FourBar bar = design_number(k);
+          for (int n = 0; n < positions; ++n) largest = std::max(largest, bar.rocker(turning[1] * 0.01 * n)[2]);
+        }
+      },
+      parts);
+  row.counts = {{"largest", largest}};  // so that nothing of it is left out
+  bench.add(row);
+}
+
 }  // namespace
 
 void design_suite(Bench& bench) {
   swings(bench);
   oscillations(bench);
   path_generation(bench);
+  lanes(bench);
 }
 
 }  // namespace bench

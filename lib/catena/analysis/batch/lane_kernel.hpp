@@ -54,12 +54,14 @@ class LaneKernel {
   static constexpr double keep_distance = 1e-3, poor_contraction = 0.1;
   static constexpr double largest_angle = 1e5;
 
-  LaneKernel(const LaneJob& job, int lane) : job_(job), code_(*job.code), unit_(P::load(job.unit + lane)) {
-    for (const double** given : {&job_.field, &job_.function}) *given += lane;
-    for (double** numbers :
-         {&job_.frame, &job_.q, &job_.qd, &job_.qdd, &job_.matrix, &job_.right, &job_.tail, &job_.exchange,
-          &job_.converged, &job_.first_size, &job_.first_turn, &job_.contraction, &job_.residual, &job_.margin})
-      *numbers += lane;
+  LaneKernel(const LaneJob& job, int lane)
+      : job_(job), code_(*job.code), first_of_type_(job.code->first_of_type), unit_(P::load(job.unit + lane)) {
+    // One by one: an object whose members have their addresses taken would be kept in memory.
+    job_.field += lane, job_.function += lane, job_.frame += lane;
+    job_.q += lane, job_.qd += lane, job_.qdd += lane;
+    job_.matrix += lane, job_.right += lane, job_.tail += lane, job_.exchange += lane;
+    job_.converged += lane, job_.first_size += lane, job_.first_turn += lane, job_.contraction += lane;
+    job_.residual += lane, job_.margin += lane;
   }
 
   static P at(const double* base, int number) { return P::load(base + lane_count * number); }
@@ -115,6 +117,7 @@ class LaneKernel {
 
   LaneJob job_;  // its arrays begin at the lanes of this pack
   LaneCode code_;
+  const int* first_of_type_;
   P unit_;
 };
 
@@ -164,7 +167,7 @@ template <class F>
 void LaneKernel<V>::for_each_element(F&& f) const {
   int type = 0;
   const auto visit = [&]<class E>() {
-    for (int k = code_.first_of_type[type]; k < code_.first_of_type[type + 1]; ++k)
+    for (int k = first_of_type_[type]; k < first_of_type_[type + 1]; ++k)
       f.template operator()<E>(code_.element[k]);
     ++type;
   };
