@@ -37,6 +37,8 @@ test_packages=(
   node-typescript       # the types of the page are checked
   python3-pandas        # data frames of results
   python3-matplotlib    # plots and animations of results
+  libopenmpi-dev openmpi-bin            # sweeps over processes
+  python3-mpi4py python3-distributed    # and from Python
   mypy                  # the types of the Python package are checked
 )
 browser_packages=(

@@ -9,6 +9,7 @@
 #include "result_folder.hpp"
 #include "run_command.hpp"
 #include "scene_arguments.hpp"
+#include "shared_run.hpp"
 
 namespace catena::cli {
 namespace {
@@ -142,6 +143,15 @@ void add_common_options(CLI::App& command, Parsed& parsed) {
                    "print all rows and columns, the iterations of Newton's method, and the logs of solvers");
 }
 
+/// Of `run` and `sweep`.
+void add_sweep_options(CLI::App& command, RunOptions& options) {
+  CLI::Option* record =
+      command.add_option("--record", options.record, "keep every finished design of sweeps in this file");
+  record->type_name("FILE");
+  command.add_flag("--resume", options.resume, "go on from the record: the designs that it has are not analysed again")
+      ->needs(record);
+}
+
 /// Of `run` and `dynamics`.
 void add_dynamics_options(CLI::App& command, RunOptions& options) {
   command.add_flag("--estimate-error", options.estimate_error,
@@ -189,7 +199,19 @@ void add_list_command(CLI::App& app, Action& chosen, const ListVerb& verb) {
                      "write the scene with the values found to this file, comments and layout kept")
         ->type_name("FILE");
   }
-  command->callback([parsed, &chosen] { chosen = [run = complete(*parsed, "")] { return execute(run); }; });
+  const bool is_sweep = std::string_view(verb.command) == "sweep";
+  if (is_sweep) {
+    add_sweep_options(*command, parsed->run.options);
+    command
+        ->add_option("--patience", parsed->run.options.patience,
+                     "under mpirun: seconds of silence after which a process counts as lost")
+        ->capture_default_str()
+        ->type_name("S")
+        ->check(CLI::PositiveNumber);
+  }
+  command->callback([parsed, &chosen, is_sweep] {
+    chosen = [run = complete(*parsed, ""), is_sweep] { return is_sweep ? execute_together(run) : execute(run); };
+  });
 }
 
 void add_command(CLI::App& app, Action& chosen, const Verb& verb) {
@@ -199,6 +221,7 @@ void add_command(CLI::App& app, Action& chosen, const Verb& verb) {
   const bool whole_scene = verb.analysis[0] == '\0';
   if (whole_scene || std::string_view(verb.analysis) == "dynamics") add_dynamics_options(*command, parsed->run.options);
   if (whole_scene) {
+    add_sweep_options(*command, parsed->run.options);
     command
         ->add_option("--outputs", parsed->outputs,
                      "columns, separated by commas, in place of those that the scene and its analyses name")

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "catena/analysis/design/process_link.hpp"
 #include "catena/results/csv_writer.hpp"
 #include "catena/results/terminal/interrupt.hpp"
 #include "catena/results/terminal/text_sink.hpp"
@@ -75,7 +76,10 @@ TableLimits table_limits(bool verbose) {
 }
 
 void print_messages(const RunCommand& command, const SceneOutcome& outcome) {
-  std::fputs(outcome.error_text.c_str(), stderr);
+  // What is wrong in the scene, or with the command, is the same for all processes that share it: the first one says
+  // so.
+  const bool follows = command.options.link && command.options.link->rank() > 0;
+  if (!follows || outcome.exit_code == no_file) std::fputs(outcome.error_text.c_str(), stderr);
   // A table on a terminal has said already which analysis failed and why.
   const bool told = !command.json && !command.csv && !command.quiet && ::isatty(STDOUT_FILENO) == 1;
   if (!told) complain_of_failures(command.scene, outcome);

@@ -90,6 +90,13 @@ py::object to_python(const FieldValue& value) {
           py::list list;
           for (const FieldRecord& record : v) list.append(to_python(record));
           return list;
+        } else if constexpr (std::is_same_v<T, std::shared_ptr<const LongList>>) {
+          py::list list;
+          v->for_each([&](const FieldRecord& record) {
+            list.append(to_python(record));
+            return true;
+          });
+          return list;
         } else {
           return py::cast(v);
         }

@@ -18,7 +18,9 @@ ProgramResult run_catena(const std::vector<std::string>& arguments, const Progra
   TemporaryFolder folder;
   const std::string out = options.standard_output.empty() ? folder / "out" : options.standard_output;
   const std::string err = folder / "err";
-  std::vector<char*> argv{const_cast<char*>(CATENA_EXECUTABLE)};
+  std::vector<char*> argv;
+  for (const std::string& word : options.launcher) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(const_cast<char*>(CATENA_EXECUTABLE));
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
 
@@ -27,7 +29,7 @@ ProgramResult run_catena(const std::vector<std::string>& arguments, const Progra
     ::dup2(::open("/dev/null", O_RDONLY), 0);
     ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT, 0600), 1);
     ::dup2(::open(err.c_str(), O_WRONLY | O_CREAT, 0600), 2);
-    ::execv(argv[0], argv.data());
+    ::execvp(argv[0], argv.data());
     ::_exit(127);
   }
   if (options.during) options.during(process);

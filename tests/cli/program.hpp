@@ -15,6 +15,7 @@ struct ProgramResult {
 struct ProgramOptions {
   std::string standard_output;              ///< a file that takes the standard output instead of keeping it
   std::function<void(int process)> during;  ///< called while it runs
+  std::vector<std::string> launcher{};      ///< words before the program: mpirun -n 3
 };
 
 /// Runs `catena arguments...` and waits for it; after 60 s it is killed.

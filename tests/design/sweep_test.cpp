@@ -45,7 +45,7 @@ TEST(SweepPlan, StepsAreCountedNotKept) {
   steps.second = 2;
   steps.count = 5;
   EXPECT_EQ(designs({{steps}, SweepKind::grid}), (std::vector<std::vector<double>>{{1}, {1.25}, {1.5}, {1.75}, {2}}));
-  steps.count = 1e9;  // 8 GB if they were kept
+  steps.count = 1e9 - 1;  // 8 GB if they were kept
   const SweepPlan plan({{steps}, SweepKind::grid});
   double last = 0;
   plan.values(plan.designs() - 1, {&last, 1});
@@ -118,6 +118,26 @@ TEST(Sweep, GivesARowADesignAndItsStatus) {
       EXPECT_TRUE(std::isnan(stroke[k]));
     }
   }
+  // Each that failed, with its parameters and the reason.
+  const auto failures = field<std::shared_ptr<const LongList>>(run, "failures");
+  std::vector<std::int64_t> failed;
+  failures->for_each([&](const FieldRecord& record) {
+    EXPECT_EQ(record.size(), 5u);
+    const auto k = std::get<std::int64_t>(record[0].second);
+    failed.push_back(k);
+    EXPECT_EQ(std::get<double>(record[1].second), a[static_cast<std::size_t>(k - 1)]);
+    EXPECT_EQ(std::get<double>(record[2].second), b[static_cast<std::size_t>(k - 1)]);
+    EXPECT_EQ(std::get<std::string>(record[3].second),
+              to_string(static_cast<Status>(status[static_cast<std::size_t>(k - 1)])));
+    EXPECT_FALSE(std::get<std::string>(record[4].second).empty());
+    return true;
+  });
+  std::vector<std::int64_t> expected;
+  for (std::size_t k = 0; k < 6; ++k) {
+    if (!(a[k] < b[k])) expected.push_back(static_cast<std::int64_t>(k + 1));
+  }
+  EXPECT_EQ(failed, expected);
+  EXPECT_EQ(failures->size(), static_cast<std::int64_t>(expected.size()));
 }
 
 TEST(Sweep, AMeasureThatIsNoNumberFailsTheDesign) {
@@ -131,6 +151,10 @@ TEST(Sweep, AMeasureThatIsNoNumberFailsTheDesign) {
   // The root of about a + b - 4 a: of 0.35 - 0.2, and of 0.5 - 0.8.
   EXPECT_EQ(status[0], static_cast<double>(Status::ok));
   EXPECT_EQ(status[1], static_cast<double>(Status::not_converged));
+  field<std::shared_ptr<const LongList>>(run, "failures")->for_each([](const FieldRecord& record) {
+    EXPECT_TRUE(std::get<std::string>(record.back().second).starts_with("measure \"stroke\" has no value"));
+    return true;
+  });
 }
 
 // A bar on a torsion spring under a torque M, and no weight: its angle is M/k. A path leaves its last torque to what
@@ -175,14 +199,65 @@ TEST(Sweep, ThreadsChangeNothing) {
   }
 }
 
+double number(const FieldRecord& record, const std::string& name) {
+  for (const auto& [key, value] : record) {
+    if (key == name) return std::get<double>(value);
+  }
+  ADD_FAILURE() << "no " << name;
+  return 0;
+}
+
+// The stroke is 2 a; at the start x = a cos u + sqrt(b^2 - a^2 sin^2 u), u = 0.1.
+TEST(Sweep, ToleranceToFirstOrderIsThatOfTheClosedForm) {
+  std::string scene = slider + R"("over": {"a": {"normal": [0.1, 0.004]}, "b": {"uniform": [0.29, 0.31]}},
+    "design": "random", "samples": 300, "seed": 5}]})";
+  const std::string range = R"("stroke": {"range": "slide.x"})";
+  scene.replace(scene.find(range), range.size(), range + R"(, "start": {"first": "slide.x"})");
+  const TextRun run = run_text(scene);
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  const auto scatter = field<std::vector<FieldRecord>>(run, "scatter");
+  ASSERT_EQ(scatter.size(), 2u);
+  const double a = 0.1, b = 0.3, c = std::cos(0.1), s = std::sin(0.1), root = std::sqrt(b * b - a * a * s * s);
+  const double sigma_a = 0.004, sigma_b = 0.02 / std::sqrt(12.0);
+  const double by_a = (c - a * s * s / root) * sigma_a, by_b = b / root * sigma_b;
+  EXPECT_NEAR(number(scatter[0], "first_order_mean"), 2 * a, 1e-9);
+  EXPECT_NEAR(number(scatter[0], "first_order_deviation"), 2 * sigma_a, 1e-9);
+  EXPECT_NEAR(number(scatter[0], "due_to b"), 0, 1e-9);
+  EXPECT_NEAR(number(scatter[1], "first_order_mean"), a * c + root, 1e-9);
+  EXPECT_NEAR(number(scatter[1], "due_to a"), by_a, 1e-9);
+  EXPECT_NEAR(number(scatter[1], "due_to b"), by_b, 1e-9);
+  EXPECT_NEAR(number(scatter[1], "first_order_deviation"), std::hypot(by_a, by_b), 1e-9);
+  for (std::size_t m = 0; m < 2; ++m) {
+    const std::vector<double> values = run.column(m == 0 ? "stroke" : "start");
+    double sum = 0, squares = 0;
+    for (const double value : values) sum += value;
+    const double mean = sum / 300;
+    for (const double value : values) squares += (value - mean) * (value - mean);
+    const double deviation = std::sqrt(squares / 299);
+    EXPECT_NEAR(number(scatter[m], "mean"), mean, 1e-12);
+    EXPECT_NEAR(number(scatter[m], "deviation"), deviation, 1e-12);
+    // Of n samples a deviation is known to deviation/sqrt(2 n): within four of these.
+    EXPECT_NEAR(number(scatter[m], "first_order_deviation"), deviation, 4 * deviation / std::sqrt(600.0));
+  }
+  // A sweep over steps is no sample of anything.
+  const TextRun steps = run_text(slider + R"("over": {"a": [0.1, 0.11]}}]})");
+  for (const NamedField& entry : steps.analysis().fields) EXPECT_NE(entry.name, "scatter");
+}
+
 TEST(Sweep, NamesWhatIsWrong) {
   const auto error = [](const std::string& rest) { return run_text(slider + rest + "}]}").outcome; };
   EXPECT_EQ(error(R"("over": {"c": [1]})").exit_code, 3);
   EXPECT_NE(error(R"("over": {"c": [1]})").error_text.find("unknown parameter"), std::string::npos);
   EXPECT_NE(error(R"("over": {"a": {"from": 1, "to": 2}})").error_text.find("count"), std::string::npos);
   EXPECT_NE(error(R"("over": {"a": {"normal": [1, 0.1]}})").error_text.find("sampled"), std::string::npos);
-  EXPECT_NE(error(R"("over": {"a": {"from": 0, "to": 1, "count": 1e12}})").error_text.find("at most"),
+  EXPECT_NE(error(R"("over": {"a": {"from": 0, "to": 1, "count": 1e12}})").error_text.find("less than"),
             std::string::npos);
+  EXPECT_NE(error(R"("over": {"a": {"uniform": [1, 2]}}, "design": "sobol", "samples": 1000000000)")
+                .error_text.find("1e+09 designs are asked for; a sweep has less than"),
+            std::string::npos);
+  // One mistake, one error.
+  for (const char* over : {R"("over": {"a": []})", R"("over": {"a": {"from": 1, "to": 2}})"})
+    EXPECT_EQ(error(over).errors.size(), 1u) << error(over).error_text;
   EXPECT_NE(error(R"("over": {"a": [1, 2], "b": [1, 2, 3]}, "design": "together")").error_text.find("one length"),
             std::string::npos);
 }

@@ -157,6 +157,26 @@ TEST(TeeSink, StopsIfOneOfItsSinksDoesButLeavesNoneOut) {
   EXPECT_EQ(b.rows, 1);
 }
 
+TEST(TimeLeft, FollowsThePaceOfTheLastHalf) {
+  TimeLeft steady;
+  EXPECT_FALSE(steady.after(100, 0));
+  EXPECT_FALSE(steady.after(100.5, 0.05)) << "too early to tell";
+  for (double t = 101; t < 110; t += 0.1) EXPECT_NEAR(steady.after(t, (t - 100) / 10).value(), 110 - t, 1e-9);
+  // Nine tenths from a record at once, the rest at a hundredth a second: ten seconds in all.
+  TimeLeft resumed;
+  resumed.after(0, 0);
+  for (double t = 0.01; t < 9; t += 0.1) {
+    const std::optional<double> left = resumed.after(t, 0.9 + 0.01 * t);
+    if (t > 4) {
+      EXPECT_NEAR(left.value(), 10 - t, 1e-9) << t;
+    }
+  }
+  EXPECT_EQ(TimeLeft::text(39.2), "40 s left");
+  EXPECT_EQ(TimeLeft::text(700), "12 min left");
+  EXPECT_EQ(TimeLeft::text(12000), "3 h 20 min left");
+  EXPECT_EQ(TimeLeft::text(1e300), "years left");
+}
+
 TEST(ProgressBar, ShowsAFractionWhateverItIsGiven) {
   EXPECT_EQ(ProgressBar::text("kinematics", 0.5), "kinematics [###############...............]  50 %");
   EXPECT_EQ(ProgressBar::text("k", 7), "k [##############################] 100 %");

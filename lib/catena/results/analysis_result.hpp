@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
@@ -18,8 +20,17 @@ using FieldScalar = std::variant<bool, std::int64_t, double, std::string, std::v
 /// One object in a list of results: {"kind": "limit", "value": 12.5, "row": 40}.
 using FieldRecord = std::vector<std::pair<std::string, FieldScalar>>;
 
+/// A list of objects that may be longer than memory should hold: given one after the other, in order.
+class LongList {
+ public:
+  virtual ~LongList() = default;
+  virtual std::int64_t size() const = 0;
+  /// Until `take` returns false.
+  virtual void for_each(const std::function<bool(const FieldRecord&)>& take) const = 0;
+};
+
 using FieldValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<std::string>,
-                                std::vector<FieldRecord>, FieldRecord>;
+                                std::vector<FieldRecord>, FieldRecord, std::shared_ptr<const LongList>>;
 
 /// A named result: "stable", "iterations", "events". Names and meanings: apps/manual/scenes.md#results.
 struct NamedField {

@@ -72,9 +72,9 @@ std::optional<std::string> SweepPlan::trouble(const SweepRequest& request) {
                        numbers, most_latin_numbers);
   }
   const double designs = count(request);
-  if (designs > static_cast<double>(most_designs)) {
-    return fmt::format("{:.3g} designs are asked for; a sweep has at most {}: take a sampled \"design\", such as sobol",
-                       designs, most_designs);
+  if (designs >= static_cast<double>(most_designs)) {
+    return fmt::format("{:.3g} designs are asked for; a sweep has less than {}{}", designs, most_designs,
+                       is_sampled(request.kind) ? "" : ": take a sampled \"design\", such as sobol");
   }
   if (request.kind != SweepKind::together) return {};
   for (const SweepRange& range : request.over) {

@@ -42,7 +42,7 @@ struct SweepRequest {
 
 class SweepPlan {
  public:
-  /// More designs than this are taken for a mistake.
+  /// As many designs as this, or more, are taken for a mistake.
   static constexpr std::int64_t most_designs = 1'000'000'000;
   /// A latin square keeps so many numbers at most, samples times parameters: of 8 bytes each, 0.8 GB.
   static constexpr std::int64_t most_latin_numbers = 100'000'000;

@@ -40,19 +40,31 @@ struct ScalarText {
   std::string operator()(const std::vector<std::string>& list) const { return names(list); }
 };
 
+/// All of a record on a line of its own.
+std::string line_of(const FieldRecord& record) {
+  std::string text;
+  for (const auto& [name, value] : record)
+    text += (text.empty() ? "\n    " : ", ") + name + " " + std::visit(ScalarText{}, value);
+  return text;
+}
+
 struct ValueText : ScalarText {
   using ScalarText::operator();
   std::string operator()(const std::vector<double>& list) const { return enumerate(list, ScalarText{}); }
   std::string operator()(const std::vector<FieldRecord>& records) const {
     std::string text;
-    for (const FieldRecord& record : records) {
-      text += "\n    ";
-      bool first = true;
-      for (const auto& [name, value] : record) {
-        text += (first ? "" : ", ") + name + " " + std::visit(ScalarText{}, value);
-        first = false;
-      }
-    }
+    for (const FieldRecord& record : records) text += line_of(record);
+    return text.empty() ? "none" : text;
+  }
+  std::string operator()(const std::shared_ptr<const LongList>& list) const {
+    constexpr std::int64_t shown = 5;
+    std::string text;
+    list->for_each([&, k = std::int64_t{0}](const FieldRecord& record) mutable {
+      text += line_of(record);
+      return ++k < shown;
+    });
+    if (list->size() > shown)
+      text += "\n    and " + std::to_string(list->size() - shown) + " more: -o DIR and --json have all of them";
     return text.empty() ? "none" : text;
   }
   std::string operator()(const FieldRecord& record) const {

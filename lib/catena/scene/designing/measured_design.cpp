@@ -15,6 +15,14 @@ class NoRows final : public RowSink {
   bool row(std::span<const double>) override { return true; }
 };
 
+/// The reason of a measure that has none.
+std::string why_without_value(const PlacedMeasure& measure, const AnalysisResult& result) {
+  const auto found = std::find_if(result.measures.begin(), result.measures.end(),
+                                  [&](const MeasureResult& m) { return m.name == measure.request.name; });
+  const std::string trouble = found != result.measures.end() ? found->trouble : std::string();
+  return "measure \"" + measure.request.name + "\" has no value" + (trouble.empty() ? "" : ": " + trouble);
+}
+
 }  // namespace
 
 bool run_inner(const AnalysisContext& outer, const AnalysisTask& inner, InnerRun& run, AnalysisResult& result) {
@@ -58,7 +66,7 @@ bool run_inner(const AnalysisContext& outer, const AnalysisTask& inner, InnerRun
 }
 
 std::optional<Status> run_design(const AnalysisContext& context, ParameterSeeds seeds, const DesignRequest* design,
-                                 DesignSink* watch, const TakeAnalysis& take) {
+                                 DesignSink* watch, const TakeAnalysis& take, std::string* why) {
   SystemState state = context.state;
   const ParameterSeeds given = seeds;
   NoRows nobody;
@@ -79,6 +87,7 @@ std::optional<Status> run_design(const AnalysisContext& context, ParameterSeeds 
                  .poses = watch ? &watch->poses() : nullptr};
     const bool possible = run_inner(context, inner, run, result);
     if (watch) watch->end_analysis(result);
+    if (why && !result.report.ok()) *why = result.report.message;
     if (!possible) return std::nullopt;
     if (!result.report.ok()) return result.report.status;
     if (missing) missing->complete(inner, seeds, result);
@@ -100,17 +109,20 @@ const MeasureResult* value_of(const PlacedMeasure& measure, const AnalysisResult
 }
 
 Status measure_design(const AnalysisContext& context, const ParameterSeeds& seeds, DesignSink* watch,
-                      std::vector<double>& measures) {
+                      std::vector<double>& measures, std::string& why) {
   bool measured = true;
   const auto take = [&](const AnalysisTask& inner, const AnalysisResult& result) {
     for (const PlacedMeasure& placed : inner.measures) {
       const MeasureResult* found = value_of(placed, result);
       measures.push_back(found ? *found->value : std::numeric_limits<double>::quiet_NaN());
+      if (measured && !found) why = why_without_value(placed, result);
       measured = measured && found;
     }
     return true;
   };
-  const Status status = run_design(context, seeds, nullptr, watch, take).value_or(Status::refused);
+  std::string failure;
+  const Status status = run_design(context, seeds, nullptr, watch, take, &failure).value_or(Status::refused);
+  if (status != Status::ok) why = std::move(failure);
   return status == Status::ok && !measured ? Status::not_converged : status;
 }
 

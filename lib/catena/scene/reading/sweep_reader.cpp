@@ -100,7 +100,14 @@ void AnalysisReader::check_sweep(const JsonValue& object, AnalysisTask& task) {
   task.sweep.samples =
       static_cast<std::int64_t>(std::min(task.number("samples", static_cast<double>(task.sweep.samples)), 9e18));
   task.sweep.seed = static_cast<std::uint64_t>(task.number("seed", 1));
-  if (!object.find("over") || task.sweep.over.empty()) return;  // reported
+  // What was reported already is not reported again as what follows from it.
+  const auto lacks_values = [](const SweepRange& range) {
+    return (range.kind == SweepRange::Kind::list && range.values.empty()) ||
+           (range.kind == SweepRange::Kind::steps && !(range.count >= 1));
+  };
+  const bool reported = !object.find("over") || task.sweep.over.empty() ||
+                        std::any_of(task.sweep.over.begin(), task.sweep.over.end(), lacks_values);
+  if (reported) return;
   if (const std::optional<std::string> why = SweepPlan::trouble(task.sweep)) error(object.find("over"), *why);
 }
 

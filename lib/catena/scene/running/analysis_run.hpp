@@ -30,6 +30,18 @@ struct DesignRequest {
   bool rows = true;                ///< of rows as well, not of measures alone
 };
 
+class ProcessLink;
+class SweepRecord;
+
+/// What helps a sweep beside threads.
+struct SweepHelp {
+  SweepRecord* record = nullptr;  ///< of finished designs, if it is kept
+  ProcessLink* link = nullptr;    ///< to other processes that share the work
+  double patience = 10;           ///< s of silence after which such a process is lost
+  std::string_view owner{};       ///< what a process must agree with to share the work
+  int analysis = 0;               ///< number of the sweep among the analyses, from 1
+};
+
 struct AnalysisContext {
   const AnalysisTask& task;
   std::shared_ptr<const Model> model;
@@ -50,6 +62,7 @@ struct AnalysisContext {
   CheckpointRequest* checkpoint = nullptr;  ///< nullptr: no analysis has to pause
   PoseSink* poses = nullptr;                ///< nullptr: nobody draws
   int threads = 1;                          ///< that a sweep may use
+  SweepHelp sweep{};
 };
 
 /// The model with another value of parameter number `parameter`, all else as in the context; nullptr if the scene does

@@ -62,6 +62,16 @@ struct FieldWriter {
   void operator()(const std::vector<FieldRecord>& records) const {
     append_list(out, records, [&](const FieldRecord& record) { (*this)(record); });
   }
+  void operator()(const std::shared_ptr<const LongList>& list) const {
+    out += '[';
+    list->for_each([&, first = true](const FieldRecord& record) mutable {
+      if (!first) out += ", ";
+      first = false;
+      (*this)(record);
+      return true;
+    });
+    out += ']';
+  }
   void operator()(const FieldRecord& record) const {
     out += '{';
     bool first = true;
@@ -239,7 +249,11 @@ class JsonSink final : public ResultSink, private RowSink {
     append_extremes(text_, result);
     for (const NamedField& field : result.fields) {
       append_key(text_, field.name);
-      append_field(text_, field.value);
+      if (const auto* list = std::get_if<std::shared_ptr<const LongList>>(&field.value)) {
+        send_list(**list);
+      } else {
+        append_field(text_, field.value);
+      }
     }
     text_ += '}';
     send();
@@ -297,6 +311,19 @@ class JsonSink final : public ResultSink, private RowSink {
     catena::append_json(text_, report.seconds);
     append_key(text_, "counters");
     append_counters(text_, report.counters);
+  }
+  /// A line a record, each sent as it comes.
+  void send_list(const LongList& list) {
+    text_ += '[';
+    list.for_each([&, first = true](const FieldRecord& record) mutable {
+      text_ += first ? "\n    " : ",\n    ";
+      first = false;
+      FieldWriter{text_}(record);
+      send();
+      text_.clear();
+      return output_.ok();
+    });
+    text_ += ']';
   }
   void send() { output_.write(text_); }
 

@@ -6,8 +6,11 @@
 
 namespace catena {
 
-void SceneCheckpoints::prepare(std::string_view scene) {
-  std::vector<std::string_view> texts{CATENA_VERSION, scene, options_.verb};
+void SceneCheckpoints::prepare(std::span<const std::string_view> of_scene) {
+  std::vector<std::string_view> texts{CATENA_VERSION};
+  texts.insert(texts.end(), of_scene.begin(), of_scene.end());
+  texts.push_back("verb");
+  texts.push_back(options_.verb);
   for (const auto* pairs : {&options_.verb_options, &options_.set}) {
     texts.push_back(pairs == &options_.set ? "set" : "keys");
     for (const auto& [name, value] : *pairs) {
@@ -21,10 +24,11 @@ void SceneCheckpoints::prepare(std::string_view scene) {
   if (!options_.restart.empty()) {
     restart_ = read_checkpoint(options_.restart);
     if (restart_->owner != owner_) {
-      throw CheckpointError(fmt::format(
-          "the checkpoint \"{}\" belongs to another scene, or to this one with another text, other parameters, another "
-          "command or another version of catena",
-          options_.restart));
+      throw CheckpointError(
+          fmt::format("the checkpoint \"{}\" belongs to another scene, or to this one with another text, other files "
+                      "or parameters, "
+                      "another command or another version of catena",
+                      options_.restart));
     }
   }
   if (!options_.checkpoint.empty()) check_checkpoint_place(options_.checkpoint);

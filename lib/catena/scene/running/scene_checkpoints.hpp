@@ -1,11 +1,12 @@
 // Checkpoints of a scene's run: the file, the run it belongs to, and the state from which a run is resumed.
 //
-// A checkpoint belongs to the scene's text, the parameters and the analysis of the command line, and the number of the
-// analysis: with anything else it is refused.
+// A checkpoint belongs to the scene's text, that of the files that it names, the parameters and the analysis of the
+// command line, and the number of the analysis: with anything else it is refused.
 #pragma once
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "catena/results/checkpoint.hpp"
@@ -27,8 +28,9 @@ class SceneCheckpoints {
 
   /// Whether analyses must pause: checkpoints are written, or the run goes on from one that was.
   bool wanted() const { return !options_.checkpoint.empty() || restart_; }
-  /// Reads the file to go on from and tries the one to write. Throws CheckpointError.
-  void prepare(std::string_view scene);
+  /// Reads the file to go on from and tries the one to write. `texts`: the scene's and those of the files that it
+  /// names. Throws CheckpointError.
+  void prepare(std::span<const std::string_view> texts);
   /// Number of the analysis with which the run begins.
   int first_analysis() const { return restart_ ? restart_->analysis : 0; }
   /// Valid as long as this object.

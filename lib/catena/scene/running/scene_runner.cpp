@@ -6,11 +6,13 @@
 #include <cmath>
 #include <cstdio>
 
+#include "catena/analysis/design/process_link.hpp"
 #include "catena/scene/building/build_model.hpp"
 #include "catena/scene/judging/scene_checks.hpp"
 #include "catena/scene/models/command_text.hpp"
 #include "catena/scene/models/scene_models.hpp"
 #include "catena/scene/models/scene_saving.hpp"
+#include "catena/scene/models/sweep_record.hpp"
 #include "catena/scene/reading/scene_reader.hpp"
 #include "catena/scene/reading/scene_reading.hpp"
 #include "catena/scene/running/analysis_run.hpp"
@@ -57,6 +59,7 @@ class SceneRun {
   void finish_errors();
   /// Whether what the options say of dynamics can be done.
   bool check_dynamics_options();
+  bool prepare_files();
   void refuse(int exit_code, const std::string& why);
 
   const RunOptions& options_;
@@ -70,6 +73,8 @@ class SceneRun {
   std::optional<SceneModels> models_;
   ParameterSeeds handed_on_;  // values of parameters that paths and optimisations left behind
   SceneCheckpoints checkpoints_{options_};
+  std::string sweep_owner_;  // hash of what the designs of sweeps depend on
+  std::optional<SweepRecord> record_;
 };
 
 std::shared_ptr<const Model> SceneRun::build(std::span<const double> parameters) {
@@ -245,7 +250,12 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
                           .estimate_error = options_.estimate_error,
                           .checkpoint = checkpoints_.wanted() ? &checkpoint : nullptr,
                           .poses = options_.poses,
-                          .threads = options_.threads};
+                          .threads = options_.threads,
+                          .sweep = {.record = record_ ? &*record_ : nullptr,
+                                    .link = options_.link,
+                                    .patience = options_.patience,
+                                    .owner = sweep_owner_,
+                                    .analysis = number + 1}};
   if (context.poses) context.poses->begin_poses(context.model);
   if (task.changes_parameters) {
     // Those that follow from what was set differ too.
@@ -335,16 +345,39 @@ bool SceneRun::check_dynamics_options() {
   return outcome_.exit_code == 0;
 }
 
+// The files to go on from and to write to: with all that the scene was read from, they know their own again.
+bool SceneRun::prepare_files() {
+  std::vector<std::string_view> texts{scene_->source->text()};
+  for (const auto& file : scene_->data_files) texts.push_back(file->text());
+  try {
+    checkpoints_.prepare(texts);
+    texts.push_back(CATENA_VERSION);
+    for (const auto& [name, value] : options_.set) texts.insert(texts.end(), {name, value});
+    sweep_owner_ = fingerprint(texts);
+    // Only the process that leads others keeps a record.
+    const bool keeps = !options_.record.empty() && !(options_.link && options_.link->rank() > 0);
+    const bool any = std::any_of(tasks_.begin(), tasks_.end(), [](const auto& task) { return task.type() == "sweep"; });
+    if (keeps && !any) {
+      refuse(2, "--record: the scene has no sweep, and other analyses have no designs to be kept");
+      return false;
+    }
+    if (keeps) record_.emplace(options_.record, outcome_.scene, sweep_owner_, options_.resume);
+  } catch (const CheckpointError& error) {
+    refuse(4, error.what());
+    return false;
+  } catch (const SweepRecordError& error) {
+    refuse(4, error.what());
+    return false;
+  }
+  return true;
+}
+
 bool SceneRun::read(const std::string& path) {
   outcome_.scene = stem(path);
   std::optional<SourceText> source;
   try {
     source.emplace(options_.text ? SourceText(path, *options_.text) : SourceText::read(path));
-    checkpoints_.prepare(source->text());
   } catch (const FileError& error) {
-    refuse(4, error.what());
-    return false;
-  } catch (const CheckpointError& error) {
     refuse(4, error.what());
     return false;
   }
@@ -352,12 +385,13 @@ bool SceneRun::read(const std::string& path) {
     finish_errors();
     return false;
   }
+  if (!scene_->name.empty()) outcome_.scene = scene_->name;
   if (!check_dynamics_options()) return false;
   if (tasks_.empty() && !options_.only.empty()) {
     refuse(2, fmt::format("the scene lists no {} in its analyses", options_.only));
     return false;
   }
-  if (!scene_->name.empty()) outcome_.scene = scene_->name;
+  if (!prepare_files()) return false;
   outcome_.parameters = named_parameters(parameters_.evaluate<double>(scene_->expressions, diagnostics_));
   return true;
 }

@@ -23,6 +23,7 @@
 namespace catena {
 
 class PoseSink;
+class ProcessLink;
 
 /// How far a run has come.
 struct Progress {
@@ -57,8 +58,14 @@ struct RunOptions {
   /// twentieth of the analysis.
   std::string checkpoint;
   double checkpoint_every = 0;
-  int threads = 1;            ///< that a sweep may use
-  PoseSink* poses = nullptr;  ///< told where the bodies are (results/pose_sink.hpp), if anybody draws
+  int threads = 1;  ///< that a sweep may use
+  /// File that keeps every finished design of the scene's sweeps (models/sweep_record.hpp), or empty; `resume`: it is
+  /// there, and the run goes on from it.
+  std::string record;
+  bool resume = false;
+  ProcessLink* link = nullptr;  ///< to other processes that share the work of sweeps, if there are any
+  double patience = 10;         ///< s of silence after which such a process counts as lost
+  PoseSink* poses = nullptr;    ///< told where the bodies are (results/pose_sink.hpp), if anybody draws
   std::string restart;  ///< file from which a run is taken up again, or empty; checkpoint_every is then the file's
 };
 

@@ -141,8 +141,11 @@ void append_analysis(ViewJson& json, const RecordedAnalysis& analysis, const Dra
   json.close(']').key("set").open('{');
   for (const auto& [name, value] : analysis.result.set) json.key(name).value(value);
   json.close('}').key("fields").open('{');
-  for (const NamedField& field : analysis.result.fields)
-    append_field(json.key(field.name).text_of_value(), field.value);
+  for (const NamedField& field : analysis.result.fields) {
+    // A page has no room for lists of any length; the rows of a sweep have the statuses.
+    if (!std::holds_alternative<std::shared_ptr<const LongList>>(field.value))
+      append_field(json.key(field.name).text_of_value(), field.value);
+  }
   json.close('}').key("drawing").count(drawings.number(analysis.model));
   append_measures(json, analysis.result);
   append_columns(json, analysis);
