@@ -106,6 +106,14 @@ class Sweeps(unittest.TestCase):
     def test_what_is_wrong_is_told_before_anything_runs(self):
         with self.assertRaisesRegex(ValueError, "design 1: parameter length is nan"):
             catena.sweep(arm(), {"length": [1, math.nan]})
+        with self.assertRaisesRegex(ValueError, "1000000000 designs are asked for"):
+            catena.sweep(arm(), {"length": range(10**5), "width": range(10**4)})
+        with self.assertRaisesRegex(ValueError, "parameter length needs a list of values, not 5"):
+            catena.sweep(arm(), {"length": 5})
+        with self.assertRaisesRegex(ValueError, "parameter length is inf, not a finite number"):
+            arm().run({"length": math.inf})
+        with self.assertRaisesRegex(ValueError, "patience is 0"):
+            catena.sweep(arm(), {"length": [1]}, patience=0)
         with self.assertRaisesRegex(ValueError, "at least one design"):
             catena.sweep(arm(), {"length": [1]}, at_once=0)
         with self.assertRaisesRegex(KeyError, "reach"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -19,6 +20,9 @@ Value = float | str
 
 def texts_of(values: Mapping[str, Value]) -> list[tuple[str, str]]:
     """Values in the syntax of scenes."""
+    for name, value in values.items():
+        if not isinstance(value, str) and not math.isfinite(float(value)):
+            raise ValueError(f"parameter {name} is {value}, not a finite number")
     return [(name, value if isinstance(value, str) else repr(float(value))) for name, value in values.items()]
 
 

@@ -18,7 +18,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import Executor, Future, as_completed
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -30,6 +30,10 @@ if TYPE_CHECKING:
     import pandas
 
 Design = dict[str, Value]
+
+#: As many are kept in memory: two gigabytes.
+MOST_DESIGNS = 10_000_000
+_ELSEWHERE = "the analysis `sweep` of scenes has no list of them in memory"
 
 #: Status of a design whose worker did not answer.
 LOST = "lost"
@@ -124,7 +128,17 @@ def designs_of(
 ) -> list[Design]:
     """The designs that `parameters` stands for."""
     if not isinstance(parameters, Mapping):
-        return [dict(design) for design in parameters]
+        designs = [dict(design) for design in itertools.islice(parameters, MOST_DESIGNS + 1)]
+        if len(designs) > MOST_DESIGNS:
+            raise ValueError(f"more than {MOST_DESIGNS} designs are asked for: {_ELSEWHERE}")
+        return designs
+    for name, given in parameters.items():
+        if isinstance(given, str) or not isinstance(given, Iterable):
+            raise ValueError(f"parameter {name} needs a list of values, not {given!r}")
+    if not together:
+        count = math.prod(len(given) for given in parameters.values())
+        if count > MOST_DESIGNS:
+            raise ValueError(f"{count} designs are asked for, more than {MOST_DESIGNS}: {_ELSEWHERE}")
     values = {name: list(given) for name, given in parameters.items()}
     if together:
         lengths = {name: len(given) for name, given in values.items()}
@@ -142,15 +156,19 @@ def sweep(
     together: bool = False,
     only: str = "",
     at_once: int | None = None,
+    patience: float | None = None,
     progress: Callable[[int, int], Any] | None = None,
 ) -> Sweep:
     """Runs a scene for many designs and collects the measures of its analyses.
 
     parameters  name -> values: every combination of them, or with `together` the first of each, the second ...; or a
                 list of designs, name -> value each
-    executor    concurrent.futures.ThreadPoolExecutor, ProcessPoolExecutor, or any other with `submit`; none: here
+    executor    concurrent.futures.ThreadPoolExecutor, ProcessPoolExecutor, mpi4py.futures.MPIPoolExecutor, that of
+                dask (`client.get_executor()`), or any other with `submit`; none: here
     only        type of the analyses to run
     at_once     designs that a worker gets at once; chosen by itself unless it is given
+    patience    seconds without any answer after which designs that are still out count as lost, for executors that do
+                not notice that a worker died, as mpi4py's; none: there is no such limit
     progress    called with the number of designs done and the number of all
 
     A design that cannot be analysed, or whose worker died, is one of `.failures`, with the reason; the others count.
@@ -165,6 +183,8 @@ def sweep(
         at_once = max(1, min(100, len(designs) // 200))
     if at_once < 1:
         raise ValueError("a worker gets at least one design at once")
+    if patience is not None and not patience > 0:
+        raise ValueError(f"patience is {patience}, not a time above zero")
     answers: list[_Answer | None] = [None] * len(designs)
     parts = [range(first, min(first + at_once, len(designs))) for first in range(0, len(designs), at_once)]
     done = 0
@@ -194,12 +214,21 @@ def sweep(
                     lose(part, error)
                 else:
                     running[future] = part
-            for future in as_completed(running):
-                problem = future.exception()
-                if problem is None:
-                    take(running[future], future.result())
-                else:
-                    lose(running[future], problem)
+            pending = set(running)
+            while pending:
+                finished, pending = wait(pending, timeout=patience, return_when=FIRST_COMPLETED)
+                for future in finished:
+                    problem = CancelledError() if future.cancelled() else future.exception()
+                    if problem is None:
+                        take(running[future], future.result())
+                    else:
+                        lose(running[future], problem)
+                if not finished:
+                    silence = TimeoutError(f"no answer from any worker in {patience} s")
+                    for future in pending:
+                        future.cancel()
+                        lose(running[future], silence)
+                    break
         except BaseException:
             for future in running:
                 future.cancel()
