@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/rope_pieces.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 RopePulley<double> pulley_of(const RopeNode& node) {
   return {.body = node.body,

@@ -11,8 +11,6 @@
 namespace catena {
 namespace {
 
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
 /// The stretches of a whole rope in the given configuration, from pulley that rolls to pulley that rolls.
 template <class S>
 std::vector<RopeStretch<S>> follow(const BasicModel<S>& model, const RopeWay<S>& way) {

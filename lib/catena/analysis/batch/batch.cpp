@@ -12,11 +12,10 @@
 
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 PlanOptions plan_options(const Model& model) {
   PlanOptions options;

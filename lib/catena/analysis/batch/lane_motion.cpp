@@ -7,10 +7,10 @@
 #include <limits>
 #include <utility>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // The rules of Kinematics: kinematics.cpp for the first two, kinematics_march.cpp for the others.
 constexpr double nearby = 0.1, nearby_contraction = 0.25;

@@ -8,13 +8,12 @@
 #include <map>
 #include <tuple>
 
+#include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/linalg/factorization/factorization.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 #define CATENA_LANE_IS(Type) || std::is_same_v<E, Type<double>>
 template <class E>

@@ -1,13 +1,9 @@
 #include "catena/analysis/batch/lane_solver.hpp"
 
 #include "catena/analysis/batch/lane_kernels.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
-namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
-
-}  // namespace
 
 LaneSolver::LaneSolver(const LaneProgram& program)
     : program_(program),

@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include "catena/assembly/rope_ways.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // A tangent's angle is known within half a turn of the one from which it is counted; from this one on, rad, it is
 // counted anew. Between two samples of a step it turns by less than what is left.

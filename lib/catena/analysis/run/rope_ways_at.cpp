@@ -4,11 +4,10 @@
 
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/assembly/rope_ways.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 // A tangent that has turned further, rad, is counted anew: what it turns until the next look is known within half a
 // turn of it.

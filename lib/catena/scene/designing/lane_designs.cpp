@@ -6,11 +6,10 @@
 #include <exception>
 
 #include "catena/analysis/pose/assemble.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
 constexpr ColumnSources kinematic_sources{
     .analysis = "kinematics", .timed = true, .velocity = true, .acceleration = true};
