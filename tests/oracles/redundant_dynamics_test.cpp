@@ -53,7 +53,7 @@ TEST(RedundantMotions, OfCasesThatWereWrong) {
         Case{false, 1, 10012, adams, 1e-12}, Case{false, 0, 50035, automatic, 1e-11},
         Case{false, 0, 50029, adams, 1e-12}, Case{true, 4, 10012, automatic, 1e-12},
         Case{true, 4, 10012, partitioning, 1e-12}, Case{true, 4, 20020, baumgarte, 1e-12},
-        Case{true, 8, 30102, automatic, 1e-6}}) {
+        Case{true, 8, 30102, automatic, 1e-6}, Case{true, 4, 10028, automatic, 1e-10}}) {
     const std::optional<KnownMotion> motion =
         c.massless ? draw_massless(c.kind, c.seed) : draw_redundant(c.kind, c.seed);
     ASSERT_TRUE(motion);

@@ -133,10 +133,10 @@ class RungeKutta final : public Integrator {
   bool keeps_energy_ = false;                    // its balance says how fast the mechanism moves
   double weight_ = 0;                            // of all bodies, times the length scale, J
   bool interpolant_ready_ = false, by_ends_ = false, passing_singular_ = false, projecting_stages_ = false,
-       crossing_ = false, long_steps_ = false, best_passes_ = false;
+       crossing_ = false, long_steps_ = false, best_passes_ = false, taking_best_ = false;
   int low_order_left_ = 0, rejections_ = 0, detours_ = 0;
   std::int64_t low_order_steps_ = 0, projected_steps_ = 0;
-  double accepted_error_ = 1, best_error_ = 0, best_step_ = 0;
+  double accepted_error_ = 1, step_error_ = 1, best_error_ = 0, best_step_ = 0;
   double smallest_stage_ratio_ = 1, largest_stage_ratio_ = 1, start_ratio_ = 1, singular_ratio_ = 0,
          usual_ratio_ = 1e-300;
 };

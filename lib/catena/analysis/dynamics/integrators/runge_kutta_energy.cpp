@@ -76,7 +76,7 @@ double RungeKutta::explained_by_errors(double h) const {
     energy +=
         mass[c] * std::abs(v[c]) * scale_.velocity_unit(c, h, v[c]) + std::abs(loads[c]) * scale_.position_unit(c, h);
   }
-  return (accepted_error_ + rounding_of_velocity(h)) * energy;
+  return (step_error_ + rounding_of_velocity(h)) * energy;
 }
 
 // Balances the step from y_ to y_new_, of size h, which was projected. False: more energy is missing than the error of

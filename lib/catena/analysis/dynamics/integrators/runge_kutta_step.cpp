@@ -62,7 +62,7 @@ void RungeKutta::repeat_with_projected_stages(double h) {
   projecting_stages_ = true;
   best_error_ = std::numeric_limits<double>::infinity();
   best_step_ = 0;
-  best_passes_ = false;
+  best_passes_ = taking_best_ = false;
   h_ = h;
 }
 
@@ -83,7 +83,9 @@ bool RungeKutta::try_crossing(double h, double error, double rounding) {
   if (detour(h, error)) return true;
   if (best_step_ == 0) return false;
   h_ = best_step_;
-  accepted_error_ = 1.1 * best_error_;
+  // Small masses may have been weighed anew since, and its rounding is another one by the new ratios of pivots.
+  accepted_error_ = largest_crossing_error;
+  taking_best_ = true;
   best_step_ = 0;
   return true;
 }
@@ -93,7 +95,7 @@ bool RungeKutta::advance(double limit) {
   const double smallest = scale_.smallest_step(t_);
   double proposed = fixed ? options_.fixed_step : h_;
   detours_ = 0;
-  projecting_stages_ = false;
+  projecting_stages_ = taking_best_ = false;
   accepted_error_ = 1;
   rejections_ = 0;
   // Short steps would end again and again beside a singular position.
@@ -132,7 +134,7 @@ bool RungeKutta::advance(double limit) {
     const double growth =
         std::clamp(safety * std::pow(std::max(error, 1e-10), -1.0 / tableau().order), largest_cut, largest_growth);
     const double rounding = projecting_stages_ && !fixed && dips() ? rounding_of_crossing(h) : 0;
-    const bool accurate = std::max(error, rounding) <= accepted_error_;
+    const bool accurate = std::max(error, taking_best_ ? 0 : rounding) <= accepted_error_;
     if (accurate && !fixed && !projecting_stages_ && projects() && dips()) {
       // Errors of stages across the constraints affect each other here, and the estimate does not contain all of it.
       repeat_with_projected_stages(h);
@@ -144,6 +146,7 @@ bool RungeKutta::advance(double limit) {
       reject(h * std::min(growth, 1.0));
       continue;
     }
+    step_error_ = std::max(error, 1.0);
     if (!factored && !factorize_new_point()) {
       if (fixed) return false;
       reject(h / 4);
