@@ -45,15 +45,27 @@ TEST(RedundantMotions, OfCasesThatWereWrong) {
     double tolerance;
   };
   using enum IntegrationMethod;
-  for (const Case& c :
-       {Case{true, 4, 4, rk5, 1e-5}, Case{true, 4, 4, rk5, 1e-12}, Case{true, 4, 4, baumgarte, 1e-5},
-        Case{true, 4, 4, baumgarte, 1e-12}, Case{true, 5, 1, baumgarte, 1e-10}, Case{false, 0, 20020, rk5, 1e-8},
-        Case{false, 0, 10023, baumgarte, 1e-11}, Case{false, 0, 10023, partitioning, 1e-12},
-        Case{false, 1, 10012, rk8, 1e-12}, Case{false, 1, 10018, adams, 1e-12}, Case{false, 0, 10023, rk5, 1e-12},
-        Case{false, 1, 10012, adams, 1e-12}, Case{false, 0, 50035, automatic, 1e-11},
-        Case{false, 0, 50029, adams, 1e-12}, Case{true, 4, 10012, automatic, 1e-12},
-        Case{true, 4, 10012, partitioning, 1e-12}, Case{true, 4, 20020, baumgarte, 1e-12},
-        Case{true, 8, 30102, automatic, 1e-6}, Case{true, 4, 10028, automatic, 1e-10}}) {
+  for (const Case& c : {Case{true, 4, 4, rk5, 1e-5},
+                        Case{true, 4, 4, rk5, 1e-12},
+                        Case{true, 4, 4, baumgarte, 1e-5},
+                        Case{true, 4, 4, baumgarte, 1e-12},
+                        Case{true, 5, 1, baumgarte, 1e-10},
+                        Case{false, 0, 20020, rk5, 1e-8},
+                        Case{false, 0, 10023, baumgarte, 1e-11},
+                        Case{false, 0, 10023, partitioning, 1e-12},
+                        Case{false, 1, 10012, rk8, 1e-12},
+                        Case{false, 1, 10018, adams, 1e-12},
+                        Case{false, 0, 10023, rk5, 1e-12},
+                        Case{false, 1, 10012, adams, 1e-12},
+                        Case{false, 0, 50035, automatic, 1e-11},
+                        Case{false, 0, 50029, adams, 1e-12},
+                        Case{true, 4, 10012, automatic, 1e-12},
+                        Case{true, 4, 10012, partitioning, 1e-12},
+                        Case{true, 4, 20020, baumgarte, 1e-12},
+                        Case{true, 8, 30102, automatic, 1e-6},
+                        Case{true, 4, 10028, automatic, 1e-10},
+                        Case{true, 4, 10029, adams, 1e-6},
+                        Case{true, 4, 10029, partitioning, 1e-10}}) {
     const std::optional<KnownMotion> motion =
         c.massless ? draw_massless(c.kind, c.seed) : draw_redundant(c.kind, c.seed);
     ASSERT_TRUE(motion);

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double schur_regularisation = 1e-12;  // part of the diagonal that is added
 constexpr double singular_ratio = 1e-10;        // below this pivot ratio it is ...
-constexpr double clearly_more = 10;  // ... until the ratio is so many times this, or what the addition can make
+constexpr double clearly_more = 10;             // ... until the ratio is so many times this, and without it as well ...
+constexpr double rounding_of_pivots = 1e-14;    // ... not below this part of the largest diagonal
 // Rounds in which a residual that shrinks to a half, at least, comes to rounding.
 constexpr int most_massless_rounds = 52;
 constexpr double massless_rounding = 1e-15;
@@ -165,13 +166,15 @@ bool SchurSystem::factorize(std::span<const double> jacobian, Counters& counters
   const bool before = regularised_;
   fill(before ? schur_regularisation : 0);
   if (!factor_values(counters)) return false;
-  if (before) {
-    // What is added to a large diagonal shows in the pivots of small ones: a ratio that it makes says nothing of the
-    // equations, and whether they are regular is seen without it.
+  if (before && !(smallest_ratio_ < clearly_more * singular_ratio)) {
+    // What is added to a large diagonal shows in the pivots of small ones: whether the equations are regular is seen
+    // without it, as far as rounding of the large ones allows.
+    fill(0);
+    if (!factor_values(counters)) return false;
     const auto [least, largest] = std::minmax_element(diagonal_values_.begin(), diagonal_values_.end());
-    regularised_ = smallest_ratio_ < clearly_more * std::max(singular_ratio, schur_regularisation * *largest / *least);
-    if (!regularised_) {
-      fill(0);
+    regularised_ = smallest_ratio_ < std::max(singular_ratio, rounding_of_pivots * *largest / *least);
+    if (regularised_) {
+      fill(schur_regularisation);
       if (!factor_values(counters)) return false;
     }
   }
