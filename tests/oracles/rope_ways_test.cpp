@@ -232,6 +232,17 @@ TEST(RopeWays, PlacesOfRest) {
   }
 }
 
+// Given beside its peg and come to rest below it, l under the peg: omega^2 = g / l across the rope, k / m along it.
+TEST(RopeWays, ModesWhereItHasMetAPulley) {
+  const TextRun run =
+      run_text(hung(1.5, 0.5, 0, 0, 0.7, 0, 0.1, -1, R"(, "k": 1e4)", R"({"type": "equilibrium"}, {"type": "modes"})"));
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  const std::vector<double> squares = run.column("omega2", 1);
+  ASSERT_EQ(squares.size(), 2u);
+  EXPECT_NEAR(squares[0], g / -run.first("b.y"), 1e-8);
+  EXPECT_NEAR(squares[1], 1e4, 1e-5);
+}
+
 // Driven round a peg twice and back: the way is that of the tangents and the arc, turn by turn.
 TEST(RopeWays, InDrivenMotions) {
   const double r = 0.1, a = 0.5, l = 2;

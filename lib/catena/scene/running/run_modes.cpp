@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/sensitivity/spectrum_derivatives.hpp"
 #include "catena/analysis/stability/modes.hpp"
 #include "catena/scene/running/analysis_run.hpp"
@@ -60,6 +61,14 @@ void differentiate(const AnalysisContext& context, Modes& analysis, const ModesR
 }  // namespace
 
 void run_modes(AnalysisContext& context, AnalysisResult& result) {
+  RopeWaysAt ways(context.model);
+  if (ways.find(context.state)) {
+    if (context.design)
+      return refuse(result,
+                    "derivatives are those of ropes that lie as in the given configuration; here one has met or "
+                    "left a pulley: give the bodies a place nearer to rest");
+    context.model = ways.model();
+  }
   const AnalysisTask& task = context.task;
   ModesOptions options;
   options.count = static_cast<int>(task.number("count", 0));
