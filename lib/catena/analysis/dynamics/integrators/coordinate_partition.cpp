@@ -63,7 +63,9 @@ bool CoordinatePartition::choose(std::span<const double> q) {
   if (plan_.rows == 0) return true;
   if (freedoms_ < 0) {
     freedoms_ = plan_.columns - plan_.rows + equations_.left_out().count();
-    if (equations_.smallest_pivot_ratio() < independent_ratio) freedoms_ = analyse_mobility(evaluator_, q).dof();
+    // Rows between bodies that cannot move are not among those left out.
+    if (freedoms_ < 0 || equations_.smallest_pivot_ratio() < independent_ratio)
+      freedoms_ = analyse_mobility(evaluator_, q).dof();
   }
   if (freedoms_ > most_freedoms) return false;
   ++choices_;
