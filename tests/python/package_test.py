@@ -145,7 +145,7 @@ class Errors(unittest.TestCase):
     def test_of_parameters(self):
         with self.assertRaisesRegex(catena.SceneError, "lenght"):
             catena.loads(CRANK % MOTION).run({"lenght": 1})
-        with self.assertRaisesRegex(catena.SceneError, "length"):
+        with self.assertRaisesRegex(ValueError, "length"):
             catena.loads(CRANK % MOTION).run({"length": float("nan")})
 
     def test_of_files(self):

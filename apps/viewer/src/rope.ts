@@ -6,6 +6,29 @@ import { Pose } from "./placement";
 const arcPieces = 32;
 /** An arc this little short of a whole turn is none. */
 const noContact = 0.01;
+/** Above this angle of contact a rope passes its circle if both stretches are long enough to cross there. */
+const mostContact = (4 * Math.PI) / 3;
+
+type Circle = { x: number; y: number; radius: number };
+
+function direction(from: Circle, to: Circle): { ux: number; uy: number; length: number } {
+  const [hx, hy] = [to.x - from.x, to.y - from.y];
+  const offset = to.radius - from.radius;
+  const square = hx * hx + hy * hy;
+  const length = Math.sqrt(square - offset * offset);
+  return { ux: (length * hx + offset * hy) / square, uy: (length * hy - offset * hx) / square, length };
+}
+
+function liesBeside(a: Circle, between: Circle, b: Circle): boolean {
+  if (between.radius === 0) return false;
+  const before = direction(a, between);
+  const after = direction(between, b);
+  let contact = Math.atan2(before.ux * after.uy - before.uy * after.ux, before.ux * after.ux + before.uy * after.uy);
+  if (between.radius < 0) contact = -contact;
+  if (contact < 0) contact += 2 * Math.PI;
+  const needed = Math.abs(between.radius) * Math.tan((2 * Math.PI - contact) / 2);
+  return contact > mostContact && before.length > needed && after.length > needed;
+}
 
 /** A way over `nodes` circles, each with body, x, y and radius. */
 export class RopeWay {
@@ -37,39 +60,49 @@ export class RopeWay {
   at(pose: Pose): Float64Array {
     const { points } = this;
     const { nodes } = this.rope;
+    const circles: Circle[] = [];
+    for (let k = 0; k < this.nodes; ++k) {
+      const n = 4 * k;
+      circles.push({
+        x: pose.pointX(nodes[n], nodes[n + 1], nodes[n + 2]),
+        y: pose.pointY(nodes[n], nodes[n + 1], nodes[n + 2]),
+        radius: nodes[n + 3],
+      });
+    }
+    const end = this.rope.leads_on ? 2 : 1;
+    for (let k = 1; k < circles.length - end; ) {
+      if (liesBeside(circles[k - 1], circles[k], circles[k + 1])) {
+        circles.splice(k, 1);
+        k = Math.max(k - 1, 1);
+      } else {
+        ++k;
+      }
+    }
     let at = 0;
     let [beforeX, beforeY] = [0, 0];
-    const add = (x: number, y: number, radius: number, ux: number, uy: number) => {
+    const add = ({ x, y, radius }: Circle, ux: number, uy: number) => {
       points[at++] = x + radius * uy;
       points[at++] = y - radius * ux;
     };
-    let x = pose.pointX(nodes[0], nodes[1], nodes[2]);
-    let y = pose.pointY(nodes[0], nodes[1], nodes[2]);
-    for (let k = 0; k + 1 < this.nodes; ++k) {
-      const n = 4 * (k + 1);
-      const radius = nodes[n - 1];
-      const nextX = pose.pointX(nodes[n], nodes[n + 1], nodes[n + 2]);
-      const nextY = pose.pointY(nodes[n], nodes[n + 1], nodes[n + 2]);
-      const [hx, hy] = [nextX - x, nextY - y];
-      const offset = nodes[n + 3] - radius;
-      const square = hx * hx + hy * hy;
-      const length = Math.sqrt(square - offset * offset);
-      const ux = (length * hx + offset * hy) / square;
-      const uy = (length * hy - offset * hx) / square;
-      if (k > 0 && radius !== 0) {
-        const sense = Math.sign(radius);
+    for (let k = 0; k + 1 < circles.length; ++k) {
+      const [circle, next] = [circles[k], circles[k + 1]];
+      const { ux, uy } = direction(circle, next);
+      if (k > 0 && circle.radius !== 0) {
+        const sense = Math.sign(circle.radius);
         let contact = sense * Math.atan2(beforeX * uy - beforeY * ux, beforeX * ux + beforeY * uy);
         if (contact < -noContact) contact += 2 * Math.PI;
         for (let m = 1; m < arcPieces; ++m) {
           const turned = (sense * contact * m) / arcPieces;
           const [c, s] = [Math.cos(turned), Math.sin(turned)];
-          add(x, y, radius, c * beforeX - s * beforeY, s * beforeX + c * beforeY);
+          add(circle, c * beforeX - s * beforeY, s * beforeX + c * beforeY);
         }
       }
-      add(x, y, radius, ux, uy);
-      if (!this.isLast(k)) add(nextX, nextY, nodes[n + 3], ux, uy);
-      [x, y, beforeX, beforeY] = [nextX, nextY, ux, uy];
+      add(circle, ux, uy);
+      if (!this.rope.leads_on || k + 2 < circles.length) add(next, ux, uy);
+      [beforeX, beforeY] = [ux, uy];
     }
+    // As many corners in every pose.
+    for (; at < points.length; ++at) points[at] = points[at - 2];
     return points;
   }
 }

@@ -167,8 +167,7 @@ template <class F>
 void LaneKernel<V>::for_each_element(F&& f) const {
   int type = 0;
   const auto visit = [&]<class E>() {
-    for (int k = first_of_type_[type]; k < first_of_type_[type + 1]; ++k)
-      f.template operator()<E>(code_.element[k]);
+    for (int k = first_of_type_[type]; k < first_of_type_[type + 1]; ++k) f.template operator()<E>(code_.element[k]);
     ++type;
   };
 #define CATENA_LANE_VISIT(Type) visit.template operator()<Type<P>>();

@@ -1,5 +1,6 @@
 #include "catena/drawing/shapes/rope_points.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -14,6 +15,9 @@ constexpr int arc_pieces = 32;
 // An arc this little short of a whole turn is none, as the rope only grazes the circle. Poses in a page are in steps of
 // 1 / 65535 of all travel: a hundredth is what that turns a stretch of a 650th of it.
 constexpr double no_contact = 0.01;
+// Above this angle of contact, rad, a rope lies beside its circle if both stretches are long enough to cross there: as
+// in model/rope_layout.hpp.
+constexpr double most_contact = 4 * std::numbers::pi / 3;
 
 struct Circle {
   Vec2<double> centre;
@@ -24,6 +28,35 @@ Vec2<double> direction(const Circle& from, const Circle& to) {
   const Vec2<double> h = to.centre - from.centre;
   const double offset = to.radius - from.radius, square = squared_norm(h);
   return (std::sqrt(square - offset * offset) * h - offset * perpendicular(h)) / square;
+}
+
+double length_between(const Circle& from, const Circle& to) {
+  const double offset = to.radius - from.radius;
+  return std::sqrt(squared_norm(to.centre - from.centre) - offset * offset);
+}
+
+/// Whether the rope from a to b would have to cross itself to touch the circle between them.
+bool lies_beside(const Circle& a, const Circle& between, const Circle& b) {
+  if (between.radius == 0) return false;
+  const Vec2<double> before = direction(a, between), after = direction(between, b);
+  double contact = std::atan2(cross(before, after), dot(before, after));
+  if (between.radius < 0) contact = -contact;
+  if (contact < 0) contact += 2 * std::numbers::pi;
+  const double needed = std::abs(between.radius) * std::tan((2 * std::numbers::pi - contact) / 2);
+  return contact > most_contact && length_between(a, between) > needed && length_between(between, b) > needed;
+}
+
+/// Takes out the circles that the rope lies beside, of those up to `last`, where its own way ends.
+void leave_out_those_beside(std::vector<Circle>& circles, std::size_t last) {
+  for (std::size_t k = 1; k < last;) {
+    if (!lies_beside(circles[k - 1], circles[k], circles[k + 1])) {
+      ++k;
+      continue;
+    }
+    circles.erase(circles.begin() + static_cast<std::ptrdiff_t>(k));
+    --last;
+    k = std::max<std::size_t>(k - 1, 1);
+  }
 }
 
 /// Corners between the two ends of the arc on a circle.
@@ -45,6 +78,9 @@ std::vector<Vec2<double>> rope_points(const RopePath& rope, std::span<const Fram
   std::vector<Circle> circles;
   for (const RopeNode& node : rope.nodes)
     circles.push_back({frame_of_body(frames, node.body).point(node.centre), node.radius});
+  std::size_t corners = rope.leads_on ? 1 : 2;
+  for (std::size_t k = 1; k + 1 < circles.size(); ++k) corners += circles[k].radius != 0 ? arc_pieces + 1 : 2;
+  if (circles.size() > 2) leave_out_those_beside(circles, circles.size() - (rope.leads_on ? 2 : 1));
   std::vector<Vec2<double>> points;
   Vec2<double> before{};
   for (std::size_t k = 0; k + 1 < circles.size(); ++k) {
@@ -55,6 +91,8 @@ std::vector<Vec2<double>> rope_points(const RopePath& rope, std::span<const Fram
     if (k + 2 < circles.size() || !rope.leads_on) points.push_back(to.centre - to.radius * perpendicular(along));
     before = along;
   }
+  // As many corners in every pose.
+  if (!points.empty()) points.resize(std::max(corners, points.size()), points.back());
   return points;
 }
 

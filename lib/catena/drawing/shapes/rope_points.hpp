@@ -6,8 +6,9 @@
 //
 // c centres, m; r radii, m, positive where the circle lies on the left of the rope; R turns by a quarter. A rope of
 // which more than a turn is wound on a circle shows the part of a turn. Where one circle holds the next there is no
-// straight line: its corners are not finite, which ends a line. The number of corners depends on the nodes alone. The
-// page does the same in apps/viewer/src/rope.ts.
+// straight line: its corners are not finite, which ends a line. A circle that the rope would have to cross itself to
+// touch is passed (model/rope_layout.hpp). The number of corners depends on the nodes alone: where a circle is passed
+// the last one is repeated. The page does the same in apps/viewer/src/rope.ts.
 #pragma once
 
 #include <span>

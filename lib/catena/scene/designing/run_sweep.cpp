@@ -5,9 +5,9 @@
 // design that cannot be analysed has its status and no numbers, and its reason in the list of failures. Memory holds
 // the rows of a few designs a thread. Finished designs are kept in a record, if there is one, and taken from it.
 //
-// Where the scene allows and no other processes take part, designs are computed in lanes, as many side by side as a
-// thread takes at once (lane_designs.hpp); those that leave their lanes are analysed by themselves. Which designs are
-// side by side depends neither on the number of threads nor on what the record has.
+// Where the scene allows, designs are computed in lanes, as many side by side as a thread takes at once
+// (lane_designs.hpp); those that leave their lanes are analysed by themselves. Which designs are side by side depends
+// neither on the number of threads and processes nor on what the record has (lane_groups.hpp).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,6 +27,7 @@
 #include "catena/analysis/design/sweep_plan.hpp"
 #include "catena/results/failure_list.hpp"
 #include "catena/scene/designing/lane_designs.hpp"
+#include "catena/scene/designing/lane_groups.hpp"
 #include "catena/scene/designing/measured_design.hpp"
 #include "catena/scene/designing/scatter.hpp"
 #include "catena/scene/designing/sweep_crew.hpp"
@@ -52,6 +53,7 @@ class Sweep {
             parameters(), [plan = plan_](std::int64_t k, std::span<double> out) { plan->values(k, out); })) {
     for (const AnalysisTask& inner : context.task.of) measures_ += inner.measures.size();
     if (Scatter::is_meant(context.task.sweep) && measures_ > 0) scatter_.emplace(measures_);
+    if (context.sweep.link) groups_.emplace(context, count_, [this](std::int64_t k) { return seeds_of(k); });
     if (leads()) most_waiting_ *= static_cast<std::size_t>(context.sweep.link->size());
   }
 
@@ -75,7 +77,7 @@ class Sweep {
  private:
   ParameterSeeds seeds_of(std::int64_t k) const;
   std::optional<SweepRecord::Design> recorded(std::int64_t k) const;
-  SweptDesign analyse(std::int64_t k) const;
+  SweptDesign analyse(std::int64_t k);
   void work_in_lanes(LaneDesigns& lanes);
   void take_lane(std::int64_t k, LaneDesigns::Outcome& outcome);
   std::vector<double> row_of(std::int64_t k, const SweptDesign& design) const;
@@ -111,6 +113,7 @@ class Sweep {
   bool stopped_ = false;
   std::string no_lanes_, why_left_;  // why no design was in lanes; why the first one left
   std::int64_t in_lanes_ = 0, left_ = 0, first_left_ = 0;
+  std::optional<LaneGroups> groups_;  // where other processes take part
 };
 
 std::vector<std::string> Sweep::parameters() const {
@@ -133,7 +136,7 @@ std::optional<SweepRecord::Design> Sweep::recorded(std::int64_t k) const {
   return record ? record->find(context_.sweep.analysis, k + 1, measures_) : std::nullopt;
 }
 
-SweptDesign Sweep::analyse(std::int64_t k) const {
+SweptDesign Sweep::analyse(std::int64_t k) {
   SweptDesign design;
   if (context_.poses) design.seen = context_.poses->watch_design(k, count_);
   std::optional<SweepRecord::Design> known = recorded(k);
@@ -141,6 +144,11 @@ SweptDesign Sweep::analyse(std::int64_t k) const {
   // A design that is drawn is analysed in any case.
   if (known && !design.seen) {
     static_cast<SweepRecord::Design&>(design) = std::move(*known);
+    return design;
+  }
+  if (auto measures = groups_ && !design.seen ? groups_->measures_of(k) : std::nullopt) {
+    design.status = Status::ok;
+    design.measures = std::move(*measures);
     return design;
   }
   design.status = measure_design(context_, seeds_of(k), design.seen.get(), design.measures, design.message);
@@ -213,7 +221,7 @@ void Sweep::give(std::int64_t k, SweptDesign design) {
 
 void Sweep::work() {
   try {
-    std::string why_not = "the designs are shared with other processes";
+    std::string why_not;
     const std::unique_ptr<LaneDesigns> lanes = context_.sweep.link ? nullptr : LaneDesigns::make(context_, why_not);
     if (lanes) {
       work_in_lanes(*lanes);
@@ -379,7 +387,7 @@ void run_sweep(AnalysisContext& context, AnalysisResult& result) {
   info.back().is_status = true;
   if (!sweep.follows()) context.rows.begin(info);
   const std::int64_t rows = sweep.run(context.threads);
-  if (context.verbose) fmt::print(stderr, "sweep: {}\n", sweep.describe_lanes());
+  if (context.verbose && !context.sweep.link) fmt::print(stderr, "sweep: {}\n", sweep.describe_lanes());
   if (sweep.stopped()) {
     result.report.status = Status::cancelled;
     result.report.message = stopped_text(context, rows, sweep.designs());
@@ -400,7 +408,8 @@ void run_sweep(AnalysisContext& context, AnalysisResult& result) {
   result.rows = rows;
   result.fields.push_back({"designs", rows});
   result.fields.push_back({"failed", std::move(failed)});
-  result.fields.push_back({"in_lanes", sweep.in_lanes()});
+  // What other processes had in lanes is not known.
+  if (!context.sweep.link) result.fields.push_back({"in_lanes", sweep.in_lanes()});
   result.fields.push_back({"failures", sweep.failures()});
   if (sweep.scatter() && !sweep.stopped())
     result.fields.push_back({"scatter", sweep.scatter()->records(context, result.report.warnings)});

@@ -12,6 +12,9 @@ namespace {
 // of a step below which rounding alone leaves too much, 1e-10 of the motion and more; and the position residual, in
 // these tolerances (fifty are a tenth of the run's), that what is interpolated may have otherwise.
 constexpr double fine_tolerance = 2e-11, interpolated_residual = 50;
+// What rounding may make of a cut step that no balance of energy corrects, in tolerances: one that ends beside the
+// singular position makes more of it than the interpolant across.
+constexpr double largest_rounding = 1;
 
 }  // namespace
 
@@ -59,7 +62,9 @@ bool RungeKutta::integrate_to(double t, std::span<double> y) {
   double least = std::numeric_limits<double>::infinity();
   const auto try_from_present_end = [&] {
     t_new_ = t;
-    if (!evaluate_stages(t - t_) || !(roughness_ < least) || !finish_cut()) return;
+    if (!evaluate_stages(t - t_) || !(roughness_ < least)) return;
+    if (!watches_energy() && rounding_of_crossing(t - t_) > largest_rounding) return;
+    if (!finish_cut()) return;
     found = true;
     least = roughness_;
     std::copy(y_new_.begin(), y_new_.end(), y.begin());
