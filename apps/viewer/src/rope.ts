@@ -19,15 +19,40 @@ function direction(from: Circle, to: Circle): { ux: number; uy: number; length: 
   return { ux: (length * hx + offset * hy) / square, uy: (length * hy - offset * hx) / square, length };
 }
 
-function liesBeside(a: Circle, between: Circle, b: Circle): boolean {
-  if (between.radius === 0) return false;
+/** Angle of contact of a circle; below zero the rope from a to b would have to cross itself to touch it. */
+function contactBetween(a: Circle, between: Circle, b: Circle): number {
   const before = direction(a, between);
   const after = direction(between, b);
   let contact = Math.atan2(before.ux * after.uy - before.uy * after.ux, before.ux * after.ux + before.uy * after.uy);
   if (between.radius < 0) contact = -contact;
   if (contact < 0) contact += 2 * Math.PI;
   const needed = Math.abs(between.radius) * Math.tan((2 * Math.PI - contact) / 2);
-  return contact > mostContact && before.length > needed && after.length > needed;
+  const crosses = contact > mostContact && before.length > needed && after.length > needed;
+  return crosses ? contact - 2 * Math.PI : contact;
+}
+
+/** The circles without those that the rope passes, of those before `last`, where its own way ends. */
+function touched(circles: Circle[], last: number): Circle[] {
+  const off = circles.map(() => false);
+  // Each pass changes one, that which is wrong by most.
+  for (let pass = 0; pass < 2 * circles.length; ++pass) {
+    let changed = 0;
+    let worst = 0;
+    for (let k = 1; k < last; ++k) {
+      if (circles[k].radius === 0) continue;
+      let [a, b] = [k - 1, k + 1];
+      while (off[a]) --a;
+      while (off[b]) ++b;
+      const contact = contactBetween(circles[a], circles[k], circles[b]);
+      const wrong = off[k] ? (contact < Math.PI ? contact : 0) : -contact;
+      if (!(wrong > worst)) continue;
+      worst = wrong;
+      changed = k;
+    }
+    if (changed === 0) break;
+    off[changed] = !off[changed];
+  }
+  return circles.filter((_, k) => !off[k]);
 }
 
 /** A way over `nodes` circles, each with body, x, y and radius. */
@@ -60,24 +85,16 @@ export class RopeWay {
   at(pose: Pose): Float64Array {
     const { points } = this;
     const { nodes } = this.rope;
-    const circles: Circle[] = [];
+    const all: Circle[] = [];
     for (let k = 0; k < this.nodes; ++k) {
       const n = 4 * k;
-      circles.push({
+      all.push({
         x: pose.pointX(nodes[n], nodes[n + 1], nodes[n + 2]),
         y: pose.pointY(nodes[n], nodes[n + 1], nodes[n + 2]),
         radius: nodes[n + 3],
       });
     }
-    const end = this.rope.leads_on ? 2 : 1;
-    for (let k = 1; k < circles.length - end; ) {
-      if (liesBeside(circles[k - 1], circles[k], circles[k + 1])) {
-        circles.splice(k, 1);
-        k = Math.max(k - 1, 1);
-      } else {
-        ++k;
-      }
-    }
+    const circles = touched(all, this.nodes - (this.rope.leads_on ? 2 : 1));
     let at = 0;
     let [beforeX, beforeY] = [0, 0];
     const add = ({ x, y, radius }: Circle, ux: number, uy: number) => {

@@ -35,28 +35,44 @@ double length_between(const Circle& from, const Circle& to) {
   return std::sqrt(squared_norm(to.centre - from.centre) - offset * offset);
 }
 
-/// Whether the rope from a to b would have to cross itself to touch the circle between them.
-bool lies_beside(const Circle& a, const Circle& between, const Circle& b) {
-  if (between.radius == 0) return false;
+/// Angle of contact of a circle, rad; below zero the rope from a to b would have to cross itself to touch it.
+double contact_between(const Circle& a, const Circle& between, const Circle& b) {
   const Vec2<double> before = direction(a, between), after = direction(between, b);
   double contact = std::atan2(cross(before, after), dot(before, after));
   if (between.radius < 0) contact = -contact;
   if (contact < 0) contact += 2 * std::numbers::pi;
   const double needed = std::abs(between.radius) * std::tan((2 * std::numbers::pi - contact) / 2);
-  return contact > most_contact && length_between(a, between) > needed && length_between(between, b) > needed;
+  const bool crosses =
+      contact > most_contact && length_between(a, between) > needed && length_between(between, b) > needed;
+  return crosses ? contact - 2 * std::numbers::pi : contact;
 }
 
-/// Takes out the circles that the rope lies beside, of those up to `last`, where its own way ends.
-void leave_out_those_beside(std::vector<Circle>& circles, std::size_t last) {
-  for (std::size_t k = 1; k < last;) {
-    if (!lies_beside(circles[k - 1], circles[k], circles[k + 1])) {
-      ++k;
-      continue;
+/// Takes out the circles that the rope passes, of those before `last`, where its own way ends. Each pass changes one,
+/// that which is wrong by most.
+void leave_out_those_passed(std::vector<Circle>& circles, std::size_t last) {
+  std::vector<char> off(circles.size(), 0);
+  for (std::size_t pass = 0; pass < 2 * circles.size(); ++pass) {
+    std::size_t changed = 0;
+    double worst = 0;
+    for (std::size_t k = 1; k < last; ++k) {
+      if (circles[k].radius == 0) continue;
+      std::size_t a = k - 1, b = k + 1;
+      while (off[a]) --a;
+      while (off[b]) ++b;
+      const double contact = contact_between(circles[a], circles[k], circles[b]);
+      const double wrong = off[k] ? (contact < std::numbers::pi ? contact : 0) : -contact;
+      if (!(wrong > worst)) continue;
+      worst = wrong;
+      changed = k;
     }
-    circles.erase(circles.begin() + static_cast<std::ptrdiff_t>(k));
-    --last;
-    k = std::max<std::size_t>(k - 1, 1);
+    if (changed == 0) break;
+    off[changed] = !off[changed];
   }
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < circles.size(); ++k) {
+    if (!off[k]) circles[kept++] = circles[k];
+  }
+  circles.resize(kept);
 }
 
 /// Corners between the two ends of the arc on a circle.
@@ -80,7 +96,7 @@ std::vector<Vec2<double>> rope_points(const RopePath& rope, std::span<const Fram
     circles.push_back({frame_of_body(frames, node.body).point(node.centre), node.radius});
   std::size_t corners = rope.leads_on ? 1 : 2;
   for (std::size_t k = 1; k + 1 < circles.size(); ++k) corners += circles[k].radius != 0 ? arc_pieces + 1 : 2;
-  if (circles.size() > 2) leave_out_those_beside(circles, circles.size() - (rope.leads_on ? 2 : 1));
+  if (circles.size() > 2) leave_out_those_passed(circles, circles.size() - (rope.leads_on ? 2 : 1));
   std::vector<Vec2<double>> points;
   Vec2<double> before{};
   for (std::size_t k = 0; k + 1 < circles.size(); ++k) {
