@@ -207,7 +207,10 @@ void add_list_command(CLI::App& app, Action& chosen, const ListVerb& verb) {
                      "under mpirun: seconds of silence after which a process counts as lost")
         ->capture_default_str()
         ->type_name("S")
-        ->check(CLI::PositiveNumber);
+        ->check([](const std::string& text) {
+          double seconds = 0;
+          return CLI::detail::lexical_cast(text, seconds) && seconds > 0 ? "" : "wants seconds above zero, not " + text;
+        });
   }
   command->callback([parsed, &chosen, is_sweep] {
     chosen = [run = complete(*parsed, ""), is_sweep] { return is_sweep ? execute_together(run) : execute(run); };

@@ -253,5 +253,47 @@ TEST(DynamicsRows, VelocitiesThatNothingAllowsAreNoMotion) {
   }
 }
 
+// A torque 5 sin(3 t) on crank 1 drives the parallelogram through its flat positions: (8/3) theta'' = tau - 29.43 cos.
+// What the torque's potential gains by time alone is no energy that the step lacks.
+TEST(DynamicsRows, LoadsThatFollowTheTimePassFlatPositions) {
+  const double begin = std::asin(0.6);  // whose corners have few digits
+  const TextRun run = run_text(parallelogram(begin, 1, 6,
+                                             R"("forces": [{"type": "torque", "name": "T", "i": "c",
+        "torque": {"harmonic": {"amplitude": 5, "omega": 3}}}], "outputs": ["q.angle", "c.omega"],
+      "analyses": [{"type": "dynamics", "at": [0.5, 1, 1.5, 2], "tolerance": 1e-9}])"));
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  double theta = begin, omega = 6;
+  const auto alpha = [](double t, double angle) { return (5 * std::sin(3 * t) - 29.43 * std::cos(angle)) / (8.0 / 3); };
+  constexpr int steps = 20000;
+  for (int k = 0; k < steps; ++k) {
+    const double t = 2.0 * k / steps, h = 2.0 / steps;
+    const double a1 = alpha(t, theta), v2 = omega + h / 2 * a1, a2 = alpha(t + h / 2, theta + h / 2 * omega);
+    const double v3 = omega + h / 2 * a2, a3 = alpha(t + h / 2, theta + h / 2 * v2), v4 = omega + h * a3;
+    const double a4 = alpha(t + h, theta + h * v3);
+    theta += h / 6 * (omega + 2 * v2 + 2 * v3 + v4);
+    omega += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
+  }
+  EXPECT_GT(std::abs(theta), 3) << "no flat position was passed";
+  EXPECT_NEAR(run.column("q.angle").back(), theta, 1e-7);
+  EXPECT_NEAR(run.column("c.omega").back(), omega, 1e-6);
+}
+
+// Joints beside a weld, and between bodies that cannot move, have more rows than these have coordinates.
+TEST(DynamicsRows, PartitioningCountsFreedomsBesideHeldBodies) {
+  const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -9.81],
+    "bodies": {"w": {"mass": 1, "inertia": 0.1}, "f": {"fixed": true},
+               "p": {"rod": {"from": [0, 0], "to": [1, 0]}, "mass": 1}},
+    "constraints": [{"type": "weld", "name": "W", "i": "ground", "j": "w"},
+                    {"type": "revolute", "name": "R", "i": "ground", "j": "w"},
+                    {"type": "revolute", "name": "F", "i": "ground", "j": "f"},
+                    {"type": "revolute", "name": "P", "i": "ground", "j": "p.from"}],
+    "outputs": ["p.angle", "p.omega"],
+    "analyses": [{"type": "dynamics", "until": 1, "method": "partitioning", "tolerance": 1e-9}]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  // The pendulum's energy: omega^2 / 6 = -9.81 sin(angle) / 2.
+  for (std::size_t k = 0; k < run.column("t").size(); ++k)
+    EXPECT_NEAR(std::pow(run.column("p.omega")[k], 2), -29.43 * std::sin(run.column("p.angle")[k]), 1e-6) << k;
+}
+
 }  // namespace
 }  // namespace catena::testing

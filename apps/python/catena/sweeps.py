@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence, Sized
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -135,11 +135,13 @@ def designs_of(
     for name, given in parameters.items():
         if isinstance(given, str) or not isinstance(given, Iterable):
             raise ValueError(f"parameter {name} needs a list of values, not {given!r}")
-    if not together:
-        count = math.prod(len(given) for given in parameters.values())
-        if count > MOST_DESIGNS:
-            raise ValueError(f"{count} designs are asked for, more than {MOST_DESIGNS}: {_ELSEWHERE}")
-    values = {name: list(given) for name, given in parameters.items()}
+    values: dict[str, Any] = {
+        name: given if isinstance(given, Sized) else list(itertools.islice(given, MOST_DESIGNS + 1))
+        for name, given in parameters.items()
+    }
+    count = max(map(len, values.values()), default=0) if together else math.prod(map(len, values.values()))
+    if count > MOST_DESIGNS:
+        raise ValueError(f"{count} designs are asked for, more than {MOST_DESIGNS}: {_ELSEWHERE}")
     if together:
         lengths = {name: len(given) for name, given in values.items()}
         if len(set(lengths.values())) > 1:

@@ -15,14 +15,26 @@ constexpr double turned_far = 0.5;
 
 }  // namespace
 
+RopeWaysAt::RopeWaysAt(std::shared_ptr<const Model> model) : model_(std::move(model)), routes_(rope_routes(*model_)) {
+  for (const RopeRoute& route : routes_) {
+    std::vector<Frame<double>> frames;
+    for (const RopePulley<double>& node : route.nodes) frames.push_back(model_->frame(node.body));
+    laid_.push_back(std::make_shared<RouteWatch>(*model_, route, frames));
+  }
+}
+
 bool RopeWaysAt::find(const Evaluator& evaluator) {
   std::shared_ptr<Model> changed;
-  for (RopeRoute& route : routes_) {
+  for (std::size_t r = 0; r < routes_.size(); ++r) {
+    RopeRoute& route = routes_[r];
     const std::vector<Frame<double>> frames = frames_of(evaluator, route);
     try {
-      if (!find_off(*model_, route, frames)) continue;
+      const bool meets_or_leaves = find_off(*model_, route, frames);
+      has_changed_ = has_changed_ || meets_or_leaves;
+      if (!meets_or_leaves && !(laid_[r]->turned(frames) > turned_far)) continue;
       if (!changed) changed = std::make_shared<Model>(*model_);
       lay(*changed, route, frames);
+      laid_[r] = std::make_shared<RouteWatch>(*changed, route, frames);
     } catch (const ModelError& error) {
       throw ModelError(fmt::format("rope \"{}\" has no way: {}", model_->element_name(route.element), error.what()));
     }
@@ -43,7 +55,9 @@ bool RopeWaysAt::find(const SystemState& state) {
 bool RopeWaysAt::follow(RopeRoute& route, std::shared_ptr<const RouteWatch>& watch, const Evaluator& evaluator,
                         std::shared_ptr<Model>& changed) {
   const std::vector<Frame<double>> frames = frames_of(evaluator, route);
-  bool lays = !watch && find_off(*model_, route, frames);
+  // The first look may be far from the given configuration.
+  bool lays = !watch;
+  if (!watch && find_off(*model_, route, frames)) has_changed_ = true;
   for (std::size_t pass = 0; pass <= route.nodes.size(); ++pass) {
     int flipped = -1;
     double most = 0;
@@ -56,7 +70,10 @@ bool RopeWaysAt::follow(RopeRoute& route, std::shared_ptr<const RouteWatch>& wat
         flipped = node;
       }
       if (flipped < 0 && !(watch->turned(frames) > turned_far)) return lays;
-      if (flipped >= 0) route.off[at(flipped)] = !route.off[at(flipped)];
+      if (flipped >= 0) {
+        route.off[at(flipped)] = !route.off[at(flipped)];
+        has_changed_ = true;
+      }
       lays = true;
     }
     if (lays) {

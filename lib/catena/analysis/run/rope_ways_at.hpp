@@ -13,12 +13,14 @@ namespace catena {
 /// The ways of a model's ropes, place by place.
 class RopeWaysAt {
  public:
-  explicit RopeWaysAt(std::shared_ptr<const Model> model) : model_(std::move(model)), routes_(rope_routes(*model_)) {}
+  explicit RopeWaysAt(std::shared_ptr<const Model> model);
 
   bool any() const { return !routes_.empty(); }
   const std::shared_ptr<const Model>& model() const { return model_; }
-  /// Finds them where the evaluator is, or at a state; true: some have changed, and so has model(). Throws ModelError
-  /// where a rope has none, with its name.
+  /// Whether any rope has met or left a pulley since the given configuration.
+  bool has_changed() const { return has_changed_; }
+  /// Finds them where the evaluator is, or at a state; true: some have changed, or lie in a direction from which the
+  /// next half turn is not known, and model() is another one. Throws ModelError where a rope has none, with its name.
   bool find(const Evaluator& evaluator);
   bool find(const SystemState& state);
   /// The same for those without stiffness alone, along a motion that is looked at now and then: from one look to the
@@ -31,7 +33,9 @@ class RopeWaysAt {
               std::shared_ptr<Model>& changed);
 
   std::vector<RopeRoute> routes_;
+  std::vector<std::shared_ptr<const RouteWatch>> laid_;     // by route, as found last
   std::vector<std::shared_ptr<const RouteWatch>> watches_;  // by route, once they are followed
+  bool has_changed_ = false;
 };
 
 }  // namespace catena

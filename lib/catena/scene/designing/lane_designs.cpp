@@ -6,7 +6,9 @@
 #include <exception>
 
 #include "catena/analysis/pose/assemble.hpp"
+#include "catena/analysis/run/watched_elements.hpp"
 #include "catena/base/at.hpp"
+#include "catena/model/rope_routes.hpp"
 
 namespace catena {
 namespace {
@@ -54,6 +56,15 @@ std::unique_ptr<LaneDesigns> LaneDesigns::make(const AnalysisContext& context, s
   const AnalysisTask& inner = context.task.of.front();
   std::shared_ptr<const Model> model = context.models->model(*inner.table, context.seeds, &why_not);
   if (!model) return nullptr;
+  if (!rope_routes(*model).empty()) {
+    why_not = "it has a rope over a pulley, whose way may change along the motion";
+    return nullptr;
+  }
+  Evaluator watched(Plan::make(*model, options_of(inner, *model)), *model);
+  if (WatchedElements(watched).may_end()) {
+    why_not = "it has curves, tables or laws that end, which are watched along the motion";
+    return nullptr;
+  }
   if (!model->laws.empty()) {
     why_not = "it has forces by laws of state, which are checked along the motion";
     return nullptr;

@@ -34,6 +34,7 @@ class Leader {
   }
 
   std::vector<std::string> run();
+  void lead();
 
  private:
   void hear(int from, const std::string& message);
@@ -138,7 +139,7 @@ void Leader::say_alive() {
   }
 }
 
-std::vector<std::string> Leader::run() {
+void Leader::lead() {
   while (!desk_.done()) {
     bool any = false;
     int from = 0;
@@ -146,6 +147,18 @@ std::vector<std::string> Leader::run() {
     for (Member& member : members_) look_after(member);
     say_alive();
     if (!any) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+std::vector<std::string> Leader::run() {
+  try {
+    lead();
+  } catch (...) {
+    // Nobody shall wait for what does not come any more.
+    for (const Member& member : members_) {
+      if (!member.lost) link_.send(member.rank, CrewWriter(CrewWord::stop, terms_.sweep).take());
+    }
+    throw;
   }
   const bool loss = std::any_of(members_.begin(), members_.end(), [](const Member& m) { return m.ever_lost; });
   std::vector<std::string> troubles;

@@ -7,6 +7,7 @@
 #include "catena/analysis/dynamics/dynamics_with_events.hpp"
 #include "catena/analysis/dynamics/error_estimate.hpp"
 #include "catena/analysis/dynamics/paces.hpp"
+#include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/sensitivity/motion_derivatives.hpp"
 #include "catena/model/rope_routes.hpp"
 #include "catena/scene/running/analysis_run.hpp"
@@ -221,6 +222,18 @@ void DynamicsTask::run() {
     context_.state = {context_.checkpoint->restart->begin, {}, {}};
   grid_ = time_grid(context_, result_.report);
   if (!grid_) return;
+  // Where ropes are not followed they begin as they lie at the start, and keep their pulleys.
+  if (!routes_.empty() && !follows_ropes()) {
+    RopeWaysAt ways(model_);
+    if (ways.find(context_.state)) {
+      if (ways.has_changed() || context_.design)
+        return refuse(result_,
+                      "a rope lies otherwise at the start than in the given configuration, which derivatives, "
+                      "checkpoints and estimates of the error do not follow: leave these out, or give the "
+                      "bodies a place nearer to the start");
+      model_ = ways.model();
+    }
+  }
   if (estimates_) used_options_ = finer_options(options_);
   if (!context_.task.events.empty() || context_.checkpoint || touches_ || follows_ropes())
     return run_with_events_or_pauses();

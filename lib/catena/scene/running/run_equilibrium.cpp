@@ -75,7 +75,7 @@ std::optional<EquilibriumReport> find_ways_at_rest(AnalysisContext& context, con
     }
     start = trial.state();
   }
-  if (context.design && ways.model() != context.model)
+  if (context.design && ways.has_changed())
     throw ModelError(
         "derivatives are those of ropes that lie as in the given configuration; here one meets or leaves a "
         "pulley: give the bodies a place nearer to rest");
@@ -112,6 +112,10 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   const std::vector<std::string> names = task.output_names();
   SystemState start = context.state;
   start.t = frozen_time(context);
+  if (options.find > 1 && !rope_routes(*context.model).empty())
+    return refuse(result,
+                  "\"find\" looks for places of rest with ropes that lie in one way, but a rope over a pulley may "
+                  "lie otherwise in each: leave \"find\" out and start near the place that is meant");
   const std::optional<EquilibriumReport> failed = find_ways_at_rest(context, options, start);
   Equilibrium analysis(context.model, plan_options(*context.model, task.column_names()), options);
   const bool conservative = analysis.evaluator().conservative();

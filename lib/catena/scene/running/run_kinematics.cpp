@@ -20,11 +20,13 @@ PlanOptions plan_without_gaps(const Model& model, const std::vector<std::string>
   return options;
 }
 
-/// A driven motion whose ropes meet and leave pulleys: they take no part in it, but their columns do.
+/// A driven motion whose ropes meet and leave pulleys: they take no part in it, but their columns do. `obstacle`: what
+/// does not go on where one does, if anything.
 template <class Analysis>
 class WithRopes {
  public:
-  WithRopes(Analysis& analysis, std::shared_ptr<const Model> model) : analysis_(analysis), ways_(std::move(model)) {}
+  WithRopes(Analysis& analysis, std::shared_ptr<const Model> model, std::string obstacle = {})
+      : analysis_(analysis), ways_(std::move(model)), obstacle_(std::move(obstacle)) {}
 
   const Plan& plan() const { return analysis_.plan(); }
   Evaluator& evaluator() { return analysis_.evaluator(); }
@@ -56,6 +58,9 @@ class WithRopes {
     Evaluator& evaluator = analysis_.evaluator();
     const std::shared_ptr<const Model> before = ways_.model();
     if (!ways_.follow(evaluator)) return;
+    if (ways_.has_changed() && !obstacle_.empty())
+      throw ModelError("a rope meets or leaves a pulley by t = " + std::to_string(evaluator.time()) + " s, where " +
+                       obstacle_);
     evaluator.set_model(*ways_.model());
     evaluator.set_configuration(q);
     kept_.push_back(before);
@@ -63,6 +68,7 @@ class WithRopes {
 
   Analysis& analysis_;
   RopeWaysAt ways_;
+  std::string obstacle_;
   std::vector<std::shared_ptr<const Model>> kept_;  // columns refer to the first
 };
 
@@ -119,7 +125,9 @@ void run_with_events(AnalysisContext& context, AnalysisResult& result, const Tim
   for (const EventRequest& request : task.events) reactions.push_back(request.column);
   const PlanOptions plan = plan_without_gaps(*context.model, reactions);
   KinematicsWithEvents analysis(context.model, plan, options, events_of(task, *context.model), sources);
-  run_over_time(context, result, analysis, grid, task.output_names(), sources, [&](AnalysisRows& rows) {
+  WithRopes watched(analysis, context.model,
+                    "a motion with events does not go on: end it before, or do without events");
+  run_over_time(context, result, watched, grid, task.output_names(), sources, [&](AnalysisRows& rows) {
     rows.watch_gaps(*context.model);
     if (!context.design) return;
     rows.differentiate(std::make_unique<KinematicDerivatives>(analysis.evaluator(), designs_of(context),
@@ -198,7 +206,13 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
     rows.differentiate(std::make_unique<KinematicDerivatives>(analysis.evaluator(), designs_of(context),
                                                               static_cast<int>(context.design->names.size())));
   };
-  WithRopes followed(analysis, context.model);
+  const bool looks_between = std::any_of(task.measures.begin(), task.measures.end(), [](const PlacedMeasure& measure) {
+    return measure.request.kind != MeasureKind::final && measure.request.kind != MeasureKind::first;
+  });
+  WithRopes followed(analysis, context.model,
+                     context.design  ? "derivatives do not go on: end the analysis before"
+                     : looks_between ? "measures of what is between rows do not go on: end the analysis before"
+                                     : std::string());
   run_over_time(context, result, followed, *grid, names, sources, prepare);
   add_singular_points(result, analysis.singular_points(), *context.model);
 }

@@ -62,22 +62,31 @@ void differentiate(const AnalysisContext& context, Modes& analysis, const ModesR
 
 void run_modes(AnalysisContext& context, AnalysisResult& result) {
   RopeWaysAt ways(context.model);
-  if (ways.find(context.state)) {
-    if (context.design)
-      return refuse(result,
-                    "derivatives are those of ropes that lie as in the given configuration; here one has met or "
-                    "left a pulley: give the bodies a place nearer to rest");
-    context.model = ways.model();
-  }
   const AnalysisTask& task = context.task;
   ModesOptions options;
   options.count = static_cast<int>(task.number("count", 0));
-  Modes analysis(context.model, {}, options);
   SystemState start = context.state;
   const bool from_model = start.q.empty();
   start.t = frozen_time(context);
-  analysis.start_from(start);
-  ModesReport report = analysis.run([&] { return !(context.cancel && context.cancel->load()); });
+  std::optional<Modes> made(std::in_place, context.model, PlanOptions{}, options);
+  made->start_from(start);
+  const auto go_on = [&] { return !(context.cancel && context.cancel->load()); };
+  ModesReport report = made->run(go_on);
+  // Ropes lie as they can at the place that was assembled.
+  if (ways.any() && report.ok()) {
+    made->evaluator().set_configuration(made->q());
+    if (ways.find(made->evaluator())) {
+      if (context.design && ways.has_changed())
+        return refuse(result,
+                      "derivatives are those of ropes that lie as in the given configuration; here one has met or "
+                      "left a pulley: give the bodies a place nearer to rest");
+      context.model = ways.model();
+      made.emplace(context.model, PlanOptions{}, options);
+      made->start_from(start);
+      report = made->run(go_on);
+    }
+  }
+  Modes& analysis = *made;
 
   std::vector<ColumnInfo> info{
       {"mode", UnitKind::none}, {"omega2", UnitKind::squared_frequency}, {"omega", UnitKind::angular_velocity}};

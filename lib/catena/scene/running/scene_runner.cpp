@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "catena/analysis/batch/lane_kernels.hpp"
 #include "catena/analysis/design/process_link.hpp"
 #include "catena/scene/building/build_model.hpp"
 #include "catena/scene/judging/scene_checks.hpp"
@@ -353,6 +354,8 @@ bool SceneRun::prepare_files() {
     checkpoints_.prepare(texts);
     texts.push_back(CATENA_VERSION);
     for (const auto& [name, value] : options_.set) texts.insert(texts.end(), {name, value});
+    // Another command analyses other designs; lanes, and each kind of them, round otherwise.
+    texts.insert(texts.end(), {options_.only, lane_kernels().name, options_.poses ? "drawn" : ""});
     sweep_owner_ = fingerprint(texts);
     // Only the process that leads others keeps a record.
     const bool keeps = !options_.record.empty() && !(options_.link && options_.link->rank() > 0);

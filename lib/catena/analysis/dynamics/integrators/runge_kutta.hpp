@@ -96,7 +96,7 @@ class RungeKutta final : public Integrator {
   struct Energy {
     double kinetic = 0, potential = 0;
   };
-  Energy energy_of(std::span<const double> y);
+  Energy energy_of(double t, Side side, std::span<const double> y);
   void find_direction();
   double explained_by_errors(double h) const;
   bool restore_energy(double h);

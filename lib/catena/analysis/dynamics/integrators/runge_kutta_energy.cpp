@@ -45,9 +45,10 @@ void RungeKutta::note_power(std::size_t stage, std::span<const double> y) {
   stage_power_[stage] = evaluator.load_power(motion_.qd(y)) - evaluator.dissipation(motion_.qd(y));
 }
 
-// Of the moving masses, and the potential; leaves the evaluator at y.
-RungeKutta::Energy RungeKutta::energy_of(std::span<const double> y) {
+// Of the moving masses, and the potential at t, which loads that follow the time change; leaves the evaluator there.
+RungeKutta::Energy RungeKutta::energy_of(double t, Side side, std::span<const double> y) {
   Evaluator& evaluator = motion_.equations().evaluator();
+  evaluator.set_time(t, side);
   evaluator.set_configuration(motion_.q(y));
   const std::vector<double>& mass = motion_.equations().masses().mass;
   const std::span<const double> v = motion_.qd(y);
@@ -82,7 +83,8 @@ double RungeKutta::explained_by_errors(double h) const {
 // Balances the step from y_ to y_new_, of size h, which was projected. False: more energy is missing than the error of
 // the step and its rounding explain.
 bool RungeKutta::restore_energy(double h) {
-  const Energy before = energy_of(y_), after = energy_of(y_new_);
+  const Side from = h > 0 ? Side::after : Side::before, to = h > 0 ? Side::before : Side::after;
+  const Energy before = energy_of(t_new_ - h, from, y_), after = energy_of(t_new_, to, y_new_);
   double work = 0;
   for (const StageTerm& term : tableau().b) {
     work += h * term.weight * stage_power_[static_cast<std::size_t>(term.stage)];
