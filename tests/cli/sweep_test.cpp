@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <thread>
 
 #include "cli/program.hpp"
@@ -153,16 +154,21 @@ TEST(SharedSweep, GivesTheSameRowsForAnyNumberOfProcesses) {
   EXPECT_EQ(wrong.err.find("unknown parameter", first + 1), std::string::npos) << "once is enough\n" << wrong.err;
 }
 
+/// Kills process 1 of a job when its record has a dozen lines.
+std::function<void(int)> kill_one_of(const std::string& record) {
+  return [record](int launcher) {
+    wait_for_lines(record, 12);
+    kill_rank(launcher, 1);
+  };
+}
+
 TEST(SharedSweep, AKilledProcessEndsTheJobAndItsRecordGoesOn) {
   TemporaryFolder folder;
   const std::string scene = slider(folder), record = folder / "record";
   const ProgramResult whole = run_catena({"sweep", scene, "--csv", "-j", "2"});
-  const auto kill_one = [&](int launcher) {
-    wait_for_lines(record, 12);
-    kill_rank(launcher, 1);
-  };
-  const ProgramResult killed = run_catena({"sweep", scene, "--csv", "--record", record},
-                                          {.standard_output = {}, .during = kill_one, .launcher = mpirun(3)});
+  const ProgramResult killed =
+      run_catena({"sweep", scene, "--csv", "--record", record},
+                 {.standard_output = {}, .during = kill_one_of(record), .launcher = mpirun(3)});
   EXPECT_NE(killed.exit_code, 0);
   ASSERT_LT(lines_of(record), 61u) << "it was too quick";
   // What was given is a part of the whole.
@@ -177,13 +183,9 @@ TEST(SharedSweep, OthersDoWhatAKilledProcessHad) {
   TemporaryFolder folder;
   const std::string scene = slider(folder), record = folder / "record";
   const ProgramResult whole = run_catena({"sweep", scene, "--csv", "-j", "2"});
-  const auto kill_one = [&](int launcher) {
-    wait_for_lines(record, 12);
-    kill_rank(launcher, 1);
-  };
   const ProgramResult shared =
       run_catena({"sweep", scene, "-o", folder / "shared", "--record", record, "--patience", "2"},
-                 {.standard_output = {}, .during = kill_one, .launcher = mpirun(3, {"--enable-recovery"})});
+                 {.standard_output = {}, .during = kill_one_of(record), .launcher = mpirun(3, {"--enable-recovery"})});
   EXPECT_EQ(shared.exit_code, 0) << shared.err;
   EXPECT_EQ(read_file(folder / "shared/sweep.csv"), whole.out);
   EXPECT_NE(shared.out.find("process 1 was lost"), std::string::npos) << shared.out << shared.err;

@@ -11,6 +11,7 @@ import tempfile
 import unittest
 
 import catena
+from four_bar import arm
 
 try:
     import distributed
@@ -39,15 +40,6 @@ class MortalScene(catena.Scene):
 
     def __getstate__(self):
         return {**super().__getstate__(), "fatal": self.fatal, "alive": self.alive}
-
-
-def arm(cls=catena.Scene):
-    model = catena.Model(parameters={"length": 1})
-    model.body("arm", points={"tip": ["length", 0]})
-    model.add(catena.Revolute(i="ground", j="arm"))
-    model.drive(catena.AbsoluteAngle(i="arm", value=0.5))
-    model.analyse("kinematics", measures={"x": {"final": "arm.tip.x"}})
-    return cls("arm", model.text())
 
 
 class Checks(unittest.TestCase):

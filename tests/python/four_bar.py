@@ -59,3 +59,13 @@ class FourBar:
 def turned(angle, near):
     """The angle with as many whole turns as bring it near to another one."""
     return angle + 2 * math.pi * round((near - angle) / (2 * math.pi))
+
+
+def arm(cls=catena.Scene):
+    """A driven arm whose tip has x = length cos(0.5), as a scene of the class given."""
+    model = catena.Model(parameters={"length": 1})
+    model.body("arm", points={"tip": ["length", 0]})
+    model.add(catena.Revolute(i="ground", j="arm"))
+    model.drive(catena.AbsoluteAngle(i="arm", value=0.5))
+    model.analyse("kinematics", measures={"x": {"final": "arm.tip.x"}})
+    return cls("arm", model.text())

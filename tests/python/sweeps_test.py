@@ -11,7 +11,7 @@ import unittest
 import numpy
 
 import catena
-from four_bar import FourBar
+from four_bar import FourBar, arm
 
 
 def measured(seed=2):
@@ -29,15 +29,6 @@ class DyingScene(catena.Scene):
         if parameters["length"] == 3:
             os._exit(1)
         return super().run(parameters, **options)
-
-
-def arm(cls=catena.Scene):
-    model = catena.Model(parameters={"length": 1})
-    model.body("arm", points={"tip": ["length", 0]})
-    model.add(catena.Revolute(i="ground", j="arm"))
-    model.drive(catena.AbsoluteAngle(i="arm", value=0.5))
-    model.analyse("kinematics", measures={"x": {"final": "arm.tip.x"}})
-    return cls("arm", model.text())
 
 
 class Sweeps(unittest.TestCase):

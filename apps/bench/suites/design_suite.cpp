@@ -248,6 +248,7 @@ void lanes(Bench& bench) {
   Batch batch(model, options);
   const TimeGrid grid = TimeGrid::range(0, 0.99, 0.01);
   double error = 0, largest = 0;
+  volatile double kept = 0;  // so that nothing of what is timed is left out
   const auto follow = [&](const Batch::Take& take) {
     const auto write = [](std::int64_t k, Model& design) { write_design(design_number(k), design); };
     return batch.run(designs, grid, write, take);
@@ -283,7 +284,8 @@ void lanes(Bench& bench) {
         }
       },
       parts);
-  row.counts = {{"largest", largest}};  // so that nothing of it is left out
+  kept = largest;
+  static_cast<void>(kept);
   bench.add(row);
 }
 

@@ -66,7 +66,7 @@ void require_same(std::size_t plan, std::size_t model, const char* what) {
 }
 
 /// Throws where the elements of `model` differ in type or bodies from those of `known`.
-// Elements that do not hold for the time being may change their bodies, as ropes do that meet or leave a pulley.
+/// Elements that do not hold for the time being may change their bodies, as ropes do that meet or leave a pulley.
 void require_same_structure(const Model& known, const Model& model, const Plan& plan) {
   require_same(known.bodies.size(), model.bodies.size(), "bodies");
   require_same(known.elements.size(), model.elements.size(), "elements");

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "catena/model/rope_path.hpp"
 #include "catena/model/rope_way.hpp"
 
 namespace catena {
@@ -62,8 +63,6 @@ class RopeLayout {
  private:
   static std::size_t at(int k) { return static_cast<std::size_t>(k); }
   static constexpr double turn = 2 * std::numbers::pi;
-  // See the header: 2 pi - psi.
-  static constexpr double most_leaning = 2 * turn / 3;
   // An angle of contact this little short of a whole turn is none: rounding of one that is zero.
   static constexpr double no_contact = 1e-9;
   // Of the distances of centres: a way that bends less than this does not bend.
@@ -145,7 +144,7 @@ double RopeLayout<S>::contact_between(int a, int k, int b) const {
   contact -= turn * std::floor(contact / turn);
   if (contact > turn - no_contact) return contact - turn;
   const double needed = value_of(nodes_[at(k)].radius) * std::tan((turn - contact) / 2);
-  return contact > most_leaning && in.length > needed && out.length > needed ? contact - turn : contact;
+  return contact > most_contact_of_ropes && in.length > needed && out.length > needed ? contact - turn : contact;
 }
 
 template <class S>

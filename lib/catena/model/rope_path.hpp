@@ -4,12 +4,17 @@
 // Local coordinates in the centroidal frames, m.
 #pragma once
 
+#include <numbers>
 #include <vector>
 
 #include "catena/base/vec2.hpp"
 #include "catena/model/body.hpp"
 
 namespace catena {
+
+/// An angle of contact above this one, rad, belongs to a rope that lies beside the circle, if both its stretches are
+/// long enough to cross behind it: its ends would lean by more than 60 degrees behind half a turn (rope_layout.hpp).
+inline constexpr double most_contact_of_ropes = 4 * std::numbers::pi / 3;
 
 /// A circle, or with radius zero a point.
 struct RopeNode {

@@ -137,7 +137,7 @@ RouteWatch::RouteWatch(const Model& model, const RopeRoute& route, const std::ve
   }
   for (int k = 1; k < layout.last(); ++k) {
     if (!route.off[at(k)]) continue;
-    // A pulley that an end lies within meets no rope until it comes out again.
+    // Throws where an end lies within the pulley.
     const int a = layout.before(k), b = layout.after(k);
     const int in = add(a, k, out[at(a)]);
     const double contact = route.memory.contact[at(k)];

@@ -13,7 +13,6 @@
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/base/at.hpp"
-#include "catena/model/rope_routes.hpp"
 
 namespace catena {
 namespace {
@@ -22,11 +21,6 @@ PlanOptions plan_options(const Model& model) {
   PlanOptions options;
   options.released_elements = model.gaps();
   return options;
-}
-
-std::string model_obstacle(const Model& model) {
-  if (!rope_routes(model).empty()) return "it has a rope over a pulley, whose way may change along the motion";
-  return model.laws.empty() ? std::string() : "it has forces by laws of state, which are checked along the motion";
 }
 
 /// Keeps the rows of one design in its lane.
@@ -179,14 +173,13 @@ Batch::Batch(std::shared_ptr<const Model> model, const BatchOptions& options)
   if (!(options.tolerance > 0)) throw std::invalid_argument("batch: the tolerance must be above zero");
   if (options.threads < 1) throw std::invalid_argument("batch: it needs one thread at least");
   plan_ = Plan::make(*model_, plan_options(*model_));
-  std::string why_not = model_obstacle(*model_);
-  if (why_not.empty()) program_ = LaneProgram::make(*model_, plan_, why_not);
+  std::string why_not;
+  program_ = LaneProgram::make(*model_, plan_, why_not);
   if (!program_) throw std::invalid_argument("designs of this mechanism cannot be computed in lanes: " + why_not);
 }
 
 std::string Batch::obstacle(const Model& model) {
-  std::string why_not = model_obstacle(model);
-  if (!why_not.empty()) return why_not;
+  std::string why_not;
   return LaneProgram::make(model, Plan::make(model, plan_options(model)), why_not) ? std::string() : why_not;
 }
 

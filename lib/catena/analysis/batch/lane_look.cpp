@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
 namespace {
 
-std::size_t at_place(int k) { return static_cast<std::size_t>(k); }
-
 // The quintic between rows is off by far less where the motion is smooth on the scale of its rows.
 constexpr double largest_correction = 1e-2;
-// As in lane_motion.cpp.
-constexpr double least_margin = 1e-3;
 
 }  // namespace
 
@@ -21,10 +19,10 @@ LaneLook::LaneLook(const LaneProgram& program, Evaluator& evaluator)
       before_(program),
       after_(program),
       seen_(program),
-      q_(at_place(program.plan().coordinates()), 0.0),
+      q_(catena::at(program.plan().coordinates()), 0.0),
       qd_(q_.size(), 0.0),
       qdd_(q_.size(), 0.0),
-      shift_(at_place(program.code().moving)) {}
+      shift_(catena::at(program.code().moving)) {}
 
 void LaneLook::follow(const LaneMotion& motion, int lane, const Model& model, std::span<const double> instants) {
   motion_ = &motion;
@@ -36,7 +34,7 @@ void LaneLook::follow(const LaneMotion& motion, int lane, const Model& model, st
   q_ = evaluator_.given_configuration();
   const LaneCode& code = solver_.program().code();
   for (int b = 0; b < code.moving; ++b)
-    shift_[at_place(b)] = Vec2<double>{code.origin_x, code.origin_y} - evaluator_.origin(b);
+    shift_[catena::at(b)] = Vec2<double>{code.origin_x, code.origin_y} - evaluator_.origin(b);
   for (int k = 0; k < lane_count; ++k) gather(k, instants.front());
 }
 
@@ -52,32 +50,32 @@ void LaneLook::gather(int lane, double t) {
     for (int n = 0; n < count; ++n, to += lane_count, from += lane_count) *to = *from;
   };
   for (auto [state, row] : {std::pair(&before_, k), std::pair(&after_, next)}) {
-    state->t[at_place(lane)] = instants_[at_place(row)];
+    state->t[catena::at(lane)] = instants_[catena::at(row)];
     copy(state->q, motion_->q(row), solver_.coordinates());
     copy(state->qd, motion_->qd(row), solver_.coordinates());
     copy(state->qdd, motion_->qdd(row), solver_.coordinates());
     copy(state->margin, motion_->margin(row), motion_->tails());
   }
-  seen_.t[at_place(lane)] = t;
+  seen_.t[catena::at(lane)] = t;
 }
 
 void LaneLook::expect(std::span<const double> instants) {
   if (instants.empty()) return;
-  const int count = static_cast<int>(std::min(instants.size(), at_place(lane_count)));
+  const int count = static_cast<int>(std::min(instants.size(), catena::at(lane_count)));
   is_seen_.fill(false);
-  for (int lane = 0; lane < count; ++lane) gather(lane, instants[at_place(lane)]);
+  for (int lane = 0; lane < count; ++lane) gather(lane, instants[catena::at(lane)]);
   // Lanes of the same pack that are left over hold what was seen last.
   solver_.foretell(before_, after_, seen_);
   solver_.solve(seen_, count);
   for (int lane = 0; lane < count; ++lane) {
-    const double t = seen_.t[at_place(lane)];
+    const double t = seen_.t[catena::at(lane)];
     bool sound = t >= instants_.front() && t <= instants_.back() && solver_.converged(lane) &&
                  solver_.first_size(lane) <= largest_correction;
     for (int k = 0; k < motion_->tails(); ++k) {
       const double there = seen_.margin[k][lane], row = before_.margin[k][lane];
       sound = sound && there * row > 0 && std::abs(there) > least_margin * std::min(1.0, std::abs(row));
     }
-    is_seen_[at_place(lane)] = sound;
+    is_seen_[catena::at(lane)] = sound;
   }
 }
 
@@ -93,10 +91,10 @@ Snapshot LaneLook::row(std::size_t k) {
   const int number = static_cast<int>(k);
   for (int n = 0; n < solver_.coordinates(); ++n) {
     const int place = lane_count * n + motion_lane_;
-    const Vec2<double>& shift = shift_[at_place(n / 3)];
-    q_[at_place(n)] = motion_->q(number)[place] + (n % 3 == 0 ? shift.x : n % 3 == 1 ? shift.y : 0);
-    qd_[at_place(n)] = motion_->qd(number)[place];
-    qdd_[at_place(n)] = motion_->qdd(number)[place];
+    const Vec2<double>& shift = shift_[catena::at(n / 3)];
+    q_[catena::at(n)] = motion_->q(number)[place] + (n % 3 == 0 ? shift.x : n % 3 == 1 ? shift.y : 0);
+    qd_[catena::at(n)] = motion_->qd(number)[place];
+    qdd_[catena::at(n)] = motion_->qdd(number)[place];
   }
   return show(instants_[k], 0);
 }
@@ -106,12 +104,12 @@ std::optional<Snapshot> LaneLook::at(double t) {
   if (found != instants_.end() && *found == t) return row(static_cast<std::size_t>(found - instants_.begin()));
   for (int attempt = 0; attempt < 2; ++attempt) {
     for (int lane = 0; lane < lane_count; ++lane) {
-      if (!is_seen_[at_place(lane)] || seen_.t[at_place(lane)] != t) continue;
+      if (!is_seen_[catena::at(lane)] || seen_.t[catena::at(lane)] != t) continue;
       for (int n = 0; n < solver_.coordinates(); ++n) {
-        const Vec2<double>& shift = shift_[at_place(n / 3)];
-        q_[at_place(n)] = seen_.q[n][lane] + (n % 3 == 0 ? shift.x : n % 3 == 1 ? shift.y : 0);
-        qd_[at_place(n)] = seen_.qd[n][lane];
-        qdd_[at_place(n)] = seen_.qdd[n][lane];
+        const Vec2<double>& shift = shift_[catena::at(n / 3)];
+        q_[catena::at(n)] = seen_.q[n][lane] + (n % 3 == 0 ? shift.x : n % 3 == 1 ? shift.y : 0);
+        qd_[catena::at(n)] = seen_.qd[n][lane];
+        qdd_[catena::at(n)] = seen_.qdd[n][lane];
       }
       return show(t, solver_.residual(lane));
     }

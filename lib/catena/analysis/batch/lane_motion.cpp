@@ -19,9 +19,6 @@ constexpr double sudden_part = 0.6, remaining_part = 0.3;
 // Kinematics looks at a singular position where a determinant has fallen to 0.6 of its value within a step however
 // short. Halved so often, a step over which that happens is so near to one that lanes leave it to Kinematics.
 constexpr int most_halvings = 10;
-// Below this part of its largest value, or of 1 in rad and length scales, a determinant leaves positions, which meet
-// the equations to 1e-15, with an error of 1e-12.
-constexpr double least_margin = 1e-3;
 
 }  // namespace
 

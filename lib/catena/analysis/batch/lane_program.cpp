@@ -11,6 +11,7 @@
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/linalg/factorization/factorization.hpp"
+#include "catena/model/rope_routes.hpp"
 
 namespace catena {
 namespace {
@@ -99,6 +100,14 @@ class BlockElimination {
 
 std::unique_ptr<const LaneProgram> LaneProgram::make(const Model& model, std::shared_ptr<const Plan> plan,
                                                      std::string& why_not) {
+  if (!rope_routes(model).empty()) {
+    why_not = "it has a rope over a pulley, whose way may change along the motion";
+    return nullptr;
+  }
+  if (!model.laws.empty()) {
+    why_not = "it has forces by laws of state, which are checked along the motion";
+    return nullptr;
+  }
   std::unique_ptr<LaneProgram> program(new LaneProgram);
   program->plan_ = std::move(plan);
   const Plan& p = *program->plan_;

@@ -1,8 +1,9 @@
 // The plan of a mechanism as the kernels of a batch read it (lane_code.hpp), and the numbers of designs put into it.
 //
 // Not every mechanism can be computed in lanes: make() says why not. It must be driven by as many independent equations
-// as it has coordinates, all of types that lanes know, without particles, and no loop of it may hang together with so
-// many others that a block's tail exceeds largest_tail.
+// as it has coordinates, all of types that lanes know, without particles, laws of state and ropes over pulleys, whose
+// way or value is looked at along the motion, and no loop of it may hang together with so many others that a block's
+// tail exceeds largest_tail.
 #pragma once
 
 #include <memory>

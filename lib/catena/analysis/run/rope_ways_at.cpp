@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/assembly/rope_ways.hpp"
 #include "catena/base/at.hpp"
@@ -13,15 +16,19 @@ namespace {
 // turn of it.
 constexpr double turned_far = 0.5;
 
-}  // namespace
-
-RopeWaysAt::RopeWaysAt(std::shared_ptr<const Model> model) : model_(std::move(model)), routes_(rope_routes(*model_)) {
-  for (const RopeRoute& route : routes_) {
-    std::vector<Frame<double>> frames;
-    for (const RopePulley<double>& node : route.nodes) frames.push_back(model_->frame(node.body));
-    laid_.push_back(std::make_shared<RouteWatch>(*model_, route, frames));
+/// How far the straight lines of a route have turned at most since it was laid, over the same pulleys.
+double turned(const RopeRoute& route, const RopeMemory& laid) {
+  double by = route.memory.theta - laid.theta, most = std::abs(by);
+  for (std::size_t k = 0; k < route.nodes.size(); ++k) {
+    const double change = route.memory.contact[k] - laid.contact[k];
+    if (std::isnan(change)) continue;  // an end, or not touched
+    by += route.nodes[k].side * change;
+    most = std::max(most, std::abs(by));
   }
+  return most;
 }
+
+}  // namespace
 
 bool RopeWaysAt::find(const Evaluator& evaluator) {
   std::shared_ptr<Model> changed;
@@ -31,10 +38,10 @@ bool RopeWaysAt::find(const Evaluator& evaluator) {
     try {
       const bool meets_or_leaves = find_off(*model_, route, frames);
       has_changed_ = has_changed_ || meets_or_leaves;
-      if (!meets_or_leaves && !(laid_[r]->turned(frames) > turned_far)) continue;
+      if (!meets_or_leaves && !(turned(route, laid_[r]) > turned_far)) continue;
       if (!changed) changed = std::make_shared<Model>(*model_);
       lay(*changed, route, frames);
-      laid_[r] = std::make_shared<RouteWatch>(*changed, route, frames);
+      laid_[r] = route.memory;
     } catch (const ModelError& error) {
       throw ModelError(fmt::format("rope \"{}\" has no way: {}", model_->element_name(route.element), error.what()));
     }

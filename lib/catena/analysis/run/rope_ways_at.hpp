@@ -13,7 +13,9 @@ namespace catena {
 /// The ways of a model's ropes, place by place.
 class RopeWaysAt {
  public:
-  explicit RopeWaysAt(std::shared_ptr<const Model> model);
+  explicit RopeWaysAt(std::shared_ptr<const Model> model) : model_(std::move(model)), routes_(rope_routes(*model_)) {
+    for (const RopeRoute& route : routes_) laid_.push_back(route.memory);
+  }
 
   bool any() const { return !routes_.empty(); }
   const std::shared_ptr<const Model>& model() const { return model_; }
@@ -33,7 +35,7 @@ class RopeWaysAt {
               std::shared_ptr<Model>& changed);
 
   std::vector<RopeRoute> routes_;
-  std::vector<std::shared_ptr<const RouteWatch>> laid_;     // by route, as found last
+  std::vector<RopeMemory> laid_;                            // by route, as its elements lie
   std::vector<std::shared_ptr<const RouteWatch>> watches_;  // by route, once they are followed
   bool has_changed_ = false;
 };

@@ -15,9 +15,6 @@ constexpr int arc_pieces = 32;
 // An arc this little short of a whole turn is none, as the rope only grazes the circle. Poses in a page are in steps of
 // 1 / 65535 of all travel: a hundredth is what that turns a stretch of a 650th of it.
 constexpr double no_contact = 0.01;
-// Above this angle of contact, rad, a rope lies beside its circle if both stretches are long enough to cross there: as
-// in model/rope_layout.hpp.
-constexpr double most_contact = 4 * std::numbers::pi / 3;
 
 struct Circle {
   Vec2<double> centre;
@@ -43,7 +40,7 @@ double contact_between(const Circle& a, const Circle& between, const Circle& b) 
   if (contact < 0) contact += 2 * std::numbers::pi;
   const double needed = std::abs(between.radius) * std::tan((2 * std::numbers::pi - contact) / 2);
   const bool crosses =
-      contact > most_contact && length_between(a, between) > needed && length_between(between, b) > needed;
+      contact > most_contact_of_ropes && length_between(a, between) > needed && length_between(between, b) > needed;
   return crosses ? contact - 2 * std::numbers::pi : contact;
 }
 

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <exception>
+#include <functional>
 
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/run/watched_elements.hpp"
 #include "catena/base/at.hpp"
-#include "catena/model/rope_routes.hpp"
 
 namespace catena {
 namespace {
@@ -56,23 +56,15 @@ std::unique_ptr<LaneDesigns> LaneDesigns::make(const AnalysisContext& context, s
   const AnalysisTask& inner = context.task.of.front();
   std::shared_ptr<const Model> model = context.models->model(*inner.table, context.seeds, &why_not);
   if (!model) return nullptr;
-  if (!rope_routes(*model).empty()) {
-    why_not = "it has a rope over a pulley, whose way may change along the motion";
-    return nullptr;
-  }
-  Evaluator watched(Plan::make(*model, options_of(inner, *model)), *model);
-  if (WatchedElements(watched).may_end()) {
-    why_not = "it has curves, tables or laws that end, which are watched along the motion";
-    return nullptr;
-  }
-  if (!model->laws.empty()) {
-    why_not = "it has forces by laws of state, which are checked along the motion";
-    return nullptr;
-  }
   try {
     std::shared_ptr<const Plan> plan = Plan::make(*model, options_of(inner, *model));
     std::unique_ptr<const LaneProgram> program = LaneProgram::make(*model, plan, why_not);
     if (!program) return nullptr;
+    const Evaluator watched(plan, *model);
+    if (WatchedElements(watched).may_end()) {
+      why_not = "it has curves or tables that end, which are watched along the motion";
+      return nullptr;
+    }
     // Throws for columns that such an analysis does not give.
     const MeasureSet measures(inner.measure_requests(), *model, *plan, kinematic_sources, {});
     return std::unique_ptr<LaneDesigns>(
@@ -118,9 +110,9 @@ std::string LaneDesigns::prepare(Lane& lane, const ParameterSeeds& seeds) {
   if (!grid) return report.message;
   lane.instants.clear();
   for (std::int64_t k = 0; k < grid->size(); ++k) lane.instants.push_back((*grid)[k]);
-  for (std::size_t k = 0; k < lane.instants.size(); ++k) {
-    if (!(lane.instants[k] > (k == 0 ? -1e-300 : lane.instants[k - 1]))) return "its instants are not in order";
-  }
+  const std::vector<double>& t = lane.instants;
+  const bool ascend = std::adjacent_find(t.begin(), t.end(), std::greater_equal<>()) == t.end();
+  if (!ascend || !(t.front() >= 0)) return "its instants are not in order, from zero on";
   return {};
 }
 

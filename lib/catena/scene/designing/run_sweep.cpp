@@ -196,10 +196,15 @@ bool Sweep::take_next(std::int64_t& first, int& count) {
 void Sweep::give(std::int64_t k, SweptDesign design) {
   // One that was stopped on the way is not done.
   const bool is_done = design.status != Status::cancelled || !cancelled();
-  if (SweepRecord* record = context_.sweep.record; record && is_done && !design.is_recorded)
+  // One that was lost may come from two processes after all.
+  const auto is_new = [&] { return is_done && k >= given_ && !waiting_.contains(k); };
+  std::unique_lock lock(mutex_);
+  if (SweepRecord* record = context_.sweep.record; record && is_new() && !design.is_recorded) {
+    lock.unlock();
     record->add(context_.sweep.analysis, k + 1, design);
-  const std::lock_guard lock(mutex_);
-  if (is_done && k >= given_) waiting_.emplace(k, std::move(design));
+    lock.lock();
+  }
+  if (is_new()) waiting_.emplace(k, std::move(design));
   for (auto first = waiting_.begin(); first != waiting_.end() && first->first == given_ && !stopped_;
        first = waiting_.begin()) {
     SweptDesign& one = first->second;
@@ -244,6 +249,7 @@ void Sweep::work() {
 void Sweep::work_in_lanes(LaneDesigns& lanes) {
   std::array<ParameterSeeds, static_cast<std::size_t>(lane_count)> seeds;
   std::array<LaneDesigns::Outcome, static_cast<std::size_t>(lane_count)> outcomes;
+  std::array<std::optional<SweepRecord::Design>, static_cast<std::size_t>(lane_count)> known;
   std::int64_t first = 0;
   for (int count = lane_count; take_next(first, count); count = lane_count) {
     const auto n = static_cast<std::size_t>(count);
@@ -251,14 +257,15 @@ void Sweep::work_in_lanes(LaneDesigns& lanes) {
     for (std::size_t lane = 0; lane < n; ++lane) {
       const std::int64_t k = first + static_cast<std::int64_t>(lane);
       seeds[lane] = seeds_of(k);
-      all_known = all_known && recorded(k);
+      known[lane] = recorded(k);
+      all_known = all_known && known[lane];
     }
     // Beside others that are in the record, those that are not stand in the lanes that they would have had.
     if (!all_known) lanes.measure(std::span(seeds).first(n), std::span(outcomes).first(n));
     for (std::size_t lane = 0; lane < n; ++lane) {
       const std::int64_t k = first + static_cast<std::int64_t>(lane);
-      if (recorded(k))
-        give(k, analyse(k));
+      if (known[lane])
+        give(k, {std::move(*known[lane]), nullptr, true});
       else
         take_lane(k, outcomes[lane]);
     }
@@ -295,6 +302,13 @@ std::string Sweep::describe_lanes() const {
 // What another process found. A design that is drawn is analysed here once more, unless it was refused: by the scene,
 // or because processes ended while they had it.
 void Sweep::give_foreign(std::int64_t k, SweepRecord::Design found) {
+  if (found.status == Status::cancelled) {
+    // That process alone was told to end: another one analyses the design.
+    const std::lock_guard lock(mutex_);
+    again_.push_back(k);
+    room_.notify_all();
+    return;
+  }
   SweptDesign design;
   if (context_.poses && found.status != Status::refused) design.seen = context_.poses->watch_design(k, count_);
   if (design.seen) {

@@ -133,7 +133,7 @@ void SweepRecord::check_owner(const std::string& line, std::string_view owner) c
   if (text("owner") != owner) {
     fail(
         fmt::format("belongs to another scene (\"{}\"), or to this one with another text, other files or other "
-                    "parameters, or to another version of catena",
+                    "parameters, or to another command, processor or version of catena",
                     text("scene")));
   }
 }

@@ -59,8 +59,8 @@ class WithRopes {
     const std::shared_ptr<const Model> before = ways_.model();
     if (!ways_.follow(evaluator)) return;
     if (ways_.has_changed() && !obstacle_.empty())
-      throw ModelError("a rope meets or leaves a pulley by t = " + std::to_string(evaluator.time()) + " s, where " +
-                       obstacle_);
+      throw ModelError(
+          fmt::format("a rope meets or leaves a pulley by t = {:.12g} s, where {}", evaluator.time(), obstacle_));
     evaluator.set_model(*ways_.model());
     evaluator.set_configuration(q);
     kept_.push_back(before);
