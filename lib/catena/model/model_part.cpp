@@ -1,6 +1,7 @@
 #include "catena/model/model_part.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "catena/base/at.hpp"
@@ -10,43 +11,51 @@
 namespace catena {
 namespace {
 
-/// Calls f(entry, kind) for every element in file order.
+/// Calls f(entry, kind) for one element.
 template <class F>
-void for_each_element(const Model& model, F&& f) {
-  for (const ElementRecord& record : model.elements) {
-    const auto take = [&](const auto& list) { f(list[at(record.index)], record.kind); };
-    if (record.kind == ElementKind::force) {
-      with_list(model.forces, record.type, take);
-    } else {
-      with_list(model.constraints, record.type, take);
-    }
+void with_element(const Model& model, const ElementRecord& record, F&& f) {
+  const auto take = [&](const auto& list) { f(list[at(record.index)], record.kind); };
+  if (record.kind == ElementKind::force) {
+    with_list(model.forces, record.type, take);
+  } else {
+    with_list(model.constraints, record.type, take);
   }
 }
 
+/// The same for every element in file order.
+template <class F>
+void for_each_element(const Model& model, F&& f) {
+  for (const ElementRecord& record : model.elements) with_element(model, record, f);
+}
+
+bool moves(const Model& model, int body) { return body >= 0 && !model.bodies[at(body)].fixed; }
+
 class Extraction {
  public:
-  explicit Extraction(const Model& whole) : whole_(whole), body_(whole.bodies.size(), -1) {
+  /// `number`: of every body of the whole, -1, and again so when the part is made.
+  Extraction(const Model& whole, std::vector<int>& number) : whole_(whole), body_(number) {
     part_.model.gravity = whole.gravity;
   }
 
-  ModelPart make(std::span<const int> bodies) {
+  /// `elements`: those that touch the bodies, in file order.
+  ModelPart make(std::span<const int> bodies, std::span<const int> elements) {
     for (const int body : bodies) add(body);
-    for_each_element(whole_, [&]<class E>(const ElementEntry<E, double>& entry, ElementKind kind) {
-      const bool ours = (moves(entry.i) && body_[at(entry.i)] >= 0) || (moves(entry.j) && body_[at(entry.j)] >= 0);
-      if (ours) add(entry, kind);
-    });
+    for (const int element : elements) {
+      with_element(whole_, whole_.elements[at(element)],
+                   [&](const auto& entry, ElementKind kind) { add(entry, kind); });
+    }
+    renumber_joints();
     // Elements that are only read may tie immobile bodies: they come last, and may have laws themselves.
     for (std::size_t law = 0; law < part_.model.laws.size(); ++law) {
       std::vector<Column> inputs = part_.model.laws[law].inputs;  // a copy: more laws may come
       for (Column& input : inputs) bring(input);
       part_.model.laws[law].inputs = std::move(inputs);
     }
+    for (const int body : part_.bodies) body_[at(body)] = -1;
     return std::move(part_);
   }
 
  private:
-  bool moves(int body) const { return body >= 0 && !whole_.bodies[at(body)].fixed; }
-
   int add(int body) {
     if (body < 0) return ground;
     int& number = body_[at(body)];
@@ -106,20 +115,54 @@ class Extraction {
       element.first_part = static_cast<int>(
           std::get<std::vector<ElementEntry<typename E::Part, double>>>(part_.model.constraints).size());
     }
-    if constexpr (Joining<E>) {
-      const auto head = std::lower_bound(part_.elements.begin(), part_.elements.end(), element.head);
-      element.head = static_cast<int>(head - part_.elements.begin());
-    }
+    if constexpr (Joining<E>) element.head = number_of(element.head);
+  }
+
+  // Friction names its joint, which may come after it.
+  void renumber_joints() {
+    for_each_list(part_.model.constraints, [&](auto& list, int) {
+      if constexpr (Dry<ElementOf<decltype(list)>>) {
+        for (auto& entry : list) entry.element.joint = number_of(entry.element.joint);
+      }
+    });
+  }
+
+  // Of an element that touches the bodies, in the part.
+  int number_of(int element) const {
+    const auto own = std::lower_bound(part_.elements.begin(), part_.elements.end(), element);
+    return static_cast<int>(own - part_.elements.begin());
   }
 
   const Model& whole_;
-  std::vector<int> body_;  // number in the part, -1: not there
+  std::vector<int>& body_;  // number in the part, -1: not there
   ModelPart part_;
 };
 
 }  // namespace
 
-ModelPart part_of(const Model& whole, std::span<const int> bodies) { return Extraction(whole).make(bodies); }
+ModelPart part_of(const Model& whole, std::span<const int> bodies) {
+  const std::vector<int> group(bodies.begin(), bodies.end());
+  return std::move(parts_of(whole, {&group, 1}).front());
+}
+
+std::vector<ModelPart> parts_of(const Model& whole, std::span<const std::vector<int>> groups) {
+  constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> group_of(whole.bodies.size(), none);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    for (const int body : groups[g]) group_of[at(body)] = g;
+  }
+  std::vector<std::vector<int>> elements(groups.size());
+  for_each_element(whole, [&](const auto& entry, ElementKind) {
+    std::size_t group = moves(whole, entry.i) ? group_of[at(entry.i)] : none;
+    if (group == none && moves(whole, entry.j)) group = group_of[at(entry.j)];
+    if (group != none) elements[group].push_back(entry.id);
+  });
+  std::vector<int> number(whole.bodies.size(), -1);
+  std::vector<ModelPart> parts;
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    parts.push_back(Extraction(whole, number).make(groups[g], elements[g]));
+  return parts;
+}
 
 std::vector<std::vector<int>> separate_groups(const Model& model) {
   std::vector<int> leader(model.bodies.size());
@@ -128,7 +171,7 @@ std::vector<std::vector<int>> separate_groups(const Model& model) {
     while (leader[at(body)] != body) body = leader[at(body)] = leader[at(leader[at(body)])];
     return body;
   };
-  const auto fixed = [&](int body) { return body < 0 || model.bodies[at(body)].fixed; };
+  const auto fixed = [&](int body) { return !moves(model, body); };
   for_each_element(model, [&](const auto& entry, ElementKind) {
     if (fixed(entry.i) || fixed(entry.j)) return;
     leader[at(find(entry.i))] = find(entry.j);

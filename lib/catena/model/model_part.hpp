@@ -28,6 +28,8 @@ struct ModelPart {
 };
 
 ModelPart part_of(const Model& whole, std::span<const int> bodies);
+/// A part for each of the groups, no two of which an element ties to each other: in time linear in the whole.
+std::vector<ModelPart> parts_of(const Model& whole, std::span<const std::vector<int>> groups);
 
 /// Groups of bodies that no constraint and no force ties to each other; a law of state ties the bodies that it reads
 /// and acts on. Fixed bodies tie nothing and are in none.

@@ -1,6 +1,8 @@
 #include "catena/analysis/dynamics/dynamics_of_islands.hpp"
 
 #include <algorithm>
+#include <deque>
+#include <utility>
 
 #include "catena/analysis/run/report_parts.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
@@ -27,13 +29,21 @@ void merge(AnalysisReport& total, AnalysisReport part) {
     sum.status = part.status;
     sum.message = part.message;
   }
+  sum.rows += part.rows;
   sum.seconds = 0;
   add_part(total, std::move(sum));
 }
 
+/// Equations of contacts, which come and go, are those of the parts alone.
+std::shared_ptr<const Plan> plan_of_all(const Model& model, PlanOptions options) {
+  const std::vector<int> gaps = model.gaps();
+  options.released_elements.insert(options.released_elements.end(), gaps.begin(), gaps.end());
+  return Plan::make(model, options);
+}
+
 }  // namespace
 
-/// One class of mechanisms, and where its numbers stand among those of all. Keeps the row it gave last.
+/// One class of mechanisms, and where its numbers stand among those of all.
 class DynamicsOfIslands::Part final : public RowObserver {
  public:
   Part(DynamicsOfIslands& owner, ModelPart part, const PlanOptions& all, const DynamicsOptions& options)
@@ -43,7 +53,7 @@ class DynamicsOfIslands::Part final : public RowObserver {
         model_(std::make_shared<const Model>(std::move(part_.model))),
         plan_options_(options_of(all)),
         options_(options),
-        dynamics_(model_, plan_options_, options) {
+        dynamics_(model_, plan_options_, options, {}, {}) {
     const Plan& plan = dynamics_.plan();
     for (int p = 0; p < plan.moving; ++p) {
       body_.push_back(owner.plan_->plan_body[at(part_.bodies[at(plan.model_body[at(p)])])]);
@@ -52,13 +62,14 @@ class DynamicsOfIslands::Part final : public RowObserver {
     own.set_configuration(own.given_configuration());
     for (int r = 0; r < plan.rows; ++r) {
       const int element = plan.row_element[at(r)], in_all = part_.elements[at(element)];
+      const int within = r - plan.element_row[at(element)];
       // Rows of squared distances have a scale, which may depend on the size of the scene.
-      factor_.push_back(own.element_jacobian(element).scale / all_evaluator.element_jacobian(in_all).scale);
-      row_.push_back(owner.plan_->element_row[at(in_all)] + r - plan.element_row[at(element)]);
+      const double factor = own.element_jacobian(element).scale / all_evaluator.element_jacobian(in_all).scale;
+      row_.push_back({element, within, owner.plan_->element_row[at(in_all)] + within, factor});
     }
   }
 
-  Dynamics& dynamics() { return dynamics_; }
+  DynamicsWithEvents& dynamics() { return dynamics_; }
 
   void start_from(const SystemState& state) {
     SystemState own{state.t, {}, {}};
@@ -72,11 +83,30 @@ class DynamicsOfIslands::Part final : public RowObserver {
     dynamics_.start_from(own);
     start_ = std::move(own);
   }
+  void begin(const TimeGrid& grid, const Needs& needs) {
+    ahead_.clear();
+    dynamics_.begin(grid, needs);
+  }
+  /// Puts row number `row` of the grid among those of all. False: it does not come any more.
+  bool go_to(std::int64_t row) {
+    if (ahead_.empty() && !dynamics_.go_on(row + 1, *this)) return false;
+    show(ahead_.front());
+    spare_ = std::move(ahead_.front());
+    ahead_.pop_front();
+    return true;
+  }
   /// Gives the row at t of a motion that may have gone past it: from the start again. False: it does not come there.
   bool go_again_to(double t, const Needs& needs) {
-    Dynamics again(model_, plan_options_, options_);
+    DynamicsWithEvents again(model_, plan_options_, options_, {}, {});
     if (start_) again.start_from(*start_);
-    return again.run(TimeGrid::instant(t), needs, *this).ok();
+    ahead_.clear();
+    if (!again.run(TimeGrid::instant(t), needs, *this).ok()) return false;
+    show(ahead_.back());
+    return true;
+  }
+  /// The row that a motion gave last, where it ended in a dead point.
+  void show_last() {
+    if (!ahead_.empty()) show(ahead_.back());
   }
   std::vector<SingularPoint> singular_points() const {
     std::vector<SingularPoint> points = dynamics_.singular_points();
@@ -93,6 +123,11 @@ class DynamicsOfIslands::Part final : public RowObserver {
     }
     return jolts;
   }
+  std::vector<ContactEvent> contact_events() const {
+    std::vector<ContactEvent> events = dynamics_.contact_events();
+    for (ContactEvent& event : events) event.element = part_.elements[at(event.element)];
+    return events;
+  }
   /// The instant at which its motion ended: of the dead point, where it locked.
   double end() const {
     const std::vector<SingularPoint>& points = dynamics_.singular_points();
@@ -107,22 +142,26 @@ class DynamicsOfIslands::Part final : public RowObserver {
   }
 
   bool observe(const Snapshot& s) override {
-    for (std::size_t p = 0; p < body_.size(); ++p) {
-      const std::size_t target = 3 * at(body_[p]);
-      std::copy_n(&s.q[3 * p], 3, &owner_.q_[target]);
-      std::copy_n(&s.qd[3 * p], 3, &owner_.qd_[target]);
-      if (!s.qdd.empty()) std::copy_n(&s.qdd[3 * p], 3, &owner_.qdd_[target]);
-    }
-    for (std::size_t r = 0; r < std::min(row_.size(), s.lambda.size()); ++r) {
-      owner_.lambda_[at(row_[r])] = factor_[r] * s.lambda[r];
+    Row& row = ahead_.emplace_back(std::exchange(spare_, {}));
+    const auto take = [&](std::vector<double>& values, std::span<const double> of) {
+      values.clear();
+      if (!of.empty()) values.assign(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(3 * body_.size()));
+    };
+    take(row.q, s.q);
+    take(row.qd, s.qd);
+    take(row.qdd, s.qdd);
+    row.lambda.clear();
+    for (std::size_t r = 0; r < row_.size() && !s.lambda.empty(); ++r) {
+      // Rows of contacts come and go between them.
+      const std::size_t own = at(s.evaluator.plan().element_row[at(row_[r].element)] + row_[r].within);
+      row.lambda.push_back(row_[r].factor * s.lambda[own]);
     }
     // A part keeps account of work for its own checks, too, where no row is to show it.
-    const std::size_t shown = owner_.driver_work_.empty() ? 0 : s.driver_work.size();
-    for (std::size_t e = 0; e < shown; ++e) owner_.driver_work_[at(part_.elements[e])] = s.driver_work[e];
-    residual = s.residual;
-    work = s.work;
-    dissipated = s.dissipated;
-    initial_energy = s.initial_energy;
+    const std::size_t shown = owner_.driver_work_.empty() || s.driver_work.empty() ? 0 : part_.elements.size();
+    row.driver_work.assign(s.driver_work.begin(), s.driver_work.begin() + static_cast<std::ptrdiff_t>(shown));
+    const std::size_t touching = std::min(part_.elements.size(), s.contacts.size());
+    row.contacts.assign(s.contacts.begin(), s.contacts.begin() + static_cast<std::ptrdiff_t>(touching));
+    row.sums = {s.residual, s.work, s.dissipated, s.initial_energy, s.contact_energy};
     return true;
   }
   bool proceed(double t) override {
@@ -130,9 +169,40 @@ class DynamicsOfIslands::Part final : public RowObserver {
     return watcher_->proceed(from_ + (number * (to_ - from_) + (t - from_)) / static_cast<double>(owner_.classes()));
   }
 
-  double residual = 0, work = 0, dissipated = 0, initial_energy = 0;
+  /// What a row of all is the sum or, of residuals, the largest of.
+  struct Sums {
+    double residual = 0, work = 0, dissipated = 0, initial_energy = 0, contact_energy = 0;
+  };
+  Sums sums;  ///< of the row that was shown last
 
  private:
+  /// A row of the part, by its bodies, equations and elements.
+  struct Row {
+    std::vector<double> q, qd, qdd, lambda, driver_work;
+    std::vector<ContactLoad> contacts;
+    Sums sums;
+  };
+  /// An equation that always holds.
+  struct Equation {
+    int element, within;  // of the part; among the rows of the element
+    int in_all;           // row of the plan of all
+    double factor;        // of its multiplier there
+  };
+
+  void show(const Row& row) {
+    const auto scatter = [&](const std::vector<double>& values, std::vector<double>& all) {
+      for (std::size_t p = 0; 3 * p < values.size(); ++p) std::copy_n(&values[3 * p], 3, &all[3 * at(body_[p])]);
+    };
+    scatter(row.q, owner_.q_);
+    scatter(row.qd, owner_.qd_);
+    scatter(row.qdd, owner_.qdd_);
+    for (std::size_t r = 0; r < row.lambda.size(); ++r) owner_.lambda_[at(row_[r].in_all)] = row.lambda[r];
+    for (std::size_t e = 0; e < row.driver_work.size(); ++e)
+      owner_.driver_work_[at(part_.elements[e])] = row.driver_work[e];
+    for (std::size_t e = 0; e < row.contacts.size(); ++e) owner_.contacts_[at(part_.elements[e])] = row.contacts[e];
+    sums = row.sums;
+  }
+
   PlanOptions options_of(const PlanOptions& all) const {
     PlanOptions own;
     std::vector<int> wanted = all.keep_elements;
@@ -150,24 +220,27 @@ class DynamicsOfIslands::Part final : public RowObserver {
   PlanOptions plan_options_;
   DynamicsOptions options_;
   std::optional<SystemState> start_;
-  Dynamics dynamics_;
-  std::vector<int> body_, row_;  // in the plan of all: of a moving body of the part, of a row
-  std::vector<double> factor_;   // of multipliers, by row of the part
+  DynamicsWithEvents dynamics_;
+  std::vector<int> body_;  // in the plan of all: of a moving body of the part
+  std::vector<Equation> row_;
+  std::deque<Row> ahead_;  // given by the part, and not by all of them yet
+  Row spare_;              // its memory serves the next row
   double from_ = 0, to_ = 0;
   RowObserver* watcher_ = nullptr;
 };
 
 DynamicsOfIslands::DynamicsOfIslands(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
                                      const DynamicsOptions& options, const std::vector<std::vector<int>>& classes)
-    : model_(std::move(model)), plan_(Plan::make(required(model_), plan_options)), evaluator_(plan_, *model_) {
+    : model_(std::move(model)), plan_(plan_of_all(required(model_), plan_options)), evaluator_(plan_, *model_) {
   q_ = evaluator_.given_configuration();
   qd_.assign(q_.size(), 0.0);
   qdd_.assign(q_.size(), 0.0);
   lambda_.assign(at(plan_->rows), 0.0);
   evaluator_.set_configuration(q_);
-  for (const std::vector<int>& bodies : classes) {
-    parts_.push_back(std::make_unique<Part>(*this, part_of(*model_, bodies), plan_options, options));
-  }
+  for (ModelPart& part : parts_of(*model_, classes))
+    parts_.push_back(std::make_unique<Part>(*this, std::move(part), plan_options, options));
+  touches_ =
+      std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part->dynamics().has_contacts(); });
 }
 
 DynamicsOfIslands::~DynamicsOfIslands() = default;
@@ -190,62 +263,67 @@ AnalysisReport DynamicsOfIslands::run(const TimeGrid& grid, const Needs& needs, 
   const ProcessTimer timer;
   const FlushDenormals flush;
   driver_work_.assign(needs.work ? model_->elements.size() : 0, 0.0);
-  for (const auto& part : parts_) part->dynamics().begin(grid, needs);
-  singular_points_.clear();
+  contacts_.assign(touches_ ? model_->elements.size() : 0, {});
+  for (const auto& part : parts_) part->begin(grid, needs);
   bool cancelled = false;
   // Of those that cannot go on before a row the one that ends first.
-  const Part* ended = nullptr;
+  Part* ended = nullptr;
   for (std::int64_t row = 0; row < grid.size() && !ended && !cancelled; ++row) {
     for (const auto& part : parts_) {
       part->go_through(t_, grid[row], observer);
-      if (!part->dynamics().go_on(row + 1, *part) && (!ended || part->end() < ended->end())) ended = part.get();
+      if (!part->go_to(row) && (!ended || part->end() < ended->end())) ended = part.get();
     }
     if (!ended) cancelled = !give_row(grid[row], needs, observer);
   }
-  AnalysisReport total;
-  total.bodies = plan_->bodies;
-  total.rows = plan_->rows;
-  total.islands = plan_->islands;
-  collect_points_in_time(ended ? ended->end() : grid.last());
-  std::vector<Part*> in_order;
-  for (const auto& part : parts_) in_order.push_back(part.get());
-  std::stable_partition(in_order.begin(), in_order.end(), [&](const Part* part) { return part == ended; });
-  for (Part* part : in_order) merge(total, part->dynamics().end());
+  AnalysisReport total = report_of_all(ended);
   if (cancelled && total.ok()) {
     total.status = Status::cancelled;
     total.message = "stopped; the rows so far are kept";
   }
+  collect_points_in_time(ended ? ended->end() : grid.last());
   if (ended && total.status == Status::lock_up) give_row_at_lock_up(*ended, needs, observer);
   total.counters += evaluator_.counters;
   total.seconds = timer.seconds();
   return total;
 }
 
+// The outcome is that of the one that ended, if one did.
+AnalysisReport DynamicsOfIslands::report_of_all(const Part* ended) {
+  AnalysisReport total;
+  total.bodies = plan_->bodies;
+  total.islands = plan_->islands;
+  std::vector<Part*> in_order;
+  for (const auto& part : parts_) in_order.push_back(part.get());
+  std::stable_partition(in_order.begin(), in_order.end(), [&](const Part* part) { return part == ended; });
+  for (Part* part : in_order) merge(total, part->dynamics().end());
+  return total;
+}
+
 // The others are elsewhere when one locks, and some have gone past that instant.
-void DynamicsOfIslands::give_row_at_lock_up(const Part& locked, const Needs& needs, RowObserver& observer) {
+void DynamicsOfIslands::give_row_at_lock_up(Part& locked, const Needs& needs, RowObserver& observer) {
   const double t = locked.end();
+  locked.show_last();
   for (const auto& part : parts_) {
     if (part.get() != &locked && !part->go_again_to(t, needs)) return;
   }
   give_row(t, needs, observer);
 }
 
-// Singular points and jolts up to an instant, in their order in time: some mechanisms have gone past it.
+// What happened up to an instant, in the order of time, at one instant in the order of the mechanisms: some have gone
+// past it.
 void DynamicsOfIslands::collect_points_in_time(double until) {
-  for (const auto& part : parts_) {
-    for (SingularPoint& point : part->singular_points()) {
-      if (point.t <= until) singular_points_.push_back(std::move(point));
+  const auto collect = [&]<class Point>(std::vector<Point>& all, auto&& of) {
+    all.clear();
+    for (const auto& part : parts_) {
+      for (Point& point : of(*part)) {
+        if (point.t <= until) all.push_back(std::move(point));
+      }
     }
-  }
-  const auto earlier = [](const auto& a, const auto& b) { return a.t < b.t; };
-  std::stable_sort(singular_points_.begin(), singular_points_.end(), earlier);
-  jolts_.clear();
-  for (const auto& part : parts_) {
-    for (Jolt& jolt : part->jolts()) {
-      if (jolt.t <= until) jolts_.push_back(std::move(jolt));
-    }
-  }
-  std::stable_sort(jolts_.begin(), jolts_.end(), earlier);
+    std::stable_sort(all.begin(), all.end(), [](const Point& a, const Point& b) { return a.t < b.t; });
+  };
+  collect(singular_points_, [](const Part& part) { return part.singular_points(); });
+  collect(jolts_, [](const Part& part) { return part.jolts(); });
+  collect(contact_events_, [](const Part& part) { return part.contact_events(); });
 }
 
 // The mechanisms together at an instant at which each of them gave its row.
@@ -257,11 +335,14 @@ bool DynamicsOfIslands::give_row(double t, const Needs& needs, RowObserver& obse
   if (needs.acceleration || needs.multipliers) s.qdd = qdd_;
   if (needs.multipliers) s.lambda = lambda_;
   for (const auto& part : parts_) {
-    s.residual = std::max(s.residual, part->residual);
-    s.work += part->work;
-    s.dissipated += part->dissipated;
-    s.initial_energy += part->initial_energy;
+    const Part::Sums& sums = part->sums;
+    s.residual = std::max(s.residual, sums.residual);
+    s.work += sums.work;
+    s.dissipated += sums.dissipated;
+    s.initial_energy += sums.initial_energy;
+    s.contact_energy += sums.contact_energy;
   }
+  s.contacts = contacts_;
   s.driver_work = driver_work_;
   return observer.observe(s);
 }

@@ -4,6 +4,9 @@
 //
 // A stiff or fast mechanism then does not force its steps on a slow and large one: instead of
 //   (most steps of any) x (bodies of all)      the cost is      sum over the classes of steps x bodies.
+// Mechanisms with contacts, stops, cables or dry friction are each a class of their own: where one of them changes what
+// it does, the others know nothing of it, and a fall of n bodies costs n times that of one.
+//
 // Errors are compared with the sizes of each class, not with those of the whole scene: the same tolerance asks for more
 // where a small mechanism stands beside a large one.
 #pragma once
@@ -11,7 +14,7 @@
 #include <memory>
 #include <vector>
 
-#include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/dynamics/dynamics_with_events.hpp"
 #include "catena/model/model_part.hpp"
 
 namespace catena {
@@ -33,13 +36,16 @@ class DynamicsOfIslands {
   /// See Dynamics; drivers by their numbers in the whole model.
   const std::vector<SingularPoint>& singular_points() const { return singular_points_; }
   const std::vector<Jolt>& jolts() const { return jolts_; }
+  /// Changes of contacts, of one instant in the order of the classes.
+  const std::vector<ContactEvent>& contact_events() const { return contact_events_; }
   /// Where one of them cannot go on all end, with its message; in a dead point with a row of all at that instant.
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
 
  private:
   class Part;
   bool give_row(double t, const Needs& needs, RowObserver& observer);
-  void give_row_at_lock_up(const Part& locked, const Needs& needs, RowObserver& observer);
+  AnalysisReport report_of_all(const Part* ended);
+  void give_row_at_lock_up(Part& locked, const Needs& needs, RowObserver& observer);
   void collect_points_in_time(double until);
 
   std::shared_ptr<const Model> model_;
@@ -48,8 +54,11 @@ class DynamicsOfIslands {
   std::vector<std::unique_ptr<Part>> parts_;
   std::vector<SingularPoint> singular_points_;
   std::vector<Jolt> jolts_;
+  std::vector<ContactEvent> contact_events_;
+  bool touches_ = false;  // some have contacts, stops or friction
   double t_ = 0;
   std::vector<double> q_, qd_, qdd_, lambda_, driver_work_;  // of all, in the order of plan_
+  std::vector<ContactLoad> contacts_;                        // by element
 };
 
 }  // namespace catena

@@ -52,6 +52,11 @@ class DynamicsWithEvents {
   /// that are left.
   void resume(const MotionMemory& memory);
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer);
+  /// run() in parts, as in Dynamics; rows may come before they are asked for: all of a step that an event ends.
+  void begin(const TimeGrid& grid, const Needs& needs);
+  bool go_on(std::int64_t rows, RowObserver& observer);
+  AnalysisReport end();
+  double time() const { return dynamics_->time(); }
   SystemState state() const { return end_ ? *end_ : dynamics_->state(); }
   /// See Dynamics.
   const std::vector<SingularPoint>& singular_points() const { return singular_points_; }
@@ -65,6 +70,13 @@ class DynamicsWithEvents {
  private:
   using WorkByDriver = std::vector<std::pair<int, double>>;
   void make_dynamics();
+  void begin_phase();
+  void take_report();
+  /// Does what the phase's end asks for. False: the run ends.
+  bool end_phase(RowObserver& rows);
+  bool give_up(const Report& report);
+  /// Begins the next phase; `stop`: see act().
+  Report change(bool acts, const Event*& stop);
   Report start_contacts();
   /// Goes on from `state` with the rows that hold now; `engaged`: elements that do from now on.
   /// `work_of_jolt`: what a blow or drivers did at once, the latter apart as well.
@@ -99,6 +111,14 @@ class DynamicsWithEvents {
   Pauses pauses_;
   bool resumed_ = false;
   std::int64_t first_row_ = 0, rows_before_ = 0;  // of the grid; rows given before the motion was taken up
+  // Of the run under way.
+  TimeGrid grid_ = TimeGrid::list({});
+  Needs needs_;
+  AnalysisReport total_;
+  std::int64_t rows_ = 0, next_row_ = 0;  // given, those at events as well; of the grid, where the phase begins
+  bool in_phase_ = false, over_ = false;
+  double last_action_ = -1;  // s; and how often events acted then
+  int at_once_ = 0;
 };
 
 }  // namespace catena

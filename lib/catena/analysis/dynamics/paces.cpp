@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "catena/assembly/evaluate.hpp"
@@ -17,7 +18,9 @@ constexpr double one_class = 3;
 
 /// By body of the model.
 std::vector<double> paces_of_bodies(const std::shared_ptr<const Model>& model) {
-  Evaluator evaluator(Plan::make(*model), *model);
+  PlanOptions open;
+  open.released_elements = model->gaps();
+  Evaluator evaluator(Plan::make(*model, open), *model);
   const Plan& plan = evaluator.plan();
   const double length = evaluator.length_scale();
   evaluator.set_configuration(evaluator.given_configuration());
@@ -45,7 +48,7 @@ std::vector<double> paces_of_bodies(const std::shared_ptr<const Model>& model) {
   }
   for_each_list(model->constraints, [&](const auto& list, int) {
     using E = ElementOf<decltype(list)>;
-    if constexpr (E::functions == 1) {
+    if constexpr (E::functions == 1 && !OneSided<E>) {
       const double unit = E::value_unit == UnitKind::angle ? 1 : length;
       for (const auto& entry : list) {
         if (entry.values[0].function < 0) continue;
@@ -60,11 +63,34 @@ std::vector<double> paces_of_bodies(const std::shared_ptr<const Model>& model) {
   return paces;
 }
 
+/// By body of the model: whether a one-sided element or dry friction acts on it.
+std::vector<char> touching_bodies(const Model& model) {
+  std::vector<char> touches(model.bodies.size(), 0);
+  for_each_list(model.constraints, [&](const auto& list, int) {
+    if constexpr (OneSided<ElementOf<decltype(list)>>) {
+      for (const auto& entry : list) {
+        for (const int body : {entry.i, entry.j}) {
+          if (body >= 0) touches[at(body)] = 1;
+        }
+      }
+    }
+  });
+  return touches;
+}
+
 }  // namespace
 
 std::vector<std::vector<int>> classes_of_pace(const std::shared_ptr<const Model>& model) {
-  const std::vector<std::vector<int>> groups = separate_groups(*model);
+  std::vector<std::vector<int>> groups = separate_groups(*model);
   if (groups.size() < 2) return groups;
+  const std::vector<char> touching = touching_bodies(*model);
+  const auto touches = [&](const std::vector<int>& group) {
+    return std::any_of(group.begin(), group.end(), [&](int body) { return touching[at(body)] != 0; });
+  };
+  const auto first_touching =
+      std::stable_partition(groups.begin(), groups.end(), [&](const auto& group) { return !touches(group); });
+  std::vector<std::vector<int>> alone(std::make_move_iterator(first_touching), std::make_move_iterator(groups.end()));
+  groups.erase(first_touching, groups.end());
   const std::vector<double> paces = paces_of_bodies(model);
   std::vector<double> pace;
   for (const std::vector<int>& group : groups) {
@@ -85,6 +111,7 @@ std::vector<std::vector<int>> classes_of_pace(const std::shared_ptr<const Model>
   }
   // The order of the model keeps neighbouring bodies together, and a mechanism keeps the order it has on its own.
   for (std::vector<int>& bodies : classes) std::sort(bodies.begin(), bodies.end());
+  std::move(alone.begin(), alone.end(), std::back_inserter(classes));
   return classes;
 }
 

@@ -17,7 +17,9 @@
 namespace catena {
 
 /// Bodies (of the model) by class: mechanisms that no element ties to each other, sorted by pace and divided where it
-/// is more than three times that of the slowest in the class. Fixed bodies are in none.
+/// is more than three times that of the slowest in the class. Behind these, each mechanism that one-sided elements or
+/// dry friction act on: it has instants of its own at which it changes, with which the others have nothing to do. Fixed
+/// bodies are in none.
 std::vector<std::vector<int>> classes_of_pace(const std::shared_ptr<const Model>& model);
 
 }  // namespace catena

@@ -213,7 +213,10 @@ void DynamicsTask::run_apart(const std::vector<std::vector<int>>& classes) {
   }
   result_.fields.push_back({"method", methods});
   result_.fields.push_back({"integrated_apart", static_cast<std::int64_t>(analysis.classes())});
-  add_jolts(analysis.jolts());
+  EventEntries entries(*model_);
+  entries.add(analysis.contact_events());
+  entries.add(analysis.jolts());
+  entries.give(result_, touches_);
 }
 
 void DynamicsTask::run() {
@@ -235,13 +238,13 @@ void DynamicsTask::run() {
     }
   }
   if (estimates_) used_options_ = finer_options(options_);
-  if (!context_.task.events.empty() || context_.checkpoint || touches_ || follows_ropes())
-    return run_with_events_or_pauses();
+  const bool in_common = !context_.task.events.empty() || context_.checkpoint || follows_ropes();
   // A fixed step is the same for all; two runs that are compared must be divided alike.
   const bool looked_at = context_.design || !context_.task.measures.empty();
-  if (!estimates_ && options_.step == 0 && !looked_at) {
+  if (!in_common && !estimates_ && options_.step == 0 && !looked_at) {
     if (const auto classes = classes_of_pace(model_); classes.size() > 1) return run_apart(classes);
   }
+  if (in_common || touches_) return run_with_events_or_pauses();
   const PlanOptions plan = plan_options(*model_, context_.task.column_names());
   Dynamics analysis(model_, plan, used_options_);
   run_or_estimate(analysis, plan);
