@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 
 #include "catena/base/at.hpp"
 
@@ -106,13 +107,46 @@ void ContactSwitch::apply(const Strike& strike, std::span<const double> q, std::
   work_of_strike_ = (before + speed()) / 2;
 }
 
-void ContactSwitch::find_touching(const std::vector<ContactState>& states, int trigger) {
-  active_.clear();
+// Mechanisms that constraints tie, and those that a gap or a slide ties as well.
+void ContactSwitch::find_groups() {
+  const Plan& plan = evaluator_.plan();
+  std::vector<int> leader(at(plan.islands));
+  std::iota(leader.begin(), leader.end(), 0);
+  const auto find = [&](int island) {
+    while (leader[at(island)] != island) island = leader[at(island)] = leader[at(leader[at(island)])];
+    return island;
+  };
+  std::vector<int> first(points_.size(), -1);
   for (std::size_t k = 0; k < points_.size(); ++k) {
+    const auto tie = [&](int body) {
+      if (body < 0 || body >= plan.moving) return;
+      const int island = find(plan.island[at(body)]);
+      if (first[k] < 0) first[k] = island;
+      leader[at(island)] = find(first[k]);
+    };
+    for (const Evaluator::ScalarMotion* motion : {&gap_[k], &slide_[k]}) {
+      tie(motion->body_i);
+      tie(motion->body_j);
+      for (const Evaluator::ScalarMotion::Part& part : motion->parts) {
+        tie(part.body_i);
+        tie(part.body_j);
+      }
+    }
+  }
+  group_.clear();
+  for (const int island : first) group_.push_back(island < 0 ? -1 : find(island));
+}
+
+void ContactSwitch::find_touching(const std::vector<ContactState>& states, const Cause& cause) {
+  active_.clear();
+  const bool is_of_one_group = cause.place >= 0 && !cause.strike && !cause.jolts;
+  if (is_of_one_group && group_.empty()) find_groups();
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    if (is_of_one_group && group_[k] != group_[at(cause.place)]) continue;
     const ContactPoint& point = points_[k];
     const double near = closed_gap * (point.turns ? 1 : evaluator_.length_scale());
     bool touches = states[k].closed || (point.kind == ContactKind::rigid && gap_[k].value <= near);
-    touches = touches || (point.kind == ContactKind::rigid && static_cast<int>(k) == trigger);
+    touches = touches || (point.kind == ContactKind::rigid && static_cast<int>(k) == cause.place);
     // Compliant and smoothed places are forces; only exact friction is decided about there.
     if (point.kind != ContactKind::rigid) touches = touches && point.has_friction() && point.is_exact();
     if (touches) active_.push_back(k);
@@ -383,7 +417,7 @@ Report ContactSwitch::decide(double t, std::span<const double> q, std::span<doub
     for (std::size_t r = 0; r < p_.size(); ++r) p_[r] += p[r];
     look(qd);
   }
-  find_touching(states, cause.place);
+  find_touching(states, cause);
   if (Report hit = collide(t, qd, states); !hit.ok()) return hit;
   if (is_told) impulses_ = impulses_of(equations_, q, qd, p_);
   if (Report chosen = choose(t, q, qd, states, cause); !chosen.ok()) return chosen;

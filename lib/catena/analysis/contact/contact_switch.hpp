@@ -8,9 +8,10 @@
 // A strike is an impulse on a point; what it presses together collides then. Where a constraint is engaged or the
 // velocity of a driver jumps, velocities meet that first: v_n- is the rate then.
 //
-// All places that touch take part together. Their impulses do no work, x^T (v- + v+) / 2 <= 0, v the rates of gaps and
-// slides: what the bodies gain is then the work of drivers. Where impacts with friction of several places would do some
-// (Kane's example), the restitution of all is reduced until they do not.
+// All places that touch take part together, of those that constraints and other places tie to the one that changed:
+// impulses and forces do not reach the others. Their impulses do no work, x^T (v- + v+) / 2 <= 0, v the rates of gaps
+// and slides: what the bodies gain is then the work of drivers. Where impacts with friction of several places would do
+// some (Kane's example), the restitution of all is reduced until they do not.
 //
 // Where drivers move on against closed places no impulse stops them: D_nn = 0, or w_n >= 0 has no solution even without
 // friction. The motion ends there, in a lock-up.
@@ -89,7 +90,8 @@ class ContactSwitch {
  private:
   void look(std::span<const double> qd);
   void apply(const Strike& strike, std::span<const double> q, std::span<double> qd);
-  void find_touching(const std::vector<ContactState>& states, int trigger);
+  void find_touching(const std::vector<ContactState>& states, const Cause& cause);
+  void find_groups();
   void find_responses();
   void fill(ContactProblem& problem) const;
   /// Of point k: what cannot be told from rest, m/s or rad/s, as a part of the largest speed.
@@ -126,6 +128,7 @@ class ContactSwitch {
   std::vector<double> left_at_;     // by point: when it was last let go, by its speed or by drivers
   std::optional<SingularPoint> blocked_;
   std::vector<Evaluator::ScalarMotion> gap_, slide_;
+  std::vector<int> group_;  // by point: impulses and forces at one point reach only points of its group
   // Of the touching places, two each: what a unit force across and along makes of accelerations and multipliers.
   std::vector<std::size_t> active_;
   std::vector<std::vector<double>> change_, multipliers_;

@@ -30,6 +30,9 @@ class ContactPhases {
   /// `options`: of the plan, without the contacts.
   Report start(SystemState& state, const PlanOptions& options);
   bool started() const { return switch_ != nullptr; }
+  /// Whether models of its phases differ in more than values: in the ways of ropes.
+  bool changes_structure() const { return ropes_ && ropes_->any(); }
+  std::size_t places() const { return contacts_.points.size(); }
 
   /// The model of the present phase; and what its plan needs more: rows of closed and sticking places hold.
   std::shared_ptr<const Model> model() const;

@@ -14,8 +14,12 @@
 namespace catena {
 namespace {
 
-// Events that act this often without time going on would do so for ever.
+// Events that act this often without time going on, and as often as there are contacts, would do so for ever.
 constexpr int most_at_once = 100;
+// Places that open and close in turns have few sets of equations: two places and their slides eight. Those of large
+// mechanisms hardly come again while they are kept, and take some kilobytes a body each.
+constexpr std::size_t most_kept = 8;
+constexpr int most_kept_bodies = 4096;
 
 /// Passes rows on and counts them.
 class CountingObserver final : public RowObserver {
@@ -63,7 +67,34 @@ DynamicsWithEvents::DynamicsWithEvents(std::shared_ptr<const Model> model, const
   watch_ = std::make_unique<EventWatch>(std::move(events), *model_, dynamics_->plan(), sources);
 }
 
+// The present one may be wanted again.
+void DynamicsWithEvents::keep_dynamics() {
+  const bool returns = contacts_.any() && contacts_.started() && !contacts_.changes_structure() && turned_.empty();
+  if (!returns) return kept_.clear();
+  kept_.push_back({released_, model_, std::move(dynamics_)});
+  const int most = most_kept_bodies / std::max<int>(static_cast<int>(model_->bodies.size()), 1);
+  const std::size_t most_now = std::clamp<std::size_t>(static_cast<std::size_t>(most), 1, most_kept);
+  if (kept_.size() > most_now) kept_.erase(kept_.begin());
+}
+
+// Goes on with the equations that held where these elements were released, if they are kept.
+bool DynamicsWithEvents::take_up_kept(const std::vector<int>& released) {
+  const auto kept = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.released == released; });
+  if (kept == kept_.end()) return false;
+  Evaluator& evaluator = kept->dynamics->evaluator();
+  // Scales of squared distances are those of t = 0, at which a mechanism is made.
+  const auto begins_later = [](const TimeFunction<double>& f) { return !f.domain().contains(0); };
+  if (std::any_of(model_->functions.begin(), model_->functions.end(), begins_later)) return false;
+  evaluator.set_time(0);
+  evaluator.set_model(*model_);
+  evaluator.counters = {};
+  dynamics_ = std::move(kept->dynamics);
+  kept_.erase(kept);
+  return true;
+}
+
 void DynamicsWithEvents::make_dynamics() {
+  if (dynamics_) keep_dynamics();
   model_ = given_model_;
   PlanOptions plan = plan_options_;
   if (contacts_.any()) {
@@ -77,7 +108,13 @@ void DynamicsWithEvents::make_dynamics() {
     }
     model_ = turned;
   }
-  dynamics_ = std::make_unique<Dynamics>(model_, plan, options_);
+  std::vector<int> released = plan.released_elements;
+  std::sort(released.begin(), released.end());
+  if (!take_up_kept(released)) {
+    dynamics_ = std::make_unique<Dynamics>(model_, plan, options_);
+    ++plans_;
+  }
+  released_ = std::move(released);
   if (contacts_.any() && contacts_.started()) contacts_.attach(*dynamics_, *watch_);
 }
 
@@ -90,6 +127,8 @@ void DynamicsWithEvents::start_from(const SystemState& state) {
 Report DynamicsWithEvents::start_contacts() {
   SystemState state = start_ ? *start_ : SystemState{};
   if (Report started = contacts_.start(state, plan_options_); !started.ok()) return started;
+  dynamics_.reset();
+  kept_.clear();
   make_dynamics();
   dynamics_->start_from(state);
   return {};

@@ -8,6 +8,9 @@
 // Angles are continuous everywhere: what is engaged after some turns takes its value with it (engaged_turns.hpp). Units
 // as in dynamics.hpp.
 //
+// A set of equations that held before has its plan, and the structure of its factors: the last few sets are kept, so
+// that a place that closes, opens, sticks and slips again and again costs numbers alone.
+//
 // Contacts, stops and cables are phases of the same kind (contact_phases.hpp): rows that come and go by themselves,
 // with impacts where they close.
 //
@@ -43,6 +46,8 @@ class DynamicsWithEvents {
                      bool ropes = true);
 
   const Plan& plan() const { return dynamics_->plan(); }
+  /// Plans made so far.
+  int plans() const { return plans_; }
   IntegrationMethod method() const { return dynamics_->method(); }
   Evaluator& evaluator() { return dynamics_->evaluator(); }
   void pause(Pauses pauses) { pauses_ = std::move(pauses); }
@@ -70,6 +75,8 @@ class DynamicsWithEvents {
  private:
   using WorkByDriver = std::vector<std::pair<int, double>>;
   void make_dynamics();
+  void keep_dynamics();
+  bool take_up_kept(const std::vector<int>& released);
   void begin_phase();
   void take_report();
   /// Does what the phase's end asks for. False: the run ends.
@@ -103,6 +110,14 @@ class DynamicsWithEvents {
   PlanOptions plan_options_;
   DynamicsOptions options_;
   std::unique_ptr<Dynamics> dynamics_;
+  std::vector<int> released_;  // elements without equations in it, ascending
+  /// Dynamics of other sets of equations, the one that held last behind the others.
+  struct Kept {
+    std::vector<int> released;
+    std::shared_ptr<const Model> model;  // its evaluator reads this one
+    std::unique_ptr<Dynamics> dynamics;
+  };
+  std::vector<Kept> kept_;
   std::unique_ptr<EventWatch> watch_;
   std::vector<int> turned_;                     // see EventMemory
   std::vector<std::string> inactive_;           // what is said of elements that are released before they are engaged
@@ -119,6 +134,7 @@ class DynamicsWithEvents {
   bool in_phase_ = false, over_ = false;
   double last_action_ = -1;  // s; and how often events acted then
   int at_once_ = 0;
+  int plans_ = 0;
 };
 
 }  // namespace catena

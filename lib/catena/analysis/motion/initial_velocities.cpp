@@ -24,6 +24,8 @@ constexpr int most_corrections = 4;
 // Velocities of which constraints leave no more than this part are forbidden altogether: what is left is rounding, some
 // hundred of it, and no motion whose energy could be watched.
 constexpr double nothing_left = 1e-13;
+// Residuals of this part of the velocities are the rounding of some dozen terms.
+constexpr double met = 1e-14;
 
 }  // namespace
 
@@ -59,6 +61,90 @@ WantedVelocities wanted_velocities(const Evaluator& evaluator, const MassMatrix&
   return wanted;
 }
 
+namespace {
+
+// No velocities meet the equations: `worst` of them is missed by `left`, m/s or rad/s.
+void report_contradiction(Evaluator& evaluator, std::span<const double> q, int worst, double left,
+                          VelocityOutcome& outcome) {
+  outcome.dead_point = find_dead_point(evaluator, q);
+  if (outcome.dead_point) {
+    static_cast<Report&>(outcome) = outcome.dead_point->report_lock_up(evaluator.model());
+    return;
+  }
+  const int element = worst < 0 ? 0 : evaluator.plan().row_element[at(worst)];
+  outcome.status = Status::inconsistent;
+  outcome.message = fmt::format(
+      "no velocities meet all constraints and drivers at t = {:.12g} s: {} \"{}\" misses by {:.3g}; likely cause: "
+      "drivers that contradict each other, or a driver that starts with a jump",
+      evaluator.time(), evaluator.model().element_type(element), evaluator.model().element_name(element), left);
+}
+
+// Changes velocities to those that meet the constraints; `known`: all components were given.
+void meet_constraints(EquationsOfMotion& equations, std::span<const double> q, const WantedVelocities& wanted,
+                      bool known, std::vector<double>& velocity, VelocityOutcome& outcome) {
+  Evaluator& evaluator = equations.evaluator();
+  const Plan& plan = evaluator.plan();
+  std::vector<double> jacobian(at(plan.trash_slot()) + 1), nu(at(plan.rows)), rest(nu), lambda(nu);
+  std::vector<double> asked = wanted.velocity, step(velocity.size()), inverse(velocity.size());
+  for (std::size_t c = 0; c < inverse.size(); ++c) inverse[c] = 1 / wanted.weight[c];
+  evaluator.start_jacobian(jacobian);
+  evaluator.jacobian(jacobian);
+  evaluator.nu(nu);
+  const auto values = std::span<const double>(jacobian).first(at(plan.trash_slot()));
+  const double length = evaluator.length_scale();
+  // All are known, as after an impact: what keeps every equation to rounding stays as it is.
+  if (known) {
+    for (std::size_t c = 0; c < step.size(); ++c) step[c] = -velocity[c];
+    rest = nu;
+    multiply_add(plan.jacobian, values, step, rest);
+    if (row_norm(plan, rest, length) <= met * column_norm(plan, velocity, length)) return;
+  }
+  ConstraintProjector projector(evaluator.shared_plan());
+  projector.set_inverse_weights(inverse);
+  if (!projector.factorize(values, evaluator.counters).ok()) {
+    outcome.status = Status::singular;
+    outcome.message = "initial velocities are not determined: the constraints' Jacobian is not finite";
+    return;
+  }
+  for (int round = 0; round < most_rounds; ++round) {
+    rest = nu;
+    for (std::size_t c = 0; c < step.size(); ++c) step[c] = -asked[c];
+    multiply_add(plan.jacobian, values, step, rest);
+    projector.solve(rest, step, lambda, evaluator.counters);
+    double change = 0, size = 0;
+    for (std::size_t c = 0; c < step.size(); ++c) {
+      const double next = asked[c] + step[c];
+      change = std::max(change, std::abs(next - velocity[c]));
+      size = std::max(size, std::abs(next));
+      velocity[c] = next;
+      if (wanted.given[c]) asked[c] += wanted.velocity[c] - next;
+      // This removes the effect of its small mass.
+      if (wanted.follows[c]) asked[c] = next;
+    }
+    if (round > 0 && change <= 1e-15 * size) break;
+  }
+  int worst = -1;
+  double left = std::numeric_limits<double>::infinity();
+  for (int k = 0; k <= most_corrections; ++k) {
+    rest = nu;
+    for (std::size_t c = 0; c < step.size(); ++c) step[c] = -velocity[c];
+    multiply_add(plan.jacobian, values, step, rest);
+    const double now = row_norm(plan, rest, length, &worst);
+    const bool shrinks = now < 0.5 * left;
+    left = now;
+    if (!shrinks || k == most_corrections || now == 0) break;
+    projector.solve(rest, step, lambda, evaluator.counters);
+    for (std::size_t c = 0; c < step.size(); ++c) velocity[c] += step[c];
+  }
+  const double asked_size = column_norm(plan, wanted.velocity, length), driven = row_norm(plan, nu, length);
+  if (driven == 0 && column_norm(plan, velocity, length) <= nothing_left * asked_size)
+    std::fill(velocity.begin(), velocity.end(), 0.0);
+  const double scale = std::max({column_norm(plan, velocity, length), asked_size, driven});
+  if (!(left <= 1e-9 * scale)) report_contradiction(evaluator, q, worst, left, outcome);
+}
+
+}  // namespace
+
 VelocityOutcome find_initial_velocities(EquationsOfMotion& equations, std::span<const double> q,
                                         std::span<const double> given, std::span<double> qd) {
   VelocityOutcome outcome;
@@ -67,71 +153,9 @@ VelocityOutcome find_initial_velocities(EquationsOfMotion& equations, std::span<
   evaluator.set_configuration(q);
   const WantedVelocities wanted = wanted_velocities(evaluator, equations.masses(), given);
   std::vector<double> velocity = wanted.velocity;
-  if (plan.rows > 0) {
-    std::vector<double> jacobian(at(plan.trash_slot()) + 1), nu(at(plan.rows)), rest(nu), lambda(nu);
-    std::vector<double> asked = wanted.velocity, step(velocity.size()), inverse(velocity.size());
-    for (std::size_t c = 0; c < inverse.size(); ++c) inverse[c] = 1 / wanted.weight[c];
-    evaluator.start_jacobian(jacobian);
-    evaluator.jacobian(jacobian);
-    evaluator.nu(nu);
-    const auto values = std::span<const double>(jacobian).first(at(plan.trash_slot()));
-    ConstraintProjector projector(evaluator.shared_plan());
-    projector.set_inverse_weights(inverse);
-    if (!projector.factorize(values, evaluator.counters).ok()) {
-      outcome.status = Status::singular;
-      outcome.message = "initial velocities are not determined: the constraints' Jacobian is not finite";
-      return outcome;
-    }
-    for (int round = 0; round < most_rounds; ++round) {
-      rest = nu;
-      for (std::size_t c = 0; c < step.size(); ++c) step[c] = -asked[c];
-      multiply_add(plan.jacobian, values, step, rest);
-      projector.solve(rest, step, lambda, evaluator.counters);
-      double change = 0, size = 0;
-      for (std::size_t c = 0; c < step.size(); ++c) {
-        const double next = asked[c] + step[c];
-        change = std::max(change, std::abs(next - velocity[c]));
-        size = std::max(size, std::abs(next));
-        velocity[c] = next;
-        if (wanted.given[c]) asked[c] += wanted.velocity[c] - next;
-        // This removes the effect of its small mass.
-        if (wanted.follows[c]) asked[c] = next;
-      }
-      if (round > 0 && change <= 1e-15 * size) break;
-    }
-    int worst = -1;
-    const double length = evaluator.length_scale();
-    double left = std::numeric_limits<double>::infinity();
-    for (int k = 0; k <= most_corrections; ++k) {
-      rest = nu;
-      for (std::size_t c = 0; c < step.size(); ++c) step[c] = -velocity[c];
-      multiply_add(plan.jacobian, values, step, rest);
-      const double now = row_norm(plan, rest, length, &worst);
-      const bool shrinks = now < 0.5 * left;
-      left = now;
-      if (!shrinks || k == most_corrections || now == 0) break;
-      projector.solve(rest, step, lambda, evaluator.counters);
-      for (std::size_t c = 0; c < step.size(); ++c) velocity[c] += step[c];
-    }
-    const double asked_size = column_norm(plan, wanted.velocity, length), driven = row_norm(plan, nu, length);
-    if (driven == 0 && column_norm(plan, velocity, length) <= nothing_left * asked_size)
-      std::fill(velocity.begin(), velocity.end(), 0.0);
-    const double scale = std::max({column_norm(plan, velocity, length), asked_size, driven});
-    if (!(left <= 1e-9 * scale)) {
-      outcome.dead_point = find_dead_point(evaluator, q);
-      if (outcome.dead_point) {
-        static_cast<Report&>(outcome) = outcome.dead_point->report_lock_up(evaluator.model());
-        return outcome;
-      }
-      const int element = worst < 0 ? 0 : plan.row_element[at(worst)];
-      outcome.status = Status::inconsistent;
-      outcome.message = fmt::format(
-          "no velocities meet all constraints and drivers at t = {:.12g} s: {} \"{}\" misses by {:.3g}; likely cause: "
-          "drivers that contradict each other, or a driver that starts with a jump",
-          evaluator.time(), evaluator.model().element_type(element), evaluator.model().element_name(element), left);
-      return outcome;
-    }
-  }
+  const bool known = !given.empty() && equations.masses().massless.empty();
+  if (plan.rows > 0) meet_constraints(equations, q, wanted, known, velocity, outcome);
+  if (!outcome.ok()) return outcome;
   std::fill(qd.begin(), qd.end(), 0.0);
   for (int c = 0; c < plan.columns; ++c) {
     const int coordinate = plan.coordinate[at(c)];
