@@ -162,6 +162,49 @@ void read_and_rest(Bench& bench, int rods) {
   bench.add(std::move(row));
 }
 
+/// Level rods of 1 m and 1 kg that fall on a floor, rigid with restitution or on springs with dampers: mechanisms side
+/// by side, of which each has its own impacts and comes to rest before the end.
+std::string falling_rods_text(int rods, bool rigid) {
+  const char* floor = rigid ? R"("restitution": 0.4)" : R"("k": 1e4, "c": 100)";
+  return fmt::format(
+      R"json({{"catena": 1, "gravity": [0, -9.81], "replicate": [{{"count": {0}, "bodies": {{"rod{{k}}": {{"mass": 1,
+ "rod": {{"from": ["=2*k", "=0.1+0.4*abs(sin(7*k))"], "to": ["=2*k+1", "=0.1+0.4*abs(sin(7*k))"]}}}}}}, "forces": [
+ {{"type": "contact", "i": "ground", "j": "rod{{k}}.from", {1}, "curve": {{"line": {{"point": [0, 0], "axis": [1, 0]}}}}}},
+ {{"type": "contact", "i": "ground", "j": "rod{{k}}.to", {1}, "curve": {{"line": {{"point": [0, 0], "axis": [1, 0]}}}}}}]}}],
+ "analyses": [{{"type": "dynamics", "until": 1.2, "tolerance": 1e-8}}], "outputs": ["rod1.y", "rod{0}.y"]}})json",
+      rods, floor);
+}
+
+void fall_on_floor(Bench& bench, int rods, bool rigid) {
+  Row row{.suite = "scaling",
+          .problem = rigid ? "rods fall on a floor, rigid" : "rods fall on a floor, on springs",
+          .method = "scene, read to results",
+          .setting = "1e-08",
+          .bodies = rods};
+  row.error_of = "height at rest, m";
+  row.reference = rigid ? "the floor" : "m g / 2 k below the floor";
+  row.allowed = 1e-8;
+  if (!bench.wants(row)) return;
+  RunOptions options;
+  options.text = falling_rods_text(rods, rigid);
+  const double rest = rigid ? 0 : -9.81 / 2e4;
+  SceneOutcome outcome;
+  bench.time(row, [&] {
+    StoredResults results;
+    outcome = run_scene("rods", options, results);
+    if (outcome.exit_code != 0) return;
+    row.error = 0;
+    for (const std::string& name : {std::string("rod1.y"), fmt::format("rod{}.y", rods)})
+      row.error = std::max(row.error, std::abs(results.rows.front()->column(name).back() - rest));
+  });
+  if (outcome.exit_code == 0) {
+    row.counts = named_counts(outcome.analyses.front().report.counters);
+  } else {
+    row.failure = outcome.error_text;
+  }
+  bench.add(std::move(row));
+}
+
 }  // namespace
 
 void scaling_suite(Bench& bench) {
@@ -176,6 +219,10 @@ void scaling_suite(Bench& bench) {
     if (bodies <= 100000) fall(bench, bodies);
     rest(bench, bodies);
     read_and_rest(bench, bodies);
+    // Each rod has some dozen changes: ten times as many bodies take ten times as long.
+    if (bodies <= 1000) {
+      for (const bool rigid : {true, false}) fall_on_floor(bench, bodies, rigid);
+    }
   }
 }
 

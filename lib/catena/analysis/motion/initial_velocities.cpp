@@ -79,6 +79,31 @@ void report_contradiction(Evaluator& evaluator, std::span<const double> q, int w
       evaluator.time(), evaluator.model().element_type(element), evaluator.model().element_name(element), left);
 }
 
+// Whether velocities, all of which are known, meet the equations to rounding: as they are, or with the change that the
+// factors of the motion give, which have the same metric.
+bool meets_constraints(EquationsOfMotion& equations, std::span<const double> q, std::span<const double> values,
+                       const std::vector<double>& nu, std::vector<double>& velocity) {
+  Evaluator& evaluator = equations.evaluator();
+  const Plan& plan = evaluator.plan();
+  const double length = evaluator.length_scale();
+  std::vector<double> rest(nu.size()), back(velocity.size());
+  const auto meets = [&](const std::vector<double>& v) {
+    for (std::size_t c = 0; c < v.size(); ++c) back[c] = -v[c];
+    rest = nu;
+    multiply_add(plan.jacobian, values, back, rest);
+    return row_norm(plan, rest, length) <= met * column_norm(plan, v, length);
+  };
+  if (meets(velocity)) return true;
+  if (!equations.factorize(evaluator.time(), Side::after, q)) return false;
+  std::vector<double> qd(q.size(), 0.0), changed(velocity.size());
+  for (int c = 0; c < plan.columns; ++c) qd[at(plan.coordinate[at(c)])] = velocity[at(c)];
+  equations.project_velocity(qd, 0);
+  for (int c = 0; c < plan.columns; ++c) changed[at(c)] = qd[at(plan.coordinate[at(c)])];
+  if (!meets(changed)) return false;
+  velocity = changed;
+  return true;
+}
+
 // Changes velocities to those that meet the constraints; `known`: all components were given.
 void meet_constraints(EquationsOfMotion& equations, std::span<const double> q, const WantedVelocities& wanted,
                       bool known, std::vector<double>& velocity, VelocityOutcome& outcome) {
@@ -92,13 +117,7 @@ void meet_constraints(EquationsOfMotion& equations, std::span<const double> q, c
   evaluator.nu(nu);
   const auto values = std::span<const double>(jacobian).first(at(plan.trash_slot()));
   const double length = evaluator.length_scale();
-  // All are known, as after an impact: what keeps every equation to rounding stays as it is.
-  if (known) {
-    for (std::size_t c = 0; c < step.size(); ++c) step[c] = -velocity[c];
-    rest = nu;
-    multiply_add(plan.jacobian, values, step, rest);
-    if (row_norm(plan, rest, length) <= met * column_norm(plan, velocity, length)) return;
-  }
+  if (known && meets_constraints(equations, q, values, nu, velocity)) return;
   ConstraintProjector projector(evaluator.shared_plan());
   projector.set_inverse_weights(inverse);
   if (!projector.factorize(values, evaluator.counters).ok()) {
