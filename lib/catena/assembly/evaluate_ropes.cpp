@@ -18,7 +18,7 @@ constexpr double left = 1e-9;
 constexpr double taut = 1e-9;
 // From its given direction a stretch at a circle may turn so far, rad: beyond half a turn the arc that it winds would
 // be taken for one a whole turn shorter, and between two looks it turns by less than the rest, 0.3 rad.
-constexpr double most_turned = std::numbers::pi - 0.3;
+constexpr double most_turned = most_turned_between_places;
 
 }  // namespace
 

@@ -17,16 +17,14 @@
 #include <vector>
 
 #include "catena/model/rope_path.hpp"
+#include "catena/model/rope_turns.hpp"
 #include "catena/model/rope_way.hpp"
 
 namespace catena {
 
 /// What goes on from one laying of a stretch to the next; NaN: nothing is known.
-struct RopeMemory {
-  std::vector<double> contact;      ///< by pulley; of one that is off: negative
-  double theta = std::nan("");      ///< direction of the first straight line
+struct RopeMemory : RopeTurns {
   double wound_i = 0, wound_j = 0;  ///< R (phi - theta), R (theta - phi) of ends that wind, as first given
-  bool known() const { return !std::isnan(theta); }
 };
 
 template <class S>

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <stdexcept>
 
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
@@ -22,6 +24,12 @@ RopeLayout<double> layout_of(const Model& model, const RopeRoute& route, const s
   RopeLayout<double> layout(model, route.nodes, frames);
   layout.off = route.off;
   return layout;
+}
+
+/// As RopeLayout::can_leave().
+bool can_leave(const RopeRoute& route, int k) {
+  const RopePulley<double>& node = route.nodes[at(k)];
+  return k > 0 && k + 1 < static_cast<int>(route.nodes.size()) && !node.rolls && node.radius > 0;
 }
 
 std::vector<Frame<double>> given(const Model& model, const RopeRoute& route) {
@@ -83,6 +91,37 @@ bool find_off(const Model& model, RopeRoute& route, const std::vector<Frame<doub
   return changed;
 }
 
+void take_up(RopeRoute& route, const RopeTurns& turns) {
+  if (turns.contact.size() != route.nodes.size() || !turns.known())
+    throw std::invalid_argument("how far ropes are wound is of another model: a rope has other pulleys");
+  static_cast<RopeTurns&>(route.memory) = turns;
+  for (std::size_t k = 0; k < route.nodes.size(); ++k)
+    route.off[k] = can_leave(route, static_cast<int>(k)) && turns.contact[k] < 0;
+}
+
+RouteStep go_on(const Model& model, RopeRoute& route, const std::vector<Frame<double>>& frames) {
+  RouteStep step;
+  // Each pass changes one pulley.
+  for (std::size_t pass = 0; pass <= route.nodes.size(); ++pass) {
+    const RouteWatch watch(model, route, frames);
+    if (pass == 0) step.turned = watch.moved();
+    static_cast<RopeTurns&>(route.memory) = watch.turns(frames);
+    int flipped = -1;
+    double most = 0;
+    for (const int node : watch.pulleys()) {
+      const double contact = route.memory.contact[at(node)];
+      const double wrong = route.off[at(node)] ? contact : -contact;
+      if (!(wrong > most)) continue;
+      most = wrong;
+      flipped = node;
+    }
+    if (flipped < 0) break;
+    route.off[at(flipped)] = !route.off[at(flipped)];
+    step.changed = true;
+  }
+  return step;
+}
+
 void lay(Model& model, RopeRoute& route, const std::vector<Frame<double>>& frames) {
   const RopeLayout<double> layout = layout_of(model, route, frames);
   RopeStretch<double> stretch = layout.between(0, layout.last(), route.memory);
@@ -120,7 +159,9 @@ RouteWatch::RouteWatch(const Model& model, const RopeRoute& route, const std::ve
   for (const RopePulley<double>& node : route.nodes) side_.push_back(node.side);
   const auto add = [&](int a, int b, double near) {
     Tangent tangent{a, b, layout.line(a, b)};
-    tangent.span.angle = near + std::remainder(tangent.span.angle - near, 2 * std::numbers::pi);
+    const double by = std::remainder(tangent.span.angle - near, 2 * std::numbers::pi);
+    tangent.span.angle = near + by;
+    moved_ = std::max(moved_, std::abs(by));
     tangents_.push_back(tangent);
     return static_cast<int>(tangents_.size()) - 1;
   };
@@ -135,11 +176,14 @@ RouteWatch::RouteWatch(const Model& model, const RopeRoute& route, const std::ve
     in_.push_back(behind[at(layout.before(a))]);
     out_.push_back(behind[at(a)]);
   }
+  ways_ = tangents_.size();
   for (int k = 1; k < layout.last(); ++k) {
     if (!route.off[at(k)]) continue;
     // Throws where an end lies within the pulley.
     const int a = layout.before(k), b = layout.after(k);
+    const double moved = moved_;
     const int in = add(a, k, out[at(a)]);
+    moved_ = moved;  // it is compared with that of the way, another line
     const double contact = route.memory.contact[at(k)];
     const double near =
         std::isnan(contact) ? tangents_[at(in)].span.angle : tangents_[at(in)].span.angle + side_[at(k)] * contact;
@@ -152,6 +196,20 @@ RouteWatch::RouteWatch(const Model& model, const RopeRoute& route, const std::ve
 double RouteWatch::theta(const Tangent& tangent, const std::vector<Frame<double>>& frames) const {
   const Vec2<double> h = separation(frames[at(tangent.a)], frames[at(tangent.b)], tangent.span.s_i, tangent.span.s_j);
   return tangent.span.heading(tangent.span.line(h).along);
+}
+
+RopeTurns RouteWatch::turns(const std::vector<Frame<double>>& frames) const {
+  RopeTurns turns;
+  turns.contact.assign(frames.size(), std::nan(""));
+  turns.theta = theta(tangents_.front(), frames);
+  double in = turns.theta;
+  for (std::size_t k = 1; k < ways_; ++k) {
+    const double out = theta(tangents_[k], frames);
+    turns.contact[at(tangents_[k].a)] = side_[at(tangents_[k].a)] * (out - in);
+    in = out;
+  }
+  for (const int node : pulleys_) turns.contact[at(node)] = contact(node, frames);
+  return turns;
 }
 
 double RouteWatch::contact(int node, const std::vector<Frame<double>>& frames) const {

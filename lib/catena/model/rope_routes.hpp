@@ -8,7 +8,7 @@
 // model but in its elements: lay() writes those of another way over them. Units: m, rad. Source: rope_span.hpp.
 #pragma once
 
-#include <span>
+#include <numbers>
 #include <vector>
 
 #include "catena/model/rope_layout.hpp"
@@ -24,12 +24,26 @@ struct RopeRoute {
   RopeMemory memory{};
 };
 
+/// Tangents are followed from one place to another up to this, rad: the rest of half a turn keeps the sense apart.
+inline constexpr double most_turned_between_places = std::numbers::pi - 0.3;
+
 /// The routes of a model in its given configuration.
 std::vector<RopeRoute> rope_routes(const Model& model);
 
 /// Finds which pulleys a route lies beside where its bodies are at `frames`, by node, and forgets what was known.
 /// False: as before. Throws ModelError, as lay().
 bool find_off(const Model& model, RopeRoute& route, const std::vector<Frame<double>>& frames);
+
+/// Takes over how far a route is wound, as it was found at some place; its pulleys must be as many.
+void take_up(RopeRoute& route, const RopeTurns& turns);
+
+/// Goes on with a route from where it was last to where its bodies are now: no tangent turns by half a turn between.
+struct RouteStep {
+  bool changed = false;  ///< it meets or leaves pulleys
+  double turned = 0;     ///< how far the tangents of the way, and those beside against them, have turned at most, rad
+};
+/// Throws ModelError, as lay().
+RouteStep go_on(const Model& model, RopeRoute& route, const std::vector<Frame<double>>& frames);
 
 /// Writes the way of the route over the elements of the model. Throws ModelError, as a phrase about the rope, where it
 /// has no straight line.
@@ -46,6 +60,10 @@ class RouteWatch {
   double room(const std::vector<Frame<double>>& frames) const;
   /// How far the tangents have turned at most, rad.
   double turned(const std::vector<Frame<double>>& frames) const;
+  /// How far the route is wound there.
+  RopeTurns turns(const std::vector<Frame<double>>& frames) const;
+  /// How far the tangents were at first from where the route's memory has them, at most, rad.
+  double moved() const { return moved_; }
   /// The pulleys that can be left.
   const std::vector<int>& pulleys() const { return pulleys_; }
 
@@ -56,7 +74,9 @@ class RouteWatch {
   };
   double theta(const Tangent& tangent, const std::vector<Frame<double>>& frames) const;
 
-  std::vector<Tangent> tangents_;
+  std::vector<Tangent> tangents_;  // first those of the way, from end to end
+  std::size_t ways_ = 0;           // how many
+  double moved_ = 0;
   std::vector<int> pulleys_, in_, out_, side_;  // by pulley that can be left: its number, its tangents; by node: b
 };
 

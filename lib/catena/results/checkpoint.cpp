@@ -12,7 +12,7 @@
 namespace catena {
 namespace {
 
-constexpr std::string_view first_line = "catena checkpoint 4\n";
+constexpr std::string_view kind = "catena checkpoint ", first_line = "catena checkpoint 5\n";
 
 std::uint64_t sum_over(std::string_view text, std::uint64_t sum = 0xcbf29ce484222325u) {
   for (const char c : text) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
@@ -45,6 +45,19 @@ void pass(Channel& channel, Jolt& jolt) {
   channel.value(jolt.impulses);
 }
 
+template <class Channel>
+void pass(Channel& channel, RopeTurns& turns) {
+  channel.value(turns.theta);
+  channel.value(turns.contact);
+}
+
+template <class Channel>
+void pass(Channel& channel, RopeEvent& event) {
+  channel.value(event.element);
+  channel.value(event.met);
+  channel.value(event.t);
+}
+
 /// Writes a line a value, or reads it back; damage shows as a CheckpointError.
 class Writer {
  public:
@@ -57,6 +70,8 @@ class Writer {
   void value(EventRecord& record) { pass(*this, record); }
   void value(ConstraintImpulse& impulse) { pass(*this, impulse); }
   void value(Jolt& jolt) { pass(*this, jolt); }
+  void value(RopeTurns& turns) { pass(*this, turns); }
+  void value(RopeEvent& event) { pass(*this, event); }
   template <class T>
   void value(std::vector<T>& list) {
     text += fmt::format("{}\n", list.size());
@@ -75,6 +90,8 @@ class Reader {
   void value(EventRecord& record) { pass(*this, record); }
   void value(ConstraintImpulse& impulse) { pass(*this, impulse); }
   void value(Jolt& jolt) { pass(*this, jolt); }
+  void value(RopeTurns& turns) { pass(*this, turns); }
+  void value(RopeEvent& event) { pass(*this, event); }
   template <class T>
   void value(std::vector<T>& list) {
     const auto size = whole<std::size_t>(10);
@@ -141,6 +158,8 @@ void pass(Channel& channel, Checkpoint& checkpoint) {
   channel.value(motion.events.largest);
   channel.value(motion.events.records);
   channel.value(motion.jolts);
+  channel.value(motion.ropes);
+  channel.value(motion.rope_events);
 }
 
 }  // namespace
@@ -160,7 +179,13 @@ Checkpoint read_checkpoint(const std::string& path) {
   if (!file) throw CheckpointError(fmt::format("there is no checkpoint \"{}\", or it cannot be read", path));
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   if (!text.starts_with(first_line)) {
-    throw CheckpointError(fmt::format("\"{}\" is no checkpoint, or one of another version of catena", path));
+    if (text.starts_with(kind)) {
+      throw CheckpointError(
+          fmt::format("the checkpoint \"{}\" has a format of another version of catena: run the scene from its start "
+                      "again",
+                      path));
+    }
+    throw CheckpointError(fmt::format("\"{}\" is no checkpoint", path));
   }
   constexpr std::size_t sum_line = 17;
   const Reader whole(text, path);

@@ -105,7 +105,7 @@ Report ContactPhases::start(SystemState& state, const PlanOptions& options) {
   if (const AssemblyOutcome assembled = Assembler(switch_->evaluator()).assemble(q); !assembled.ok()) return assembled;
   if (ropes_ && ropes_->any()) {
     switch_->evaluator().set_configuration(q);
-    if (Report found = ropes_->start(switch_->evaluator(), contacts_.model); !found.ok()) return found;
+    if (Report found = ropes_->start(state, switch_->evaluator(), contacts_.model); !found.ok()) return found;
     const SystemState assembled = state_of(switch_->evaluator(), state.t, q);
     make_switch(options);
     q = configuration_of(switch_->evaluator(), assembled);
@@ -128,6 +128,19 @@ Report ContactPhases::start(SystemState& state, const PlanOptions& options) {
     }
   }
   return decide(state, {.tell = false});
+}
+
+Report ContactPhases::resume(const SystemState& state, std::vector<ContactEvent> events, const PlanOptions& options) {
+  events_ = std::move(events);
+  make_switch(options);
+  const std::vector<double> q = configuration_of(switch_->evaluator(), state);
+  switch_->evaluator().set_time(state.t);
+  switch_->evaluator().set_configuration(q);
+  if (Report found = ropes_->start(state, switch_->evaluator(), contacts_.model); !found.ok()) return found;
+  if (!first_taken_up_) first_taken_up_ = contacts_.model;
+  make_switch(options);
+  switch_->evaluator().set_time(state.t);
+  return switch_->prepare(q);
 }
 
 // For other constraints than before, with what the earlier one knew.

@@ -29,6 +29,10 @@ class ContactPhases {
   /// Assembles, makes velocities consistent and finds what every contact does at the start; `state` is changed to that.
   /// `options`: of the plan, without the contacts.
   Report start(SystemState& state, const PlanOptions& options);
+  /// Whether there is more than ropes, whose state a motion that is taken up does not know.
+  bool has_places() const { return !contacts_.points.empty(); }
+  /// Takes up a motion of ropes alone, where `state` has them.
+  Report resume(const SystemState& state, std::vector<ContactEvent> events, const PlanOptions& options);
   bool started() const { return switch_ != nullptr; }
   /// Whether models of its phases differ in more than values: in the ways of ropes.
   bool changes_structure() const { return ropes_ && ropes_->any(); }
@@ -54,6 +58,10 @@ class ContactPhases {
   /// Where drivers moved on against closed places, if that is why the last phase could not be found.
   const std::optional<SingularPoint>& blocked() const { return switch_->blocked(); }
   const std::vector<ContactEvent>& events() const { return events_; }
+  /// How far ropes are wound at a place of the present phase.
+  std::vector<RopeTurns> turns(const SystemState& state) const {
+    return ropes_ ? ropes_->turns(state) : std::vector<RopeTurns>();
+  }
 
  private:
   /// What ends a phase: a gap or a reaction, the force of a compliant place, a slide that comes to rest or begins.
@@ -71,7 +79,8 @@ class ContactPhases {
   Report change_way(std::size_t transition, SystemState& state);
 
   ContactModel contacts_;
-  std::shared_ptr<const Model> first_;  // as it was at first: others refer to it
+  // As it was at first, and where a motion was first taken up: others refer to it.
+  std::shared_ptr<const Model> first_, first_taken_up_;
   std::optional<RopePhases> ropes_;
   PlanOptions options_;  // the last ones, without the contacts
   std::unique_ptr<ContactSwitch> switch_;

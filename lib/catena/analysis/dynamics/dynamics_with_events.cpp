@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "catena/analysis/events/engaged_turns.hpp"
 #include "catena/analysis/events/engagement.hpp"
 #include "catena/analysis/run/report_parts.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
+#include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
@@ -124,6 +126,12 @@ void DynamicsWithEvents::start_from(const SystemState& state) {
   dynamics_->start_from(state);
 }
 
+SystemState DynamicsWithEvents::state() const {
+  SystemState state = end_ ? *end_ : dynamics_->state();
+  state.ropes = contacts_.turns(state);
+  return state;
+}
+
 Report DynamicsWithEvents::start_contacts() {
   SystemState state = start_ ? *start_ : SystemState{};
   if (Report started = contacts_.start(state, plan_options_); !started.ok()) return started;
@@ -169,7 +177,8 @@ Report DynamicsWithEvents::meet_jump(bool sum_up_work) {
 }
 
 void DynamicsWithEvents::resume(const MotionMemory& memory) {
-  if (contacts_.any()) throw std::invalid_argument("a motion with contacts, stops or dry friction cannot be taken up");
+  if (contacts_.has_places())
+    throw std::invalid_argument("a motion with contacts, stops or dry friction cannot be taken up");
   resumed_ = true;
   first_row_ = memory.next_row;
   rows_before_ = memory.rows_given;
@@ -177,8 +186,24 @@ void DynamicsWithEvents::resume(const MotionMemory& memory) {
   turned_ = memory.events.turned;
   jolts_ = memory.jolts;
   watch_->remember(memory.events);
+  if (contacts_.any()) taken_up_ = resume_ropes(memory);
   make_dynamics();
   dynamics_->resume(memory);
+}
+
+Report DynamicsWithEvents::resume_ropes(const MotionMemory& memory) {
+  const Evaluator& evaluator = dynamics_->evaluator();
+  const Plan& plan = evaluator.plan();
+  // Dynamics refuses it.
+  if (memory.y.size() < at(plan.coordinates()) || memory.turns.size() != at(plan.moving)) return {};
+  std::vector<double> q(memory.y.begin(), memory.y.begin() + plan.coordinates());
+  for (std::size_t p = 0; p < memory.turns.size(); ++p) q[3 * p + 2] += 2 * std::numbers::pi * memory.turns[p];
+  SystemState state = state_of(evaluator, memory.t, q);
+  state.ropes = memory.ropes;
+  std::vector<ContactEvent> events;
+  for (const RopeEvent& event : memory.rope_events)
+    events.push_back({event.element, event.met != 0 ? met_pulley : left_pulley, event.t});
+  return contacts_.resume(state, std::move(events), plan_options_);
 }
 
 void DynamicsWithEvents::save_and_resume(std::int64_t rows_given, std::int64_t next_row) {
@@ -189,6 +214,9 @@ void DynamicsWithEvents::save_and_resume(std::int64_t rows_given, std::int64_t n
   memory.events.released = plan_options_.released_elements;
   memory.events.turned = turned_;
   memory.jolts = jolts_;
+  memory.ropes = contacts_.turns(dynamics_->state());
+  for (const ContactEvent& event : contacts_.events())
+    memory.rope_events.push_back({event.element, event.kind == met_pulley, event.t});
   if (pauses_.save) pauses_.save(memory);
   resume(memory);
 }
@@ -289,7 +317,7 @@ void DynamicsWithEvents::begin(const TimeGrid& grid, const Needs& needs) {
   at_once_ = 0;
   in_phase_ = over_ = false;
   if (!contacts_.any()) return;
-  if (const Report started = start_contacts(); !started.ok()) {
+  if (const Report started = resumed_ ? taken_up_ : start_contacts(); !started.ok()) {
     over_ = true;
     give_up(started);
     if (started.status == Status::lock_up && contacts_.started() && contacts_.blocked())
@@ -354,7 +382,7 @@ bool DynamicsWithEvents::end_phase(RowObserver& rows) {
   const int stopped_by = dynamics_->stopped_by();
   if (total_.ok() && dynamics_->paused()) {
     save_and_resume(rows_, next_row_);
-    return true;
+    return taken_up_.ok() || give_up(taken_up_);
   }
   const bool jumped = dynamics_->jumped();
   if (!total_.ok() || (stopped_by < 0 && !jumped)) return false;

@@ -62,7 +62,8 @@ class DynamicsWithEvents {
   bool go_on(std::int64_t rows, RowObserver& observer);
   AnalysisReport end();
   double time() const { return dynamics_->time(); }
-  SystemState state() const { return end_ ? *end_ : dynamics_->state(); }
+  /// With how far its ropes are wound, if they are followed.
+  SystemState state() const;
   /// See Dynamics.
   const std::vector<SingularPoint>& singular_points() const { return singular_points_; }
   const std::vector<EventRecord>& records() const { return watch_->records(); }
@@ -99,6 +100,8 @@ class DynamicsWithEvents {
   /// one of them that ends the analysis.
   Report act(bool sum_up_work, const Event*& stop);
   Report act(const Event& event, SystemState& state, std::vector<int>& engaged, double& work);
+  /// Takes up ropes as `memory` has them.
+  Report resume_ropes(const MotionMemory& memory);
   void turn_values_to_bodies(std::span<const int> engaged, const SystemState& state);
   std::vector<double> place();
   void end_in_lock_up(const Needs& needs, RowObserver& rows);
@@ -125,6 +128,7 @@ class DynamicsWithEvents {
   std::vector<Jolt> jolts_;                     // the same
   Pauses pauses_;
   bool resumed_ = false;
+  Report taken_up_;                               // whether ropes could be
   std::int64_t first_row_ = 0, rows_before_ = 0;  // of the grid; rows given before the motion was taken up
   // Of the run under way.
   TimeGrid grid_ = TimeGrid::list({});

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/assembly/rope_ways.hpp"
 #include "catena/base/at.hpp"
 
@@ -33,14 +34,23 @@ Report RopePhases::lay_out(std::size_t route, const Evaluator& evaluator, Model&
   return {};
 }
 
-Report RopePhases::start(const Evaluator& evaluator, std::shared_ptr<const Model>& model) {
+Report RopePhases::start(const SystemState& state, const Evaluator& evaluator, std::shared_ptr<const Model>& model) {
   if (!any()) return {};
+  const bool known = !state.ropes.empty();
+  if (known) take_up(routes_, state);
   const auto changed = std::make_shared<Model>(*model);
   watches_.assign(routes_.size(), nullptr);
   events_.clear();
   for (std::size_t r = 0; r < routes_.size(); ++r) {
     try {
-      find_off(*changed, routes_[r], frames_of(evaluator, routes_[r]));
+      const std::vector<Frame<double>> frames = frames_of(evaluator, routes_[r]);
+      if (!known) {
+        find_off(*changed, routes_[r], frames);
+      } else if (go_on(*changed, routes_[r], frames).turned > most_turned_between_places) {
+        return undefined(*changed, routes_[r], evaluator.time(),
+                         "how far it is wound is known of a place from which it turns by nearly half a turn, either "
+                         "way, as the bodies are assembled");
+      }
     } catch (const ModelError& error) {
       return undefined(*changed, routes_[r], evaluator.time(), error.what());
     }
@@ -48,6 +58,14 @@ Report RopePhases::start(const Evaluator& evaluator, std::shared_ptr<const Model
   }
   model = changed;
   return {};
+}
+
+std::vector<RopeTurns> RopePhases::turns(const SystemState& state) const {
+  std::vector<RopeTurns> turns;
+  for (std::size_t r = 0; r < routes_.size() && !state.q.empty(); ++r) {
+    if (!watches_.empty() && watches_[r]) turns.push_back(watches_[r]->turns(frames_at(routes_[r], state)));
+  }
+  return turns;
 }
 
 void RopePhases::add_transitions(std::vector<Transition>& transitions) {
@@ -79,12 +97,11 @@ Report RopePhases::change(std::size_t k, const Evaluator& evaluator, std::shared
                      "an end or a pulley of it comes into the circle of the next pulley");
   }
   const std::vector<Frame<double>> frames = frames_of(evaluator, route);
-  for (const int node : watches_[ended.route]->pulleys())
-    route.memory.contact[at(node)] = watches_[ended.route]->contact(node, frames);
+  static_cast<RopeTurns&>(route.memory) = watches_[ended.route]->turns(frames);
   if (ended.ends == End::contact) {
     char& off = route.off[at(ended.node)];
     off = !off;
-    events_.push_back({route.element, off ? "unwrap" : "wrap", evaluator.time()});
+    events_.push_back({route.element, off ? left_pulley : met_pulley, evaluator.time()});
   }
   if (Report laid = lay_out(ended.route, evaluator, *changed); !laid.ok()) return laid;
   model = changed;

@@ -11,22 +11,28 @@
 
 #include "catena/analysis/contact/contact_switch.hpp"
 #include "catena/analysis/events/event_watch.hpp"
+#include "catena/analysis/run/system_state.hpp"
 #include "catena/base/status.hpp"
 #include "catena/model/rope_routes.hpp"
 
 namespace catena {
+
+inline constexpr std::string_view met_pulley = "wrap", left_pulley = "unwrap";
 
 class RopePhases {
  public:
   explicit RopePhases(const Model& model) : routes_(rope_routes(model)) {}
 
   bool any() const { return !routes_.empty(); }
-  /// Finds the ways where the evaluator is; `model` becomes one with these where it has others.
-  Report start(const Evaluator& evaluator, std::shared_ptr<const Model>& model);
+  /// Finds the ways where the evaluator is, going on from what `state` says of ropes; `model` becomes one with these
+  /// where it has others.
+  Report start(const SystemState& state, const Evaluator& evaluator, std::shared_ptr<const Model>& model);
   /// What ends the present phase, behind the transitions there are.
   void add_transitions(std::vector<Transition>& transitions);
   /// Transition k of these ended it, where the evaluator is: `model` becomes one with the next way.
   Report change(std::size_t k, const Evaluator& evaluator, std::shared_ptr<const Model>& model);
+  /// How far the ropes are wound at a place of the present phase.
+  std::vector<RopeTurns> turns(const SystemState& state) const;
   /// What happened since this was called last.
   std::vector<ContactEvent> take_events() { return std::move(events_); }
 

@@ -12,6 +12,7 @@
 
 #include "catena/analysis/motion/impulses.hpp"
 #include "catena/linalg/patterns/sparse_vectors.hpp"
+#include "catena/model/rope_turns.hpp"
 
 namespace catena {
 
@@ -46,6 +47,12 @@ struct EventMemory {
   std::vector<EventRecord> records;
 };
 
+/// A rope met a pulley, or left it.
+struct RopeEvent {
+  int element = 0, met = 0;  ///< 1: it met one, 0: it left one
+  double t = 0;
+};
+
 struct MotionMemory {
   double t = 0;
   std::vector<double> y;      ///< [q, qd, work] in the order of the plan, relative to its origins; see Motion
@@ -58,6 +65,8 @@ struct MotionMemory {
   WorkSoFar earlier;  ///< what was summed up before the last event that acted
   EventMemory events;
   std::vector<Jolt> jolts;  ///< so far
+  std::vector<RopeTurns> ropes{};
+  std::vector<RopeEvent> rope_events{};  ///< so far
 };
 
 }  // namespace catena

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
-#include "catena/analysis/run/state_conversion.hpp"
 #include "catena/assembly/rope_ways.hpp"
 #include "catena/base/at.hpp"
 
@@ -16,97 +16,138 @@ namespace {
 // turn of it.
 constexpr double turned_far = 0.5;
 
-/// How far the straight lines of a route have turned at most since it was laid, over the same pulleys.
-double turned(const RopeRoute& route, const RopeMemory& laid) {
+/// How far the straight lines of a route have turned at most since it lay so over the same pulleys.
+double turned(const RopeRoute& route, const RopeTurns& laid) {
   double by = route.memory.theta - laid.theta, most = std::abs(by);
   for (std::size_t k = 0; k < route.nodes.size(); ++k) {
     const double change = route.memory.contact[k] - laid.contact[k];
-    if (std::isnan(change)) continue;  // an end, or not touched
+    if (route.off[k] || std::isnan(change)) continue;  // not touched, or an end
     by += route.nodes[k].side * change;
     most = std::max(most, std::abs(by));
   }
   return most;
 }
 
+bool lies_as(const RopeRoute& route, const RopeRoute& other) {
+  return route.off == other.off && turned(route, other.memory) < most_turned_between_places;
+}
+
+std::vector<Frame<double>> given_frames(const Model& model, const RopeRoute& route) {
+  std::vector<Frame<double>> frames;
+  for (const RopePulley<double>& node : route.nodes) frames.push_back(model.frame(node.body));
+  return frames;
+}
+
 }  // namespace
 
-bool RopeWaysAt::find(const Evaluator& evaluator) {
-  std::shared_ptr<Model> changed;
+std::vector<Frame<double>> frames_at(const RopeRoute& route, const SystemState& state) {
+  std::vector<Frame<double>> frames;
+  for (const RopePulley<double>& node : route.nodes) {
+    const double* place = node.body < 0 ? nullptr : &state.q.at(3 * at(node.body));
+    frames.push_back(place ? make_frame(place[0], place[1], place[2]) : Frame<double>{});
+  }
+  return frames;
+}
+
+void take_up(std::span<RopeRoute> routes, const SystemState& state) {
+  if (state.ropes.size() != routes.size()) {
+    throw std::invalid_argument(
+        fmt::format("the state is of another model: it says of {} ropes how far they are "
+                    "wound, and there are {}",
+                    state.ropes.size(), routes.size()));
+  }
+  for (std::size_t r = 0; r < routes.size(); ++r) take_up(routes[r], state.ropes[r]);
+}
+
+RopeWaysAt::RopeWaysAt(std::shared_ptr<const Model> model)
+    : model_(std::move(model)), routes_(rope_routes(*model_)), given_(routes_), laid_(routes_), last_(routes_.size()) {}
+
+bool RopeWaysAt::lie_as(std::span<const RopeRoute> others) const {
   for (std::size_t r = 0; r < routes_.size(); ++r) {
-    RopeRoute& route = routes_[r];
-    const std::vector<Frame<double>> frames = frames_of(evaluator, route);
+    if (!lies_as(routes_[r], others[r])) return false;
+  }
+  return true;
+}
+
+bool RopeWaysAt::look(std::size_t r, std::vector<Frame<double>> frames, bool in_motion) {
+  RopeRoute& route = routes_[r];
+  const RopeRoute before = route;
+  bool changed = false;
+  if (last_[r].empty()) {
+    changed = find_off(*model_, route, frames);
+  } else {
+    const RouteStep step = go_on(*model_, route, frames);
+    changed = step.changed;
+    if (step.turned > most_turned_between_places) {
+      RopeRoute of_place = before;
+      find_off(*model_, of_place, last_[r]);
+      if (lies_as(before, of_place)) {
+        route = before;
+        changed = find_off(*model_, route, frames);
+      } else if (in_motion) {
+        throw ModelError(
+            "it is wound further than its place tells, and from one row to the next it turns by nearly half a turn, "
+            "either way: ask for rows that are nearer to each other");
+      }
+    }
+  }
+  last_[r] = std::move(frames);
+  has_changed_ = has_changed_ || changed;
+  return route.off != laid_[r].off || turned(route, laid_[r].memory) > turned_far;
+}
+
+bool RopeWaysAt::lay_ways(std::span<const char> changed) {
+  if (std::find(changed.begin(), changed.end(), 1) == changed.end()) return false;
+  const auto model = std::make_shared<Model>(*model_);
+  for (std::size_t r = 0; r < routes_.size(); ++r) {
+    if (!changed[r]) continue;
+    lay(*model, routes_[r], last_[r]);
+    laid_[r] = routes_[r];
+  }
+  model_ = model;
+  return true;
+}
+
+bool RopeWaysAt::begin(const SystemState& state) {
+  if (routes_.empty()) return false;
+  const bool given = state.q.empty();
+  if (!state.ropes.empty()) take_up(routes_, state);
+  std::vector<char> changed(routes_.size(), 0);
+  for (std::size_t r = 0; r < routes_.size(); ++r) {
+    std::vector<Frame<double>> frames = given ? given_frames(*model_, routes_[r]) : frames_at(routes_[r], state);
     try {
-      const bool meets_or_leaves = find_off(*model_, route, frames);
-      has_changed_ = has_changed_ || meets_or_leaves;
-      if (!meets_or_leaves && !(turned(route, laid_[r]) > turned_far)) continue;
-      if (!changed) changed = std::make_shared<Model>(*model_);
-      lay(*changed, route, frames);
-      laid_[r] = route.memory;
+      if (given || !state.ropes.empty()) last_[r] = frames;
+      changed[r] = look(r, std::move(frames), false);
     } catch (const ModelError& error) {
-      throw ModelError(fmt::format("rope \"{}\" has no way: {}", model_->element_name(route.element), error.what()));
+      throw ModelError(
+          fmt::format("rope \"{}\" has no way: {}", model_->element_name(routes_[r].element), error.what()));
     }
+    has_changed_ = has_changed_ || routes_[r].off != given_[r].off;
   }
-  if (changed) model_ = changed;
-  return changed != nullptr;
+  return lay_ways(changed);
 }
 
-bool RopeWaysAt::find(const SystemState& state) {
-  if (routes_.empty() || state.q.empty()) return false;
-  PlanOptions options;
-  options.one_sided = true;
-  Evaluator evaluator(Plan::make(*model_, options), *model_);
-  evaluator.set_configuration(configuration_of(evaluator, state));
-  return find(evaluator);
-}
-
-bool RopeWaysAt::follow(RopeRoute& route, std::shared_ptr<const RouteWatch>& watch, const Evaluator& evaluator,
-                        std::shared_ptr<Model>& changed) {
-  const std::vector<Frame<double>> frames = frames_of(evaluator, route);
-  // The first look may be far from the given configuration.
-  bool lays = !watch;
-  if (!watch && find_off(*model_, route, frames)) has_changed_ = true;
-  for (std::size_t pass = 0; pass <= route.nodes.size(); ++pass) {
-    int flipped = -1;
-    double most = 0;
-    if (watch) {
-      for (const int node : watch->pulleys()) {
-        const double contact = route.memory.contact[at(node)] = watch->contact(node, frames);
-        const double wrong = route.off[at(node)] ? contact : -contact;
-        if (!(wrong > most)) continue;
-        most = wrong;
-        flipped = node;
-      }
-      if (flipped < 0 && !(watch->turned(frames) > turned_far)) return lays;
-      if (flipped >= 0) {
-        route.off[at(flipped)] = !route.off[at(flipped)];
-        has_changed_ = true;
-      }
-      lays = true;
-    }
-    if (lays) {
-      if (!changed) changed = std::make_shared<Model>(*model_);
-      lay(*changed, route, frames);
-    }
-    watch = std::make_shared<RouteWatch>(*model_, route, frames);
-    if (flipped < 0) break;
-  }
-  return lays;
-}
-
-bool RopeWaysAt::follow(const Evaluator& evaluator) {
-  watches_.resize(routes_.size());
-  std::shared_ptr<Model> changed;
+bool RopeWaysAt::find(const Evaluator& evaluator, bool elastic) {
+  std::vector<char> changed(routes_.size(), 0);
   for (std::size_t r = 0; r < routes_.size(); ++r) {
-    if (routes_[r].elastic) continue;
+    if (routes_[r].elastic && !elastic) continue;
     try {
-      follow(routes_[r], watches_[r], evaluator, changed);
+      changed[r] = look(r, frames_of(evaluator, routes_[r]), !elastic);
     } catch (const ModelError& error) {
       throw ModelError(
           fmt::format("rope \"{}\" has no way: {}", model_->element_name(routes_[r].element), error.what()));
     }
   }
-  if (changed) model_ = changed;
-  return changed != nullptr;
+  return lay_ways(changed);
+}
+
+std::vector<RopeTurns> RopeWaysAt::turns(const SystemState& state) const {
+  std::vector<RopeTurns> turns;
+  for (const RopeRoute& route : routes_) {
+    const std::vector<Frame<double>> frames = frames_at(route, state);
+    turns.push_back(RouteWatch(*model_, route, frames).turns(frames));
+  }
+  return turns;
 }
 
 }  // namespace catena

@@ -1,8 +1,12 @@
 // The state of a mechanism, passed from one analysis of a scene to the next: absolute, in model order, so that it stays
 // valid for other plans and parameters.
+//
+// Of ropes the places say how they lie but for whole turns: how far they are wound belongs to the state.
 #pragma once
 
 #include <vector>
+
+#include "catena/model/rope_turns.hpp"
 
 namespace catena {
 
@@ -10,6 +14,8 @@ struct SystemState {
   double t = 0;
   std::vector<double> q;   ///< [x, y, phi] of every body's centroid, m, m, rad; empty: the given configuration
   std::vector<double> qd;  ///< velocities; empty: none known
+  /// At q, one for each of rope_routes(); empty: as q alone has them.
+  std::vector<RopeTurns> ropes{};
 };
 
 }  // namespace catena

@@ -121,6 +121,8 @@ void run_over_time(AnalysisContext& context, AnalysisResult& result, Analysis& a
   const Model& model = analysis.evaluator().model();
   const ColumnSet columns = ColumnSet::resolve(model, analysis.plan(), outputs, sources);
   analysis.start_from(context.state);
+  // Ropes that are wound further than their places tell have come to be so in an analysis before.
+  const bool begins_as_given = context.state.ropes.empty();
   if (context.trace) analysis.evaluator().trace = &context.trace;
   AnalysisRows rows(columns, context, model, analysis.plan(), sources,
                     {std::min(context.state.t, grid.earliest()), grid.latest()});
@@ -128,7 +130,9 @@ void run_over_time(AnalysisContext& context, AnalysisResult& result, Analysis& a
   rows.begin();
   AnalysisReport report = analysis.run(grid, rows.needs(), rows);
   for (std::string& doubt : gears_that_do_not_fit(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
-  for (std::string& doubt : ropes_in_loops(model)) report.warnings.push_back(std::move(doubt));
+  if (begins_as_given) {
+    for (std::string& doubt : ropes_in_loops(model)) report.warnings.push_back(std::move(doubt));
+  }
   context.state = analysis.state();
   result.report = std::move(report);
   rows.finish(result);

@@ -8,6 +8,7 @@
 #include "catena/analysis/motion/initial_velocities.hpp"
 #include "catena/analysis/pose/mobility.hpp"
 #include "catena/analysis/run/process_time.hpp"
+#include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/sensitivity/assembly_derivatives.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/scene/judging/gap_watch.hpp"
@@ -69,11 +70,26 @@ void check_velocities(Kinematics& analysis, const Model& model, AnalysisReport& 
   }
 }
 
+/// Ropes lie as they can at the place that was assembled.
+void lay_ropes(const AnalysisContext& context, RopeWaysAt& ways, Kinematics& analysis) {
+  if (!ways.any()) return;
+  if (ways.find(analysis.evaluator())) {
+    analysis.evaluator().set_model(*ways.model());
+    analysis.evaluator().set_configuration(analysis.q());
+  }
+  if (context.design && !ways.lie_as_given())
+    throw ModelError(
+        "derivatives are those of ropes that lie as in the given configuration; here one meets or leaves a pulley, or "
+        "is wound further: give the bodies a place nearer to it");
+}
+
 }  // namespace
 
 void run_assemble(AnalysisContext& context, AnalysisResult& result) {
   const ProcessTimer timer;
   const std::vector<std::string> names = context.task.output_names();
+  RopeWaysAt ways(context.model);
+  if (!context.state.q.empty() && ways.begin(context.state)) context.model = ways.model();
   PlanOptions options = plan_options(*context.model, names);
   options.released_elements = context.model->gaps();
   Kinematics analysis(context.model, options);
@@ -96,12 +112,14 @@ void run_assemble(AnalysisContext& context, AnalysisResult& result) {
   const double scale = analysis.evaluator().length_scale();
   if (outcome.ok()) {
     analysis.evaluator().set_configuration(analysis.q());
+    lay_ropes(context, ways, analysis);
     rows.observe({.evaluator = analysis.evaluator(),
                   .t = analysis.time(),
                   .q = analysis.q(),
                   .residual = outcome.residual * scale});
     // Places alone change hands: the velocities and the time stay those of the motion so far.
     context.state.q = analysis.state().q;
+    context.state.ropes = ways.turns(context.state);
     for (std::string& doubt : violated_gaps(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
   }
   report.counters = analysis.evaluator().counters;

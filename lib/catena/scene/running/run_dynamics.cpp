@@ -77,13 +77,16 @@ class DynamicsTask {
   /// Runs what was made with used_options_.
   template <class Analysis>
   void run_or_estimate(Analysis& analysis, const PlanOptions& plan);
+  /// Runs what was prepared.
+  void run_on();
   void run_with_events_or_pauses();
   void differentiate(AnalysisRows& rows, const Evaluator& evaluator) const;
   /// Has the motion saved now and then; where it cannot be, `failure` says why.
   Pauses pauses(std::string& failure) const;
   void run_apart(const std::vector<std::vector<int>>& classes);
-  /// Whether ropes are followed over pulleys: not where other runs or later ones would have to do the same.
-  bool follows_ropes() const { return !routes_.empty() && !estimates_ && !context_.checkpoint && !context_.design; }
+  /// Whether ropes are followed over pulleys: not where another run would have to do the same. Where they are not they
+  /// begin as they lie at the start, and keep their pulleys.
+  bool follows_ropes() const { return !routes_.empty() && !estimates_ && !context_.design; }
   /// Of a motion without events and contacts.
   void add_jolts(const std::vector<Jolt>& jolts) {
     EventEntries entries(*model_);
@@ -122,8 +125,9 @@ std::string DynamicsTask::conflict() const {
   if (const auto found = std::find_if(routes_.begin(), routes_.end(), lies_beside);
       found != routes_.end() && !follows_ropes()) {
     return fmt::format(
-        "rope \"{}\" lies beside a pulley, and where it meets one is not followed with derivatives, checkpoints or an "
-        "estimate of the error: leave these out, or the pulley",
+        "rope \"{}\" lies beside a pulley, and where it meets one is not followed with derivatives or an estimate of "
+        "the "
+        "error: leave these out, or the pulley",
         model_->element_name(found->element));
   }
   if (touches_ && context_.checkpoint)
@@ -225,18 +229,23 @@ void DynamicsTask::run() {
     context_.state = {context_.checkpoint->restart->begin, {}, {}};
   grid_ = time_grid(context_, result_.report);
   if (!grid_) return;
-  // Where ropes are not followed they begin as they lie at the start, and keep their pulleys.
+  std::optional<RopeWaysAt> ways;
   if (!routes_.empty() && !follows_ropes()) {
-    RopeWaysAt ways(model_);
-    if (ways.find(context_.state)) {
-      if (ways.has_changed() || context_.design)
+    ways.emplace(model_);
+    if (ways->begin(context_.state)) {
+      if (ways->has_changed() || context_.design)
         return refuse(result_,
-                      "a rope lies otherwise at the start than in the given configuration, which derivatives, "
-                      "checkpoints and estimates of the error do not follow: leave these out, or give the "
-                      "bodies a place nearer to the start");
-      model_ = ways.model();
+                      "a rope lies otherwise at the start than in the given configuration, which derivatives "
+                      "and estimates of the error do not follow: leave these out, or give the bodies a place nearer to "
+                      "the start");
+      model_ = ways->model();
     }
   }
+  run_on();
+  if (ways && result_.report.ok()) context_.state.ropes = ways->turns(context_.state);
+}
+
+void DynamicsTask::run_on() {
   if (estimates_) used_options_ = finer_options(options_);
   const bool in_common = !context_.task.events.empty() || context_.checkpoint || follows_ropes();
   // A fixed step is the same for all; two runs that are compared must be divided alike.

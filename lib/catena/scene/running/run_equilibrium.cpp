@@ -21,6 +21,9 @@ namespace {
 void run_holding(AnalysisContext& context, AnalysisResult& result) {
   const ProcessTimer timer;
   const std::vector<std::string> names = context.task.output_names();
+  RopeWaysAt ways(context.model);
+  ways.begin(context.state);
+  context.model = ways.model();
   ContactHolding analysis(context.model);
   Evaluator& evaluator = analysis.evaluator();
   const ColumnSources sources{.analysis = context.task.type()};
@@ -37,6 +40,7 @@ void run_holding(AnalysisContext& context, AnalysisResult& result) {
   if (holding.ok()) {
     rows.observe({.evaluator = evaluator, .t = start.t, .q = q});
     context.state.q = state_of(evaluator, start.t, q).q;
+    context.state.ropes = ways.turns(context.state);
     result.fields = {{"held", holding.held()}};
     if (holding.utilisation) result.fields.push_back({"utilisation", *holding.utilisation});
     if (!holding.utilisation) report.warnings.emplace_back("no friction, however large, can hold this position");
@@ -56,11 +60,10 @@ constexpr int most_passes = 50;
 /// Gives the context the model whose ropes lie as they do at rest; `start`: becomes that place where they lie
 /// otherwise. The report of a search that failed, if so: it need not be made again.
 std::optional<EquilibriumReport> find_ways_at_rest(AnalysisContext& context, const EquilibriumOptions& options,
-                                                   SystemState& start) {
-  RopeWaysAt ways(context.model);
+                                                   RopeWaysAt& ways, SystemState& start) {
   std::optional<EquilibriumReport> failed;
   if (!ways.any()) return failed;
-  ways.find(start);
+  ways.begin(start);
   EquilibriumOptions one = options;
   one.find = 1;
   for (int pass = 0; pass < most_passes; ++pass) {
@@ -75,10 +78,10 @@ std::optional<EquilibriumReport> find_ways_at_rest(AnalysisContext& context, con
     }
     start = trial.state();
   }
-  if (context.design && ways.has_changed())
+  if (context.design && !ways.lie_as_given())
     throw ModelError(
         "derivatives are those of ropes that lie as in the given configuration; here one meets or leaves a "
-        "pulley: give the bodies a place nearer to rest");
+        "pulley, or is wound further: give the bodies a place nearer to rest");
   context.model = ways.model();
   return failed;
 }
@@ -116,7 +119,8 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
     return refuse(result,
                   "\"find\" looks for places of rest with ropes that lie in one way, but a rope over a pulley may "
                   "lie otherwise in each: leave \"find\" out and start near the place that is meant");
-  const std::optional<EquilibriumReport> failed = find_ways_at_rest(context, options, start);
+  RopeWaysAt ways(context.model);
+  const std::optional<EquilibriumReport> failed = find_ways_at_rest(context, options, ways, start);
   Equilibrium analysis(context.model, plan_options(*context.model, task.column_names()), options);
   const bool conservative = analysis.evaluator().conservative();
   if (!conservative && (options.solver == StaticSolver::ipopt || options.solver == StaticSolver::nlopt)) {
@@ -146,6 +150,7 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   needs.multipliers = needs.multipliers || derivatives;
   EquilibriumReport report = failed ? *failed : analysis.run(TimeGrid::instant(start.t), needs, rows);
   context.state = analysis.state();
+  if (report.ok()) context.state.ropes = ways.turns(context.state);
   if (const int friction = first_friction(*context.model); friction >= 0) {
     report.warnings.push_back(fmt::format(
         "dry friction (\"{}\") is left out: the position is that without any; \"friction\": \"hold\" asks whether it "

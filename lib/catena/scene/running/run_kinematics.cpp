@@ -25,17 +25,23 @@ PlanOptions plan_without_gaps(const Model& model, const std::vector<std::string>
 template <class Analysis>
 class WithRopes {
  public:
-  WithRopes(Analysis& analysis, std::shared_ptr<const Model> model, std::string obstacle = {})
-      : analysis_(analysis), ways_(std::move(model)), obstacle_(std::move(obstacle)) {}
+  WithRopes(Analysis& analysis, RopeWaysAt& ways, std::string obstacle = {})
+      : analysis_(analysis), ways_(ways), begun_(ways.routes()), obstacle_(std::move(obstacle)) {}
 
   const Plan& plan() const { return analysis_.plan(); }
   Evaluator& evaluator() { return analysis_.evaluator(); }
   void start_from(const SystemState& state) { analysis_.start_from(state); }
-  SystemState state() const { return analysis_.state(); }
+  SystemState state() const {
+    SystemState state = analysis_.state();
+    if (ended_well_) state.ropes = ways_.turns(state);
+    return state;
+  }
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& rows) {
     if (!ways_.any()) return analysis_.run(grid, needs, rows);
     Rows followed(*this, rows);
-    return analysis_.run(grid, needs, followed);
+    AnalysisReport report = analysis_.run(grid, needs, followed);
+    ended_well_ = report.ok();
+    return report;
   }
 
  private:
@@ -58,23 +64,30 @@ class WithRopes {
     Evaluator& evaluator = analysis_.evaluator();
     const std::shared_ptr<const Model> before = ways_.model();
     if (!ways_.follow(evaluator)) return;
-    if (ways_.has_changed() && !obstacle_.empty())
-      throw ModelError(
-          fmt::format("a rope meets or leaves a pulley by t = {:.12g} s, where {}", evaluator.time(), obstacle_));
+    if (!obstacle_.empty() && !ways_.lie_as(begun_)) {
+      throw ModelError(fmt::format(
+          "a rope meets or leaves a pulley, or has turned by nearly half a turn, by t = {:.12g} s, where {}",
+          evaluator.time(), obstacle_));
+    }
     evaluator.set_model(*ways_.model());
     evaluator.set_configuration(q);
     kept_.push_back(before);
   }
 
   Analysis& analysis_;
-  RopeWaysAt ways_;
+  RopeWaysAt& ways_;
+  std::vector<RopeRoute> begun_;  // as they lay at first
   std::string obstacle_;
+  bool ended_well_ = false;
   std::vector<std::shared_ptr<const Model>> kept_;  // columns refer to the first
 };
 
 /// Nothing, or why the ropes cannot be followed.
-std::string trouble_of_ropes(const AnalysisContext& context) {
-  for (const RopeRoute& route : rope_routes(*context.model)) {
+std::string trouble_of_ropes(const AnalysisContext& context, const RopeWaysAt& ways) {
+  if (context.design && !ways.lie_as_given())
+    return "derivatives are those of ropes that lie as in the given configuration; at the start one has met or left a "
+           "pulley, or is wound further";
+  for (const RopeRoute& route : ways.routes()) {
     const bool beside = std::find(route.off.begin(), route.off.end(), 1) != route.off.end();
     if (!beside || (!route.elastic && !context.design)) continue;
     return fmt::format(
@@ -119,14 +132,13 @@ std::string conflict(const AnalysisContext& context, bool inverse_dynamics) {
 
 /// The same motion with events; rows, measures and derivatives as without.
 void run_with_events(AnalysisContext& context, AnalysisResult& result, const TimeGrid& grid,
-                     const KinematicsOptions& options, const ColumnSources& sources) {
+                     const KinematicsOptions& options, const ColumnSources& sources, RopeWaysAt& ways) {
   const AnalysisTask& task = context.task;
   std::vector<std::string> reactions = task.column_names();
   for (const EventRequest& request : task.events) reactions.push_back(request.column);
   const PlanOptions plan = plan_without_gaps(*context.model, reactions);
   KinematicsWithEvents analysis(context.model, plan, options, events_of(task, *context.model), sources);
-  WithRopes watched(analysis, context.model,
-                    "a motion with events does not go on: end it before, or do without events");
+  WithRopes watched(analysis, ways, "a motion with events does not go on: end it before, or do without events");
   run_over_time(context, result, watched, grid, task.output_names(), sources, [&](AnalysisRows& rows) {
     rows.watch_gaps(*context.model);
     if (!context.design) return;
@@ -142,7 +154,10 @@ void run_with_events(AnalysisContext& context, AnalysisResult& result, const Tim
 void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics) {
   const AnalysisTask& task = context.task;
   if (const std::string why = conflict(context, inverse_dynamics); !why.empty()) return refuse(result, why);
-  if (const std::string why = trouble_of_ropes(context); !why.empty()) return refuse(result, why);
+  RopeWaysAt ways(context.model);
+  // The given configuration may be an estimate: then the first place that is assembled says how ropes lie.
+  if (!context.state.q.empty() && ways.begin(context.state)) context.model = ways.model();
+  if (const std::string why = trouble_of_ropes(context, ways); !why.empty()) return refuse(result, why);
   const std::optional<TimeGrid> grid = time_grid(context, result.report);
   if (!grid) return;
   const std::vector<std::string> names = task.output_names();
@@ -173,14 +188,14 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
                     "leave \"free\" out and add drivers");
     }
     MinimumNormMotion analysis(context.model, plan);
-    WithRopes followed(analysis, context.model);
+    WithRopes followed(analysis, ways);
     run_over_time(context, result, followed, *grid, names, sources, [&](AnalysisRows& rows) {
       rows.watch_gaps(*context.model);
       rows.take_rows_alone();
     });
     return add_singular_points(result, analysis.singular_points(), *context.model);
   }
-  if (!task.events.empty()) return run_with_events(context, result, *grid, options, sources);
+  if (!task.events.empty()) return run_with_events(context, result, *grid, options, sources, ways);
   Kinematics analysis(context.model, plan, options);
   std::optional<KinematicLook> look, drawn;
   const auto prepare = [&](AnalysisRows& rows) {
@@ -209,7 +224,7 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
   const bool looks_between = std::any_of(task.measures.begin(), task.measures.end(), [](const PlacedMeasure& measure) {
     return measure.request.kind != MeasureKind::final && measure.request.kind != MeasureKind::first;
   });
-  WithRopes followed(analysis, context.model,
+  WithRopes followed(analysis, ways,
                      context.design  ? "derivatives do not go on: end the analysis before"
                      : looks_between ? "measures of what is between rows do not go on: end the analysis before"
                                      : std::string());

@@ -68,6 +68,7 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
   SystemState start = context.state;
   const bool from_model = start.q.empty();
   start.t = frozen_time(context);
+  if (!from_model && ways.begin(start)) context.model = ways.model();
   std::optional<Modes> made(std::in_place, context.model, PlanOptions{}, options);
   made->start_from(start);
   const auto go_on = [&] { return !(context.cancel && context.cancel->load()); };
@@ -76,15 +77,15 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
   if (ways.any() && report.ok()) {
     made->evaluator().set_configuration(made->q());
     if (ways.find(made->evaluator())) {
-      if (context.design && ways.has_changed())
-        return refuse(result,
-                      "derivatives are those of ropes that lie as in the given configuration; here one has met or "
-                      "left a pulley: give the bodies a place nearer to rest");
       context.model = ways.model();
       made.emplace(context.model, PlanOptions{}, options);
       made->start_from(start);
       report = made->run(go_on);
     }
+    if (context.design && !ways.lie_as_given())
+      return refuse(result,
+                    "derivatives are those of ropes that lie as in the given configuration; here one has met or "
+                    "left a pulley, or is wound further: give the bodies a place nearer to rest");
   }
   Modes& analysis = *made;
 
@@ -110,7 +111,10 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
   }
   draw_shapes(context, analysis.evaluator(), start.t, analysis.q(), report.shapes);
   // Places alone change hands, if they had to be assembled: velocities and time stay those of the motion so far.
-  if (report.ok()) context.state.q = analysis.state().q;
+  if (report.ok()) {
+    context.state.q = analysis.state().q;
+    context.state.ropes = ways.turns(context.state);
+  }
   result.fields = {
       {"omega2", report.omega2}, {"omega", report.omega}, {"unstable", static_cast<std::int64_t>(report.unstable)}};
   if (report.free_motions > 0) {
