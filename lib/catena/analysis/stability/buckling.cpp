@@ -14,6 +14,7 @@
 #include "catena/analysis/run/watched_elements.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/analysis/spectrum/static_balance.hpp"
+#include "catena/analysis/statics/static_active_set.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -79,7 +80,7 @@ ModelAt required(ModelAt model_at) {
 
 Buckling::Buckling(std::shared_ptr<const Model> model, ModelAt model_at, const BucklingOptions& options)
     : model_(std::move(model)),
-      plan_(Plan::make(catena::required(model_))),
+      plan_(Plan::make(catena::required(model_), with_gaps({}))),
       options_(options),
       evaluator_(plan_, *model_),
       system_(evaluator_),
@@ -150,10 +151,43 @@ Report Buckling::find_with(double step, int count, std::vector<Load>& loads, dou
   return {};
 }
 
+Report Buckling::take_place(Imbalance& left, BucklingReport& report) {
+  if (!system_.has_gaps()) {
+    if (Report assembly = assemble_for_statics(system_, point_.q); !assembly.ok()) return assembly;
+    left = balance_loads(system_, point_.lambda);
+    return {};
+  }
+  if (Report closed = close_gaps_at(system_, point_.q, point_.lambda, set_, left); !closed.ok()) return closed;
+  report.active = names_of_closed(evaluator_, set_);
+  if (const std::string weak = names_of_weak(evaluator_, set_); !weak.empty())
+    report.warnings.push_back(taken_as_open(weak));
+  return {};
+}
+
+void Buckling::check_gaps(BucklingReport& report) {
+  if (!system_.has_gaps()) return;
+  for (const double load : report.loads) {
+    PathPoint loaded = point_;
+    loaded.p = load;
+    if (!path_.move_to(loaded)) continue;
+    static_cast<void>(balance_loads(system_, loaded.lambda));
+    const std::vector<double> faults = gap_faults(system_, loaded.lambda, set_.closed);
+    ActiveSet other{.closed = {}, .weak = std::vector<char>(faults.size())};
+    for (std::size_t k = 0; k < faults.size(); ++k) other.weak[k] = faults[k] > weak_force;
+    if (const std::string names = names_of_weak(evaluator_, other); !names.empty()) {
+      report.warnings.push_back(fmt::format(
+          "at the value {:.6g} one-sided elements would not hold, or not be open, as they are at the present one: {}; "
+          "the value is that of a mechanism in which they stay so, and an analysis of type path follows them",
+          load, names));
+    }
+  }
+}
+
 Report Buckling::find(BucklingReport& report, const std::function<bool()>& go_on) {
-  if (Report assembly = assemble_for_statics(system_, point_.q); !assembly.ok()) return assembly;
+  Imbalance left;
+  if (Report placed = take_place(left, report); !placed.ok()) return placed;
   if (std::optional<Report> loose = find_loose_bodies(system_, evaluator_)) return *loose;
-  const bool unbalanced = !balance_loads(system_, point_.lambda).negligible();
+  const bool unbalanced = !left.negligible();
   if (unbalanced) {
     report.warnings.emplace_back(
         "the configuration is no equilibrium; an equilibrium analysis before this one finds it");
@@ -179,6 +213,7 @@ Report Buckling::find(BucklingReport& report, const std::function<bool()>& go_on
         "the load moves the equilibrium: these are estimates of linear buckling theory; an analysis of type path finds "
         "the critical points on the way");
   }
+  check_gaps(report);
   if (static_cast<int>(report.loads.size()) < options_.count) {
     report.warnings.push_back(fmt::format("there are only {} such values", report.loads.size()));
   }
@@ -237,7 +272,9 @@ BucklingReport Buckling::run(const std::function<bool()>& go_on) {
     outcome = {Status::refused, refused_without_energy(*model_, "buckling under forces without one is"), {}};
     if (evaluator_.conservative()) outcome = find(report, go_on);
     path_.move_to(point_);
-    if (outcome.ok()) outcome = WatchedElements(evaluator_).check_ends();
+    const WatchedElements watched(evaluator_);
+    if (outcome.ok()) outcome = watched.check_ends();
+    if (outcome.ok()) outcome = watched.check_ropes();
   }
   report.status = outcome.status;
   report.message = std::move(outcome.message);

@@ -9,6 +9,9 @@
 // equilibrium, the results are estimates of linear buckling theory, and a warning is given; a path finds the true
 // critical points. The values nearest to the present one come first. Refused: an equilibrium that is not stable, a
 // parameter that moves constraints.
+//
+// One-sided elements hold as they do at the present value (active_set_at.hpp); those that would open or close before a
+// load is reached are named.
 #pragma once
 
 #include <functional>
@@ -20,6 +23,7 @@
 #include "catena/analysis/run/system_state.hpp"
 #include "catena/analysis/spectrum/motion_groups.hpp"
 #include "catena/analysis/stability/path_system.hpp"
+#include "catena/analysis/statics/active_set_at.hpp"
 
 namespace catena {
 
@@ -31,6 +35,7 @@ struct BucklingOptions {
 struct BucklingReport : AnalysisReport {
   std::vector<double> loads;                ///< values of the parameter, nearest to the present one first
   std::vector<std::vector<double>> shapes;  ///< over columns; the largest turning or displacement is 1 rad or m
+  std::vector<std::string> active;          ///< one-sided elements that hold
 };
 
 class Buckling {
@@ -57,6 +62,10 @@ class Buckling {
     std::vector<double> shape;
   };
   Report find(BucklingReport& report, const std::function<bool()>& go_on);
+  /// Takes the system to the assembled place, with the multipliers that balance its loads best.
+  Report take_place(Imbalance& left, BucklingReport& report);
+  /// Names one-sided elements that would not hold as they do, at the loads that were found.
+  void check_gaps(BucklingReport& report);
   /// The `count` nearest loads by Lanczos' method, or by dense algebra.
   Report find_by_lanczos(std::vector<Load>& loads, const std::function<bool()>& go_on);
   Report find_by_dense(std::vector<Load>& loads, const std::function<bool()>& go_on);
@@ -75,6 +84,7 @@ class Buckling {
   PathSystem path_;
   PathPoint point_;
   std::optional<MotionGroups> groups_;
+  ActiveSet set_;
   double t_ = 0;
   bool moves_ = false;    // the load moves the equilibrium
   bool outside_ = false;  // the scene does not allow the last value

@@ -16,7 +16,7 @@
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/spectrum/modes_dense.hpp"
 #include "catena/analysis/spectrum/modes_search.hpp"
-#include "catena/analysis/spectrum/static_balance.hpp"
+#include "catena/analysis/statics/active_set_at.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -38,7 +38,7 @@ bool is_damped(const Evaluator& evaluator) {
 
 Modes::Modes(std::shared_ptr<const Model> model, const PlanOptions& plan_options, const ModesOptions& options)
     : model_(std::move(model)),
-      plan_(Plan::make(required(model_), plan_options)),
+      plan_(Plan::make(required(model_), with_gaps(plan_options))),
       options_(options),
       evaluator_(plan_, *model_),
       system_(evaluator_),
@@ -93,6 +93,20 @@ Report Modes::find_modes(const MassMatrix& masses, std::span<const double> mass,
   return report;
 }
 
+Report Modes::take_place(std::span<double> lambda, Imbalance& left, ModesReport& report) {
+  if (!system_.has_gaps()) {
+    if (Report assembly = assemble_for_statics(system_, q_); !assembly.ok()) return assembly;
+    left = balance_loads(system_, lambda);
+    return {};
+  }
+  ActiveSet set;
+  if (Report closed = close_gaps_at(system_, q_, lambda, set, left); !closed.ok()) return closed;
+  report.active = names_of_closed(evaluator_, set);
+  if (const std::string weak = names_of_weak(evaluator_, set); !weak.empty())
+    report.warnings.push_back(taken_as_open(weak));
+  return {};
+}
+
 ModesReport Modes::run(const std::function<bool()>& go_on) {
   const ProcessTimer timer;
   ModesReport report;
@@ -111,13 +125,13 @@ ModesReport Modes::run(const std::function<bool()>& go_on) {
   }
   if (Report functions = check_time_functions(*model_, {t_, t_}); !functions.ok()) return end(std::move(functions));
   evaluator_.set_time(t_);
-  if (Report assembly = assemble_for_statics(system_, q_); !assembly.ok()) return end(std::move(assembly));
+  std::vector<double> mass(at(plan_->columns)), lambda(at(plan_->rows));
+  Imbalance left;
+  if (Report placed = take_place(lambda, left, report); !placed.ok()) return end(std::move(placed));
   if (Report ends = WatchedElements(evaluator_).check_ends(); !ends.ok()) return end(std::move(ends));
   MassMatrix masses;
   if (Report missing = masses.load(evaluator_); !missing.ok()) return end(std::move(missing));
-  std::vector<double> mass(at(plan_->columns)), lambda(at(plan_->rows));
   for (int c = 0; c < plan_->columns; ++c) mass[at(c)] = masses.mass[at(plan_->coordinate[at(c)])];
-  const Imbalance left = balance_loads(system_, lambda);
   if (is_damped(evaluator_)) report.warnings.emplace_back("damping is left out: these are the undamped modes");
   if (moving_) report.warnings.emplace_back("velocities are left out: these are the modes of the mechanism at rest");
 

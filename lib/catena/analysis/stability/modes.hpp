@@ -9,6 +9,9 @@
 // warnings say so. Where forces are not in balance there are no small oscillations about that place: modes are given
 // all the same, with a warning. Refused: bodies without mass that the constraints tie to no mass; forces without a
 // potential.
+//
+// One-sided elements that are closed with a force hold as equations, the others not at all (active_set_at.hpp); those
+// that touch without force are named.
 #pragma once
 
 #include <functional>
@@ -20,6 +23,7 @@
 #include "catena/analysis/run/analysis_report.hpp"
 #include "catena/analysis/run/system_state.hpp"
 #include "catena/analysis/spectrum/modes_dense.hpp"
+#include "catena/analysis/spectrum/static_balance.hpp"
 
 namespace catena {
 
@@ -35,6 +39,7 @@ struct ModesReport : AnalysisReport {
   int unstable = 0;                         ///< how many omega^2 below zero there are in all
   int free_motions = 0;                     ///< how many zeros: in all, or among those found in a large mechanism
   std::vector<std::string> free_bodies;     ///< bodies that take part in them
+  std::vector<std::string> active;          ///< one-sided elements that hold
 };
 
 class Modes {
@@ -56,6 +61,8 @@ class Modes {
   SystemState state() const;
 
  private:
+  /// Takes the system to the assembled place, with the multipliers that balance its loads best.
+  Report take_place(std::span<double> lambda, Imbalance& left, ModesReport& report);
   Report find_modes(const MassMatrix& masses, std::span<const double> mass, std::span<const double> lambda,
                     double residual, int count, std::vector<Mode>& modes, const std::function<bool()>& go_on);
 

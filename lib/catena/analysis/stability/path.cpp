@@ -9,13 +9,14 @@
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/analysis/stability/path_march.hpp"
+#include "catena/analysis/statics/active_set_at.hpp"
 
 namespace catena {
 
 Path::Path(std::shared_ptr<const Model> model, ModelAt model_at, const PathOptions& options,
            const PlanOptions& plan_options)
     : model_(std::move(model)),
-      plan_(Plan::make(required(model_), plan_options)),
+      plan_(Plan::make(required(model_), with_gaps(plan_options))),
       model_at_(std::move(model_at)),
       options_(options),
       evaluator_(plan_, *model_),

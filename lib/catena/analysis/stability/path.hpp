@@ -6,6 +6,9 @@
 // branch point the path continues straight on or, on request, along the branch that leaves it to one side or the other.
 // Ends at the wanted value of the parameter, exactly; with `not_converged` after the largest number of steps, `refused`
 // where the parameter may not go on. A start where paths cross wants a branch (`bifurcation`, path_start.hpp).
+// One-sided elements are equations while they are closed and nothing while they are open (path_gaps.cpp): where one of
+// them changes, the point has a row and the path goes on with the other set, to the side on which that holds. It may
+// turn back there.
 // Limits: two critical points within one step whose modes cancel (one becomes stable while another turns unstable) are
 // not seen; a path that only touches the wanted value between two points goes on; and where constraints lose rank (a
 // rope pulled straight) multipliers pass through infinity while positions, and the path, continue smoothly.
@@ -39,8 +42,18 @@ struct PathCritical {
   int modes = 1;        ///< how many become singular there
 };
 
+/// A one-sided element that closes or opens on the path.
+struct PathChange {
+  int element = -1;
+  bool closes = false;
+  double value = 0;  ///< of the parameter
+  int row = 0;       ///< from 0: the row at this point
+};
+
 struct PathReport : AnalysisReport {
   std::vector<PathCritical> critical;
+  std::vector<PathChange> changes;
+  std::vector<std::string> active;     ///< one-sided elements that hold at the start
   std::vector<double> negative_modes;  ///< a row: how many; 0 is stable
   int steps = 0;
 };

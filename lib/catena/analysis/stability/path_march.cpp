@@ -33,6 +33,9 @@ Report Path::March::run(PathReport& report) {
     ++report.steps;
     if (progress == Progress::finished) return {};
     if (progress == Progress::cancelled) return stopped();
+    if (!changing_.empty()) {
+      if (Report changed = change_gaps(); !changed.ok()) return changed;
+    }
     if (progress == Progress::stuck) {
       if (const std::optional<double> value = system_.refused_value()) {
         return {Status::refused,
@@ -55,14 +58,16 @@ Report Path::March::run(PathReport& report) {
           {}};
 }
 
-// Why no row is written any more: an element has left its curve, or the user stopped.
+// Why no row is written any more: an element is not defined, or the user stopped.
 Report Path::March::stopped() const {
   return left_curve_.ok() ? Report{Status::cancelled, "stopped along the path", {}} : left_curve_;
 }
 
 bool Path::March::write(const PathPoint& x) {
   system_.move_to(x);
-  if (left_curve_ = watched_.check_ends(); !left_curve_.ok()) {
+  left_curve_ = watched_.check_ends();
+  if (left_curve_.ok()) left_curve_ = watched_.check_ropes();
+  if (!left_curve_.ok()) {
     left_curve_.message = fmt::format("at the value {:.10g} of the parameter: {}", x.p, left_curve_.message);
     return false;
   }
@@ -157,6 +162,13 @@ Path::March::Progress Path::March::step() {
         continue;
       }
     }
+    bool located = true;
+    if (path_.system_.has_gaps() && change_within(next, s, located)) last = false;
+    if (!located) {
+      length_ *= 0.5;
+      continue;
+    }
+    if (s == 0) return Progress::going;  // they change where the path is
     if (!system_.factorize(next)) {
       length_ *= 0.9;
       continue;
@@ -182,10 +194,14 @@ Path::March::Progress Path::March::step() {
       }
       if (!pass(critical, left)) return Progress::cancelled;
     }
-    if (left) return Progress::going;
+    if (left) {
+      changing_.clear();
+      return Progress::going;
+    }
     x_ = std::move(next);
     direction_ = std::move(direction);
     modes_ = modes;
+    changed_here_ = 0;
     if (!write(x_)) return Progress::cancelled;
     if (last) return Progress::finished;
     if (iterations <= few_iterations) length_ = std::min(1.5 * length_, options_.arc);

@@ -17,7 +17,9 @@
 
 #include "catena/analysis/run/watched_elements.hpp"
 #include "catena/analysis/spectrum/certificate.hpp"
+#include "catena/analysis/spectrum/static_balance.hpp"
 #include "catena/analysis/stability/path.hpp"
+#include "catena/analysis/statics/static_gaps.hpp"
 
 namespace catena {
 
@@ -39,6 +41,8 @@ class Path::March {
 
   // The equilibrium at the present value: the configuration itself if it is one, else the nearest stable one.
   Report find_start();
+  // That configuration, with its multipliers, and how well they balance its loads; one-sided elements may be violated.
+  Report take_place(Imbalance& left);
   // A start without stiffness against some motion: where paths cross, one of them must have been chosen.
   Report start_at_critical_point(const Certificate& certificate);
   // Why no row is written any more: an element has left its curve, or the user stopped.
@@ -53,6 +57,13 @@ class Path::March {
   bool step_to_end(PathPoint& next, double& s);
   // The point with the wanted value of the parameter between the start of the step and `s`; then s is its place.
   bool find_end(PathPoint& next, double& s);
+  // Whether one-sided elements change in a step by `s` that leads to `next`; then these are the first place where some
+  // do, and changing_ says which. False in `located`: the step is too long to find it.
+  bool change_within(PathPoint& next, double& s, bool& located);
+  // Lets those that change do so at the present point, and turns the path to the side on which they hold.
+  Report change_gaps();
+  // The largest fault of those that change at a point; faults_ has all of them.
+  double largest_fault(const PathPoint& x);
   // From the present point to the next one.
   Progress step();
   // Rows and records of the critical points in a step; `left`: the path went over to another branch. False: cancelled.
@@ -69,6 +80,10 @@ class Path::March {
   double to_, length_ = 0;
   WatchedElements watched_;
   Report left_curve_;
+  ActiveSet gaps_;
+  std::vector<std::size_t> changing_;  // by their place in Plan::gap_rows
+  std::vector<double> faults_;
+  int changed_here_ = 0;  // how often some did without a step between
   int modes_ = 0;
   bool switched_ = false;
 };

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <utility>
 
 #include "catena/analysis/balance/static_holding.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/spectrum/static_balance.hpp"
 #include "catena/analysis/stability/path_march.hpp"
+#include "catena/analysis/statics/active_set_at.hpp"
 #include "catena/analysis/statics/static_search.hpp"
 
 namespace catena {
@@ -58,15 +60,44 @@ std::optional<CriticalStart> look_around(PathSystem& system, const PathPoint& x,
 }
 
 // The equilibrium at the present value: the configuration itself if it is one, else the nearest stable one.
+Report Path::March::take_place(Imbalance& left) {
+  StaticSystem& statics = path_.system_;
+  x_.lambda.assign(static_cast<std::size_t>(path_.plan_->rows), 0.0);
+  if (!statics.has_gaps()) {
+    if (Report assembly = assemble_for_statics(statics, path_.q_); !assembly.ok()) return assembly;
+    left = balance_loads(statics, x_.lambda);
+    return {};
+  }
+  const std::vector<double> given = path_.q_;
+  if (!close_gaps_at(statics, path_.q_, x_.lambda, gaps_, left).ok()) {
+    // A search for the place of rest begins from anywhere.
+    path_.q_ = given;
+    left.relative = left.force = std::numeric_limits<double>::infinity();
+    statics.use_gaps();
+    statics.move_to(path_.q_);
+  }
+  return {};
+}
+
 Report Path::March::find_start() {
   StaticSystem& statics = path_.system_;
-  if (Report assembly = assemble_for_statics(statics, path_.q_); !assembly.ok()) return assembly;
+  Imbalance left;
+  if (Report placed = take_place(left); !placed.ok()) return placed;
   if (std::optional<Report> loose = find_loose_bodies(statics, path_.evaluator_)) return *loose;
-  x_.lambda.assign(static_cast<std::size_t>(path_.plan_->rows), 0.0);
-  const Imbalance left = balance_loads(statics, x_.lambda);
   StaticSearch search(statics, {.stationary = left.negligible(), .warm = left.negligible()});
   StaticResult result = search.find(path_.q_, x_.lambda);
   if (!result.report.ok()) return result.report;
+  if (statics.has_gaps()) {
+    gaps_ = result.gaps;
+    if (const std::string weak = names_of_weak(path_.evaluator_, gaps_); !weak.empty())
+      report_->warnings.push_back(taken_as_open(weak));
+    for (std::size_t k = 0; k < gaps_.closed.size(); ++k) gaps_.closed[k] = gaps_.closed[k] && !gaps_.weak[k];
+    report_->active = names_of_closed(path_.evaluator_, gaps_);
+    statics.close_gaps(gaps_.closed);
+    for (std::size_t k = 0; k < gaps_.closed.size(); ++k) {
+      if (!gaps_.closed[k]) x_.lambda[static_cast<std::size_t>(path_.plan_->gap_rows[k])] = 0;
+    }
+  }
   x_.q = path_.q_;
   x_.p = options_.from;
   length_ = options_.arc;

@@ -12,6 +12,7 @@
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/analysis/run/watched_elements.hpp"
+#include "catena/analysis/statics/active_set_at.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -19,11 +20,6 @@ namespace {
 
 // Reactions balance the loads if no more than this part of them is left.
 constexpr double balanced = 1e-9;
-
-PlanOptions with_gaps(PlanOptions options) {
-  options.one_sided = true;
-  return options;
-}
 
 }  // namespace
 

@@ -11,21 +11,6 @@ namespace catena {
 namespace {
 
 constexpr int most_sets = 200, most_sets_at_once = 15;
-// Forces below this part of the largest one, and gaps below this many length scales, may be rounding.
-constexpr double weak_force = 1e-9, weak_gap = 1e-9;
-
-// The violation of every gap: the pull of a closed one, the overlap of an open one, in their units.
-std::vector<double> faults(StaticSystem& system, std::span<const double> lambda, std::span<const char> closed,
-                           double force) {
-  const std::vector<double> gap = gap_values(system);
-  std::vector<double> fault(gap.size());
-  for (std::size_t k = 0; k < gap.size(); ++k) {
-    const int row = system.plan().gap_rows[k];
-    const GapUnits u = units_of(system, row, {system.length(), force});
-    fault[k] = closed[k] ? lambda[at(row)] / u.force : -gap[k] / u.gap;
-  }
-  return fault;
-}
 
 }  // namespace
 
@@ -39,6 +24,17 @@ std::vector<double> gap_values(StaticSystem& system) {
   std::vector<double> values;
   system.all_gaps(values);
   return values;
+}
+
+std::vector<double> gap_faults(StaticSystem& system, std::span<const double> lambda, std::span<const char> closed) {
+  const double force = std::max(system.force_scale(lambda), typical_force(system));
+  std::vector<double> fault = gap_values(system);
+  for (std::size_t k = 0; k < fault.size(); ++k) {
+    const int row = system.plan().gap_rows[k];
+    const GapUnits u = units_of(system, row, {system.length(), force});
+    fault[k] = closed[k] ? lambda[at(row)] / u.force : -fault[k] / u.gap;
+  }
+  return fault;
 }
 
 StaticOutcome finish_with_gaps(StaticSystem& system, std::span<double> q, std::span<double> lambda, ActiveSet& set,
@@ -69,8 +65,7 @@ StaticOutcome finish_with_gaps(StaticSystem& system, std::span<double> q, std::s
       outcome.end = StaticEnd::cancelled;
       return outcome;
     }
-    const double force = std::max(system.force_scale(lambda), typical_force(system));
-    const std::vector<double> fault = faults(system, lambda, set.closed, force);
+    const std::vector<double> fault = gap_faults(system, lambda, set.closed);
     const double enough = std::max(options.tolerance, 100 * system.rounding_change());
     std::size_t worst = 0;
     for (std::size_t k = 0; k < gaps; ++k) worst = fault[k] > fault[worst] ? k : worst;

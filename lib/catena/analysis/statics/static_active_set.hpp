@@ -3,9 +3,15 @@
 // A gap counts in a length L or in radians, its force in F or F L, F a force that is typical of the mechanism, N.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "catena/analysis/balance/static_system.hpp"
 
 namespace catena {
+
+/// Forces below this part of the largest one, and gaps below this many length scales, may be rounding.
+inline constexpr double weak_force = 1e-9, weak_gap = 1e-9;
 
 struct GapUnits {
   double gap = 1, force = 1;
@@ -20,5 +26,9 @@ inline GapUnits units_of(const StaticSystem& system, int row, const GapUnits& sc
 /// The largest dead load (springs may carry any force during the iteration); without loads, the force of the stiffest
 /// spring at one thousandth of a length scale; without springs, 1 N.
 double typical_force(StaticSystem& system);
+
+/// Of every gap, how far it is from what it does, in these units at the system's place: the pull of a closed one, the
+/// overlap of an open one; below zero where it does it.
+std::vector<double> gap_faults(StaticSystem& system, std::span<const double> lambda, std::span<const char> closed);
 
 }  // namespace catena

@@ -10,6 +10,7 @@
 #include "catena/analysis/pose/whole_turns.hpp"
 #include "catena/analysis/run/energyless_forces.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
+#include "catena/analysis/statics/active_set_at.hpp"
 #include "catena/analysis/statics/static_descent.hpp"
 #include "catena/analysis/statics/static_ipopt.hpp"
 #include "catena/analysis/statics/static_nlopt.hpp"
@@ -64,16 +65,8 @@ std::string body_of(const Evaluator& evaluator, int column) {
 
 // Names the gaps of which rounding decides whether they are closed.
 void name_weak_gaps(const Evaluator& evaluator, StaticResult& result) {
-  constexpr std::size_t most = 6;
-  std::string names;
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < result.gaps.weak.size(); ++k) {
-    if (!result.gaps.weak[k] || ++count > most) continue;
-    const int element = evaluator.plan().row_element[at(evaluator.plan().gap_rows[k])];
-    names += fmt::format("{}\"{}\"", count > 1 ? ", " : "", evaluator.model().element_name(element));
-  }
-  if (count == 0) return;
-  if (count > most) names += fmt::format(" and {} more", count - most);
+  const std::string names = names_of_weak(evaluator, result.gaps);
+  if (names.empty()) return;
   result.report.warnings.push_back(
       fmt::format("closed gaps whose force cannot be distinguished from rounding: {}", names));
 }

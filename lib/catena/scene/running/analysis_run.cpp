@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/scene/judging/distance_check.hpp"
@@ -51,6 +52,25 @@ DesignModels designs_of(const AnalysisContext& context, int last, std::optional<
   std::vector<int> parameters = context.design->parameters;
   if (last >= 0) parameters.push_back(last);
   return context.models->designs(*context.task.table, seeds, parameters);
+}
+
+std::string trouble_with_one_sided(const AnalysisContext& context, const SystemState& start) {
+  const std::string type(context.task.type());
+  if (context.design && !context.model->gaps().empty())
+    return type + " with one-sided elements has no derivatives: they jump where one opens or closes";
+  RopeWaysAt ways(context.model);
+  if (!start.q.empty()) static_cast<void>(ways.begin(start));
+  for (const RopeRoute& route : ways.routes()) {
+    const bool beside = std::find(route.off.begin(), route.off.end(), 1) != route.off.end();
+    if (!beside && ways.lie_as_given()) continue;
+    return fmt::format(
+        "rope \"{}\" {}: {} does not follow it over pulleys, and makes models at other values of the parameter in "
+        "which "
+        "it lies as given; equilibrium, dynamics and kinematics do",
+        context.model->element_name(route.element),
+        beside ? "lies beside a pulley" : "lies otherwise than in the given configuration", type);
+  }
+  return {};
 }
 
 double frozen_time(const AnalysisContext& context) {

@@ -96,6 +96,10 @@ std::optional<TimeGrid> time_grid(const AnalysisContext& context, Report& report
 /// The instant at which a static analysis is made.
 double frozen_time(const AnalysisContext& context);
 
+/// Nothing, or why a path or buckling from the state cannot have one-sided elements and ropes: derivatives, ropes that
+/// lie otherwise than models at other values of the parameter have them.
+std::string trouble_with_one_sided(const AnalysisContext& context, const SystemState& start);
+
 /// Ends an analysis whose request cannot be met.
 inline void refuse(AnalysisResult& result, std::string message) {
   result.report.status = Status::refused;

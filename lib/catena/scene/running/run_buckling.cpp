@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/sensitivity/spectrum_derivatives.hpp"
 #include "catena/analysis/stability/buckling.hpp"
 #include "catena/scene/running/analysis_run.hpp"
@@ -70,10 +71,11 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result) {
   BucklingOptions options;
   options.present = task.parameters.at(static_cast<std::size_t>(parameter));
   options.count = static_cast<int>(task.number("count", 1));
-  Buckling analysis(
-      context.model, [&](double value) { return model_at(context, parameter, value); }, options);
   SystemState start = context.state;
   start.t = frozen_time(context);
+  if (const std::string why = trouble_with_one_sided(context, start); !why.empty()) return refuse(result, why);
+  Buckling analysis(
+      context.model, [&](double value) { return model_at(context, parameter, value); }, options);
   analysis.start_from(start);
   BucklingReport report = analysis.run([&] { return !(context.cancel && context.cancel->load()); });
 
@@ -95,8 +97,12 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result) {
   }
   draw_shapes(context, analysis.evaluator(), start.t, analysis.q(), report.shapes);
   // Places alone change hands: velocities and time stay those of the motion so far.
-  if (report.ok()) context.state.q = analysis.state().q;
+  if (report.ok()) {
+    context.state.q = analysis.state().q;
+    context.state.ropes = RopeWaysAt(context.model).turns(context.state);
+  }
   result.fields = {{"loads", report.loads}};
+  if (!analysis.plan().gap_rows.empty()) result.fields.push_back({"active", report.active});
   result.report = report;
   take_rows(result, std::move(info), rows);
   add_field_measures(context, result);

@@ -67,6 +67,8 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
   options.count = static_cast<int>(task.number("count", 0));
   SystemState start = context.state;
   const bool from_model = start.q.empty();
+  if (context.design && !context.model->gaps().empty())
+    return refuse(result, "modes with one-sided elements have no derivatives: they jump where one opens or closes");
   start.t = frozen_time(context);
   if (!from_model && ways.begin(start)) context.model = ways.model();
   std::optional<Modes> made(std::in_place, context.model, PlanOptions{}, options);
@@ -117,6 +119,7 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
   }
   result.fields = {
       {"omega2", report.omega2}, {"omega", report.omega}, {"unstable", static_cast<std::int64_t>(report.unstable)}};
+  if (analysis.plan().gap_rows.size() > 0) result.fields.push_back({"active", report.active});
   if (report.free_motions > 0) {
     result.fields.push_back({"free_motions", static_cast<std::int64_t>(report.free_motions)});
     result.fields.push_back({"moving_freely", report.free_bodies});

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "catena/analysis/measures/measure_set.hpp"
+#include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/sensitivity/spectrum_derivatives.hpp"
 #include "catena/analysis/stability/path.hpp"
 #include "catena/scene/running/analysis_run.hpp"
@@ -53,13 +54,14 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
     return refuse(result, "\"branch\" of a path is 1 (straight on), 2 or 3 (to either side at the first branch point)");
   }
   const std::vector<std::string> names = task.output_names();
+  SystemState start = context.state;
+  start.t = frozen_time(context);
+  if (const std::string why = trouble_with_one_sided(context, start); !why.empty()) return refuse(result, why);
   Path analysis(
       context.model, [&](double value) { return model_at(context, parameter, value); }, options,
       plan_options(*context.model, task.column_names()));
   const ColumnSources sources{.analysis = task.type(), .multipliers = true};
   const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), names, sources);
-  SystemState start = context.state;
-  start.t = frozen_time(context);
   analysis.start_from(start);
 
   std::vector<ColumnInfo> info{{std::string(context.parameter_name), UnitKind::own}};
@@ -80,6 +82,7 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
     return context.rows.row(row) && !(context.cancel && context.cancel->load(std::memory_order_relaxed));
   });
   context.state = analysis.state();
+  if (report.ok()) context.state.ropes = RopeWaysAt(context.model).turns(context.state);
   if (report.ok() && rows > 0) context.values_at_end = {{parameter, row[0]}};
   std::vector<FieldRecord> critical;
   for (const PathCritical& point : report.critical) {
@@ -89,9 +92,20 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
                         {"mode", point.mode},
                         {"modes", static_cast<std::int64_t>(point.modes)}});
   }
+  std::vector<FieldRecord> changes;
+  for (const PathChange& change : report.changes) {
+    changes.push_back({{"element", context.model->element_name(change.element)},
+                       {"kind", std::string(change.closes ? "closes" : "opens")},
+                       {"value", change.value},
+                       {"row", static_cast<std::int64_t>(change.row)}});
+  }
   result.fields = {{"critical", std::move(critical)},
                    {"negative_modes", report.negative_modes},
                    {"steps", static_cast<std::int64_t>(report.steps)}};
+  if (!analysis.plan().gap_rows.empty()) {
+    result.fields.push_back({"active", report.active});
+    result.fields.push_back({"changes", std::move(changes)});
+  }
   result.report = report;
   for (const std::string& note : columns.notes()) result.report.warnings.push_back(note);
   take_rows(result, std::move(info), rows);

@@ -200,29 +200,6 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
   const AnalysisTask task = with_handed_on(read, unfit);
   result.type = task.type();
   const AnalysisFunction function = analysis_function(task.type());
-  // Elsewhere a gap would have to be part of the equilibrium whose stability is asked for.
-  const auto allows_gaps = [](const AnalysisTask& one) {
-    return one.type() != "modes" && one.type() != "path" && one.type() != "buckling";
-  };
-  const bool one_sided = task.of.empty() ? allows_gaps(task) : std::all_of(task.of.begin(), task.of.end(), allows_gaps);
-  if (const std::vector<int> gaps = model_->gaps(); !gaps.empty() && !one_sided) {
-    result.report.status = Status::refused;
-    result.report.message = fmt::format(
-        "{} \"{}\" is one-sided: {} does not treat such elements yet; equilibrium, dynamics and kinematics do",
-        model_->element_type(gaps.front()), model_->element_name(gaps.front()), task.type());
-    return result;
-  }
-  // At its rows a path would have to see whether a rope leaves its pulleys.
-  const auto goes_far = [](const AnalysisTask& one) { return one.type() == "path" || one.type() == "buckling"; };
-  const bool far = task.of.empty() ? goes_far(task) : std::any_of(task.of.begin(), task.of.end(), goes_far);
-  for (int e = 0; far && e < static_cast<int>(model_->elements.size()); ++e) {
-    if (model_->elements[static_cast<std::size_t>(e)].kind != ElementKind::force || model_->element_type(e) != "rope")
-      continue;
-    catena::refuse(result, fmt::format("rope \"{}\": path and buckling do not see yet where a rope leaves its pulleys; "
-                                       "equilibrium does",
-                                       model_->element_name(e)));
-    return result;
-  }
   const auto is_path = [](const AnalysisTask& earlier) { return earlier.type() == "path"; };
   if (number == checkpoints_.first_analysis() && !read.from_initial &&
       std::any_of(tasks_.begin(), tasks_.begin() + number, is_path)) {

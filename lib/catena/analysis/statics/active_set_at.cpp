@@ -1,0 +1,116 @@
+#include "catena/analysis/statics/active_set_at.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "catena/analysis/pose/assemble.hpp"
+#include "catena/analysis/run/state_conversion.hpp"
+#include "catena/analysis/statics/static_active_set.hpp"
+#include "catena/base/at.hpp"
+
+namespace catena {
+namespace {
+
+// A depth of this part of the length scale (or rad) is an estimate of a closed place; more contradicts the scene, as in
+// contact_phases.cpp.
+constexpr double allowed_depth = 1e-6;
+// Of the largest pull: gaps that pull as much are opened at once.
+constexpr double with_the_worst = 0.5;
+
+/// Assembles with a plan that has no gaps, if the place does not meet the constraints already.
+Report assemble_without_gaps(StaticSystem& system, std::vector<double>& q) {
+  system.move_to(q);
+  if (system.phi_norm() <= std::max(1e-12, 10 * system.rounding_change())) return {};
+  Evaluator& evaluator = system.evaluator();
+  PlanOptions options;
+  options.released_elements = evaluator.model().gaps();
+  Evaluator free(Plan::make(evaluator.model(), options), evaluator.model());
+  free.set_time(evaluator.time());
+  std::vector<double> place = configuration_of(free, state_of(evaluator, evaluator.time(), q));
+  const Report report = Assembler(free).assemble(place);
+  take_over_places(evaluator, state_of(free, evaluator.time(), place), q);
+  system.move_to(q);
+  return report;
+}
+
+}  // namespace
+
+Report close_gaps_at(StaticSystem& system, std::vector<double>& q, std::span<double> lambda, ActiveSet& set,
+                     Imbalance& left) {
+  const Plan& plan = system.plan();
+  const std::size_t gaps = plan.gap_rows.size();
+  set = {std::vector<char>(gaps, 0), std::vector<char>(gaps, 0)};
+  system.close_gaps(set.closed);
+  if (Report assembly = assemble_without_gaps(system, q); !assembly.ok()) return assembly;
+  const std::vector<double> gap = gap_values(system);
+  for (std::size_t k = 0; k < gaps; ++k) {
+    const double unit = units_of(system, plan.gap_rows[k], {system.length(), 1}).gap;
+    const int element = plan.row_element[at(plan.gap_rows[k])];
+    if (gap[k] < -allowed_depth * unit) {
+      const Model& model = system.evaluator().model();
+      return {Status::inconsistent,
+              fmt::format("{} \"{}\" is violated at this place by {:.4g} {}: an equilibrium analysis before this one "
+                          "finds a place that allows it",
+                          model.element_type(element), model.element_name(element), -gap[k],
+                          plan.row_is_angle[at(plan.gap_rows[k])] ? "rad" : "m"),
+              {}};
+    }
+    set.closed[k] = gap[k] <= weak_gap * unit;
+  }
+  std::vector<double> force(gaps);
+  for (const std::vector<char> touches = set.closed;; ++set.changes) {
+    system.close_gaps(set.closed);
+    system.move_to(q);
+    left = balance_loads(system, lambda);
+    const double scale = std::max(system.force_scale(lambda), typical_force(system));
+    double pull = weak_force;
+    for (std::size_t k = 0; k < gaps; ++k) {
+      const int row = plan.gap_rows[k];
+      force[k] = set.closed[k] ? -lambda[at(row)] / units_of(system, row, {system.length(), scale}).force : 0;
+      pull = std::max(pull, -force[k]);
+    }
+    bool opened = false;
+    for (std::size_t k = 0; k < gaps; ++k) {
+      // Without pulls the weak ones are left.
+      const bool opens = set.closed[k] && (pull > weak_force ? -force[k] >= with_the_worst * pull : force[k] <= pull);
+      if (!opens) continue;
+      set.closed[k] = 0;
+      opened = true;
+    }
+    if (!opened) {
+      for (std::size_t k = 0; k < gaps; ++k) set.weak[k] = touches[k] && !set.closed[k];
+      return {};
+    }
+  }
+}
+
+std::string taken_as_open(const std::string& names) {
+  return fmt::format(
+      "touching without a force that could be told from rounding: {}; the results are those without them, as if open",
+      names);
+}
+
+std::vector<std::string> names_of_closed(const Evaluator& evaluator, const ActiveSet& set) {
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < set.closed.size(); ++k) {
+    const int element = evaluator.plan().row_element[at(evaluator.plan().gap_rows[k])];
+    if (set.closed[k]) names.push_back(evaluator.model().element_name(element));
+  }
+  return names;
+}
+
+std::string names_of_weak(const Evaluator& evaluator, const ActiveSet& set) {
+  constexpr std::size_t most = 6;
+  std::string names;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < set.weak.size(); ++k) {
+    if (!set.weak[k] || ++count > most) continue;
+    const int element = evaluator.plan().row_element[at(evaluator.plan().gap_rows[k])];
+    names += fmt::format("{}\"{}\"", count > 1 ? ", " : "", evaluator.model().element_name(element));
+  }
+  if (count > most) names += fmt::format(" and {} more", count - most);
+  return names;
+}
+
+}  // namespace catena

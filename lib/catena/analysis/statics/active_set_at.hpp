@@ -1,0 +1,39 @@
+// Which one-sided elements hold at a given place, and the multipliers there.
+//
+//   V_q + Phi_q^T lambda - Psi_q^T p = 0,   p >= 0 where Psi = 0,   p = 0 where Psi > 0
+//
+// The gaps that touch are closed first; those that would pull at the multipliers that balance the loads best
+// (static_balance.hpp) are opened, until none does. Of those that touch, the ones without force are weak: whether they
+// hold is decided by rounding at a place of rest, and by the next load. They do not: what may go either way from them
+// is no small oscillation. The place is kept but for assembly, for which all are open. Units: m, rad, N, N m.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "catena/analysis/spectrum/static_balance.hpp"
+#include "catena/analysis/statics/static_gaps.hpp"
+
+namespace catena {
+
+/// The system is left with the gaps that are closed and not weak as equations, and lambda (rows) filled; `set` has them
+/// in `closed`. A report that is not ok: there is no place near q that meets the constraints, or a gap is violated.
+Report close_gaps_at(StaticSystem& system, std::vector<double>& q, std::span<double> lambda, ActiveSet& set,
+                     Imbalance& left);
+
+/// Plan options with one-sided elements.
+inline PlanOptions with_gaps(PlanOptions options) {
+  options.one_sided = true;
+  return options;
+}
+
+/// The names of those that hold, in the order of the file.
+std::vector<std::string> names_of_closed(const Evaluator& evaluator, const ActiveSet& set);
+
+/// What is said of weak ones that are named.
+std::string taken_as_open(const std::string& names);
+
+/// The names of the weak ones, the first few; empty: there are none.
+std::string names_of_weak(const Evaluator& evaluator, const ActiveSet& set);
+
+}  // namespace catena
