@@ -203,6 +203,66 @@ TEST(OneSidedStability, ModesOfABobOnTwoCablesOfWhichOneIsSlack) {
   EXPECT_EQ(field_of<std::vector<std::string>>(run.analysis(1), "active"), std::vector<std::string>{"taut"});
 }
 
+// Pressed into compliant stops a chain swings with their stiffness where they carry, dN/dd = e k^(1/e) N^(1 - 1/e).
+TEST(OneSidedStability, ModesOfChainsOnCompliantStopsAgainstDenseAlgebra) {
+  int held = 0;
+  for (unsigned seed = 1; seed <= 30; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers draw(seed);
+    Chain chain = Chain::random(draw, 2 + static_cast<int>(seed % 4));
+    const double k = draw(1e3, 1e5), exponent = seed % 3 == 0 ? 1.5 : seed % 3 == 1 ? 1 : 2.2;
+    std::string text = chain.scene(9.81, R"({"type": "equilibrium"}, {"type": "modes"})");
+    const std::string stop = R"("type": "stop",)",
+                      law = stop + fmt::format(R"( "k": {:.17g}, "exponent": {:.17g},)", k, exponent);
+    for (std::size_t at = 0; (at = text.find(stop, at)) != std::string::npos; at += law.size())
+      text.replace(at, stop.size(), law);
+    const TextRun run = run_text(text);
+    ASSERT_FINE(run);
+    const Chain::Rest rest = chain.rest(9.81, 0);
+    MatrixXd A = chain.stiffness();
+    for (int n = 0; n < chain.count(); ++n) {
+      if (!(rest.set >> n & 1u)) continue;
+      ++held;
+      A(n, n) += exponent * std::pow(k, 1 / exponent) * std::pow(rest.p[n], 1 - 1 / exponent);
+    }
+    for (int i = 0; i < chain.count(); ++i) {
+      for (int j = 0; j < chain.count(); ++j)
+        A(i, j) /= std::sqrt(chain.mass[static_cast<std::size_t>(i)] * chain.mass[static_cast<std::size_t>(j)]);
+    }
+    const VectorXd squares = Eigen::SelfAdjointEigenSolver<MatrixXd>(A).eigenvalues();
+    const std::vector<double> found = run.column("omega2", 1);
+    ASSERT_EQ(static_cast<Eigen::Index>(found.size()), squares.size());
+    for (std::size_t n = 0; n < found.size(); ++n)
+      EXPECT_NEAR(found[n], squares[static_cast<Eigen::Index>(n)], 1e-9 * squares.maxCoeff());
+  }
+  EXPECT_GE(held, 20);
+}
+
+// A disc that lies in a round bowl swings, without turning, about the bowl's centre: N Psi_qq = -N / (R - r) across.
+// With a stiffness the contact adds a second mode, along its normal.
+TEST(OneSidedStability, ModesOfADiscInABowl) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers draw(seed);
+    const double R = draw(0.5, 2), r = draw(0.05, 0.2), x = draw(-0.2, 0.2) * R;
+    const std::string stiffness = seed % 2 == 0 ? R"(, "k": 1e5)" : "";
+    const TextRun run = run_text(fmt::format(R"({{"catena": 1, "gravity": [0, -9.81], "bodies": {{"b": {{
+      "particle": true, "mass": 2, "position": [{:.17g}, {:.17g}]}}}}, "forces": [{{"type": "contact", "name": "bowl",
+      "i": "ground", "j": "b", "radius": {:.17g}, "side": -1,
+      "curve": {{"circle": {{"centre": [0, 0], "radius": {:.17g}}}}}{}}}],
+      "outputs": ["b.x", "b.y", "bowl.force"], "analyses": [{{"type": "equilibrium"}}, {{"type": "modes"}}]}})",
+                                             x, -0.8 * (R - r), r, R, stiffness));
+    ASSERT_FINE(run);
+    EXPECT_NEAR(run.last("b.y"), r - R, 1e-10);
+    const std::vector<double> squares = run.column("omega2", 1);
+    ASSERT_EQ(squares.size(), stiffness.empty() ? 1u : 2u);
+    EXPECT_NEAR(squares[0], 9.81 / (R - r), 1e-8);
+    if (!stiffness.empty()) {
+      EXPECT_NEAR(squares[1], 1e5 / 2, 1e-6);
+    }
+  }
+}
+
 TEST(OneSidedStability, ModesOfAPlaceThatViolatesAStopSayWhatToDo) {
   const Chain chain{{2}, {100}, {-0.1}, {1}};  // the given place is 0.1 m below the stop
   const TextRun run = run_text(chain.scene(1, R"({"type": "modes"})"));
@@ -286,6 +346,38 @@ TEST(OneSidedStability, APathTurnsBackWhereAStopCloses) {
     EXPECT_NEAR(run.last("apex.y"), stop, 1e-12);
     EXPECT_NEAR(run.last("stop.force"), to - load(stop), 1e-8 * to);
     EXPECT_EQ(field_of<std::vector<double>>(run.analysis(), "negative_modes").back(), 0);
+  }
+}
+
+/// A weight of 2 kg on a rope that comes in level over the top of a peg, and `load` at it.
+std::string weight_over_a_peg(const std::string& stiffness, const std::string& load, double to) {
+  return fmt::format(R"({{"catena": 1, "parameters": {{"P": 0}}, "gravity": [0, -9.81], "bodies": {{"b": {{
+    "particle": true, "mass": 2, "position": [0.1, -1]}}}}, "forces": [{{"type": "rope", "name": "rope",
+    "i": ["ground", [-1, 0.1]], "over": [{{"at": ["ground", [0, 0]], "radius": 0.1, "side": -1}}], "j": "b"{}}},
+    {{"type": "point_force", "i": "b", "force": {}}}], "outputs": ["b.x", "b.y", "rope.force"],
+    "analyses": [{{"type": "path", "parameter": "P", "to": {:.17g}}}]}})",
+                     stiffness, load, to);
+}
+
+TEST(OneSidedStability, PathsOfRopesOverAPeg) {
+  for (const std::string stiffness : {"", R"(, "k": 2000)"}) {
+    SCOPED_TRACE(stiffness);
+    const TextRun down = run_text(weight_over_a_peg(stiffness, R"([0, "=-P"])", 50));
+    ASSERT_FINE(down);
+    const std::vector<double> P = down.column("P");
+    for (std::size_t row = 0; row < P.size(); ++row) {
+      EXPECT_NEAR(down.column("rope.force")[row], 2 * 9.81 + P[row], 1e-8);
+      EXPECT_NEAR(down.column("b.x")[row], 0.1, 1e-9);
+      EXPECT_NEAR(down.column("b.y")[row], -1 - (stiffness.empty() ? 0 : (2 * 9.81 + P[row]) / 2000), 1e-9);
+    }
+    // Drawn to the side and up, the rope leaves the peg where the load carries the weight: P = 2 g.
+    const TextRun up = run_text(weight_over_a_peg(stiffness, R"(["=0.3*P", "=P"])", 30));
+    EXPECT_EQ(up.outcome.exit_code, 1);
+    EXPECT_EQ(up.analysis().report.status, Status::singular);
+    EXPECT_NE(up.analysis().report.message.find("rope \"rope\""), std::string::npos) << up.analysis().report.message;
+    EXPECT_NE(up.analysis().report.message.find("leaves a pulley"), std::string::npos) << up.analysis().report.message;
+    EXPECT_LE(up.last("P"), 2 * 9.81);
+    EXPECT_GT(up.last("P"), 2 * 9.81 - 3);
   }
 }
 

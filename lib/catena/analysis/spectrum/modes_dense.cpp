@@ -22,8 +22,8 @@ constexpr double least_part = 1e-10;
 }  // namespace
 
 DenseModes::DenseModes(StaticSystem& system, MotionGroups& groups, std::span<const double> mass,
-                       const std::function<bool()>& go_on)
-    : system_(system), groups_(groups) {
+                       const std::function<bool()>& go_on, std::span<const AddedSpring> added)
+    : system_(system), groups_(groups), added_(added) {
   // Coordinates without mass get the weight of a length; their groups are made orthonormal in M below.
   std::vector<double> weight(mass.begin(), mass.end());
   for (const MotionGroup& group : groups_.groups()) {
@@ -98,6 +98,12 @@ void DenseModes::solve(MotionGroup& group, int number, const std::function<bool(
   Basis z = basis_of(group);
   if (stopped()) return;
   reduce_stiffness(system_.matrix(), group, reduced_);
+  for (const AddedSpring& spring : added_) {
+    Eigen::VectorXd g(z.rows());
+    for (Eigen::Index k = 0; k < g.size(); ++k) g[k] = spring.g[at(group.columns[static_cast<std::size_t>(k)])];
+    const Eigen::VectorXd along = z.transpose() * g;
+    Basis(reduced_.data(), z.cols(), z.cols()) += spring.k * along * along.transpose();
+  }
   if (stopped()) return;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(Basis(reduced_.data(), z.cols(), z.cols()));
   if (stopped()) return;
@@ -120,6 +126,11 @@ std::vector<Mode> DenseModes::lowest(int count, const StiffnessFloor& floor) con
     for (std::size_t c = 0; c < n; ++c) mode.shape[at(group.columns[c])] = group.basis[at(found.place) * n + c];
     system_.matrix().multiply_stiffness(mode.shape, product);
     for (std::size_t c = 0; c < product.size(); ++c) mode.omega2 += mode.shape[c] * product[c];
+    for (const AddedSpring& spring : added_) {
+      double along = 0;
+      for (std::size_t c = 0; c < product.size(); ++c) along += spring.g[c] * mode.shape[c];
+      mode.omega2 += spring.k * along * along;
+    }
     if (std::abs(mode.omega2) <= floor(mode.shape)) mode.omega2 = 0;
     modes.push_back(std::move(mode));
   }

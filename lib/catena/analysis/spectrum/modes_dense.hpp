@@ -21,13 +21,20 @@ struct Mode {
   double omega2 = 0;
   std::vector<double> shape;  ///< over columns, v^T M v = 1
 };
+/// A stiffness k g g^T beside K: of compliant contacts, whose bodies K may not tie together. N/m or N m; g over
+/// columns.
+struct AddedSpring {
+  double k = 0;
+  std::vector<double> g;
+};
 inline bool lower(const Mode& a, const Mode& b) { return a.omega2 < b.omega2; }
 
 class DenseModes {
  public:
-  /// The matrix must hold K; `mass`: per column. `go_on`: called between decompositions; false cancels.
+  /// The matrix must hold K; `mass`: per column. `go_on`: called between decompositions; false cancels. With `added`
+  /// ones all must be one group.
   DenseModes(StaticSystem& system, MotionGroups& groups, std::span<const double> mass,
-             const std::function<bool()>& go_on = {});
+             const std::function<bool()>& go_on = {}, std::span<const AddedSpring> added = {});
 
   /// Then there are no results.
   bool cancelled() const { return cancelled_; }
@@ -49,6 +56,7 @@ class DenseModes {
 
   StaticSystem& system_;
   MotionGroups& groups_;
+  std::span<const AddedSpring> added_;
   std::vector<Found> found_;  // ascending
   std::vector<double> reduced_;
   std::optional<int> massless_;

@@ -159,8 +159,7 @@ Report Buckling::take_place(Imbalance& left, BucklingReport& report) {
   }
   if (Report closed = close_gaps_at(system_, point_.q, point_.lambda, set_, left); !closed.ok()) return closed;
   report.active = names_of_closed(evaluator_, set_);
-  if (const std::string weak = names_of_weak(evaluator_, set_); !weak.empty())
-    report.warnings.push_back(taken_as_open(weak));
+  for (std::string& remark : remarks_on(evaluator_, set_)) report.warnings.push_back(std::move(remark));
   return {};
 }
 

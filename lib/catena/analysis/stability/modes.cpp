@@ -65,12 +65,12 @@ Report Modes::find_modes(const MassMatrix& masses, std::span<const double> mass,
         {}};
   };
   system_.fill(lambda, Curvature::exact, 0);
-  MotionGroups groups(system_, true);
+  MotionGroups groups(system_, added_.empty());
   const StiffnessFloor floor(system_, lambda, residual, &groups);
   // For nearly all modes of a larger mechanism dense algebra is faster as well.
   const bool most_of_all = 3 * static_cast<std::int64_t>(count) >= groups.freedoms();
   if (groups.are_small(most_of_all ? most_complete_freedoms : MotionGroups::usual_freedoms)) {
-    const DenseModes dense(system_, groups, mass, go_on);
+    const DenseModes dense(system_, groups, mass, go_on, added_);
     if (dense.cancelled()) return {Status::cancelled, "stopped while modes were looked for", {}};
     if (dense.massless_column()) return undetermined(plan_->coordinate[at(*dense.massless_column())]);
     if (!dense.ok()) {
@@ -79,6 +79,13 @@ Report Modes::find_modes(const MassMatrix& masses, std::span<const double> mass,
     }
     modes = dense.lowest(count, floor);
     return {};
+  }
+  if (!added_.empty()) {
+    return {Status::refused,
+            fmt::format("compliant contacts that are closed in mechanisms of more than {} degrees of freedom: modes do "
+                        "not treat these; leave out k",
+                        MotionGroups::usual_freedoms),
+            {}};
   }
   if (!masses.massless.empty()) {
     EquationsOfMotion equations(evaluator_);
@@ -93,6 +100,26 @@ Report Modes::find_modes(const MassMatrix& masses, std::span<const double> mass,
   return report;
 }
 
+void Modes::soften(ActiveSet& set, std::span<const double> lambda) {
+  added_.clear();
+  for (std::size_t g = 0; g < set.closed.size(); ++g) {
+    const int row = plan_->gap_rows[g];
+    const Compliance law = compliance_of(*model_, plan_->row_element[at(row)]);
+    if (!set.closed[g] || !law.compliant()) continue;
+    AddedSpring spring{law.stiffness_at(-lambda[at(row)]), std::vector<double>(at(plan_->columns), 0.0)};
+    for (int c = 0; c < plan_->columns; ++c) {
+      for (int k = plan_->jacobian.column_start[at(c)]; k < plan_->jacobian.column_start[at(c) + 1]; ++k) {
+        if (plan_->jacobian.row_index[at(k)] == row) spring.g[at(c)] = system_.jacobian()[at(k)];
+      }
+    }
+    added_.push_back(std::move(spring));
+    set.closed[g] = 0;
+  }
+  if (added_.empty()) return;
+  system_.close_gaps(set.closed);
+  system_.move_to(q_);
+}
+
 Report Modes::take_place(std::span<double> lambda, Imbalance& left, ModesReport& report) {
   if (!system_.has_gaps()) {
     if (Report assembly = assemble_for_statics(system_, q_); !assembly.ok()) return assembly;
@@ -104,6 +131,7 @@ Report Modes::take_place(std::span<double> lambda, Imbalance& left, ModesReport&
   report.active = names_of_closed(evaluator_, set);
   if (const std::string weak = names_of_weak(evaluator_, set); !weak.empty())
     report.warnings.push_back(taken_as_open(weak));
+  soften(set, lambda);
   return {};
 }
 

@@ -11,7 +11,11 @@
 // potential.
 //
 // One-sided elements that are closed with a force hold as equations, the others not at all (active_set_at.hpp); those
-// that touch without force are named.
+// that touch without force are named. A closed one with a stiffness k is a spring instead,
+//
+//   K + k_t Psi_q^T Psi_q - N Psi_qq,   k_t = dN/dd = e k^(1/e) N^(1 - 1/e)   of N = k d^e
+//
+// N the force at this place: an equilibrium before, which takes it as rigid, is off by its depth d = (N/k)^(1/e).
 #pragma once
 
 #include <functional>
@@ -24,6 +28,7 @@
 #include "catena/analysis/run/system_state.hpp"
 #include "catena/analysis/spectrum/modes_dense.hpp"
 #include "catena/analysis/spectrum/static_balance.hpp"
+#include "catena/analysis/statics/static_gaps.hpp"
 
 namespace catena {
 
@@ -61,6 +66,8 @@ class Modes {
   SystemState state() const;
 
  private:
+  /// Makes springs of closed compliant elements, whose rows are left out from then on.
+  void soften(ActiveSet& set, std::span<const double> lambda);
   /// Takes the system to the assembled place, with the multipliers that balance its loads best.
   Report take_place(std::span<double> lambda, Imbalance& left, ModesReport& report);
   Report find_modes(const MassMatrix& masses, std::span<const double> mass, std::span<const double> lambda,
@@ -71,6 +78,7 @@ class Modes {
   ModesOptions options_;
   Evaluator evaluator_;
   StaticSystem system_;
+  std::vector<AddedSpring> added_;
   bool moving_ = false;
   int hidden_unstable_ = 0;  // counted by the inertia of a large mechanism
   double t_ = 0;

@@ -89,8 +89,7 @@ Report Path::March::find_start() {
   if (!result.report.ok()) return result.report;
   if (statics.has_gaps()) {
     gaps_ = result.gaps;
-    if (const std::string weak = names_of_weak(path_.evaluator_, gaps_); !weak.empty())
-      report_->warnings.push_back(taken_as_open(weak));
+    for (std::string& remark : remarks_on(path_.evaluator_, gaps_)) report_->warnings.push_back(std::move(remark));
     for (std::size_t k = 0; k < gaps_.closed.size(); ++k) gaps_.closed[k] = gaps_.closed[k] && !gaps_.weak[k];
     report_->active = names_of_closed(path_.evaluator_, gaps_);
     statics.close_gaps(gaps_.closed);

@@ -8,6 +8,7 @@
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/statics/static_active_set.hpp"
 #include "catena/base/at.hpp"
+#include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {
@@ -17,6 +18,21 @@ namespace {
 constexpr double allowed_depth = 1e-6;
 // Of the largest pull: gaps that pull as much are opened at once.
 constexpr double with_the_worst = 0.5;
+
+/// The names of the gaps that are marked and meet a condition, the first few.
+template <class F>
+std::string first_names(const Evaluator& evaluator, std::span<const char> marked, F&& meets) {
+  constexpr std::size_t most = 6;
+  std::string names;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < marked.size(); ++k) {
+    const int element = evaluator.plan().row_element[at(evaluator.plan().gap_rows[k])];
+    if (!marked[k] || !meets(element) || ++count > most) continue;
+    names += fmt::format("{}\"{}\"", count > 1 ? ", " : "", evaluator.model().element_name(element));
+  }
+  if (count > most) names += fmt::format(" and {} more", count - most);
+  return names;
+}
 
 /// Assembles with a plan that has no gaps, if the place does not meet the constraints already.
 Report assemble_without_gaps(StaticSystem& system, std::vector<double>& q) {
@@ -85,10 +101,36 @@ Report close_gaps_at(StaticSystem& system, std::vector<double>& q, std::span<dou
   }
 }
 
+Compliance compliance_of(const Model& model, int element) {
+  Compliance law;
+  const ElementRecord& record = model.elements[at(element)];
+  with_list(model.constraints, record.type, [&](const auto& list) {
+    if constexpr (requires { list.front().element.exponent; }) {
+      const auto& own = list[at(record.index)].element;
+      law = {own.k, own.exponent};
+    }
+  });
+  return law;
+}
+
 std::string taken_as_open(const std::string& names) {
   return fmt::format(
       "touching without a force that could be told from rounding: {}; the results are those without them, as if open",
       names);
+}
+
+std::vector<std::string> remarks_on(const Evaluator& evaluator, const ActiveSet& set) {
+  std::vector<std::string> remarks;
+  if (const std::string names = names_of_weak(evaluator, set); !names.empty()) remarks.push_back(taken_as_open(names));
+  const std::string names = first_names(
+      evaluator, set.closed, [&](int element) { return compliance_of(evaluator.model(), element).compliant(); });
+  if (!names.empty()) {
+    remarks.push_back(
+        fmt::format("the stiffness k of {} counts in motion alone: at rest, and in these results, it is "
+                    "rigid",
+                    names));
+  }
+  return remarks;
 }
 
 std::vector<std::string> names_of_closed(const Evaluator& evaluator, const ActiveSet& set) {
@@ -101,16 +143,7 @@ std::vector<std::string> names_of_closed(const Evaluator& evaluator, const Activ
 }
 
 std::string names_of_weak(const Evaluator& evaluator, const ActiveSet& set) {
-  constexpr std::size_t most = 6;
-  std::string names;
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < set.weak.size(); ++k) {
-    if (!set.weak[k] || ++count > most) continue;
-    const int element = evaluator.plan().row_element[at(evaluator.plan().gap_rows[k])];
-    names += fmt::format("{}\"{}\"", count > 1 ? ", " : "", evaluator.model().element_name(element));
-  }
-  if (count > most) names += fmt::format(" and {} more", count - most);
-  return names;
+  return first_names(evaluator, set.weak, [](int) { return true; });
 }
 
 }  // namespace catena

@@ -8,6 +8,7 @@
 // is no small oscillation. The place is kept but for assembly, for which all are open. Units: m, rad, N, N m.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -30,8 +31,22 @@ inline PlanOptions with_gaps(PlanOptions options) {
 /// The names of those that hold, in the order of the file.
 std::vector<std::string> names_of_closed(const Evaluator& evaluator, const ActiveSet& set);
 
+/// The law N = k d^exponent of a one-sided element; k = 0: it is rigid.
+struct Compliance {
+  double k = 0, exponent = 1;
+  bool compliant() const { return k > 0; }
+  /// dN/dd where it presses with N.
+  double stiffness_at(double force) const {
+    return exponent * std::pow(k, 1 / exponent) * std::pow(force, 1 - 1 / exponent);
+  }
+};
+Compliance compliance_of(const Model& model, int element);
+
 /// What is said of weak ones that are named.
 std::string taken_as_open(const std::string& names);
+/// What is to be said of a set: weak ones that are taken as open, closed ones with a stiffness that counts in motion
+/// alone.
+std::vector<std::string> remarks_on(const Evaluator& evaluator, const ActiveSet& set);
 
 /// The names of the weak ones, the first few; empty: there are none.
 std::string names_of_weak(const Evaluator& evaluator, const ActiveSet& set);
