@@ -80,8 +80,6 @@ bool Path::March::write(const PathPoint& x) {
   return observe_(x.p, snapshot);
 }
 
-// Whether one smooth path leads from the present point to the next one: it leaves its tangent by no more of its way
-// than its direction turns. A path that ends, and another that begins beside it, do not meet.
 bool Path::March::is_smooth(const PathPoint& next, const PathPoint& direction) const {
   PathPoint travel{std::vector<double>(at(path_.plan_->columns)), {}, next.p - x_.p};
   for (int c = 0; c < path_.plan_->columns; ++c) {
@@ -116,7 +114,6 @@ bool Path::March::step_to_end(PathPoint& next, double& s) {
   return true;
 }
 
-// The point with the wanted value of the parameter between the start of the step and `s`; then s is its place.
 bool Path::March::find_end(PathPoint& next, double& s) {
   double low = 0, high = s, low_gap = x_.p - to_, high_gap = next.p - to_;
   for (int k = 0; k < most_end_trials && high - low > 1e-13; ++k) {
@@ -142,33 +139,31 @@ bool Path::March::find_end(PathPoint& next, double& s) {
   return true;
 }
 
+bool Path::March::find_next(Trial& trial) {
+  trial = {system_.advanced(x_, direction_, length_), length_, false, 0};
+  trial.last = passes_end(x_.p, trial.point.p) && step_to_end(trial.point, trial.s);
+  if (!trial.last) {
+    trial.iterations = system_.correct(trial.point, x_, direction_, length_);
+    if (trial.iterations < 0) return false;
+    trial.last = passes_end(x_.p, trial.point.p);
+    if (trial.last && !find_end(trial.point, trial.s)) return false;
+  }
+  bool located = true;
+  if (path_.system_.has_gaps() && change_within(trial.point, trial.s, located)) trial.last = false;
+  return located;
+}
+
 // From the present point to the next one.
 Path::March::Progress Path::March::step() {
   system_.forget_refused_value();
   while (length_ > shortest_step) {
-    PathPoint next = system_.advanced(x_, direction_, length_);
-    double s = length_;
-    bool last = passes_end(x_.p, next.p) && step_to_end(next, s);
-    int iterations = 0;
-    if (!last) {
-      iterations = system_.correct(next, x_, direction_, length_);
-      if (iterations < 0) {
-        length_ *= 0.5;
-        continue;
-      }
-      last = passes_end(x_.p, next.p);
-      if (last && !find_end(next, s)) {
-        length_ *= 0.5;
-        continue;
-      }
-    }
-    bool located = true;
-    if (path_.system_.has_gaps() && change_within(next, s, located)) last = false;
-    if (!located) {
+    Trial trial;
+    if (!find_next(trial)) {
       length_ *= 0.5;
       continue;
     }
-    if (s == 0) return Progress::going;  // they change where the path is
+    PathPoint& next = trial.point;
+    if (trial.s == 0) return Progress::going;  // one-sided elements change where the path is
     if (!system_.factorize(next)) {
       length_ *= 0.9;
       continue;
@@ -183,7 +178,7 @@ Path::March::Progress Path::March::step() {
     if (modes != modes_) {
       bool complete = false;
       const std::vector<CriticalPoint> critical =
-          find_critical_points(system_, {x_, direction_, s, modes_, modes}, complete);
+          find_critical_points(system_, {x_, direction_, trial.s, modes_, modes}, complete);
       if (!complete && length_ > unlocated_step * options_.arc) {
         // Modes that change without a critical point in between: the step went astray, onto another path.
         length_ *= 0.5;
@@ -203,9 +198,9 @@ Path::March::Progress Path::March::step() {
     modes_ = modes;
     changed_here_ = 0;
     if (!write(x_)) return Progress::cancelled;
-    if (last) return Progress::finished;
-    if (iterations <= few_iterations) length_ = std::min(1.5 * length_, options_.arc);
-    if (iterations >= many_iterations) length_ *= 0.6;
+    if (trial.last) return Progress::finished;
+    if (trial.iterations <= few_iterations) length_ = std::min(1.5 * length_, options_.arc);
+    if (trial.iterations >= many_iterations) length_ *= 0.6;
     return Progress::going;
   }
   return Progress::stuck;

@@ -64,6 +64,15 @@ class Path::March {
   Report change_gaps();
   // The largest fault of those that change at a point; faults_ has all of them.
   double largest_fault(const PathPoint& x);
+  // A point of the path ahead: its place on the step, whether it is the last, and how many iterations it took.
+  struct Trial {
+    PathPoint point;
+    double s = 0;
+    bool last = false;
+    int iterations = 0;
+  };
+  // Solves a step of the present length, cut short where it passes the end of the path or a change. False: too long.
+  bool find_next(Trial& trial);
   // From the present point to the next one.
   Progress step();
   // Rows and records of the critical points in a step; `left`: the path went over to another branch. False: cancelled.

@@ -215,8 +215,8 @@ inverse_dynamics to about 1e-10 of the energy exchanged, however far apart rows 
   A.friction [N], A.slip [m/s]   of a contact in motion, along the curve's direction, on j relative to i
   At an equilibrium one of gap and force is zero. The result "active" lists those whose gap is closed. In dynamics they
   close with impacts, or press by a stiffness k, rub and open again: "events" lists every change. kinematics, check and
-  assemble leave them out and say which are violated; modes, path and buckling refuse a scene that has some (elastic
-  cables are springs, which every analysis knows).
+  assemble leave them out and say which are violated; modes, buckling and path take those that hold at rest ("active"),
+  and path follows them: "changes" lists what closes and opens (elastic cables are springs, which every analysis knows).
 )"},
       {{"energy", "momentum", "residual", "t"},
        R"(energy, momentum, residual: columns of the whole mechanism
