@@ -1,8 +1,8 @@
 // What the suites of `catena bench` write their rows to: options, the rows so far, and the way times are taken.
 //
 // A time is the least of many repeats of processor time, so that other programs on the machine disturb it little: what
-// takes less than a millisecond is called in batches, and calls go on for `budget` seconds, thrice at least where the
-// run is not brief.
+// takes less than a millisecond is called in batches, and calls go on for `budget` seconds; where the run is not brief
+// thrice at least, twice from 0.3 s a call on, once from 3 s on: disturbances are brief beside such calls.
 #pragma once
 
 #include <algorithm>
@@ -62,7 +62,8 @@ class Bench {
     std::vector<double> times;
     if (calls == 1) times.push_back(first);
     double spent = first;
-    const std::size_t least = budget > 0 ? 3 : 1;
+    constexpr double long_call = 0.3, very_long_call = 3;  // s: whole lists of suites are to end within ten minutes
+    const std::size_t least = budget == 0 || first >= very_long_call ? 1 : first >= long_call ? 2 : 3;
     while (times.size() < least || (spent < budget && times.size() < 1000)) {
       times.push_back(batch(calls));
       spent += times.back() * calls;

@@ -99,6 +99,79 @@ void require_same_structure(const Model& known, const Model& model, const Plan& 
   require_same(known.laws.size(), model.laws.size(), "laws of state");
 }
 
+// Per weld: whether it joins two bodies that stay apart, since it has equations or is released.
+std::vector<char> kept_welds(const Model& model, const Plan& plan) {
+  std::vector<char> kept;
+  for (const auto& weld : std::get<std::vector<ElementEntry<Weld<double>, double>>>(model.constraints))
+    kept.push_back(plan.element_row[at(weld.id)] >= 0 || plan.is_released(weld.id));
+  return kept;
+}
+
+// The shift of frames to a common origin, that of a body that moves: the sum of the other one is a constant.
+template <class E, class Shift>
+void set_shift(Shift& shift, int body_i, int body_j, std::span<const Vec2<double>> origin, int moving) {
+  const Vec2<double> oi = origin[at(body_i)], oj = origin[at(body_j)];
+  if constexpr (E::bodies == 1) {
+    shift.i = oi;
+  } else if (body_i >= moving) {
+    shift = {oi - oj, {}};
+  } else {
+    shift = {{}, oj - oi};
+  }
+}
+
+template <class Block, class Data, class List>
+void load_constraints(const Block& block, Data& data, const List& list, std::span<const Vec2<double>> origin,
+                      int moving) {
+  using E = ElementOf<decltype(list)>;
+  const std::size_t n = at(block.size());
+  data.element.resize(n);
+  data.shift.resize(n);
+  data.timed.clear();
+  if constexpr (E::functions > 0) data.value.resize(n);
+  if constexpr (HasSquaredValue<E>) data.scale.assign(n, 1.0);
+  for (std::size_t e = 0; e < n; ++e) {
+    const auto& entry = list[at(block.entry[e])];
+    data.element[e] = entry.element;
+    set_shift<E>(data.shift[e], block.body_i[e], block.body_j[e], origin, moving);
+    if constexpr (E::functions > 0) {
+      data.value[e] = {entry.values[0].constant, 0, 0};
+      if (entry.values[0].function >= 0) data.timed.push_back({static_cast<int>(e), entry.values[0].function});
+    }
+  }
+}
+
+template <class Block, class Data, class List>
+void load_forces(const Block& block, Data& data, const List& list, std::span<const Vec2<double>> origin, int moving) {
+  using E = ElementOf<decltype(list)>;
+  const std::size_t n = at(block.size()), functions = at(E::functions);
+  data.element.resize(n);
+  data.shift.resize(n);
+  data.value.resize(n * functions);
+  data.rate.assign(n * functions, 0.0);
+  data.timed.clear();
+  data.lawful.clear();
+  data.by_law.clear();
+  data.supplied.clear();
+  for (std::size_t e = 0; e < n; ++e) {
+    const auto& entry = list[at(block.entry[e])];
+    data.element[e] = entry.element;
+    set_shift<E>(data.shift[e], block.body_i[e], block.body_j[e], origin, moving);
+    for (std::size_t k = 0; k < functions; ++k) {
+      const auto& value = entry.values[k];
+      const int place = static_cast<int>(e * functions + k);
+      data.value[at(place)] = value.constant;
+      if (value.function >= 0) data.timed.push_back({place, value.function});
+      if (value.law >= 0) data.lawful.push_back({place, value.law});
+    }
+    const auto given = [](const auto& value) { return value.function >= 0 || value.law >= 0; };
+    if (is_conservative(entry.element) && std::any_of(entry.values.begin(), entry.values.end(), given))
+      data.supplied.push_back(static_cast<int>(e));
+  }
+  if (!data.lawful.empty()) data.by_law.assign(n * functions, 0);
+  for (const auto& lawful : data.lawful) data.by_law[at(lawful.place)] = 1;
+}
+
 }  // namespace
 
 Evaluator::Evaluator(const Evaluator&) = default;
@@ -129,90 +202,28 @@ void Evaluator::set_model(const Model& model) {
 }
 
 void Evaluator::load_values() {
-  const Plan& plan = *plan_;
-  // The given configuration: origins of the relative coordinates, poses of the immobile bodies.
-  std::vector<char> keep_weld;
-  for (const auto& weld : std::get<std::vector<ElementEntry<Weld<double>, double>>>(model_->constraints)) {
-    keep_weld.push_back(plan.element_row[at(weld.id)] >= 0 || plan.is_released(weld.id));
-  }
-  const Elimination elimination = eliminate_bodies(*model_, keep_weld);
-  mass_.resize(at(plan.bodies));
-  for (int p = 0; p < plan.bodies; ++p) mass_[at(p)] = model_->bodies[at(plan.model_body[at(p)])].mass;
-  origin_.assign(at(plan.bodies) + 1, {});
-  frames_.assign(at(plan.bodies) + 1, {});
-  for (int p = 0; p < plan.bodies; ++p) {
-    Frame<double> pose = elimination.pose[at(plan.model_body[at(p)])];
+  const Elimination given = eliminate_bodies(*model_, kept_welds(*model_, *plan_));
+  mass_.resize(at(plan_->bodies));
+  origin_.assign(at(plan_->bodies) + 1, {});
+  frames_.assign(at(plan_->bodies) + 1, {});
+  for (int p = 0; p < plan_->bodies; ++p) {
+    const std::size_t body = at(plan_->model_body[at(p)]);
+    mass_[at(p)] = model_->bodies[body].mass;
+    // Places are relative to where the body was given.
+    Frame<double> pose = given.pose[body];
     origin_[at(p)] = pose.origin();
     pose.x = pose.y = 0;
     frames_[at(p)] = pose;
   }
-  for_each_block(plan.blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
-    using E = ElementOf<decltype(list)>;
-    const std::size_t n = at(block.size());
-    data.element.resize(n);
-    data.shift.resize(n);
-    data.timed.clear();
-    if constexpr (E::functions > 0) data.value.resize(n);
-    if constexpr (HasSquaredValue<E>) data.scale.resize(n);
-    for (std::size_t e = 0; e < n; ++e) {
-      const auto& entry = list[at(block.entry[e])];
-      data.element[e] = entry.element;
-      const Vec2<double> oi = origin_[at(block.body_i[e])], oj = origin_[at(block.body_j[e])];
-      if constexpr (E::bodies == 1) {
-        data.shift[e].i = oi;
-      } else if (block.body_i[e] >= plan.moving) {
-        data.shift[e] = {oi - oj, {}};  // relative to the body that moves: the other one's sum is a constant
-      } else {
-        data.shift[e] = {{}, oj - oi};
-      }
-      if constexpr (E::functions > 0) {
-        data.value[e] = {entry.values[0].constant, 0, 0};
-        if (entry.values[0].function >= 0) data.timed.push_back({static_cast<int>(e), entry.values[0].function});
-      }
-      if constexpr (HasSquaredValue<E>) data.scale[e] = 1;
-    }
+  for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
+    load_constraints(block, data, list, origin_, plan_->moving);
   });
   for_each_list(model_->forces, [&](const auto& list, int) {
     using E = ElementOf<decltype(list)>;
-    const auto& block = std::get<ForceBlock<E>>(plan.forces);
-    auto& data = std::get<ForceData<E>>(force_values_);
-    const std::size_t n = at(block.size()), functions = at(E::functions);
-    data.element.resize(n);
-    data.shift.resize(n);
-    data.value.resize(n * functions);
-    data.rate.assign(n * functions, 0.0);
-    data.timed.clear();
-    data.lawful.clear();
-    data.by_law.clear();
-    data.supplied.clear();
-    for (std::size_t e = 0; e < n; ++e) {
-      const auto& entry = list[at(block.entry[e])];
-      data.element[e] = entry.element;
-      const Vec2<double> oi = origin_[at(block.body_i[e])], oj = origin_[at(block.body_j[e])];
-      if constexpr (E::bodies == 1) {
-        data.shift[e].i = oi;
-      } else if (block.body_i[e] >= plan.moving) {
-        data.shift[e] = {oi - oj, {}};
-      } else {
-        data.shift[e] = {{}, oj - oi};
-      }
-      for (std::size_t k = 0; k < functions; ++k) {
-        data.value[e * functions + k] = entry.values[k].constant;
-        if (entry.values[k].function >= 0) {
-          data.timed.push_back({static_cast<int>(e * functions + k), entry.values[k].function});
-        }
-        if (entry.values[k].law >= 0) {
-          data.lawful.push_back({static_cast<int>(e * functions + k), entry.values[k].law});
-        }
-      }
-      const auto given = [](const auto& value) { return value.function >= 0 || value.law >= 0; };
-      if (is_conservative(entry.element) && std::any_of(entry.values.begin(), entry.values.end(), given))
-        data.supplied.push_back(static_cast<int>(e));
-    }
-    if (!data.lawful.empty()) data.by_law.assign(n * functions, 0);
-    for (const auto& lawful : data.lawful) data.by_law[at(lawful.place)] = 1;
+    load_forces(std::get<ForceBlock<E>>(plan_->forces), std::get<ForceData<E>>(force_values_), list, origin_,
+                plan_->moving);
   });
-  laws_ = compile_laws<double>(*model_, model_->laws, plan);
+  laws_ = compile_laws<double>(*model_, model_->laws, *plan_);
   attachment_radii(&length_scale_);
   if (length_scale_ == 0) length_scale_ = extent(*model_);
   if (length_scale_ == 0) length_scale_ = mean_force_arm(*model_);
@@ -225,14 +236,10 @@ void Evaluator::load_values() {
   }
   spread_functions();
   // Squared forms are scaled once, by the value at the start, to rows that measure a length.
-  for_each_block(plan.blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
-    using E = ElementOf<decltype(list)>;
-    static_cast<void>(block);
-    if constexpr (HasSquaredValue<E>) {
-      for (std::size_t e = 0; e < data.scale.size(); ++e) {
-        const double c = std::abs(data.value[e].f);
-        data.scale[e] = 0.5 / (c > 0 ? c : length_scale_);
-      }
+  for_each_list(values_, [&](auto& data, int) {
+    for (std::size_t e = 0; e < data.scale.size(); ++e) {
+      const double c = std::abs(data.value[e].f);
+      data.scale[e] = 0.5 / (c > 0 ? c : length_scale_);
     }
   });
 }

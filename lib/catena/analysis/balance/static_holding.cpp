@@ -13,6 +13,9 @@
 namespace catena {
 namespace {
 
+// A load below this part of its largest share is rounding of shares that cancel.
+constexpr double rounding_of_loads = 1e-9;
+
 // Groups of plan bodies tied together; immobile bodies and the ground share the last place.
 class Groups {
  public:
@@ -31,69 +34,84 @@ class Groups {
   std::vector<int> parent_;
 };
 
-}  // namespace
-
-std::optional<Report> find_loose_bodies(const StaticSystem& system, const Evaluator& evaluator) {
-  const Plan& plan = system.plan();
+/// The bodies and the ground, tied by constraints and by forces that hold: loads act on a body without holding it.
+Groups tie_bodies(const Plan& plan, const Evaluator& evaluator) {
   Groups groups(plan.moving);
-  for_each_list(plan.blocks, [&](const auto& block, int) {
+  const auto tie_all = [&](const auto& block) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
-    for (int e = 0; e < block.size(); ++e) {
+    for (int e = 0; e < block.size(); ++e)
       groups.tie(block.body_i[at(e)], E::bodies == 1 ? plan.bodies : block.body_j[at(e)]);
-    }
-  });
+  };
+  for_each_list(plan.blocks, [&](const auto& block, int) { tie_all(block); });
   for_each_list(plan.forces, [&](const auto& block, int) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
-    // Loads act on a body without holding it.
-    if constexpr (stiffness_pattern<E>().size() > 0 && !only_turning(stiffness_pattern<E>())) {
-      for (int e = 0; e < block.size(); ++e) {
-        groups.tie(block.body_i[at(e)], E::bodies == 1 ? plan.bodies : block.body_j[at(e)]);
-      }
-    }
+    if constexpr (stiffness_pattern<E>().size() > 0 && !only_turning(stiffness_pattern<E>())) tie_all(block);
   });
-  // So may laws of state, by what they read: then the search for an equilibrium shows it.
+  // Laws of state may hold by what they read: the search for an equilibrium shows whether they do.
   for (const CompiledLaw<double>& law : evaluator.laws()) {
     if (law.bodies.empty()) continue;
     groups.tie(law.i, plan.bodies);
     if (law.j >= 0) groups.tie(law.j, plan.bodies);
   }
-  int first = -1, count = 0;
-  double load[3] = {0, 0, 0}, size = 0;
+  return groups;
+}
+
+/// The first group of bodies that nothing holds: their names, and the load on all of them about the ground's origin.
+struct LooseBodies {
+  int count = 0;
   std::string names;
+  double load[3] = {0, 0, 0};  // N, N, N m
+  double size = 0;             // the largest part of it
+};
+
+LooseBodies first_loose(Groups& groups, const StaticSystem& system, const Evaluator& evaluator) {
+  constexpr int most_names = 3;
+  const Plan& plan = system.plan();
+  LooseBodies loose;
+  int first = -1;
   for (int b = 0; b < plan.moving; ++b) {
     if (groups.is_held(b)) continue;
     if (first < 0) first = b;
     if (groups.root(b) != groups.root(first)) continue;
-    if (++count <= 3) {
-      names += fmt::format("{}\"{}\"", count > 1 ? ", " : "", evaluator.model().body_name(plan.model_body[at(b)]));
+    if (++loose.count <= most_names) {
+      loose.names +=
+          fmt::format("{}\"{}\"", loose.count > 1 ? ", " : "", evaluator.model().body_name(plan.model_body[at(b)]));
     }
     double force[3] = {0, 0, 0};
     for (int k = 0; k < 3; ++k) {
       const int c = plan.column[at(3 * b + k)];
       if (c >= 0) force[k] = -system.gradient()[at(c)];
-      size = std::max(size, std::abs(force[k]));
+      loose.size = std::max(loose.size, std::abs(force[k]));
     }
     const Vec2<double> place = evaluator.ground_frame(b).origin();
-    load[0] += force[0];
-    load[1] += force[1];
-    load[2] += force[2] + place.x * force[1] - place.y * force[0];
+    loose.load[0] += force[0];
+    loose.load[1] += force[1];
+    loose.load[2] += force[2] + place.x * force[1] - place.y * force[0];
   }
-  if (first < 0) return {};
-  if (count > 3) names += fmt::format(" and {} more", count - 3);
-  const bool loaded = std::hypot(load[0], load[1], load[2]) > 1e-9 * size;
-  Report report;
-  report.status = loaded ? Status::unbounded : Status::refused;
-  report.message =
-      loaded ? fmt::format(
-                   "nothing holds {} {}: no constraint or spring ties {} to the ground, and the load "
-                   "({:.4g}, {:.4g}) N moves {} without end; which joint or spring is missing?",
-                   count > 1 ? "the bodies" : "body", names, count > 1 ? "them" : "it", load[0], load[1],
-                   count > 1 ? "them" : "it")
-             : fmt::format(
-                   "{} {} free to move along x, along y and to turn: no constraint or spring ties {} to "
-                   "the ground, so every place is an equilibrium",
-                   count > 1 ? "the bodies" : "body", names + (count > 1 ? " are" : " is"), count > 1 ? "them" : "it");
-  return report;
+  if (loose.count > most_names) loose.names += fmt::format(" and {} more", loose.count - most_names);
+  return loose;
+}
+
+}  // namespace
+
+std::optional<Report> find_loose_bodies(const StaticSystem& system, const Evaluator& evaluator) {
+  Groups groups = tie_bodies(system.plan(), evaluator);
+  const LooseBodies loose = first_loose(groups, system, evaluator);
+  if (loose.count == 0) return {};
+  const bool many = loose.count > 1;
+  const char *bodies = many ? "the bodies" : "body", *them = many ? "them" : "it";
+  if (std::hypot(loose.load[0], loose.load[1], loose.load[2]) > rounding_of_loads * loose.size) {
+    return Report{Status::unbounded,
+                  fmt::format("nothing holds {} {}: no constraint or spring ties {} to the ground, and the load "
+                              "({:.4g}, {:.4g}) N moves {} without end; which joint or spring is missing?",
+                              bodies, loose.names, them, loose.load[0], loose.load[1], them),
+                  {}};
+  }
+  return Report{Status::refused,
+                fmt::format("{} {} {} free to move along x, along y and to turn: no constraint or spring ties {} to "
+                            "the ground, so every place is an equilibrium",
+                            bodies, loose.names, many ? "are" : "is", them),
+                {}};
 }
 
 }  // namespace catena

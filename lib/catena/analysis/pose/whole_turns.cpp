@@ -44,77 +44,100 @@ double least_turn(const Tie& tie, double by) {
   return best;
 }
 
-}  // namespace
+struct Turned {
+  int body;
+  double by;  // rad
+};
 
-void move_whole_turns(const Evaluator& evaluator, std::span<double> q) {
-  const Plan& plan = evaluator.plan();
-  const Model& model = evaluator.model();
-  constexpr double turn = 2 * std::numbers::pi;
-  struct Start {
-    int body;
-    double by;
-  };
-  std::vector<Start> starts;
-  std::vector<std::vector<Tie>> tied(at(plan.bodies));
-  const auto turns_off = [](double misfit) { return std::round(misfit / turn); };
-  const auto body_of = [&](int model_body) { return model_body < 0 ? -1 : plan.plan_body[at(model_body)]; };
-  const auto angle = [&](int body) { return body < 0 ? 0.0 : q[at(3 * body + 2)]; };
-  const auto tie = [&](int i, int j, double a, double b, bool rolls) {
-    if (i < 0 || j < 0) return;
-    tied[at(i)].push_back({j, a, b, rolls});
-    tied[at(j)].push_back({i, b, a, rolls});
-  };
-  for (const auto& entry : std::get<std::vector<ElementEntry<AbsoluteAngle<double>, double>>>(model.constraints)) {
-    if (plan.is_released(entry.id)) continue;
-    const int body = body_of(entry.i);
-    const double k = turns_off(evaluator.element_value(entry.id).f - angle(body));
-    if (k != 0) starts.push_back({body, k * turn});
-  }
-  for (const auto& entry : std::get<std::vector<ElementEntry<RelativeAngle<double>, double>>>(model.constraints)) {
-    if (plan.is_released(entry.id)) continue;
-    const int i = body_of(entry.i), j = body_of(entry.j);
-    const double k = turns_off(evaluator.element_value(entry.id).f - (angle(j) - angle(i)));
-    if (k == 0) {
-      tie(i, j, 1, -1, false);
-    } else if (j >= 0 && j < plan.moving) {
-      starts.push_back({j, k * turn});
-    } else {
-      starts.push_back({i, -k * turn});
+/// Bodies whose given angle is off by whole turns from what a value asks for, and those that turn with them.
+class WholeTurns {
+ public:
+  WholeTurns(const Evaluator& evaluator, std::span<double> q)
+      : evaluator_(evaluator), plan_(evaluator.plan()), q_(q), tied_(at(plan_.bodies)), moved_(at(plan_.bodies), 0) {}
+
+  void move() {
+    find_starts();
+    if (starts_.empty()) return;
+    each<Weld>([&](const auto& entry) { tie(body(entry.i), body(entry.j), {1, -1}, false); });
+    each<Gear>([&](const auto& entry) {
+      const auto& gear = entry.element;
+      tie(body(entry.i), body(entry.j), {gear.radius_i, gear.internal ? -gear.radius_j : gear.radius_j}, true);
+    });
+    each<Belt>([&](const auto& entry) {
+      const auto& belt = entry.element;
+      tie(body(entry.i), body(entry.j), {belt.radius_i, belt.crossed ? belt.radius_j : -belt.radius_j}, true);
+    });
+    for (const Turned& start : starts_) {
+      if (start.body >= 0 && start.body < plan_.moving && !moved_[at(start.body)]) turn_with(start);
     }
   }
-  if (starts.empty()) return;
-  for (const auto& entry : std::get<std::vector<ElementEntry<Weld<double>, double>>>(model.constraints)) {
-    if (!plan.is_released(entry.id)) tie(body_of(entry.i), body_of(entry.j), 1, -1, false);
-  }
-  for (const auto& entry : std::get<std::vector<ElementEntry<Gear<double>, double>>>(model.constraints)) {
-    if (plan.is_released(entry.id)) continue;
-    const Gear<double>& gear = entry.element;
-    tie(body_of(entry.i), body_of(entry.j), gear.radius_i, gear.internal ? -gear.radius_j : gear.radius_j, true);
-  }
-  for (const auto& entry : std::get<std::vector<ElementEntry<Belt<double>, double>>>(model.constraints)) {
-    if (plan.is_released(entry.id)) continue;
-    const Belt<double>& belt = entry.element;
-    tie(body_of(entry.i), body_of(entry.j), belt.radius_i, belt.crossed ? belt.radius_j : -belt.radius_j, true);
-  }
-  struct Turned {
-    int body;
-    double by;
+
+ private:
+  static constexpr double turn = 2 * std::numbers::pi;
+  struct Ratio {
+    double i, j;
   };
-  std::vector<char> moved(at(plan.bodies), 0);
-  for (const Start& start : starts) {
-    if (start.body < 0 || start.body >= plan.moving || moved[at(start.body)]) continue;
-    std::vector<Turned> queue = {{start.body, start.by}};
-    moved[at(start.body)] = 1;
+
+  /// Calls f for every element of a type that holds.
+  template <template <class> class E, class F>
+  void each(F&& f) const {
+    for (const auto& entry : std::get<std::vector<ElementEntry<E<double>, double>>>(evaluator_.model().constraints)) {
+      if (!plan_.is_released(entry.id)) f(entry);
+    }
+  }
+  int body(int model_body) const { return model_body < 0 ? -1 : plan_.plan_body[at(model_body)]; }
+  double angle(int body) const { return body < 0 ? 0.0 : q_[at(3 * body + 2)]; }
+  void tie(int i, int j, Ratio ratio, bool rolls) {
+    if (i < 0 || j < 0) return;
+    tied_[at(i)].push_back({j, ratio.i, ratio.j, rolls});
+    tied_[at(j)].push_back({i, ratio.j, ratio.i, rolls});
+  }
+
+  void find_starts() {
+    const auto turns_off = [](double misfit) { return std::round(misfit / turn); };
+    each<AbsoluteAngle>([&](const auto& entry) {
+      const int b = body(entry.i);
+      const double k = turns_off(evaluator_.element_value(entry.id).f - angle(b));
+      if (k != 0) starts_.push_back({b, k * turn});
+    });
+    each<RelativeAngle>([&](const auto& entry) {
+      const int i = body(entry.i), j = body(entry.j);
+      const double k = turns_off(evaluator_.element_value(entry.id).f - (angle(j) - angle(i)));
+      if (k == 0) {
+        tie(i, j, {1, -1}, false);
+      } else if (j >= 0 && j < plan_.moving) {
+        starts_.push_back({j, k * turn});
+      } else {
+        starts_.push_back({i, -k * turn});
+      }
+    });
+  }
+
+  /// Turns a body, and those that are tied to it, each once.
+  void turn_with(const Turned& start) {
+    std::vector<Turned> queue = {start};
+    moved_[at(start.body)] = 1;
     for (std::size_t head = 0; head < queue.size(); ++head) {
       const Turned turned = queue[head];
-      q[at(3 * turned.body + 2)] += turned.by;
-      for (const Tie& other : tied[at(turned.body)]) {
-        if (moved[at(other.body)] || other.body >= plan.moving) continue;
-        moved[at(other.body)] = 1;
+      q_[at(3 * turned.body + 2)] += turned.by;
+      for (const Tie& other : tied_[at(turned.body)]) {
+        if (moved_[at(other.body)] || other.body >= plan_.moving) continue;
+        moved_[at(other.body)] = 1;
         queue.push_back({other.body, other.rolls ? least_turn(other, turned.by) : turned.by});
       }
     }
   }
-}
+
+  const Evaluator& evaluator_;
+  const Plan& plan_;
+  std::span<double> q_;
+  std::vector<Turned> starts_;
+  std::vector<std::vector<Tie>> tied_;
+  std::vector<char> moved_;
+};
+
+}  // namespace
+
+void move_whole_turns(const Evaluator& evaluator, std::span<double> q) { WholeTurns(evaluator, q).move(); }
 
 }  // namespace catena

@@ -168,93 +168,129 @@ void keep_to_constraints(StaticSystem& system, std::span<const double> lambda, d
   if (shift != 0) system.fill(lambda, Curvature::exact, 0);
 }
 
-}  // namespace
-
-Certificate certify(StaticSystem& system, std::span<const double> lambda) {
-  Certificate result;
+/// Squares of the arms that turn angles into lengths, m^2; 1 for places: the metric of modes.
+std::vector<double> metric_of(const StaticSystem& system) {
   const Plan& plan = system.plan();
-  KktMatrix& matrix = system.matrix();
-  if (plan.columns == 0) {
-    result.valid = result.stable = true;
-    return result;
-  }
   std::vector<double> weights(at(plan.columns));
   for (int c = 0; c < plan.columns; ++c) {
     const int coordinate = plan.coordinate[at(c)];
     const double r = coordinate % 3 == 2 ? system.radius()[at(coordinate / 3)] : 1;
     weights[at(c)] = r * r;
   }
-  system.fill(lambda, Curvature::exact, 0);
-  bool factored = system.factorize().ok();
-  const double stiffest = std::max(matrix.largest_stiffness(), system.force_size() / system.length());
-  // Where there are neither stiffnesses nor forces, any motion is free: found with a stiffness of 1 N/m in place of
-  // zero.
-  const bool nothing = !(stiffest > no_stiffness);
-  const double floor = nothing ? 1 : neutral_part * stiffest;
-  const bool shifted = !factored || nothing;
-  if (shifted) {
-    // A pivot vanished exactly: something is neutral. Beside it the factors exist.
-    system.fill(lambda, Curvature::exact, floor);
-    factored = system.factorize().ok();
-    if (!factored) return result;
+  return weights;
+}
+
+/// The making of one certificate.
+class Certifier {
+ public:
+  Certifier(StaticSystem& system, std::span<const double> lambda)
+      : system_(system), lambda_(lambda), weights_(metric_of(system)) {}
+
+  Certificate certify() {
+    if (!factorize()) return result_;
+    result_.valid = true;
+    result_.negative_modes = system_.matrix().negative_modes();
+    const bool unstable = result_.negative_modes > 0;
+    InverseLanczos lanczos(system_, weights_);
+    const double lowest = lanczos.lowest(unstable ? most_steps : usual_steps, unstable, result_.mode);
+    // Where the constraints leave no freedom the inverse contains only eps: far stiffer than K.
+    if (lowest == 0 || std::abs(lowest) > rigid_part * (nothing_ ? floor_ : stiffest_)) {
+      result_.mode.clear();
+      result_.stable = result_.negative_modes == 0;
+      return result_;
+    }
+    // Whether the softest mode, negative ones included, is larger than the effect of regularised equations and
+    // rounding.
+    std::vector<double> softest;
+    biased_ = std::abs(lanczos.softest(softest) - shift());
+    if (biased_ <= suspicious_part * stiffest_) rounding_.emplace(system_, lambda_, 0);
+    const bool doubtful =
+        rounding_ && !nothing_ && system_.plan().rows > 0 && biased_ <= most_bias * (*rounding_)(softest);
+    weigh_mode(doubtful, std::move(softest));
+    if (result_.neutral || doubtful) count_again();
+    result_.stable = result_.negative_modes == 0 && !result_.neutral;
+    return result_;
   }
-  result.valid = true;
-  result.negative_modes = matrix.negative_modes();
-  const bool unstable = result.negative_modes > 0;
-  InverseLanczos lanczos(system, weights);
-  const double lowest = lanczos.lowest(unstable ? most_steps : usual_steps, unstable, result.mode);
-  // Where the constraints leave no freedom the inverse contains only eps: far stiffer than K.
-  if (lowest == 0 || std::abs(lowest) > rigid_part * (nothing ? floor : stiffest)) {
-    result.mode.clear();
-    result.stable = result.negative_modes == 0;
-    return result;
+
+ private:
+  double shift() const { return shifted_ ? floor_ : 0; }
+
+  /// The exact K; where a pivot vanishes exactly something is neutral, and K is shifted: beside it the factors exist.
+  bool factorize() {
+    system_.fill(lambda_, Curvature::exact, 0);
+    bool factored = system_.factorize().ok();
+    stiffest_ = std::max(system_.matrix().largest_stiffness(), system_.force_size() / system_.length());
+    // Where there are neither stiffnesses nor forces, any motion is free: found with a stiffness of 1 N/m in place of
+    // zero.
+    nothing_ = !(stiffest_ > no_stiffness);
+    floor_ = nothing_ ? 1 : neutral_part * stiffest_;
+    shifted_ = !factored || nothing_;
+    if (!shifted_) return true;
+    system_.fill(lambda_, Curvature::exact, floor_);
+    return system_.factorize().ok();
   }
-  // Whether the softest mode, negative ones included, is larger than the effect of regularised equations and rounding.
-  std::vector<double> softest;
-  const double biased = std::abs(lanczos.softest(softest) - (shifted ? floor : 0));
-  std::optional<StiffnessFloor> rounding;
-  if (biased <= suspicious_part * stiffest) rounding.emplace(system, lambda, 0);
-  const bool doubtful = rounding && !nothing && plan.rows > 0 && biased <= most_bias * (*rounding)(softest);
-  // The Rayleigh quotient with the true matrix, and its rounding. The vector must meet the constraints exactly: the
-  // deviation that the regularised factors allow would count with the whole stiffness.
-  if (doubtful) {
-    result.mode = std::move(softest);
-    keep_to_constraints(system, lambda, shifted ? floor : 0, result.mode);
-    normalise(weights, result.mode);
-  } else {
-    std::vector<double> work(at(plan.columns + plan.rows));
-    project_to_null_space(system, result.mode, work);
-    if (shifted) system.fill(lambda, Curvature::exact, 0);
+
+  /// The Rayleigh quotient with the true matrix, and its rounding. The vector must meet the constraints exactly: the
+  /// deviation that the regularised factors allow would count with the whole stiffness.
+  void weigh_mode(bool doubtful, std::vector<double> softest) {
+    KktMatrix& matrix = system_.matrix();
+    if (doubtful) {
+      result_.mode = std::move(softest);
+      keep_to_constraints(system_, lambda_, shift(), result_.mode);
+      normalise(weights_, result_.mode);
+    } else {
+      std::vector<double> work(at(system_.plan().columns + system_.plan().rows));
+      project_to_null_space(system_, result_.mode, work);
+      if (shifted_) system_.fill(lambda_, Curvature::exact, 0);
+    }
+    const double quotient = result_.softest_stiffness = stiffness_of(matrix, result_.mode);
+    result_.curvature_floor = neutral_part * matrix.absolute_quadratic(result_.mode);
+    if (rounding_) result_.curvature_floor = std::max(result_.curvature_floor, (*rounding_)(result_.mode));
+    result_.neutral = std::abs(quotient) <= result_.curvature_floor;
+    result_.neutral_modes = result_.neutral ? 1 : 0;
   }
-  const double quotient = result.softest_stiffness = stiffness_of(matrix, result.mode);
-  result.curvature_floor = neutral_part * matrix.absolute_quadratic(result.mode);
-  if (rounding) result.curvature_floor = std::max(result.curvature_floor, (*rounding)(result.mode));
-  result.neutral = std::abs(quotient) <= result.curvature_floor;
-  result.neutral_modes = result.neutral ? 1 : 0;
-  // The inertia may count modes made negative by regularised equations or rounding: they are counted again without
-  // these.
-  if (result.neutral || doubtful) {
-    if (std::optional<FreeMotions> free = find_free_motions(system, lambda, neutral_part)) {
-      result.negative_modes = free->negative;
-      result.neutral_modes = std::max(free->count, result.neutral_modes);
-      result.neutral = result.neutral_modes > 0;
-      result.free_bodies = std::move(free->bodies);
+
+  /// The inertia may count modes made negative by regularised equations or rounding: they are counted again without
+  /// these.
+  void count_again() {
+    KktMatrix& matrix = system_.matrix();
+    if (std::optional<FreeMotions> free = find_free_motions(system_, lambda_, neutral_part)) {
+      result_.negative_modes = free->negative;
+      result_.neutral_modes = std::max(free->count, result_.neutral_modes);
+      result_.neutral = result_.neutral_modes > 0;
+      result_.free_bodies = std::move(free->bodies);
       if (free->negative > 0) {
-        result.mode = std::move(free->lowest);
-        normalise(weights, result.mode);
-        result.softest_stiffness = stiffness_of(matrix, result.mode);
+        result_.mode = std::move(free->lowest);
+        normalise(weights_, result_.mode);
+        result_.softest_stiffness = stiffness_of(matrix, result_.mode);
       }
     } else {
-      system.fill(lambda, Curvature::exact, std::max(floor, 2 * biased));
-      if (system.factorize().ok()) result.negative_modes = matrix.negative_modes();
-      system.fill(lambda, Curvature::exact, 0);
-      if (!result.neutral && quotient < 0) result.negative_modes = std::max(result.negative_modes, 1);
+      const double quotient = result_.softest_stiffness;
+      system_.fill(lambda_, Curvature::exact, std::max(floor_, 2 * biased_));
+      if (system_.factorize().ok()) result_.negative_modes = matrix.negative_modes();
+      system_.fill(lambda_, Curvature::exact, 0);
+      if (!result_.neutral && quotient < 0) result_.negative_modes = std::max(result_.negative_modes, 1);
     }
-    if (result.neutral && result.free_bodies.empty()) {
-      result.free_bodies = names_of_moving(system, lambda, {result.mode});
-    }
+    if (result_.neutral && result_.free_bodies.empty())
+      result_.free_bodies = names_of_moving(system_, lambda_, {result_.mode});
   }
-  result.stable = result.negative_modes == 0 && !result.neutral;
+
+  StaticSystem& system_;
+  std::span<const double> lambda_;
+  std::vector<double> weights_;
+  Certificate result_;
+  double stiffest_ = 0, floor_ = 0;  // N/m: of the system; what counts as none
+  double biased_ = 0;                // N/m: of the softest mode, without the shift
+  bool nothing_ = false, shifted_ = false;
+  std::optional<StiffnessFloor> rounding_;
+};
+
+}  // namespace
+
+Certificate certify(StaticSystem& system, std::span<const double> lambda) {
+  if (system.plan().columns > 0) return Certifier(system, lambda).certify();
+  Certificate result;
+  result.valid = result.stable = true;
   return result;
 }
 

@@ -11,6 +11,8 @@ namespace {
 
 // First sigma, relative to the upper end of the spectrum.
 constexpr double first_shift = 1e-8;
+// Where a shift has no factors, for it is an omega^2, others at this part of it further down are tried.
+constexpr double step_aside = 0.618;
 // Largest ratio of sigma to the lowest omega^2 that is not zero.
 constexpr double shift_window = 1e4;
 // Vectors that are always allowed for Lanczos' method.
@@ -71,12 +73,12 @@ double ModeSearch::lowest_shift(double upper) {
     some = none;
     none *= 16;
     double sigma = -none;
-    if (!factorize(sigma, 0.618 * std::abs(sigma))) break;
+    if (!factorize(sigma, step_aside * std::abs(sigma))) break;
   } while (op_.below() > 0);
   while (none > bracket * some) {
     const double middle = std::sqrt(some * none);
     double sigma = -middle;
-    const bool below = factorize(sigma, 0.618 * std::abs(sigma)) && op_.below() > 0;
+    const bool below = factorize(sigma, step_aside * std::abs(sigma)) && op_.below() > 0;
     (below ? some : none) = middle;
   }
   return -none;
@@ -102,50 +104,40 @@ Report ModeSearch::no_factors() const {
   return report;
 }
 
-Report ModeSearch::find(int count, std::vector<Mode>& modes) {
-  Report report;
-  modes.clear();
-  const int columns = static_cast<int>(mass_.size());
-  if (columns == 0 || count == 0) return report;
-  const auto cancelled = [&] {
-    report.status = Status::cancelled;
-    report.message = "stopped while modes were looked for";
-    return report;
-  };
-  double sigma = -first_shift * size_;
-  bool complete = false;
+Report ModeSearch::cancelled() const { return {Status::cancelled, "stopped while modes were looked for", {}}; }
+
+// Lanczos' method about one shift, then, where that one was far from the lowest omega^2, about a better one.
+Report ModeSearch::find_most(int count, double& sigma, bool& complete, std::vector<Mode>& modes) {
+  const int most = std::min(static_cast<int>(mass_.size()), std::max(least_vectors, 3 * count + 60));
   for (int attempt = 0; attempt < 2; ++attempt) {
-    if (!factorize(sigma, 0.618 * std::abs(sigma))) return no_factors();
+    if (!factorize(sigma, step_aside * std::abs(sigma))) return no_factors();
     const int below = op_.below();
-    const int most = std::min(columns, std::max(least_vectors, 3 * count + 60));
     const bool many = below > count;
     int negative = many ? 0 : below;
     if (many) {
       sigma = lowest_shift(sigma);
-      if (!factorize(sigma, 0.618 * std::abs(sigma))) return no_factors();
+      if (!factorize(sigma, step_aside * std::abs(sigma))) return no_factors();
     }
-    Lanczos lanczos(op_);
+    Lanczos lanczos(op_), again(op_);
+    Lanczos* found = &lanczos;
     const auto wanted = [&](std::span<const double> theta) { return choose(theta, negative, count - negative); };
     bool settled = lanczos.run(wanted, most, go_on_);
     if (is_cancelled()) return cancelled();
-    Lanczos again(op_);
-    Lanczos* found = &lanczos;
     if (!settled && !lanczos.exhausted() && negative > 0) {
       // Unstable modes far from zero: searched with a shift at their end of the spectrum.
       sigma = lowest_shift(sigma);
-      if (!factorize(sigma, 0.618 * std::abs(sigma))) return no_factors();
+      if (!factorize(sigma, step_aside * std::abs(sigma))) return no_factors();
       negative = 0;
       found = &again;
       settled = again.run(wanted, most, go_on_);
       if (is_cancelled()) return cancelled();
     }
     if (!settled && !found->exhausted()) {
-      report.status = Status::not_converged;
-      report.message = fmt::format(
-          "the lowest {} modes did not settle within {} steps of Lanczos' method; likely cause: "
-          "many modes of nearly the same frequency; ask for more of them or for fewer",
-          count, found->steps());
-      return report;
+      return {Status::not_converged,
+              fmt::format("the lowest {} modes did not settle within {} steps of Lanczos' method; likely cause: "
+                          "many modes of nearly the same frequency; ask for more of them or for fewer",
+                          count, found->steps()),
+              {}};
     }
     complete = found->exhausted();
     if (found->steps() > 0) modes = modes_of(*found, sigma, count);
@@ -154,8 +146,12 @@ Report ModeSearch::find(int count, std::vector<Mode>& modes) {
     if (attempt > 0 || many || found == &again || better == sigma) break;
     sigma = better;
   }
-  // The proof: as many as the inertia counts. Equal frequencies may hide from one start vector.
-  for (int round = 0; !complete && round <= count; ++round) {
+  return {};
+}
+
+// The proof: as many as the inertia counts. Equal frequencies may hide from one start vector.
+Report ModeSearch::find_missing(int count, double sigma, std::vector<Mode>& modes) {
+  for (int round = 0; round <= count; ++round) {
     std::sort(modes.begin(), modes.end(), lower);
     modes.resize(std::min(modes.size(), static_cast<std::size_t>(count)));
     const double top = modes.back().omega2;
@@ -166,12 +162,12 @@ Report ModeSearch::find(int count, std::vector<Mode>& modes) {
     const int missing = op_.below() - found;
     if (missing == 0) break;
     if (missing < 0 || round == count) {
-      report.status = Status::not_converged;
-      report.message = fmt::format("{} modes below omega^2 = {:.6g} were found, but the inertia counts {}", found, mu,
-                                   found + missing);
-      return report;
+      return {Status::not_converged,
+              fmt::format("{} modes below omega^2 = {:.6g} were found, but the inertia counts {}", found, mu,
+                          found + missing),
+              {}};
     }
-    if (!factorize(sigma, 0.618 * std::abs(sigma))) return no_factors();
+    if (!factorize(sigma, step_aside * std::abs(sigma))) return no_factors();
     std::vector<std::vector<double>> locked;
     for (const Mode& mode : modes) locked.push_back(mode.shape);
     Lanczos others(op_, std::move(locked));
@@ -183,13 +179,25 @@ Report ModeSearch::find(int count, std::vector<Mode>& modes) {
     refine_values(extra, sigma);
     for (Mode& mode : extra) modes.push_back(std::move(mode));
   }
+  return {};
+}
+
+Report ModeSearch::find(int count, std::vector<Mode>& modes) {
+  modes.clear();
+  if (mass_.empty() || count == 0) return {};
+  double sigma = -first_shift * size_;
+  bool complete = false;
+  if (Report found = find_most(count, sigma, complete, modes); !found.ok()) return found;
+  if (!complete) {
+    if (Report proved = find_missing(count, sigma, modes); !proved.ok()) return proved;
+  }
   std::sort(modes.begin(), modes.end(), lower);
   unstable_ = static_cast<int>(std::count_if(modes.begin(), modes.end(), [](const Mode& m) { return m.omega2 < 0; }));
   if (unstable_ == count && !complete) {
     double zero = -zero_rounding * size_;
     if (factorize(zero, zero_rounding * size_)) unstable_ = std::max(unstable_, op_.below());
   }
-  return report;
+  return {};
 }
 
 }  // namespace catena

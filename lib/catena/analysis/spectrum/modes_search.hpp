@@ -32,7 +32,11 @@ class ModeSearch {
   int unstable() const { return unstable_; }
 
  private:
+  /// Around `sigma`, which moves; `complete`: there are no more modes than those.
+  Report find_most(int count, double& sigma, bool& complete, std::vector<Mode>& modes);
+  Report find_missing(int count, double sigma, std::vector<Mode>& modes);
   Report no_factors() const;
+  Report cancelled() const;
   /// Factors at `sigma`, moved down by `margin` where it is an eigenvalue.
   bool factorize(double& sigma, double margin);
   double lowest_shift(double upper);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "catena/analysis/statics/equilibrium.hpp"
+#include "catena/analysis/statics/static_attempts.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -37,7 +38,6 @@ bool are_same(const Candidate& a, const Candidate& b, double extent, double ener
 
 EquilibriumReport Equilibrium::find_several(const Needs& needs, RowObserver& observer) {
   const std::vector<double> start = q_;
-  const StaticSearch search(system_, {});
   const bool turns = std::any_of(plan_->coordinate.begin(), plan_->coordinate.end(), [](int k) { return k % 3 == 2; });
   const double place = turns ? shaken_beside_angles : shaken_places;
   std::vector<Candidate> found;
@@ -49,7 +49,7 @@ EquilibriumReport Equilibrium::find_several(const Needs& needs, RowObserver& obs
     solved_ = false;
     // In turn: close to the start, far from it, and in between.
     constexpr double angles[] = {std::numbers::pi, 0.3, 1.0};
-    if (used > 0) search.shake(q_, static_cast<unsigned>(used), angles[at(used % 3)], place);
+    if (used > 0) shake(system_, q_, static_cast<unsigned>(used), angles[at(used % 3)], place);
     Candidate candidate;
     candidate.report = solve();
     if (used == 0) first = candidate.report;

@@ -9,61 +9,78 @@
 
 namespace catena {
 
+namespace {
+
+/// The numbers of a body that are given, with their places in the scene.
+template <class S>
+struct BodyNumbers {
+  std::array<S, body_numbers> values{};
+  std::array<std::size_t, body_numbers> offsets{};
+
+  const S& get(BodyNumber n) const { return values[static_cast<std::size_t>(n)]; }
+  Vec2<S> pair(BodyNumber n) const { return {get(n), values[static_cast<std::size_t>(n) + 1]}; }
+  std::size_t offset(BodyNumber n) const { return offsets[static_cast<std::size_t>(n)]; }
+};
+
+/// The middle of a rod, its angle and half its length, which is zero where its ends coincide; its inertia too, unless
+/// that is given or its centroid is.
+template <class S>
+Vec2<S> place_rod(const BodyNumbers<S>& numbers, bool has_centroid, BasicBody<S>& body, S& half) {
+  const Vec2<S> from = numbers.pair(BodyNumber::from_x), to = numbers.pair(BodyNumber::to_x), along = to - from;
+  if (value_of(along.x) != 0 || value_of(along.y) != 0) {
+    using std::atan2;
+    half = norm(along) * S(0.5);
+    body.angle = atan2(along.y, along.x);
+    if (!body.has_inertia && !has_centroid) {
+      body.inertia = body.mass * half * half / S(3.0);
+      body.has_inertia = body.has_mass;
+    }
+  }
+  return (from + to) * S(0.5);
+}
+
+}  // namespace
+
 template <class S>
 void ModelBuilder<S>::add_body(const BodyTemplate& source) {
   if (!make_name(source.name, name_)) return;
-  std::array<S, body_numbers> v{};
-  std::array<std::size_t, body_numbers> offset{};
+  BodyNumbers<S> numbers;
   std::uint32_t next = source.first_number;
   for (std::size_t k = 0; k < body_numbers; ++k) {
     if (!((source.given >> k) & 1)) continue;
     const NumberValue& number = scene_.numbers[next++];
-    v[k] = value(number);
-    offset[k] = number.offset();
+    numbers.values[k] = value(number);
+    numbers.offsets[k] = number.offset();
   }
-  const auto get = [&](BodyNumber n) -> const S& { return v[static_cast<std::size_t>(n)]; };
-  const auto pair = [&](BodyNumber n) { return Vec2<S>{get(n), v[static_cast<std::size_t>(n) + 1]}; };
   for (const BodyNumber n : {BodyNumber::mass, BodyNumber::inertia}) {
-    if (value_of(get(n)) < 0) {
-      report(offset[static_cast<std::size_t>(n)],
+    if (value_of(numbers.get(n)) < 0) {
+      report(numbers.offset(n),
              fmt::format("\"{}\" of body {} may not be negative; it is {}", n == BodyNumber::mass ? "mass" : "inertia",
-                         in_quotes(name_), value_of(get(n))));
+                         in_quotes(name_), value_of(numbers.get(n))));
     }
   }
-
   BasicBody<S> body;
   body.has_mass = source.has(BodyNumber::mass);
   body.has_inertia = source.has(BodyNumber::inertia);
-  body.mass = get(BodyNumber::mass);
-  body.inertia = get(BodyNumber::inertia);
-  Vec2<S> position = pair(BodyNumber::position_x), centroid = pair(BodyNumber::centroid_x);
-  body.angle = get(BodyNumber::angle);
+  body.mass = numbers.get(BodyNumber::mass);
+  body.inertia = numbers.get(BodyNumber::inertia);
+  body.angle = numbers.get(BodyNumber::angle);
+  Vec2<S> position = numbers.pair(BodyNumber::position_x), centroid = numbers.pair(BodyNumber::centroid_x);
   S half{};
   const bool rod = source.has(BodyNumber::from_x);
   if (rod) {
-    const Vec2<S> from = pair(BodyNumber::from_x), to = pair(BodyNumber::to_x), along = to - from;
-    if (value_of(along.x) == 0 && value_of(along.y) == 0) {
-      report(offset[static_cast<std::size_t>(BodyNumber::from_x)],
+    position = place_rod(numbers, source.has(BodyNumber::centroid_x), body, half);
+    if (value_of(half) == 0)
+      report(numbers.offset(BodyNumber::from_x),
              fmt::format("the rod of body {} has no length: its ends coincide", in_quotes(name_)));
-    } else {
-      using std::atan2;
-      half = norm(along) * S(0.5);
-      body.angle = atan2(along.y, along.x);
-      // The inertia of a rod with a given centroid is not known unless it is given.
-      if (!body.has_inertia && !source.has(BodyNumber::centroid_x)) {
-        body.inertia = body.mass * half * half / S(3.0);
-        body.has_inertia = body.has_mass;
-      }
-    }
-    position = (from + to) * S(0.5);
   }
   if (source.parts > 0) compose(source, name_, body, centroid);
   body.origin = -centroid;
   body.position = make_frame(position.x, position.y, body.angle).point(centroid);
   body.velocity_given = source.has(BodyNumber::velocity_x);
-  body.velocity = pair(BodyNumber::velocity_x);
+  body.velocity = numbers.pair(BodyNumber::velocity_x);
   body.angular_velocity_given = source.has(BodyNumber::angular_velocity);
-  body.angular_velocity = get(BodyNumber::angular_velocity);
+  body.angular_velocity = numbers.get(BodyNumber::angular_velocity);
   body.fixed = source.fixed;
   body.particle = source.particle;
   body.hold_x = source.hold_x;

@@ -52,6 +52,22 @@ void read_hold(const JsonValue& value, std::string_view owner, BodyTemplate& bod
   }
 }
 
+// The ends of a rod, both given in any case: what is missing is reported.
+void read_rod(SceneReading& reading, const JsonValue& rod, const std::string& body_owner, Numbers& given) {
+  const std::string owner = "rod of " + body_owner;
+  std::array<JsonValue, rod_keys.size()> ends;
+  const bool is_rod = read_members(rod, rod_keys, owner, ends, reading.diagnostics);
+  for (std::size_t k = 0; k < rod_keys.size(); ++k) {
+    const BodyNumber which = k == 0 ? BodyNumber::from_x : BodyNumber::to_x;
+    if (is_rod && ends[k]) {
+      given.set_pair(which, reading.numbers.read_pair(ends[k], dimension_of(UnitKind::length), {rod_keys[k], owner}));
+      continue;
+    }
+    if (is_rod) reading.error(rod, fmt::format("{} needs {}", owner, in_quotes(rod_keys[k])));
+    given.set_pair(which, {});
+  }
+}
+
 }  // namespace
 
 void SceneReading::point_list(const JsonValue& value, BodyTemplate& body, std::string_view owner) {
@@ -215,50 +231,28 @@ void SceneReading::body(const JsonMember& member, BlockTemplate& block) {
   const auto number = [&](const JsonValue& value, BodyNumber which, UnitKind unit, std::string_view key) {
     if (value) given.set(which, numbers.read(value, unit, {key, owner}));
   };
-  const auto pair = [&](const JsonValue& value, BodyNumber which, UnitKind unit, std::string_view key,
-                        std::string_view of) {
-    if (value) given.set_pair(which, numbers.read_pair(value, dimension_of(unit), {key, of}));
+  const auto pair = [&](const JsonValue& value, BodyNumber which, UnitKind unit, std::string_view key) {
+    if (value) given.set_pair(which, numbers.read_pair(value, dimension_of(unit), {key, owner}));
   };
   number(mass, BodyNumber::mass, UnitKind::mass, "mass");
   number(inertia, BodyNumber::inertia, UnitKind::inertia, "inertia");
-  pair(position, BodyNumber::position_x, UnitKind::length, "position", owner);
+  pair(position, BodyNumber::position_x, UnitKind::length, "position");
   number(angle, BodyNumber::angle, UnitKind::angle, "angle");
-  pair(velocity, BodyNumber::velocity_x, UnitKind::velocity, "velocity", owner);
+  pair(velocity, BodyNumber::velocity_x, UnitKind::velocity, "velocity");
   number(angular_velocity, BodyNumber::angular_velocity, UnitKind::angular_velocity, "angular_velocity");
-  pair(centroid, BodyNumber::centroid_x, UnitKind::length, "centroid", owner);
+  pair(centroid, BodyNumber::centroid_x, UnitKind::length, "centroid");
   if (points) point_list(points, body, owner);
   if (parts) {
-    body.first_part = static_cast<std::uint32_t>(scene.parts.size());
-    if (!parts.is(JsonKind::array) || parts.size() == 0) {
-      error(parts, FieldName{"parts", owner}.text() + " must be a list of parts");
-    } else {
-      for (const JsonValue& object : parts.elements()) part(object, owner);
-    }
-    body.parts = static_cast<std::uint32_t>(scene.parts.size()) - body.first_part;
-    const JsonValue& excluded = mass ? mass : inertia ? inertia : centroid;
-    if (excluded)
+    part_list(parts, owner, body);
+    if (const JsonValue& excluded = mass ? mass : inertia ? inertia : centroid)
       error(excluded,
             fmt::format("mass, inertia and centroid of {} follow from its parts and may not be given", owner));
   }
   if (rod) {
-    const std::string of = "rod of " + owner;
-    std::array<JsonValue, rod_keys.size()> r;
-    if (read_members(rod, rod_keys, of, r, diagnostics)) {
-      for (std::size_t k = 0; k < 2; ++k) {
-        if (r[k]) {
-          pair(r[k], k == 0 ? BodyNumber::from_x : BodyNumber::to_x, UnitKind::length, rod_keys[k], of);
-        } else {
-          error(rod, fmt::format("{} needs {}", of, in_quotes(rod_keys[k])));
-          given.set_pair(k == 0 ? BodyNumber::from_x : BodyNumber::to_x, {});
-        }
-      }
-    } else {
-      for (const BodyNumber end : {BodyNumber::from_x, BodyNumber::to_x}) given.set_pair(end, {});
-    }
-    if (position || angle) {
+    read_rod(*this, rod, owner, given);
+    if (position || angle)
       error(position ? position : angle,
             fmt::format("{} of {} follows from its rod and may not be given", position ? "position" : "angle", owner));
-    }
   }
   if (fixed) body.fixed = read_flag(fixed, {"fixed", owner}, diagnostics);
   if (particle) body.particle = read_flag(particle, {"particle", owner}, diagnostics);
@@ -266,6 +260,16 @@ void SceneReading::body(const JsonMember& member, BlockTemplate& block) {
   if (draw) drawn_shapes(draw, owner, body);
   given.store(*this, body);
   block.bodies.push_back(body);
+}
+
+void SceneReading::part_list(const JsonValue& parts, const std::string& owner, BodyTemplate& body) {
+  body.first_part = static_cast<std::uint32_t>(scene.parts.size());
+  if (!parts.is(JsonKind::array) || parts.size() == 0) {
+    error(parts, FieldName{"parts", owner}.text() + " must be a list of parts");
+  } else {
+    for (const JsonValue& object : parts.elements()) part(object, owner);
+  }
+  body.parts = static_cast<std::uint32_t>(scene.parts.size()) - body.first_part;
 }
 
 }  // namespace catena

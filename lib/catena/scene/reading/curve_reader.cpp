@@ -90,32 +90,32 @@ void SceneReading::smooth(DataColumns& columns, const PairUse& use, const FieldN
 int SceneReading::curve(const JsonValue& value, const FieldName& field) {
   CurveTemplate result;
   result.offset = static_cast<std::uint32_t>(value.offset());
-  const Dimension metre = dimension_of(UnitKind::length);
-  const auto done = [&] {
-    scene.curves.push_back(std::move(result));
-    return static_cast<int>(scene.curves.size()) - 1;
-  };
   if (!value.is(JsonKind::object)) {
     error(value, fmt::format("{} must be a curve such as {{\"circle\": {{\"centre\": [0, 0], \"radius\": 0.1}}}}; this "
                              "is {}",
                              field.text(), describe(value.kind())));
-    return done();
+  } else if (const auto member = read_only_member(value, curve_keys, field, "curve", diagnostics)) {
+    curve_of_kind(*member, field, result);
   }
-  const std::optional<JsonMember> member = read_only_member(value, curve_keys, field, "curve", diagnostics);
-  if (!member) return done();
-  const auto key = std::find(curve_keys.begin(), curve_keys.end(), member->name());
-  result.kind = static_cast<CurveTemplate::Kind>(key - curve_keys.begin());
-  const std::string owner = fmt::format("{} in {}", *key, field.text());
+  scene.curves.push_back(std::move(result));
+  return static_cast<int>(scene.curves.size()) - 1;
+}
+
+void SceneReading::curve_of_kind(const JsonMember& member, const FieldName& field, CurveTemplate& result) {
   static constexpr std::array<std::array<std::string_view, 3>, 4> keys{
       {{"centre", "radius", ""}, {"points", "end", "beyond"}, {"angle", "radius", ""}, {"point", "axis", ""}}};
+  const auto key = std::find(curve_keys.begin(), curve_keys.end(), member.name());
+  result.kind = static_cast<CurveTemplate::Kind>(key - curve_keys.begin());
+  const std::string owner = fmt::format("{} in {}", *key, field.text());
   const bool spline = result.kind == CurveTemplate::Kind::spline;
   const auto names = std::span(keys[static_cast<std::size_t>(result.kind)]).first(spline ? 3 : 2);
   std::array<JsonValue, 3> v;
-  if (!read_members(member->value, names, owner, v, diagnostics)) return done();
+  if (!read_members(member.value, names, owner, v, diagnostics)) return;
   for (std::size_t k = 0; k < 2; ++k) {
-    if (!v[k] && !(spline && k == 1)) error(member->value, fmt::format("{} needs {}", owner, in_quotes(names[k])));
+    if (!v[k] && !(spline && k == 1)) error(member.value, fmt::format("{} needs {}", owner, in_quotes(names[k])));
   }
-  if (!v[0] || (!v[1] && !spline)) return done();
+  if (!v[0] || (!v[1] && !spline)) return;
+  const Dimension metre = dimension_of(UnitKind::length);
   const auto pair = [&](std::size_t k, const ExpectedDimension& dimension) {
     const auto numbers_read = numbers.read_pair(v[k], dimension, {names[k], owner});
     result.numbers.insert(result.numbers.end(), numbers_read.begin(), numbers_read.end());
@@ -150,7 +150,6 @@ int SceneReading::curve(const JsonValue& value, const FieldName& field) {
       pair(1, ExpectedDimension());
       break;
   }
-  return done();
 }
 
 int SceneReading::table(const JsonValue& value, UnitKind first, UnitKind second, const FieldName& field) {

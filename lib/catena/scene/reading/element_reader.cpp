@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include "catena/scene/describing/element_description.hpp"
 #include "catena/scene/json/near_miss.hpp"
@@ -61,52 +62,210 @@ const ElementDescription* read_type(const JsonValue& object, const JsonValue& ty
   return found;
 }
 
-/// Where the body's name ends and the point's begins: the first dot outside of braces.
-std::size_t find_dot(std::string_view text) {
-  int depth = 0;
-  for (std::size_t k = 0; k < text.size(); ++k) {
-    if (text[k] == '{') ++depth;
-    if (text[k] == '}') --depth;
-    if (text[k] == '.' && depth <= 0) return k;
+/// The reading of one element: its keys, its ends, its fields.
+class ElementReading {
+ public:
+  ElementReading(SceneReading& reading, const JsonValue& object, const ElementDescription& type, std::string_view list)
+      : reading_(reading), object_(object), type_(type) {
+    element_.offset = static_cast<std::uint32_t>(object.offset());
+    element_.kind = type.force ? ElementKind::force : list == "drivers" ? ElementKind::driver : ElementKind::constraint;
+    element_.type = static_cast<short>(&type - element_descriptions().data());
   }
-  return std::string_view::npos;
-}
+
+  void read(BlockTemplate& block) {
+    find_members();
+    read_name();
+    read_ends();
+    for (std::size_t f = 0; f < type_.fields.size(); ++f) {
+      const FieldDescription& field = type_.fields[f];
+      if (field.kind == FieldKind::point) continue;
+      if (const JsonValue& value = values_[key_of_field_[f]]) {
+        element_.given |= 1u << f;
+        read_field(field, value);
+      } else {
+        check_absent(field);
+      }
+    }
+    element_.first_number = reading_.keep(std::span(slots_).first(static_cast<std::size_t>(type_.slots)));
+    if (place_) {
+      element_.has_at = true;
+      reading_.keep(reading_.numbers.read_pair(place_, dimension_of(UnitKind::length), {"at", owner_}));
+    }
+    block.elements.push_back(element_);
+  }
+
+ private:
+  bool is_attached() const { return type_.bodies > 0; }
+
+  /// The values of all keys: the common ones, then those of the fields; points are read through i and j. A synonym
+  /// stands for its field.
+  void find_members() {
+    std::array<std::string_view, most_keys> keys{"type", "name", "i", "at", "j"};
+    std::size_t count = type_.bodies == 2 ? 5 : is_attached() ? 4 : 2;
+    for (std::size_t f = 0; f < type_.fields.size(); ++f) {
+      if (type_.fields[f].kind == FieldKind::point) continue;
+      key_of_field_[f] = count;
+      keys[count++] = type_.fields[f].key;
+    }
+    std::size_t synonym_place = count;
+    for (const FieldDescription& field : type_.fields) {
+      if (!field.synonym.empty()) keys[count++] = field.synonym;
+    }
+    owner_ = owner_text(type_.type, object_.find("name"));
+    read_members(object_, std::span(keys).first(count), owner_, values_, reading_.diagnostics);
+    if (is_attached()) place_ = values_[3];
+    for (std::size_t f = 0; f < type_.fields.size(); ++f) {
+      const FieldDescription& field = type_.fields[f];
+      if (field.synonym.empty()) continue;
+      const JsonValue& synonym = values_[synonym_place++];
+      JsonValue& value = values_[key_of_field_[f]];
+      if (value && synonym)
+        reading_.error(synonym, fmt::format("{}: {} is another name of {}; give one of them", owner_,
+                                            in_quotes(field.synonym), in_quotes(field.key)));
+      if (!value) value = synonym;
+    }
+  }
+
+  void read_name() {
+    const JsonValue named = object_.find("name");
+    if (!named || !read_string(named, {"name", type_.type}, reading_.diagnostics).data()) return;
+    element_.name = reading_.name(named);
+    if (element_.name.empty() && !named.text().empty()) return;
+    if (const std::string problem = element_name_problem(reading_.sample(element_.name)); !problem.empty())
+      reading_.error(named, problem);
+  }
+
+  void read_ends() {
+    const JsonValue ends[2] = {is_attached() ? values_[2] : JsonValue(), type_.bodies == 2 ? values_[4] : JsonValue()};
+    for (int body = 0; body < type_.bodies; ++body) {
+      const std::string_view key = body == 0 ? "i" : "j";
+      NumberValue* local = nullptr;
+      for (const FieldDescription& field : type_.fields) {
+        if (field.kind == FieldKind::point && field.body == body) local = &slots_[static_cast<std::size_t>(field.slot)];
+      }
+      if (ends[body]) {
+        reading_.attachment(ends[body], key, owner_, static_cast<bool>(place_), element_.attachment[body], local);
+      } else if (body == 0 || !type_.second_body_optional) {
+        reading_.error(object_, fmt::format("{} needs {}", owner_, in_quotes(key)));
+      }
+    }
+  }
+
+  void check_absent(const FieldDescription& field) {
+    const bool driven = element_.kind == ElementKind::driver && field.kind == FieldKind::function;
+    if (!field.unless.empty() && object_.find(field.unless)) return;
+    const std::string or_else = field.unless.empty() ? "" : " or " + in_quotes(field.unless);
+    if (field.required || driven)
+      reading_.error(object_, fmt::format("{} needs {}{}", owner_, in_quotes(field.key), or_else));
+  }
+
+  void read_field(const FieldDescription& field, const JsonValue& value) {
+    const FieldName name{field.key, owner_};
+    NumberValue& slot = slots_[static_cast<std::size_t>(field.slot)];
+    switch (field.kind) {
+      case FieldKind::point:
+        break;
+      case FieldKind::axis:
+        read_pair(field, value, ExpectedDimension());
+        break;
+      case FieldKind::place:
+        read_pair(field, value, dimension_of(UnitKind::length));
+        break;
+      case FieldKind::number:
+        slot = reading_.numbers.read(value, field.unit, name);
+        break;
+      case FieldKind::column:
+        read_column(name, value);
+        break;
+      case FieldKind::bound:
+        slot = reading_.numbers.read(value, bounds_angle_ ? field.second_unit : field.unit, name);
+        break;
+      case FieldKind::flag:
+        slot = NumberValue::constant(read_flag(value, name, reading_.diagnostics) ? 1 : 0, value.offset());
+        break;
+      case FieldKind::side: {
+        const bool good = value.is(JsonKind::number) && (value.number() == 1 || value.number() == -1);
+        if (!good) reading_.error(value, name.text() + " must be 1 or -1");
+        slot = NumberValue::constant(good ? value.number() : 1, value.offset());
+        break;
+      }
+      case FieldKind::choice: {
+        const std::array words{field.first_word, field.second_word};
+        const bool second = read_word(value, words, name, reading_.diagnostics) == 1;
+        slot = NumberValue::constant(second ? 1 : 0, value.offset());
+        break;
+      }
+      case FieldKind::curve:
+        refer(field.slot, value, reading_.curve(value, name));
+        break;
+      case FieldKind::table:
+        refer(field.slot, value, reading_.table(value, field.unit, field.second_unit, name));
+        break;
+      case FieldKind::pulleys:
+        refer(field.slot, value, reading_.pulleys(value, name));
+        break;
+      case FieldKind::function:
+        read_function(field, field.slot, value);
+        break;
+      case FieldKind::function_pair:
+        read_functions(field, value);
+        break;
+    }
+  }
+
+  void read_pair(const FieldDescription& field, const JsonValue& value, const ExpectedDimension& dimension) {
+    const auto read = reading_.numbers.read_pair(value, dimension, {field.key, owner_});
+    std::copy(read.begin(), read.end(), slots_.begin() + field.slot);
+  }
+
+  void read_column(const FieldName& name, const JsonValue& value) {
+    if (!value.is(JsonKind::string)) {
+      reading_.error(value,
+                     fmt::format("{} must be the name of a column; this is {}", name.text(), describe(value.kind())));
+      return;
+    }
+    element_.attachment[0].body = reading_.name(value);
+    element_.attachment[0].form = AttachmentTemplate::Form::origin;
+    bounds_angle_ = value.text().ends_with(".angle");
+  }
+
+  /// The slot holds the number of something in a list of the scene.
+  void refer(int slot, const JsonValue& value, int number) {
+    slots_[static_cast<std::size_t>(slot)] = NumberValue::constant(number, value.offset());
+    element_.indirect |= 1u << slot;
+  }
+
+  /// A law of state, which forces alone may follow, a function of time, or a plain number.
+  void read_function(const FieldDescription& field, int slot, const JsonValue& value) {
+    const FieldName name{field.key, owner_};
+    int number = type_.force ? reading_.state_law(value, name) : -1;
+    NumberValue& plain = slots_[static_cast<std::size_t>(slot)];
+    if (number < 0) number = reading_.function(value, dimension_of(field.unit), name, plain);
+    if (number >= 0) refer(slot, value, number);
+  }
+
+  void read_functions(const FieldDescription& field, const JsonValue& value) {
+    if (!value.is(JsonKind::array) || value.size() != 2) {
+      reading_.error(value, FieldName{field.key, owner_}.text() + " must be a list of two functions [f_x, f_y]");
+      return;
+    }
+    int slot = field.slot;
+    for (const JsonValue& part : value.elements()) read_function(field, slot++, part);
+  }
+
+  SceneReading& reading_;
+  const JsonValue& object_;
+  const ElementDescription& type_;
+  ElementTemplate element_;
+  std::string owner_;
+  JsonValue place_;  // "at"
+  std::array<JsonValue, most_keys> values_;
+  std::array<std::size_t, most_keys> key_of_field_{};
+  std::array<NumberValue, 2 * most_keys> slots_;
+  bool bounds_angle_ = false;  // the column that a bound is about is an angle
+};
 
 }  // namespace
-
-void SceneReading::attachment(const JsonValue& value, std::string_view key, std::string_view owner, bool has_at,
-                              AttachmentTemplate& attachment, NumberValue* local) {
-  using Form = AttachmentTemplate::Form;
-  const FieldName field{key, owner};
-  if (value.is(JsonKind::string)) {
-    const std::size_t dot = find_dot(value.text());
-    attachment.body = name(value, 0, dot);
-    attachment.form = Form::origin;
-    if (dot == std::string_view::npos) return;
-    attachment.form = Form::point;
-    attachment.point = name(value, dot + 1);
-    if (has_at) error(value, field.text() + " may not name a point where \"at\" gives the place");
-    return;
-  }
-  const bool list = value.is(JsonKind::array) && value.size() == 2 && value.elements().begin()->is(JsonKind::string);
-  if (!list) {
-    error(value, fmt::format("{} must be \"body\", \"body.point\" or [\"body\", [x', y']]; this is {}", field.text(),
-                             describe(value.kind())));
-    return;
-  }
-  auto element = value.elements().begin();
-  const std::string_view text = element->text();
-  if (find_dot(text) != std::string_view::npos) {
-    error(*element, field.text() + " must name a body without a point, since a place in its frame follows");
-  } else {
-    attachment.body = name(*element);
-    attachment.form = Form::local;
-  }
-  ++element;
-  const auto place = numbers.read_pair(*element, dimension_of(UnitKind::length), field);
-  if (local) std::copy(place.begin(), place.end(), local);
-  if (has_at) error(value, field.text() + " may not give a place where \"at\" gives it");
-}
 
 void SceneReading::element(const JsonValue& object, std::string_view list, BlockTemplate& block) {
   if (!object.is(JsonKind::object)) {
@@ -114,171 +273,8 @@ void SceneReading::element(const JsonValue& object, std::string_view list, Block
           fmt::format("an entry of \"{}\" must be an object {{...}}; this is {}", list, describe(object.kind())));
     return;
   }
-  const JsonValue type_value = object.find("type");
-  const ElementDescription* type = read_type(object, type_value, list, diagnostics);
-  if (!type) return;
-
-  // Keys: the common ones, then those of the fields; points are read through i and j.
-  std::array<std::string_view, most_keys> keys{"type", "name", "i", "at", "j"};
-  const bool attached = type->bodies > 0;
-  std::size_t count = type->bodies == 2 ? 5 : attached ? 4 : 2;
-  std::array<std::size_t, most_keys> key_of_field{};
-  for (std::size_t f = 0; f < type->fields.size(); ++f) {
-    if (type->fields[f].kind == FieldKind::point) continue;
-    key_of_field[f] = count;
-    keys[count++] = type->fields[f].key;
-  }
-  const std::size_t first_synonym = count;
-  for (const FieldDescription& field : type->fields) {
-    if (!field.synonym.empty()) keys[count++] = field.synonym;
-  }
-  std::array<JsonValue, most_keys> v;
-  const JsonValue named = object.find("name");
-  const std::string owner = owner_text(type->type, named);
-  read_members(object, std::span(keys).first(count), owner, v, diagnostics);
-  const JsonValue at = attached ? v[3] : JsonValue();
-  for (std::size_t f = 0, other = first_synonym; f < type->fields.size(); ++f) {
-    const FieldDescription& field = type->fields[f];
-    if (field.synonym.empty()) continue;
-    const JsonValue& synonym = v[other++];
-    JsonValue& value = v[key_of_field[f]];
-    if (value && synonym)
-      error(synonym, fmt::format("{}: {} is another name of {}; give one of them", owner, in_quotes(field.synonym),
-                                 in_quotes(field.key)));
-    if (!value) value = synonym;
-  }
-
-  ElementTemplate element;
-  element.offset = static_cast<std::uint32_t>(object.offset());
-  element.kind = type->force ? ElementKind::force : list == "drivers" ? ElementKind::driver : ElementKind::constraint;
-  element.type = static_cast<short>(type - element_descriptions().data());
-  if (named && !read_string(named, {"name", type->type}, diagnostics).data()) {
-    // reported
-  } else if (named) {
-    element.name = name(named);
-    if (!element.name.empty() || named.text().empty()) {
-      if (const std::string problem = element_name_problem(sample(element.name)); !problem.empty())
-        error(named, problem);
-    }
-  }
-
-  std::array<NumberValue, 2 * most_keys> slots;
-  const JsonValue ends[2] = {attached ? v[2] : JsonValue(), type->bodies == 2 ? v[4] : JsonValue()};
-  bool bounds_angle = false;
-  for (int body = 0; body < type->bodies; ++body) {
-    const std::string_view key = body == 0 ? "i" : "j";
-    NumberValue* local = nullptr;
-    for (const FieldDescription& field : type->fields) {
-      if (field.kind == FieldKind::point && field.body == body) local = &slots[static_cast<std::size_t>(field.slot)];
-    }
-    if (ends[body]) {
-      attachment(ends[body], key, owner, static_cast<bool>(at), element.attachment[body], local);
-    } else if (body == 0 || !type->second_body_optional) {
-      error(object, fmt::format("{} needs {}", owner, in_quotes(key)));
-    }
-  }
-
-  for (std::size_t f = 0; f < type->fields.size(); ++f) {
-    const FieldDescription& field = type->fields[f];
-    if (field.kind == FieldKind::point) continue;
-    const JsonValue& value = v[key_of_field[f]];
-    if (!value) {
-      const bool driven = element.kind == ElementKind::driver && field.kind == FieldKind::function;
-      if (!field.unless.empty() && object.find(field.unless)) continue;
-      const std::string or_else = field.unless.empty() ? "" : " or " + in_quotes(field.unless);
-      if (field.required || driven) error(object, fmt::format("{} needs {}{}", owner, in_quotes(field.key), or_else));
-      continue;
-    }
-    element.given |= 1u << f;
-    const auto slot = static_cast<std::size_t>(field.slot);
-    const FieldName name_of_field{field.key, owner};
-    const auto pair = [&](const ExpectedDimension& dimension) {
-      const auto read = numbers.read_pair(value, dimension, name_of_field);
-      slots[slot] = read[0];
-      slots[slot + 1] = read[1];
-    };
-    const auto index = [&](int number) {
-      slots[slot] = NumberValue::constant(number, value.offset());
-      element.indirect |= 1u << slot;
-    };
-    const auto function_at = [&](std::size_t k, const JsonValue& part) {
-      int number = type->force ? state_law(part, name_of_field) : -1;
-      if (number < 0) number = function(part, dimension_of(field.unit), name_of_field, slots[k]);
-      if (number < 0) return;
-      slots[k] = NumberValue::constant(number, part.offset());
-      element.indirect |= 1u << k;
-    };
-    switch (field.kind) {
-      case FieldKind::point:
-        break;
-      case FieldKind::axis:
-        pair(ExpectedDimension());
-        break;
-      case FieldKind::place:
-        pair(dimension_of(UnitKind::length));
-        break;
-      case FieldKind::number:
-        slots[slot] = numbers.read(value, field.unit, name_of_field);
-        break;
-      case FieldKind::column:
-        if (!value.is(JsonKind::string)) {
-          error(value, fmt::format("{} must be the name of a column; this is {}", name_of_field.text(),
-                                   describe(value.kind())));
-          break;
-        }
-        element.attachment[0].body = name(value);
-        element.attachment[0].form = AttachmentTemplate::Form::origin;
-        bounds_angle = value.text().ends_with(".angle");
-        break;
-      case FieldKind::bound:
-        slots[slot] = numbers.read(value, bounds_angle ? field.second_unit : field.unit, name_of_field);
-        break;
-      case FieldKind::flag:
-        slots[slot] = NumberValue::constant(read_flag(value, name_of_field, diagnostics) ? 1 : 0, value.offset());
-        break;
-      case FieldKind::side: {
-        const bool good = value.is(JsonKind::number) && (value.number() == 1 || value.number() == -1);
-        if (!good) error(value, name_of_field.text() + " must be 1 or -1");
-        slots[slot] = NumberValue::constant(good ? value.number() : 1, value.offset());
-        break;
-      }
-      case FieldKind::choice: {
-        const std::array words{field.first_word, field.second_word};
-        slots[slot] =
-            NumberValue::constant(read_word(value, words, name_of_field, diagnostics) == 1 ? 1 : 0, value.offset());
-        break;
-      }
-      case FieldKind::curve:
-        index(curve(value, name_of_field));
-        break;
-      case FieldKind::table:
-        index(table(value, field.unit, field.second_unit, name_of_field));
-        break;
-      case FieldKind::pulleys:
-        index(pulleys(value, name_of_field));
-        break;
-      case FieldKind::function:
-        function_at(slot, value);
-        break;
-      case FieldKind::function_pair: {
-        if (!value.is(JsonKind::array) || value.size() != 2) {
-          error(value, name_of_field.text() + " must be a list of two functions [f_x, f_y]");
-          break;
-        }
-        auto part = value.elements().begin();
-        function_at(slot, *part);
-        ++part;
-        function_at(slot + 1, *part);
-        break;
-      }
-    }
-  }
-  element.first_number = keep(std::span(slots).first(static_cast<std::size_t>(type->slots)));
-  if (at) {
-    element.has_at = true;
-    keep(numbers.read_pair(at, dimension_of(UnitKind::length), {"at", owner}));
-  }
-  block.elements.push_back(element);
+  const ElementDescription* type = read_type(object, object.find("type"), list, diagnostics);
+  if (type) ElementReading(*this, object, *type, list).read(block);
 }
 
 }  // namespace catena

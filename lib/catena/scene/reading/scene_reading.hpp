@@ -86,6 +86,9 @@ class SceneReading {
   /// What a rope runs over: its number.
   int pulleys(const JsonValue& value, const FieldName& field);
 
+  /// Where an element holds a body: `local` takes a place in the body's frame, and may be none.
+  void attachment(const JsonValue& value, std::string_view key, std::string_view owner, bool has_at,
+                  AttachmentTemplate& attachment, NumberValue* local);
   void body(const JsonMember& member, BlockTemplate& block);
   void element(const JsonValue& object, std::string_view list, BlockTemplate& block);
   /// The member `key` of a scene or replicate block that holds bodies, elements or blocks.
@@ -101,7 +104,9 @@ class SceneReading {
   void smooth(DataColumns& columns, const PairUse& use, const FieldName& field);
   FunctionTemplate function_object(const JsonValue& value, const ExpectedDimension& unit, const FieldName& field);
   FunctionTemplate function_part(const JsonValue& value, const ExpectedDimension& unit, const FieldName& field);
+  void curve_of_kind(const JsonMember& member, const FieldName& field, CurveTemplate& result);
   void part(const JsonValue& object, std::string_view owner);
+  void part_list(const JsonValue& parts, const std::string& owner, BodyTemplate& body);
   /// The numbers of the one shape of these that is given; false if none is.
   bool shape(const JsonValue& rectangle, const JsonValue& disc, const JsonValue& polygon, const std::string& owner,
              PartTemplate& part);
@@ -110,8 +115,6 @@ class SceneReading {
   void drawn_shapes(const JsonValue& list, std::string_view body_owner, BodyTemplate& body);
   void ground_body(const JsonValue& value);
   void point_list(const JsonValue& value, BodyTemplate& body, std::string_view owner);
-  void attachment(const JsonValue& value, std::string_view key, std::string_view owner, bool has_at,
-                  AttachmentTemplate& attachment, NumberValue* local);
 };
 
 }  // namespace catena

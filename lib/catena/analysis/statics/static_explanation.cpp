@@ -1,0 +1,181 @@
+#include "catena/analysis/statics/static_explanation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "catena/analysis/pose/assemble.hpp"
+#include "catena/analysis/run/energyless_forces.hpp"
+#include "catena/analysis/spectrum/free_motions.hpp"
+#include "catena/analysis/statics/active_set_at.hpp"
+#include "catena/assembly/rope_ways.hpp"
+#include "catena/base/at.hpp"
+
+namespace catena {
+namespace {
+
+// A residual above this part of the forces is reported.
+constexpr double unsaid_rounding = 1e-9;
+// The square of this is the largest number.
+constexpr double largest_number = 1e154;
+// Overlaps below this many length scales count as absent.
+constexpr double absent_overlap = 1e-6;
+
+std::string body_of(const Evaluator& evaluator, int column) {
+  const Plan& plan = evaluator.plan();
+  const int body = plan.model_body[at(plan.coordinate[at(column)] / 3)];
+  return std::string(evaluator.model().body_name(body));
+}
+
+// Names the gaps of which rounding decides whether they are closed.
+void name_weak_gaps(const Evaluator& evaluator, StaticResult& result) {
+  const std::string names = names_of_weak(evaluator, result.gaps);
+  if (names.empty()) return;
+  result.report.warnings.push_back(
+      fmt::format("closed gaps whose force cannot be distinguished from rounding: {}", names));
+}
+
+// Describes why the last point is no equilibrium, from its accuracy and certificate.
+void describe_point(StaticSystem& system, const StaticAccuracy& a, double tolerance, const Certificate& c,
+                    Report& report) {
+  if (c.valid && c.negative_modes > 0 && a.holds()) {
+    report.message = fmt::format(
+        "every equilibrium that was found is unstable, the last one in {} mode{}, the lowest: {}; ask for it with "
+        "\"accept\": \"stationary\", or start nearer to a stable one",
+        c.negative_modes, c.negative_modes > 1 ? "s" : "",
+        c.mode.empty() ? "unknown" : describe_mode(system.evaluator(), c.mode, system.radius()));
+    return;
+  }
+  const std::string where = a.column >= 0 ? fmt::format(" at body \"{}\"", body_of(system.evaluator(), a.column)) : "";
+  report.message = fmt::format("no equilibrium found: the forces{} are out of balance by {:.3g} N, of {:.3g} N", where,
+                               a.residual, a.forces);
+  if (a.loads < a.forces) report.message += fmt::format(" and loads of {:.3g} N", a.loads);
+  if (system.plan().rows > static_cast<int>(system.plan().gap_rows.size())) {
+    report.message += fmt::format("; the constraints miss by {:.3g} m or rad", system.phi_norm() * system.length());
+  }
+  const bool stiff = a.rounding > tolerance * a.forces;
+  report.message +=
+      stiff ? fmt::format(
+                  "; likely cause: stiffnesses too large for the loads, {:.3g} N/m: rounding of places alone "
+                  "makes {:.3g} N of them; take a joint or a coupler instead, or a softer spring",
+                  system.matrix().largest_stiffness(), a.rounding)
+            : "; likely cause: a start far off, or an energy without a minimum nearby";
+}
+
+// The energy falls without end: names the body that has gone farthest from `start`.
+Report explain_unbounded(StaticSystem& system, const std::vector<double>& start) {
+  const Plan& plan = system.plan();
+  const std::span<const Frame<double>> frames = system.evaluator().frames();
+  int farthest = 0;
+  double most = -1;
+  for (int c = 0; c < plan.columns; ++c) {
+    const int coordinate = plan.coordinate[at(c)];
+    const Frame<double>& f = frames[at(coordinate / 3)];
+    const double now = coordinate % 3 == 0 ? f.x : coordinate % 3 == 1 ? f.y : f.phi;
+    const double gone = std::abs(now - start[at(coordinate)]) / (coordinate % 3 == 2 ? 1 : system.length());
+    if (gone > most) {
+      most = gone;
+      farthest = c;
+    }
+  }
+  return {
+      Status::unbounded,
+      fmt::format("the energy has no minimum: body \"{}\" {} without end; likely cause: nothing holds it",
+                  body_of(system.evaluator(), farthest), plan.coordinate[at(farthest)] % 3 == 2 ? "turns" : "moves"),
+      {}};
+}
+
+}  // namespace
+
+std::optional<Report> find_overflow(StaticSystem& system, std::span<double> lambda) {
+  system.fill(lambda, Curvature::exact, 0);
+  const Plan& plan = system.plan();
+  const std::span<const int> diagonal = system.matrix().structure().diagonal;
+  for (int c = 0; c < plan.columns; ++c) {
+    const double stiffness = system.matrix().values()[at(diagonal[at(c)])], force = system.gradient()[at(c)];
+    if (std::abs(stiffness) <= largest_number && std::abs(force) <= largest_number) continue;
+    const bool turning = plan.coordinate[at(c)] % 3 == 2, forced = !(std::abs(force) <= largest_number);
+    Report report;
+    report.status = Status::refused;
+    report.message = fmt::format(
+        "{1} on body \"{0}\" is too large to compute with: products of numbers beyond {2:.0e} {3} cannot be "
+        "represented; likely cause: a mistyped unit or exponent",
+        body_of(system.evaluator(), c), forced ? (turning ? "a torque" : "a force") : "a stiffness", largest_number,
+        forced ? (turning ? "N m" : "N") : (turning ? "N m/rad" : "N/m"));
+    return report;
+  }
+  return {};
+}
+
+Report refuse_gaps_without_energy(StaticSystem& system) {
+  const Evaluator& evaluator = system.evaluator();
+  const int element = system.plan().row_element[at(system.plan().gap_rows.front())];
+  return {Status::refused,
+          fmt::format("{}, and one-sided elements such as {} \"{}\" are treated by minimising one",
+                      forces_without_energy(evaluator.model()), evaluator.model().element_type(element),
+                      evaluator.model().element_name(element)),
+          {}};
+}
+
+Report explain_failure(StaticSystem& system, const StaticOutcome& outcome, const StaticAccuracy& accuracy,
+                       double tolerance, const std::vector<double>& start, const StaticResult& result) {
+  const Evaluator& evaluator = system.evaluator();
+  const Plan& plan = system.plan();
+  const int rope = rope_at_circle(evaluator);  // where the search ended
+  if (outcome.end == StaticEnd::cancelled) {
+    return {Status::cancelled,
+            fmt::format("stopped after {} iterations, before an equilibrium was found", result.iterations),
+            {}};
+  }
+  if (outcome.end == StaticEnd::unbounded) return explain_unbounded(system, start);
+  const std::vector<double> gap = gap_values(system);
+  system.close_gaps(std::vector<char>(gap.size(), 0));
+  Assembler assembler(system.evaluator());
+  std::vector<double> assembled = start;
+  if (const AssemblyOutcome assembly = assembler.assemble(assembled); !assembly.ok()) return assembly;
+  Report report;
+  report.status = Status::not_converged;
+  describe_point(system, accuracy, tolerance, result.certificate, report);
+  if (rope >= 0) {
+    report.message +=
+        fmt::format("; an end or a pulley of rope \"{}\" came to the circle of the next pulley, where it has no way",
+                    evaluator.model().element_name(rope));
+  }
+  const auto worst = std::min_element(gap.begin(), gap.end());
+  if (worst != gap.end() && *worst < -absent_overlap * system.length()) {
+    const int element = plan.row_element[at(plan.gap_rows[static_cast<std::size_t>(worst - gap.begin())])];
+    report.message +=
+        fmt::format("; {} \"{}\" is violated by {:.3g}: not all of the one-sided elements may be compatible",
+                    evaluator.model().element_type(element), evaluator.model().element_name(element), -*worst);
+  }
+  return report;
+}
+
+void warn_of_rounding(const StaticAccuracy& a, Report& report) {
+  if (a.balanced || a.residual <= unsaid_rounding * a.forces) return;
+  report.warnings.push_back(
+      fmt::format("forces of {1:.3g} N balance to {0:.2g} N only: rounding of places changes the force of the stiffest "
+                  "springs by up to {2:.2g} N, whatever the tolerance",
+                  a.residual, a.forces, a.rounding));
+}
+
+void add_warnings(StaticSystem& system, const StaticAccuracy& accuracy, StaticResult& result) {
+  const Evaluator& evaluator = system.evaluator();
+  std::vector<std::string>& warnings = result.report.warnings;
+  warn_of_rounding(accuracy, result.report);
+  name_weak_gaps(evaluator, result);
+  const Certificate& c = result.certificate;
+  const std::string motion = c.mode.empty() ? "" : describe_mode(evaluator, c.mode, system.radius());
+  if (c.neutral) {
+    warnings.push_back(
+        fmt::format("neutral to second order: {} change{} the energy by less than rounding; the softest: {}",
+                    describe_free_motions(c.neutral_modes, c.free_bodies), c.neutral_modes > 1 ? "s" : "", motion));
+  }
+  if (c.negative_modes > 0) {
+    warnings.push_back(fmt::format("unstable: {} negative mode{}, the lowest: {}", c.negative_modes,
+                                   c.negative_modes > 1 ? "s" : "", motion));
+  }
+}
+
+}  // namespace catena

@@ -1,0 +1,55 @@
+#include "catena/analysis/statics/static_judge.hpp"
+
+#include <algorithm>
+
+#include "catena/base/at.hpp"
+
+namespace catena {
+namespace {
+
+// Refinement of the step that is weighed.
+constexpr double rounding_tolerance = 1e-15;
+// Largest remaining change where forces are known only to rounding of stiff springs, length scales or rad.
+constexpr double rounded_change = 1e-9;
+
+// Takes the part along the mode out of the change. Modes are of length 1 in the metric (1, 1, radius^2).
+void take_out(StaticSystem& system, std::span<const double> mode, std::vector<double>& change) {
+  const std::span<const double> inverse_arms = system.matrix().inverse_arms();
+  double along = 0;
+  for (std::size_t c = 0; c < change.size(); ++c) along += change[c] * mode[c] / (inverse_arms[c] * inverse_arms[c]);
+  for (std::size_t c = 0; c < change.size(); ++c) change[c] -= along * mode[c];
+}
+
+}  // namespace
+
+Certificate StaticJudge::certify_point(const std::vector<double>& q, std::span<const double> lambda,
+                                       const ActiveSet& gaps) {
+  if (!system_.has_gaps()) return certify(system_, lambda);
+  std::vector<char> strong = gaps.closed;
+  for (std::size_t k = 0; k < strong.size(); ++k) strong[k] = strong[k] && !gaps.weak[k];
+  system_.close_gaps(strong);
+  system_.move_to(q);
+  const Certificate certificate = certify(system_, lambda);
+  system_.close_gaps(gaps.closed);
+  system_.move_to(q);
+  return certificate;
+}
+
+const StaticAccuracy& StaticJudge::weigh(std::span<const double> lambda) {
+  return accuracy_ = judge_balance(system_, lambda, tolerance_);
+}
+
+bool StaticJudge::is_accurate(std::span<const double> lambda, const Certificate& certificate) {
+  weigh(lambda);
+  if (!(system_.phi_norm() <= std::max(tolerance_, 10 * system_.rounding_change()))) return false;
+  if (accuracy_.balanced || !accuracy_.rounded) return accuracy_.balanced;
+  std::vector<double> force(at(system_.plan().columns)), gap(at(system_.plan().rows), 0.0);
+  system_.residual(lambda, force);
+  for (double& f : force) f = -f;
+  const StaticStep step = system_.solve(force, gap, rounding_tolerance);
+  std::vector<double> change(step.change.begin(), step.change.end());
+  if (certificate.neutral && !certificate.mode.empty()) take_out(system_, certificate.mode, change);
+  return system_.change_norm(change) <= rounded_change;
+}
+
+}  // namespace catena

@@ -1,0 +1,138 @@
+#include "catena/analysis/statics/static_trial.hpp"
+
+#include <algorithm>
+
+#include "catena/analysis/pose/assemble.hpp"
+#include "catena/analysis/statics/static_descent.hpp"
+#include "catena/analysis/statics/static_ipopt.hpp"
+#include "catena/analysis/statics/static_nlopt.hpp"
+#include "catena/analysis/statics/static_settling.hpp"
+#include "catena/base/at.hpp"
+
+namespace catena {
+namespace {
+
+// Steps downhill from where Newton's full steps do not settle: more where there is more to move, until that takes some
+// ten seconds.
+constexpr int least_downhill = 200, most_downhill_work = 20'000'000;
+// Newton's method may move the result of another solver by this much, length scales or rad: more is another
+// equilibrium.
+constexpr double largest_polish = 0.05;
+constexpr double rounding_tolerance = 1e-15;
+// Below this interior-point iterations only accumulate rounding: Newton's method does the rest.
+constexpr double finest_barrier = 1e-10;
+// Tolerance of gaps and their forces, whatever the option: the last steps are cheap.
+constexpr double gap_tolerance = 1e-12;
+// Steps that do not converge soon rarely do: more are allowed only after other methods have failed.
+constexpr int few_first_steps = 40, most_first_steps = 80;
+// Constraints that hold to this part of the length are not assembled first.
+constexpr double assembled = 1e-12;
+
+const char* solver_of(StaticWay way) {
+  switch (way) {
+    case StaticWay::ipopt:
+      return "ipopt";
+    case StaticWay::nlopt:
+      return "nlopt";
+    case StaticWay::settling:
+      return "settling";
+    case StaticWay::valley:
+    case StaticWay::newton:
+      break;
+  }
+  return "newton";
+}
+
+}  // namespace
+
+StaticOutcome StaticTrial::run(std::vector<double>& q, std::vector<double>& lambda, bool warm, StaticWay way,
+                               StaticResult& result) {
+  result.solver = solver_of(way);
+  if (system_.has_gaps()) return run_with_gaps(q, lambda, warm, way, result);
+  const StaticOutcome outcome = run_smooth(q, lambda, warm, way);
+  result.iterations += outcome.iterations;
+  const bool is_refined = way == StaticWay::ipopt || way == StaticWay::nlopt || way == StaticWay::settling;
+  return is_refined && outcome.converged() ? polish_by_newton(q, lambda, outcome) : outcome;
+}
+
+StaticOutcome StaticTrial::run_smooth(std::vector<double>& q, std::vector<double>& lambda, bool warm, StaticWay way) {
+  system_.move_to(q);
+  if (way == StaticWay::ipopt || way == StaticWay::nlopt) return optimise(q, lambda, warm, way);
+  if (way == StaticWay::settling) return solve_by_settling(system_, q, lambda, {.tolerance = options_.tolerance});
+  if (way == StaticWay::valley) {
+    Assembler assembler(system_.evaluator());
+    std::vector<double> start = q;
+    if (system_.phi_norm() <= assembled || assembler.assemble(start).ok()) {
+      q = start;
+      return solve_by_descent(system_, q, lambda, {.tolerance = options_.tolerance});
+    }
+  }
+  StaticOutcome outcome = solve_by_newton(
+      system_, q, lambda, {.tolerance = options_.tolerance, .warm = warm, .stationary = options_.stationary});
+  if (outcome.end != StaticEnd::slow) return outcome;
+  // Full steps that alternate have lowered the energy all the same: descent continues from their end.
+  const int columns = std::max(system_.plan().columns, 1), steps = outcome.iterations;
+  const int most = std::max(least_downhill, std::min(least_downhill + 2 * columns, most_downhill_work / columns));
+  outcome = solve_by_descent(system_, q, lambda, {.max_iterations = most, .tolerance = options_.tolerance});
+  outcome.iterations += steps;
+  return outcome;
+}
+
+StaticOutcome StaticTrial::optimise(std::vector<double>& q, std::vector<double>& lambda, bool warm, StaticWay way) {
+  if (way == StaticWay::nlopt) return solve_by_nlopt(system_, q, lambda, {.tolerance = options_.tolerance});
+  return solve_by_ipopt(
+      system_, q, lambda,
+      {.tolerance = std::max(options_.tolerance, finest_barrier), .warm = warm, .verbose = options_.verbose});
+}
+
+StaticOutcome StaticTrial::run_with_gaps(std::vector<double>& q, std::vector<double>& lambda, bool warm, StaticWay way,
+                                         StaticResult& result) {
+  const StaticGapOptions exact{.first_steps = result.iterations == 0 ? few_first_steps : most_first_steps,
+                               .tolerance = std::min(options_.tolerance, gap_tolerance)};
+  StaticOutcome outcome;
+  if (way == StaticWay::ipopt || way == StaticWay::nlopt) {
+    system_.use_gaps();
+    system_.move_to(q);
+    outcome = optimise(q, lambda, warm, way);
+    result.iterations += outcome.iterations;
+    return outcome.converged() ? finish_with_gaps(system_, q, lambda, result.gaps, exact) : outcome;
+  }
+  if (warm) {
+    // Where the closed gaps stay closed this suffices for a small change of parameters.
+    const std::vector<double> before = q, multipliers = lambda;
+    outcome = finish_with_gaps(system_, q, lambda, result.gaps, exact);
+    result.iterations += outcome.iterations;
+    if (outcome.converged()) return outcome;
+    q = before;
+    lambda = multipliers;
+  }
+  outcome = solve_with_gaps(system_, q, lambda, result.gaps, exact);
+  result.iterations += outcome.iterations;
+  return outcome;
+}
+
+// Refines the result of another solver to rounding; keeps it where Newton's method would move to another equilibrium.
+StaticOutcome StaticTrial::polish_by_newton(std::vector<double>& q, std::vector<double>& lambda,
+                                            StaticOutcome outcome) {
+  const std::vector<double> found = q, multipliers = lambda;
+  // To rounding, whatever the tolerance: the steps cost little beside those before.
+  const StaticOutcome polished = solve_by_newton(
+      system_, q, lambda, {.max_iterations = 20, .tolerance = rounding_tolerance, .warm = true, .stationary = true});
+  std::vector<double> change(at(system_.plan().columns));
+  for (std::size_t c = 0; c < change.size(); ++c) {
+    const std::size_t k = at(system_.plan().coordinate[c]);
+    change[c] = q[k] - found[k];
+  }
+  const bool better = polished.converged() || polished.residual < outcome.residual;
+  if (better && system_.change_norm(change) <= largest_polish) {
+    outcome.residual = polished.residual;
+    outcome.step = polished.step;
+    return outcome;
+  }
+  q = found;
+  lambda = multipliers;
+  system_.move_to(q);
+  return outcome;
+}
+
+}  // namespace catena
