@@ -90,6 +90,10 @@ class Kinematics {
   bool choose_better_rows();
   enum class StepOutcome { made, dipped, too_long, crossed, left_curve };
   StepOutcome try_step(double t, bool ignore_dips);
+  struct Pace;
+  Report go_along_bridge(double t, Pace& pace);
+  Report take_step(double next, double target, Pace& pace);
+  Report shorten_step(StepOutcome outcome, double next, double target, Pace& pace, Report& passed);
   bool leaves_curve(double t);
   bool heads_for_singularity(double t) const;
   void remember_margins();

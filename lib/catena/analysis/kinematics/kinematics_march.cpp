@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <stdexcept>
+#include <utility>
 
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
@@ -41,10 +41,6 @@ constexpr std::array<double, 6> reaches = {0.2, 0.1, 0.05, 0.015, 0.004, 0.001};
 constexpr double try_again = 1.0 / 32;
 // Equations are chosen again where their reciprocal condition number has fallen to this part of its value.
 constexpr double drifted = 0.01;
-// A step fails where it is longer than about half of the remaining way to a dead point.
-constexpr double most_steps_left = 4;
-// A zero of a determinant further away than so many times the distance estimated from the rates is a different one.
-constexpr double longest_way = 1e3;
 // Steps made after one that failed before their length may grow again.
 constexpr int patience = 2;
 // Least number of steps between rows where the ends of curves are watched.
@@ -178,15 +174,23 @@ Report Kinematics::cancelled() const {
   return report;
 }
 
+// How long steps are on the way to one instant, and what was tried since the last one that was made.
+struct Kinematics::Pace {
+  double direction;  // +1 or -1
+  double shortest;   // s: below it steps are rounding
+  double step;       // s
+  int made_since_failure = patience;
+  std::size_t attempt = 0;   // number of the reach over which a passage is tried next
+  double first_trial = 0;    // s: length of the step at which the first one was tried
+  bool ignore_dips = false;  // all were tried in vain: the determinants only look like vanishing
+
+  bool is_exhausted(double t) const { return step < shortest || t + direction * step == t; }
+};
+
 Report Kinematics::follow_to(double t) {
   Report report;
-  const double span = std::abs(t - t_), direction = t > t_ ? 1 : -1;
-  const double tiny = smallest_step * std::max(span, std::abs(t));
-  double step = span;
-  std::size_t attempt = 0;
-  int made_since_failure = patience;
-  bool ignore_dips = false;
-  double first_trial = 0;
+  const double span = std::abs(t - t_);
+  Pace pace{.direction = t > t_ ? 1.0 : -1.0, .shortest = smallest_step * std::max(span, std::abs(t)), .step = span};
   // Within a run its own limits hold.
   std::optional<Evaluator::TimeLimit> limit;
   if (!observer_) {
@@ -201,192 +205,100 @@ Report Kinematics::follow_to(double t) {
   on_bridge_ = false;
   while (t_ != t) {
     // A curve that ends must not be left and reached again within a step.
-    if (watched_.has_ends()) step = std::min(step, span / steps_to_a_row);
+    if (watched_.has_ends()) pace.step = std::min(pace.step, span / steps_to_a_row);
+    Report ended;
     if (!bridge_.empty()) {
-      if (choice_ && direction * (t - choice_->t) > 0) {
-        const SingularPoint point = *choice_;
-        if (const Report taken = take_branch(point, options_.branch, direction); !taken.ok()) return taken;
-      }
-      if (t >= bridge_from_ && t <= bridge_to_) {
-        place_on_bridge(t);
-        break;
-      }
-      leave_bridge(direction > 0 ? bridge_to_ : bridge_from_);
-      step = std::max(std::abs(t - t_), tiny);
-      continue;
+      ended = go_along_bridge(t, pace);
+    } else {
+      const bool last = std::abs(t - t_) <= pace.step * (1 + 1e-9);
+      const double next = last ? t : t_ + pace.direction * pace.step;
+      const StepOutcome outcome = try_step(next, pace.ignore_dips);
+      ended = outcome == StepOutcome::made ? take_step(next, t, pace) : shorten_step(outcome, next, t, pace, report);
     }
-    const bool last = std::abs(t - t_) <= step * (1 + 1e-9);
-    const double next = last ? t : t_ + direction * step;
-    const StepOutcome outcome = try_step(next, ignore_dips);
-    if (outcome == StepOutcome::made) {
-      q_.swap(trial_);
-      t_ = next;
-      has_velocity_ = has_acceleration_ = ignore_dips = false;
-      ++evaluator_.counters.steps;
-      ++made_since_failure;
-      remember_margins();
-      if (const Report consistent = check_redundant_rows(); !consistent.ok()) return consistent;
-      if (chosen_rcond_ > 0 && solver_.rcond() < drifted * chosen_rcond_) choose_better_rows();
-      if (t_ != t) {
-        if (observer_ && !observer_->proceed(t_)) return cancelled();
-        bool can_grow = true;
-        // Between rows the velocity is worth its solve: it makes the next prediction cubic.
-        if (solver_.solve_velocity(qd_, false)) {
-          has_velocity_ = true;
-          predictor_.push(t_, q_, qd_, {});
-          double turning = 0;
-          if (step * solver_.distance(qd_, nothing_, &turning) > reaches.front()) attempt = 0;
-          can_grow = 2 * step * turning < longest_step;
-        }
-        if (can_grow && made_since_failure > patience && newton_.first_turn < largest_turn / 8) step *= 2;
-      }
-      continue;
-    }
-    ++evaluator_.counters.rejected;
-    made_since_failure = 0;
-    if (!has_velocity_) find_velocity();
-    if (outcome == StepOutcome::left_curve) {
-      step = std::abs(next - t_) / 2;
-      if (!(step < tiny || t_ + direction * step == t_)) continue;
-      evaluator_.set_configuration(trial_);
-      Report left = watched_.check();
-      if (left.ok()) return stuck(next, t);
-      left.warnings = std::move(report.warnings);
-      return left;
-    }
-    const double length = std::abs(next - t_);
-    if (length < try_again * first_trial) attempt = 0;
-    if (attempt < reaches.size() && has_velocity_ && length <= bridge_length((t_ + next) / 2, reaches[attempt]) / 2) {
-      if (attempt == 0) {
-        first_trial = length;
-        if (choose_better_rows()) continue;
-      }
-      const Passage passage = pass_singular(next, t, reaches[attempt], report);
-      if (passage == Passage::failed) return report;
-      if (passage != Passage::none) {
-        attempt = 0;
-        continue;
-      }
-      ++attempt;
-      ignore_dips = outcome == StepOutcome::dipped && attempt == reaches.size();
-      if (ignore_dips) continue;
-    } else if (outcome == StepOutcome::dipped && attempt == reaches.size()) {
-      ignore_dips = true;
-      continue;
-    }
-    step = std::min(step, std::abs(next - t_)) / 2;
-    if (step < tiny || t_ + direction * step == t_) return stuck(next, t);
+    if (ended.ok()) continue;
+    ended.warnings.insert(ended.warnings.begin(), report.warnings.begin(), report.warnings.end());
+    return ended;
   }
   return report;
 }
 
-// No step can be made: determines whether the drivers prescribe an impossible motion (w^T nu != 0) or branches meet
-// here.
-Report Kinematics::stuck(double next, double target) {
-  evaluator_.set_time(t_);
-  trial_ = q_;
-  std::vector<double> w(at(plan_->rows)), nu(at(plan_->rows)), z(q_.size(), 0.0);
-  solver_.factor_at(q_);
-  const bool found = solver_.null_vectors(w, z);
-  evaluator_.nu(nu);
-  SingularPoint point;
-  point.t = t_ + (next - t_) / 2;
-  point.q = q_;
-  if (found) {
-    point.name_bodies(evaluator_, std::span(&z, 1));
-    point.find_driver(evaluator_, w, nu);
+// On a stretch that a bridge spans: the instant on it, or its end.
+Report Kinematics::go_along_bridge(double t, Pace& pace) {
+  if (choice_ && pace.direction * (t - choice_->t) > 0) {
+    const SingularPoint point = *choice_;
+    if (const Report taken = take_branch(point, options_.branch, pace.direction); !taken.ok()) return taken;
   }
-  if (found && disagreement(evaluator_, w, nu) > clear_disagreement) {
-    point.kind = SingularPoint::Kind::lock_up;
-    locate_lock_up(target, point);
-    return lock_up(std::move(point));
+  if (t >= bridge_from_ && t <= bridge_to_) {
+    place_on_bridge(t);
+    return {};
   }
-  std::size_t heaviest = 0;
-  const auto weight = [&](std::size_t r) {
-    return std::abs(w[r]) * (plan_->row_is_angle[r] ? 1 : evaluator_.length_scale());
-  };
-  for (std::size_t r = 0; r < w.size(); ++r) {
-    if (weight(r) > weight(heaviest)) heaviest = r;
-  }
-  const int element = plan_->row_element[heaviest];
-  const bool moving = std::any_of(nu.begin(), nu.end(), [](double rate) { return rate != 0; });
-  Report report;
-  report.status = found && moving ? Status::bifurcation : Status::singular;
-  report.message = fmt::format(
-      "the motion cannot be continued beyond the singular configuration at t = {:.12g} s{}", point.t,
-      found ? fmt::format("; most concerned: {} \"{}\"", model_->element_type(element), model_->element_name(element))
-            : "");
-  singular_points_.push_back(std::move(point));
-  return report;
+  leave_bridge(pace.direction > 0 ? bridge_to_ : bridge_from_);
+  pace.step = std::max(std::abs(t - t_), pace.shortest);
+  return {};
 }
 
-// Towards a dead point q = q* - a sqrt(t* - t), so that  t* - t = |qd|^2 / (2 qd . qdd)  and  q* = q + 2 (t* - t) qd,
-// but for terms of t* - t. However large the rounding of the rates, it is no further away than the failed step: point.t
-// is in the middle of that step. On this short distance the determinant of the singular block vanishes linearly: its
-// zero is q*, off the constraints by the square of the distance; and the instant follows from w^T Phi(q*, t*) = 0,
-// which this last distance does not change. False: no velocity leads there.
-bool Kinematics::locate_lock_up(double target, SingularPoint& point) {
-  std::vector<double> qd(q_.size(), 0.0), qdd(q_.size(), 0.0);
-  if (!solver_.solve_velocity(qd, false)) return false;
-  if (!solver_.solve_acceleration(qd, qdd, false)) std::fill(qdd.begin(), qdd.end(), 0.0);
-  double product = 0, square = 0;
-  for (std::size_t k = 0; k < 3 * at(plan_->moving); ++k) {
-    const double unit = k % 3 == 2 ? 1 : evaluator_.length_scale();
-    product += qd[k] / unit * (qdd[k] / unit);
-    square += qd[k] / unit * (qd[k] / unit);
+// The step to `next`, which was solved for, is made; the next one may be longer.
+Report Kinematics::take_step(double next, double target, Pace& pace) {
+  q_.swap(trial_);
+  t_ = next;
+  has_velocity_ = has_acceleration_ = pace.ignore_dips = false;
+  ++evaluator_.counters.steps;
+  ++pace.made_since_failure;
+  remember_margins();
+  if (Report consistent = check_redundant_rows(); !consistent.ok()) return consistent;
+  if (chosen_rcond_ > 0 && solver_.rcond() < drifted * chosen_rcond_) choose_better_rows();
+  if (t_ == target) return {};
+  if (observer_ && !observer_->proceed(t_)) return cancelled();
+  bool can_grow = true;
+  // Between rows the velocity is worth its solve: it makes the next prediction cubic.
+  if (solver_.solve_velocity(qd_, false)) {
+    has_velocity_ = true;
+    predictor_.push(t_, q_, qd_, {});
+    double turning = 0;
+    if (pace.step * solver_.distance(qd_, nothing_, &turning) > reaches.front()) pace.attempt = 0;
+    can_grow = 2 * pace.step * turning < longest_step;
   }
-  const double furthest = std::min(2 * most_steps_left * std::abs(point.t - t_), std::abs(target - t_));
-  double rest = square / (2 * product);
-  // So near that rounding determines the sign: the distance is taken as the largest possible.
-  if (!(rest * (target - t_) > 0)) rest = furthest;
-  rest = std::copysign(std::min(std::abs(rest), furthest), target - t_);
-  solver_.factor_at(q_);
-  std::vector<double> w(at(plan_->rows)), nu(w), z(q_.size());
-  const auto margins = solver_.block_margins();
-  const auto smaller = [](const BlockMargin& a, const BlockMargin& b) { return std::abs(a.pivot) < std::abs(b.pivot); };
-  const auto block = std::min_element(margins.begin(), margins.end(), smaller) - margins.begin();
-  const bool measured = !margins.empty() && solver_.null_vectors(w, z);
-  const auto determinant = [&](double part) {
-    for (std::size_t k = 0; k < q_.size(); ++k) point.q[k] = q_[k] + part * 2 * rest * qd[k];
-    const bool regular = measured && solver_.factor_at(point.q) > 0;
-    return regular ? solver_.block_margins()[static_cast<std::size_t>(block)].determinant : 0.0;
-  };
-  const double here = determinant(0), there = determinant(1);
-  double part = here == there ? 1 : here / (here - there);
-  if (const double left = determinant(part); left != here) part *= here / (here - left);
-  determinant(part > 0 && part < longest_way ? part : 1);
-  point.t = t_ + rest;
-  solver_.residual_at(point.q);
-  evaluator_.nu(nu);
-  double off = 0, speed = 0;
-  for (std::size_t r = 0; r < w.size(); ++r) off += w[r] * solver_.phi()[r], speed += w[r] * nu[r];
-  const double time = off / speed;
-  if (time * (target - t_) >= 0 && std::abs(time) <= std::abs(target - t_)) point.t = t_ + time;
-  if (point.driver >= 0) {
-    evaluator_.set_time(point.t);
-    point.driver_value = evaluator_.element_value(point.driver).f;
-  }
-  return true;
+  if (can_grow && pace.made_since_failure > patience && newton_.first_turn < largest_turn / 8) pace.step *= 2;
+  return {};
 }
 
-// A row at the lock-up: places and times are known, rates and loads grow without bound.
-void Kinematics::give_row_at_lock_up(const Needs& needs, RowObserver& observer) {
-  const SingularPoint& point = singular_points_.back();
-  const std::vector<double> none(std::max(q_.size(), at(plan_->rows)), std::numeric_limits<double>::quiet_NaN());
-  const std::span<const double> unknown(none);
-  evaluator_.set_time(point.t);
-  Snapshot row{.evaluator = evaluator_, .t = point.t, .q = point.q};
-  row.residual = solver_.residual_at(point.q) * evaluator_.length_scale();
-  if (needs.velocity || needs.acceleration || needs.multipliers) row.qd = unknown.first(q_.size());
-  if (needs.acceleration || needs.multipliers) row.qdd = unknown.first(q_.size());
-  if (needs.multipliers) row.lambda = unknown.first(at(plan_->rows));
-  if (needs.work) {
-    row.work = row.dissipated = none.front();
-    driver_work_.assign(model_->elements.size(), none.front());
-    row.driver_work = driver_work_;
-    row.initial_energy = initial_energy_;
+// The step to `next` failed: a singular configuration on the way is passed, or the step is halved. Not ok where neither
+// leads on; `passed` takes the warnings of passages.
+Report Kinematics::shorten_step(StepOutcome outcome, double next, double target, Pace& pace, Report& passed) {
+  ++evaluator_.counters.rejected;
+  pace.made_since_failure = 0;
+  if (!has_velocity_) find_velocity();
+  const double length = std::abs(next - t_);
+  if (outcome == StepOutcome::left_curve) {
+    pace.step = length / 2;
+    if (!pace.is_exhausted(t_)) return {};
+    evaluator_.set_configuration(trial_);
+    Report left = watched_.check();
+    return left.ok() ? stuck(next, target) : left;
   }
-  observer.observe(row);
+  const bool dipped = outcome == StepOutcome::dipped;
+  if (length < try_again * pace.first_trial) pace.attempt = 0;
+  if (pace.attempt < reaches.size() && has_velocity_ &&
+      length <= bridge_length((t_ + next) / 2, reaches[pace.attempt]) / 2) {
+    if (pace.attempt == 0) {
+      pace.first_trial = length;
+      if (choose_better_rows()) return {};
+    }
+    const Passage passage = pass_singular(next, target, reaches[pace.attempt], passed);
+    if (passage == Passage::failed) return std::exchange(passed, {});
+    if (passage != Passage::none) {
+      pace.attempt = 0;
+      return {};
+    }
+    ++pace.attempt;
+    pace.ignore_dips = dipped && pace.attempt == reaches.size();
+    if (pace.ignore_dips) return {};
+  } else if (dipped && pace.attempt == reaches.size()) {
+    pace.ignore_dips = true;
+    return {};
+  }
+  pace.step = std::min(pace.step, length) / 2;
+  return pace.is_exhausted(t_) ? stuck(next, target) : Report{};
 }
 
 }  // namespace catena

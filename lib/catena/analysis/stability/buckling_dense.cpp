@@ -38,6 +38,8 @@ constexpr double farthest = 1e8;
 constexpr double located = 1e-14;
 // Loads in closed form are accurate to 1e-16 of the steepest rate of change: used up to this multiple of its inverse.
 constexpr double well_known = 1e3;
+// Loads on both sides whose distances differ by this part lie equally far.
+constexpr double same_distance = 1e-12;
 // Half width, in parts of the distance, of the bracket that confirms a load in closed form.
 constexpr double confirming = 1e-5;
 
@@ -132,7 +134,7 @@ class Buckling::Spectrum {
   Report report_;
 };
 
-// The roots found so far on one side of the present value or on both.
+// The search for roots on both sides of the present value.
 class Buckling::Search {
  public:
   struct Root {
@@ -140,21 +142,183 @@ class Buckling::Search {
     int number = 0;  // of its mu
   };
 
-  Search(Spectrum& spectrum, double present) : spectrum_(spectrum), present_(present) {}
+  Search(Buckling& buckling, Spectrum& spectrum, Eigen::Index freedoms, const std::function<bool()>& go_on)
+      : buckling_(buckling),
+        spectrum_(spectrum),
+        freedoms_(freedoms),
+        go_on_(go_on),
+        present_(buckling.options_.present),
+        wanted_(at(buckling.options_.count)) {}
 
-  std::vector<Root> roots;
+  /// The nearest roots, in the order of their distance; of two at the same one, that above first.
+  Report find() {
+    if (Report first = find_first_step(); !first.ok()) return first;
+    if (!(change_ > no_change)) return {};
+    if (go_on_ && !go_on_()) return cancelled();
+    if (!find_in_closed_form()) {
+      roots_.clear();
+      if (Report searched = search_outwards(); !searched.ok()) return searched;
+    }
+    std::sort(roots_.begin(), roots_.end(), [](const Root& a, const Root& b) {
+      const double near = std::abs(std::abs(a.distance) - std::abs(b.distance));
+      if (near <= same_distance * std::abs(a.distance)) return a.distance > b.distance;
+      return std::abs(a.distance) < std::abs(b.distance);
+    });
+    roots_.resize(std::min(roots_.size(), wanted_));
+    return {};
+  }
+  const std::vector<Root>& roots() const { return roots_; }
 
-  /// All roots between two distances with these mu; `known`: where they are, if that is known.
-  void between(double a, const Eigen::VectorXd& mu_a, double b, const Eigen::VectorXd& mu_b, double known = 0) {
-    for (int k = 0; k < static_cast<int>(mu_a.size()); ++k) {
-      if ((mu_a[k] < 0) == (mu_b[k] < 0)) continue;
-      roots.push_back({known != 0 ? known : bracketed(k, a, mu_a[k], b, mu_b[k]), k});
+ private:
+  // The last two samples on one side.
+  struct Front {
+    double sign;
+    bool open = true;
+    std::vector<double> place{};
+    std::vector<Eigen::VectorXd> mu{};
+  };
+
+  static Report cancelled() { return {Status::cancelled, "stopped while loads were looked for", {}}; }
+
+  // The first step: where the stiffness has changed by a few percent of itself, to the side that the scene allows.
+  Report find_first_step() {
+    const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(freedoms_, freedoms_);
+    double too_small = 0, too_large = std::numeric_limits<double>::infinity();
+    step_ = present_ != 0 ? 0.1 * std::abs(present_) : 1;
+    for (int k = 0; k < most_tries; ++k) {
+      if (!spectrum_.evaluate(present_ + side_ * step_)) {
+        if (!buckling_.outside_) return spectrum_.report();
+        if (side_ > 0 && spectrum_.evaluate(present_ - step_)) {
+          side_ = -1;
+        } else {
+          too_large = std::min(too_large, step_);
+        }
+      }
+      if (step_ < too_large) {
+        change_ = (spectrum_.now() - unit).cwiseAbs().maxCoeff();
+        if (change_ >= least_change && change_ <= most_change) return {};
+        (change_ < least_change ? too_small : too_large) = step_;
+      }
+      if (too_small > 0 && std::isfinite(too_large)) {
+        if (too_large < 1.001 * too_small) return {};  // it jumps there: both sides of the jump are searched
+        step_ = std::sqrt(too_small * too_large);
+      } else if (std::isfinite(too_large)) {
+        step_ /= fine;
+      } else {
+        // No further than the change so far allows: an oscillating dependence must not be stepped over.
+        step_ *= std::clamp(std::sqrt(least_change * most_change) / change_, fine, coarse);
+      }
+    }
+    return {};
+  }
+
+  // Where the stiffness is linear in the parameter, as samples at three steps and at one on the other side confirm: the
+  // loads, confirmed one by one. False where that is not so.
+  bool find_in_closed_form() {
+    const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(freedoms_, freedoms_);
+    const Eigen::MatrixXd slope = (spectrum_.now() - unit) / (side_ * step_);
+    const double none = straight * change_ + spectrum_.rounding();
+    const auto is_on_line = [&](double distance) {
+      return spectrum_.evaluate(present_ + distance) &&
+             (spectrum_.now() - unit - distance * slope).cwiseAbs().maxCoeff() <= none;
+    };
+    if (!is_on_line(3 * side_ * step_) || !is_on_line(-side_ * step_)) return false;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(slope, Eigen::EigenvaluesOnly);
+    const double steepest = solver.eigenvalues().cwiseAbs().maxCoeff();
+    std::vector<double> distances;
+    for (double rate : solver.eigenvalues()) {
+      if (std::abs(rate) > no_change * steepest) distances.push_back(-1 / rate);
+    }
+    std::sort(distances.begin(), distances.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    distances.resize(std::min(distances.size(), wanted_));
+    bool confirmed = true;
+    for (std::size_t k = 0; confirmed && k < distances.size();) {
+      // Equal ones together.
+      std::size_t end = k + 1;
+      while (end < distances.size() && std::abs(distances[end] - distances[k]) <= confirming * std::abs(distances[k]))
+        ++end;
+      const double a = distances[k] * (1 - 2 * confirming), b = distances[end - 1] * (1 + 2 * confirming);
+      const Eigen::VectorXd mu_a = spectrum_.values(present_ + a), mu_b = spectrum_.values(present_ + b);
+      // Outside what the scene allows there are no loads.
+      if (mu_a.size() > 0 && mu_b.size() > 0) {
+        const std::size_t before = roots_.size();
+        look_between(a, mu_a, b, mu_b, std::abs(distances[k]) * steepest < well_known ? distances[k] : 0);
+        confirmed = roots_.size() - before >= end - k;
+      }
+      k = end;
+    }
+    return confirmed;
+  }
+
+  // Both sides go outwards together: what is nearest comes first.
+  Report search_outwards() {
+    const double growth = std::pow(2.0, 1.0 / samples);
+    Front sides[2] = {{1}, {-1}};
+    for (Front& s : sides) {
+      s.place = {0};
+      s.mu = {Eigen::VectorXd::Ones(freedoms_)};
+    }
+    for (double reach = step_ / samples; reach <= farthest * step_ && (sides[0].open || sides[1].open);
+         reach = reach < step_ ? reach + step_ / samples : reach * growth) {
+      if (go_on_ && !go_on_()) return cancelled();
+      for (Front& s : sides) {
+        if (!s.open) continue;
+        Eigen::VectorXd mu = spectrum_.values(present_ + s.sign * reach);
+        if (mu.size() > 0) {
+          take_sample(s, s.sign * reach, std::move(mu));
+        } else if (buckling_.outside_) {
+          close(s, s.sign * reach);
+        } else {
+          return spectrum_.report();
+        }
+      }
+      if (roots_.size() >= wanted_) break;
+    }
+    return {};
+  }
+
+  void take_sample(Front& s, double x, Eigen::VectorXd mu) {
+    if (s.place.size() == 2) {
+      if (const auto low = find_dip(s.place[0], s.place[1], x, s.mu[0], s.mu[1], mu)) {
+        const Eigen::VectorXd mu_low = spectrum_.values(present_ + *low);
+        // The two roots between samples, beside the one that the samples show.
+        const bool before = std::abs(*low) < std::abs(s.place[1]);
+        look_between(s.place[before ? 0 : 1], s.mu[before ? 0 : 1], *low, mu_low);
+        look_between(*low, mu_low, before ? s.place[1] : x, before ? s.mu[1] : mu);
+      }
+    }
+    look_between(s.place.back(), s.mu.back(), x, mu);
+    s.place.push_back(x);
+    s.mu.push_back(std::move(mu));
+    if (s.place.size() > 2) {
+      s.place.erase(s.place.begin());
+      s.mu.erase(s.mu.begin());
     }
   }
 
-  /// Where the lowest positive mu may pass below zero and back between three samples: the place, if it does.
-  std::optional<double> dip(double a, double b, double c, const Eigen::VectorXd& mu_a, const Eigen::VectorXd& mu_b,
-                            const Eigen::VectorXd& mu_c) {
+  // Up to the end of what the scene allows, which lies before `beyond`.
+  void close(Front& s, double beyond) {
+    s.open = false;
+    double inside = s.place.back();
+    for (int k = 0; k < 50; ++k) {
+      const double middle = 0.5 * (inside + beyond);
+      (spectrum_.evaluate(present_ + middle) ? inside : beyond) = middle;
+    }
+    const Eigen::VectorXd mu = spectrum_.values(present_ + inside);
+    if (inside != s.place.back() && mu.size() > 0) look_between(s.place.back(), s.mu.back(), inside, mu);
+  }
+
+  // All roots between two distances with these mu; `known`: where they are, if that is known.
+  void look_between(double a, const Eigen::VectorXd& mu_a, double b, const Eigen::VectorXd& mu_b, double known = 0) {
+    for (int k = 0; k < static_cast<int>(mu_a.size()); ++k) {
+      if ((mu_a[k] < 0) == (mu_b[k] < 0)) continue;
+      roots_.push_back({known != 0 ? known : locate(k, a, mu_a[k], b, mu_b[k]), k});
+    }
+  }
+
+  // Where the lowest positive mu may pass below zero and back between three samples: the place, if it does.
+  std::optional<double> find_dip(double a, double b, double c, const Eigen::VectorXd& mu_a, const Eigen::VectorXd& mu_b,
+                                 const Eigen::VectorXd& mu_c) {
     const int k = static_cast<int>((mu_b.array() < 0).count());
     if (k == mu_b.size() || mu_a[k] < 0 || mu_c[k] < 0 || mu_b[k] >= mu_a[k] || mu_b[k] >= mu_c[k]) return {};
     // Golden section, ended by the first value below zero.
@@ -177,10 +341,9 @@ class Buckling::Search {
     return {};
   }
 
- private:
   // The root of mu_k between a and b, of opposite signs there: regula falsi that halves the stale side, and bisection
   // every third time.
-  double bracketed(int k, double a, double mu_a, double b, double mu_b) {
+  double locate(int k, double a, double mu_a, double b, double mu_b) {
     for (int step = 0; step < 200 && std::abs(b - a) > located * std::max(std::abs(a), std::abs(b)); ++step) {
       double x = step % 3 == 2 ? 0.5 * (a + b) : a + (b - a) * mu_a / (mu_a - mu_b);
       if (x == a || x == b) x = 0.5 * (a + b);
@@ -201,8 +364,14 @@ class Buckling::Search {
     return 0.5 * (a + b);
   }
 
+  Buckling& buckling_;
   Spectrum& spectrum_;
+  Eigen::Index freedoms_;
+  const std::function<bool()>& go_on_;
   double present_;
+  std::size_t wanted_;
+  double step_ = 0, change_ = 0, side_ = 1;  // of the first step: its length, what it changes, +1 or -1
+  std::vector<Root> roots_;
 };
 
 Report Buckling::find_by_dense(std::vector<Load>& loads, const std::function<bool()>& go_on) {
@@ -210,140 +379,10 @@ Report Buckling::find_by_dense(std::vector<Load>& loads, const std::function<boo
   if (group.freedoms() == 0) return {};
   Spectrum spectrum(*this, group);
   if (Report start = spectrum.start(); !start.ok()) return start;
-  const double present = options_.present;
-  const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(group.freedoms(), group.freedoms());
-  // The first step: where the stiffness has changed by a few percent of itself, to the side that the scene allows.
-  double step = present != 0 ? 0.1 * std::abs(present) : 1, change = 0, side = 1;
-  double too_small = 0, too_large = std::numeric_limits<double>::infinity();
-  bool found = false;
-  for (int k = 0; k < most_tries && !found; ++k) {
-    if (!spectrum.evaluate(present + side * step)) {
-      if (!outside_) return spectrum.report();
-      if (side > 0 && spectrum.evaluate(present - step)) {
-        side = -1;
-      } else {
-        too_large = std::min(too_large, step);
-      }
-    }
-    if (step < too_large) {
-      change = (spectrum.now() - unit).cwiseAbs().maxCoeff();
-      found = change >= least_change && change <= most_change;
-      if (found) break;
-      (change < least_change ? too_small : too_large) = step;
-    }
-    if (too_small > 0 && std::isfinite(too_large)) {
-      if (too_large < 1.001 * too_small) break;  // it jumps there: both sides of the jump are searched
-      step = std::sqrt(too_small * too_large);
-    } else if (std::isfinite(too_large)) {
-      step /= fine;
-    } else {
-      // No further than the change so far allows: an oscillating dependence must not be stepped over.
-      step *= std::clamp(std::sqrt(least_change * most_change) / change, fine, coarse);
-    }
-  }
-  if (!(change > no_change)) return {};
-  if (go_on && !go_on()) return {Status::cancelled, "stopped while loads were looked for", {}};
-
-  // Linear, as one more sample confirms: the loads in closed form, confirmed one by one.
-  Search search(spectrum, present);
-  const Eigen::MatrixXd slope = (spectrum.now() - unit) / (side * step);
-  const double none = straight * change + spectrum.rounding();
-  bool linear = spectrum.evaluate(present + 3 * side * step) &&
-                (spectrum.now() - unit - 3 * side * step * slope).cwiseAbs().maxCoeff() <= none;
-  linear = linear && spectrum.evaluate(present - side * step) &&
-           (spectrum.now() - unit + side * step * slope).cwiseAbs().maxCoeff() <= none;
-  if (linear) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(slope, Eigen::EigenvaluesOnly);
-    const double steepest = solver.eigenvalues().cwiseAbs().maxCoeff();
-    std::vector<double> distances;
-    for (double rate : solver.eigenvalues()) {
-      if (std::abs(rate) > no_change * steepest) distances.push_back(-1 / rate);
-    }
-    std::sort(distances.begin(), distances.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-    distances.resize(std::min(distances.size(), at(options_.count)));
-    for (std::size_t k = 0; linear && k < distances.size();) {
-      // Equal ones together.
-      std::size_t end = k + 1;
-      while (end < distances.size() && std::abs(distances[end] - distances[k]) <= confirming * std::abs(distances[k]))
-        ++end;
-      const double a = distances[k] * (1 - 2 * confirming), b = distances[end - 1] * (1 + 2 * confirming);
-      const Eigen::VectorXd mu_a = spectrum.values(present + a), mu_b = spectrum.values(present + b);
-      // Outside what the scene allows there are no loads.
-      if (mu_a.size() > 0 && mu_b.size() > 0) {
-        const std::size_t before = search.roots.size();
-        search.between(a, mu_a, b, mu_b, std::abs(distances[k]) * steepest < well_known ? distances[k] : 0);
-        linear = search.roots.size() - before >= end - k;
-      }
-      k = end;
-    }
-  }
-  if (!linear) {
-    search.roots.clear();
-    const double growth = std::pow(2.0, 1.0 / samples);
-    // Both sides go outwards together: what is nearest comes first.
-    struct Front {
-      double sign;
-      bool open = true;
-      std::vector<double> place{};  // the last three samples
-      std::vector<Eigen::VectorXd> mu{};
-    };
-    Front sides[2] = {{1}, {-1}};
-    for (Front& s : sides) {
-      s.place = {0};
-      s.mu = {Eigen::VectorXd::Ones(group.freedoms())};
-    }
-    for (double reach = step / samples; reach <= farthest * step && (sides[0].open || sides[1].open);
-         reach = reach < step ? reach + step / samples : reach * growth) {
-      if (go_on && !go_on()) return {Status::cancelled, "stopped while loads were looked for", {}};
-      for (Front& s : sides) {
-        if (!s.open) continue;
-        const double x = s.sign * reach;
-        Eigen::VectorXd mu = spectrum.values(present + x);
-        if (mu.size() == 0) {
-          if (!outside_) return spectrum.report();
-          // Up to the end of what the scene allows.
-          s.open = false;
-          double inside = s.place.back(), beyond = x;
-          for (int k = 0; k < 50; ++k) {
-            const double middle = 0.5 * (inside + beyond);
-            (spectrum.evaluate(present + middle) ? inside : beyond) = middle;
-          }
-          mu = spectrum.values(present + inside);
-          if (inside != s.place.back() && mu.size() > 0) search.between(s.place.back(), s.mu.back(), inside, mu);
-          continue;
-        }
-        if (s.place.size() >= 2) {
-          const std::size_t last = s.place.size() - 1;
-          const double a = s.place[last - 1], b = s.place[last];
-          if (const auto low = search.dip(a, b, x, s.mu[last - 1], s.mu[last], mu)) {
-            const Eigen::VectorXd mu_low = spectrum.values(present + *low);
-            // The two roots between samples, beside the one that the samples show.
-            const bool before = std::abs(*low) < std::abs(b);
-            search.between(before ? a : b, before ? s.mu[last - 1] : s.mu[last], *low, mu_low);
-            search.between(*low, mu_low, before ? b : x, before ? s.mu[last] : mu);
-          }
-        }
-        search.between(s.place.back(), s.mu.back(), x, mu);
-        s.place.push_back(x);
-        s.mu.push_back(std::move(mu));
-        if (s.place.size() > 2) {
-          s.place.erase(s.place.begin());
-          s.mu.erase(s.mu.begin());
-        }
-      }
-      if (search.roots.size() >= at(options_.count)) break;
-    }
-  }
-  // Of two at the same distance, the one above.
-  std::sort(search.roots.begin(), search.roots.end(), [](const Search::Root& a, const Search::Root& b) {
-    const double near = std::abs(std::abs(a.distance) - std::abs(b.distance));
-    if (near <= 1e-12 * std::abs(a.distance)) return a.distance > b.distance;
-    return std::abs(a.distance) < std::abs(b.distance);
-  });
-  search.roots.resize(std::min(search.roots.size(), at(options_.count)));
-  for (const Search::Root& root : search.roots) {
-    loads.push_back({root.distance, spectrum.shape(present + root.distance, root.number)});
-  }
+  Search search(*this, spectrum, group.freedoms(), go_on);
+  if (Report found = search.find(); !found.ok()) return found;
+  for (const Search::Root& root : search.roots())
+    loads.push_back({root.distance, spectrum.shape(options_.present + root.distance, root.number)});
   return {};
 }
 

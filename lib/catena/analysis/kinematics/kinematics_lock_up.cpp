@@ -1,0 +1,130 @@
+// Where no step can be made any more: dead points, the row there, and other singular configurations that end a motion.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "catena/analysis/kinematics/kinematics.hpp"
+#include "catena/base/at.hpp"
+
+namespace catena {
+namespace {
+
+// A step fails where it is longer than about half of the remaining way to a dead point.
+constexpr double most_steps_left = 4;
+// A zero of a determinant further away than so many times the distance estimated from the rates is a different one.
+constexpr double longest_way = 1e3;
+
+}  // namespace
+
+// No step can be made: determines whether the drivers prescribe an impossible motion (w^T nu != 0) or branches meet
+// here.
+Report Kinematics::stuck(double next, double target) {
+  evaluator_.set_time(t_);
+  trial_ = q_;
+  std::vector<double> w(at(plan_->rows)), nu(at(plan_->rows)), z(q_.size(), 0.0);
+  solver_.factor_at(q_);
+  const bool found = solver_.null_vectors(w, z);
+  evaluator_.nu(nu);
+  SingularPoint point;
+  point.t = t_ + (next - t_) / 2;
+  point.q = q_;
+  if (found) {
+    point.name_bodies(evaluator_, std::span(&z, 1));
+    point.find_driver(evaluator_, w, nu);
+  }
+  if (found && disagreement(evaluator_, w, nu) > clear_disagreement) {
+    point.kind = SingularPoint::Kind::lock_up;
+    locate_lock_up(target, point);
+    return lock_up(std::move(point));
+  }
+  std::size_t heaviest = 0;
+  const auto weight = [&](std::size_t r) {
+    return std::abs(w[r]) * (plan_->row_is_angle[r] ? 1 : evaluator_.length_scale());
+  };
+  for (std::size_t r = 0; r < w.size(); ++r) {
+    if (weight(r) > weight(heaviest)) heaviest = r;
+  }
+  const int element = plan_->row_element[heaviest];
+  const bool moving = std::any_of(nu.begin(), nu.end(), [](double rate) { return rate != 0; });
+  Report report;
+  report.status = found && moving ? Status::bifurcation : Status::singular;
+  report.message = fmt::format(
+      "the motion cannot be continued beyond the singular configuration at t = {:.12g} s{}", point.t,
+      found ? fmt::format("; most concerned: {} \"{}\"", model_->element_type(element), model_->element_name(element))
+            : "");
+  singular_points_.push_back(std::move(point));
+  return report;
+}
+
+// Towards a dead point q = q* - a sqrt(t* - t), so that  t* - t = |qd|^2 / (2 qd . qdd)  and  q* = q + 2 (t* - t) qd,
+// but for terms of t* - t. However large the rounding of the rates, it is no further away than the failed step: point.t
+// is in the middle of that step. On this short distance the determinant of the singular block vanishes linearly: its
+// zero is q*, off the constraints by the square of the distance; and the instant follows from w^T Phi(q*, t*) = 0,
+// which this last distance does not change. False: no velocity leads there.
+bool Kinematics::locate_lock_up(double target, SingularPoint& point) {
+  std::vector<double> qd(q_.size(), 0.0), qdd(q_.size(), 0.0);
+  if (!solver_.solve_velocity(qd, false)) return false;
+  if (!solver_.solve_acceleration(qd, qdd, false)) std::fill(qdd.begin(), qdd.end(), 0.0);
+  double product = 0, square = 0;
+  for (std::size_t k = 0; k < 3 * at(plan_->moving); ++k) {
+    const double unit = k % 3 == 2 ? 1 : evaluator_.length_scale();
+    product += qd[k] / unit * (qdd[k] / unit);
+    square += qd[k] / unit * (qd[k] / unit);
+  }
+  const double furthest = std::min(2 * most_steps_left * std::abs(point.t - t_), std::abs(target - t_));
+  double rest = square / (2 * product);
+  // So near that rounding determines the sign: the distance is taken as the largest possible.
+  if (!(rest * (target - t_) > 0)) rest = furthest;
+  rest = std::copysign(std::min(std::abs(rest), furthest), target - t_);
+  solver_.factor_at(q_);
+  std::vector<double> w(at(plan_->rows)), nu(w), z(q_.size());
+  const auto margins = solver_.block_margins();
+  const auto smaller = [](const BlockMargin& a, const BlockMargin& b) { return std::abs(a.pivot) < std::abs(b.pivot); };
+  const auto block = std::min_element(margins.begin(), margins.end(), smaller) - margins.begin();
+  const bool measured = !margins.empty() && solver_.null_vectors(w, z);
+  const auto determinant = [&](double part) {
+    for (std::size_t k = 0; k < q_.size(); ++k) point.q[k] = q_[k] + part * 2 * rest * qd[k];
+    const bool regular = measured && solver_.factor_at(point.q) > 0;
+    return regular ? solver_.block_margins()[static_cast<std::size_t>(block)].determinant : 0.0;
+  };
+  const double here = determinant(0), there = determinant(1);
+  double part = here == there ? 1 : here / (here - there);
+  if (const double left = determinant(part); left != here) part *= here / (here - left);
+  determinant(part > 0 && part < longest_way ? part : 1);
+  point.t = t_ + rest;
+  solver_.residual_at(point.q);
+  evaluator_.nu(nu);
+  double off = 0, speed = 0;
+  for (std::size_t r = 0; r < w.size(); ++r) off += w[r] * solver_.phi()[r], speed += w[r] * nu[r];
+  const double time = off / speed;
+  if (time * (target - t_) >= 0 && std::abs(time) <= std::abs(target - t_)) point.t = t_ + time;
+  if (point.driver >= 0) {
+    evaluator_.set_time(point.t);
+    point.driver_value = evaluator_.element_value(point.driver).f;
+  }
+  return true;
+}
+
+// A row at the lock-up: places and times are known, rates and loads grow without bound.
+void Kinematics::give_row_at_lock_up(const Needs& needs, RowObserver& observer) {
+  const SingularPoint& point = singular_points_.back();
+  const std::vector<double> none(std::max(q_.size(), at(plan_->rows)), std::numeric_limits<double>::quiet_NaN());
+  const std::span<const double> unknown(none);
+  evaluator_.set_time(point.t);
+  Snapshot row{.evaluator = evaluator_, .t = point.t, .q = point.q};
+  row.residual = solver_.residual_at(point.q) * evaluator_.length_scale();
+  if (needs.velocity || needs.acceleration || needs.multipliers) row.qd = unknown.first(q_.size());
+  if (needs.acceleration || needs.multipliers) row.qdd = unknown.first(q_.size());
+  if (needs.multipliers) row.lambda = unknown.first(at(plan_->rows));
+  if (needs.work) {
+    row.work = row.dissipated = none.front();
+    driver_work_.assign(model_->elements.size(), none.front());
+    row.driver_work = driver_work_;
+    row.initial_energy = initial_energy_;
+  }
+  observer.observe(row);
+}
+
+}  // namespace catena
