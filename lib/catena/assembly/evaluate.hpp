@@ -146,6 +146,11 @@ class Evaluator {
   /// The place in use on a curve or table that has ends, with the nearer end in the ground frame; nothing for elements
   /// without one, or that do not use it at present.
   std::optional<CurveUse> curve_use(int element) const;
+  /// Where the contacts on curves are that were found last, by block and element: none for a mechanism without curves.
+  void curve_places(std::vector<CurvePlace>& places) const;
+  /// The next searches begin at these places: at those of the accepted state, after a trial that was rejected. Elements
+  /// that the list lacks go on from where they are.
+  void go_to_curve_places(std::span<const CurvePlace> places) const;
   /// Value of the element's function of time now: c, c', c''.
   Taylor<double> element_value(int element) const;
 
@@ -170,6 +175,8 @@ class Evaluator {
   std::array<double, 6> law_effect(int law, std::span<const double> qd) const;
   void stretch_ropes();
   Measured measure_released(int element, std::span<const double> qd) const;
+  template <class E>
+  const E& element_in_use(int element, const E& in_model) const;
   /// Place of an element in its block, -1 if it has no rows.
   template <class F>
   void with_element(int element, F&& f) const;

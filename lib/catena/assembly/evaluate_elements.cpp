@@ -60,6 +60,15 @@ Measured Evaluator::measure_released(int element, std::span<const double> qd) co
   return result;
 }
 
+// The element of a block, where a search goes on from the place found last; else that of the model.
+template <class E>
+const E& Evaluator::element_in_use(int element, const E& in_model) const {
+  if constexpr (SearchesCurve<E>) {
+    if (place(element) >= 0) return std::get<ConstraintData<E>>(values_).element[at(place(element))];
+  }
+  return in_model;
+}
+
 Evaluator::ScalarMotion Evaluator::scalar_motion(int element, std::span<const double> qd) const {
   ScalarMotion result;
   const ElementRecord& record = model_->elements[at(element)];
@@ -67,6 +76,7 @@ Evaluator::ScalarMotion Evaluator::scalar_motion(int element, std::span<const do
     using E = ElementOf<decltype(list)>;
     if constexpr (E::rows == 1 && E::bodies == 2) {
       const auto& entry = list[at(record.index)];
+      const E& in_use = element_in_use<E>(element, entry.element);
       const auto plan_body = [&](int body) { return body < 0 ? plan_->bodies : plan_->plan_body[at(body)]; };
       const int i = result.body_i = plan_body(entry.i), j = result.body_j = plan_body(entry.j);
       // About the origin of body i, so that rounding does not grow with the distance from the ground's.
@@ -74,12 +84,12 @@ Evaluator::ScalarMotion Evaluator::scalar_motion(int element, std::span<const do
       const Frame<double> frame_j = detail::shifted(frames_[at(j)], origin_[at(j)] - origin_[at(i)]);
       const auto measure = [&]<class T>(const Frame<T>& fi, const Frame<T>& fj) {
         if constexpr (OneSided<E> && !Dry<E>) {
-          return entry.element.measure(fi, fj);
+          return in_use.measure(fi, fj);
         } else {
           T row;
           T c(0.0);
           if constexpr (E::functions == 1) c = T(entry.values[0].constant);
-          entry.element.phi(Arguments<T>{fi, fj, c, {}}, &row);
+          in_use.phi(Arguments<T>{fi, fj, c, {}}, &row);
           return row;
         }
       };
@@ -173,6 +183,29 @@ std::optional<CurveUse> Evaluator::curve_use(int element) const {
   }
   if (use && use->end) use->end = ground_frame(body[use->body]).point(*use->end);
   return use;
+}
+
+void Evaluator::curve_places(std::vector<CurvePlace>& places) const {
+  places.clear();
+  for_each_list(plan_->blocks, model_->constraints, [&](const auto& block, const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    if constexpr (SearchesCurve<E>) {
+      const auto& data = std::get<ConstraintData<E>>(values_);
+      for (int e = 0; e < block.size(); ++e) {
+        CurvePlace& place = places.emplace_back(data.element[at(e)].place());
+        place.element = list[at(block.entry[at(e)])].id;
+      }
+    }
+  });
+}
+
+void Evaluator::go_to_curve_places(std::span<const CurvePlace> places) const {
+  for (const CurvePlace& place : places) {
+    with_element(place.element, [&](const auto& block, const auto& data, int e) {
+      using E = typename std::remove_cvref_t<decltype(block)>::Element;
+      if constexpr (SearchesCurve<E>) data.element[at(e)].go_to(place);
+    });
+  }
 }
 
 Taylor<double> Evaluator::element_value(int element) const {

@@ -25,6 +25,7 @@
 //   check()                nullptr, or what is wrong with the parameters, as a phrase
 //   trouble(a)             nullptr, or why the row means nothing at this configuration, as a phrase
 //   can_leave_curve()      whether the element uses a curve or table that ends for good
+//   place(), go_to(p)      where it found the contact of curves last, and from where it searches next (CurvePlace)
 //   curve_use(a)           where on it the element stands, if it asks anything of it (CurveUse)
 //   joins = true           it has no row of its own but adds to that of element `head`, of a type before it in the
 //   list;
@@ -36,7 +37,9 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <tuple>
@@ -56,6 +59,13 @@ struct Arguments {
   const Frame<T>& j;
   T c;                  ///< value of the element's function of time
   Vec2<double> ground;  ///< place of the frames' origin in the ground frame
+};
+
+/// Where an element found the point at which curves of its bodies touch: their parameters, m. The next search begins
+/// there, so that the place belongs to the state of a mechanism.
+struct CurvePlace {
+  int element = -1;  ///< its number in the model
+  double s_i = std::numeric_limits<double>::quiet_NaN(), s_j = 0;
 };
 
 /// Velocities of a body: vx, vy in m/s, omega in rad/s.
@@ -157,6 +167,13 @@ concept HasTrouble = requires(const E& e, const Arguments<double>& a) {
 template <class E>
 concept HasCurveUse = requires(const E& e) {
   e.can_leave_curve();
+};
+
+/// Searches for the point of contact from the place that it found last.
+template <class E>
+concept SearchesCurve = requires(const E& e, const CurvePlace& place) {
+  { e.place() } -> std::same_as<CurvePlace>;
+  e.go_to(place);
 };
 
 template <class E>

@@ -73,6 +73,7 @@ void Kinematics::start_from(const SystemState& state) {
   bridge_.clear();
   choice_.reset();
   margins_.clear();
+  curve_places_.clear();
   redundant_.clear();
   prepared_ = placed_ = on_bridge_ = false;
   has_velocity_ = has_acceleration_ = false;
@@ -90,6 +91,7 @@ AssemblyOutcome Kinematics::assemble() {
   bridge_.clear();
   placed_ = on_bridge_ = false;
   has_velocity_ = has_acceleration_ = false;
+  curve_places_.clear();
   AssemblyOutcome outcome;
   if (!assemble_nearby()) outcome = Assembler(evaluator_).assemble(q_, options_.tolerance);
   if (outcome.ok() && watched_.has_ends()) {

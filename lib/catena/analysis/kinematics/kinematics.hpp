@@ -149,6 +149,7 @@ class Kinematics {
   DrivenSolver solver_;
   WatchedElements watched_;
   std::vector<double> places_[3], halfway_;  // on curves that end: where a step begins, halfway, where it ends
+  std::vector<CurvePlace> curve_places_;     // at q_; empty: not looked at yet, or there are none
   Predictor predictor_;
   std::optional<AssemblyOutcome> assembled_;
   bool prepared_ = false, placed_ = false;  // the constraints drive it; the solver is where q_ is

@@ -81,6 +81,8 @@ bool Kinematics::heads_for_singularity(double t) const {
 
 Kinematics::StepOutcome Kinematics::try_step(double t, bool ignore_dips) {
   if (!ignore_dips && heads_for_singularity(t)) return StepOutcome::dipped;
+  // A trial that was rejected may have found contacts far from here.
+  evaluator_.go_to_curve_places(curve_places_);
   evaluator_.set_time(t);
   trial_ = q_;
   // Positions and rates in one pass over the history.
@@ -203,6 +205,7 @@ Report Kinematics::follow_to(double t) {
     remember_margins();
   }
   on_bridge_ = false;
+  if (curve_places_.empty()) evaluator_.curve_places(curve_places_);
   while (t_ != t) {
     // A curve that ends must not be left and reached again within a step.
     if (watched_.has_ends()) pace.step = std::min(pace.step, span / steps_to_a_row);
@@ -244,6 +247,7 @@ Report Kinematics::take_step(double next, double target, Pace& pace) {
   has_velocity_ = has_acceleration_ = pace.ignore_dips = false;
   ++evaluator_.counters.steps;
   ++pace.made_since_failure;
+  evaluator_.curve_places(curve_places_);
   remember_margins();
   if (Report consistent = check_redundant_rows(); !consistent.ok()) return consistent;
   if (chosen_rcond_ > 0 && solver_.rcond() < drifted * chosen_rcond_) choose_better_rows();

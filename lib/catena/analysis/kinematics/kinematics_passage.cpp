@@ -289,6 +289,7 @@ void Kinematics::leave_bridge(double end) {
   bridge_.clear();
   on_bridge_ = false;
   solver_.factor_at(q_);
+  evaluator_.curve_places(curve_places_);
   margins_.clear();
   remember_margins();
   choose_better_rows();

@@ -188,6 +188,8 @@ void MinimumNormMotion::give_row_at_lock_up(const Needs& needs, RowObserver& obs
 bool MinimumNormMotion::evaluate_stages(double h, double end, bool lands_on_break, bool on_constraints) {
   const Tableau& table = dormand_prince_8();
   const std::size_t moving = 3 * at(plan_->moving);
+  // A trial that was rejected may have found contacts far from here.
+  evaluator_.go_to_curve_places(curve_places_);
   const auto combine = [&](const StageSum& sum, const double* from, std::span<double> out) {
     for (std::size_t k = 0; k < moving; ++k) {
       double value = 0;
@@ -254,6 +256,7 @@ Report MinimumNormMotion::move_to(double t, RowObserver& observer) {
     if (!least_.velocity(t_, direction > 0 ? Side::after : Side::before, q_, stage_[0])) {
       return t_ == started_ ? no_velocity() : stuck(t);
     }
+    evaluator_.curve_places(curve_places_);
     const double rate = least_.size(stage_[0]);
     if (step_ == 0) step_ = rate > 0 ? 0.2 * std::pow(tolerance, 1.0 / 8) / rate : std::abs(limit - t_);
     const double smallest = smallest_norm_step * std::max(std::abs(t_), rate > 0 ? 1 / rate : 0.0);

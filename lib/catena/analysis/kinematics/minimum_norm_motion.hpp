@@ -64,6 +64,7 @@ class MinimumNormMotion {
   double started_ = 0, travelled_ = 0;  // when it began, and the largest rate integrated since (rad, length scales)
   double residual_ = 0;                 // of positions, in length scales or rad
   bool has_velocity_ = false;
+  std::vector<CurvePlace> curve_places_;  // at q_
   std::vector<double> q_, qd_, qdd_, trial_;
   std::vector<std::vector<double>> stage_;
   std::vector<double> error_, error_low_;

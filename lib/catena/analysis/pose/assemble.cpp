@@ -139,13 +139,17 @@ bool Assembler::restore(std::span<double> q, double tolerance, int most_iteratio
     }
     double factor = turn > largest_turn ? largest_turn / turn : 1;
     double then = 0;
+    evaluator_.curve_places(curve_places_);
     for (; factor >= smallest_factor; factor /= 2) {
+      // A trial that was rejected may have found contacts far from here.
+      evaluator_.go_to_curve_places(curve_places_);
       advance(q, factor, trial_);
       then = merit(trial_);
       if (then < (1 - 1e-4 * factor) * now) break;
     }
     if (factor < smallest_factor) {
       // The direction fails because nearly dependent equations made it long: damping shortens it, or the search ends.
+      evaluator_.go_to_curve_places(curve_places_);
       merit(q);
       damping = std::max(100 * damping, 1e-6);
       if (damping > 1e6) break;

@@ -59,7 +59,8 @@ class Assembler {
   std::vector<double> inverse_weights_;           // per column
   std::optional<ConstraintProjector> projector_;  // made where there is something to assemble
   std::vector<double> weights_;                   // per column
-  std::vector<double> reach_;  // per column: what a displacement of 1 is, m or rad; 0 of what is held
+  std::vector<double> reach_;             // per column: what a displacement of 1 is, m or rad; 0 of what is held
+  std::vector<CurvePlace> curve_places_;  // of contacts, where a trial begins
   std::vector<double> values_, phi_, lambda_, step_, trial_;
 };
 

@@ -31,6 +31,12 @@ void take_over_places(const Evaluator& evaluator, const SystemState& state, std:
   if (!std::isfinite(state.t)) throw std::invalid_argument("the state's time is not finite");
   check_values(evaluator.model(), state.q, "places");
   check_values(evaluator.model(), state.qd, "velocities");
+  const auto elements = static_cast<int>(evaluator.model().elements.size());
+  for (const CurvePlace& place : state.curves) {
+    if (place.element < 0 || place.element >= elements)
+      throw std::invalid_argument("the state is of another model: it has a contact of element number " +
+                                  std::to_string(place.element) + ", of " + std::to_string(elements));
+  }
   if (state.q.empty()) return;
   const Plan& plan = evaluator.plan();
   for (int p = 0; p < plan.moving; ++p) {
@@ -39,6 +45,7 @@ void take_over_places(const Evaluator& evaluator, const SystemState& state, std:
     q[target + 1] = state.q[source + 1] - evaluator.origin(p).y;
     q[target + 2] = state.q[source + 2];
   }
+  evaluator.go_to_curve_places(state.curves);
 }
 
 Frame<double> frame_of(const Evaluator& evaluator, std::span<const double> q, int body) {
@@ -81,6 +88,7 @@ SystemState state_of(const Evaluator& evaluator, double t, std::span<const doubl
     state.q[target + 2] = q[source + 2];
     if (!qd.empty()) std::copy_n(&qd[source], 3, &state.qd[target]);
   }
+  evaluator.curve_places(state.curves);
   return state;
 }
 

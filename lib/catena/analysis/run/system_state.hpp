@@ -1,11 +1,13 @@
 // The state of a mechanism, passed from one analysis of a scene to the next: absolute, in model order, so that it stays
 // valid for other plans and parameters.
 //
-// Of ropes the places say how they lie but for whole turns: how far they are wound belongs to the state.
+// Of ropes the places say how they lie but for whole turns: how far they are wound belongs to the state. So does where
+// curves touch, of several places that bodies allow.
 #pragma once
 
 #include <vector>
 
+#include "catena/elements/element.hpp"
 #include "catena/model/rope_turns.hpp"
 
 namespace catena {
@@ -16,6 +18,8 @@ struct SystemState {
   std::vector<double> qd;  ///< velocities; empty: none known
   /// At q, one for each of rope_routes(); empty: as q alone has them.
   std::vector<RopeTurns> ropes{};
+  /// Where contacts on curves are at q; elements that are not among them search from the given configuration.
+  std::vector<CurvePlace> curves{};
 };
 
 }  // namespace catena

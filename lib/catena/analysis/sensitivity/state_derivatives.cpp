@@ -63,6 +63,9 @@ void StateDerivatives::leave_out_reactions(Group& group) {
 }
 
 void StateDerivatives::lift_state(Group& group, const Snapshot& snapshot) {
+  snapshot.evaluator.curve_places(curve_places_);
+  evaluator_.go_to_curve_places(curve_places_);
+  group.mechanism.go_to_curve_places(curve_places_);
   group.mechanism.lift_configuration(snapshot.q, group.q);
   lift(snapshot.qd, group.qd);
   lift(snapshot.qdd, group.qdd);

@@ -102,6 +102,7 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
   std::vector<double> residual(columns), gradient(columns), change(columns), product(columns), trial(q.size()),
       next_lambda(at(plan.rows));
   const std::vector<double> start(q.begin(), q.end());
+  std::vector<CurvePlace> curve_places;
   system.move_to(q);
   std::fill(lambda.begin(), lambda.end(), 0.0);
   // Where constraints have no second derivatives the first step needs no multipliers.
@@ -183,10 +184,14 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
       const bool clipped = factor < 1;
       // The energy is a sum of large terms: a smaller change is rounding.
       const double noise = 1e-14 * (energy_size + system.force_size() * extent);
+      system.evaluator().curve_places(curve_places);
       for (; factor > smallest_factor; factor /= 2) {
         std::copy(q.begin(), q.end(), trial.begin());
         system.advance(trial, change, factor, std::numeric_limits<double>::infinity());
-        if (!restore_constraints(system, trial)) continue;
+        if (!restore_constraints(system, trial)) {
+          system.evaluator().go_to_curve_places(curve_places);
+          continue;
+        }
         const double then = system.energy();
         if (then <= energy + sufficient_decrease * factor * std::min(slope, 0.0) + noise) {
           energy = then;
@@ -198,6 +203,8 @@ StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::s
           break;
         }
         reach = std::max(reach / 2, 1.0);
+        // The trial that was rejected may have found contacts far from here.
+        system.evaluator().go_to_curve_places(curve_places);
       }
       system.move_to(accepted ? std::span<const double>(trial) : std::span<const double>(q));
     }

@@ -70,6 +70,8 @@ StaticResult StaticSearch::find_without_energy(std::vector<double>& q, std::vect
 StaticResult StaticSearch::find_minimum(std::vector<double>& q, std::vector<double>& lambda) {
   StaticResult result;
   const std::vector<double> start = q;
+  std::vector<CurvePlace> places;  // at the start
+  system_.evaluator().curve_places(places);
   StaticAttempts attempts(system_, options_);
   StaticTrial trials(system_, options_);
   StaticOutcome outcome;
@@ -93,6 +95,7 @@ StaticResult StaticSearch::find_minimum(std::vector<double>& q, std::vector<doub
     }
     if (!attempts.go_on(trial + 1)) break;
     q = start_of(attempts.present(), system_, start);
+    system_.evaluator().go_to_curve_places(places);
   }
   if (!outcome.converged()) judge_.weigh(lambda);
   result.residual = judge_.accuracy().residual;

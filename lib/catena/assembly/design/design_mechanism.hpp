@@ -54,6 +54,9 @@ class DesignMechanism {
   void set_state(std::span<const DesignScalar> q, std::span<const DesignScalar> qd = {},
                  std::span<const DesignScalar> qdd = {});
 
+  /// Searches for contacts on curves begin at these places: those of the state that is set next.
+  void go_to_curve_places(std::span<const CurvePlace> places) const;
+
   Frame<DesignScalar> ground_frame(int plan_body) const;
   const Frame<Taylor<DesignScalar>>& motion(int plan_body) const {
     return motion_[static_cast<std::size_t>(plan_body)];

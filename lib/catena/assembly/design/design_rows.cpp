@@ -37,6 +37,15 @@ void derive(const E& element, const detail::DesignFrames<DesignScalar>& f, const
 
 }  // namespace
 
+void DesignMechanism::go_to_curve_places(std::span<const CurvePlace> places) const {
+  for (const CurvePlace& place : places) {
+    const ElementRecord& record = model_->elements[at(place.element)];
+    with_list(model_->constraints, record.type, [&](const auto& list) {
+      if constexpr (SearchesCurve<ElementOf<decltype(list)>>) list[at(record.index)].element.go_to(place);
+    });
+  }
+}
+
 void DesignMechanism::rows(std::span<Taylor<DesignScalar>> out) const {
   for_each_list(plan_->blocks, model_->constraints, [&](const auto& block, const auto& list, int) {
     using E = ElementOf<decltype(list)>;

@@ -64,6 +64,12 @@ struct CamCam {
                                                : "the cams have no single point of contact: their curvatures are equal";
   }
 
+  CurvePlace place() const { return {.s_i = contact.s_i, .s_j = contact.s_j}; }
+  void go_to(const CurvePlace& place) const {
+    contact.s_i = place.s_i;
+    contact.s_j = place.s_j;
+    found_for.x = std::numeric_limits<double>::quiet_NaN();
+  }
   bool can_leave_curve() const { return curve_i.ends() || curve_j.ends(); }
   /// Of the two curves the one that is further beyond its end.
   std::optional<CurveUse> curve_use(const Arguments<double>& a) const {

@@ -78,6 +78,11 @@ struct CamFlat {
                ? nullptr
                : "the cam has no curvature where it should touch the face";
   }
+  CurvePlace place() const { return {.s_i = parameter}; }
+  void go_to(const CurvePlace& place) const {
+    parameter = place.s_i;
+    found_for.x = std::numeric_limits<double>::quiet_NaN();
+  }
   bool can_leave_curve() const { return curve.ends(); }
   std::optional<CurveUse> curve_use(const Arguments<double>& a) const {
     follow_contact(normal(a.i, a.j));

@@ -54,6 +54,11 @@ struct PointOnCurve {
     return follow_foot(local(a.i, a.j)) ? nullptr : "the point is at a centre of curvature of the curve";
   }
 
+  CurvePlace place() const { return {.s_i = parameter}; }
+  void go_to(const CurvePlace& place) const {
+    parameter = place.s_i;
+    found_for.x = std::numeric_limits<double>::quiet_NaN();
+  }
   bool can_leave_curve() const { return curve.ends(); }
   std::optional<CurveUse> curve_use(const Arguments<double>& a) const {
     follow_foot(local(a.i, a.j));

@@ -27,7 +27,9 @@ bool Adams::advance(double limit) {
     motion_.equations().evaluator().take_turns(motion_.q(std::span(y_)));
     stepped_by_runge_kutta_ = false;
   }
+  motion_.equations().evaluator().curve_places(curve_places_);
   while (by_itself()) {
+    motion_.equations().evaluator().go_to_curve_places(curve_places_);
     const double remaining = limit - t_;
     const bool lands = h_ * (fixed ? 1 + 1e-9 : 1.01) >= remaining;
     // Two equal steps instead of a long one and a tiny one.

@@ -45,6 +45,7 @@ class Integrator {
  protected:
   double t_ = 0, t_before_ = 0, position_residual_ = 0;
   std::vector<double> y_;
+  std::vector<CurvePlace> curve_places_;  // of contacts at y_, where every trial of a step begins its searches
   int culprit_ = -1;
 };
 
