@@ -149,7 +149,7 @@ class Evaluator {
   /// Where the contacts on curves are that were found last, by block and element: none for a mechanism without curves.
   void curve_places(std::vector<CurvePlace>& places) const;
   /// The next searches begin at these places: at those of the accepted state, after a trial that was rejected. Elements
-  /// that the list lacks go on from where they are.
+  /// that the list lacks go on from where they are; one that the model lacks throws std::invalid_argument.
   void go_to_curve_places(std::span<const CurvePlace> places) const;
   /// Value of the element's function of time now: c, c', c''.
   Taylor<double> element_value(int element) const;

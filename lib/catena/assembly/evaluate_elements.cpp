@@ -1,6 +1,8 @@
 // Evaluation of single elements: measured quantities, their part of Phi_q, their attachment points.
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "catena/assembly/attachment_points.hpp"
 #include "catena/assembly/constraint_operations.hpp"
@@ -200,7 +202,11 @@ void Evaluator::curve_places(std::vector<CurvePlace>& places) const {
 }
 
 void Evaluator::go_to_curve_places(std::span<const CurvePlace> places) const {
+  const auto elements = static_cast<int>(place_.size());
   for (const CurvePlace& place : places) {
+    if (place.element < 0 || place.element >= elements)
+      throw std::invalid_argument("a place on a curve is that of element number " + std::to_string(place.element) +
+                                  ", which the model does not have: it has " + std::to_string(elements));
     with_element(place.element, [&](const auto& block, const auto& data, int e) {
       using E = typename std::remove_cvref_t<decltype(block)>::Element;
       if constexpr (SearchesCurve<E>) data.element[at(e)].go_to(place);

@@ -52,6 +52,13 @@ void pass(Channel& channel, RopeTurns& turns) {
 }
 
 template <class Channel>
+void pass(Channel& channel, CurvePlace& place) {
+  channel.value(place.element);
+  channel.value(place.s_i);
+  channel.value(place.s_j);
+}
+
+template <class Channel>
 void pass(Channel& channel, RopeEvent& event) {
   channel.value(event.element);
   channel.value(event.met);
@@ -71,6 +78,7 @@ class Writer {
   void value(ConstraintImpulse& impulse) { pass(*this, impulse); }
   void value(Jolt& jolt) { pass(*this, jolt); }
   void value(RopeTurns& turns) { pass(*this, turns); }
+  void value(CurvePlace& place) { pass(*this, place); }
   void value(RopeEvent& event) { pass(*this, event); }
   template <class T>
   void value(std::vector<T>& list) {
@@ -91,6 +99,7 @@ class Reader {
   void value(ConstraintImpulse& impulse) { pass(*this, impulse); }
   void value(Jolt& jolt) { pass(*this, jolt); }
   void value(RopeTurns& turns) { pass(*this, turns); }
+  void value(CurvePlace& place) { pass(*this, place); }
   void value(RopeEvent& event) { pass(*this, event); }
   template <class T>
   void value(std::vector<T>& list) {
@@ -159,6 +168,7 @@ void pass(Channel& channel, Checkpoint& checkpoint) {
   channel.value(motion.events.records);
   channel.value(motion.jolts);
   channel.value(motion.ropes);
+  channel.value(motion.curves);
   channel.value(motion.rope_events);
 }
 

@@ -80,6 +80,12 @@ class DynamicsOfIslands::Part final : public RowObserver {
         if (!state.qd.empty()) own.qd.push_back(state.qd[c]);
       }
     }
+    for (const CurvePlace& place : state.curves) {
+      const auto found = std::find(part_.elements.begin(), part_.elements.end(), place.element);
+      if (found == part_.elements.end()) continue;
+      own.curves.push_back(place);
+      own.curves.back().element = static_cast<int>(found - part_.elements.begin());
+    }
     dynamics_.start_from(own);
     start_ = std::move(own);
   }
@@ -107,6 +113,11 @@ class DynamicsOfIslands::Part final : public RowObserver {
   /// The row that a motion gave last, where it ended in a dead point.
   void show_last() {
     if (!ahead_.empty()) show(ahead_.back());
+  }
+  std::vector<CurvePlace> curve_places() const {
+    std::vector<CurvePlace> places = dynamics_.state().curves;
+    for (CurvePlace& place : places) place.element = part_.elements[at(place.element)];
+    return places;
   }
   std::vector<SingularPoint> singular_points() const {
     std::vector<SingularPoint> points = dynamics_.singular_points();
@@ -251,7 +262,16 @@ void DynamicsOfIslands::start_from(const SystemState& state) {
   for (const auto& part : parts_) part->start_from(state);
 }
 
-SystemState DynamicsOfIslands::state() const { return state_of(evaluator_, t_, q_, qd_); }
+SystemState DynamicsOfIslands::state() const {
+  SystemState state = state_of(evaluator_, t_, q_, qd_);
+  // The evaluator of all does not follow the motion.
+  state.curves.clear();
+  for (const auto& part : parts_) {
+    const std::vector<CurvePlace> places = part->curve_places();
+    state.curves.insert(state.curves.end(), places.begin(), places.end());
+  }
+  return state;
+}
 
 std::vector<IntegrationMethod> DynamicsOfIslands::methods() const {
   std::vector<IntegrationMethod> methods;

@@ -235,6 +235,7 @@ void Dynamics::remember() {
   memory_.integrator = integrator_->memory();
   memory_.left_out = equations_.left_out();
   memory_.earlier = earlier_;
+  evaluator_.curve_places(memory_.curves);
 }
 
 void Dynamics::resume(const MotionMemory& memory) {
@@ -242,6 +243,7 @@ void Dynamics::resume(const MotionMemory& memory) {
   earlier_ = memory.earlier;
   t_ = memory.t;
   resumed_ = prepared_ = true;
+  evaluator_.go_to_curve_places(memory.curves);
   equations_.use_masses();
 }
 

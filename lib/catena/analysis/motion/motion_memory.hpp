@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "catena/analysis/motion/impulses.hpp"
+#include "catena/elements/element.hpp"
 #include "catena/linalg/patterns/sparse_vectors.hpp"
 #include "catena/model/rope_turns.hpp"
 
@@ -66,6 +67,7 @@ struct MotionMemory {
   EventMemory events;
   std::vector<Jolt> jolts;  ///< so far
   std::vector<RopeTurns> ropes{};
+  std::vector<CurvePlace> curves{};  ///< where contacts on curves are
   std::vector<RopeEvent> rope_events{};  ///< so far
 };
 
