@@ -1,10 +1,13 @@
 // How many random cases the stress tests make, and what they print of them.
 //
-// CATENA_STRESS_CASES sets the number for every test that asks here.
+// CATENA_STRESS_CASES sets the number for every test that asks here, CATENA_STRESS_FIRST the first seed (1), and
+// CATENA_STRESS_KEEP a folder in which scenes are left, each by the name of its kind and its seed; with
+// CATENA_STRESS_SHOW set it is said of each case that was refused why.
 #pragma once
 
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <map>
 #include <string>
 
@@ -13,6 +16,24 @@ namespace catena::testing {
 inline int stress_cases(int usual) {
   const char* asked = std::getenv("CATENA_STRESS_CASES");
   return asked ? std::atoi(asked) : usual;
+}
+
+/// Seeds from the first to the last.
+inline unsigned first_case() {
+  const char* asked = std::getenv("CATENA_STRESS_FIRST");
+  return asked ? static_cast<unsigned>(std::atoi(asked)) : 1;
+}
+inline unsigned last_case(int usual) { return first_case() + static_cast<unsigned>(stress_cases(usual)) - 1; }
+
+/// Leaves a scene where it is asked for.
+inline void keep_scene(const std::string& kind, unsigned seed, const std::string& text) {
+  if (const char* folder = std::getenv("CATENA_STRESS_KEEP"))
+    std::ofstream(std::string(folder) + "/" + kind + "_" + std::to_string(seed) + ".json") << text;
+}
+
+/// Prints why a case was refused where CATENA_STRESS_SHOW is set.
+inline void show_refusal(unsigned seed, const std::string& message) {
+  if (std::getenv("CATENA_STRESS_SHOW")) std::printf("  seed %u: %s\n", seed, message.c_str());
 }
 
 /// Every outcome with its share.

@@ -36,6 +36,7 @@ class DenseMechanism {
   struct Row {
     int i, j;
     Function phi;
+    Real period = 0;  ///< by which phi may change although the row is met: of angles around a circle; 0: none
   };
   struct Load {
     int i, j;
@@ -119,6 +120,23 @@ class DenseMechanism {
     }
     return sum;
   }
+
+  /// By how much the rows at q differ from those of the start, at most, in lengths and rad.
+  Real missed(const Vector& start, const Vector& q) const {
+    const Vector zero = Vector::Zero(size());
+    const std::vector<Jet> first = residuals(0, start, zero, zero), now = residuals(0, q, zero, zero);
+    Real most = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const Real change = now[k].f - first[k].f;
+      // Angles and lengths are told apart by their period, gears by theirs.
+      const bool angle = rows[k].period == turn || rows[k].period == turn / 2;
+      const Real left = rows[k].period > 0 ? std::remainder(change, rows[k].period) : change;
+      most = std::max(most, std::abs(left) / (angle ? 1 : length));
+    }
+    return most;
+  }
+
+  static inline const Real turn = 2 * std::acos(Real(-1));
 
   /// Which rows are independent at q, by a factorization with pivots of the scaled Jacobian.
   std::vector<Eigen::Index> independent_rows(Real t, const Vector& q) const {

@@ -143,6 +143,11 @@ class RandomScene {
     scene["constraints"].push_back(std::move(entry));
     joint_rows_.push_back({dense.rows.size(), rows.size()});
     for (auto& row : rows) dense.rows.push_back({i, j, std::move(row)});
+    // The last row of these says that an angle stays.
+    const std::string& type = types.back();
+    if (type == "translational") dense.rows.back().period = DenseMechanism::turn / 2;
+    if (type == "weld" || type == "relative_angle" || type == "absolute_angle")
+      dense.rows.back().period = DenseMechanism::turn;
   }
   void add_joint(int i, int j) {
     if (i == j) i = -1;
@@ -276,6 +281,7 @@ class RandomScene {
           const JetPoint h = y.point(sj) - x.point(si);
           return a * x.phi + b * y.phi - (a + b) * atan2(h.y, h.x);
         }});
+    dense.rows.back().period = std::abs(a + b) * DenseMechanism::turn;
   }
   void double_a_joint() {
     if (joint_rows_.empty()) return;

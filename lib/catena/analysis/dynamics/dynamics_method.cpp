@@ -7,6 +7,7 @@
 #include "catena/analysis/dynamics/dynamics.hpp"
 #include "catena/analysis/dynamics/integrators/adams.hpp"
 #include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
+#include "catena/analysis/pose/jacobian_rank.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -71,7 +72,7 @@ Report Dynamics::check_order() const {
 
 Report Dynamics::check_freedoms() const {
   Report report;
-  const int freedoms = plan_->columns - plan_->rows + redundant_.count();
+  const int freedoms = plan_->columns - acting_rows(*plan_) + redundant_.count();
   if (freedoms > CoordinatePartition::most_freedoms) {
     report.status = Status::refused;
     report.message = fmt::format(
@@ -96,7 +97,8 @@ std::unique_ptr<Integrator> Dynamics::make_integrator(const Motion& motion, doub
   RungeKuttaOptions options{.tolerance = step_part * options_.tolerance,
                             .fixed_step = options_.step,
                             .horizon = horizon,
-                            .may_lower_order = options_.method != IntegrationMethod::rk8};
+                            .may_lower_order = options_.method != IntegrationMethod::rk8,
+                            .usual_ratio = redundant_.generic_ratio()};
   const double finer = std::min(options.tolerance, std::max(finer_part * options.tolerance, least_step_tolerance));
   switch (method_) {
     case IntegrationMethod::automatic:

@@ -172,8 +172,12 @@ std::vector<int> RedundantRows::dependent_rows(std::span<const double> q) {
   Evaluator& evaluator = equations_.evaluator();
   RankOptions options;
   options.most_null_vectors = options.most_dependencies = 0;
-  const RankReport rank = jacobian_rank(evaluator, plan_.jacobian, jacobian_values(evaluator, q), options);
-  return rank.ok() ? rank.dependent_rows : std::vector<int>{};
+  RankReport rank = jacobian_rank(evaluator, plan_.jacobian, jacobian_values(evaluator, q), options);
+  if (!rank.ok()) return {};
+  // Rows that hold nothing disturb no others, and have no size in which a direction could be measured.
+  const std::vector<char> empty = empty_rows(plan_);
+  std::erase_if(rank.dependent_rows, [&](int row) { return empty[at(row)]; });
+  return std::move(rank.dependent_rows);
 }
 
 // Leaves out single equations, at the configuration of the factors.
@@ -192,6 +196,7 @@ void RedundantRows::find(std::span<const double> q, const GenericPlace* generic)
   Evaluator& evaluator = equations_.evaluator();
   const double t = evaluator.time();
   equations_.leave_out({});
+  generic_ratio_ = 0;
   if (plan_.rows == 0 || !equations_.factorize(t, Side::after, q)) return;
   if (are_independent(equations_)) return;
   std::vector<int> rows = dependent_rows(q);
@@ -202,17 +207,23 @@ void RedundantRows::find(std::span<const double> q, const GenericPlace* generic)
     other = generic->q;
     return true;
   };
+  bool start_is_singular = false;
   if (!rows.empty() && go_elsewhere()) {
     std::vector<int> there = dependent_rows(other);
-    if (there.size() < rows.size()) {
+    start_is_singular = there.size() < rows.size();
+    if (start_is_singular) {
       rows = std::move(there);
       place = other;
     }
   }
-  if (!rows.empty()) {
-    equations_.factorize(t, Side::after, place);
-    leave_out(rows);
-    if (equations_.factorize(t, Side::after, place)) choose();
+  if (!rows.empty() || start_is_singular) {
+    bool factored = equations_.factorize(t, Side::after, place);
+    if (!rows.empty()) {
+      leave_out(rows);
+      factored = equations_.factorize(t, Side::after, place);
+    }
+    if (factored && start_is_singular) generic_ratio_ = equations_.smallest_pivot_ratio();
+    if (factored && !rows.empty()) choose();
   }
   chosen_at_.assign(q.begin(), q.end());
   evaluator.set_time(t);

@@ -45,6 +45,8 @@ class RedundantRows {
   void follow(std::span<const double> q);
   /// The number of directions left out: p.
   int count() const { return equations_.left_out().count(); }
+  /// Smallest pivot ratio at the place where the rank was taken, if the start is more singular than that; 0 elsewhere.
+  double generic_ratio() const { return generic_ratio_; }
   /// How often directions were chosen.
   int choices() const { return choices_; }
 
@@ -61,6 +63,7 @@ class RedundantRows {
   Vector chosen_at_;
   int choices_ = 0;
   double usual_ratio_ = 0;  // largest pivot ratio since the last choice
+  double generic_ratio_ = 0;
 };
 
 }  // namespace catena

@@ -1,5 +1,7 @@
 #include "catena/analysis/pose/jacobian_rank.hpp"
 
+#include <algorithm>
+
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -31,6 +33,19 @@ RankReport jacobian_rank(const Evaluator& evaluator, const SparsePattern& patter
     }
   }
   return rank;
+}
+
+std::vector<char> empty_rows(const Plan& plan) {
+  std::vector<char> empty(at(plan.rows), 1);
+  for (int row : plan.jacobian.row_index) {
+    if (row < plan.rows) empty[at(row)] = 0;
+  }
+  return empty;
+}
+
+int acting_rows(const Plan& plan) {
+  const std::vector<char> empty = empty_rows(plan);
+  return static_cast<int>(std::count(empty.begin(), empty.end(), 0));
 }
 
 }  // namespace catena

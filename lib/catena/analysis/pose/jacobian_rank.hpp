@@ -22,4 +22,9 @@ std::vector<double> jacobian_values(Evaluator& evaluator, std::span<const double
 RankReport jacobian_rank(const Evaluator& evaluator, const SparsePattern& pattern, std::span<const double> values,
                          const RankOptions& options = {});
 
+/// By row, whether it holds nothing: all its bodies are immobile, so that no entry of the Jacobian is its own.
+std::vector<char> empty_rows(const Plan& plan);
+/// The number of the others.
+int acting_rows(const Plan& plan);
+
 }  // namespace catena

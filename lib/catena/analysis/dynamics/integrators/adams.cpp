@@ -29,6 +29,7 @@ Adams::Adams(Motion motion, const RungeKuttaOptions& options)
   difference_.assign(most + 3, std::vector<double>(size - motion_.coordinates(), 0.0));
   predicted_.assign(size - motion_.coordinates(), 0.0);
   change_.assign(size - motion_.coordinates(), 0.0);
+  usual_ratio_ = std::max(usual_ratio_, options.usual_ratio);
   scale_.step_tolerance = options.tolerance;
   scale_.horizon = options.horizon;
   scale_.length = motion_.equations().evaluator().length_scale();
@@ -41,7 +42,7 @@ bool Adams::start(double t, std::span<const double> y) {
   if (!motion_.derivative(t_, Side::after, y_, slope_)) return false;
   const std::span<const double> state(y_), k(slope_);
   scale_.observe(t_, 0, motion_.qd(state).first(motion_.moving()), motion_.qd(k).first(motion_.moving()),
-                 motion_.equations().applied_forces());
+                 motion_.equations().applied_forces(), motion_.equations().smallest_pivot_ratio());
   largest_ratio_ = 0;
   stepped_by_runge_kutta_ = false;
   observe_ratio();
@@ -154,6 +155,14 @@ double Adams::error_of_step(double h) {
     }
   }
   return std::sqrt(largest);
+}
+
+// The same of the loads' work: see RungeKutta.
+double Adams::error_of_work(double h) const {
+  const std::size_t n = motion_.coordinates(), place = n + ErrorScale::work_of_loads;
+  const double once = weights_.integral[k_] / weights_.value[k_] - weights_.integral[k_ + 1] / weights_.value[k_ + 1];
+  const double work = y_[n + place];
+  return scale_.size_of_work(std::abs(h * once * (slope_[n + place] - predicted_[place])), work, y_new_[n + place]);
 }
 
 // The error without most of the part that the projection at the step's end will remove.

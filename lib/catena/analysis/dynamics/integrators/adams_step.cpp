@@ -63,6 +63,7 @@ bool Adams::try_step(double h) {
   double error = fixed ? 0 : error_of_step(h);
   if (!(error <= 1) && std::isfinite(error)) error = compared_with_end(h, error);
   if (!(error <= 1) && std::isfinite(error)) error = filtered(h, error);
+  if (!fixed && motion_.works() > 0) error = std::max(error, error_of_work(h));
   if (!(error <= 1)) {
     fail(h, std::isfinite(error) ? errors.now : 1e10, lower);
     return false;
@@ -83,7 +84,7 @@ bool Adams::try_step(double h) {
   observe_ratio();
   const std::span<const double> y(y_), k(slope_);
   scale_.observe(t_, h, motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()),
-                 motion_.equations().applied_forces());
+                 motion_.equations().applied_forces(), motion_.equations().smallest_pivot_ratio());
   if (!fixed) choose(h, errors, lower, above);
   return true;
 }

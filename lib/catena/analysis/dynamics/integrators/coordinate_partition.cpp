@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include "catena/analysis/pose/jacobian_rank.hpp"
 #include "catena/analysis/pose/mobility.hpp"
 #include "catena/base/at.hpp"
 
@@ -62,8 +63,7 @@ void CoordinatePartition::leave_out() {
 bool CoordinatePartition::choose(std::span<const double> q) {
   if (plan_.rows == 0) return true;
   if (freedoms_ < 0) {
-    freedoms_ = plan_.columns - plan_.rows + equations_.left_out().count();
-    // Rows between bodies that cannot move are not among those left out.
+    freedoms_ = plan_.columns - acting_rows(plan_) + equations_.left_out().count();
     if (freedoms_ < 0 || equations_.smallest_pivot_ratio() < independent_ratio)
       freedoms_ = analyse_mobility(evaluator_, q).dof();
   }

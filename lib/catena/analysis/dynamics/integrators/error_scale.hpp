@@ -67,6 +67,14 @@ class ErrorScale {
     return tolerance_ * (std::min(rate_ * unit, root_energy_ * speed_[c]) + std::abs(v)) +
            std::abs(h) * rounding(c) * unit;
   }
+  /// Where EnergyAccount has the work of the loads, among its integrals.
+  static constexpr std::size_t work_of_loads = 1;
+  /// An error of work, J, in a step that begins and ends with these sums, compared with what may be: a part of what the
+  /// balance of energy may miss (balance_watch.hpp), by the kinetic energy and the work so far.
+  double size_of_work(double error, double begin, double end) const {
+    const double energy = root_energy_ * root_energy_ + std::max(std::abs(end), std::abs(end - begin));
+    return error > 0 ? error / (work_part * step_tolerance * energy) : 0;
+  }
   /// The shortest step, s, that may be tried at t: below it time does not advance.
   double smallest_step(double t) const {
     constexpr double part = 1e-13;
@@ -86,9 +94,9 @@ class ErrorScale {
   }
 
   /// Records velocities and accelerations (three a body) at t, a time `step` after the last ones; 0: at a start.
-  /// Generalized forces `loads` determine the rounding of accelerations.
+  /// Generalized forces `loads` and the smallest pivot ratio of the equations determine the rounding of accelerations.
   void observe(double t, double step, std::span<const double> qd, std::span<const double> qdd,
-               std::span<const double> loads) {
+               std::span<const double> loads, double pivot_ratio) {
     rate_ /= 1 + std::abs(step) * rate_;
     measure(qd, qdd);
     force_ = acceleration_ = 0;
@@ -97,6 +105,8 @@ class ErrorScale {
       force_ = std::max(force_, force);
       if (mass_[c] > 0) acceleration_ = std::max(acceleration_, force * inverse_[c]);
     }
+    const double condition = 1 / std::max(pivot_ratio, refined_ratio);
+    condition_ = rate_ * rate_ <= condition * rounding_of_accelerations * acceleration_ ? condition : 1;
     if (step == 0) {
       double energy = 0;
       for (std::size_t c = 0; c < qd.size(); ++c) energy += mass_[c] * std::abs(qdd[c]) * (c % 3 == 2 ? 1 : length);
@@ -109,7 +119,7 @@ class ErrorScale {
 
  private:
   double rounding(std::size_t c) const {
-    return 4 * std::numeric_limits<double>::epsilon() * std::min(acceleration_, force_ * inverse_[c]);
+    return condition_ * rounding_of_accelerations * std::min(acceleration_, force_ * inverse_[c]);
   }
   void measure(std::span<const double> qd, std::span<const double> qdd) {
     double fastest = 0, strongest = 0, energy = 0;
@@ -122,8 +132,13 @@ class ErrorScale {
     root_energy_ = std::max(root_energy_, std::sqrt(energy));
   }
 
+  // In tolerances of a step, of which the balance may miss some 5000; steps add up.
+  static constexpr double work_part = 100;
+  static constexpr double rounding_of_accelerations = 4 * std::numeric_limits<double>::epsilon();
+  static constexpr double refined_ratio = 1e-5;  // below it solutions are refined (schur_system.cpp)
   static constexpr double brief_run = 200, least_tolerance = 1e-15;
   double rate_ = 0, root_energy_ = 0, radians_ = 0, tolerance_ = 0;
+  double condition_ = 1;
   double force_ = 0, acceleration_ = 0;         // N, and in units: largest of the loads and of what they would do alone
   std::vector<double> mass_, speed_, inverse_;  // speed_: of a coordinate that has 1 J; inverse_: units / s^2 a N
 };

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/pose/jacobian_rank.hpp"
+
 namespace catena {
 namespace {
 
@@ -37,6 +39,8 @@ RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options) : motion
   stage_power_.assign(stage_.size(), 0.0);
   direction_.resize(motion_.moving());
   detour_steps_.reserve(most_detours);
+  acting_rows_ = acting_rows(motion_.equations().plan());
+  usual_ratio_ = std::max(usual_ratio_, options.usual_ratio);
   scale_.step_tolerance = options.tolerance;
   scale_.horizon = options.horizon;
   scale_.length = motion_.equations().evaluator().length_scale();
@@ -144,7 +148,7 @@ void RungeKutta::observe_ratio() {
 void RungeKutta::observe_rates() {
   const std::span<const double> y(y_), k(slope_);
   scale_.observe(t_, t_ - t_before_, motion_.qd(y).first(motion_.moving()), motion_.qd(k).first(motion_.moving()),
-                 motion_.equations().applied_forces());
+                 motion_.equations().applied_forces(), motion_.equations().smallest_pivot_ratio());
 }
 
 void RungeKutta::combine(const StageSum& sum, double h, const double* from, std::span<double> out) const {

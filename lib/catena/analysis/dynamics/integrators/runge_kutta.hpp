@@ -42,6 +42,8 @@ struct RungeKuttaOptions {
   double fixed_step = 0;     ///< s; 0: adaptive
   double horizon = 0;        ///< s, where the run ends: the tolerance of a step depends on how far that is
   bool may_lower_order = true;
+  /// Smallest pivot ratio in usual places where the start is none (RedundantRows::generic_ratio).
+  double usual_ratio = 0;
 };
 
 class RungeKutta final : public Integrator {
@@ -89,6 +91,7 @@ class RungeKutta final : public Integrator {
   }
   bool factorize_new_point();
   double error_size(double h);
+  double error_of_work(double h) const;
   double filtered_error(double h, double raw);
   bool finish_step();
   bool watches_energy() const;
@@ -116,6 +119,8 @@ class RungeKutta final : public Integrator {
   bool finish_cut();
   void get_interpolant_ready();
   void evaluate_interpolant(double t, std::span<double> y);
+  void move_by_ends(double s, std::span<double> y) const;
+  void work_by_ends(double s, std::span<double> y);
 
   Motion motion_;
   std::unique_ptr<CoordinatePartition> partition_;  // only where it is asked for
@@ -134,6 +139,7 @@ class RungeKutta final : public Integrator {
   double weight_ = 0;                            // of all bodies, times the length scale, J
   bool interpolant_ready_ = false, by_ends_ = false, passing_singular_ = false, projecting_stages_ = false,
        crossing_ = false, long_steps_ = false, best_passes_ = false, taking_best_ = false;
+  int acting_rows_ = 0;  // see jacobian_rank.hpp
   int low_order_left_ = 0, rejections_ = 0, detours_ = 0;
   std::int64_t low_order_steps_ = 0, projected_steps_ = 0;
   double accepted_error_ = 1, step_error_ = 1, best_error_ = 0, best_step_ = 0;

@@ -60,8 +60,7 @@ RungeKutta::Energy RungeKutta::energy_of(double t, Side side, std::span<const do
 // u, with the factors of the new point.
 void RungeKutta::find_direction() {
   EquationsOfMotion& equations = motion_.equations();
-  const Plan& plan = equations.plan();
-  const bool single = plan.columns - plan.rows + equations.left_out().count() == 1;
+  const bool single = equations.plan().columns - acting_rows_ + equations.left_out().count() == 1;
   const std::span<const double> from = motion_.qd(std::span<const double>(single ? y_new_ : error_));
   std::copy_n(from.begin(), direction_.size(), direction_.begin());
   if (!single) equations.remove_forbidden(direction_);

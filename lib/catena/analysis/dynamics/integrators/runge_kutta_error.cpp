@@ -38,6 +38,23 @@ double RungeKutta::error_size(double h) {
   return denominator == 0 ? 0 : std::abs(h) * high / std::sqrt(denominator);
 }
 
+// The error of the loads' work in units of what the balance of energy may miss: where a load changes in time and moves
+// nothing, no other error says so. Of drivers nothing is asked: their loads have no bound near singular positions.
+double RungeKutta::error_of_work(double h) const {
+  const std::size_t load = 2 * motion_.coordinates() + ErrorScale::work_of_loads;
+  const auto sum = [&](const StageSum& weights) {
+    double all = 0;
+    for (const StageTerm& term : weights) all += term.weight * stage_[static_cast<std::size_t>(term.stage)][load];
+    return std::abs(h * all);
+  };
+  double error = sum(tableau().error);
+  if (tableau().order == 8 && error > 0) {
+    const double low = sum(tableau().error_low);
+    error *= error / std::sqrt(error * error + 0.01 * low * low);
+  }
+  return scale_.size_of_work(error, y_[load], y_new_[load]);
+}
+
 // The error without most of the part that the projection at the step's end will remove.
 double RungeKutta::filtered_error(double h, double raw) {
   const std::size_t moving = motion_.moving(), offset = motion_.coordinates();

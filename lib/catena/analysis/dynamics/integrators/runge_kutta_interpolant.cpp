@@ -1,5 +1,6 @@
 // RungeKutta::interpolate: the state between the last two, from the stages of the step or from its ends.
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -104,8 +105,7 @@ void RungeKutta::get_interpolant_ready() {
 }
 
 void RungeKutta::evaluate_interpolant(double t, std::span<double> y) {
-  const double h = t_ - t_before_;
-  const double s = (t - t_before_) / h, r = 1 - s;
+  const double s = (t - t_before_) / (t_ - t_before_), r = 1 - s;
   get_interpolant_ready();
   if (!by_ends_) {
     const auto& c = interpolant_;
@@ -116,22 +116,44 @@ void RungeKutta::evaluate_interpolant(double t, std::span<double> y) {
     }
     return;
   }
-  // Order 5, or stages that cannot be evaluated: positions by the quintic through positions, velocities and
-  // accelerations at both ends, velocities by its derivative, the rest by cubics.
+  move_by_ends(s, y);
+  if (motion_.works() > 0) work_by_ends(s, y);
+}
+
+// Order 5, or stages that cannot be evaluated: positions by the quintic through positions, velocities and accelerations
+// at both ends, velocities by its derivative.
+void RungeKutta::move_by_ends(double s, std::span<double> y) const {
   const std::size_t n = motion_.coordinates();
-  for (std::size_t i = 0; i < y.size(); ++i) {
-    const bool position = i < n, velocity = i >= n && i < 2 * n;
-    const std::size_t p = velocity ? i - n : i;
+  const double h = t_ - t_before_;
+  for (std::size_t p = 0; p < n; ++p) {
     const double y0 = y_before_[p], y1 = y_[p], d0 = h * stage_[0][p], d1 = h * slope_[p];
-    if (!position && !velocity) {
-      y[i] = y0 + s * (y1 - y0 + r * ((1 - 2 * s) * (y0 - y1) + r * d0 - s * d1));
-      continue;
-    }
     const double a0 = h * h * stage_[0][p + n], a1 = h * h * slope_[p + n];
     const double c2 = a0 / 2, A = y1 - y0 - d0 - c2, B = d1 - d0 - a0, C = a1 - a0;
     const double c3 = 10 * A - 4 * B + C / 2, c4 = -15 * A + 7 * B - C, c5 = 6 * A - 3 * B + C / 2;
-    y[i] = position ? y0 + s * (d0 + s * (c2 + s * (c3 + s * (c4 + s * c5))))
-                    : (d0 + s * (2 * c2 + s * (3 * c3 + s * (4 * c4 + s * 5 * c5)))) / h;
+    y[p] = y0 + s * (d0 + s * (c2 + s * (c3 + s * (c4 + s * c5))));
+    y[n + p] = (d0 + s * (2 * c2 + s * (3 * c3 + s * (4 * c4 + s * 5 * c5)))) / h;
+  }
+}
+
+// The integrals by Gauss's rule of three points (order 6) along that motion: powers have no derivatives from which a
+// polynomial could be as good. Cubics where a power cannot be evaluated.
+void RungeKutta::work_by_ends(double s, std::span<double> y) {
+  constexpr double places[] = {0.11270166537925831, 0.5, 0.88729833462074169};
+  constexpr double weights[] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+  const std::size_t first = 2 * motion_.coordinates();
+  const double h = t_ - t_before_, r = 1 - s;
+  std::copy(y_before_.begin(), y_before_.end(), y_stage_.begin());
+  std::vector<double>& power = stage_[1];
+  bool known = true;
+  for (std::size_t i = first; i < y.size(); ++i) y[i] = y_before_[i];
+  for (std::size_t k = 0; k < std::size(places) && known; ++k) {
+    move_by_ends(places[k] * s, y_stage_);
+    known = derivative(t_before_ + places[k] * s * h, Side::after, y_stage_, power);
+    for (std::size_t i = first; i < y.size(); ++i) y[i] += weights[k] * s * h * power[i];
+  }
+  for (std::size_t i = first; i < y.size() && !known; ++i) {
+    const double y0 = y_before_[i], y1 = y_[i], d0 = h * stage_[0][i], d1 = h * slope_[i];
+    y[i] = y0 + s * (y1 - y0 + r * ((1 - 2 * s) * (y0 - y1) + r * d0 - s * d1));
   }
 }
 

@@ -100,6 +100,8 @@ bool RungeKutta::advance(double limit) {
   rejections_ = 0;
   // Short steps would end again and again beside a singular position.
   long_steps_ = !fixed && start_ratio_ < nearly_singular;
+  // A choice of coordinates made at a singular position serves nowhere.
+  if (!projects() && start_ratio_ < nearly_singular && !begin_projection()) return false;
   if (!follow_motion()) return false;
   std::copy(slope_.begin(), slope_.end(), stage_[0].begin());
   motion_.equations().evaluator().take_turns(motion_.q(std::span(y_)));
@@ -132,6 +134,7 @@ bool RungeKutta::advance(double limit) {
       factored = factorize_new_point();
       if (factored) error = filtered_error(h, error);
     }
+    if (!fixed && motion_.works() > 0) error = std::max(error, error_of_work(h));
     if (!std::isfinite(error)) error = 1e10;
     const double growth =
         std::clamp(safety * std::pow(std::max(error, 1e-10), -1.0 / tableau().order), largest_cut, largest_growth);

@@ -1,0 +1,133 @@
+// Mechanisms that pass a singular position at a distance of 1e-2 ... 1e-12, by every method at tolerances 1e-4 ...
+// 1e-12, with redundant joints or without, against their known motion (oracles/known_motion.hpp).
+//
+// Crank and rod of a slider are of lengths r and r (1 + d), the crank and rocker of a four-bar of r (1 - d) and r: both
+// turn through a position in which, for d = 0, another motion begins, and turn a corner there of a width of sqrt(2 d)
+// rad. What is wrong is printed by distance and tolerance.
+#include <cstdlib>
+
+#include "oracles/redundant_trials.hpp"
+#include "stress/cases.hpp"
+
+namespace catena::testing {
+namespace {
+
+/// The slider's side of the crank does not change: at the passage it turns back.
+void near_slider(RandomMechanism& m, double d, bool doubled) {
+  const double crank = m.size * m.uniform(0.3, 1), rod = crank * (1 + d);
+  m.body(crank);
+  m.body(rod);
+  m.body(crank);
+  m.motion.places = [=](const JetCoordinates& z) {
+    const JetPoint pin = turned(z[0], {crank, 0});
+    const Jet across = (1 / Real(rod)) * pin.y, along = sqrt((Jet{1} - across) * (Jet{1} + across));
+    const Jet angle{-std::atan2(across.f, along.f), -across.d / along.f,
+                    -(across.dd + across.d * across.d * across.f / (along.f * along.f)) / along.f};
+    return std::vector<JetPlace>{{turned(z[0], {crank / 2, 0}), z[0]},
+                                 {{pin.x + Real(rod) / 2 * along, pin.y - Real(rod) / 2 * across}, angle},
+                                 {{pin.x + Real(rod) * along, Jet{}}, Jet{}}};
+  };
+  m.motion.z[0] = m.uniform(0, 1);
+  m.motion.rate[0] = m.uniform(3, 5) * m.motion.pace;
+  m.place_bodies();
+  for (int n = 0; n < (doubled ? 2 : 1); ++n) m.pin(ground, {0, 0}, 0, {-crank / 2, 0});
+  m.pin(0, {crank / 2, 0}, 1, {-rod / 2, 0});
+  for (int n = 0; n < (doubled ? 2 : 1); ++n) m.pin(1, {rod / 2, 0}, 2, {0, 0});
+  m.motion.model->add("", Translational<>{{0, 0}, {0, 0}, {1, 0}, {1, 0}}, ground, 2);
+}
+
+/// The coupler is above the line from the crank's pin to the rocker's foot.
+void near_parallelogram(RandomMechanism& m, double d, bool doubled) {
+  const double rocker = m.size * m.uniform(0.3, 0.8), crank = rocker * (1 - d), base = m.size * m.uniform(0.9, 1.4);
+  m.body(crank);
+  m.body(base);
+  m.body(rocker);
+  m.motion.places = [=](const JetCoordinates& z) {
+    const JetPoint pin = turned(z[0], {crank, 0}), span = fixed_point({base, 0}) - pin;
+    const Jet square = span.x * span.x + span.y * span.y;
+    // Parts of the coupler along the span and across, times its length.
+    const Real c2 = Real(base) * base, b2 = Real(rocker) * rocker;
+    const Jet along = Real(0.5) * (square + Jet{c2 - b2}), four = Real(4 * c2) * square, twice = Real(2) * along;
+    const Jet across = Real(0.5) * sqrt(four - twice * twice);
+    const Jet over{1 / square.f, -square.d / (square.f * square.f),
+                   (2 * square.d * square.d / square.f - square.dd) / (square.f * square.f)};
+    const JetPoint coupler{over * (along * span.x - across * span.y), over * (along * span.y + across * span.x)};
+    const JetPoint end = pin + coupler, arm = end - fixed_point({base, 0});
+    const auto angle_of = [](JetPoint a) {
+      const Real r2 = a.x.f * a.x.f + a.y.f * a.y.f, w = (a.x.f * a.y.d - a.y.f * a.x.d) / r2;
+      return Jet{std::atan2(a.y.f, a.x.f), w,
+                 (a.x.f * a.y.dd - a.y.f * a.x.dd - 2 * w * (a.x.f * a.x.d + a.y.f * a.y.d)) / r2};
+    };
+    const auto half = [](JetPoint a) { return JetPoint{Real(0.5) * a.x, Real(0.5) * a.y}; };
+    return std::vector<JetPlace>{{turned(z[0], {crank / 2, 0}), z[0]},
+                                 {pin + half(coupler), angle_of(coupler)},
+                                 {fixed_point({base, 0}) + half(arm), angle_of(arm)}};
+  };
+  m.motion.z[0] = m.uniform(1, 2);
+  m.motion.rate[0] = m.uniform(3, 5) * m.motion.pace;
+  m.place_bodies();
+  for (int n = 0; n < (doubled ? 2 : 1); ++n) m.pin(ground, {0, 0}, 0, {-crank / 2, 0});
+  m.pin(0, {crank / 2, 0}, 1, {-base / 2, 0});
+  for (int n = 0; n < (doubled ? 2 : 1); ++n) m.pin(1, {base / 2, 0}, 2, {rocker / 2, 0});
+  m.pin(ground, {base, 0}, 2, {-rocker / 2, 0});
+}
+
+struct PassageKind {
+  const char* name;
+  void (*make)(RandomMechanism&, double, bool);
+};
+constexpr PassageKind passage_kinds[] = {{"slider-crank", near_slider}, {"four-bar", near_parallelogram}};
+
+KnownMotion passage(int kind, unsigned seed, double distance, bool doubled) {
+  RandomMechanism m(seed * 157u + static_cast<unsigned>(kind));
+  m.size = std::pow(10.0, m.uniform(-2, 2));
+  m.mass = std::pow(10.0, m.uniform(-2, 2));
+  m.motion.kind = passage_kinds[kind].name;
+  m.motion.length = m.size;
+  m.motion.pace = std::sqrt(9.81 / m.size);
+  // Slower than what moves, so that nothing stops there.
+  m.motion.model->gravity = {0, -m.uniform(0, 1)};
+  m.motion.until = m.uniform(0.6, 0.8) / m.motion.pace;
+  passage_kinds[kind].make(m, distance, doubled);
+  return m.motion;
+}
+
+class SingularPassages : public ::testing::TestWithParam<std::tuple<int, bool>> {};
+
+TEST_P(SingularPassages, FollowTheKnownMotion) {
+  const auto [kind, doubled] = GetParam();
+  const std::vector<IntegrationMethod> methods = {IntegrationMethod::automatic, IntegrationMethod::rk8,
+                                                  IntegrationMethod::rk5,       IntegrationMethod::adams,
+                                                  IntegrationMethod::baumgarte, IntegrationMethod::partitioning};
+  const std::vector<double> tolerances = {1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
+  std::printf("%s%s\n  distance, then tolerance: runs / wrong / refused\n", passage_kinds[kind].name,
+              doubled ? ", joints given twice" : "");
+  for (const double distance : {1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
+    std::printf("  %.0e", distance);
+    for (const double tolerance : tolerances) {
+      TrialCounts counts;
+      const auto show = [&](unsigned seed, IntegrationMethod method, double, const TrialOutcome& outcome) {
+        show_refusal(seed, std::string(to_string(method)) + (outcome.wrong ? " WRONG " : " ") + outcome.message +
+                               " ratio " + std::to_string(outcome.ratio));
+      };
+      run_known_trials([&](unsigned seed) { return std::optional(passage(kind, seed, distance, doubled)); },
+                       first_case(), stress_cases(4), methods, {tolerance}, counts, show);
+      int runs = 0, wrong = 0, refused = 0;
+      for (const auto& [method, count] : counts) {
+        runs += count.runs;
+        wrong += count.wrong;
+        refused += count.refused;
+      }
+      std::printf("  %.0e: %d/%d/%d", tolerance, runs, wrong, refused);
+      EXPECT_EQ(wrong, 0) << "at a distance of " << distance << ", tolerance " << tolerance;
+    }
+    std::printf("\n");
+    std::fflush(stdout);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Kinds, SingularPassages,
+                         ::testing::Combine(::testing::Range(0, static_cast<int>(std::size(passage_kinds))),
+                                            ::testing::Bool()));
+
+}  // namespace
+}  // namespace catena::testing
