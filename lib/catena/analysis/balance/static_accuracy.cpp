@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "catena/analysis/balance/force_sizes.hpp"
@@ -58,6 +59,34 @@ void add_stiffness_times_places(StaticSystem& system, std::span<const double> la
   evaluator.visit_constraint_hessians(lambda, add);
 }
 
+// Whether all forces are rounding of what transmits them: constraints pass that of one coordinate on to all that they
+// tie together, so that among those the largest counts.
+bool are_rounding(const Plan& plan, std::span<const double> terms, std::span<const double> floor,
+                  std::span<const double> inverse_arms) {
+  std::vector<int> leader(terms.size()), first(at(plan.rows), -1), of_body(at(plan.moving), -1);
+  std::iota(leader.begin(), leader.end(), 0);
+  const auto find = [&](int c) {
+    while (leader[at(c)] != c) c = leader[at(c)] = leader[at(leader[at(c)])];
+    return c;
+  };
+  const auto tie = [&](int& known, int c) { known < 0 ? known = c : leader[at(find(c))] = find(known); };
+  for (int c = 0; c < plan.columns; ++c) {
+    tie(of_body[at(plan.coordinate[at(c)] / 3)], c);
+    for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k)
+      tie(first[at(plan.jacobian.row_index[at(k)])], c);
+  }
+  std::vector<double> force(terms.size(), 0.0), rounding(terms.size(), 0.0);
+  for (int c = 0; c < plan.columns; ++c) {
+    const std::size_t group = at(find(c));
+    force[group] = std::max(force[group], terms[at(c)] * inverse_arms[at(c)]);
+    rounding[group] = std::max(rounding[group], few_roundings * floor[at(c)] * inverse_arms[at(c)]);
+  }
+  for (std::size_t group = 0; group < force.size(); ++group) {
+    if (!(force[group] <= rounding[group])) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 StaticAccuracy judge_balance(StaticSystem& system, std::span<const double> lambda, double tolerance) {
@@ -87,18 +116,18 @@ StaticAccuracy judge_balance(StaticSystem& system, std::span<const double> lambd
   std::vector<double> floor = terms;
   add_stiffness_times_places(system, lambda, floor);
   // Without loads, with springs at their free lengths, all forces are rounding.
-  bool rounded = true, nothing = !loaded;
+  const bool nothing = !loaded && are_rounding(plan, terms, floor, inverse_arms);
+  bool rounded = true;
   double worst = -1;
   for (int c = 0; c < plan.columns; ++c) {
     const double force = std::abs(residual[at(c)]), rounding = few_roundings * floor[at(c)];
     rounded = rounded && force <= rounding;
-    nothing = nothing && terms[at(c)] <= rounding;
     if (force > worst * rounding) {
       worst = rounding > 0 ? force / rounding : std::numeric_limits<double>::infinity();
       result.rounding = rounding * inverse_arms[at(c)];
     }
   }
-  result.rounded = rounded && (nothing || !shows);
+  result.rounded = nothing || (rounded && !shows);
   return result;
 }
 

@@ -31,8 +31,9 @@ bool BalanceWatch::conserves(Evaluator& evaluator) {
   return evaluator.dissipation(motion) == 0 && evaluator.load_power(motion) == 0;
 }
 
-void BalanceWatch::begin(const Snapshot& start, double tolerance, bool work_known) {
+void BalanceWatch::begin(const Snapshot& start, double tolerance, bool work_known, bool drifts) {
   tolerance_ = tolerance;
+  drifts_ = drifts;
   work_known_ = work_known;
   largest_kinetic_ = kinetic_energy(start);
   least_potential_ = largest_potential_ = start.evaluator.potential_energy() + start.contact_energy;
@@ -58,7 +59,8 @@ Report BalanceWatch::check(double t) const {
   if (!std::isfinite(missing_)) return report;
   const double energy = this->energy();
   const double size = std::max({weight_, std::abs(least_potential_), std::abs(largest_potential_), std::abs(initial_)});
-  if (std::abs(missing_) <= permitted * tolerance_ * energy + rounding * size) return report;
+  const double drift = drifts_ ? tolerance_ * weight_ : 0;
+  if (std::abs(missing_) <= permitted * tolerance_ * energy + drift + rounding * size) return report;
   report.status = Status::not_converged;
   report.message = fmt::format(
       "the motion up to t = {:.12g} s is wrong: {:.3g} J of energy {} without a cause, of {:.3g} J in "

@@ -3,6 +3,9 @@
 //   missing = T + V - (T0 + V0) - work of drivers and loads + dissipated
 //   allowed = permitted x tolerance x (largest T + range of V) + rounding of V, |V| and weights x length scale
 //
+// Where constraints are not kept but drift by the size of the tolerance, weights do the work  tolerance x weights x
+// length scale  on the way: allowed as well, or no mechanism at rest would ever do.
+//
 // Errors of positions and velocities of `tolerance` (of the scale of the motion) change the energy by a few times
 // tolerance x (T + V); a motion with a much larger error of energy is wrong. No check is possible where forces without
 // a potential act and their work is not summed up. Units: J.
@@ -20,8 +23,9 @@ class BalanceWatch {
   /// Whether forces and constraints of a model neither supply nor dissipate energy: tried with a motion of all bodies.
   static bool conserves(Evaluator& evaluator);
 
-  /// `work_known`: snapshots carry work and dissipation. Evaluates energies at the start.
-  void begin(const Snapshot& start, double tolerance, bool work_known);
+  /// `work_known`: snapshots carry work and dissipation; `drifts`: constraints are not kept. Evaluates energies at the
+  /// start.
+  void begin(const Snapshot& start, double tolerance, bool work_known, bool drifts);
   /// Energy of what came before, in phases of one motion: a part of its errors is that of the whole.
   void know_energy(double energy) { earlier_ = energy; }
   /// Largest kinetic energy and range of the potential, so far.
@@ -34,7 +38,7 @@ class BalanceWatch {
  private:
   double tolerance_ = 0, initial_ = 0, missing_ = 0, largest_kinetic_ = 0, least_potential_ = 0, largest_potential_ = 0;
   double earlier_ = 0, weight_ = 0;  // of all bodies, times the length scale: V is zero by chance alone
-  bool work_known_ = false;
+  bool work_known_ = false, drifts_ = false;
 };
 
 }  // namespace catena

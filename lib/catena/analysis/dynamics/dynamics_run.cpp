@@ -87,7 +87,8 @@ Report Dynamics::start() {
     evaluator_.set_time(t_);
     evaluator_.set_configuration(std::span<const double>(y_row_).first(q_.size()));
     balance_->know_energy(earlier_motion_);
-    balance_->begin(snapshot(t_, y_row_, {}), options_.tolerance, account_.has_value());
+    balance_->begin(snapshot(t_, y_row_, {}), options_.tolerance, account_.has_value(),
+                    !integrator_->meets_constraints());
   }
   if (!watched_.may_end()) return {};
   evaluator_.set_configuration(std::span<const double>(y_row_).first(q_.size()));

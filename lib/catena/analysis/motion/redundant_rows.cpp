@@ -21,6 +21,8 @@ constexpr double rounding_of_pivots = 1e-14;
 // nearby (sine 0.1), near enough to be assembled.
 constexpr double probe_distance = 0.1;
 constexpr int most_probes = 4;
+// Pivot ratios grow with the square of the distance from a singular position: usual is that half a radian away.
+constexpr double usual_growth = 25;
 // Exchanges are made until the volume would grow by less than this factor.
 constexpr double worthwhile = 1.1;
 // A choice is made anew when bodies have moved this far, rad or length scales, or when pivots have become half as
@@ -222,7 +224,7 @@ void RedundantRows::find(std::span<const double> q, const GenericPlace* generic)
       leave_out(rows);
       factored = equations_.factorize(t, Side::after, place);
     }
-    if (factored && start_is_singular) generic_ratio_ = equations_.smallest_pivot_ratio();
+    if (factored && start_is_singular) generic_ratio_ = std::min(1.0, usual_growth * equations_.smallest_pivot_ratio());
     if (factored && !rows.empty()) choose();
   }
   chosen_at_.assign(q.begin(), q.end());

@@ -45,7 +45,7 @@ class RedundantRows {
   void follow(std::span<const double> q);
   /// The number of directions left out: p.
   int count() const { return equations_.left_out().count(); }
-  /// Smallest pivot ratio at the place where the rank was taken, if the start is more singular than that; 0 elsewhere.
+  /// Smallest pivot ratio that the motion will usually have, where it starts in a singular position; 0 elsewhere.
   double generic_ratio() const { return generic_ratio_; }
   /// How often directions were chosen.
   int choices() const { return choices_; }

@@ -103,24 +103,32 @@ double Adams::weight(std::size_t c, double h) const {
   return h * std::max(v_unit > 0 ? 1 / v_unit : 0, h / scale_.position_unit(c, h));
 }
 
+// The same of the loads' power: see RungeKutta::error_of_work.
+double Adams::weight_of_work(double h) const {
+  const std::size_t work = 2 * motion_.coordinates() + ErrorScale::work_of_loads;
+  return h * scale_.size_of_work(1, y_[work], y_[work] + h * slope_[work]);
+}
+
 // Errors at orders k, k-1 and k-2, as if steps had one length.
 Adams::Errors Adams::estimate(double h) {
   Errors errors;
   const bool one = k_ >= 2, two = k_ >= 3;
-  for (std::size_t c = 0; c < motion_.moving(); ++c) {
-    const double unit = weight(c, h), df = change_[c];
-    const double now = unit * std::abs(df);
-    if (!(now <= errors.now)) {
-      errors.now = now;
-      culprit_ = static_cast<int>(c);
-    }
-    if (!one) continue;
+  const auto compare = [&](std::size_t c, double unit) {
+    const double df = change_[c], now = unit * std::abs(df);
+    const bool larger = !(now <= errors.now);
+    if (larger) errors.now = now;
+    if (!one) return larger;
     const double last = weights_.value[k_] * difference_[k_][c];
     errors.below = std::max(errors.below, unit * std::abs(last + df));
-    if (!two) continue;
+    if (!two) return larger;
     const double both = last + weights_.value[k_ - 1] * difference_[k_ - 1][c];
     errors.far_below = std::max(errors.far_below, unit * std::abs(both + df));
+    return larger;
+  };
+  for (std::size_t c = 0; c < motion_.moving(); ++c) {
+    if (compare(c, weight(c, h))) culprit_ = static_cast<int>(c);
   }
+  if (motion_.works() > 0) compare(motion_.coordinates() + ErrorScale::work_of_loads, weight_of_work(h));
   errors.now *= history_.sigma(k_ + 1, h) * steady_error[k_];
   if (one) errors.below *= history_.sigma(k_, h) * steady_error[k_ - 1];
   if (two) errors.far_below *= history_.sigma(k_ - 1, h) * steady_error[k_ - 2];
@@ -131,10 +139,11 @@ Adams::Errors Adams::estimate(double h) {
 double Adams::estimate_above(double h) const {
   const std::size_t n = motion_.coordinates();
   double largest = 0;
-  for (std::size_t c = 0; c < motion_.moving(); ++c) {
-    const double change = slope_[n + c] - predicted_[c] - difference_[k_ + 1][c];
-    largest = std::max(largest, weight(c, h) * std::abs(change));
-  }
+  const auto compare = [&](std::size_t c, double unit) {
+    largest = std::max(largest, unit * std::abs(slope_[n + c] - predicted_[c] - difference_[k_ + 1][c]));
+  };
+  for (std::size_t c = 0; c < motion_.moving(); ++c) compare(c, weight(c, h));
+  if (motion_.works() > 0) compare(n + ErrorScale::work_of_loads, weight_of_work(h));
   return largest * steady_error[k_ + 1];
 }
 
@@ -157,12 +166,10 @@ double Adams::error_of_step(double h) {
   return std::sqrt(largest);
 }
 
-// The same of the loads' work: see RungeKutta.
 double Adams::error_of_work(double h) const {
   const std::size_t n = motion_.coordinates(), place = n + ErrorScale::work_of_loads;
   const double once = weights_.integral[k_] / weights_.value[k_] - weights_.integral[k_ + 1] / weights_.value[k_ + 1];
-  const double work = y_[n + place];
-  return scale_.size_of_work(std::abs(h * once * (slope_[n + place] - predicted_[place])), work, y_new_[n + place]);
+  return weight_of_work(h) * std::abs(once * (slope_[n + place] - predicted_[place]));
 }
 
 // The error without most of the part that the projection at the step's end will remove.

@@ -12,13 +12,11 @@
 namespace catena {
 namespace {
 
-// Rows whose smallest pivot ratio is above this need no rank analysis.
-constexpr double independent_ratio = 1e-8;
 constexpr int most_iterations = 10;
 constexpr double good_enough = 1e-12;  // residual, in length scales or rad, where iterations gain nothing any more
-// Nor do they where coordinates move by no more than rounding makes of a product and its sum, however large the
-// residual that this leaves in rows with long arms (wheels of a thousand length scales).
-constexpr double rounding_of_places = 8 * std::numeric_limits<double>::epsilon();
+// Nor do they where every equation misses by no more than rounding of its terms: with long arms (wheels of a thousand
+// length scales) that is much more, and beside them small wheels turn noticeably by it.
+constexpr double rounding_of_terms = 8 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -64,8 +62,8 @@ bool CoordinatePartition::choose(std::span<const double> q) {
   if (plan_.rows == 0) return true;
   if (freedoms_ < 0) {
     freedoms_ = plan_.columns - acting_rows(plan_) + equations_.left_out().count();
-    if (freedoms_ < 0 || equations_.smallest_pivot_ratio() < independent_ratio)
-      freedoms_ = analyse_mobility(evaluator_, q).dof();
+    // The rank here may be lower than elsewhere: a motion may start in a flat position.
+    if (freedoms_ < 0) freedoms_ = analyse_mobility(evaluator_, q).dof();
   }
   if (freedoms_ > most_freedoms) return false;
   ++choices_;
@@ -149,11 +147,17 @@ void CoordinatePartition::pick_independent(int freedoms) {
   }
 }
 
-// Whether the last correction of q was rounding.
-bool CoordinatePartition::change_is_rounding(std::span<const double> q) const {
-  for (int c : plan_.coordinate) {
-    const double unit = c % 3 == 2 ? 1 : evaluator_.length_scale();
-    if (!(std::abs(change_[at(c)]) <= rounding_of_places * std::max(std::abs(q[at(c)]), unit))) return false;
+// Whether residual_, that of q, is rounding of sum |Phi_q| |q| in each equation.
+bool CoordinatePartition::residual_is_rounding(std::span<const double> q) {
+  std::fill(multipliers_.begin(), multipliers_.end(), 0.0);
+  for (int c = 0; c < plan_.columns; ++c) {
+    const int coordinate = plan_.coordinate[at(c)];
+    const double size = std::max(std::abs(q[at(coordinate)]), coordinate % 3 == 2 ? 1 : evaluator_.length_scale());
+    for (int k = plan_.jacobian.column_start[at(c)]; k < plan_.jacobian.column_start[at(c) + 1]; ++k)
+      multipliers_[at(plan_.jacobian.row_index[at(k)])] += std::abs(jacobian_[at(k)]) * size;
+  }
+  for (std::size_t r = 0; r < residual_.size(); ++r) {
+    if (!(std::abs(residual_[r]) <= rounding_of_terms * multipliers_[r])) return false;
   }
   return true;
 }
@@ -171,7 +175,7 @@ bool CoordinatePartition::solve(double t, Side side, std::span<double> q, std::s
     if (k == 0 && (!factorize() || ratio_ < unusable * ratio_of_choice_)) return false;
     if (position_residual_ <= EquationsOfMotion::position_rounding) break;
     if (k > 0 && position_residual_ > 0.5 * before &&
-        ((before < good_enough && position_residual_ < 10 * good_enough) || change_is_rounding(q)))
+        ((before < good_enough && position_residual_ < 10 * good_enough) || residual_is_rounding(q)))
       break;
     if (k == most_iterations || (k > 0 && position_residual_ > before)) return false;
     before = position_residual_;

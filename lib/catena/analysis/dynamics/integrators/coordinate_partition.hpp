@@ -45,7 +45,7 @@ class CoordinatePartition {
   void pick_independent(int freedoms);
   void leave_out();
   bool factorize();
-  bool change_is_rounding(std::span<const double> q) const;
+  bool residual_is_rounding(std::span<const double> q);
 
   EquationsOfMotion& equations_;
   Evaluator& evaluator_;

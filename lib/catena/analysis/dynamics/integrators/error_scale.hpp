@@ -73,7 +73,7 @@ class ErrorScale {
   /// balance of energy may miss (balance_watch.hpp), by the kinetic energy and the work so far.
   double size_of_work(double error, double begin, double end) const {
     const double energy = root_energy_ * root_energy_ + std::max(std::abs(end), std::abs(end - begin));
-    return error > 0 ? error / (work_part * step_tolerance * energy) : 0;
+    return energy > 0 ? error / (work_part * step_tolerance * energy) : 0;
   }
   /// The shortest step, s, that may be tried at t: below it time does not advance.
   double smallest_step(double t) const {
