@@ -42,6 +42,26 @@ Family four_bars() {
           {{0.2, 0.6}, {0.8, 1.6}, {0.7, 1.3}, {1.0, 1.8}, {1, 3}}};
 }
 
+/// Formulas of columns, of time and of the ground's points, beside plain ones.
+Family formulas() {
+  Family family = four_bars();
+  family.measures = {R"json({"max": "=sqrt(coupler.pen.vx^2 + coupler.pen.vy^2)"})json",
+                     R"json({"mean": "=abs(coupler.angle - rocker.angle) + t*w"})json",
+                     R"json({"range": "coupler.pen.ax"})json", R"json({"min": "coupler.pen.ay"})json",
+                     R"json({"integral": "=crank.to.x*coupler.omega + a"})json"};
+  return family;
+}
+
+/// Columns that lanes have no formulas for.
+Family joint_angles() {
+  Family family = four_bars();
+  const std::size_t place = family.mechanism.find(R"json("i": "coupler.to")json");
+  family.mechanism.insert(place, R"json("name": "B", )json");
+  family.measures = {R"json({"range": "B.angle"})json", R"json({"max": "B.omega"})json",
+                     R"json({"max": "coupler.pen.y"})json"};
+  return family;
+}
+
 /// A slide on a slanting line, moved through a rod without mass; an offset that some cranks cannot pass.
 Family slider_cranks() {
   return {R"json( "bodies": {"crank": {"rod": {"from": [0, 0], "to": ["a", 0]}},
@@ -135,7 +155,8 @@ TEST_P(RandomDesigns, AreWhatEachIsByItself) {
   EXPECT_GE(in_lanes, 8 * good / 10);
 }
 
-INSTANTIATE_TEST_SUITE_P(Lanes, RandomDesigns, ::testing::Values(four_bars, slider_cranks, six_bars));
+INSTANTIATE_TEST_SUITE_P(Lanes, RandomDesigns,
+                         ::testing::Values(four_bars, formulas, joint_angles, slider_cranks, six_bars));
 
 /// A four-bar about (x, y), its crank turned by theta(t) = 0.3 + 2 t.
 struct Lengths {

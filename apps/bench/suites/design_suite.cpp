@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <memory>
 
 #include "catena/analysis/batch/batch.hpp"
 #include "catena/elements/all.hpp"
@@ -132,6 +133,49 @@ void swings(Bench& bench) {
           std::string(four_bar) + R"json("type": "sensitivity", "parameters": ["a", "b", "c", "d"], "of": {)json" +
               swing + "}]}",
           gradient, gradients_of);
+}
+
+/// Crank-rockers through a sweep, from text to rows: the ends of every swing against the triangle, and a third measure.
+void sweeps(Bench& bench) {
+  const int designs = bench.brief() ? 16 : 1000;
+  Row row{.suite = "design", .problem = "crank-rockers, three measures", .method = "sweep, a design", .bodies = 3};
+  row.setting = "one thread";
+  row.error_of = "ends of the swings, rad";
+  row.reference = "triangle in closed form";
+  row.allowed = 1e-9;
+  if (!bench.wants(row)) return;
+  RunOptions options;
+  options.text =
+      std::string(four_bar) + fmt::format(R"json("type": "sweep", "design": "sobol", "samples": {}, "over": {{
+    "a": {{"uniform": [0.095, 0.105]}}, "b": {{"uniform": [0.24, 0.26]}}, "c": {{"uniform": [0.19, 0.21]}},
+    "d": {{"uniform": [0.29, 0.31]}}}}, "of": {{"type": "kinematics", "until": 6.3, "every": 0.0875, "measures": {{
+    "least": {{"min": "rocker.angle"}}, "most": {{"max": "rocker.angle"}}, "rough": {{"rms": "rocker.alpha"}}}}}}}}]}})json",
+                                          designs);
+  const auto once = [&] {
+    auto rows = std::make_unique<StoredResults>();
+    const SceneOutcome outcome = run_scene("design", options, *rows);
+    if (outcome.exit_code != 0) row.failure = outcome.error_text;
+    return rows;
+  };
+  const std::unique_ptr<StoredResults> found = once();
+  if (row.failure.empty()) {
+    const ResultStorage& rows = *found->rows.front();
+    const auto column = [&](const char* name) { return rows.column(name); };
+    const Values a = column("a"), b = column("b"), c = column("c"), d = column("d");
+    Values ends = column("least"), exact;
+    const Values most = column("most");
+    ends.insert(ends.end(), most.begin(), most.end());
+    // Stretched the rocker is furthest from the crank's pivot: its angle is the least.
+    for (const double sign : {1.0, -1.0}) {
+      for (std::size_t k = 0; k < a.size(); ++k) {
+        const double s = b[k] + sign * a[k];
+        exact.push_back(std::acos(-1.0) - std::acos((d[k] * d[k] + c[k] * c[k] - s * s) / (2 * c[k] * d[k])));
+      }
+    }
+    row.error = apart(ends, exact);
+    bench.time(row, once, designs);
+  }
+  bench.add(std::move(row));
 }
 
 void oscillations(Bench& bench) {
@@ -293,6 +337,7 @@ void lanes(Bench& bench) {
 
 void design_suite(Bench& bench) {
   swings(bench);
+  sweeps(bench);
   oscillations(bench);
   path_generation(bench);
   lanes(bench);

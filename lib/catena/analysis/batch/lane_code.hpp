@@ -3,10 +3,8 @@
 //
 //   Phi(q, t) = 0     Newton-Raphson, every lane its own      Phi_q qd = nu      Phi_q qdd = gamma
 //
-// Phi_q falls into diagonal blocks (block triangular form, the last one is solved first). In a block every entry that
-// is +1 or -1 whatever the design is a pivot that cannot vanish: they are eliminated first. What is left, the tail, is
-// a small dense matrix whose rows are exchanged lane by lane (partial pivoting): its determinant is that of the block,
-// up to its sign, and vanishes where the block is singular.
+// Phi_q is eliminated in steps that are listed once for all designs (lane_elimination.hpp); what is left of its
+// diagonal blocks are tails, small dense matrices whose rows are exchanged lane by lane.
 //
 // Kernels are compiled once for every instruction set: they see nothing but these plain pointers, and no function of
 // theirs can take the place of another part's. Units: m, rad, s.
@@ -34,9 +32,9 @@ inline constexpr int lane_count = 8;
   X(Translational)              \
   X(Weld)
 
-#define CATENA_LANE_COUNT(Type) +1
-inline constexpr int lane_types = 0 CATENA_LANE_ELEMENTS(CATENA_LANE_COUNT);
-#undef CATENA_LANE_COUNT
+#define CATENA_LANE_NAME(Type) Type##_in_lanes,
+enum LaneType { CATENA_LANE_ELEMENTS(CATENA_LANE_NAME) lane_types };
+#undef CATENA_LANE_NAME
 
 /// Largest tail of a block: 2 in a loop of links.
 inline constexpr int largest_tail = 6;
@@ -46,15 +44,35 @@ struct LaneElement {
   int field;                ///< place of its first parameter
   int function;             ///< place of c, c', c'' in `function`; -1: it has none
   int scale;                ///< place of its factor in `field`; -1: 1
-  int slot;                 ///< place of its first varying entry in `slot`
+  int first_place;          ///< of its varying entries, in `place`
   bool timed;               ///< c may change with time
 };
 
-/// A pivot +1 or -1. Lists begin at `list`: of the entries below it their slots and rows, of those to the right of it
-/// their slots and rows (of the pivots of their columns), then the slots of all products.
-struct LanePivot {
-  int row, below, right, list;
-  double inverse;
+/// So many elements of one type.
+struct LaneElements {
+  LaneType type;
+  int count;
+};
+
+/// What a step does to its target t, with a source s and a factor m: an entry of Phi_q.
+enum class LaneAct {
+  add,               ///< t + s
+  subtract,          ///< t - s
+  add_product,       ///< t + m s
+  subtract_product,  ///< t - m s
+  negate,            ///< -t
+  solve_tail         ///< of the numbers in the rows of a tail
+};
+
+/// Places are those of values: a slot or a row times lane_count.
+struct LaneStep {
+  int target, source, factor;
+};
+
+/// Steps that do the same, one after the other; of solve_tail `first` is the number of the tail.
+struct LaneRun {
+  LaneAct act;
+  int first, last;
 };
 
 /// Rows, and slots row by row.
@@ -65,27 +83,32 @@ struct LaneTail {
   bool length_column[largest_tail], length_row[largest_tail];
 };
 
-struct LaneBlock {
-  int first_pivot, pivots;
-  int tail;           ///< -1: none
-  int first_outside;  ///< entries in rows of earlier blocks: slot, row there, row of the pivot of its column
-  int outside;
+/// A slot that no element writes and steps change: what it begins with.
+struct LaneReset {
+  int place;
+  double value;
+};
+
+/// An unknown takes the place of the row in which its pivot stands.
+struct LaneUnknown {
+  int place;       ///< of that row
+  int coordinate;  ///< its own place in q
 };
 
 struct LaneCode {
   int moving, frames, rows, slots;  ///< frames: of moving bodies, of those that stand still, of the ground
   double origin_x, origin_y;        ///< of all frames, in the ground frame
-  const LaneElement* element;
-  int first_of_type[lane_types + 1];
-  const int* slot;
-  const double* initial;  ///< of every slot: the entries +1 and -1, else zero
-  int blocks, tails;
-  const LaneBlock* block;
-  const LanePivot* pivot;
-  const int* list;
+  const LaneElement* element;       ///< type after type
+  const LaneElements* of_type;
+  int types;         ///< that have elements
+  const int* place;  ///< in the matrix, of the varying entries of elements
+  int factor_runs, solve_runs, resets, tails;
+  const LaneRun *factor, *solve;  ///< of Phi_q, in which all places of steps are; of a right-hand side
+  const LaneStep* step;
+  const LaneReset* reset;
   const LaneTail* tail;
-  const int* outside;
-  const int* coordinate;  ///< of the unknown whose pivot stands in a row
+  const LaneUnknown* unknown;  ///< lengths, then angles
+  int lengths;
 };
 
 /// One group at one instant. Arrays hold lane_count values a number and are aligned to 64 bytes.
@@ -96,7 +119,7 @@ struct LaneJob {
   const double* unit;      ///< one over the length scale
   double* frame;           ///< x, y, phi, cos, sin of every frame; those after the moving ones are given
   double *q, *qd, *qdd;    ///< of the moving bodies; q: the start of Newton's iteration
-  double *matrix, *right;  ///< scratch: slots, rows
+  double *matrix, *right;  ///< slots, those of constants filled; scratch: rows
   double *tail, *exchange;
   int lanes;  ///< in use; packs beyond them are left out
   bool velocity, acceleration;

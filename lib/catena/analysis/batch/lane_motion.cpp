@@ -76,6 +76,7 @@ void LaneMotion::begin(unsigned lanes, int rows) {
   if (rows <= kept_rows_) return;
   kept_rows_ = rows;
   for (LaneNumbers* kept : {&rows_q_, &rows_qd_, &rows_qdd_}) *kept = LaneNumbers(rows * coordinates_);
+  rows_turned_ = LaneNumbers(rows * 2 * (coordinates_ / 3));
   rows_margin_ = LaneNumbers(rows * tails_);
 }
 
@@ -190,7 +191,8 @@ void LaneMotion::take(unsigned lanes) {
       for (std::size_t k = static_cast<std::size_t>(lane); k < to.values(); k += lane_count)
         to.data()[k] = from.data()[k];
     };
-    for (LaneNumbers LaneState::*numbers : {&LaneState::q, &LaneState::qd, &LaneState::qdd, &LaneState::margin}) {
+    for (LaneNumbers LaneState::*numbers :
+         {&LaneState::q, &LaneState::qd, &LaneState::qdd, &LaneState::turned, &LaneState::margin}) {
       move(before_.*numbers, now_.*numbers);
       move(now_.*numbers, next_.*numbers);
     }
@@ -221,6 +223,7 @@ void LaneMotion::keep_row(int row) {
   keep(rows_q_, now_.q, coordinates_);
   keep(rows_qd_, now_.qd, coordinates_);
   keep(rows_qdd_, now_.qdd, coordinates_);
+  keep(rows_turned_, now_.turned, 2 * (coordinates_ / 3));
   keep(rows_margin_, now_.margin, tails_);
 }
 

@@ -59,10 +59,13 @@ class LaneMotion {
   void clear_rows(int lane, int rows);
   int coordinates() const { return coordinates_; }
   int tails() const { return tails_; }
-  /// x, y, phi of the moving bodies of all lanes at a row, from the origin of the frames; their rates.
+  /// x, y, phi of the moving bodies of all lanes at a row, from the origin of
+  /// the frames; their rates.
   const double* q(int row) const { return rows_q_[row * coordinates_]; }
   const double* qd(int row) const { return rows_qd_[row * coordinates_]; }
   const double* qdd(int row) const { return rows_qdd_[row * coordinates_]; }
+  /// Cosine and sine of the angle of every moving body.
+  const double* turned(int row) const { return rows_turned_[row * 2 * (coordinates_ / 3)]; }
   const double* margin(int row) const { return rows_margin_[row * tails_]; }
 
  private:
@@ -80,7 +83,7 @@ class LaneMotion {
 
   LaneSolver solver_;
   int coordinates_, tails_;
-  LaneNumbers largest_margin_, rows_q_, rows_qd_, rows_qdd_, rows_margin_;
+  LaneNumbers largest_margin_, rows_q_, rows_qd_, rows_qdd_, rows_turned_, rows_margin_;
   int kept_rows_ = 0;
   LaneState before_, now_, next_;
   std::array<bool, lane_count> has_before_{};

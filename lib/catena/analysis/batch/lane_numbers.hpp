@@ -19,12 +19,26 @@ class LaneNumbers {
     std::fill(data_.get(), data_.get() + size_, 0.0);
   }
 
+  LaneNumbers(const LaneNumbers& other) : size_(other.size_) {
+    if (!other.data_) return;
+    data_.reset(static_cast<double*>(::operator new[](size_ * sizeof(double), alignment)));
+    copy(other);
+  }
+  LaneNumbers(LaneNumbers&&) noexcept = default;
+  LaneNumbers& operator=(LaneNumbers&&) noexcept = default;
+  ~LaneNumbers() = default;
+
   double* data() { return data_.get(); }
   const double* data() const { return data_.get(); }
   /// The values of a number, one a lane.
   double* operator[](int number) { return data_.get() + lane_count * number; }
   const double* operator[](int number) const { return data_.get() + lane_count * number; }
   std::size_t values() const { return size_; }
+  /// The values of one lane into all.
+  void spread(int lane) {
+    for (double* number = data(); number != data() + size_; number += lane_count)
+      std::fill(number, number + lane_count, number[lane]);
+  }
   /// Takes over the values of as many numbers.
   void copy(const LaneNumbers& from) { std::copy(from.data(), from.data() + size_, data()); }
 

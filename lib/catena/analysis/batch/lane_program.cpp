@@ -3,14 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <tuple>
 
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
-#include "catena/linalg/factorization/factorization.hpp"
 #include "catena/model/rope_routes.hpp"
 
 namespace catena {
@@ -54,48 +51,6 @@ void for_each_lane_type(const Plan& plan, const Model& model, F&& f) {
 #undef CATENA_LANE_CALL
 }
 
-/// One diagonal block while its pivots are chosen.
-class BlockElimination {
- public:
-  struct Cell {
-    int slot;
-    double constant;  // of an entry that is +1 or -1 whatever the design; else 0
-  };
-  std::vector<int> rows, columns;
-  std::map<std::pair<int, int>, Cell> cells;
-
-  /// The constant entry of least fill-in; false if there is none.
-  bool choose(int& row, int& column) const {
-    int least = -1;
-    for (const auto& [place, cell] : cells) {
-      if (cell.constant == 0 || !has(rows, place.first) || !has(columns, place.second)) continue;
-      const int fill = (count_in_row(place.first) - 1) * (count_in_column(place.second) - 1);
-      if (least >= 0 && fill >= least) continue;
-      least = fill;
-      row = place.first;
-      column = place.second;
-    }
-    return least >= 0;
-  }
-  Cell* find(int row, int column) {
-    const auto found = cells.find({row, column});
-    return found == cells.end() ? nullptr : &found->second;
-  }
-  const Cell* find(int row, int column) const {
-    const auto found = cells.find({row, column});
-    return found == cells.end() ? nullptr : &found->second;
-  }
-
- private:
-  static bool has(const std::vector<int>& list, int k) { return std::find(list.begin(), list.end(), k) != list.end(); }
-  int count_in_row(int row) const {
-    return static_cast<int>(std::count_if(columns.begin(), columns.end(), [&](int c) { return find(row, c); }));
-  }
-  int count_in_column(int column) const {
-    return static_cast<int>(std::count_if(rows.begin(), rows.end(), [&](int r) { return find(r, column); }));
-  }
-};
-
 }  // namespace
 
 std::unique_ptr<const LaneProgram> LaneProgram::make(const Model& model, std::shared_ptr<const Plan> plan,
@@ -122,7 +77,7 @@ std::unique_ptr<const LaneProgram> LaneProgram::make(const Model& model, std::sh
     why_not = "it has particles, which are not computed in lanes";
     return nullptr;
   }
-  if (!program->list_elements(model, why_not) || !program->list_pivots(model, why_not)) return nullptr;
+  if (!program->list_elements(model, why_not) || !program->list_steps(model, why_not)) return nullptr;
   program->close();
   return program;
 }
@@ -142,7 +97,8 @@ bool LaneProgram::list_elements(const Model& model, std::string& why_not) {
   int type = 0;
   for_each_lane_type(plan, model, [&](const auto& block, const auto& list) {
     using E = ElementOf<decltype(list)>;
-    code_.first_of_type[type++] = static_cast<int>(element_.size());
+    if (block.size() > 0) of_type_.push_back({static_cast<LaneType>(type), block.size()});
+    ++type;
     constexpr int varying = varying_entries<E>();
     for (int e = 0; e < block.size(); ++e) {
       const auto& entry = list[at(block.entry[at(e)])];
@@ -163,131 +119,37 @@ bool LaneProgram::list_elements(const Model& model, std::string& why_not) {
     constant_slot_.insert(constant_slot_.end(), block.constant_slot.begin(), block.constant_slot.end());
     constant_.insert(constant_.end(), block.constant.begin(), block.constant.end());
   });
-  code_.first_of_type[type] = static_cast<int>(element_.size());
   return true;
 }
 
-bool LaneProgram::list_pivots(const Model& model, std::string& why_not) {
-  const Plan& plan = *plan_;
-  Counters counters;
-  Factorization form;
-  if (!form.analyze(plan.jacobian, Kernel::klu, counters).ok()) {
-    why_not = "its constraints and drivers do not determine all coordinates";
-    return false;
-  }
-  int slots = plan.trash_slot() + 1;
-  std::vector<double> constant(at(slots), 0.0);
+bool LaneProgram::list_steps(const Model& model, std::string& why_not) {
+  std::vector<double> constant(at(plan_->trash_slot()) + 1, 0.0);
   for (std::size_t k = 0; k < constant_.size(); ++k) constant[at(constant_slot_[k])] += constant_[k];
-  for (const int slot : slot_) constant[at(slot)] = 0;
-  std::vector<BlockElimination> blocks(at(form.blocks()));
-  for (int c = 0; c < plan.columns; ++c) {
-    blocks[at(form.block_of_column()[at(c)])].columns.push_back(c);
-    blocks[at(form.block_of_row()[at(c)])].rows.push_back(c);
-  }
-  std::vector<std::array<int, 3>> outside;  // slot, row, column
-  for (int c = 0; c < plan.columns; ++c) {
-    for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k) {
-      const int row = plan.jacobian.row_index[at(k)], block = form.block_of_column()[at(c)];
-      const double value = std::abs(constant[at(k)]) == 1 ? constant[at(k)] : 0.0;
-      if (form.block_of_row()[at(row)] == block)
-        blocks[at(block)].cells[{row, c}] = {k, value};
-      else
-        outside.push_back({k, row, c});
-    }
-  }
-  std::vector<int> row_of(at(plan.columns), -1);  // with the pivot of a column
-  for (int b = 0; b < form.blocks(); ++b) {
-    BlockElimination& block = blocks[at(b)];
-    LaneBlock lane{static_cast<int>(pivot_.size()), 0, -1, 0, 0};
-    const std::vector<int> columns = block.columns;
-    std::vector<std::vector<int>> right_columns;  // of every pivot
-    int row = 0, column = 0;
-    while (block.choose(row, column)) {
-      std::erase(block.rows, row);
-      std::erase(block.columns, column);
-      row_of[at(column)] = row;
-      LanePivot pivot{row, 0, 0, static_cast<int>(list_.size()), 1 / block.find(row, column)->constant};
-      std::vector<int> below, right;
-      for (const int r : block.rows) {
-        if (const auto* cell = block.find(r, column))
-          below.push_back(r), list_.push_back(cell->slot), list_.push_back(r);
-      }
-      for (const int c : block.columns) {
-        // Its row is known once its own pivot is: the column stands here until then.
-        if (const auto* cell = block.find(row, c)) right.push_back(c), list_.push_back(cell->slot), list_.push_back(c);
-      }
-      for (const int r : below) {
-        for (const int c : right) {
-          auto* cell = block.find(r, c);
-          if (!cell) cell = &(block.cells[{r, c}] = {slots++, 0});
-          cell->constant = 0;
-          list_.push_back(cell->slot);
-        }
-      }
-      pivot.below = static_cast<int>(below.size());
-      pivot.right = static_cast<int>(right.size());
-      pivot_.push_back(pivot);
-      ++lane.pivots;
-    }
-    const int n = static_cast<int>(block.rows.size());
-    if (n > largest_tail) {
-      why_not = fmt::format(
-          "{} of its bodies hang together so closely that {} equations must be solved at once; lanes solve {}: most "
-          "concerned: \"{}\"",
-          columns.size() / 3, n, largest_tail, model.element_name(plan.row_element[at(block.rows.front())]));
-      return false;
-    }
-    if (n > 0) {
-      LaneTail tail{};
-      tail.size = n;
-      for (int r = 0; r < n; ++r) {
-        tail.row[r] = block.rows[at(r)];
-        row_of[at(block.columns[at(r)])] = block.rows[at(r)];
-        tail.length_row[r] = !plan.row_is_angle[at(block.rows[at(r)])];
-        tail.length_column[r] = plan.coordinate[at(block.columns[at(r)])] % 3 != 2;
-        for (int c = 0; c < n; ++c) {
-          const auto* cell = block.find(block.rows[at(r)], block.columns[at(c)]);
-          tail.slot[n * r + c] = cell ? cell->slot : slots++;
-        }
-      }
-      lane.tail = static_cast<int>(tail_.size());
-      tail_.push_back(tail);
-    }
-    for (const LanePivot* pivot = pivot_.data() + lane.first_pivot; pivot < pivot_.data() + pivot_.size(); ++pivot) {
-      int* right = list_.data() + pivot->list + 2 * pivot->below;
-      for (int j = 0; j < pivot->right; ++j, right += 2) right[1] = row_of[at(right[1])];
-    }
-    lane.first_outside = static_cast<int>(outside_.size());
-    for (const auto& [slot, outer_row, c] : outside) {
-      if (form.block_of_column()[at(c)] != b) continue;
-      outside_.insert(outside_.end(), {slot, outer_row, row_of[at(c)]});
-      ++lane.outside;
-    }
-    block_.push_back(lane);
-  }
-  coordinate_.resize(at(plan.rows));
-  for (int c = 0; c < plan.columns; ++c) coordinate_[at(row_of[at(c)])] = plan.coordinate[at(c)];
-  code_.slots = slots;
-  initial_.assign(at(slots), 0.0);
-  for (std::size_t k = 0; k < constant_.size(); ++k) initial_[at(constant_slot_[k])] += constant_[k];
-  return true;
+  return elimination_.choose(*plan_, model, slot_, std::move(constant), why_not);
 }
 
 void LaneProgram::close() {
+  const LaneElimination& e = elimination_;
   code_.moving = plan_->moving;
   code_.frames = plan_->bodies + 1;
   code_.rows = plan_->rows;
+  code_.slots = static_cast<int>(e.initial.size());
   code_.element = element_.data();
-  code_.slot = slot_.data();
-  code_.initial = initial_.data();
-  code_.blocks = static_cast<int>(block_.size());
-  code_.tails = static_cast<int>(tail_.size());
-  code_.block = block_.data();
-  code_.pivot = pivot_.data();
-  code_.list = list_.data();
-  code_.tail = tail_.data();
-  code_.outside = outside_.data();
-  code_.coordinate = coordinate_.data();
+  code_.of_type = of_type_.data();
+  code_.types = static_cast<int>(of_type_.size());
+  for (const int slot : slot_) place_.push_back(lane_count * slot);
+  code_.place = place_.data();
+  code_.factor = e.factor.data();
+  code_.factor_runs = static_cast<int>(e.factor.size());
+  code_.solve = e.solve.data();
+  code_.solve_runs = static_cast<int>(e.solve.size());
+  code_.step = e.step.data();
+  code_.reset = e.reset.data();
+  code_.resets = static_cast<int>(e.reset.size());
+  code_.tail = e.tail.data();
+  code_.tails = static_cast<int>(e.tail.size());
+  code_.unknown = e.unknown.data();
+  code_.lengths = e.lengths;
 }
 
 Frame<double> LaneProgram::given_pose(const Model& model, int plan_body) const {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "catena/analysis/batch/lane_code.hpp"
+#include "catena/analysis/batch/lane_elimination.hpp"
 #include "catena/analysis/batch/lane_numbers.hpp"
 #include "catena/assembly/plan.hpp"
 
@@ -27,6 +28,8 @@ class LaneProgram {
   int fields() const { return fields_; }        ///< numbers of a group's parameters
   int functions() const { return functions_; }  ///< numbers of its values c, c', c''
   int slots() const { return code_.slots; }
+  /// Of every slot: the constants of Phi_q, else zero.
+  const std::vector<double>& initial() const { return elimination_.initial; }
 
   /// Puts the parameters of a design into a lane: of a model of the same structure. `length_scale` in m. False where a
   /// point, an axis or a constant is not finite.
@@ -45,7 +48,7 @@ class LaneProgram {
   };
   LaneProgram() = default;
   bool list_elements(const Model& model, std::string& why_not);
-  bool list_pivots(const Model& model, std::string& why_not);
+  bool list_steps(const Model& model, std::string& why_not);
   void close();
 
   std::shared_ptr<const Plan> plan_;
@@ -53,11 +56,10 @@ class LaneProgram {
   int fields_ = 0, functions_ = 0;
   bool has_immobile_ = false;
   std::vector<LaneElement> element_;
-  std::vector<int> slot_, constant_slot_, list_, outside_, coordinate_;
-  std::vector<double> constant_, initial_;
-  std::vector<LaneBlock> block_;
-  std::vector<LanePivot> pivot_;
-  std::vector<LaneTail> tail_;
+  std::vector<LaneElements> of_type_;
+  std::vector<int> slot_, constant_slot_, place_;
+  std::vector<double> constant_;
+  LaneElimination elimination_;
   std::vector<Timed> timed_;
 };
 

@@ -1,5 +1,7 @@
 #include "catena/analysis/batch/lane_solver.hpp"
 
+#include <algorithm>
+
 #include "catena/analysis/batch/lane_kernels.hpp"
 #include "catena/base/at.hpp"
 
@@ -37,12 +39,21 @@ LaneSolver::LaneSolver(const LaneProgram& program)
   job_.first_turn = first_turn_.data();
   job_.contraction = contraction_.data();
   job_.residual = residual_.data();
+  for (int slot = 0; slot < program.slots(); ++slot)
+    std::fill(matrix_[slot], matrix_[slot] + lane_count, program.initial()[at(slot)]);
 }
 
 bool LaneSolver::set_design(int lane, const Model& model, double length_scale) {
   model_[at(lane)] = &model;
   unit_[0][lane] = 1 / length_scale;
   return program_.put(model, length_scale, lane, field_, function_, frame_);
+}
+
+bool LaneSolver::set_designs(const Model& model, double length_scale) {
+  const bool finite = set_design(0, model, length_scale);
+  model_.fill(&model);
+  for (LaneNumbers* numbers : {&field_, &function_, &frame_, &unit_}) numbers->spread(0);
+  return finite;
 }
 
 void LaneSolver::solve(LaneState& state, int lanes) {
@@ -61,6 +72,7 @@ void LaneSolver::solve(LaneState& state, int lanes) {
   job_.qdd = state.qdd.data();
   job_.margin = state.margin.data();
   lane_kernels().solve(job_);
+  for (int b = 0; b < program_.code().moving; ++b) std::copy(frame_[5 * b + 3], frame_[5 * b + 5], state.turned[2 * b]);
 }
 
 void LaneSolver::foretell(const LaneState& before, const LaneState& after, LaneState& state) {

@@ -16,10 +16,12 @@ struct LaneState {
       : q(3 * program.code().moving),
         qd(3 * program.code().moving),
         qdd(3 * program.code().moving),
+        turned(2 * program.code().moving),
         margin(program.code().tails) {}
 
   std::array<double, lane_count> t{};
   LaneNumbers q, qd, qdd;
+  LaneNumbers turned;  ///< cosine and sine of the angle of every moving body, where it was solved for
   LaneNumbers margin;  ///< determinants of the blocks' tails
 };
 
@@ -33,6 +35,8 @@ class LaneSolver {
   /// Puts the parameters of a design into a lane; the model must outlive their use. All lanes must have one. False
   /// where one is not finite.
   bool set_design(int lane, const Model& model, double length_scale);
+  /// The same design in all lanes.
+  bool set_designs(const Model& model, double length_scale);
   /// Functions of time, and the instants, are the same in all lanes: they are evaluated once.
   void share_functions(bool shared) { shared_ = shared; }
 
@@ -47,7 +51,9 @@ class LaneSolver {
   double first_size(int lane) const { return first_size_[0][lane]; }    ///< of the first correction
   double first_turn(int lane) const { return first_turn_[0][lane]; }    ///< its largest angle, rad
   double contraction(int lane) const { return contraction_[0][lane]; }  ///< largest ratio of corrections
-  double residual(int lane) const { return residual_[0][lane]; }        ///< rad or length scales
+  /// x, y, phi, cos, sin of every frame; of bodies that do not move from set_design() on.
+  const LaneNumbers& frame() const { return frame_; }
+  double residual(int lane) const { return residual_[0][lane]; }  ///< rad or length scales
 
   double tolerance = 1e-12;  ///< of residuals, relative to the length scale
 

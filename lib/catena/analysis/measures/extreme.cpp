@@ -27,35 +27,44 @@ std::optional<double> top(double t0, double v0, double t1, double v1, double t2,
 }
 
 struct Stationary {
-  double x = 0, value = 0;  ///< in steps; of the polynomial there
+  double x = 0, value = 0;
 };
 
-/// Where the derivative of the polynomial through seven equidistant values at -3 ... 3 vanishes near 0.
-std::optional<Stationary> stationary(const std::array<double, 7>& v) {
-  // Newton's divided differences about the middle, as a polynomial in x: solved for its coefficients once a call.
-  std::array<double, 7> c = v;
-  for (std::size_t level = 1; level < 7; ++level) {
-    for (std::size_t k = 6; k >= level; --k) c[k] = (c[k] - c[k - 1]) / static_cast<double>(level);
-  }
-  double x = 0, value = 0;
-  for (int n = 0; n < 20; ++n) {
-    // Value, slope and bend of sum c_k (x + 3)(x + 2) ... by Horner's scheme.
-    double p = c[6], d = 0, dd = 0;
-    for (std::size_t k = 6; k-- > 0;) {
-      const double factor = x + 3 - static_cast<double>(k);
-      dd = dd * factor + 2 * d;
-      d = d * factor + p;
-      p = p * factor + c[k];
+/// The polynomial through N values, by Newton's divided differences.
+template <std::size_t N>
+class Polynomial {
+ public:
+  Polynomial(const std::array<double, N>& x, const std::array<double, N>& values) : x_(x), c_(values) {
+    for (std::size_t level = 1; level < N; ++level) {
+      for (std::size_t k = N - 1; k >= level; --k) c_[k] = (c_[k] - c_[k - 1]) / (x_[k] - x_[k - level]);
     }
-    if (dd == 0) return {};
-    value = p;
-    const double step = d / dd;
-    x -= step;
-    if (!(std::abs(x) <= 2)) return {};
-    if (std::abs(step) <= 1e-14) break;
   }
-  return Stationary{x, value};
-}
+
+  /// Where its derivative vanishes near `x`, between two places.
+  std::optional<Stationary> stationary(double x, double from, double to) const {
+    double value = 0;
+    for (int n = 0; n < 20; ++n) {
+      // Value, slope and bend by Horner's scheme.
+      double p = c_[N - 1], d = 0, dd = 0;
+      for (std::size_t k = N - 1; k-- > 0;) {
+        const double factor = x - x_[k];
+        dd = dd * factor + 2 * d;
+        d = d * factor + p;
+        p = p * factor + c_[k];
+      }
+      if (dd == 0) return {};
+      value = p;
+      const double step = d / dd;
+      x -= step;
+      if (!(x >= from && x <= to)) return {};
+      if (std::abs(step) <= 1e-14) break;
+    }
+    return Stationary{x, value};
+  }
+
+ private:
+  std::array<double, N> x_, c_;
+};
 
 }  // namespace
 
@@ -84,55 +93,62 @@ void Extreme::consider(MotionSample sample, double value, double reach) {
 
 void Extreme::add(const MotionSample& sample) { consider(sample, quantity_(sample.value), 0); }
 
-// The top between a and b, `middle` above both.
-std::optional<Extreme::Peak> Extreme::locate(double a, double middle, double b, double length, const MotionPiece& piece,
+// The top near `centre` by the polynomial through seven instants around it, inside of the stretch; nothing where that
+// is no better than `known`, or misses what is there.
+std::optional<Extreme::Peak> Extreme::settle(double centre, double h, double known, const MotionPiece& piece,
                                              const At& at) const {
-  std::optional<double> va = at(a), vm = at(middle), vb = at(b);
-  if (!va || !vm || !vb) return {};
+  const double d = h / 3;
+  centre = std::clamp(centre, piece.from() + h, piece.to() - h);
+  if (centre < piece.from() + h || d == 0) return {};
+  constexpr std::array<double, 7> steps{-3, -2, -1, 0, 1, 2, 3};
+  std::array<double, 7> around{}, t_around{};
+  for (std::size_t k = 0; k < 7; ++k) t_around[k] = centre + d * steps[k];
+  piece.stretch.announce(t_around);
+  for (std::size_t k = 0; k < 7; ++k) {
+    const std::optional<double> value = at(t_around[k]);
+    if (!value) return {};
+    around[k] = *value;
+  }
+  const std::optional<Stationary> found = Polynomial(steps, around).stationary(0, -2, 2);
+  if (!found) return {};
+  const double peak = centre + d * found->x;
+  const std::optional<double> value = at(peak);
+  // At a kink the polynomial misses the value by a part of what it bends by.
+  const auto [least, most] = std::minmax_element(around.begin(), around.end());
+  if (!value || std::abs(*value - found->value) > smooth * (*most - *least)) return {};
+  if (!(*value >= known - 1e-12 * std::max(size_, std::abs(known)))) return {};
+  return Peak{peak, *value};
+}
+
+// The top between a and b, `middle` above both. `guess`: where a polynomial of high degree has it.
+std::optional<Extreme::Peak> Extreme::locate(Peak a, Peak middle, Peak b, std::optional<double> guess, double length,
+                                             const MotionPiece& piece, const At& at) const {
   const double h = window * length;
-  double step = b - a;
+  if (guess) {
+    if (const std::optional<Peak> peak = settle(*guess, h, middle.value, piece, at)) return peak;
+  }
+  double step = b.t - a.t;
   for (int n = 0; n < most_steps && step > 1e-9 * length; ++n) {
-    std::optional<double> guess = top(a, *va, middle, *vm, b, *vb);
-    const bool useful = guess && *guess > a && *guess < b && n % 4 != 3;
-    double t =
-        useful ? *guess : (middle - a > b - middle ? middle - golden * (middle - a) : middle + golden * (b - middle));
-    if (t == middle) t += (b - middle > middle - a ? 1 : -1) * 0.1 * h;
+    const std::optional<double> top_of_three = top(a.t, a.value, middle.t, middle.value, b.t, b.value);
+    const bool useful = top_of_three && *top_of_three > a.t && *top_of_three < b.t && n % 4 != 3;
+    const double before = middle.t;
+    double t = useful ? *top_of_three : before;
+    if (!useful) t = before - a.t > b.t - before ? before - golden * (before - a.t) : before + golden * (b.t - before);
+    if (t == before) t += (b.t - before > before - a.t ? 1 : -1) * 0.1 * h;
     const std::optional<double> v = at(t);
     if (!v) return {};
-    const double before = middle;
-    if (*v > *vm) {
-      (t > middle ? a : b) = middle;
-      (t > middle ? va : vb) = vm;
-      middle = t;
-      vm = v;
+    const Peak seen{t, *v};
+    if (seen.value > middle.value) {
+      (t > before ? a : b) = middle;
+      middle = seen;
     } else {
-      (t > middle ? b : a) = t;
-      (t > middle ? vb : va) = v;
+      (t > before ? b : a) = seen;
     }
-    step = b - a;
-    const bool close = useful && std::abs(t - before) < h / 4;
-    if (!close) continue;
-    // Seven instants around it, inside of the stretch.
-    const double d = h / 3, centre = std::clamp(middle, piece.from() + h, piece.to() - h);
-    if (centre < piece.from() + h || d == 0) continue;
-    std::array<double, 7> around{}, t_around{};
-    for (std::size_t k = 0; k < 7; ++k) t_around[k] = centre + d * (static_cast<double>(k) - 3);
-    piece.stretch.announce(t_around);
-    for (std::size_t k = 0; k < 7; ++k) {
-      const std::optional<double> value = at(t_around[k]);
-      if (!value) return {};
-      around[k] = *value;
-    }
-    const std::optional<Stationary> found = stationary(around);
-    if (!found) continue;
-    const double peak = centre + d * found->x;
-    const std::optional<double> value = at(peak);
-    // At a kink the polynomial misses the value by a part of what it bends by.
-    const auto [least, most] = std::minmax_element(around.begin(), around.end());
-    if (value && std::abs(*value - found->value) > smooth * (*most - *least)) continue;
-    if (value && *value >= *vm - 1e-12 * std::max(size_, std::abs(*vm))) return Peak{peak, *value};
+    step = b.t - a.t;
+    if (!useful || std::abs(t - before) >= h / 4) continue;
+    if (const std::optional<Peak> peak = settle(middle.t, h, middle.value, piece, at)) return peak;
   }
-  return Peak{middle, *vm};
+  return middle;
 }
 
 void Extreme::add(const MotionSamples& samples, const MotionSamples::Part& part, const MotionPiece& piece,
@@ -160,20 +176,29 @@ void Extreme::add(const MotionSamples& samples, const MotionSamples::Part& part,
   };
   const auto promises = [&](double value) { return !best_ || value + slack * size_ > largest_; };
   const double length = t.back() - t.front();
+  // A kink between the samples makes a polynomial through all of them worthless: then the top is found by its bracket.
+  std::array<double, count> x{};
+  for (std::size_t k = 0; k < count; ++k) x[k] = (t[k] - t.front()) / length;
+  const auto guess = [&](std::size_t from, double start, std::size_t to) -> std::optional<double> {
+    const auto found = Polynomial(x, v).stationary((start - t.front()) / length, x[from], x[to]);
+    return found ? std::optional(t.front() + length * found->x) : std::nullopt;
+  };
   for (std::size_t k = 0; k < count; ++k) {
     const bool end = k == 0 || k == count - 1;
     if (!promises(v[k])) continue;
     if (!end && v[k] >= v[k - 1] && v[k] >= v[k + 1] && (v[k] > v[k - 1] || v[k] > v[k + 1])) {
-      if (const auto peak = locate(t[k - 1], t[k], t[k + 1], length, piece, at)) take(peak->t);
+      const Peak before{t[k - 1], v[k - 1]}, here{t[k], v[k]}, after{t[k + 1], v[k + 1]};
+      if (const auto peak = locate(before, here, after, guess(k - 1, t[k], k + 1), length, piece, at)) take(peak->t);
     } else if (end) {
       // A top may lie between the end and the sample beside it.
       const std::size_t i = k == 0 ? 0 : count - 3;
       const std::optional<double> inside = top(t[i], v[i], t[i + 1], v[i + 1], t[i + 2], v[i + 2]);
-      const double from = k == 0 ? t[0] : t[count - 2], to = k == 0 ? t[1] : t[count - 1];
-      const bool between = inside && *inside > from && *inside < to;
+      const std::size_t from = k == 0 ? 0 : count - 2, to = from + 1;
+      const bool between = inside && *inside > t[from] && *inside < t[to];
       const std::optional<double> value = between ? at(*inside) : std::nullopt;
-      if (value && *value > std::max(v[k], v[k == 0 ? 1 : count - 2])) {
-        if (const auto peak = locate(from, *inside, to, length, piece, at)) take(peak->t);
+      if (value && *value > std::max(v[from], v[to])) {
+        const Peak before{t[from], v[from]}, here{*inside, *value}, after{t[to], v[to]};
+        if (const auto peak = locate(before, here, after, guess(from, *inside, to), length, piece, at)) take(peak->t);
       } else if (v[k] >= v[k == 0 ? 1 : count - 2] && (!best_ || v[k] > largest_)) {
         take(t[k]);
       }

@@ -1,11 +1,12 @@
 // The largest value of a quantity along a motion, located between samples.
 //
 // Where a sample is larger than its neighbours, or the parabola through the first or last three of a part has its top
-// inside, and that top would be the largest so far, the top is located: by parabolas until it is known to a fiftieth of
-// the part, then by the polynomial of degree six through seven instants around it, whose derivative vanishes there. Its
-// error is of the order (1/50)^6 of what the part's own quartic leaves, so that the derivative of the value at this
-// fixed instant is that of the largest value (the instant's own change counts to second order). At kinks, where no
-// polynomial serves, the golden section is halved on.
+// inside, and that top would be the largest so far, the top is located: by the polynomial through all samples, or,
+// where that fails, by parabolas until it is known to a fiftieth of the part; then by the polynomial of degree six
+// through seven instants around it, whose derivative vanishes there. Its error is of the order (1/50)^6 of what the
+// part's own quartic leaves, so that the derivative of the value at this fixed instant is that of the largest value
+// (the instant's own change counts to second order). At kinks, where no polynomial serves, the golden section is halved
+// on.
 #pragma once
 
 #include <functional>
@@ -41,8 +42,9 @@ class Extreme {
     double t, value;
   };
   using At = std::function<std::optional<double>(double)>;
-  std::optional<Peak> locate(double a, double middle, double b, double length, const MotionPiece& piece,
-                             const At& at) const;
+  std::optional<Peak> locate(Peak a, Peak middle, Peak b, std::optional<double> guess, double length,
+                             const MotionPiece& piece, const At& at) const;
+  std::optional<Peak> settle(double centre, double h, double known, const MotionPiece& piece, const At& at) const;
   /// Samples within `reach` of the best, s, belong to the same top.
   void consider(MotionSample sample, double value, double reach);
 

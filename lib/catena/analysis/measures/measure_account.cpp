@@ -102,9 +102,12 @@ void MeasureSet::Account::look_at_instants(const MotionSamples& samples, const M
 }
 
 void MeasureSet::Account::add_row(const MotionSample& sample, bool only_rows) {
-  // Rows may be listed in any order of their instants.
-  if (!first_ || sample.t < first_->t) first_ = sample;
-  if (!last_ || sample.t >= last_->t) last_ = sample;
+  // Without derivatives extremes, and values at instants, are the same wherever the run ends. Rows may be listed in any
+  // order of their instants.
+  if (parameters_ > 0 || (extremes_.empty() && instants_.empty())) {
+    if (!first_ || sample.t < first_->t) first_ = sample;
+    if (!last_ || sample.t >= last_->t) last_ = sample;
+  }
   for (Instant& instant : instants_) {
     if (instant.sample || instant.t != sample.t) continue;
     instant.sample = sample;

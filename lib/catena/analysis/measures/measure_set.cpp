@@ -45,15 +45,38 @@ MeasureSet::MeasureSet(std::vector<MeasureRequest> requests, const Model& model,
   if (!columns_->notes().empty()) throw std::invalid_argument("measures: " + columns_->notes().front());
   if (columns_->size() != places.names.size())
     throw std::invalid_argument("measures: a name stands for more than one column");
-  samples_ = std::make_unique<MotionSamples>(*columns_, run_);
-  for (std::size_t k = 0; k < requests_.size(); ++k) {
-    if (needs_time(requests_[k].kind) && !sources.timed)
+  for (const MeasureRequest& request : requests_) {
+    if (needs_time(request.kind) && !sources.timed)
       throw std::invalid_argument(
-          fmt::format("measure \"{}\" is taken over time, which {} has not", requests_[k].name, sources.analysis));
-    const auto [first, second] = places.of_request[k];
-    accounts_.push_back(std::make_unique<Account>(requests_[k], first, second, run_));
+          fmt::format("measure \"{}\" is taken over time, which {} has not", request.name, sources.analysis));
+  }
+  open_accounts(places.of_request);
+}
+
+void MeasureSet::open_accounts(const std::vector<std::array<std::size_t, 2>>& places) {
+  samples_ = std::make_unique<MotionSamples>(*columns_, run_);
+  accounts_.clear();
+  wants_samples_ = false;
+  for (std::size_t k = 0; k < requests_.size(); ++k) {
+    accounts_.push_back(std::make_unique<Account>(requests_[k], places[k][0], places[k][1], run_));
     wants_samples_ = wants_samples_ || accounts_.back()->wants_samples();
   }
+}
+
+void MeasureSet::begin_again(std::vector<MeasureRequest> requests, const Model& model, const TimeRange& run) {
+  run_ = run;
+  requests_ = std::move(requests);
+  breakpoints_ = Breakpoints(model.functions);
+  std::erase_if(requests_, [](const MeasureRequest& request) { return request.kind == MeasureKind::field; });
+  if (!requests_.empty()) open_accounts(places_of(requests_).of_request);
+  earliest_row_.reset();
+  latest_row_.reset();
+  end_.reset();
+  looked_ = true;
+}
+
+void MeasureSet::use_values(MotionSamples::Values values) {
+  if (samples_) samples_->use_values(std::move(values));
 }
 
 void MeasureSet::differentiate(int parameters, DifferentiateColumns derivatives, bool may_end, bool instants_move) {
@@ -113,11 +136,20 @@ double MeasureSet::pace() const { return wants_samples_ ? samples_->pace() : 0; 
 
 void MeasureSet::take_row(const Snapshot& snapshot, bool only_rows) {
   if (empty()) return;
-  const bool last = only_rows || snapshot.t == run_.last;
-  const bool first = !earliest_row_ || snapshot.t < *earliest_row_;
-  if (first) earliest_row_ = snapshot.t;
-  latest_row_ = std::max(latest_row_.value_or(snapshot.t), snapshot.t);
-  const MotionSample sample = samples_->take(snapshot, parameters_ > 0 && (last || first));
+  const bool at_end = only_rows || snapshot.t == run_.last || !earliest_row_ || snapshot.t < *earliest_row_;
+  note_row(samples_->take(snapshot, parameters_ > 0 && at_end), only_rows);
+}
+
+bool MeasureSet::take_row(double t) {
+  if (empty()) return true;
+  const std::optional<MotionSample> sample = samples_->take_values(t);
+  if (sample) note_row(*sample, false);
+  return sample.has_value();
+}
+
+void MeasureSet::note_row(const MotionSample& sample, bool only_rows) {
+  earliest_row_ = std::min(earliest_row_.value_or(sample.t), sample.t);
+  latest_row_ = std::max(latest_row_.value_or(sample.t), sample.t);
   for (const auto& account : accounts_) account->add_row(sample, only_rows);
   if (wants_samples_ && !only_rows) samples_->note_row(sample);
 }

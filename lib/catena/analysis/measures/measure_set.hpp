@@ -55,12 +55,21 @@ class MeasureSet {
   void differentiate(int parameters, DifferentiateColumns derivatives, bool may_end = false,
                      bool instants_move = false);
 
+  /// Columns come from who has them without snapshots: of stretches, and of
+  /// rows that are given by their instants.
+  void use_values(MotionSamples::Values values);
+  /// The same measures of another design: with other numbers, of a model of the
+  /// same structure.
+  void begin_again(std::vector<MeasureRequest> requests, const Model& model, const TimeRange& run);
+
   /// A stretch of the motion, one after the other.
   void cover(const MotionStretch& stretch);
   /// How long the next stretch may be where rows do not bound it, s.
   double pace() const;
   /// A row; `only_rows`: there are no stretches.
   void take_row(const Snapshot& snapshot, bool only_rows);
+  /// A row by use_values(); false where it has no columns there.
+  bool take_row(double t);
 
   /// Whether the run ended before its last instant.
   bool ended_early() const { return latest_row_ && *latest_row_ != run_.last; }
@@ -70,6 +79,8 @@ class MeasureSet {
 
  private:
   class Account;
+  void open_accounts(const std::vector<std::array<std::size_t, 2>>& places);
+  void note_row(const MotionSample& sample, bool only_rows);
   void cover_piece(const MotionPiece& piece);
   void look_at_end(const MotionPiece& piece);
 

@@ -46,6 +46,18 @@ constexpr int most_halvings = 14;
 
 double place_of(std::size_t sample) { return sample == 0 ? -1 : sample == 8 ? 1 : places[sample - 1]; }
 
+/// The barycentric weights of the samples of a part, up to a factor.
+std::array<double, 9> barycentric_weights() {
+  std::array<double, 9> weights{};
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    weights[k] = 1;
+    for (std::size_t j = 0; j < weights.size(); ++j) {
+      if (j != k) weights[k] /= place_of(k) - place_of(j);
+    }
+  }
+  return weights;
+}
+
 /// The quartic's weights of the known samples at the foretold ones (Lagrange).
 std::array<std::array<double, 5>, 4> foretelling_weights() {
   std::array<std::array<double, 5>, 4> weights{};
@@ -80,7 +92,14 @@ MotionSample MotionSamples::take(const Snapshot& snapshot, bool with_derivative)
   return sample;
 }
 
+std::optional<MotionSample> MotionSamples::take_values(double t) const {
+  std::optional<MotionSample> sample(MotionSample{t, std::vector<double>(columns_.size()), {}, {}});
+  if (!values_(t, sample->value)) sample.reset();
+  return sample;
+}
+
 std::optional<MotionSample> MotionSamples::see(const MotionPiece& piece, double t, bool with_derivative) const {
+  if (values_ && !with_derivative) return take_values(t);
   const std::optional<Snapshot> snapshot = piece.stretch.at(t);
   if (!snapshot) return {};
   return take(*snapshot, with_derivative);
@@ -183,22 +202,20 @@ double MotionSamples::miss(double expected, double there, std::size_t column) co
 }
 
 double MotionSamples::misfit_of_rows(const Part& part) const {
+  static const std::array<double, nodes + 2> barycentric = barycentric_weights();
   const double from = part.front().t, length = part.back().t - from;
   double largest = 0;
   for (const MotionSample& row : rows_) {
     if (!(row.t > from && row.t < part.back().t)) continue;
     const double x = 2 * (row.t - from) / length - 1;
     std::array<double, nodes + 2> weight{};
-    for (std::size_t k = 0; k < weight.size(); ++k) {
-      weight[k] = 1;
-      for (std::size_t j = 0; j < weight.size(); ++j) {
-        if (j != k) weight[k] *= (x - place_of(j)) / (place_of(k) - place_of(j));
-      }
-    }
+    double sum = 0;
+    for (std::size_t k = 0; k < weight.size(); ++k) sum += weight[k] = barycentric[k] / (x - place_of(k));
+    if (!std::isfinite(sum)) continue;  // a row at a sample is that sample
     for (std::size_t c = 0; c < size_.size(); ++c) {
       double value = 0;
       for (std::size_t k = 0; k < weight.size(); ++k) value += weight[k] * part[k].value[c];
-      if (size_[c] > 0) largest = std::max(largest, miss(value, row.value[c], c));
+      if (size_[c] > 0) largest = std::max(largest, miss(value / sum, row.value[c], c));
     }
   }
   return largest;

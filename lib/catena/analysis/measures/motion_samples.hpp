@@ -75,6 +75,14 @@ class MotionSamples {
     always_ = always;
   }
 
+  /// Columns at an instant of the run, from who has them without a snapshot;
+  /// false where it has not. Where derivatives are wanted snapshots are looked
+  /// at as before.
+  using Values = std::function<bool(double t, std::span<double> out)>;
+  void use_values(Values values) { values_ = std::move(values); }
+  /// The columns at an instant by use_values().
+  std::optional<MotionSample> take_values(double t) const;
+
   /// A row of the motion; it is kept if it lies beyond what is covered.
   void note_row(MotionSample row);
   /// Length of the next stretch for which one part is expected to do, s; 0 before the first one.
@@ -121,6 +129,7 @@ class MotionSamples {
   double covered_to_ = -std::numeric_limits<double>::infinity();
   std::size_t parameters_ = 0;
   DifferentiateColumns derivatives_;
+  Values values_;
   bool always_ = false;
 };
 

@@ -42,6 +42,13 @@ std::string obstacle_of(const AnalysisContext& context) {
   return {};
 }
 
+std::optional<LaneColumns> columns_of(const LaneProgram& program, const Model& model, const MeasureSet& measures) {
+  if (measures.empty()) return {};
+  std::vector<std::string> names;
+  for (const ColumnInfo& column : measures.columns().info()) names.push_back(column.name);
+  return LaneColumns::make(program, model, names);
+}
+
 class Nobody final : public RowSink {
  public:
   void begin(std::span<const ColumnInfo>) override {}
@@ -66,9 +73,10 @@ std::unique_ptr<LaneDesigns> LaneDesigns::make(const AnalysisContext& context, s
       return nullptr;
     }
     // Throws for columns that such an analysis does not give.
-    const MeasureSet measures(inner.measure_requests(), *model, *plan, kinematic_sources, {});
+    auto measures =
+        std::make_unique<MeasureSet>(inner.measure_requests(), *model, *plan, kinematic_sources, TimeRange{});
     return std::unique_ptr<LaneDesigns>(
-        new LaneDesigns(context, std::move(model), std::move(plan), std::move(program)));
+        new LaneDesigns(context, std::move(model), std::move(plan), std::move(program), std::move(measures)));
   } catch (const std::invalid_argument& error) {
     why_not = error.what();
     return nullptr;
@@ -76,13 +84,15 @@ std::unique_ptr<LaneDesigns> LaneDesigns::make(const AnalysisContext& context, s
 }
 
 LaneDesigns::LaneDesigns(const AnalysisContext& context, std::shared_ptr<const Model> model,
-                         std::shared_ptr<const Plan> plan, std::unique_ptr<const LaneProgram> program)
+                         std::shared_ptr<const Plan> plan, std::unique_ptr<const LaneProgram> program,
+                         std::unique_ptr<MeasureSet> measures)
     : outer_(context),
       model_(std::move(model)),
       program_(std::move(program)),
+      measures_(std::move(measures)),
       evaluator_(std::move(plan), *model_),
       motion_(*program_),
-      look_(*program_, evaluator_) {
+      look_(*program_, evaluator_, columns_of(*program_, *model_, *measures_)) {
   for (Lane& lane : lanes_) lane.task = context.task.of.front();
 }
 
@@ -179,30 +189,39 @@ void LaneDesigns::measure(std::span<const ParameterSeeds> designs, std::span<Out
   }
 }
 
-void LaneDesigns::take_measures(int lane, Outcome& outcome) {
-  const Lane& design = lanes_[at(lane)];
-  const std::vector<double>& instants = design.instants;
-  evaluator_.set_model(*design.model);
-  look_.follow(motion_, lane, *design.model, instants);
-  MeasureSet measures(design.task.measure_requests(), *design.model, evaluator_.plan(), kinematic_sources,
-                      {0, instants.back()});
+bool LaneDesigns::follow_rows(const std::vector<double>& instants) {
   // As AnalysisRows does.
   double covered_to = 0;
-  for (std::size_t k = 0; k < instants.size() && !look_.lost(); ++k) {
-    const double t = instants[k];
-    if (t > covered_to && (t - covered_to >= measures.pace() || t == instants.back())) {
-      measures.cover({covered_to, t, [&](double instant) { return look_.at(instant); },
-                      [&](std::span<const double> next) { look_.expect(next); }});
+  for (const double t : instants) {
+    if (t > covered_to && (t - covered_to >= measures_->pace() || t == instants.back())) {
+      measures_->cover({covered_to, t, [&](double instant) { return look_.at(instant); },
+                        [&](std::span<const double> next) { look_.expect(next); }});
       covered_to = t;
     }
-    measures.take_row(look_.row(k), false);
+    if (look_.lost()) return false;
+    if (look_.has_columns()) {
+      measures_->take_row(t);
+    } else if (const std::optional<Snapshot> row = look_.at(t)) {
+      measures_->take_row(*row, false);
+    }
+    if (look_.lost()) return false;
   }
-  if (look_.lost()) {
+  return true;
+}
+
+void LaneDesigns::take_measures(int lane, Outcome& outcome) {
+  const Lane& design = lanes_[at(lane)];
+  evaluator_.set_model(*design.model);
+  look_.follow(motion_, lane, *design.model, design.instants);
+  measures_->begin_again(design.task.measure_requests(), *design.model, {0, design.instants.back()});
+  if (look_.has_columns())
+    measures_->use_values([this](double t, std::span<double> out) { return look_.values(t, out); });
+  if (!follow_rows(design.instants)) {
     outcome.why_not = "its motion between rows is too rough for lanes";
     return;
   }
   std::vector<double> values;
-  for (const MeasureResult& result : measures.results()) {
+  for (const MeasureResult& result : measures_->results()) {
     if (!result.value) {
       outcome.why_not = fmt::format("measure \"{}\": {}", result.name, result.trouble);
       return;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "catena/analysis/batch/lane_look.hpp"
+#include "catena/analysis/measures/measure_set.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 
 namespace catena {
@@ -41,17 +42,20 @@ class LaneDesigns {
     double length_scale = 1;
   };
   LaneDesigns(const AnalysisContext& context, std::shared_ptr<const Model> model, std::shared_ptr<const Plan> plan,
-              std::unique_ptr<const LaneProgram> program);
+              std::unique_ptr<const LaneProgram> program, std::unique_ptr<MeasureSet> measures);
   /// Model and instants of a design; empty, or why it cannot be in a lane.
   std::string prepare(Lane& lane, const ParameterSeeds& seeds);
   /// Assembles those whose given configuration is far; takes out those that cannot be.
   unsigned assemble(unsigned lanes, std::span<Outcome> outcomes);
   void take_measures(int lane, Outcome& outcome);
+  /// The rows of a design and the motion between them; false where it is lost.
+  bool follow_rows(const std::vector<double>& instants);
   AnalysisContext context_of(const Lane& lane);
 
   const AnalysisContext& outer_;
   std::shared_ptr<const Model> model_;  // of the scene as it is
   std::unique_ptr<const LaneProgram> program_;
+  std::unique_ptr<MeasureSet> measures_;
   Evaluator evaluator_;
   LaneMotion motion_;
   LaneLook look_;

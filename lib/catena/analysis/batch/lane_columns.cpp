@@ -1,0 +1,139 @@
+#include "catena/analysis/batch/lane_columns.hpp"
+
+#include <algorithm>
+
+#include "catena/base/at.hpp"
+
+namespace catena {
+namespace {
+
+// The numbers of one body; `moves`: it has rates.
+struct BodyView {
+  const double *x, *y, *phi, *c, *s;
+  const double *vx = nullptr, *vy = nullptr, *omega = nullptr;
+  const double *ax = nullptr, *ay = nullptr, *alpha = nullptr;
+  bool moves = false;
+};
+
+BodyView body_view(int body, int moving, const LaneView& view, const double* fixed) {
+  const auto number = [](const double* base, int k) { return base + lane_count * k; };
+  if (body >= moving) {
+    const double* const f = number(fixed, 5 * body);
+    return {f, number(f, 1), number(f, 2), number(f, 3), number(f, 4)};
+  }
+  const double *const q = number(view.q, 3 * body), *const v = number(view.qd, 3 * body);
+  const double *const a = number(view.qdd, 3 * body), *const turned = number(view.turned, 2 * body);
+  return {q, number(q, 1), number(q, 2), turned, number(turned, 1), v, number(v, 1), number(v, 2),
+          a, number(a, 1), number(a, 2), true};
+}
+
+// Kinds of columns are told apart outside of the loops over lanes.
+void evaluate(ColumnKind kind, const BodyView& b, const Vec2<double>& local, int first, int last, double* out) {
+  const auto each = [&](auto&& value) {
+    for (int k = first; k < last; ++k) out[k] = value(k);
+  };
+  const auto arm_x = [&](int k) { return b.c[k] * local.x - b.s[k] * local.y; };
+  const auto arm_y = [&](int k) { return b.s[k] * local.x + b.c[k] * local.y; };
+  switch (kind) {
+    case ColumnKind::x:
+      return each([&](int k) { return b.x[k] + arm_x(k); });
+    case ColumnKind::y:
+      return each([&](int k) { return b.y[k] + arm_y(k); });
+    case ColumnKind::angle:
+      return each([&](int k) { return b.phi[k]; });
+    default:
+      break;
+  }
+  if (!b.moves) return each([](int) { return 0.0; });
+  switch (kind) {
+    case ColumnKind::vx:
+      return each([&](int k) { return b.vx[k] - b.omega[k] * arm_y(k); });
+    case ColumnKind::vy:
+      return each([&](int k) { return b.vy[k] + b.omega[k] * arm_x(k); });
+    case ColumnKind::omega:
+      return each([&](int k) { return b.omega[k]; });
+    case ColumnKind::ax:
+      return each([&](int k) { return b.ax[k] - b.alpha[k] * arm_y(k) - b.omega[k] * b.omega[k] * arm_x(k); });
+    case ColumnKind::ay:
+      return each([&](int k) { return b.ay[k] + b.alpha[k] * arm_x(k) - b.omega[k] * b.omega[k] * arm_y(k); });
+    default:
+      return each([&](int k) { return b.alpha[k]; });
+  }
+}
+
+}  // namespace
+
+std::optional<LaneColumns> LaneColumns::make(const LaneProgram& program, const Model& model,
+                                             std::span<const std::string> names) {
+  OwnInputs inputs(model.own_columns.size());
+  std::vector<NamedColumn> named;
+  for (const std::string& name : names) {
+    if (find_columns(model, name, named)) return {};
+    if (named.back().column.kind == ColumnKind::own && find_own_inputs(model, named.back().column.index, inputs))
+      return {};
+  }
+  if (named.size() != names.size()) return {};
+  LaneColumns columns(program, std::move(inputs));
+  columns.inputs_.resize(columns.own_inputs_.size());
+  for (const NamedColumn& one : named) {
+    if (!columns.add(one.column, columns.columns_.emplace_back())) return {};
+  }
+  columns.values_ = LaneNumbers(static_cast<int>(columns.quantities_.size()));
+  columns.fixed_ = LaneNumbers(5 * program.code().frames);
+  return columns;
+}
+
+bool LaneColumns::add(const Column& column, Source& source) {
+  if (column.kind == ColumnKind::own) {
+    source = {true, at(column.index)};
+    std::vector<Source> inputs;
+    for (const Column& input : own_inputs_[source.number]) {
+      if (!add(input, inputs.emplace_back())) return false;
+    }
+    inputs_[source.number] = std::move(inputs);
+    return true;
+  }
+  if (column.kind != ColumnKind::time && !is_body_column(column.kind)) return false;
+  const auto known = std::find_if(quantities_.begin(), quantities_.end(),
+                                  [&](const Quantity& quantity) { return quantity.column == column; });
+  source = {false, static_cast<std::size_t>(known - quantities_.begin())};
+  if (known == quantities_.end()) quantities_.push_back({column});
+  return true;
+}
+
+void LaneColumns::set_designs(const Model& model, const LaneNumbers& frame) {
+  model_ = &model;
+  fixed_.copy(frame);
+  for (Quantity& quantity : quantities_) {
+    const Column& column = quantity.column;
+    if (!is_body_column(column.kind)) continue;
+    if (column.detail >= 0)
+      quantity.local = model.points[at(column.detail)].local;
+    else if (column.index >= 0)
+      quantity.local = model.bodies[at(column.index)].origin;
+  }
+}
+
+void LaneColumns::evaluate(const LaneView& view) {
+  const Plan& plan = program_.plan();
+  for (std::size_t k = 0; k < quantities_.size(); ++k) {
+    const auto& [column, local] = quantities_[k];
+    double* const out = values_[static_cast<int>(k)];
+    if (column.kind == ColumnKind::time) {
+      std::copy(view.t + view.first, view.t + view.last, out + view.first);
+      continue;
+    }
+    const int body = column.index < 0 ? plan.bodies : plan.plan_body[at(column.index)];
+    const BodyView seen = body_view(body, program_.code().moving, view, fixed_.data());
+    catena::evaluate(column.kind, seen, local, view.first, view.last, out);
+  }
+}
+
+double LaneColumns::value_of(const Source& source, int lane) const {
+  if (!source.is_own) return values_[static_cast<int>(source.number)][lane];
+  const std::vector<Source>& inputs = inputs_[source.number];
+  return model_->own_columns[source.number].formula.evaluate(
+      [&](std::uint32_t input) { return value_of(inputs[input], lane); });
+}
+
+}  // namespace catena
