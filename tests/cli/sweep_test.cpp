@@ -3,9 +3,11 @@
 #include <signal.h>
 
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <sstream>
 #include <thread>
 
 #include "cli/program.hpp"
@@ -56,6 +58,38 @@ std::string failures_of(const std::string& report) {
   return begin == std::string::npos ? "none" : report.substr(begin, report.find(']', begin) - begin);
 }
 
+TEST(Sweep, HasNoOtherColumnsThanItsOwn) {
+  TemporaryFolder folder;
+  const std::string scene = slider(folder, "0.5");
+  const ProgramResult other = run_catena({"run", scene, "--outputs", "slide.x"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_EQ(other.err.find("catena: --outputs: sweep gives no column \"slide.x\""), 0u) << other.err;
+  const ProgramResult own = run_catena({"run", scene, "--outputs", "a,stroke", "--csv"});
+  EXPECT_EQ(own.exit_code, 0) << own.err;
+  EXPECT_EQ(own.out.find("design,a,b,stroke,mean,status"), 0u) << own.out;
+}
+
+TEST(Sweep, MeasuresAreInTheUnitsAskedFor) {
+  TemporaryFolder folder;
+  const std::string scene = slider(folder, "0.5");
+  const ProgramResult metres = run_catena({"sweep", scene, "--csv"});
+  const ProgramResult result = run_catena({"sweep", scene, "--units", "length=mm", "-o", folder / "mm"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(read_file(folder / "mm/report.json").find(R"("units": ["1", "", "", "mm", "mm", "1"])"), std::string::npos);
+  std::istringstream si(metres.out), converted(read_file(folder / "mm/sweep.csv"));
+  int rows = 0;
+  for (std::string a, b; std::getline(si, a) && std::getline(converted, b); ++rows) {
+    double numbers[2][5] = {};
+    const auto read = [](const std::string& line, double* out) {
+      return std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf", out, out + 1, out + 2, out + 3, out + 4);
+    };
+    if (read(a, numbers[0]) != 5) continue;
+    ASSERT_EQ(read(b, numbers[1]), 5) << b;
+    for (int k = 0; k < 5; ++k) EXPECT_NEAR(numbers[1][k], (k > 2 ? 1000 : 1) * numbers[0][k], 1e-11) << a;
+  }
+  EXPECT_EQ(rows, 61);
+}
+
 class SweptAgain : public ::testing::TestWithParam<int> {};
 
 TEST_P(SweptAgain, GoesOnFromItsRecord) {
@@ -72,6 +106,7 @@ TEST_P(SweptAgain, GoesOnFromItsRecord) {
   if (GetParam() != SIGKILL) {
     EXPECT_EQ(stopped.exit_code, 1);
     EXPECT_NE(stopped.err.find("--resume goes on"), std::string::npos) << stopped.err;
+    EXPECT_NE(stopped.err.find("Designs without rows: "), std::string::npos) << stopped.err;
   }
   const std::size_t before = lines_of(record);
   ASSERT_LT(before, 61u);
@@ -171,8 +206,9 @@ TEST(SharedSweep, AKilledProcessEndsTheJobAndItsRecordGoesOn) {
                  {.standard_output = {}, .during = kill_one_of(record), .launcher = mpirun(3)});
   EXPECT_NE(killed.exit_code, 0);
   ASSERT_LT(lines_of(record), 61u) << "it was too quick";
-  // What was given is a part of the whole.
+  // What was given is a part of the whole, and what was not is named.
   EXPECT_TRUE(whole.out.starts_with(killed.out)) << killed.out;
+  EXPECT_NE(killed.err.find("Designs without rows: "), std::string::npos) << killed.err;
   const ProgramResult rest = run_catena({"sweep", scene, "--csv", "--record", record, "--resume"},
                                         {.standard_output = {}, .during = {}, .launcher = mpirun(2)});
   EXPECT_EQ(rest.exit_code, 0) << rest.err;

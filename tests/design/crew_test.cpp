@@ -9,6 +9,7 @@
 #include <optional>
 #include <thread>
 
+#include "catena/scene/designing/design_ranges.hpp"
 #include "catena/scene/designing/sweep_crew.hpp"
 
 namespace catena::testing {
@@ -135,10 +136,23 @@ TEST(Crew, DoesEveryDesignOnce) {
   }
 }
 
+TEST(Crew, NamesDesignsByRanges) {
+  EXPECT_EQ(design_ranges({}), "");
+  EXPECT_EQ(design_ranges({6}), "7");
+  EXPECT_EQ(design_ranges({2, 4, 5, 6, 11}), "3, 5 to 7 and 12");
+  std::set<std::int64_t> odd;
+  for (std::int64_t k = 0; k < 20; k += 2) odd.insert(k);
+  EXPECT_EQ(design_ranges(odd), "1, 3, 5, 7, 9, 11, 13, 15 and 2 more");
+}
+
 TEST(Crew, GivesTheDesignsOfALostProcessToOthers) {
   const Outcome outcome = sweep(3, 500, [](int rank, std::int64_t k) { return rank == 2 && k >= 100; });
   ASSERT_EQ(outcome.troubles.size(), 1u);
   EXPECT_TRUE(outcome.troubles[0].starts_with("process 2 was lost after ")) << outcome.troubles[0];
+  // The first design that it fell silent at is number 101 or later, and among those that are named.
+  const std::size_t names = outcome.troubles[0].find("were given to others: ");
+  ASSERT_NE(names, std::string::npos) << outcome.troubles[0];
+  EXPECT_GE(std::stoi(outcome.troubles[0].substr(names + 22)), 1) << outcome.troubles[0];
   EXPECT_FALSE(outcome.leader_is_whole);
   for (std::int64_t k = 0; k < 500; ++k)
     EXPECT_EQ(outcome.designs[static_cast<std::size_t>(k)]->measures, analysed(k).measures) << k;

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "catena/scene/designing/crew_messages.hpp"
+#include "catena/scene/designing/design_ranges.hpp"
 #include "catena/scene/designing/sweep_crew.hpp"
 
 namespace catena {
@@ -116,8 +117,11 @@ void Leader::lose(Member& member) {
         fmt::format("processes {} and {} ended, or fell silent, while they had this design", with[0], with[1]);
     desk_.give(k, std::move(failed));
   }
-  member.trouble = fmt::format("process {} was lost after {} designs; the {} that it had were given to others",
-                               member.rank, member.done, member.held.size());
+  member.trouble = fmt::format("process {} was lost after {} designs; ", member.rank, member.done);
+  member.trouble += member.held.empty()
+                        ? "it had none at hand"
+                        : fmt::format("the {} that it had were given to others: {}", member.held.size(),
+                                      design_ranges(member.held));
   member.held.clear();
 }
 

@@ -53,4 +53,20 @@ bool has_by_itself(const AnalysisTask& task, std::string_view name, const Parame
   return type == "sensitivity" && !task.of.empty() && has_by_itself(task.of.front(), name, parameters);
 }
 
+std::optional<std::string> why_no_outputs(const std::vector<AnalysisTask>& tasks, const std::vector<std::string>& names,
+                                          const ParameterNames& parameters) {
+  const auto takes_columns = [](const AnalysisTask& task) { return task.description->find("outputs") != nullptr; };
+  if (tasks.empty() || std::any_of(tasks.begin(), tasks.end(), takes_columns)) return {};
+  for (const std::string& name : names) {
+    const auto is_own = [&](const AnalysisTask& task) { return has_by_itself(task, name, parameters); };
+    if (std::any_of(tasks.begin(), tasks.end(), is_own)) continue;
+    const std::string_view type = tasks.front().type();
+    return fmt::format("--outputs: {} gives no column \"{}\"{}", type, name,
+                       type == "sweep" ? ": designs have their parameters, measures and status; a measure of its "
+                                         "analysis, {\"final\": column}, makes a number of a column"
+                                       : "");
+  }
+  return {};
+}
+
 }  // namespace catena

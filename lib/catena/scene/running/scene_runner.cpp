@@ -11,6 +11,7 @@
 #include "catena/scene/building/build_model.hpp"
 #include "catena/scene/judging/scene_checks.hpp"
 #include "catena/scene/models/command_text.hpp"
+#include "catena/scene/models/given_designs.hpp"
 #include "catena/scene/models/scene_models.hpp"
 #include "catena/scene/models/scene_saving.hpp"
 #include "catena/scene/models/sweep_record.hpp"
@@ -370,6 +371,17 @@ bool SceneRun::read(const std::string& path) {
   if (tasks_.empty() && !options_.only.empty()) {
     refuse(2, fmt::format("the scene lists no {} in its analyses", options_.only));
     return false;
+  }
+  if (const auto why = why_no_outputs(tasks_, options_.outputs, parameters_.names())) {
+    refuse(2, *why);
+    return false;
+  }
+  if (options_.designs) {
+    if (const std::optional<std::string> why =
+            sweep_over_given(options_.designs->names, options_.designs->values, parameters_, tasks_)) {
+      refuse(2, *why);
+      return false;
+    }
   }
   if (!prepare_files()) return false;
   outcome_.parameters = named_parameters(parameters_.evaluate<double>(scene_->expressions, diagnostics_));

@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -33,6 +34,12 @@ struct Progress {
   double fraction = 0;  ///< of this analysis, 0 ... 1
 };
 
+/// A table of designs, one a row: values of these parameters, SI.
+struct GivenDesigns {
+  std::vector<std::string> names;
+  std::span<const double> values;  ///< row after row
+};
+
 struct RunOptions {
   /// The scene's text in place of the file's, which then need not exist: its path stands for it in messages, and files
   /// that the scene names are sought beside it.
@@ -43,6 +50,8 @@ struct RunOptions {
   std::vector<std::pair<std::string, std::string>> verb_options;
   /// Run only those analyses of the scene's list that have this type; empty: all.
   std::string only;
+  /// In place of its own list, the measured analyses of the scene are repeated for these designs, as by a sweep.
+  std::optional<GivenDesigns> designs;
   /// File to which the scene is written with the values that its optimisations found; empty: none.
   std::string save;
   /// Parameters to change: name, and a value in the syntax of scenes (a number, "30 deg", "=2*a").
