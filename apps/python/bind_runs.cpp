@@ -7,6 +7,7 @@
 #include "catena/results/measure_gradient.hpp"
 #include "catena/results/status_word.hpp"
 #include "catena/results/stored_results.hpp"
+#include "open_scene.hpp"
 
 namespace catena::python {
 
@@ -135,10 +136,15 @@ struct Outcome {
   std::vector<std::pair<std::string, double>> parameters;
 };
 
+/// Numbers row after row.
+using Table = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
 Outcome run(const std::string& path, const std::optional<std::string>& text, const Texts& set,
-            const std::vector<std::string>& outputs, const std::string& only, int threads) {
+            const std::vector<std::string>& outputs, const std::string& only, int threads,
+            const std::vector<std::string>& names, const std::optional<Table>& designs) {
   StoredResults sink;
   RunOptions options;
+  if (designs) options.designs = {names, {designs->data(), static_cast<std::size_t>(designs->size())}};
   options.text = text;
   options.set = set;
   options.outputs = outputs;
@@ -180,7 +186,8 @@ void bind_runs(py::module_& module) {
       .def_readonly("parameters", &Outcome::parameters);
 
   module.def("run", &run, py::arg("path"), py::arg("text"), py::arg("set"), py::arg("outputs"), py::arg("only"),
-             py::arg("threads"));
+             py::arg("threads"), py::arg("names") = std::vector<std::string>(), py::arg("designs") = py::none());
+  module.def("check_names", &check_names, py::arg("path"), py::arg("text"), py::arg("names"));
 }
 
 }  // namespace catena::python

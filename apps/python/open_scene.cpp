@@ -15,6 +15,11 @@ namespace {
 
 constexpr std::int64_t max_elements = BuildOptions{}.max_elements;
 
+[[noreturn]] void throw_unknown(const std::string& name, const ParameterNames& names) {
+  throw SceneError(
+      "catena: there is no parameter " + in_quotes(name) + NearMiss(name).consider_all(names.all()).hint() + "\n", {});
+}
+
 SourceText source_of(const std::string& path, const std::optional<std::string>& text) {
   try {
     return text ? SourceText(path, *text) : SourceText::read(path);
@@ -77,11 +82,7 @@ void OpenScene::set(const std::map<std::string, double>& values) {
   ParameterSeeds seeds = seeds_;
   for (const auto& [name, value] : values) {
     const int index = models_->names().find(name);
-    if (index < 0) {
-      throw SceneError("catena: there is no parameter " + in_quotes(name) +
-                           NearMiss(name).consider_all(models_->names().all()).hint() + "\n",
-                       {});
-    }
+    if (index < 0) throw_unknown(name, models_->names());
     if (!std::isfinite(value))
       throw SceneError("catena: parameter " + in_quotes(name) + " must be a finite number\n", {});
     std::erase_if(seeds, [&](const auto& seed) { return seed.index == index; });
@@ -91,6 +92,16 @@ void OpenScene::set(const std::map<std::string, double>& values) {
   if (models_->values(table_, seeds, &why).empty() && models_->names().size() > 0)
     throw SceneError("catena: " + why + "\n", {});
   seeds_ = std::move(seeds);
+}
+
+void check_names(const std::string& path, const std::optional<std::string>& text,
+                 const std::vector<std::string>& names) {
+  Diagnostics diagnostics;
+  const std::unique_ptr<SceneTemplate> scene = read_scene(source_of(path, text), diagnostics);
+  if (!scene) throw SceneError(diagnostics.text(), diagnostics.in_order());
+  for (const std::string& name : names) {
+    if (scene->parameters.names().find(name) < 0) throw_unknown(name, scene->parameters.names());
+  }
 }
 
 }  // namespace catena::python

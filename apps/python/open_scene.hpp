@@ -46,4 +46,9 @@ class OpenScene {
   std::vector<std::string> outputs_;
 };
 
+/// Throws SceneError, with what may be meant, for the first name that is no parameter of the scene; and where its text
+/// cannot be read.
+void check_names(const std::string& path, const std::optional<std::string>& text,
+                 const std::vector<std::string>& names);
+
 }  // namespace catena::python

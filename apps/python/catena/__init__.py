@@ -20,6 +20,7 @@ analysis that was not solved says so by its status. The tutorial is apps/manual/
 from ._catena import AnalysisError, FigureError, SceneError, explain
 from . import elements
 from .elements import *
+from .batches import Batch, batch
 from .machines import Dynamics, Equilibrium, Kinematics
 from .models import Block, Model
 from .results import Analysis, Run
@@ -29,6 +30,7 @@ from .sweeps import Failure, Sweep, sweep
 __all__ = [
     "Analysis",
     "AnalysisError",
+    "Batch",
     "Block",
     "Dynamics",
     "Equilibrium",
@@ -40,6 +42,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "Sweep",
+    "batch",
     "explain",
     "load",
     "loads",

@@ -140,7 +140,17 @@ class Film:
     @property
     def notes(self) -> list[str]: ...
 
-def run(path: str, text: str | None, set: _Texts, outputs: list[str], only: str, threads: int) -> Outcome: ...
+def run(
+    path: str,
+    text: str | None,
+    set: _Texts,
+    outputs: list[str],
+    only: str,
+    threads: int,
+    names: list[str] = ...,
+    designs: _Array | None = None,
+) -> Outcome: ...
+def check_names(path: str, text: str | None, names: list[str]) -> None: ...
 def film(
     path: str,
     text: str | None,

@@ -22,6 +22,7 @@ from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from . import _catena
 from ._catena import SceneError
 from .scenes import Scene, Value
 
@@ -180,6 +181,9 @@ def sweep(
         for name, value in design.items():
             if not isinstance(value, str) and not math.isfinite(float(value)):
                 raise ValueError(f"design {number}: parameter {name} is {value}, not a finite number")
+    # One that is misspelt would be wrong in every design.
+    names = dict.fromkeys(itertools.chain(scene.parameters, *designs))
+    _catena.check_names(*scene.source()[:2], list(names))
     if at_once is None:
         # Some hundred parts of a sweep keep all workers busy to its end, and answers few.
         at_once = max(1, min(100, len(designs) // 200))
