@@ -134,7 +134,7 @@ void add_common_options(CLI::App& command, Parsed& parsed) {
       ->type_name("FILE");
   command
       .add_option("-j,--threads", run.options.threads,
-                  "threads that a sweep uses; its rows are the same for any number")
+                  "threads that sweeps and starts of optimisations use; results are the same for any number")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
   command.add_flag("--stats", run.stats, "print what was computed how often");

@@ -129,9 +129,9 @@ TEST_P(EveryMethod, KnowsAnOptimumAtItsStart) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
-                         ::testing::Values(MinimiserMethod::slsqp, MinimiserMethod::mma, MinimiserMethod::bobyqa,
-                                           MinimiserMethod::cobyla, MinimiserMethod::crs2, MinimiserMethod::isres,
-                                           MinimiserMethod::direct));
+                         ::testing::Values(MinimiserMethod::slsqp, MinimiserMethod::mma, MinimiserMethod::ipopt,
+                                           MinimiserMethod::bobyqa, MinimiserMethod::cobyla, MinimiserMethod::crs2,
+                                           MinimiserMethod::isres, MinimiserMethod::direct));
 
 TEST(Optimise, GoesOnBesideDesignsThatFail) {
   // Nothing beyond 1.5 can be analysed, and the slope at the start points far beyond it: f = -x + x^4 / (4 * 1.4^3),
@@ -221,6 +221,72 @@ TEST(Optimise, TheEndIsThatOfTheBestStart) {
   ASSERT_LT(outcome.values.objective, 0);
   ASSERT_GT(outcome.optimality.value_or(1), 1e-5);
   EXPECT_EQ(outcome.end, DesignEnd::slow);
+}
+
+// f = sum of (x^2 - 1)^2 + x / 4 in each of three variables: eight minima, the least at x = -1.0303 each.
+DesignProblem eight_minima() {
+  DesignProblem problem{{-2, -2, -2}, {2, 2, 2}, {1.9, 1.8, 1.7}, 0, 0, {}};
+  problem.evaluate = [](std::span<const double> x, bool) {
+    DesignEvaluation e;
+    if (x[0] > 1.2 && x[1] < -1.2) e.failure = "not_assembled";
+    for (const double v : x) {
+      e.values.objective += (v * v - 1) * (v * v - 1) + v / 4;
+      e.values.gradient.push_back(4 * v * (v * v - 1) + 0.25);
+    }
+    return e;
+  };
+  return problem;
+}
+
+TEST(Optimise, ManyStartsGiveTheSameWhateverTheNumberOfThreads) {
+  for (const MinimiserMethod method : {MinimiserMethod::slsqp, MinimiserMethod::mma, MinimiserMethod::bobyqa}) {
+    for (const int most : {10000, 150, 40}) {
+      std::vector<DesignOutcome> outcomes;
+      std::vector<std::vector<std::vector<double>>> rows;
+      for (const int threads : {1, 2, 5}) {
+        DesignOptions options;
+        options.method = method;
+        options.starts = 12;
+        options.threads = threads;
+        options.max_evaluations = most;
+        rows.emplace_back();
+        options.improved = [&](std::span<const double> x, const DesignValues&) {
+          rows.back().emplace_back(x.begin(), x.end());
+        };
+        outcomes.push_back(optimise_design(eight_minima(), options));
+      }
+      for (std::size_t k = 1; k < outcomes.size(); ++k) {
+        EXPECT_EQ(outcomes[k].x, outcomes[0].x);
+        EXPECT_EQ(outcomes[k].end, outcomes[0].end);
+        EXPECT_EQ(outcomes[k].evaluations, outcomes[0].evaluations);
+        EXPECT_EQ(outcomes[k].failed, outcomes[0].failed);
+        EXPECT_EQ(outcomes[k].optimality, outcomes[0].optimality);
+        EXPECT_EQ(rows[k], rows[0]);
+      }
+      EXPECT_LE(outcomes[0].evaluations, most + 20);
+      if (most < 10000) continue;
+      for (const double x : outcomes[0].x) EXPECT_NEAR(4 * x * (x * x - 1), -0.25, 1e-4);
+      EXPECT_LT(outcomes[0].x[0], 0);
+    }
+  }
+}
+
+TEST(Optimise, TellsThatNoVariableChangesTheObjective) {
+  DesignProblem problem{{0, 0}, {1, 1}, {0.5, 0.2}, 0, 0, {}};
+  const auto of = [](double slope) {
+    return [=](std::span<const double> x, bool) {
+      DesignEvaluation e;
+      e.values.objective = 3 + slope * (x[0] - 0.5) * (x[0] - 0.5);
+      e.values.gradient = {2 * slope * (x[0] - 0.5), 0};
+      return e;
+    };
+  };
+  problem.evaluate = of(0);
+  const DesignOutcome constant = optimise_design(problem, {});
+  EXPECT_TRUE(constant.is_constant);
+  EXPECT_EQ(constant.x, problem.start);
+  problem.evaluate = of(1);  // stationary at the start
+  EXPECT_FALSE(optimise_design(problem, {}).is_constant);
 }
 
 TEST(Optimise, RefusesProblemsThatAreNone) {
@@ -325,12 +391,34 @@ TEST(Optimise, WrongGoalsAreReportedWhereTheyStand) {
     EXPECT_EQ(run.outcome.errors.front().column, mark.column) << run.outcome.errors.front().message;
     EXPECT_NE(run.outcome.errors.front().message.find(part), std::string::npos) << run.outcome.errors.front().message;
   };
+  expect_error(R"("variables": {"r": {}}, "minimise": §"=3")", "the same for every design");
+  expect_error(R"("variables": {"r": {}}, "maximise": §"=2*l")", "the same for every design");
+  expect_error(R"("variables": {"r": {}}, "minimise": "stroke", "subject_to": ["=r >= 0.1", §"=1 >= l"])",
+               "the same for every design");
+  expect_error(R"("variables": {"r": §{"min": 0.3, "max": 0.4}}, "minimise": "stroke")", "starts at 0.2");
   expect_error(R"("variables": {§"q": {}}, "minimise": "stroke")", "unknown parameter \"q\"");
   expect_error(R"("variables": {"r": {"min": §0.3, "max": 0.2}}, "minimise": "stroke")", "is not below its max");
   expect_error(R"("variables": {"r": {"start": §0.9}}, "minimise": "stroke")", "not within");
   expect_error(R"("variables": {"l": §{}}, "minimise": "stroke")", "needs \"min\" and \"max\"");
   expect_error(R"("variables": {"r": {}}, "minimise": "=2*§strok")", "did you mean \"stroke\"?");
   expect_error(R"("variables": {"r": {}}, "minimise": "stroke", "subject_to": [§"=stroke"])", "a relation");
+}
+
+TEST(Optimise, MeasuresOfWhatAnotherAnalysisReportsAreErrorsWhereTheyStand) {
+  for (const auto& [type, field, other] : {std::array{"\"kinematics\", \"until\": 1", "energy", "equilibrium"},
+                                           {"\"equilibrium\"", "omega[1]", "modes"},
+                                           {"\"modes\"", "loads[1]", "buckling"},
+                                           {"\"buckling\", \"parameter\": \"p\"", "omega2[1]", "modes"}}) {
+    const MarkedText mark = take_mark(fmt::format(R"({{"catena": 1, "parameters": {{"p": 1}},
+      "bodies": {{"b": {{"mass": 1, "inertia": 1}}}}, "constraints": [{{"type": "revolute", "i": "ground", "j": "b"}}],
+      "analyses": [{{"type": {}, "measures": {{"m": {{"field": §"{}"}}}}}}]}})",
+                                                  type, field));
+    const TextRun run = run_text(mark.text);
+    ASSERT_EQ(run.outcome.errors.size(), 1u) << field;
+    EXPECT_EQ(run.outcome.errors.front().line, mark.line);
+    EXPECT_EQ(run.outcome.errors.front().column, mark.column);
+    EXPECT_NE(run.outcome.errors.front().message.find(other), std::string::npos) << run.outcome.errors.front().message;
+  }
 }
 
 }  // namespace

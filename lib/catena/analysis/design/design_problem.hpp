@@ -40,11 +40,13 @@ struct DesignProblem {
 struct DesignOptions {
   MinimiserMethod method = MinimiserMethod::slsqp;
   int starts = 1;  ///< the given one, then random ones within the bounds
+  int threads =
+      1;  ///< that starts may use, and so call `evaluate` at once; what comes of it is the same for any number
   std::uint64_t seed = 1;
   double tolerance = 1e-8;  ///< of variables, in parts of their ranges, and of constraints, in their sizes at the start
   int max_evaluations = 1000;
-  std::function<bool()> go_on = {};  ///< asked after every design; false keeps the best so far
-  /// Told of every design that is better than all before.
+  std::function<bool()> go_on = {};  ///< asked after every design, by any thread; false keeps the best so far
+  /// Told of every design that is better than all before: of each start in turn, by one thread at a time.
   std::function<void(std::span<const double> x, const DesignValues&)> improved = {};
 };
 
@@ -65,6 +67,7 @@ struct DesignOutcome {
   double violation = 0;              ///< largest of its constraints, in their sizes at the start
   std::optional<double> optimality;  ///< see optimality_of(); nothing where the gradients there are not known
   bool at_kink = false;  ///< converged where gradients do not vanish, but short steps along them lead to nothing better
+  bool is_constant = false;             ///< the objective was the same in all designs, and variables do not change it
   std::vector<int> active_unequal;      ///< inequalities that hold it
   std::vector<int> at_lower, at_upper;  ///< variables at their bounds
   int evaluations = 0;                  ///< designs that were analysed, failed ones included

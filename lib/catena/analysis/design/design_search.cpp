@@ -68,6 +68,7 @@ bool DesignSearch::analyse(std::span<const double> u, Point& point) {
     evaluation.failure = "no_derivative";
   if (!evaluation.failure.empty()) {
     ++outcome_.failed[evaluation.failure];
+    failures_.push_back({outcome_.evaluations, std::move(evaluation.failure)});
     return false;
   }
   point.u.assign(u.begin(), u.end());
@@ -117,6 +118,7 @@ void DesignSearch::compare(const Point& point) {
     if (!better) return;
   }
   ++improvements_;
+  improved_.push_back({outcome_.evaluations, point});
   outcome_.x = design(point.u);
   outcome_.values = point.values;
   outcome_.violation = violation;
@@ -134,6 +136,29 @@ bool DesignSearch::complete_best() {
   return true;
 }
 
+void DesignSearch::take_sizes(const DesignSearch& other) {
+  has_sizes_ = other.has_sizes_;
+  objective_size_ = other.objective_size_;
+  unequal_size_ = other.unequal_size_;
+  equal_size_ = other.equal_size_;
+}
+
+bool DesignSearch::absorb(const DesignSearch& other) {
+  const int left = options_.max_evaluations - outcome_.evaluations;
+  for (const Improvement& improvement : other.improved_) {
+    if (improvement.number <= left) compare(improvement.point);
+  }
+  for (const Failure& failure : other.failures_) {
+    if (failure.number <= left) ++outcome_.failed[failure.reason];
+  }
+  largest_ = std::max(largest_, other.largest_);
+  least_ = std::min(least_, other.least_);
+  gradient_size_ = std::max(gradient_size_, other.gradient_size_);
+  cancelled_ = cancelled_ || other.cancelled_;
+  outcome_.evaluations += std::min(left, other.outcome_.evaluations);
+  return other.outcome_.evaluations <= left;
+}
+
 bool DesignSearch::begin(std::vector<double>& u) {
   const std::size_t n = u.size();
   std::vector<double> range(n);
@@ -147,7 +172,8 @@ bool DesignSearch::begin(std::vector<double>& u) {
   const auto row = [&](const std::vector<double>& all, std::size_t k) {
     return all.size() >= (k + 1) * n ? std::span<const double>(all).subspan(k * n, n) : std::span<const double>();
   };
-  if (improvements_ == 0) {
+  if (!has_sizes_) {
+    has_sizes_ = true;
     const DesignValues& values = now_.values;
     objective_size_ = size_of(values.objective, values.gradient, range);
     for (std::size_t k = 0; k < unequal_size_.size(); ++k)

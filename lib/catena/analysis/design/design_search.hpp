@@ -41,6 +41,11 @@ class DesignSearch final : public MinimisationProblem {
   bool was_cancelled() const { return cancelled_; }
   /// How many designs were better than all before.
   int improvements() const { return improvements_; }
+  /// Measures constraints and objectives by the sizes that another search has taken.
+  void take_sizes(const DesignSearch& other);
+  /// Takes over what another search has found, as if its designs had been analysed here one after the other; of those
+  /// that are more than max_evaluations nothing. True where all of them count.
+  bool absorb(const DesignSearch& other);
   /// Whether the best design has gradients, which are asked for once more where the method needed none.
   bool complete_best();
 
@@ -48,6 +53,16 @@ class DesignSearch final : public MinimisationProblem {
   struct Point {
     std::vector<double> u;
     DesignValues values;
+  };
+  /// What a search keeps of itself for absorb(): of each design that was better than all before, or failed, which one
+  /// in order it was.
+  struct Improvement {
+    int number;
+    Point point;
+  };
+  struct Failure {
+    int number;
+    std::string reason;
   };
   std::vector<double> design(std::span<const double> u) const;
   /// Analyses a design, with gradients where the method uses them; false, and counted, where it fails.
@@ -63,8 +78,10 @@ class DesignSearch final : public MinimisationProblem {
   DesignOutcome& outcome_;
   bool gradients_;
   Point now_, good_;
-  bool cancelled_ = false;
+  bool cancelled_ = false, has_sizes_ = false;
   int improvements_ = 0;
+  std::vector<Improvement> improved_;
+  std::vector<Failure> failures_;
   double objective_size_ = 1, gradient_size_ = 0;
   double largest_ = -std::numeric_limits<double>::infinity();  // objective so far
   double least_ = std::numeric_limits<double>::infinity();

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <random>
+#include <limits>
 #include <stdexcept>
 
-#include "catena/analysis/design/design_search.hpp"
+#include "catena/analysis/design/design_starts.hpp"
 
 namespace catena {
 namespace {
@@ -11,9 +11,6 @@ namespace {
 // A design with an optimality below this is stationary, whatever the method said of its end: gradients are good to
 // 1e-8, and steps of the size of the tolerance leave its root.
 constexpr double stationary = 1e-5;
-// Of the tolerance, the relative gain of a step that ends the method.
-constexpr double part_of_gain = 1e-3;
-
 // A method ends where its steps, or what they gain, fall below its tolerances: a gain of 1e-3 of the tolerance leaves a
 // gradient of its root. A design with an optimality below this many of these is what the method calls done.
 constexpr double roots_of_gain = 30;
@@ -23,19 +20,10 @@ constexpr double short_steps[] = {1e-3, 1e-5};
 constexpr double kept_promise = 0.1;
 // A design that is nearer to the bottom of its parabola is there: half the digits of a double.
 constexpr double rounding_of_place = 1e-8;
+// How far the design is from which one sees whether variables change the objective at all, in parts of their ranges.
+constexpr double beside = 0.25;
 // How often a method that ends where it could go downhill is begun anew from there.
 constexpr int most_renewals = 2;
-
-/// Of the given start for number 0, random within the bounds for others.
-std::vector<double> start_of(const DesignProblem& problem, std::mt19937_64& random, int number) {
-  std::vector<double> u(problem.start.size());
-  for (std::size_t v = 0; v < u.size(); ++v) {
-    // The same numbers on every machine: 53 bits of the generator's own.
-    const double any = static_cast<double>(random() >> 11) * 0x1.0p-53;
-    u[v] = number > 0 ? any : (problem.start[v] - problem.lower[v]) / (problem.upper[v] - problem.lower[v]);
-  }
-  return u;
-}
 
 void require_sound(const DesignProblem& problem) {
   const std::size_t n = problem.start.size();
@@ -48,17 +36,6 @@ void require_sound(const DesignProblem& problem) {
       throw std::invalid_argument("variable number " + std::to_string(v) +
                                   " of the design problem does not start within its bounds");
   }
-}
-
-MinimiserOptions wanted_of(const DesignOptions& options, const DesignOutcome& outcome, std::size_t variables) {
-  return {.method = options.method,
-          .lower = std::vector<double>(variables, 0.0),
-          .upper = std::vector<double>(variables, 1.0),
-          .x_tolerance = options.tolerance,
-          .f_tolerance = part_of_gain * options.tolerance,
-          .constraint_tolerance = options.tolerance,
-          .max_evaluations = std::max(1, options.max_evaluations - outcome.evaluations),
-          .seed = options.seed};
 }
 
 /// The best design's distance from a stationary one, as far as gradients there tell it.
@@ -112,28 +89,25 @@ DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions&
   require_sound(problem);
   DesignOutcome outcome;
   DesignSearch search(problem, options, outcome);
-  std::mt19937_64 random(options.seed);
-  bool analysed = false;
-  MinimiserEnd end = MinimiserEnd::failed;  // of the start that led to the best design
-  for (int k = 0; k < options.starts && (k == 0 || search.go_on()); ++k) {
-    std::vector<double> u = start_of(problem, random, k);
-    const int improvements = search.improvements();
-    if (!search.begin(u)) continue;
-    analysed = true;
-    const MinimiserEnd ended = minimise(search, wanted_of(options, outcome, u.size()), u);
-    if (search.improvements() > improvements) end = ended;
-  }
-  if (!analysed) {
+  const std::optional<MinimiserEnd> found = search_from_all_starts(problem, options, search, outcome);
+  if (!found) {
     search.go_on();
     if (search.was_cancelled()) outcome.end = DesignEnd::cancelled;
     return outcome;
   }
+  MinimiserEnd end = *found;
   bool downhill = goes_downhill(problem, options, search, outcome);
   for (int n = 0; downhill && end == MinimiserEnd::converged && n < most_renewals && search.go_on(); ++n) {
     std::vector<double> u = search.best();
     if (!search.begin(u)) break;
-    end = minimise(search, wanted_of(options, outcome, u.size()), u);
+    end = minimise(search, minimiser_options(options, outcome.evaluations, u.size()), u);
     downhill = goes_downhill(problem, options, search, outcome);
+  }
+  // A start without slope may be an optimum, or nothing depends on the variables.
+  if (search.gradient_size() == 0 && search.go_on()) {
+    std::vector<double> aside = search.best();
+    for (double& u : aside) u = u < 0.5 ? beside : -beside;
+    outcome.is_constant = search.change_along(aside, std::numeric_limits<double>::infinity()) == 0.0;
   }
   for (std::size_t v = 0; v < outcome.x.size(); ++v) {
     if (outcome.x[v] == problem.lower[v]) outcome.at_lower.push_back(static_cast<int>(v));
@@ -150,7 +124,8 @@ DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions&
   else if (converged || (feasible && outcome.optimality && *outcome.optimality <= stationary))
     outcome.end = feasible ? DesignEnd::converged : DesignEnd::infeasible;
   else
-    outcome.end = end == MinimiserEnd::slow ? DesignEnd::slow : DesignEnd::broken_off;
+    // Stopped, though nobody cancelled it: it ran out of designs.
+    outcome.end = end == MinimiserEnd::slow || end == MinimiserEnd::stopped ? DesignEnd::slow : DesignEnd::broken_off;
   return outcome;
 }
 

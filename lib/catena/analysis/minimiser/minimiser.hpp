@@ -1,4 +1,5 @@
-// Minimisation under bounds and constraints by the methods of NLopt, for functions of a few hundred variables at most.
+// Minimisation under bounds and constraints by the methods of NLopt and by Ipopt, for functions of a few hundred
+// variables at most.
 //
 //   min f(x)   subject to   lower <= x <= upper,   g(x) <= 0,   h(x) = 0
 //
@@ -6,7 +7,9 @@
 // SIAM J. Optim. 12 (2002)) use gradients; bobyqa and cobyla (Powell) models through values; crs2, isres and direct
 // search everywhere within the bounds. mma, bobyqa, crs2 and direct treat no equations, bobyqa, crs2 and direct no
 // constraints at all: those that lack something run within an augmented Lagrangian (Birgin and Martinez, 2008), which
-// has it. Variables should be scaled to the same size. Source: S. Johnson, The NLopt nonlinear-optimization package.
+// has it. ipopt is the interior-point method of Waechter and Biegler, Math. Program. 106 (2006), with gradients; second
+// derivatives it makes of their changes (limited-memory BFGS). Variables should be scaled to the same size. Source: S.
+// Johnson, The NLopt nonlinear-optimization package.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +19,10 @@
 
 namespace catena {
 
-enum class MinimiserMethod { slsqp, mma, bobyqa, cobyla, crs2, isres, direct };
+enum class MinimiserMethod { slsqp, mma, ipopt, bobyqa, cobyla, crs2, isres, direct };
 
 /// Whether a method asks for gradients.
-constexpr bool uses_gradients(MinimiserMethod method) {
-  return method == MinimiserMethod::slsqp || method == MinimiserMethod::mma;
-}
+constexpr bool uses_gradients(MinimiserMethod method) { return method <= MinimiserMethod::ipopt; }
 
 /// What is minimised. Gradients and Jacobians (row-major, a row a constraint) are wanted where their spans are not
 /// empty.
@@ -61,7 +62,10 @@ enum class MinimiserEnd {
 /// Whether the library was built with NLopt (CATENA_WITH_NLOPT).
 bool nlopt_is_built_in();
 
-/// Minimises from x, in place. `failed` where nlopt_is_built_in() is false.
+/// Whether the library was built with what the method needs: Ipopt (CATENA_WITH_IPOPT) or NLopt.
+bool minimiser_is_built_in(MinimiserMethod method);
+
+/// Minimises from x, in place. `failed` where minimiser_is_built_in() is false.
 MinimiserEnd minimise(MinimisationProblem& problem, const MinimiserOptions& options, std::span<double> x);
 
 }  // namespace catena

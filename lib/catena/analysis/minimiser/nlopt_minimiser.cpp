@@ -1,4 +1,4 @@
-#include "catena/analysis/minimiser/minimiser.hpp"
+#include "catena/analysis/minimiser/minimiser_parts.hpp"
 
 #if CATENA_HAS_NLOPT
 
@@ -21,6 +21,8 @@ nlopt_algorithm algorithm_of(MinimiserMethod method) {
       return NLOPT_LD_SLSQP;
     case MinimiserMethod::mma:
       return NLOPT_LD_MMA;
+    case MinimiserMethod::ipopt:
+      break;  // never asked for here
     case MinimiserMethod::bobyqa:
       return NLOPT_LN_BOBYQA;
     case MinimiserMethod::cobyla:
@@ -92,7 +94,7 @@ MinimiserEnd ending(nlopt_result result) {
 
 bool nlopt_is_built_in() { return true; }
 
-MinimiserEnd minimise(MinimisationProblem& problem, const MinimiserOptions& options, std::span<double> x) {
+MinimiserEnd minimise_by_nlopt(MinimisationProblem& problem, const MinimiserOptions& options, std::span<double> x) {
   const auto n = static_cast<unsigned>(problem.variables());
   Call call{problem};
   const bool helped = lacks_constraints(options.method, problem);
@@ -133,7 +135,9 @@ namespace catena {
 
 bool nlopt_is_built_in() { return false; }
 
-MinimiserEnd minimise(MinimisationProblem&, const MinimiserOptions&, std::span<double>) { return MinimiserEnd::failed; }
+MinimiserEnd minimise_by_nlopt(MinimisationProblem&, const MinimiserOptions&, std::span<double>) {
+  return MinimiserEnd::failed;
+}
 
 }  // namespace catena
 

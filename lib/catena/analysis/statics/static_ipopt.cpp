@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "catena/analysis/balance/static_hessian.hpp"
+#include "catena/analysis/minimiser/ipopt_turn.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -27,10 +28,6 @@ constexpr double near_barrier = 1e-9;
 constexpr double smallest_disturbance = 1e-3;
 // Solutions of Ipopt must balance to this part of the forces, and meet the constraints to it.
 constexpr double rough = 1e-5;
-std::mutex& only_one() {
-  static std::mutex mutex;
-  return mutex;
-}
 
 // The scaled problem in Ipopt's interface. Vectors x over columns, g over the equations that are kept.
 class Problem final : public Ipopt::TNLP {
@@ -250,7 +247,7 @@ bool ipopt_is_built_in() { return true; }
 
 StaticOutcome solve_by_ipopt(StaticSystem& system, std::span<double> q, std::span<double> lambda,
                              const StaticIpoptOptions& options) {
-  const std::lock_guard lock(only_one());
+  const std::lock_guard lock(ipopt_turn());
   system.move_to(q);
   const double load = system.force_norm(system.gradient());
   const Ipopt::SmartPtr<Problem> problem = new Problem(system, q, lambda, options.warm);

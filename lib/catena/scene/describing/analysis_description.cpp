@@ -169,12 +169,12 @@ std::vector<AnalysisDescription> describe_all() {
            {"subject_to", KeyKind::relations, "expressions with <=, >= or == between them"},
            {"solver",
             KeyKind::word,
-            "auto is slsqp; mma and slsqp use gradients, bobyqa and cobyla none, crs2, isres and direct search "
+            "auto is slsqp; slsqp, mma and ipopt use gradients, bobyqa and cobyla none, crs2, isres and direct search "
             "everywhere",
             {},
             {},
             {"auto", "slsqp", "mma", "ipopt", "bobyqa", "cobyla", "crs2", "isres", "direct"}},
-           {"starts", KeyKind::whole, "how many starts: the given one, then random ones (default 1)"},
+           {"starts", KeyKind::whole, "how many starts: the given one, then random ones, as many at once as there are threads (default 1)"},
            {"seed", KeyKind::whole, "of random starts (default 1)"},
            tolerance,
            {"max_evaluations", KeyKind::whole, "most designs that are analysed (default 1000)"}}),

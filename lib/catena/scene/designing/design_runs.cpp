@@ -23,6 +23,12 @@ ParameterSeeds DesignRuns::seeds_of(std::span<const double> x) const {
   return seeds;
 }
 
+std::vector<std::string> DesignRuns::doubts() const {
+  std::vector<std::string> doubts;
+  for (const auto& [what, why] : doubts_) doubts.push_back(fmt::format("{} in some designs: {}", what, why));
+  return doubts;
+}
+
 std::string DesignRuns::take_measures(const AnalysisTask& inner, const AnalysisResult& result, bool gradients,
                                       std::vector<Measured>& measures) {
   for (const PlacedMeasure& placed : inner.measures) {
@@ -33,13 +39,11 @@ std::string DesignRuns::take_measures(const AnalysisTask& inner, const AnalysisR
       // One that is not a number stays so in whatever is made of it, and the search takes the design for failed.
       measured.gradient[p] = p < found->gradient.size() ? found->gradient[p] : std::nan("");
       if (std::isfinite(measured.gradient[p])) continue;
-      const std::string what =
-          fmt::format("measure \"{}\" has no derivative by \"{}\"", found->name, request_.names[p]);
-      const bool known = std::any_of(doubts_.begin(), doubts_.end(),
-                                     [&](const std::string& doubt) { return doubt.starts_with(what); });
-      if (!known)
-        doubts_.push_back(fmt::format("{} in some designs: {}", what,
-                                      found->trouble.empty() ? "see the analysis by itself" : found->trouble));
+      const std::string why = found->trouble.empty() ? "see the analysis by itself" : found->trouble;
+      const std::lock_guard lock(mutex_);
+      const auto [known, added] = doubts_.emplace(
+          fmt::format("measure \"{}\" has no derivative by \"{}\"", found->name, request_.names[p]), why);
+      if (!added) known->second = std::min(known->second, why);
     }
     measures.push_back(std::move(measured));
   }

@@ -1,6 +1,9 @@
 // The analyses of one design, run for an optimisation: measures and their gradients, or why there are none.
 #pragma once
 
+#include <map>
+#include <mutex>
+
 #include "catena/analysis/design/design_problem.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 
@@ -11,12 +14,13 @@ class DesignRuns {
   /// `context` is that of the optimisation, whose task has the analyses and the goal; it must outlive this object.
   explicit DesignRuns(const AnalysisContext& context);
 
-  /// Objective and constraints of a design, the values of the variables in the order of the goal.
+  /// Objective and constraints of a design, the values of the variables in the order of the goal. Several threads may
+  /// ask at once.
   DesignEvaluation evaluate(std::span<const double> x, bool gradients);
   /// The values of all parameters of a design: the context's, with the variables put in.
   ParameterSeeds seeds_of(std::span<const double> x) const;
-  /// Measures whose derivatives were missing in some design, each once, with the reason.
-  const std::vector<std::string>& doubts() const { return doubts_; }
+  /// Measures whose derivatives were missing in some design, each once, with the reason, in the order of their names.
+  std::vector<std::string> doubts() const;
 
  private:
   struct Measured {
@@ -35,7 +39,8 @@ class DesignRuns {
   const AnalysisContext& context_;
   const DesignGoal& goal_;
   DesignRequest request_;
-  std::vector<std::string> doubts_;
+  std::mutex mutex_;
+  std::map<std::string, std::string> doubts_;  // what lacks a derivative: why, of several reasons the first by letters
 };
 
 }  // namespace catena

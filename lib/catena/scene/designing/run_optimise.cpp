@@ -12,16 +12,16 @@ namespace {
 
 // In the order of the key's words after auto, slsqp, mma, ipopt.
 constexpr MinimiserMethod methods[] = {MinimiserMethod::slsqp, MinimiserMethod::slsqp,  MinimiserMethod::mma,
-                                       MinimiserMethod::slsqp, MinimiserMethod::bobyqa, MinimiserMethod::cobyla,
+                                       MinimiserMethod::ipopt, MinimiserMethod::bobyqa, MinimiserMethod::cobyla,
                                        MinimiserMethod::crs2,  MinimiserMethod::isres,  MinimiserMethod::direct};
-constexpr int ipopt_word = 3;
-constexpr std::string_view names[] = {"slsqp", "mma", "bobyqa", "cobyla", "crs2", "isres", "direct"};
+constexpr std::string_view names[] = {"slsqp", "mma", "ipopt", "bobyqa", "cobyla", "crs2", "isres", "direct"};
 
 DesignOptions options_of(const AnalysisContext& context) {
   const AnalysisTask& task = context.task;
   DesignOptions options;
   options.method = methods[task.word("solver")];
   options.starts = static_cast<int>(task.number("starts", 1));
+  options.threads = context.threads;
   options.seed = static_cast<std::uint64_t>(task.number("seed", 1));
   options.tolerance = task.number("tolerance", options.tolerance);
   options.max_evaluations = static_cast<int>(task.number("max_evaluations", options.max_evaluations));
@@ -106,6 +106,12 @@ Report report_of(const DesignOutcome& outcome, int max_evaluations, const std::v
       for (const auto& [reason, count] : outcome.failed) report.message += fmt::format(" {} ({})", reason, count);
       break;
   }
+  if (outcome.is_constant) {
+    report.warnings.push_back(fmt::format(
+        "the objective is {:.9g} in all {} designs that were looked at: no variable changes it; likely cause: measures "
+        "that do not depend on the variables",
+        outcome.values.objective, outcome.evaluations));
+  }
   if (outcome.end == DesignEnd::converged && outcome.at_kink) {
     report.warnings.push_back(
         fmt::format("the design found is not stationary to first order (optimality {:.3g}), though short steps against "
@@ -163,10 +169,15 @@ void show_designs(const AnalysisContext& context, const DesignRuns& runs, const 
 
 void run_optimise(AnalysisContext& context, AnalysisResult& result) {
   const AnalysisTask& task = context.task;
-  if (!nlopt_is_built_in())
-    return refuse(result, "this catena was built without NLopt (CATENA_WITH_NLOPT=OFF), which optimises");
-  if (task.word("solver") == ipopt_word)
-    return refuse(result, "optimise does not use Ipopt yet; leave \"solver\" out, or take \"slsqp\" or \"mma\"");
+  if (const MinimiserMethod method = methods[task.word("solver")]; !minimiser_is_built_in(method)) {
+    const bool ipopt = method == MinimiserMethod::ipopt;
+    return refuse(
+        result,
+        fmt::format("this catena was built without {0} (CATENA_WITH_{1}=OFF), which has the solver "
+                    "\"{2}\"; {3}",
+                    ipopt ? "Ipopt" : "NLopt", ipopt ? "IPOPT" : "NLOPT", names[static_cast<std::size_t>(method)],
+                    ipopt ? "leave \"solver\" out, or take \"slsqp\" or \"mma\"" : "\"ipopt\" may be built in"));
+  }
   DesignRuns runs(context);
   std::vector<std::string> variables;
   std::vector<ColumnInfo> info;

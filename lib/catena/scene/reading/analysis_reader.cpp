@@ -226,7 +226,7 @@ std::optional<AnalysisTask> AnalysisReader::read(const JsonValue& object, const 
   task.varying = std::move(varying_);
   task.from_initial = task.word("from") == 1;
   check_times(values, task);
-  if (task.type() == "optimise") check_design(object);
+  if (task.type() == "optimise") check_design(object, task);
   if (task.type() == "sweep") check_sweep(object, task);
   if (!own_outputs && scene_outputs && task.description->find("outputs")) {
     task.outputs = names(scene_outputs, {"outputs"}, task.parameters);

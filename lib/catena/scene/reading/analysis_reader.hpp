@@ -54,7 +54,10 @@ class AnalysisReader {
   void read_objective(const JsonValue& value, AnalysisTask& task);
   void read_relations(const JsonValue& list, AnalysisTask& task);
   void read_relation(const JsonValue& value, AnalysisTask& task);
-  void check_design(const JsonValue& object);
+  void check_design(const JsonValue& object, const AnalysisTask& task);
+  void check_field(const JsonValue& value, std::string_view field, const AnalysisDescription& own);
+  /// Whether a measure or a variable is in a formula, or what follows from a variable.
+  bool varies(const DesignFormula& formula, const AnalysisTask& task) const;
   // sweep_reader.cpp
   void read_over(const JsonValue& object, AnalysisTask& task);
   void read_range(const JsonMember& member, AnalysisTask& task);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "catena/scene/json/near_miss.hpp"
 #include "catena/scene/numbers/evaluation.hpp"
@@ -183,9 +184,52 @@ void AnalysisReader::read_relation(const JsonValue& value, AnalysisTask& task) {
   task.goal.relations.push_back(std::move(relation));
 }
 
-void AnalysisReader::check_design(const JsonValue& object) {
-  const bool least = static_cast<bool>(object.find("minimise")), most = static_cast<bool>(object.find("maximise"));
-  if (least == most) error(object, "optimise needs \"minimise\" or \"maximise\", one of them");
+bool AnalysisReader::varies(const DesignFormula& formula, const AnalysisTask& task) const {
+  if (!formula.measures.empty()) return true;
+  std::vector<char> seen(parameters_.names().size(), 0);
+  std::vector<int> todo;
+  // Whether an expression uses a table, whose entries may depend on anything; its parameters are looked at next.
+  const auto uses_table = [&](const Expression& expression) {
+    bool table = false;
+    for (const Instruction& instruction : expression.code()) {
+      table = table || instruction.operation == Operation::table;
+      if (instruction.operation == Operation::parameter) todo.push_back(static_cast<int>(instruction.index));
+    }
+    return table;
+  };
+  if (uses_table(formula.expression)) return true;
+  while (!todo.empty()) {
+    const int index = todo.back();
+    todo.pop_back();
+    if (std::exchange(seen[static_cast<std::size_t>(index)], 1)) continue;
+    for (const DesignVariable& variable : task.goal.variables) {
+      if (variable.parameter == index) return true;
+    }
+    const NumberValue& value = task.table->definition(index);
+    if (value.kind() == NumberValue::Kind::parameter) todo.push_back(static_cast<int>(value.index()));
+    if (value.kind() == NumberValue::Kind::expression && uses_table(scene_.expressions[value.index()])) return true;
+  }
+  return false;
+}
+
+void AnalysisReader::check_design(const JsonValue& object, const AnalysisTask& task) {
+  const JsonValue least = object.find("minimise"), most = object.find("maximise");
+  if (static_cast<bool>(least) == static_cast<bool>(most)) {
+    error(object, "optimise needs \"minimise\" or \"maximise\", one of them");
+    return;
+  }
+  const DesignGoal& goal = task.goal;
+  if (!diagnostics_.ok() || goal.variables.empty()) return;
+  if (!varies(goal.objective, task))
+    error(least ? least : most, "the objective is the same for every design: no measure and no variable is in it");
+  const JsonValue list = object.find("subject_to");
+  if (!list) return;
+  std::size_t k = 0;
+  for (const JsonValue& relation : list.elements()) {
+    const bool any = varies(goal.relations[k].left, task) || varies(goal.relations[k].right, task);
+    if (!any) error(relation, "this relation is the same for every design: no measure and no variable is in it");
+    ++k;
+  }
 }
 
 }  // namespace catena

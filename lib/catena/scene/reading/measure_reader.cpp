@@ -1,6 +1,7 @@
 // The measures of an analysis.
 #include <fmt/format.h>
 
+#include <cctype>
 #include <charconv>
 
 #include "catena/scene/json/near_miss.hpp"
@@ -15,6 +16,19 @@ namespace {
 /// In the order of MeasureKind.
 constexpr std::array<std::string_view, 11> kinds{"max", "min",      "range", "first", "final", "mean",
                                                  "rms", "integral", "at",    "path",  "field"};
+
+/// Whether an analysis names a field among its results.
+bool reports(const AnalysisDescription& analysis, std::string_view field) {
+  const std::string_view results = analysis.results;
+  const auto is_word = [&](std::size_t place) {
+    return place < results.size() &&
+           (std::isalnum(static_cast<unsigned char>(results[place])) || results[place] == '_');
+  };
+  for (std::size_t at = results.find(field); at != std::string_view::npos; at = results.find(field, at + 1)) {
+    if ((at == 0 || !is_word(at - 1)) && !is_word(at + field.size())) return true;
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -88,6 +102,17 @@ void AnalysisReader::read_path(const JsonValue& object, std::size_t number, Plac
   if (v[2]) measure.request.timed = read_flag(v[2], {"timed", "a measure of a path"}, diagnostics_);
 }
 
+// A number that other analyses report, and this one does not. What none of them names is left to the run.
+void AnalysisReader::check_field(const JsonValue& value, std::string_view field, const AnalysisDescription& own) {
+  if (field.empty() || reports(own, field)) return;
+  std::string others;
+  for (const AnalysisDescription& other : analysis_descriptions()) {
+    if (reports(other, field)) others += (others.empty() ? "" : ", ") + std::string(other.type);
+  }
+  if (!others.empty())
+    error(value, fmt::format("{} reports no {}: that is a result of {}", own.type, in_quotes(field), others));
+}
+
 void AnalysisReader::read_measure(const JsonMember& member, AnalysisTask& task) {
   PlacedMeasure measure;
   measure.request.name = member.name();
@@ -134,7 +159,7 @@ void AnalysisReader::read_measure(const JsonMember& member, AnalysisTask& task) 
     JsonValue only;
     read_members(object, std::span(&key, 1), "measure " + in_quotes(member.name()), std::span(&only, 1), diagnostics_);
     if (measure.request.kind == MeasureKind::field)
-      read_field_name(value, measure);
+      read_field_name(value, measure), check_field(value, measure.request.field, *task.description);
     else
       read_measured_column(value, measure);
   }

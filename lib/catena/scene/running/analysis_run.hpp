@@ -61,7 +61,7 @@ struct AnalysisContext {
   bool estimate_error = false;              ///< of dynamics
   CheckpointRequest* checkpoint = nullptr;  ///< nullptr: no analysis has to pause
   PoseSink* poses = nullptr;                ///< nullptr: nobody draws
-  int threads = 1;                          ///< that a sweep may use
+  int threads = 1;                          ///< that a sweep, or the starts of an optimisation, may use
   SweepHelp sweep{};
 };
 
