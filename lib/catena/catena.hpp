@@ -4,6 +4,7 @@
 //   Kinematics, Dynamics, Assembler ...     analysis/
 //   ColumnSet, ResultStorage, RowSink       columns/, results/
 //   KinematicDerivatives, StaticDerivatives, MotionDerivatives    analysis/sensitivity/: of models over DesignScalar
+//   EquilibriumGradient, MotionAdjoint      analysis/statics/, analysis/sensitivity/: by any number of parameters
 //   MeasureSet, optimise_design             analysis/measures/, analysis/design/
 //   Scene::load(path).run()                 scene/loading/scene.hpp
 //   run_scene(path, options, sink)          scene/running/scene_runner.hpp
@@ -19,8 +20,10 @@
 #include "catena/analysis/measures/measure_set.hpp"
 #include "catena/analysis/pose/mobility.hpp"
 #include "catena/analysis/sensitivity/kinematic_derivatives.hpp"
+#include "catena/analysis/sensitivity/motion_adjoint.hpp"
 #include "catena/analysis/sensitivity/motion_derivatives.hpp"
 #include "catena/analysis/sensitivity/static_derivatives.hpp"
+#include "catena/analysis/statics/equilibrium_gradient.hpp"
 #include "catena/columns/column_set.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/model_add.hpp"

@@ -83,6 +83,9 @@ class Equilibrium {
   EquilibriumReport solve();
 
   double time() const { return t_; }
+  /// Whether the last one was found; the equations at it, with the factors that it was certified by.
+  bool is_solved() const { return solved_; }
+  StaticSystem& system() { return system_; }
   std::span<const double> q() const { return q_; }
   /// Multipliers of the solver's rows: V_q + Phi_q^T lambda = 0; the least ones where constraints are redundant.
   std::span<const double> lambda() const { return lambda_; }

@@ -1,0 +1,94 @@
+// The gradient of a measure of a motion by any number of design parameters: the discrete adjoint of the steps that the
+// motion took, in reverse.
+//
+//   step   y1 = P(y0 + h sum b_s k_s),  k_s = f(t_s, Y_s),  Y_s = y0 + h sum a_sj k_j        y = [q, qd]
+//   k_s^ = h b_s y1^ + h sum_j>s a_js Y_j^        Y_s^ = f_y^T k_s^        y0^ = y1^ + sum Y_s^        p^ += f_p^T k_s^
+//
+// ^ marks derivatives of the measure. With [M, Phi_q^T; Phi_q, 0] [w; mu] = [k_qd^; 0], by the factors of the stage,
+//
+//   f_y^T k^ = [ w^T R_q - mu^T (Phi_q)'' ;  k_q^ + w^T R_qd - 2 mu^T (Phi_q)' ]        (adjoint_mechanism.hpp)
+//
+// and the projection P of positions, then velocities, of motion_derivatives.hpp transposed. The measure is a sum over
+// instants of m(q, qd); one inside of a step is reached by a step of the same method up to it. The equations that are
+// transposed are those of MotionDerivatives: both give the same gradient, to rounding, at the ends of steps. Stages are
+// recomputed from stored ends of steps: memory 4 x coordinates a step. No gradient: where functions of time jump with
+// velocities, or at instants that parameters move; equations that depend on each other; laws of state, ropes over
+// pulleys. Source: apps/manual/sensitivity.md; A. Griewank, A. Walther, Evaluating Derivatives, chapter 3.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "catena/analysis/motion/equations_of_motion.hpp"
+#include "catena/analysis/motion/tableau.hpp"
+#include "catena/analysis/sensitivity/start_derivatives.hpp"
+#include "catena/analysis/sensitivity/state_derivatives.hpp"
+#include "catena/assembly/design/adjoint_mechanism.hpp"
+
+namespace catena {
+
+/// What a measure changes by with the state at an instant: sizes coordinates(), plan order; empty: nothing.
+struct MotionPulse {
+  double t = 0;
+  std::vector<double> by_q, by_qd;
+};
+
+class MotionAdjoint final : public StateDerivatives {
+ public:
+  /// As MotionDerivatives.
+  MotionAdjoint(const Evaluator& evaluator, const DesignModels& models, int parameters, GivenByModel start);
+  ~MotionAdjoint() override;
+
+  /// Keeps a step of the motion.
+  void cover(const MotionStretch& stretch) override;
+  /// States have no derivatives here: only measures have.
+  bool find(const Snapshot& snapshot) override;
+
+  /// dm/dp by parameter at fixed p in the pulses themselves; nothing, and why() says it, where there is none. Pulses in
+  /// any order, within the motion.
+  std::optional<std::vector<double>> gradient(std::vector<MotionPulse> pulses);
+
+  int steps() const { return static_cast<int>(steps_.size()); }
+  /// Elements that parameters reach, of all groups of parameters together: the only ones differentiated by them.
+  int reached_elements() const;
+
+ protected:
+  int seen_order() const override { return 3; }
+
+ private:
+  using Vector = std::vector<double>;
+  struct Step {
+    double from, to;
+    Vector begin, end;  // y
+  };
+  /// The equations of motion at a stage, with factors, kept until the way back has passed it.
+  struct Stage {
+    Stage(const Evaluator& evaluator, std::size_t size);
+    Evaluator evaluator;
+    EquationsOfMotion equations;
+    double t = 0;
+    Side side = Side::after;
+    Vector y, slope, lambda, back;  // back: Y^
+  };
+
+  bool lose(double t, std::string_view what);
+  bool recompute(const Step& step, double h);
+  /// y1^ at t, the end of a step or an instant inside, to y0^, which is added to; `values`: the state there.
+  bool go_back(const Step& step, double t, std::span<const double> values, Vector y1, Vector& y0);
+  bool project_back(double t, Side side, std::span<const double> values, Vector& y1);
+  bool stage_back(Stage& stage, const Vector& k);
+  void add_parameters(double t, Side side, const AdjointWeights& weights, std::span<const double> qdd);
+  bool add_start(const Vector& y0);
+  /// The state inside of a step, by a step of the method up to it.
+  Vector state_inside(const Step& step, double t);
+
+  std::size_t n_;  // coordinates
+  GivenByModel given_start_;
+  AdjointMechanism mechanism_;
+  std::vector<std::unique_ptr<AdjointMechanism::Reached>> reached_;  // by group
+  std::vector<std::unique_ptr<Stage>> stages_;                       // and the projection at the end, the last
+  std::vector<Step> steps_;
+  Vector gradient_, w_, mu_, zero_rows_, masses_;
+};
+
+}  // namespace catena

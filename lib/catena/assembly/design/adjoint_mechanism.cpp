@@ -1,0 +1,182 @@
+#include "catena/assembly/design/adjoint_mechanism.hpp"
+
+#include <type_traits>
+
+#include "catena/assembly/design/element_motion.hpp"
+#include "catena/base/at.hpp"
+
+namespace catena {
+namespace {
+
+template <class E>
+constexpr bool is_custom = std::is_same_v<E, CustomConstraint<double>> || std::is_same_v<E, CustomForce<double>>;
+
+/// c(t) of an element's entry as a series.
+template <class Entry>
+Taylor<double> value_of_entry([[maybe_unused]] const Entry& entry,
+                              [[maybe_unused]] const std::vector<Taylor<double>>& functions) {
+  if constexpr (Entry::Element::functions > 0) {
+    const auto& value = entry.values[0];
+    return value.function < 0 ? Taylor<double>(value.constant) : functions[at(value.function)];
+  } else {
+    return {};
+  }
+}
+
+}  // namespace
+
+std::string AdjointMechanism::why_not(const Model& model) {
+  if (!model.laws.empty()) return "laws of state act";
+  std::string why;
+  const auto look = [&](const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    if (list.empty()) return;
+    if constexpr (is_custom<E>) why = "elements made in C++ act";
+    if constexpr (Joining<E>) why = "a rope runs over several pulleys";
+  };
+  for_each_list(model.constraints, look);
+  for_each_list(model.forces, [&](const auto& list, int type) {
+    look(list, type);
+    if constexpr (Sharing<ElementOf<decltype(list)>>) {
+      if (!list.empty()) why = "an elastic rope acts";
+    }
+  });
+  return why;
+}
+
+AdjointMechanism::AdjointMechanism(const Evaluator& evaluator)
+    : plan_(evaluator.shared_plan()), model_(&evaluator.model()) {
+  for (int p = 0; p <= plan_->bodies; ++p) origin_.push_back(p < plan_->bodies ? evaluator.origin(p) : Vec2<double>{});
+  scale_.assign(model_->elements.size(), 1.0);
+  for_each_list(plan_->blocks, model_->constraints, [&](const auto& block, const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    if constexpr (HasSquaredValue<E>) {
+      for (int e = 0; e < block.size(); ++e) {
+        const int id = list[at(block.entry[at(e)])].id;
+        scale_[at(id)] = evaluator.element_jacobian(id).scale;
+      }
+    }
+  });
+  motion_.resize(at(plan_->bodies) + 1);
+  values_.resize(model_->functions.size());
+  rates_.assign(at(plan_->coordinates()), 0.0);
+}
+
+void AdjointMechanism::set_motion(const Evaluator& evaluator, std::span<const double> qd, std::span<const double> qdd) {
+  for (std::size_t k = 0; k < values_.size(); ++k) {
+    const TimeRange domain = model_->functions[k].domain();
+    values_[k] = model_->functions[k].evaluate(std::clamp(evaluator.time(), domain.first, domain.last));
+  }
+  for (std::size_t c = 0; c < rates_.size(); ++c) rates_[c] = qd.empty() ? 0 : qd[c];
+  for (int p = 0; p <= plan_->bodies; ++p) {
+    const Frame<double>& f = evaluator.frames()[at(p)];
+    Frame<Series>& m = motion_[at(p)];
+    if (p >= plan_->moving) {
+      m = constant_frame<Series>(f);
+      continue;
+    }
+    const std::size_t c = at(3 * p);
+    m = moving(f, rates_[c], rates_[c + 1], rates_[c + 2]);
+    if (qdd.empty()) continue;
+    m.x.dd += qdd[c];
+    m.y.dd += qdd[c + 1];
+    m.phi.dd += qdd[c + 2];
+    m.c.dd -= f.s * qdd[c + 2];
+    m.s.dd += f.c * qdd[c + 2];
+  }
+}
+
+// (Phi_q)'' and (Phi_q)' of every element, by series in time under dual numbers.
+void AdjointMechanism::add_constraints_by_q(const AdjointWeights& weights, std::span<double> by_q,
+                                            std::span<double> by_qd) const {
+  for_each_list(plan_->blocks, model_->constraints, [&](const auto& block, const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    if constexpr (!is_custom<E> && !Joining<E>) {
+      constexpr int columns = 3 * E::bodies;
+      using D = Dual<Series, columns>;
+      for (int e = 0; e < block.size(); ++e) {
+        const auto& entry = list[at(block.entry[at(e)])];
+        const auto f = detail::design_frames<Series>(block, e, plan_->moving, origin_,
+                                                     [&](int body) { return motion_[at(body)]; });
+        const Frame<D> i = seed<Series, columns>(f.i, 0);
+        Frame<D> j;
+        if constexpr (E::bodies == 2) j = seed<Series, columns>(f.j, 3);
+        D rows[E::rows];
+        entry.element.phi(Arguments<D>{i, j, D(value_of_entry(entry, values_)), f.ground}, rows);
+        for (int r = 0; r < E::rows; ++r) {
+          const std::size_t row = at(block.row(e) + r);
+          const double bend = weights.bend.empty() ? 0 : scale_[at(entry.id)] * weights.bend[row];
+          const double rate = weights.rate.empty() ? 0 : scale_[at(entry.id)] * weights.rate[row];
+          for (int k = 0; k < columns; ++k) {
+            const int body = k < 3 ? block.body_i[at(e)] : block.body_j[at(e)];
+            const std::size_t c = at(3 * body + k % 3);
+            const Series& slope = rows[r].d[at(k)];
+            by_q[c] -= bend * slope.dd + rate * slope.d;
+            by_qd[c] -= 2 * bend * slope.d;
+          }
+        }
+      }
+    }
+  });
+}
+
+void AdjointMechanism::add_forces_by_state(const Evaluator& evaluator, std::span<const double> w,
+                                           std::span<double> by_q, std::span<double> by_qd) const {
+  using D = Dual<double, 12>;  // by the poses of both bodies, then by their rates
+  const auto twist = [&](int body, int first) {
+    const double* rate = rates_.data() + 3 * body;
+    return Twist<D>{D::variable(rate[0], first), D::variable(rate[1], first + 1), D::variable(rate[2], first + 2)};
+  };
+  for_each_list(plan_->forces, model_->forces, [&](const auto& block, const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    if constexpr (!is_custom<E> && !Sharing<E>) {
+      for (int e = 0; e < block.size(); ++e) {
+        const auto& entry = list[at(block.entry[at(e)])];
+        const int body_i = block.body_i[at(e)], body_j = E::bodies == 2 ? block.body_j[at(e)] : plan_->bodies;
+        const auto f = detail::design_frames<double>(block, e, plan_->moving, origin_,
+                                                     [&](int body) { return evaluator.frames()[at(body)]; });
+        const Frame<D> i = seed<double, 12>(f.i, 0);
+        const Frame<D> j = seed<double, 12>(f.j, 3);
+        std::array<D, E::functions + 1> values;
+        for (std::size_t n = 0; n < entry.values.size(); ++n) {
+          const auto& value = entry.values[n];
+          values[n] = value.function < 0 ? D(value.constant) : D(values_[at(value.function)].f);
+        }
+        const Twist<D> u = twist(body_i, 6), v = twist(body_j, 9);
+        Wrench<D> on_i, on_j;
+        entry.element.force(ForceArguments<D>{i, j, u, v, values.data(), f.ground}, on_i, on_j);
+        const double* wi = w.data() + 3 * body_i;
+        const double* wj = w.data() + 3 * body_j;
+        D power = D(wi[0]) * on_i.fx + D(wi[1]) * on_i.fy + D(wi[2]) * on_i.moment;
+        if (E::bodies == 2) power += D(wj[0]) * on_j.fx + D(wj[1]) * on_j.fy + D(wj[2]) * on_j.moment;
+        for (int k = 0; k < 3 * E::bodies; ++k) {
+          const std::size_t c = at(3 * (k < 3 ? body_i : body_j) + k % 3);
+          by_q[c] += power.d[at(k)];
+          by_qd[c] += power.d[at(6 + k)];
+        }
+      }
+    }
+  });
+}
+
+void AdjointMechanism::add_by_state(const Evaluator& evaluator, const AdjointWeights& weights, std::span<double> by_q,
+                                    std::span<double> by_qd) {
+  if (!weights.bend.empty() || !weights.rate.empty()) add_constraints_by_q(weights, by_q, by_qd);
+  if (weights.w.empty()) return;
+  add_forces_by_state(evaluator, weights.w, by_q, by_qd);
+  if (weights.lambda.empty()) return;
+  evaluator.visit_constraint_hessians(weights.lambda, [&](int i, int j, const ElementMatrix& m) {
+    const int body[2] = {i, j};
+    for (int r = 0; r < 6; ++r) {
+      if (body[r / 3] < 0 || body[r / 3] >= plan_->moving) continue;
+      double sum = 0;
+      for (int c = 0; c < 6; ++c) {
+        if (body[c / 3] >= 0 && body[c / 3] < plan_->moving)
+          sum += m[at(6 * r + c)] * weights.w[at(3 * body[c / 3] + c % 3)];
+      }
+      by_q[at(3 * body[r / 3] + r % 3)] -= sum;
+    }
+  });
+}
+
+}  // namespace catena

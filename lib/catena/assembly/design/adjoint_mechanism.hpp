@@ -1,0 +1,77 @@
+// What the adjoint of a motion asks of a mechanism at one state: products of multipliers with derivatives of the
+// equations, by positions and velocities, and by design parameters.
+//
+//   R = Q(q, qd) - M qdd - Phi_q^T lambda        Phi, Phi' and Phi'' along the motion (q, qd, qdd)
+//   w^T R_q - mu^T Phi''_q    with   Phi''_q = (Phi_q)''  and  (Phi_q^T lambda)_q = sum lambda Phi_qq
+//   w^T R_qd - mu^T Phi''_qd  with   Phi''_qd = 2 (Phi_q)'
+//   w^T R_p - mu2^T Phi''_p - mu1^T Phi'_p - mu0^T Phi_p
+//
+// Derivatives by q of all elements come from dual numbers over series in time, one element after the other: what they
+// cost does not depend on the number of parameters. Those by parameters are taken of elements, bodies and functions
+// that a parameter reaches alone. Not for laws of state, ropes and elements that only C++ can make (supported()).
+// Units as in evaluate.hpp. Source: apps/manual/sensitivity.md.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "catena/assembly/design/design_mechanism.hpp"
+
+namespace catena {
+
+/// Weights of the equations; empty spans count as zero. w: over coordinates; the others over rows of the plan.
+struct AdjointWeights {
+  std::span<const double> w{}, lambda{}, phi{}, rate{}, bend{};
+};
+
+class AdjointMechanism {
+ public:
+  /// Empty, or why the model cannot be asked, as a phrase.
+  static std::string why_not(const Model& model);
+
+  /// Of the model in plain numbers of an evaluator, whose configuration and time are read where asked.
+  explicit AdjointMechanism(const Evaluator& evaluator);
+
+  /// The motion at the evaluator's configuration: sizes coordinates(); may be empty: at rest, without acceleration.
+  void set_motion(const Evaluator& evaluator, std::span<const double> qd, std::span<const double> qdd);
+
+  /// by_q += w^T R_q - bend^T Phi''_q - rate^T Phi'_q, by_qd += w^T R_qd - bend^T Phi''_qd. Sizes coordinates().
+  void add_by_state(const Evaluator& evaluator, const AdjointWeights& weights, std::span<double> by_q,
+                    std::span<double> by_qd);
+
+  /// Elements, bodies and functions of a mechanism with derivatives by up to four parameters that these reach.
+  class Reached {
+   public:
+    Reached(const AdjointMechanism& adjoint, const DesignMechanism& mechanism);
+    int elements() const { return elements_; }
+
+   private:
+    friend class AdjointMechanism;
+    std::vector<std::vector<int>> constraints_, forces_;  // by type: places in the block
+    std::vector<int> bodies_;                             // plan bodies with masses that move
+    bool gravity_ = false;
+    int elements_ = 0;
+  };
+  /// w^T R_p - bend^T Phi''_p - rate^T Phi'_p - phi^T Phi_p by the parameters of a group, at the motion that was set;
+  /// `mechanism` is set to its time.
+  std::array<double, parameters_at_once> by_parameters(const DesignMechanism& mechanism, const Reached& reached,
+                                                       const AdjointWeights& weights, std::span<const double> qdd);
+
+ private:
+  using Series = Taylor<double>;
+
+  const Plan& plan() const { return *plan_; }
+  void add_constraints_by_q(const AdjointWeights& weights, std::span<double> by_q, std::span<double> by_qd) const;
+  void add_forces_by_state(const Evaluator& evaluator, std::span<const double> w, std::span<double> by_q,
+                           std::span<double> by_qd) const;
+
+  std::shared_ptr<const Plan> plan_;
+  const Model* model_;
+  std::vector<Vec2<double>> origin_;    // per plan body, and the ground's
+  std::vector<double> scale_;           // per element: of its rows
+  std::vector<Frame<Series>> motion_;   // per plan body, relative
+  std::vector<Taylor<double>> values_;  // of functions, at the present time
+  std::vector<double> rates_;           // qd
+};
+
+}  // namespace catena

@@ -1,0 +1,258 @@
+// AdjointMechanism: derivatives by design parameters, of what these reach.
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "catena/assembly/design/adjoint_mechanism.hpp"
+#include "catena/assembly/design/element_motion.hpp"
+#include "catena/base/at.hpp"
+
+namespace catena {
+namespace {
+
+using detail::DesignSeries;
+
+template <class E>
+constexpr bool is_asked = !std::is_same_v<E, CustomConstraint<double>> && !std::is_same_v<E, CustomForce<double>> &&
+                          !Joining<E> && !Sharing<E>;
+
+bool moves(const DesignScalar& x) {
+  return std::any_of(x.d.begin(), x.d.end(), [](double d) { return d != 0; });
+}
+bool moves(const Vec2<DesignScalar>& v) { return moves(v.x) || moves(v.y); }
+bool moves(const DesignSeries& x) { return moves(x.f) || moves(x.d) || moves(x.dd); }
+/// A frame of an immobile body.
+bool moves(const Frame<DesignSeries>& f) { return moves(f.x) || moves(f.y) || moves(f.phi); }
+
+/// Whether a parameter may be in a member that a scene sets. Of curves and tables nothing is known: it may.
+template <class Member>
+bool member_moves(const Member& member) {
+  if constexpr (std::is_same_v<Member, DesignScalar> || std::is_same_v<Member, Vec2<DesignScalar>>) {
+    return moves(member);
+  } else {
+    return !std::is_arithmetic_v<Member> && !std::is_enum_v<Member>;
+  }
+}
+template <class E>
+bool fields_move(const E& element) {
+  return std::apply(
+      [&](const auto&... field) {
+        const auto look = [&](const auto& f) {
+          if constexpr (requires { element.*f.member; })
+            return member_moves(element.*f.member);
+          else
+            return false;
+        };
+        return (look(field) || ...);
+      },
+      E::fields());
+}
+
+/// Poses and rates of no special kind, at which what completes an element shows as well.
+constexpr double places[2][6] = {{0.31, -0.72, 0.53, 1.27, 0.44, -0.86}, {-1.13, 0.37, 2.21, 0.29, 1.58, 0.67}};
+template <class T>
+Frame<T> some_frame(const double* place) {
+  return make_frame(T(place[0]), T(place[1]), T(place[2]));
+}
+
+template <class Entry>
+bool entry_moves(const Entry& entry) {
+  return std::any_of(entry.values.begin(), entry.values.end(),
+                     [](const auto& value) { return value.function >= 0 || moves(DesignScalar(value.constant)); });
+}
+
+template <class E>
+bool phi_moves(const E& element) {
+  for (const auto& place : places) {
+    const auto i = some_frame<DesignScalar>(place), j = some_frame<DesignScalar>(place + 3);
+    DesignScalar rows[E::rows];
+    element.phi(Arguments<DesignScalar>{i, j, DesignScalar(0.4), {}}, rows);
+    for (const DesignScalar& row : rows) {
+      if (moves(row)) return true;
+    }
+  }
+  return false;
+}
+
+template <class E>
+bool force_moves(const E& element) {
+  std::array<DesignScalar, E::functions + 1> values;
+  values.fill(DesignScalar(1.3));
+  for (const auto& place : places) {
+    const auto i = some_frame<DesignScalar>(place), j = some_frame<DesignScalar>(place + 3);
+    const Twist<DesignScalar> u{0.3, -0.5, 0.7}, v{-0.2, 0.9, 0.4};
+    Wrench<DesignScalar> on_i, on_j;
+    element.force(ForceArguments<DesignScalar>{i, j, u, v, values.data(), {}}, on_i, on_j);
+    for (const DesignScalar& part : {on_i.fx, on_i.fy, on_i.moment, on_j.fx, on_j.fy, on_j.moment}) {
+      if (moves(part)) return true;
+    }
+  }
+  return false;
+}
+
+DesignSeries lifted(const Taylor<double>& x) { return {DesignScalar(x.f), DesignScalar(x.d), DesignScalar(x.dd)}; }
+Frame<DesignSeries> lifted(const Frame<Taylor<double>>& f) {
+  return {lifted(f.x), lifted(f.y), lifted(f.phi), lifted(f.c), lifted(f.s)};
+}
+
+}  // namespace
+
+AdjointMechanism::Reached::Reached(const AdjointMechanism& adjoint, const DesignMechanism& mechanism) {
+  const Plan& plan = adjoint.plan();
+  const DesignModel& model = mechanism.model();
+  const auto body_moves = [&](int body) {
+    return (body >= plan.moving && body < plan.bodies && moves(mechanism.motion(body))) ||
+           (body < plan.moving && plan.column[at(3 * body + 2)] < 0 &&
+            moves(model.bodies[at(plan.model_body[at(body)])].angle));
+  };
+  const auto collect = [&](const auto& block, const auto& list, std::vector<std::vector<int>>& all, auto&& own) {
+    using E = ElementOf<decltype(list)>;
+    std::vector<int>& reached = all.emplace_back();
+    for (int e = 0; e < block.size(); ++e) {
+      const auto& entry = list[at(block.entry[at(e)])];
+      const bool by_body = body_moves(block.body_i[at(e)]) || (E::bodies == 2 && body_moves(block.body_j[at(e)]));
+      if (by_body || entry_moves(entry) || fields_move(entry.element) || own(entry.element)) reached.push_back(e);
+    }
+    elements_ += static_cast<int>(reached.size());
+  };
+  for_each_list(plan.blocks, model.constraints, [&](const auto& block, const auto& list, int) {
+    using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
+    if constexpr (is_asked<Plain>)
+      collect(block, list, constraints_, [](const auto& element) { return phi_moves(element); });
+    else
+      constraints_.emplace_back();
+  });
+  for_each_list(plan.forces, model.forces, [&](const auto& block, const auto& list, int) {
+    using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
+    if constexpr (is_asked<Plain>)
+      collect(block, list, forces_, [](const auto& element) { return force_moves(element); });
+    else
+      forces_.emplace_back();
+  });
+  for (int b = 0; b < plan.moving; ++b) {
+    if (moves(mechanism.mass(3 * b)) || moves(mechanism.mass(3 * b + 2))) bodies_.push_back(b);
+  }
+  gravity_ = moves(model.gravity);
+}
+
+std::array<double, parameters_at_once> AdjointMechanism::by_parameters(const DesignMechanism& mechanism,
+                                                                       const Reached& reached,
+                                                                       const AdjointWeights& weights,
+                                                                       std::span<const double> qdd) {
+  const DesignModel& model = mechanism.model();
+  DesignScalar sum;
+  const auto immobile = [&](int body) { return body >= plan_->moving && body < plan_->bodies; };
+  // A particle's angle is no unknown: it carries the model's derivatives.
+  const auto turned = [&](auto frame, int body) {
+    if (body < plan_->moving && plan_->column[at(3 * body + 2)] < 0) {
+      const DesignScalar& angle = model.bodies[at(plan_->model_body[at(body)])].angle;
+      if constexpr (requires { frame.phi.f; }) {
+        frame.phi.f.d = angle.d;
+        for (std::size_t p = 0; p < angle.d.size(); ++p) {
+          frame.c.f.d[p] = -frame.s.f.v * angle.d[p];
+          frame.s.f.d[p] = frame.c.f.v * angle.d[p];
+        }
+      }
+    }
+    return frame;
+  };
+  const auto frame = [&](int body) {
+    return immobile(body) ? mechanism.motion(body) : turned(lifted(motion_[at(body)]), body);
+  };
+  // The same bodies moving along w.
+  const auto frame_along = [&](int body) {
+    if (immobile(body)) return mechanism.motion(body);
+    Frame<Taylor<double>> m = motion_[at(body)];
+    const double* w = weights.w.data() + 3 * body;
+    if (body < plan_->moving) m = moving(Frame<double>{m.x.f, m.y.f, m.phi.f, m.c.f, m.s.f}, w[0], w[1], w[2]);
+    return turned(lifted(m), body);
+  };
+  const auto value = [&](const auto& entry) {
+    if constexpr (std::remove_cvref_t<decltype(entry)>::Element::functions > 0) {
+      return mechanism.element_value(entry.id);
+    } else {
+      return DesignSeries();
+    }
+  };
+  std::size_t type_number = 0;
+  for_each_list(plan_->blocks, model.constraints, [&](const auto& block, const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
+    const std::vector<int>& places = reached.constraints_[type_number++];
+    if constexpr (is_asked<Plain>) {
+      for (const int e : places) {
+        const auto& entry = list[at(block.entry[at(e)])];
+        const DesignSeries c = value(entry);
+        const double scale = scale_[at(entry.id)];
+        DesignSeries rows[E::rows];
+        const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_, frame);
+        entry.element.phi(Arguments<DesignSeries>{f.i, f.j, c, f.ground}, rows);
+        for (int r = 0; r < E::rows; ++r) {
+          const std::size_t row = at(block.row(e) + r);
+          if (!weights.phi.empty()) sum -= DesignScalar(scale * weights.phi[row]) * rows[r].f;
+          if (!weights.rate.empty()) sum -= DesignScalar(scale * weights.rate[row]) * rows[r].d;
+          if (!weights.bend.empty()) sum -= DesignScalar(scale * weights.bend[row]) * rows[r].dd;
+        }
+        if (weights.lambda.empty()) continue;
+        // lambda^T Phi_q w: without what the function of time itself changes by.
+        const auto g = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_, frame_along);
+        entry.element.phi(Arguments<DesignSeries>{g.i, g.j, DesignSeries(c.f), g.ground}, rows);
+        for (int r = 0; r < E::rows; ++r) sum -= DesignScalar(scale * weights.lambda[at(block.row(e) + r)]) * rows[r].d;
+      }
+    }
+  });
+  if (weights.w.empty()) return sum.d;
+  type_number = 0;
+  const auto pose = [&](int body) {
+    if (immobile(body)) return detail::present(mechanism.motion(body));
+    return detail::present(turned(lifted(motion_[at(body)]), body));
+  };
+  for_each_list(plan_->forces, model.forces, [&](const auto& block, const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
+    const std::vector<int>& places = reached.forces_[type_number++];
+    if constexpr (is_asked<Plain>) {
+      for (const int e : places) {
+        const auto& entry = list[at(block.entry[at(e)])];
+        const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_, pose);
+        std::array<DesignScalar, E::functions + 1> values;
+        for (std::size_t n = 0; n < entry.values.size(); ++n) {
+          const auto& own = entry.values[n];
+          values[n] = own.function < 0 ? DesignScalar(own.constant)
+                                       : model.functions[at(own.function)].evaluate(mechanism.time()).f;
+        }
+        const int body_i = block.body_i[at(e)], body_j = E::bodies == 2 ? block.body_j[at(e)] : plan_->bodies;
+        const auto twist = [&](int body) {
+          const double* rate = rates_.data() + 3 * body;
+          return Twist<DesignScalar>{rate[0], rate[1], rate[2]};
+        };
+        const Twist<DesignScalar> u = twist(body_i), v = twist(body_j);
+        Wrench<DesignScalar> on_i, on_j;
+        entry.element.force(ForceArguments<DesignScalar>{f.i, f.j, u, v, values.data(), f.ground}, on_i, on_j);
+        const auto add = [&](int body, const Wrench<DesignScalar>& wrench) {
+          const double* w = weights.w.data() + 3 * body;
+          sum += DesignScalar(w[0]) * wrench.fx + DesignScalar(w[1]) * wrench.fy + DesignScalar(w[2]) * wrench.moment;
+        };
+        add(body_i, on_i);
+        if constexpr (E::bodies == 2) add(body_j, on_j);
+      }
+    }
+  });
+  const auto weigh = [&](int b) {
+    for (int k = 0; k < 3; ++k) {
+      const std::size_t c = at(3 * b + k);
+      const DesignScalar& m = mechanism.mass(3 * b + k);
+      DesignScalar load = DesignScalar(-(qdd.empty() ? 0 : qdd[c])) * m;
+      if (k < 2) load += m * (k == 0 ? model.gravity.x : model.gravity.y);
+      sum += DesignScalar(weights.w[c]) * load;
+    }
+  };
+  if (reached.gravity_) {
+    for (int b = 0; b < plan_->moving; ++b) weigh(b);
+  } else {
+    for (const int b : reached.bodies_) weigh(b);
+  }
+  return sum.d;
+}
+
+}  // namespace catena
