@@ -75,6 +75,7 @@ class MeasureSet::Account {
   bool is_at_end(const Extreme& extreme) const;
   bool is_touched_by(const End& end) const;
   void take_out(MeasureResult& result, std::size_t p, const std::string& why) const;
+  void move_points(MeasureResult& result, std::span<const MovingPoint> points) const;
   double gradient_of(const MotionSample& sample, std::size_t column, std::size_t p) const {
     return sample.derivative.empty() ? std::numeric_limits<double>::quiet_NaN()
                                      : sample.derivative[column * parameters_ + p];

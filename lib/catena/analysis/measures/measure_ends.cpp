@@ -86,6 +86,17 @@ void MeasureSet::Account::take_out(MeasureResult& result, std::size_t p, const s
   if (result.trouble.empty()) result.trouble = why;
 }
 
+// The instants stay: where the path is nearest to a point its distance does not change with the instant.
+void MeasureSet::Account::move_points(MeasureResult& result, std::span<const MovingPoint> points) const {
+  const double n = static_cast<double>(request_.points.size());
+  for (const MovingPoint& moving : points) {
+    const MotionSample& sample = request_.timed ? *instants_[moving.point].sample : extremes_[moving.point].best();
+    const Vec2<double>& point = request_.points[moving.point];
+    const double apart = moving.axis == 0 ? sample.value[column_] - point.x : sample.value[second_] - point.y;
+    result.gradient[moving.parameter] -= apart * moving.rate / (n * *result.value);
+  }
+}
+
 void MeasureSet::Account::move(MeasureResult& result, const End* end, const MovingInstants& moving,
                                std::size_t measure) const {
   if (!result.value || rows_ > 0) return;
@@ -119,6 +130,7 @@ void MeasureSet::Account::move(MeasureResult& result, const End* end, const Movi
                                 "derivative by that instant is not known");
     }
   }
+  if (request_.kind == MeasureKind::path && measure < moving.points.size()) move_points(result, moving.points[measure]);
   if (request_.kind != MeasureKind::at || measure >= moving.taken.size() || moving.taken[measure].empty()) return;
   const Instant& instant = instants_.front();
   for (std::size_t p = 0; p < parameters_; ++p) {

@@ -16,7 +16,7 @@
 //   dm/dp = (dm/dp) at fixed instants + (dm/dT) dT/dp
 //
 // Where T is itself an instant at which functions jump the two must move together; else m has no derivative if its
-// column jumps there.
+// column jumps there. Points P_k of a path that move add -((x, y) - P_k) . dP_k/dp / (n m).
 //
 // What a run could not be looked at for (between rows of a motion of least norm) is taken from its rows, and `trouble`
 // says so; integrals over time have no value there. Neither has a measure that is not a number.
@@ -32,11 +32,18 @@
 
 namespace catena {
 
-/// How the instants of a run move with the parameters: dt/dp by parameter.
+/// How the given points of a path move with a parameter: coordinate `axis` (0: x) of point number `point`.
+struct MovingPoint {
+  std::size_t point, axis, parameter;
+  double rate;
+};
+
+/// How the instants of a run, and points that measures are given, move with the parameters: dt/dp by parameter.
 struct MovingInstants {
   std::vector<double> last;                ///< of the end of the run; empty: it stands still
   std::vector<std::vector<double>> taken;  ///< of the instant at which measure k, kind `at`, is taken; empty, the same
-  std::string why_unknown;                 ///< where a rate is not a number: why
+  std::vector<std::vector<MovingPoint>> points;  ///< of measure k, kind `path`
+  std::string why_unknown;                       ///< where a rate is not a number: why
 };
 
 class MeasureSet {

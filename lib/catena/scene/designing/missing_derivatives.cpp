@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -16,11 +17,26 @@ bool depends_on_start(std::string_view type, std::string_view before) {
   return type == "dynamics" || type == "assemble";
 }
 
+/// Whether the instant of the first row moves, or one beside another, and the measure with it. A run begins at 0, or at
+/// its first instant if that lies before.
+bool begins_with(const AnalysisTask& task, const TaskNumber& number, const MeasureResult& measure) {
+  const auto is_own = [&](const PlacedMeasure& placed) { return placed.request.name == measure.name; };
+  const auto own = std::find_if(task.measures.begin(), task.measures.end(), is_own);
+  if (own == task.measures.end() || !task.at || number.item >= task.at->size()) return true;
+  const double t = (*task.at)[number.item];
+  const auto as = [&](auto&& compare) { return std::count_if(task.at->begin(), task.at->end(), compare); };
+  const bool first = as([&](double other) { return other <= t; }) == 1;
+  const bool alone = as([&](double other) { return other == t; }) == 1;
+  return !alone || (first && (t < 0 || own->request.kind == MeasureKind::first));
+}
+
 /// Whether what follows from the number is in the measure's gradient already, or the measure does not depend on it.
 bool is_in_gradient(const AnalysisTask& task, const TaskNumber& number, const MeasureResult& measure) {
   if (measure.of_rows_alone) return false;
   // analysis_rows.cpp adds what a moving instant makes of it, or takes it out.
-  if (number.place == TaskNumber::Place::measured_instant) return true;
+  using Place = TaskNumber::Place;
+  if (number.place == Place::measured_instant || number.place == Place::path_point) return true;
+  if (number.place == Place::instant) return task.description->timed && !begins_with(task, number, measure);
   if (number.place != TaskNumber::Place::event) return false;
   // Events that are recorded leave the motion alone; one that stopped it is in the instant at which the run ended.
   const EventRequest& event = task.events[number.item];

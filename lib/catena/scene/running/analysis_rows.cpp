@@ -64,6 +64,14 @@ bool moves_as_one(const AnalysisContext& context, std::size_t p, double t, doubl
   return false;
 }
 
+/// Whether a number of the task is its last instant: "until", or the latest of a list, if no other is as late.
+bool is_last_instant(const AnalysisTask& task, const TaskNumber& number) {
+  if (number.place == TaskNumber::Place::key) return number.key->name == "until";
+  if (number.place != TaskNumber::Place::instant || !task.at || number.item >= task.at->size()) return false;
+  const double own = (*task.at)[number.item];
+  return std::count_if(task.at->begin(), task.at->end(), [&](double t) { return t >= own; }) == 1;
+}
+
 bool stops(const EventRequest& event) { return event.action == stop_action && !event.impulse; }
 
 /// What is measured: what is asked for, and, where derivatives are wanted, the columns of events that stop.
@@ -129,7 +137,7 @@ void AnalysisRows::differentiate(std::unique_ptr<StateDerivatives> derivatives) 
   for (const auto& moving :
        context_.models->moving_numbers(context_.task, context_.seeds, context_.design->parameters)) {
     for (const SceneModels::MovingNumber& one : moving) {
-      const bool until = one.number.place == TaskNumber::Place::key && one.number.key->name == "until";
+      const bool until = is_last_instant(context_.task, one.number);
       end_moves = end_moves || until;
       // Those of a timed path are spread over the run.
       instants_move = instants_move || until || one.number.place == TaskNumber::Place::measured_instant;
@@ -283,10 +291,13 @@ MovingInstants AnalysisRows::moving_instants(const std::vector<MeasureResult>& r
   }
   instants.last.assign(parameters, 0.0);
   instants.taken.resize(results.size());
+  instants.points.resize(results.size());
   for (std::size_t p = 0; p < parameters; ++p) {
     for (const SceneModels::MovingNumber& one : moving[p]) {
       const TaskNumber& number = one.number;
-      if (number.place == TaskNumber::Place::key && number.key->name == "until") instants.last[p] += one.rate;
+      if (is_last_instant(context_.task, number)) instants.last[p] += one.rate;
+      if (number.place == TaskNumber::Place::path_point)
+        instants.points[place[number.item]].push_back({number.part / 2, number.part % 2, p, one.rate});
       if (number.place == TaskNumber::Place::measured_instant) {
         std::vector<double>& rates = instants.taken[place[number.item]];
         rates.resize(parameters, 0.0);
