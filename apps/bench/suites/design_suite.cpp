@@ -15,6 +15,7 @@
 #include "catena/model/model_add.hpp"
 #include "catena/results/stored_results.hpp"
 #include "catena/scene/running/scene_runner.hpp"
+#include "suites/gradient_costs.hpp"
 #include "suites/suites.hpp"
 
 namespace bench {
@@ -341,6 +342,7 @@ void design_suite(Bench& bench) {
   oscillations(bench);
   path_generation(bench);
   lanes(bench);
+  gradient_costs(bench);
 }
 
 }  // namespace bench

@@ -11,6 +11,7 @@
 
 #include "catena/scene/json/source_text.hpp"
 #include "suites/exact_chain.hpp"
+#include "suites/pendulum_gradient.hpp"
 
 namespace bench {
 
@@ -18,17 +19,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a program is asked for, the table that it answers with, and the suite that this belongs to.
+/// What a program is asked for, the table that it answers with, and the suite that this belongs to. CVODES, which is no
+/// engine, knows the scene of gradients alone, and no other program knows it.
 struct PeerScene {
   const char* scene;
   const char* table;
   const char* suite;
+  const char* only = nullptr;
 };
-constexpr PeerScene scenes[] = {{"acceleration", "S1a", "kernels"},
-                                {"chain", "S1b", "dynamics"},
-                                {"fourbar", "S2", "dynamics"},
-                                {"squeezer", "S3", "dynamics"},
-                                {"equilibrium", "S4", "equilibrium"}};
+constexpr const char* cvodes = "peer_cvodes";
+constexpr PeerScene scenes[] = {{"acceleration", "S1a", "kernels"},   {"chain", "S1b", "dynamics"},
+                                {"fourbar", "S2", "dynamics"},        {"squeezer", "S3", "dynamics"},
+                                {"equilibrium", "S4", "equilibrium"}, {"gradient", "S5", "design", cvodes}};
 constexpr int time_limit = 60;  // s a scene; records printed so far are kept
 
 using Fields = std::vector<std::string>;
@@ -101,6 +103,15 @@ bool read_record(const Fields& f, Row& row) {
     row.seconds = 1e-3 * number(f, 5), row.error = number(f, 7) / row.bodies, row.error_of = "worst joint, m a rod";
     return true;
   }
+  if (f[0] == "S5" && f.size() >= 8) {
+    row.suite = "design", row.bodies = std::atoi(f[4].c_str());
+    for (const PendulumProblem& of : pendulum_problems) {
+      if (of.rods == row.bodies) row.problem = of.name;
+    }
+    row.seconds = 1e-3 * number(f, 5), row.error = number(f, 7), row.error_of = "derivatives, relative";
+    row.counts.emplace_back("parameters", number(f, 6));
+    return !row.problem.empty();
+  }
   return false;
 }
 
@@ -119,7 +130,8 @@ int add_records(Bench& bench, const std::string& text, const std::function<bool(
 
 void run_program(Bench& bench, const fs::path& program, const std::function<bool(std::string_view)>& wanted) {
   for (const PeerScene& scene : scenes) {
-    if (!wanted(scene.suite)) continue;
+    const bool is_cvodes = program.filename() == cvodes;
+    if (!wanted(scene.suite) || (scene.only != nullptr) != is_cvodes) continue;
     std::string quoted = "'";
     for (const char c : program.string()) quoted += c == '\'' ? "'\\''" : std::string(1, c);
     const std::string command =

@@ -1,14 +1,8 @@
 #include "catena/analysis/minimiser/minimiser.hpp"
 
-#include "catena/analysis/minimiser/ipopt_turn.hpp"
 #include "catena/analysis/minimiser/minimiser_parts.hpp"
 
 namespace catena {
-
-std::recursive_mutex& ipopt_turn() {
-  static std::recursive_mutex mutex;
-  return mutex;
-}
 
 bool minimiser_is_built_in(MinimiserMethod method) {
   return method == MinimiserMethod::ipopt ? ipopt_minimiser_is_built_in() : nlopt_is_built_in();

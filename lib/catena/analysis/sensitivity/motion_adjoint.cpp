@@ -59,7 +59,7 @@ bool MotionAdjoint::lose(double t, std::string_view what) {
   return fail(fmt::format("at t = {:.9g} s {}, which the adjoint of the motion does not pass", t, what));
 }
 
-bool MotionAdjoint::find(const Snapshot& snapshot) { return lose(snapshot.t, "a state is asked for"); }
+bool MotionAdjoint::find(const Snapshot&) { return false; }
 
 void MotionAdjoint::cover(const MotionStretch& stretch) {
   if (!why().empty()) return;

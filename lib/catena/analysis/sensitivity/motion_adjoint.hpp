@@ -41,7 +41,7 @@ class MotionAdjoint final : public StateDerivatives {
 
   /// Keeps a step of the motion.
   void cover(const MotionStretch& stretch) override;
-  /// States have no derivatives here: only measures have.
+  /// False: states have no derivatives here, only measures have. The gradient is none the worse for being asked.
   bool find(const Snapshot& snapshot) override;
 
   /// dm/dp by parameter at fixed p in the pulses themselves; nothing, and why() says it, where there is none. Pulses in

@@ -1,36 +1,24 @@
 #include "catena/analysis/statics/static_ipopt.hpp"
 
-#if CATENA_HAS_IPOPT
-
-#include <IpIpoptApplication.hpp>
-#include <IpTNLP.hpp>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <vector>
 
 #include "catena/analysis/balance/static_hessian.hpp"
-#include "catena/analysis/minimiser/ipopt_turn.hpp"
+#include "catena/analysis/minimiser/ipopt_program.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-using Ipopt::Index;
-using Ipopt::Number;
-
-// Ipopt takes any value beyond 1e19 as no bound.
-constexpr double no_bound = 2e19;
-// Of the complementarity at a warm start.
-constexpr double near_barrier = 1e-9;
 // Of a start at a singular position: length scales or rad.
 constexpr double smallest_disturbance = 1e-3;
 // Solutions of Ipopt must balance to this part of the forces, and meet the constraints to it.
 constexpr double rough = 1e-5;
 
 // The scaled problem in Ipopt's interface. Vectors x over columns, g over the equations that are kept.
-class Problem final : public Ipopt::TNLP {
+class Problem final : public IpoptProgram {
  public:
   Problem(StaticSystem& system, std::span<double> q, std::span<double> lambda, bool warm)
       : system_(system), hessian_(system), q_(q), lambda_(lambda), warm_(warm) {
@@ -52,102 +40,65 @@ class Problem final : public Ipopt::TNLP {
 
   int iterations() const { return iterations_; }
 
-  bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian, IndexStyleEnum& style) override {
-    n = static_cast<Index>(start_.size());
-    m = static_cast<Index>(row_.size());
-    jacobian = static_cast<Index>(entry_.size());
-    hessian = static_cast<Index>(hessian_.slot.size());
-    style = C_STYLE;
-    return true;
+  Size size() const override {
+    return {static_cast<int>(start_.size()), static_cast<int>(row_.size()), static_cast<int>(entry_.size()),
+            static_cast<int>(hessian_.slot.size())};
   }
-  bool get_bounds_info(Index n, Number* x_low, Number* x_high, Index m, Number* g_low, Number* g_high) override {
-    std::fill(x_low, x_low + n, -no_bound);
-    std::fill(x_high, x_high + n, no_bound);
-    for (Index k = 0; k < m; ++k) {
-      const RowSide side = system_.side(row_[at(k)]);
-      g_low[k] = side == RowSide::at_most ? -no_bound : 0;
-      g_high[k] = side == RowSide::at_least ? no_bound : 0;
+  void bounds(std::span<double> x_low, std::span<double> x_high, std::span<double> g_low,
+              std::span<double> g_high) override {
+    std::fill(x_low.begin(), x_low.end(), -ipopt_no_bound);
+    std::fill(x_high.begin(), x_high.end(), ipopt_no_bound);
+    for (std::size_t k = 0; k < g_low.size(); ++k) {
+      const RowSide side = system_.side(row_[k]);
+      g_low[k] = side == RowSide::at_most ? -ipopt_no_bound : 0;
+      g_high[k] = side == RowSide::at_least ? ipopt_no_bound : 0;
     }
-    return true;
   }
-  bool get_starting_point(Index n, bool, Number* x, bool bounds, Number* low, Number* high, Index m, bool multipliers,
-                          Number* lambda) override {
-    for (Index c = 0; c < n; ++c) x[c] = start_[at(c)] / unit(c);
-    if (bounds) {
-      std::fill(low, low + n, 0.0);
-      std::fill(high, high + n, 0.0);
-    }
-    if (multipliers) {
-      for (Index k = 0; k < m; ++k) lambda[k] = lambda_[at(row_[at(k)])] * row_unit(k) / energy_;
-    }
-    return true;
+  void start(std::span<double> x, std::span<double> lambda) override {
+    for (std::size_t c = 0; c < x.size(); ++c) x[c] = start_[c] / unit(static_cast<int>(c));
+    for (std::size_t k = 0; k < lambda.size(); ++k)
+      lambda[k] = lambda_[at(row_[k])] * row_unit(static_cast<int>(k)) / energy_;
   }
-  bool eval_f(Index, const Number* x, bool, Number& f) override {
+  double objective(const double* x) override {
     move_to(x);
-    f = system_.energy() / energy_;
-    return std::isfinite(f);
+    return system_.energy() / energy_;
   }
-  bool eval_grad_f(Index n, const Number* x, bool, Number* gradient) override {
+  void gradient(const double* x, std::span<double> out) override {
     move_to(x);
-    for (Index c = 0; c < n; ++c) gradient[c] = system_.gradient()[at(c)] * unit(c) / energy_;
-    return true;
+    for (std::size_t c = 0; c < out.size(); ++c) out[c] = system_.gradient()[c] * unit(static_cast<int>(c)) / energy_;
   }
-  bool eval_g(Index, const Number* x, bool, Index m, Number* g) override {
+  void rows(const double* x, std::span<double> g) override {
     move_to(x);
-    double sum = 0;
-    for (Index k = 0; k < m; ++k) {
-      g[k] = system_.phi()[at(row_[at(k)])] / row_unit(k);
-      sum += g[k];
-    }
-    return std::isfinite(sum);
+    for (std::size_t k = 0; k < g.size(); ++k) g[k] = system_.phi()[at(row_[k])] / row_unit(static_cast<int>(k));
   }
-  bool eval_jac_g(Index, const Number* x, bool, Index, Index entries, Index* rows, Index* columns,
-                  Number* values) override {
-    if (!values) {
-      for (Index k = 0; k < entries; ++k) {
-        rows[k] = entry_[at(k)].row;
-        columns[k] = entry_[at(k)].column;
-      }
-      return true;
-    }
+  Place jacobian_place(int entry) const override { return {entry_[at(entry)].row, entry_[at(entry)].column}; }
+  void jacobian(const double* x, std::span<double> values) override {
     move_to(x);
-    for (Index k = 0; k < entries; ++k) {
-      const Entry& e = entry_[at(k)];
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const Entry& e = entry_[k];
       values[k] = system_.jacobian()[at(e.slot)] * unit(e.column) / row_unit(e.row);
     }
-    return true;
   }
-  bool eval_h(Index, const Number* x, bool, Number factor, Index m, const Number* lambda, bool, Index entries,
-              Index* rows, Index* columns, Number* values) override {
-    if (!values) {
-      for (Index k = 0; k < entries; ++k) {
-        rows[k] = hessian_.row[at(k)];
-        columns[k] = hessian_.column[at(k)];
-      }
-      return true;
-    }
+  Place hessian_place(int entry) const override { return {hessian_.row[at(entry)], hessian_.column[at(entry)]}; }
+  void hessian(const double* x, double factor, const double* lambda, std::span<double> values) override {
     move_to(x);
-    for (Index k = 0; k < m; ++k) row_multiplier_[at(row_[at(k)])] = lambda[k] * energy_ / row_unit(k);
+    for (std::size_t k = 0; k < row_.size(); ++k)
+      row_multiplier_[at(row_[k])] = lambda[k] * energy_ / row_unit(static_cast<int>(k));
     hessian_.evaluate(factor, row_multiplier_);
-    for (Index k = 0; k < entries; ++k) {
-      values[k] = hessian_.value[at(k)] * unit(hessian_.row[at(k)]) * unit(hessian_.column[at(k)]) / energy_;
-    }
-    return true;
+    for (std::size_t k = 0; k < values.size(); ++k)
+      values[k] = hessian_.value[k] * unit(hessian_.row[k]) * unit(hessian_.column[k]) / energy_;
   }
-  bool intermediate_callback(Ipopt::AlgorithmMode, Index iteration, Number, Number, Number, Number, Number, Number,
-                             Number, Number, Index, const Ipopt::IpoptData*,
-                             Ipopt::IpoptCalculatedQuantities*) override {
+  bool go_on(int iteration) override {
     iterations_ = iteration;
     ++system_.evaluator().counters.iterations;
     return !system_.is_cancelled();
   }
-  void finalize_solution(Ipopt::SolverReturn, Index, const Number* x, const Number*, const Number*, Index m,
-                         const Number*, const Number* lambda, Number, const Ipopt::IpoptData*,
-                         Ipopt::IpoptCalculatedQuantities*) override {
+  void finish(const double* x, const double* lambda) override {
     move_to(x);
     std::copy(trial_.begin(), trial_.end(), q_.begin());
     std::fill(lambda_.begin(), lambda_.end(), 0.0);
-    for (Index k = 0; k < m; ++k) lambda_[at(row_[at(k)])] = lambda[k] * energy_ / row_unit(k);
+    for (std::size_t k = 0; k < row_.size(); ++k)
+      lambda_[at(row_[k])] = lambda[k] * energy_ / row_unit(static_cast<int>(k));
   }
 
  private:
@@ -206,7 +157,7 @@ class Problem final : public Ipopt::TNLP {
   double unit(int column) const { return system_.plan().coordinate[at(column)] % 3 == 2 ? 1.0 : length_; }
   double row_unit(int kept) const { return system_.plan().row_is_angle[at(row_[at(kept)])] ? 1.0 : length_; }
   // Ipopt evaluates all functions at one place before it goes to the next.
-  void move_to(const Number* x) {
+  void move_to(const double* x) {
     if (std::equal(last_.begin(), last_.end(), x) && !last_.empty()) return;
     const Plan& plan = system_.plan();
     last_.assign(x, x + plan.columns);
@@ -225,17 +176,19 @@ class Problem final : public Ipopt::TNLP {
   int iterations_ = 0;
 };
 
-StaticEnd ending(Ipopt::ApplicationReturnStatus status) {
-  switch (status) {
-    case Ipopt::Solve_Succeeded:
-    case Ipopt::Solved_To_Acceptable_Level:
+StaticEnd ending(IpoptEnd end) {
+  switch (end) {
+    case IpoptEnd::solved:
+    case IpoptEnd::acceptable:
       return StaticEnd::stationary;
-    case Ipopt::Diverging_Iterates:
+    case IpoptEnd::diverging:
       return StaticEnd::unbounded;
-    case Ipopt::Maximum_Iterations_Exceeded:
+    case IpoptEnd::slow:
       return StaticEnd::slow;
-    case Ipopt::User_Requested_Stop:
+    case IpoptEnd::stopped:
       return StaticEnd::cancelled;
+    case IpoptEnd::unavailable:
+      return StaticEnd::singular;
     default:
       return StaticEnd::diverged;
   }
@@ -243,40 +196,22 @@ StaticEnd ending(Ipopt::ApplicationReturnStatus status) {
 
 }  // namespace
 
-bool ipopt_is_built_in() { return true; }
+bool ipopt_is_built_in() { return ipopt_program_is_built_in(); }
 
 StaticOutcome solve_by_ipopt(StaticSystem& system, std::span<double> q, std::span<double> lambda,
                              const StaticIpoptOptions& options) {
-  const std::lock_guard lock(ipopt_turn());
+  if (!ipopt_is_built_in()) return {.end = StaticEnd::singular};
   system.move_to(q);
   const double load = system.force_norm(system.gradient());
-  const Ipopt::SmartPtr<Problem> problem = new Problem(system, q, lambda, options.warm);
-  const Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
-  if (options.verbose) application->Jnlst()->AddFileJournal("log", "stderr", Ipopt::J_ITERSUMMARY);
-  Ipopt::OptionsList& set = *application->Options();
-  set.SetStringValue("sb", "yes");
-  set.SetStringValue("nlp_scaling_method", "none");
-  set.SetStringValue("linear_solver", "mumps");
-  set.SetStringValue("fixed_variable_treatment", "make_parameter");
-  set.SetIntegerValue("max_iter", options.max_iterations);
-  set.SetNumericValue("tol", options.tolerance);
-  // In a long mechanism rounding of the forces may prevent the last digits.
-  set.SetNumericValue("acceptable_tol", 1e4 * options.tolerance);
-  set.SetIntegerValue("acceptable_iter", 8);
-  if (options.warm) {
-    set.SetStringValue("warm_start_init_point", "yes");
-    set.SetNumericValue("mu_init", near_barrier);
-    set.SetNumericValue("warm_start_bound_push", near_barrier);
-    set.SetNumericValue("warm_start_slack_bound_push", near_barrier);
-    set.SetNumericValue("warm_start_mult_bound_push", near_barrier);
-  }
+  Problem problem(system, q, lambda, options.warm);
   StaticOutcome outcome;
-  if (application->Initialize() != Ipopt::Solve_Succeeded) {
-    outcome.end = StaticEnd::singular;
-    return outcome;
-  }
-  outcome.end = ending(application->OptimizeTNLP(problem));
-  outcome.iterations = problem->iterations();
+  // In a long mechanism rounding of the forces may prevent the last digits: an acceptable end will do.
+  outcome.end = ending(run_ipopt(problem, {.max_iterations = options.max_iterations,
+                                           .tolerance = options.tolerance,
+                                           .warm = options.warm,
+                                           .verbose = options.verbose}));
+  if (outcome.end == StaticEnd::singular) return outcome;
+  outcome.iterations = problem.iterations();
   system.move_to(q);
   std::vector<double> residual(system.gradient().size());
   system.residual(lambda, residual);
@@ -289,17 +224,3 @@ StaticOutcome solve_by_ipopt(StaticSystem& system, std::span<double> q, std::spa
 }
 
 }  // namespace catena
-
-#else
-
-namespace catena {
-
-bool ipopt_is_built_in() { return false; }
-
-StaticOutcome solve_by_ipopt(StaticSystem&, std::span<double>, std::span<double>, const StaticIpoptOptions&) {
-  return {.end = StaticEnd::singular};
-}
-
-}  // namespace catena
-
-#endif
