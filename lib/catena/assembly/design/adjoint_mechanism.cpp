@@ -11,6 +11,18 @@ namespace {
 template <class E>
 constexpr bool is_custom = std::is_same_v<E, CustomConstraint<double>> || std::is_same_v<E, CustomForce<double>>;
 
+template <class E>
+constexpr bool is_pin = std::is_same_v<E, Revolute<double>>;
+
+/// Of body b of a pin, its arm A s' in the ground frame: h = r_j + A_j s_j - r_i - A_i s_i.
+template <class Block>
+Vec2<double> arm_of(const Block& block, const Revolute<double>& pin, int e, int b,
+                    const std::vector<Frame<Taylor<double>>>& motion) {
+  const Frame<Taylor<double>>& f = motion[at(b == 0 ? block.body_i[at(e)] : block.body_j[at(e)])];
+  const Vec2<double>& s = b == 0 ? pin.s_i : pin.s_j;
+  return {f.c.f * s.x - f.s.f * s.y, f.s.f * s.x + f.c.f * s.y};
+}
+
 /// c(t) of an element's entry as a series.
 template <class Entry>
 Taylor<double> value_of_entry([[maybe_unused]] const Entry& entry,
@@ -91,7 +103,25 @@ void AdjointMechanism::add_constraints_by_q(const AdjointWeights& weights, std::
                                             std::span<double> by_qd) const {
   for_each_list(plan_->blocks, model_->constraints, [&](const auto& block, const auto& list, int) {
     using E = ElementOf<decltype(list)>;
-    if constexpr (!is_custom<E> && !Joining<E>) {
+    if constexpr (is_pin<E>) {
+      // Phi by an angle is R a, a the arm: (R a)' = -a omega, (R a)'' = -a alpha - R a omega^2.
+      for (int e = 0; e < block.size(); ++e) {
+        const std::size_t row = at(block.row(e));
+        const auto weight = [&](std::span<const double> w) {
+          return w.empty() ? Vec2<double>{} : Vec2<double>{w[row], w[row + 1]};
+        };
+        const Vec2<double> bend = weight(weights.bend), rate = weight(weights.rate);
+        for (int b = 0; b < 2; ++b) {
+          const int body = b == 0 ? block.body_i[at(e)] : block.body_j[at(e)];
+          const Frame<Series>& f = motion_[at(body)];
+          const Vec2<double> arm = arm_of(block, list[at(block.entry[at(e)])].element, e, b, motion_);
+          const double sign = b == 0 ? -1 : 1, along = dot(bend, arm), across = cross(arm, bend);
+          const std::size_t c = at(3 * body + 2);
+          by_q[c] += sign * (along * f.phi.dd + across * f.phi.d * f.phi.d + dot(rate, arm) * f.phi.d);
+          by_qd[c] += sign * 2 * along * f.phi.d;
+        }
+      }
+    } else if constexpr (!is_custom<E> && !Joining<E>) {
       constexpr int columns = 3 * E::bodies;
       using D = Dual<Series, columns>;
       for (int e = 0; e < block.size(); ++e) {
@@ -165,16 +195,49 @@ void AdjointMechanism::add_by_state(const Evaluator& evaluator, const AdjointWei
   if (weights.w.empty()) return;
   add_forces_by_state(evaluator, weights.w, by_q, by_qd);
   if (weights.lambda.empty()) return;
-  evaluator.visit_constraint_hessians(weights.lambda, [&](int i, int j, const ElementMatrix& m) {
-    const int body[2] = {i, j};
-    for (int r = 0; r < 6; ++r) {
-      if (body[r / 3] < 0 || body[r / 3] >= plan_->moving) continue;
-      double sum = 0;
-      for (int c = 0; c < 6; ++c) {
-        if (body[c / 3] >= 0 && body[c / 3] < plan_->moving)
-          sum += m[at(6 * r + c)] * weights.w[at(3 * body[c / 3] + c % 3)];
+  add_curvature(weights, by_q);
+}
+
+// sum lambda Phi_qq w: the change of Phi_q^T lambda along w.
+void AdjointMechanism::add_curvature(const AdjointWeights& weights, std::span<double> by_q) const {
+  for_each_list(plan_->blocks, model_->constraints, [&](const auto& block, const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    if constexpr (is_pin<E>) {
+      for (int e = 0; e < block.size(); ++e) {
+        const std::size_t row = at(block.row(e));
+        const Vec2<double> lambda{weights.lambda[row], weights.lambda[row + 1]};
+        for (int b = 0; b < 2; ++b) {
+          const std::size_t c = at(3 * (b == 0 ? block.body_i[at(e)] : block.body_j[at(e)]) + 2);
+          const double turning = dot(lambda, arm_of(block, list[at(block.entry[at(e)])].element, e, b, motion_));
+          by_q[c] += (b == 0 ? -1 : 1) * turning * weights.w[c];
+        }
       }
-      by_q[at(3 * body[r / 3] + r % 3)] -= sum;
+    } else if constexpr (!is_custom<E> && !Joining<E>) {
+      constexpr int columns = 3 * E::bodies;
+      using Along = Dual<double, 1>;
+      using D = Dual<Along, columns>;
+      const auto frame = [&](int body) {
+        const Frame<Series>& f = motion_[at(body)];
+        const double* w = weights.w.data() + 3 * body;
+        return Frame<Along>{
+            {f.x.f, {w[0]}}, {f.y.f, {w[1]}}, {f.phi.f, {w[2]}}, {f.c.f, {-f.s.f * w[2]}}, {f.s.f, {f.c.f * w[2]}}};
+      };
+      for (int e = 0; e < block.size(); ++e) {
+        const auto& entry = list[at(block.entry[at(e)])];
+        const auto f = detail::design_frames<Along>(block, e, plan_->moving, origin_, frame);
+        const Frame<D> i = seed<Along, columns>(f.i, 0);
+        Frame<D> j;
+        if constexpr (E::bodies == 2) j = seed<Along, columns>(f.j, 3);
+        D rows[E::rows];
+        entry.element.phi(Arguments<D>{i, j, D(Along(value_of_entry(entry, values_).f)), f.ground}, rows);
+        for (int r = 0; r < E::rows; ++r) {
+          const double lambda = scale_[at(entry.id)] * weights.lambda[at(block.row(e) + r)];
+          for (int k = 0; k < columns; ++k) {
+            const int body = k < 3 ? block.body_i[at(e)] : block.body_j[at(e)];
+            by_q[at(3 * body + k % 3)] -= lambda * rows[r].d[at(k)].d[0];
+          }
+        }
+      }
     }
   });
 }

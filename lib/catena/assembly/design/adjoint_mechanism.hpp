@@ -6,10 +6,10 @@
 //   w^T R_qd - mu^T Phi''_qd  with   Phi''_qd = 2 (Phi_q)'
 //   w^T R_p - mu2^T Phi''_p - mu1^T Phi'_p - mu0^T Phi_p
 //
-// Derivatives by q of all elements come from dual numbers over series in time, one element after the other: what they
-// cost does not depend on the number of parameters. Those by parameters are taken of elements, bodies and functions
-// that a parameter reaches alone. Not for laws of state, ropes and elements that only C++ can make (supported()).
-// Units as in evaluate.hpp. Source: apps/manual/sensitivity.md.
+// Derivatives by q of all elements come from dual numbers over series in time, one element after the other, those of
+// pins from closed forms: what they cost does not depend on the number of parameters. Those by parameters are taken of
+// elements, bodies and functions that a parameter reaches alone. Not for laws of state, ropes and elements that only
+// C++ can make (supported()). Units as in evaluate.hpp. Source: apps/manual/sensitivity.md.
 #pragma once
 
 #include <array>
@@ -61,7 +61,11 @@ class AdjointMechanism {
   using Series = Taylor<double>;
 
   const Plan& plan() const { return *plan_; }
+  template <class Block>
+  bool add_pin(const Block& block, int e, const Revolute<DesignScalar>& pin, const AdjointWeights& weights,
+               std::array<double, parameters_at_once>& sum) const;
   void add_constraints_by_q(const AdjointWeights& weights, std::span<double> by_q, std::span<double> by_qd) const;
+  void add_curvature(const AdjointWeights& weights, std::span<double> by_q) const;
   void add_forces_by_state(const Evaluator& evaluator, std::span<const double> w, std::span<double> by_q,
                            std::span<double> by_qd) const;
 

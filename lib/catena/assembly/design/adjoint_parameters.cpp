@@ -97,6 +97,35 @@ Frame<DesignSeries> lifted(const Frame<Taylor<double>>& f) {
 
 }  // namespace
 
+// With the arms a = A s: h_p = A s_p, h'_p = R A s_p omega, h''_p = R A s_p alpha - A s_p omega^2, (h_q w)_p = R A s_p
+// w_phi. False where a body that does not move is moved by parameters itself.
+template <class Block>
+bool AdjointMechanism::add_pin(const Block& block, int e, const Revolute<DesignScalar>& pin,
+                               const AdjointWeights& weights, std::array<double, parameters_at_once>& sum) const {
+  const int bodies[2] = {block.body_i[at(e)], block.body_j[at(e)]};
+  for (const int body : bodies) {
+    const bool immobile = body >= plan_->moving && body < plan_->bodies;
+    if (immobile || (body < plan_->moving && plan_->column[at(3 * body + 2)] < 0)) return false;
+  }
+  const std::size_t row = at(block.row(e));
+  const auto weight = [&](std::span<const double> w) {
+    return w.empty() ? Vec2<double>{} : Vec2<double>{w[row], w[row + 1]};
+  };
+  const auto turned_back = [](const Vec2<double>& v) { return Vec2<double>{v.y, -v.x}; };  // R^T v
+  const Vec2<double> phi = weight(weights.phi), rate = weight(weights.rate), bend = weight(weights.bend),
+                     lambda = weight(weights.lambda);
+  for (int b = 0; b < 2; ++b) {
+    const Frame<Series>& f = motion_[at(bodies[b])];
+    const double omega = f.phi.d, w = weights.w.empty() ? 0 : weights.w[at(3 * bodies[b] + 2)];
+    const Vec2<double> all = phi - (omega * omega) * bend + turned_back(omega * rate + f.phi.dd * bend + w * lambda);
+    const double sign = b == 0 ? 1 : -1;
+    const Vec2<double> local{sign * (f.c.f * all.x + f.s.f * all.y), sign * (f.c.f * all.y - f.s.f * all.x)};
+    const Vec2<DesignScalar>& s = b == 0 ? pin.s_i : pin.s_j;
+    for (std::size_t p = 0; p < sum.size(); ++p) sum[p] += local.x * s.x.d[p] + local.y * s.y.d[p];
+  }
+  return true;
+}
+
 AdjointMechanism::Reached::Reached(const AdjointMechanism& adjoint, const DesignMechanism& mechanism) {
   const Plan& plan = adjoint.plan();
   const DesignModel& model = mechanism.model();
@@ -182,6 +211,9 @@ std::array<double, parameters_at_once> AdjointMechanism::by_parameters(const Des
     if constexpr (is_asked<Plain>) {
       for (const int e : places) {
         const auto& entry = list[at(block.entry[at(e)])];
+        if constexpr (std::is_same_v<Plain, Revolute<double>>) {
+          if (add_pin(block, e, entry.element, weights, sum.d)) continue;
+        }
         const DesignSeries c = value(entry);
         const double scale = scale_[at(entry.id)];
         DesignSeries rows[E::rows];
