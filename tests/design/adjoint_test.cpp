@@ -158,11 +158,11 @@ TEST(EquilibriumGradient, RefusesWhatHasNone) {
 /// A scene, its models, and derivatives both ways along its motion.
 class BothWays final : public RowObserver {
  public:
-  BothWays(const std::string& text, double until, double tolerance)
+  BothWays(const std::string& text, double until, double tolerance, IntegrationMethod method = IntegrationMethod::rk8)
       : scene_(read_scene(SourceText("motion", text), diagnostics_)), models_(*scene_, 1000) {
     model_ = models_.model(scene_->parameters, {});
     for (int p = 0; p < static_cast<int>(scene_->parameters.names().size()); ++p) parameters_.push_back(p);
-    Dynamics motion(model_, {}, {.tolerance = tolerance});
+    Dynamics motion(model_, {}, {.method = method, .tolerance = tolerance});
     const auto count = static_cast<int>(parameters_.size());
     const DesignModels designs = models_.designs(scene_->parameters, {}, parameters_);
     forward.emplace(motion.evaluator(), designs, count, GivenByModel{});
@@ -267,6 +267,23 @@ TEST(AdjointOfAMotion, IsThatOfTheClosedForm) {
     EXPECT_NEAR((*of_velocity)[2], -w * std::sin(w * t), 1e-8);
     const auto of_both = both.adjoint->gradient({place, velocity});
     EXPECT_NEAR((*of_both)[2], (*of_place)[2] + (*of_velocity)[2], 1e-10);
+  }
+}
+
+// The short steps of another method are gone back over several at once: within the tolerance of the motion.
+TEST(AdjointOfAMotion, JoinsTheStepsOfAnotherMethod) {
+  BothWays both(slider_crank, 1.2, 1e-8, IntegrationMethod::adams);
+  ASSERT_TRUE(both.report.ok()) << both.report.message;
+  ASSERT_TRUE(both.found) << both.forward->why();
+  MotionPulse pulse{both.end, std::vector<double>(both.coordinates, 0.0), {}};
+  pulse.by_q[0] = pulse.by_q[5] = 1;
+  const auto gradient = both.adjoint->gradient({pulse});
+  ASSERT_TRUE(gradient) << both.adjoint->why();
+  EXPECT_LT(both.adjoint->blocks(), both.adjoint->steps());
+  for (std::size_t p = 0; p < both.parameters(); ++p) {
+    const double forward =
+        both.forward->configuration(p / 4)[0].d[p % 4] + both.forward->configuration(p / 4)[5].d[p % 4];
+    EXPECT_NEAR((*gradient)[p], forward, 1e-6 * (1 + std::abs(forward))) << "parameter " << p;
   }
 }
 

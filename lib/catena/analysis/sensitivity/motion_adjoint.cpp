@@ -14,6 +14,17 @@ namespace {
 // tolerance of the motion.
 constexpr int most_projections = 4;
 
+// Steps are joined while the end is missed by no more than so many times what they miss it by one after the other;
+// where two miss it by a thousand times that, the motion's own steps are as long as the method allows.
+constexpr double more_misfit = 2, far_more_misfit = 1e3;
+constexpr std::size_t most_at_once = 16;
+// After one step too many, so many blocks pass before the next is tried.
+constexpr int blocks_between_tries = 8;
+// States before and after an instant that differ by less are one: whole turns are 6.
+constexpr double same_state = 1e-6;
+// Below this misfits are rounding.
+constexpr double rounding = 1e-14;
+
 }  // namespace
 
 MotionAdjoint::Stage::Stage(const Evaluator& of, std::size_t size) : evaluator(of), equations(evaluator) {
@@ -162,7 +173,7 @@ bool MotionAdjoint::stage_back(Stage& stage, const Vector& k) {
 bool MotionAdjoint::go_back(const Step& step, double t, std::span<const double> values, Vector y1, Vector& y0) {
   const Tableau& table = dormand_prince_8();
   const double h = t - step.from;
-  if (!recompute(step, h) || !project_back(t, t == step.to ? Side::before : Side::after, values, y1)) return false;
+  if (!project_back(t, t == step.to ? Side::before : Side::after, values, y1)) return false;
   Vector k(2 * n_);
   for (int s = table.stages; s-- > 0;) {
     std::fill(k.begin(), k.end(), 0.0);
@@ -184,6 +195,54 @@ bool MotionAdjoint::go_back(const Step& step, double t, std::span<const double> 
     for (int s = 0; s < table.stages; ++s) y0[i] += stages_[at(s)]->back[i];
   }
   return true;
+}
+
+double MotionAdjoint::misfit(const Step& step) const {
+  const double h = step.to - step.from;
+  double off[2] = {0, 0}, way[2] = {0, 0};
+  for (std::size_t i = 0; i < step.end.size(); ++i) {
+    double moved = 0;
+    for (const StageTerm& term : dormand_prince_8().b) moved += h * term.weight * stages_[at(term.stage)]->slope[i];
+    const std::size_t kind = i >= n_;
+    off[kind] = std::max(off[kind], std::abs(step.begin[i] + moved - step.end[i]));
+    way[kind] = std::max(way[kind], std::abs(moved));
+  }
+  return std::max(way[0] > 0 ? off[0] / way[0] : 0, way[1] > 0 ? off[1] / way[1] : 0);
+}
+
+// Not across an instant at which the state was replaced (angles moved by whole turns), nor one that a pulse needs.
+std::size_t MotionAdjoint::join(std::size_t end, double bound, Step& joined) {
+  const auto take = [&](std::size_t count) {
+    joined = steps_[end - count];
+    joined.to = steps_[end - 1].to;
+    joined.end = steps_[end - 1].end;
+    return recompute(joined, joined.to - joined.from);
+  };
+  const auto follows = [&](std::size_t count) {
+    const Step& first = steps_[end - count];
+    return first.from >= bound &&
+           std::equal(first.end.begin(), first.end.end(), steps_[end - count + 1].begin.begin(),
+                      [](double a, double b) {
+                        return std::abs(a - b) <= same_state * std::max({1.0, std::abs(a), std::abs(b)});
+                      });
+  };
+  const std::size_t wanted = joins_ ? std::min(most_at_once, at_once_ + (waits_ > 0 ? 0 : 1)) : 1;
+  std::size_t count = 1;
+  while (count < std::min(wanted, end) && follows(count + 1)) ++count;
+  waits_ = std::max(waits_ - 1, 0);
+  for (; count > 1; count -= std::max<std::size_t>(count / 4, 1)) {
+    if (!take(count)) return 0;
+    const double missed = misfit(joined), usual = single_misfit_ + rounding;
+    if (missed <= more_misfit * usual) break;
+    waits_ = blocks_between_tries;
+    if (count == 2 && missed > far_more_misfit * usual) joins_ = false;
+  }
+  if (count == 1) {
+    if (!take(1)) return 0;
+    single_misfit_ = std::max(single_misfit_, misfit(joined));
+  }
+  at_once_ = count;
+  return count;
 }
 
 MotionAdjoint::Vector MotionAdjoint::state_inside(const Step& step, double t) {
@@ -237,19 +296,33 @@ std::optional<std::vector<double>> MotionAdjoint::gradient(std::vector<MotionPul
     for (std::size_t c = 0; c < pulse.by_qd.size(); ++c) y[n_ + c] += pulse.by_qd[c];
   };
   Vector y1(2 * n_, 0.0), y0(2 * n_, 0.0);
-  for (std::size_t k = steps_.size(); k-- > 0;) {
-    const Step& step = steps_[k];
+  at_once_ = 1;
+  single_misfit_ = 0;
+  blocks_ = 0;
+  waits_ = 1;  // the last step by itself tells what is usual
+  joins_ = true;
+  Step joined;
+  for (std::size_t k = steps_.size(); k > 0;) {
+    const Step& last = steps_[k - 1];
     std::fill(y0.begin(), y0.end(), 0.0);
-    for (; !pulses.empty() && pulses.back().t > step.from; pulses.pop_back()) {
-      if (pulses.back().t >= step.to) {
-        add(pulses.back(), y1);
-        continue;
-      }
+    for (; !pulses.empty() && pulses.back().t >= last.to; pulses.pop_back()) add(pulses.back(), y1);
+    const std::size_t own = k - 1;
+    for (; !pulses.empty() && pulses.back().t > last.from; pulses.pop_back()) {
       Vector inside(2 * n_, 0.0);
       add(pulses.back(), inside);
-      if (!go_back(step, pulses.back().t, state_inside(step, pulses.back().t), std::move(inside), y0)) return {};
+      const Vector there = state_inside(last, pulses.back().t);
+      if (!why().empty() || !go_back(last, pulses.back().t, there, std::move(inside), y0)) return {};
     }
-    if (!go_back(step, step.to, step.end, y1, y0)) return {};
+    // No further than to the instant of the next pulse, nor over a step that had one inside.
+    const bool had_inside = std::any_of(y0.begin(), y0.end(), [](double y) { return y != 0; });
+    const std::size_t count = join(k,
+                                   had_inside       ? last.from
+                                   : pulses.empty() ? steps_.front().from
+                                                    : pulses.back().t,
+                                   joined);
+    if (count == 0 || !go_back(joined, joined.to, joined.end, y1, y0)) return {};
+    ++blocks_;
+    k = own + 1 - count;
     std::swap(y0, y1);
   }
   for (const MotionPulse& pulse : pulses) add(pulse, y1);

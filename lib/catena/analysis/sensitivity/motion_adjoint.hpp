@@ -11,7 +11,9 @@
 // and the projection P of positions, then velocities, of motion_derivatives.hpp transposed. The measure is a sum over
 // instants of m(q, qd); one inside of a step is reached by a step of the same method up to it. The equations that are
 // transposed are those of MotionDerivatives: both give the same gradient, to rounding, at the ends of steps. Stages are
-// recomputed from stored ends of steps: memory 4 x coordinates a step. No gradient: where functions of time jump with
+// recomputed from stored ends of steps: memory 4 x coordinates a step. Steps of another method, shorter than this one
+// needs, are gone back over several at once, as long as what is recomputed misses the motion's own end by no more than
+// its single steps do. No gradient: where functions of time jump with
 // velocities, or at instants that parameters move; equations that depend on each other; laws of state, ropes over
 // pulleys. Source: apps/manual/sensitivity.md; A. Griewank, A. Walther, Evaluating Derivatives, chapter 3.
 #pragma once
@@ -49,6 +51,8 @@ class MotionAdjoint final : public StateDerivatives {
   std::optional<std::vector<double>> gradient(std::vector<MotionPulse> pulses);
 
   int steps() const { return static_cast<int>(steps_.size()); }
+  /// As how many steps the last gradient() took them.
+  int blocks() const { return blocks_; }
   /// Elements that parameters reach, of all groups of parameters together: the only ones differentiated by them.
   int reached_elements() const;
 
@@ -73,7 +77,12 @@ class MotionAdjoint final : public StateDerivatives {
 
   bool lose(double t, std::string_view what);
   bool recompute(const Step& step, double h);
-  /// y1^ at t, the end of a step or an instant inside, to y0^, which is added to; `values`: the state there.
+  /// How far the recomputed end of a step lies from that of the motion, relative to what it moves by.
+  double misfit(const Step& step) const;
+  /// Recomputes the steps before number `end`, as many as can be taken as one, and joins them; how many.
+  std::size_t join(std::size_t end, double bound, Step& joined);
+  /// y1^ at t, the end of a step or an instant inside, to y0^, which is added to; `values`: the state there. The step
+  /// has been recomputed up to t.
   bool go_back(const Step& step, double t, std::span<const double> values, Vector y1, Vector& y0);
   bool project_back(double t, Side side, std::span<const double> values, Vector& y1);
   bool stage_back(Stage& stage, const Vector& k);
@@ -88,6 +97,11 @@ class MotionAdjoint final : public StateDerivatives {
   std::vector<std::unique_ptr<AdjointMechanism::Reached>> reached_;  // by group
   std::vector<std::unique_ptr<Stage>> stages_;                       // and the projection at the end, the last
   std::vector<Step> steps_;
+  std::size_t at_once_ = 1;   // steps that were joined last
+  double single_misfit_ = 0;  // of a step by itself
+  int blocks_ = 0;
+  int waits_ = 0;      // blocks until one more is tried
+  bool joins_ = true;  // whether more may be tried
   Vector gradient_, w_, mu_, zero_rows_, masses_;
 };
 

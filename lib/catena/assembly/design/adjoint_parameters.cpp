@@ -208,6 +208,7 @@ std::array<double, parameters_at_once> AdjointMechanism::by_parameters(const Des
     using E = ElementOf<decltype(list)>;
     using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
     const std::vector<int>& places = reached.constraints_[type_number++];
+    if (places.empty()) return;
     if constexpr (is_asked<Plain>) {
       for (const int e : places) {
         const auto& entry = list[at(block.entry[at(e)])];
@@ -243,6 +244,7 @@ std::array<double, parameters_at_once> AdjointMechanism::by_parameters(const Des
     using E = ElementOf<decltype(list)>;
     using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
     const std::vector<int>& places = reached.forces_[type_number++];
+    if (places.empty()) return;
     if constexpr (is_asked<Plain>) {
       for (const int e : places) {
         const auto& entry = list[at(block.entry[at(e)])];
