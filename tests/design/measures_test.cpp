@@ -177,11 +177,11 @@ TEST(Measures, OfWhatAnAnalysisReports) {
   const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -10],
   "bodies": {"rod": {"rod": {"from": [0, 0], "to": [1, 0]}, "mass": 3}},
   "constraints": [{"type": "revolute", "name": "pin", "i": "ground", "j": "rod.from"}],
-  "analyses": [{"type": "equilibrium", "measures": {"energy": {"field": "energy"}, "none": {"field": "loads[1]"}}}]})");
+  "analyses": [{"type": "equilibrium", "measures": {"energy": {"field": "energy"}, "none": {"field": "lode[1]"}}}]})");
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
   EXPECT_NEAR(value(run, "energy"), -15, 1e-9);
   EXPECT_FALSE(measure(run, "none").value);
-  EXPECT_NE(measure(run, "none").trouble.find("reports no number loads"), std::string::npos);
+  EXPECT_NE(measure(run, "none").trouble.find("reports no number lode"), std::string::npos);
 }
 
 TEST(Measures, WrongOnesAreReportedWhereTheyStand) {

@@ -192,7 +192,7 @@ struct Solver {
 /// By all parameters.
 Values adjoint(Problem& problem, double duration, double tolerance) {
   Solver solver(problem, tolerance);
-  CVodeAdjInit(solver.memory, 100, CV_HERMITE);
+  CVodeAdjInit(solver.memory, 100, CV_POLYNOMIAL);
   double t = 0;
   int points = 0, number = 0;
   if (CVodeF(solver.memory, duration, solver.y, &t, CV_NORMAL, &points) < 0) return {};

@@ -49,7 +49,7 @@ class AdjointMechanism {
     friend class AdjointMechanism;
     std::vector<std::vector<int>> constraints_, forces_;  // by type: places in the block
     std::vector<int> bodies_;                             // plan bodies with masses that move
-    bool gravity_ = false;
+    bool gravity_ = false, any_constraint_ = false, any_force_ = false;
     int elements_ = 0;
   };
   /// w^T R_p - bend^T Phi''_p - rate^T Phi'_p - phi^T Phi_p by the parameters of a group, at the motion that was set;

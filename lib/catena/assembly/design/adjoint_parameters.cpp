@@ -158,6 +158,11 @@ AdjointMechanism::Reached::Reached(const AdjointMechanism& adjoint, const Design
     else
       forces_.emplace_back();
   });
+  const auto any = [](const auto& lists) {
+    return std::any_of(lists.begin(), lists.end(), [](const auto& list) { return !list.empty(); });
+  };
+  any_constraint_ = any(constraints_);
+  any_force_ = any(forces_);
   for (int b = 0; b < plan.moving; ++b) {
     if (moves(mechanism.mass(3 * b)) || moves(mechanism.mass(3 * b + 2))) bodies_.push_back(b);
   }
@@ -204,81 +209,84 @@ std::array<double, parameters_at_once> AdjointMechanism::by_parameters(const Des
     }
   };
   std::size_t type_number = 0;
-  for_each_list(plan_->blocks, model.constraints, [&](const auto& block, const auto& list, int) {
-    using E = ElementOf<decltype(list)>;
-    using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
-    const std::vector<int>& places = reached.constraints_[type_number++];
-    if (places.empty()) return;
-    if constexpr (is_asked<Plain>) {
-      for (const int e : places) {
-        const auto& entry = list[at(block.entry[at(e)])];
-        if constexpr (std::is_same_v<Plain, Revolute<double>>) {
-          if (add_pin(block, e, entry.element, weights, sum.d)) continue;
+  if (reached.any_constraint_)
+    for_each_list(plan_->blocks, model.constraints, [&](const auto& block, const auto& list, int) {
+      using E = ElementOf<decltype(list)>;
+      using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
+      const std::vector<int>& places = reached.constraints_[type_number++];
+      if (places.empty()) return;
+      if constexpr (is_asked<Plain>) {
+        for (const int e : places) {
+          const auto& entry = list[at(block.entry[at(e)])];
+          if constexpr (std::is_same_v<Plain, Revolute<double>>) {
+            if (add_pin(block, e, entry.element, weights, sum.d)) continue;
+          }
+          const DesignSeries c = value(entry);
+          const double scale = scale_[at(entry.id)];
+          DesignSeries rows[E::rows];
+          const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_, frame);
+          entry.element.phi(Arguments<DesignSeries>{f.i, f.j, c, f.ground}, rows);
+          for (int r = 0; r < E::rows; ++r) {
+            const std::size_t row = at(block.row(e) + r);
+            if (!weights.phi.empty()) sum -= DesignScalar(scale * weights.phi[row]) * rows[r].f;
+            if (!weights.rate.empty()) sum -= DesignScalar(scale * weights.rate[row]) * rows[r].d;
+            if (!weights.bend.empty()) sum -= DesignScalar(scale * weights.bend[row]) * rows[r].dd;
+          }
+          if (weights.lambda.empty()) continue;
+          // lambda^T Phi_q w: without what the function of time itself changes by.
+          const auto g = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_, frame_along);
+          entry.element.phi(Arguments<DesignSeries>{g.i, g.j, DesignSeries(c.f), g.ground}, rows);
+          for (int r = 0; r < E::rows; ++r)
+            sum -= DesignScalar(scale * weights.lambda[at(block.row(e) + r)]) * rows[r].d;
         }
-        const DesignSeries c = value(entry);
-        const double scale = scale_[at(entry.id)];
-        DesignSeries rows[E::rows];
-        const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_, frame);
-        entry.element.phi(Arguments<DesignSeries>{f.i, f.j, c, f.ground}, rows);
-        for (int r = 0; r < E::rows; ++r) {
-          const std::size_t row = at(block.row(e) + r);
-          if (!weights.phi.empty()) sum -= DesignScalar(scale * weights.phi[row]) * rows[r].f;
-          if (!weights.rate.empty()) sum -= DesignScalar(scale * weights.rate[row]) * rows[r].d;
-          if (!weights.bend.empty()) sum -= DesignScalar(scale * weights.bend[row]) * rows[r].dd;
-        }
-        if (weights.lambda.empty()) continue;
-        // lambda^T Phi_q w: without what the function of time itself changes by.
-        const auto g = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_, frame_along);
-        entry.element.phi(Arguments<DesignSeries>{g.i, g.j, DesignSeries(c.f), g.ground}, rows);
-        for (int r = 0; r < E::rows; ++r) sum -= DesignScalar(scale * weights.lambda[at(block.row(e) + r)]) * rows[r].d;
       }
-    }
-  });
+    });
   if (weights.w.empty()) return sum.d;
   type_number = 0;
   const auto pose = [&](int body) {
     if (immobile(body)) return detail::present(mechanism.motion(body));
     return detail::present(turned(lifted(motion_[at(body)]), body));
   };
-  for_each_list(plan_->forces, model.forces, [&](const auto& block, const auto& list, int) {
-    using E = ElementOf<decltype(list)>;
-    using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
-    const std::vector<int>& places = reached.forces_[type_number++];
-    if (places.empty()) return;
-    if constexpr (is_asked<Plain>) {
-      for (const int e : places) {
-        const auto& entry = list[at(block.entry[at(e)])];
-        const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_, pose);
-        std::array<DesignScalar, E::functions + 1> values;
-        for (std::size_t n = 0; n < entry.values.size(); ++n) {
-          const auto& own = entry.values[n];
-          values[n] = own.function < 0 ? DesignScalar(own.constant)
-                                       : model.functions[at(own.function)].evaluate(mechanism.time()).f;
+  if (reached.any_force_)
+    for_each_list(plan_->forces, model.forces, [&](const auto& block, const auto& list, int) {
+      using E = ElementOf<decltype(list)>;
+      using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
+      const std::vector<int>& places = reached.forces_[type_number++];
+      if (places.empty()) return;
+      if constexpr (is_asked<Plain>) {
+        for (const int e : places) {
+          const auto& entry = list[at(block.entry[at(e)])];
+          const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_, pose);
+          std::array<DesignScalar, E::functions + 1> values;
+          for (std::size_t n = 0; n < entry.values.size(); ++n) {
+            const auto& own = entry.values[n];
+            values[n] = own.function < 0 ? DesignScalar(own.constant)
+                                         : model.functions[at(own.function)].evaluate(mechanism.time()).f;
+          }
+          const int body_i = block.body_i[at(e)], body_j = E::bodies == 2 ? block.body_j[at(e)] : plan_->bodies;
+          const auto twist = [&](int body) {
+            const double* rate = rates_.data() + 3 * body;
+            return Twist<DesignScalar>{rate[0], rate[1], rate[2]};
+          };
+          const Twist<DesignScalar> u = twist(body_i), v = twist(body_j);
+          Wrench<DesignScalar> on_i, on_j;
+          entry.element.force(ForceArguments<DesignScalar>{f.i, f.j, u, v, values.data(), f.ground}, on_i, on_j);
+          const auto add = [&](int body, const Wrench<DesignScalar>& wrench) {
+            const double* w = weights.w.data() + 3 * body;
+            sum += DesignScalar(w[0]) * wrench.fx + DesignScalar(w[1]) * wrench.fy + DesignScalar(w[2]) * wrench.moment;
+          };
+          add(body_i, on_i);
+          if constexpr (E::bodies == 2) add(body_j, on_j);
         }
-        const int body_i = block.body_i[at(e)], body_j = E::bodies == 2 ? block.body_j[at(e)] : plan_->bodies;
-        const auto twist = [&](int body) {
-          const double* rate = rates_.data() + 3 * body;
-          return Twist<DesignScalar>{rate[0], rate[1], rate[2]};
-        };
-        const Twist<DesignScalar> u = twist(body_i), v = twist(body_j);
-        Wrench<DesignScalar> on_i, on_j;
-        entry.element.force(ForceArguments<DesignScalar>{f.i, f.j, u, v, values.data(), f.ground}, on_i, on_j);
-        const auto add = [&](int body, const Wrench<DesignScalar>& wrench) {
-          const double* w = weights.w.data() + 3 * body;
-          sum += DesignScalar(w[0]) * wrench.fx + DesignScalar(w[1]) * wrench.fy + DesignScalar(w[2]) * wrench.moment;
-        };
-        add(body_i, on_i);
-        if constexpr (E::bodies == 2) add(body_j, on_j);
       }
-    }
-  });
+    });
   const auto weigh = [&](int b) {
     for (int k = 0; k < 3; ++k) {
       const std::size_t c = at(3 * b + k);
       const DesignScalar& m = mechanism.mass(3 * b + k);
-      DesignScalar load = DesignScalar(-(qdd.empty() ? 0 : qdd[c])) * m;
-      if (k < 2) load += m * (k == 0 ? model.gravity.x : model.gravity.y);
-      sum += DesignScalar(weights.w[c]) * load;
+      const DesignScalar field = k == 0 ? model.gravity.x : k == 1 ? model.gravity.y : DesignScalar();
+      const double pull = field.v - (qdd.empty() ? 0 : qdd[c]);
+      for (std::size_t p = 0; p < sum.d.size(); ++p) sum.d[p] += weights.w[c] * (pull * m.d[p] + m.v * field.d[p]);
     }
   };
   if (reached.gravity_) {
