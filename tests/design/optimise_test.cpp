@@ -166,6 +166,32 @@ TEST(Optimise, SaysThatConstraintsCannotBeMet) {
   EXPECT_NEAR(outcome.x.at(0) + outcome.x.at(1), 2, 1e-6);  // the least infeasible one: both at their upper bounds
 }
 
+// x >= 0.4 and x = 0.2: halfway, since both are of one size, wherever the search began.
+TEST(Optimise, GivesTheDesignThatMissesConstraintsLeast) {
+  for (const MinimiserMethod method :
+       {MinimiserMethod::slsqp, MinimiserMethod::mma, MinimiserMethod::ipopt, MinimiserMethod::cobyla}) {
+    for (const double start : {-0.9, 0.2, 0.3, 0.8}) {
+      SCOPED_TRACE(fmt::format("method {}, start {}", static_cast<int>(method), start));
+      DesignProblem problem{{-1, -1}, {1, 1}, {start, 0.5}, 1, 1, {}};
+      problem.evaluate = [](std::span<const double> x, bool) {
+        DesignEvaluation e;
+        e.values.objective = x[1] * x[1] + x[0];
+        e.values.gradient = {1, 2 * x[1]};
+        e.values.unequal = {0.4 - x[0]};
+        e.values.unequal_gradient = {-1, 0};
+        e.values.equal = {x[0] - 0.2};
+        e.values.equal_gradient = {1, 0};
+        return e;
+      };
+      DesignOptions options;
+      options.method = method;
+      const DesignOutcome outcome = optimise_design(problem, options);
+      EXPECT_EQ(outcome.end, DesignEnd::infeasible);
+      EXPECT_NEAR(outcome.x.at(0), 0.3, method == MinimiserMethod::cobyla ? 1e-3 : 1e-6);  // both sizes are 2
+    }
+  }
+}
+
 TEST(Optimise, DesignsWithoutDerivativesOrNumbersAreFailedOnes) {
   DesignProblem problem{{0}, {3}, {0.5}, 0, 0, {}};
   const auto evaluate = [](double derivative_beyond, double value_beyond) {

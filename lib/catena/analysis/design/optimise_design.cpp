@@ -83,6 +83,59 @@ bool goes_downhill(const DesignProblem& problem, const DesignOptions& options, D
   return false;
 }
 
+/// The largest violation t of the constraints, to be least: all of them at most t, in their sizes.
+class LeastViolation final : public MinimisationProblem {
+ public:
+  explicit LeastViolation(DesignSearch& search) : search_(search), n_(static_cast<std::size_t>(search.variables())) {
+    equal_.resize(static_cast<std::size_t>(search.equations()));
+    by_unequal_.resize(static_cast<std::size_t>(search.inequalities()) * n_);
+    by_equal_.resize(equal_.size() * n_);
+  }
+  int variables() const override { return static_cast<int>(n_) + 1; }
+  int inequalities() const override { return search_.inequalities() + 2 * search_.equations(); }
+  int equations() const override { return 0; }
+  double objective(std::span<const double> x, std::span<double> gradient) override {
+    std::fill(gradient.begin(), gradient.end(), 0.0);
+    if (!gradient.empty()) gradient[n_] = 1;
+    return x[n_];
+  }
+  void unequal(std::span<const double> x, std::span<double> g, std::span<double> jacobian) override {
+    const auto u = x.first(n_);
+    const auto rows = static_cast<std::size_t>(search_.inequalities());
+    const bool slopes = !jacobian.empty();
+    if (rows > 0) search_.unequal(u, g.first(rows), slopes ? std::span<double>(by_unequal_) : std::span<double>());
+    if (!equal_.empty()) search_.equal(u, equal_, slopes ? std::span<double>(by_equal_) : std::span<double>());
+    for (std::size_t k = 0; k < g.size(); ++k) {
+      const std::size_t e = (k - rows) / 2;
+      const double sign = k < rows || (k - rows) % 2 == 0 ? 1 : -1;
+      const std::vector<double>& by = k < rows ? by_unequal_ : by_equal_;
+      if (k >= rows) g[k] = sign * equal_[e];
+      g[k] -= x[n_];
+      for (std::size_t v = 0; v < n_ && slopes; ++v)
+        jacobian[k * (n_ + 1) + v] = sign * by[(k < rows ? k : e) * n_ + v];
+      if (slopes) jacobian[k * (n_ + 1) + n_] = -1;
+    }
+  }
+  void equal(std::span<const double>, std::span<double>, std::span<double>) override {}
+  bool go_on() override { return search_.go_on(); }
+
+ private:
+  DesignSearch& search_;
+  std::size_t n_;
+  std::vector<double> equal_, by_unequal_, by_equal_;
+};
+
+/// Looks for the design that misses the constraints least; the best one is it then, and may meet them after all.
+MinimiserEnd lessen_violation(const DesignOptions& options, DesignSearch& search, const DesignOutcome& outcome) {
+  LeastViolation problem(search);
+  std::vector<double> x = search.best();
+  x.push_back(outcome.violation);
+  MinimiserOptions wanted = minimiser_options(options, outcome.evaluations, x.size());
+  wanted.method = uses_gradients(options.method) ? MinimiserMethod::slsqp : MinimiserMethod::cobyla;
+  wanted.upper.back() = 2 * outcome.violation + 1;
+  return minimise(problem, wanted, x);
+}
+
 }  // namespace
 
 DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions& options) {
@@ -102,6 +155,16 @@ DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions&
     if (!search.begin(u)) break;
     end = minimise(search, minimiser_options(options, outcome.evaluations, u.size()), u);
     downhill = goes_downhill(problem, options, search, outcome);
+  }
+  if (outcome.violation > 10 * options.tolerance && search.go_on()) {
+    const MinimiserEnd least = lessen_violation(options, search, outcome);
+    if (outcome.violation > 10 * options.tolerance) {
+      if (least == MinimiserEnd::converged || least == MinimiserEnd::rounding) end = MinimiserEnd::converged;
+      measure(problem, search, outcome);
+    } else if (std::vector<double> u = search.best(); search.begin(u)) {
+      end = minimise(search, minimiser_options(options, outcome.evaluations, u.size()), u);
+      downhill = goes_downhill(problem, options, search, outcome);
+    }
   }
   // A start without slope may be an optimum, or nothing depends on the variables.
   if (search.gradient_size() == 0 && search.go_on()) {

@@ -8,9 +8,9 @@
 namespace catena {
 namespace {
 
-// Ten iterates in a row whose errors are below so many tolerances end the search too: derivatives by which constraints
-// are measured are good to some 1e-10, and of the dual error nothing better can be asked.
-constexpr double acceptable = 100;
+// Of the tolerance of variables, that of the equations of a minimum: in flat valleys a variable is off by the root of
+// what these leave. Ten iterates in a row that meet the tolerance itself will do: derivatives are good to some 1e-10.
+constexpr double part_of_tolerance = 1e-3, acceptable = 1 / part_of_tolerance;
 constexpr int acceptable_iterations = 10;
 // Where none is asked for.
 constexpr double usual_tolerance = 1e-8;
@@ -89,12 +89,13 @@ bool ipopt_minimiser_is_built_in() { return ipopt_program_is_built_in(); }
 
 MinimiserEnd minimise_by_ipopt(MinimisationProblem& problem, const MinimiserOptions& options, std::span<double> x) {
   Problem program(problem, options, x);
-  const IpoptSettings settings{.max_iterations = options.max_evaluations,
-                               .tolerance = options.x_tolerance > 0 ? options.x_tolerance : usual_tolerance,
-                               .acceptable = acceptable,
-                               .acceptable_iterations = acceptable_iterations,
-                               .constraint_tolerance = options.constraint_tolerance,
-                               .relaxed_bounds = 0};
+  const IpoptSettings settings{
+      .max_iterations = options.max_evaluations,
+      .tolerance = part_of_tolerance * (options.x_tolerance > 0 ? options.x_tolerance : usual_tolerance),
+      .acceptable = acceptable,
+      .acceptable_iterations = acceptable_iterations,
+      .constraint_tolerance = options.constraint_tolerance,
+      .relaxed_bounds = 0};
   switch (run_ipopt(program, settings)) {
     case IpoptEnd::solved:
     case IpoptEnd::acceptable:
