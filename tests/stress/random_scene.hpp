@@ -290,6 +290,7 @@ class RandomScene {
     std::vector<DenseMechanism::Function> rows;
     for (std::size_t r = first; r < first + count; ++r) rows.push_back(dense.rows[r].phi);
     add(Json(scene["constraints"][k]), dense.rows[first].i, dense.rows[first].j, rows);
+    dense.rows.back().period = dense.rows[first + count - 1].period;
   }
 
   void add_force(int i, int j) {
