@@ -118,10 +118,9 @@ void Leader::lose(Member& member) {
     desk_.give(k, std::move(failed));
   }
   member.trouble = fmt::format("process {} was lost after {} designs; ", member.rank, member.done);
-  member.trouble += member.held.empty()
-                        ? "it had none at hand"
-                        : fmt::format("the {} that it had were given to others: {}", member.held.size(),
-                                      design_ranges(member.held));
+  member.trouble += member.held.empty() ? "it had none at hand"
+                                        : fmt::format("the {} that it had were given to others: {}", member.held.size(),
+                                                      design_ranges(member.held));
   member.held.clear();
 }
 
