@@ -10,6 +10,9 @@ namespace {
 constexpr int halvings = 6;
 // Designs around a start that fails: corners of a cube of half the range, and its middle.
 constexpr double around[] = {0.5, 0.25, 0.75};
+// What a constraint that is missed within the tolerance costs, both in their sizes: more than most multipliers, so that
+// a design gains nothing by it.
+constexpr double price_of_violation = 10;
 // Of the objective's size, on the square of the distance beyond a border in parts of the ranges.
 constexpr double steepness = 10;
 
@@ -113,7 +116,11 @@ void DesignSearch::compare(const Point& point) {
   const double allowed = 10 * options_.tolerance, violation = violation_of(point.values);
   if (improvements_ > 0) {
     const bool good = violation <= allowed, best_good = outcome_.violation <= allowed;
-    const bool better = good && best_good ? point.values.objective < outcome_.values.objective
+    const auto merit = [&](double objective, double missed) {
+      return objective / objective_size_ + price_of_violation * std::max(missed, 0.0);
+    };
+    const bool better = good && best_good ? merit(point.values.objective, violation) <
+                                                merit(outcome_.values.objective, outcome_.violation)
                                           : good || (!best_good && violation < outcome_.violation);
     if (!better) return;
   }
