@@ -124,6 +124,14 @@ py::dict measures_of(const AnalysisResult& result) {
   return measures;
 }
 
+py::dict digits_of(const AnalysisResult& result) {
+  py::dict digits;
+  for (std::size_t k = 0; k < result.digits.size(); ++k) {
+    if (std::isfinite(result.digits[k])) digits[py::str(result.columns[k].name)] = result.digits[k];
+  }
+  return digits;
+}
+
 py::dict fields_of(const AnalysisResult& result) {
   py::dict fields;
   for (const NamedField& field : result.fields) fields[py::str(field.name)] = to_python(field.value);
@@ -175,6 +183,9 @@ void bind_runs(py::module_& module) {
       .def_property_readonly("ok", [](const Analysis& a) { return a.result.report.ok(); })
       .def_property_readonly("message", [](const Analysis& a) { return a.result.report.message; })
       .def_property_readonly("warnings", [](const Analysis& a) { return a.result.report.warnings; })
+      .def_property_readonly(
+          "digits", [](const Analysis& a) { return digits_of(a.result); },
+          "How many digits of each column are right, by name; without those of which it is not known.")
       .def_property_readonly(
           "measures", [](const Analysis& a) { return measures_of(a.result); },
           "By name: value (None where there is none), unit, t, gradient.")

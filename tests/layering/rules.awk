@@ -9,6 +9,7 @@
 #
 #   analysis  run <- pose <- motion <- events <- {kinematics, contact <- dynamics};  pose <- balance <- spectrum <- statics <- stability
 #             run <- measures;  motion <- sensitivity;  minimiser <- {statics, design};  kinematics <- batch
+#             {kinematics, statics} <- accuracy
 #   scene     json <- numbers <- describing <- reading <- building <- models <- judging <- running <- designing <- viewing <- loading
 #             <- explaining
 #   drawing   shapes <- figures
@@ -41,6 +42,7 @@ BEGIN {
   after("analysis", "sensitivity", "run motion")
   after("analysis", "design", "minimiser")
   after("analysis", "batch", "run pose motion events kinematics")
+  after("analysis", "accuracy", "run pose motion events kinematics balance spectrum statics")
   chain("scene", "json numbers describing reading building models judging running designing viewing explaining loading")
   chain("drawing", "shapes figures")
   chain("linalg", "patterns kernels")

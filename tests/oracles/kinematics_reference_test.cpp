@@ -1,5 +1,6 @@
 // Linkages and slides through scenes, against reference solutions (data/reference, each file with its own definition,
 // method and cross-check): positions to 1e-11, velocities to 1e-10, accelerations and loads to 1e-9 of the largest.
+#include "oracles/claimed_digits.hpp"
 #include "oracles/kinematic_reference.hpp"
 
 namespace catena::testing {
@@ -20,14 +21,23 @@ Pick entry(const std::string& name, std::size_t k) {
 class Turn {
  public:
   Turn(const TextRun& run, const std::string& reference) : run_(run), values_(reference_values(reference)) {}
-  ~Turn() { comparison_.expect(12); }
+  ~Turn() {
+    comparison_.expect(12);
+    claims_.expect("reference");
+    EXPECT_EQ(claims_.size(), claims_.asked()) << "columns without digits";
+  }
 
   void add(std::size_t analysis, const std::string& column, double allowed, const Pick& pick) {
     const std::vector<double> computed = run_.column(column, analysis);
     ASSERT_EQ(computed.size(), 73u) << column;
+    std::vector<long double> exact;
+    std::vector<std::size_t> rows;
     for (int k = 0; k < 12; ++k) {
-      comparison_.add(column, allowed, computed[crank_row(k)], pick(values_.at(crank_key(k))));
+      exact.push_back(pick(values_.at(crank_key(k))));
+      rows.push_back(crank_row(k));
+      comparison_.add(column, allowed, computed[rows.back()], static_cast<double>(exact.back()));
     }
+    claims_.add(run_, column, exact, column, analysis, rows);
   }
   /// Position, velocity and acceleration, in the kinematics: the second analysis.
   void motion(const std::array<std::string, 3>& columns, const std::array<Pick, 3>& picks) {
@@ -51,6 +61,7 @@ class Turn {
   const TextRun& run_;
   json values_;
   Comparison comparison_;
+  ClaimedDigits claims_;
 };
 
 /// A mechanism modelled in several ways: a scene, and the body or point that slides in it.

@@ -80,6 +80,11 @@ class Analysis:
         return self._results.warnings
 
     @property
+    def digits(self) -> dict[str, float]:
+        """How many digits of each column are right, by name; without those of which it is not known."""
+        return self._results.digits
+
+    @property
     def measures(self) -> dict[str, dict[str, Any]]:
         """By name: value (None where there is none), unit, t, gradient."""
         return self._results.measures

@@ -43,6 +43,7 @@ struct AnalysisResult {
   AnalysisReport report;
   bool has_rows = false;  ///< a table belongs to it, be it empty
   std::vector<ColumnInfo> columns;
+  std::vector<double> digits{};                       ///< that are right, by column; NaN: not known; empty: of none
   std::int64_t rows = 0;                              ///< how many went to the sink
   std::vector<NamedField> fields;                     ///< in the order in which they are written
   std::vector<std::pair<std::string, double>> set{};  ///< parameters that it had a value of its own for

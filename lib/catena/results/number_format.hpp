@@ -12,7 +12,8 @@ void append_exact(std::string& out, double value);
 
 /// The numbers of a column for readers: the same number of decimals for all, six significant digits of the largest
 /// (rounding errors beside it then read 0), common trailing zeros removed; "-" for a number that is not finite.
-std::vector<std::string> format_column(std::span<const double> values);
+/// `errors`: of the values, 0 where they are not known: no digit is shown that may be wrong by more than half a unit.
+std::vector<std::string> format_column(std::span<const double> values, std::span<const double> errors = {});
 
 /// One number with six significant digits.
 std::string format_number(double value);

@@ -89,6 +89,13 @@ bool are_rounding(const Plan& plan, std::span<const double> terms, std::span<con
 
 }  // namespace
 
+std::vector<double> balance_rounding(StaticSystem& system, std::span<const double> lambda) {
+  std::vector<double> rounding = sum_terms(system, force_sizes(system.evaluator()).all, lambda);
+  add_stiffness_times_places(system, lambda, rounding);
+  for (double& size : rounding) size *= few_roundings;
+  return rounding;
+}
+
 StaticAccuracy judge_balance(StaticSystem& system, std::span<const double> lambda, double tolerance) {
   const Plan& plan = system.plan();
   const std::span<const double> inverse_arms = system.matrix().inverse_arms();

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "catena/analysis/balance/static_system.hpp"
 
@@ -30,6 +31,10 @@ struct StaticAccuracy {
 
   bool holds() const { return balanced || rounded; }
 };
+
+/// rounding_c of the balance at the point where the system is, by columns, N or N m. The work of one evaluation of all
+/// stiffnesses.
+std::vector<double> balance_rounding(StaticSystem& system, std::span<const double> lambda);
 
 /// Judges the point where the system is. The work of one evaluation; of all stiffnesses too where not balanced.
 StaticAccuracy judge_balance(StaticSystem& system, std::span<const double> lambda, double tolerance);

@@ -43,8 +43,8 @@ DynamicsOptions finer_options(const DynamicsOptions& options) {
   return finer;
 }
 
-ErrorComparison::ErrorComparison(Dynamics& asked, const TimeGrid& grid, RowObserver& target)
-    : asked_(asked), grid_(grid), target_(target) {
+ErrorComparison::ErrorComparison(Dynamics& asked, const TimeGrid& grid, RowObserver& target, RowObserver* beside)
+    : asked_(asked), grid_(grid), target_(target), beside_(beside) {
   error_.position.scale = asked.evaluator().length_scale();
   error_.angle.scale = 1;
   error_.until = t_ = asked.time();
@@ -58,7 +58,7 @@ bool ErrorComparison::proceed(double t) {
 bool ErrorComparison::Other::observe(const Snapshot& snapshot) {
   owner_.q_.assign(snapshot.q.begin(), snapshot.q.end());
   owner_.qd_.assign(snapshot.qd.begin(), snapshot.qd.end());
-  return true;
+  return !owner_.beside_ || owner_.beside_->observe(snapshot);
 }
 
 // Observers see one run, the finer one; the other one only ends when cancelled.

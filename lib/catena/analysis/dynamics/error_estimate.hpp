@@ -40,8 +40,9 @@ DynamicsOptions finer_options(const DynamicsOptions& options);
 /// Follows the rows of the finer run with the other one, compares, and passes them on.
 class ErrorComparison final : public RowObserver {
  public:
-  /// `asked` has begun; `target` gets the rows.
-  ErrorComparison(Dynamics& asked, const TimeGrid& grid, RowObserver& target);
+  /// `asked` has begun; `target` gets the rows, and before each of them `beside`, if there is one, the same row of the
+  /// run that was asked for.
+  ErrorComparison(Dynamics& asked, const TimeGrid& grid, RowObserver& target, RowObserver* beside = nullptr);
 
   bool observe(const Snapshot& snapshot) override;
   bool proceed(double t) override;
@@ -65,6 +66,7 @@ class ErrorComparison final : public RowObserver {
   Dynamics& asked_;
   const TimeGrid& grid_;
   RowObserver& target_;
+  RowObserver* beside_;
   Other other_{*this};
   EstimatedError error_;
   std::int64_t row_ = 0;
@@ -95,19 +97,22 @@ class WithErrorEstimate {
     asked_.start_from(state);
   }
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& observer) {
-    asked_.begin(grid, {});
-    ErrorComparison comparison(asked_, grid, observer);
+    asked_.begin(grid, beside_ ? needs : Needs{});
+    ErrorComparison comparison(asked_, grid, observer, beside_);
     AnalysisReport report = finer_.run(grid, needs, comparison);
     error_ = comparison.error();
     add_estimate(report, asked_.end(), error_, options_);
     return report;
   }
   const EstimatedError& error() const { return error_; }
+  /// Who gets every row of the run that was asked for before the finer one's, with what is needed of that.
+  void show_asked(RowObserver& beside) { beside_ = &beside; }
 
  private:
   Analysis& finer_;
   Dynamics asked_;
   DynamicsOptions options_;
+  RowObserver* beside_ = nullptr;
   EstimatedError error_;
 };
 

@@ -317,17 +317,22 @@ bool DrivenSolver::solve_refined(std::span<double> x, bool has_start) {
     all = sizes[1].all;
     if (!std::isfinite(size)) return false;
     if (k > 0) rate = std::max(rate, size / last_size);
-    if (rate * size <= negligible * all || size <= rounding * all) return true;
+    if (rate * size <= negligible * all || size <= rounding * all) {
+      left_of_rates_ = std::max(left_of_rates_, rate * size / all);
+      return true;
+    }
     if (k > 0 && size > poor_contraction * last_size) {
       if (size > rounding_floor * all && !factored_here) {
         if (!factorize()) return false;
         factored_here = true;
         rate = 0;
       } else if (k > 1 && is_solved_to_rounding(values, x)) {
+        left_of_rates_ = std::max(left_of_rates_, size / all);
         return true;
       }
     }
   }
+  left_of_rates_ = std::max(left_of_rates_, size / all);
   return size <= tolerance * all || is_solved_to_rounding(values, x);
 }
 
@@ -368,6 +373,22 @@ bool DrivenSolver::solve_acceleration(std::span<const double> qd, std::span<doub
   return solve_rate(qdd, has_start);
 }
 
+double DrivenSolver::rate_norm(std::span<const double> rates) const {
+  double largest = 0;
+  for (const int k : plan_.coordinate)
+    largest = std::max(largest, std::abs(rates[at(k)]) * (k % 3 == 2 ? 1 : 1 / evaluator_.length_scale()));
+  return largest;
+}
+
+bool DrivenSolver::respond(std::span<const double> rows, std::span<double> change) {
+  if (!is_square() || !factors_valid_) return false;
+  for (std::size_t k = 0; k < rows_.size(); ++k) step_[k] = rows[at(rows_[k])];
+  factorization_.solve(step_, evaluator_.counters);
+  std::fill(change.begin(), change.end(), 0.0);
+  to_coordinates(step_, change);
+  return true;
+}
+
 bool DrivenSolver::solve_multipliers(std::span<const double> rhs, std::span<double> lambda) {
   if (!is_square()) return false;
   const std::span<const double> values = jacobian();
@@ -392,10 +413,18 @@ bool DrivenSolver::solve_multipliers(std::span<const double> rhs, std::span<doub
       all = std::max(all, std::abs(x));
     }
     if (!std::isfinite(all)) return false;
-    const double rate = k > 0 ? size / last_size : refinement_rate();
-    if (rate * size <= negligible * all || size <= rounding * all) return true;
-    if (k > 0 && rate > poor_contraction) return size <= tolerance * all;
+    // The ratio of corrections alone may be that of forces while what is left is moments.
+    const double ratio = k > 0 ? size / last_size : 0, rate = std::max(refinement_rate(), ratio);
+    if (rate * size <= negligible * all || size <= rounding * all) {
+      if (all > 0) left_of_multipliers_ = std::max(left_of_multipliers_, rate * size / all);
+      return true;
+    }
+    if (ratio > poor_contraction) {
+      left_of_multipliers_ = std::max(left_of_multipliers_, size / all);
+      return size <= tolerance * all;
+    }
   }
+  left_of_multipliers_ = 1;
   return true;
 }
 

@@ -50,11 +50,19 @@ class DrivenSolver {
   bool solve_velocity(std::span<double> qd, bool has_start);
   /// Accelerations; qd must be the velocities.
   bool solve_acceleration(std::span<const double> qd, std::span<double> qdd, bool has_start);
+  /// Solves Phi_q change = rows for the rows in use, with the factors at hand: how all coordinates answer where these
+  /// equations are off. Not refined. False if there are no factors.
+  bool respond(std::span<const double> rows, std::span<double> change);
   /// Solves Phi_q^T lambda = rhs (columns) for the rows in use; lambda has one entry a row of the plan, others zero.
   bool solve_multipliers(std::span<const double> rhs, std::span<double> lambda);
 
   /// Residuals, nu and gamma of all equations at the last evaluation, to check those that are not solved with.
   std::span<const double> phi() const { return phi_; }
+  /// The largest part of rates, and of multipliers, that refinement left to be corrected in any solve since the last
+  /// forget_left(): next correction, as it was predicted, over the largest entry; rates in length scales and rad.
+  double left_of_rates() const { return left_of_rates_; }
+  double left_of_multipliers() const { return left_of_multipliers_; }
+  void forget_left() { left_of_rates_ = left_of_multipliers_ = 0; }
   /// Phi_q at the last configuration, current after solve_velocity.
   std::span<const double> jacobian();
   const Factorization& factorization() const { return factorization_; }
@@ -72,6 +80,8 @@ class DrivenSolver {
   bool null_vectors(std::span<double> w, std::span<double> z);
   /// Largest entry of a vector over all rows, in units of the length scale or rad.
   double row_norm(std::span<const double> r) const { return scaling_.row_norm(r); }
+  /// Largest entry of rates over all coordinates, in length scales or rad.
+  double rate_norm(std::span<const double> rates) const;
   /// Residual of the rows that are not solved with, in units of the length scale or rad; `worst`: its row.
   double redundant_residual(std::span<const double> residual_of_all, int* worst) const;
 
@@ -116,6 +126,7 @@ class DrivenSolver {
   double gap_ = 0;     // from q_ to q_factored_: how much worse than exact the factors are
   double extent_ = 0;  // norm of q_
   double rcond_ = 0;   // of the last factorization
+  double left_of_rates_ = 0, left_of_multipliers_ = 0;
   FactorResult factor_result_;
 };
 

@@ -344,6 +344,8 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& asked, RowObse
   report.rows = plan_->rows;
   report.islands = plan_->islands;
   observer_ = &observer;
+  interpolated_ = false;
+  solver_.forget_left();
   Needs needs = asked;
   if (needs.work) needs.velocity = needs.acceleration = needs.multipliers = true;
   account_.reset();
@@ -410,6 +412,7 @@ AnalysisReport Kinematics::run(const TimeGrid& grid, const Needs& asked, RowObse
       newton_ = solver_.solve_position(trial_);
       if (newton_.converged) q_.swap(trial_);
     }
+    interpolated_ = interpolated_ || on_bridge_;
     if (const Report consistent = check_redundant_rows(); !consistent.ok()) return end(consistent);
     if (const Report sound = watched_.check(); !sound.ok()) return end(sound);
     // Redundant equations must agree in velocities and accelerations as well, whether or not these are output.

@@ -74,6 +74,10 @@ class Kinematics {
   /// std::out_of_range for one that no body has.
   Frame<double> frame(int body) const { return frame_of(evaluator_, q_, body); }
   const DrivenSolver& solver() const { return solver_; }
+  /// To look at the neighbourhood of a row once the run is over.
+  DrivenSolver& solver() { return solver_; }
+  /// Whether some row of the last run lies where the motion is interpolated across a singular position.
+  bool interpolated() const { return interpolated_; }
   /// The singular configurations met so far, in the order in which they were met.
   const std::vector<SingularPoint>& singular_points() const { return singular_points_; }
 
@@ -186,6 +190,7 @@ class Kinematics {
   MotionBridge bridge_;
   double bridge_from_ = 0, bridge_to_ = 0;
   bool on_bridge_ = false;
+  bool interpolated_ = false;
   std::optional<SingularPoint> choice_;
   std::vector<SingularPoint> singular_points_;
 };

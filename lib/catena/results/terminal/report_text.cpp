@@ -1,5 +1,8 @@
 #include "catena/results/terminal/report_text.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "catena/results/number_format.hpp"
 
 namespace catena {
@@ -109,6 +112,26 @@ std::string extremes_text(const AnalysisResult& result) {
   return text.empty() ? text : "  least and largest:\n" + text;
 }
 
+/// How many digits are right, from the worst column to the best; columns that are zero but for rounding apart.
+std::string digits_text(const AnalysisResult& result) {
+  std::size_t least = result.digits.size();
+  double most = 0;
+  std::int64_t zeros = 0;
+  for (std::size_t k = 0; k < result.digits.size(); ++k) {
+    const double digits = result.digits[k];
+    zeros += digits == 0;
+    if (!(digits > 0) || result.columns[k].unit == UnitKind::time) continue;
+    if (least == result.digits.size() || digits < result.digits[least]) least = k;
+    most = std::max(most, digits);
+  }
+  const std::string of_zeros = zeros == 0 ? "" : count(zeros, "column is", "columns are") + " zero to rounding\n";
+  if (least == result.digits.size()) return of_zeros.empty() ? of_zeros : "  " + of_zeros;
+  const auto whole = [](double digits) { return std::to_string(static_cast<int>(digits)); };
+  std::string text = "  digits right: " + whole(result.digits[least]);
+  if (whole(most) != whole(result.digits[least])) text += " ... " + whole(most);
+  return text + " (least: " + result.columns[least].name + ")" + (of_zeros.empty() ? "\n" : "; " + of_zeros);
+}
+
 /// Rows, rank and freedoms as sentences.
 std::string structure_text(const AnalysisReport& report) {
   std::string text = "  " + count(report.bodies, "body", "bodies") + ", " +
@@ -173,6 +196,7 @@ std::string report_text(const AnalysisResult& result) {
   if ((!result.has_rows && counted) || report.status == Status::under_driven) text += structure_text(report);
   if (!result.has_rows && report.rank && report.redundant.empty()) text += "  no redundant constraints\n";
   text += redundancy_text(report);
+  text += digits_text(result);
   text += extremes_text(result);
   text += measures_text(result);
   for (const NamedField& field : result.fields)

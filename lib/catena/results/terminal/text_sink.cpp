@@ -13,7 +13,7 @@ RowSink& TextSink::begin_analysis(std::string_view) {
 
 void TextSink::end_analysis(const AnalysisResult& result) {
   output_.write("\n" + outcome_text(result));
-  const TextTable::Text table = table_.text();
+  const TextTable::Text table = table_.text(result.digits);
   output_.write(table.lines);
   if (!hint_.empty() && table.shortened) output_.write("  (" + std::exchange(hint_, {}) + ")\n");
   output_.write(report_text(result));

@@ -1,6 +1,7 @@
 #include "catena/results/terminal/text_table.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -19,8 +20,8 @@ std::size_t width_of(std::string_view text) {
 }
 
 /// The cells of a column.
-std::vector<std::string> cells_of(const ColumnInfo& column, const std::vector<double>& values) {
-  if (!column.is_status) return format_column(values);
+std::vector<std::string> cells_of(const ColumnInfo& column, const std::vector<double>& values, double error) {
+  if (!column.is_status) return format_column(values, std::vector<double>(values.size(), error));
   std::vector<std::string> words;
   for (const double value : values) words.emplace_back(status_word(value));
   return words;
@@ -61,10 +62,14 @@ void TextTable::begin(std::span<const ColumnInfo> columns) {
   columns_.assign(columns.begin(), columns.begin() + static_cast<std::ptrdiff_t>(kept_columns_));
   rows_ = 0;
   values_.clear();
+  largest_.assign(kept_columns_, 0.0);
 }
 
 bool TextTable::row(std::span<const double> values) {
   const auto kept = values.first(kept_columns_);
+  for (std::size_t k = 0; k < kept_columns_; ++k) {
+    if (std::abs(kept[k]) > largest_[k]) largest_[k] = std::abs(kept[k]);
+  }
   if (rows_ < limits_.first_rows + limits_.last_rows) {
     values_.insert(values_.end(), kept.begin(), kept.end());
   } else if (limits_.last_rows > 0) {
@@ -88,18 +93,26 @@ std::vector<double> TextTable::shown(std::size_t column) const {
   return values;
 }
 
-TextTable::Text TextTable::text() const {
+TextTable::Text TextTable::text(std::span<const double> digits) const {
   if (all_columns_ == 0) return {};
-  return rows_ == 1 ? list() : grid();
+  return rows_ == 1 ? list(digits) : grid(digits);
 }
 
-TextTable::Text TextTable::list() const {
+double TextTable::error_of(std::size_t column, std::span<const double> digits) const {
+  if (column >= digits.size() || std::isnan(digits[column])) return 0;
+  return largest_[column] * std::pow(10.0, -digits[column]);
+}
+
+TextTable::Text TextTable::list(std::span<const double> digits) const {
   const std::size_t lines = std::min(kept_columns_, limits_.list_lines);
   // Numbers of one unit share their decimals, so that rounding errors beside a large one read 0.
-  std::map<UnitKind, std::vector<double>> of_unit;
-  for (std::size_t k = 0; k < lines; ++k) of_unit[columns_[k].unit].push_back(values_[k]);
+  std::map<UnitKind, std::vector<double>> of_unit, errors;
+  for (std::size_t k = 0; k < lines; ++k) {
+    of_unit[columns_[k].unit].push_back(values_[k]);
+    errors[columns_[k].unit].push_back(error_of(k, digits));
+  }
   std::map<UnitKind, std::vector<std::string>> texts;
-  for (const auto& [unit, values] : of_unit) texts[unit] = format_column(values);
+  for (const auto& [unit, values] : of_unit) texts[unit] = format_column(values, errors[unit]);
 
   std::map<UnitKind, std::size_t> next;
   std::vector<std::string> numbers;
@@ -123,11 +136,12 @@ TextTable::Text TextTable::list() const {
   return {out, shortened};
 }
 
-TextTable::Text TextTable::grid() const {
+TextTable::Text TextTable::grid(std::span<const double> digits) const {
   std::vector<TableColumn> table;
   std::size_t width = 0;
   for (std::size_t k = 0; k < kept_columns_; ++k) {
-    TableColumn column{columns_[k].name, shown_unit(columns_[k]), cells_of(columns_[k], shown(k)), 0};
+    TableColumn column{columns_[k].name, shown_unit(columns_[k]), cells_of(columns_[k], shown(k), error_of(k, digits)),
+                       0};
     column.width = std::max(width_of(column.name), width_of(column.unit));
     for (const std::string& cell : column.cells) column.width = std::max(column.width, cell.size());
     width += column.width + 2;

@@ -31,12 +31,15 @@ class TextTable final : public RowSink {
     std::string lines;       ///< each one ended; empty if there are no columns
     bool shortened = false;  ///< something was left out
   };
-  /// The table so far.
-  Text text() const;
+  /// The table so far. `digits`: how many of each column are right, NaN or none where that is not known; no others are
+  /// shown.
+  Text text(std::span<const double> digits = {}) const;
 
  private:
-  Text list() const;
-  Text grid() const;
+  Text list(std::span<const double> digits) const;
+  Text grid(std::span<const double> digits) const;
+  /// Of the values of a column, 0 where it is not known.
+  double error_of(std::size_t column, std::span<const double> digits) const;
   std::size_t kept_rows() const { return kept_columns_ == 0 ? 0 : values_.size() / kept_columns_; }
   /// Values of a kept column from the first row shown to the last.
   std::vector<double> shown(std::size_t column) const;
@@ -44,6 +47,7 @@ class TextTable final : public RowSink {
   TableLimits limits_;
   std::vector<ColumnInfo> columns_;  // the kept ones
   std::size_t all_columns_ = 0, kept_columns_ = 0;
+  std::vector<double> largest_;  // magnitude of these in all rows
   std::uint64_t rows_ = 0;
   std::vector<double> values_;  // rows kept; the last ones in a ring behind the first ones
 };

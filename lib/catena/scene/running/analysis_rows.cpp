@@ -231,6 +231,7 @@ bool AnalysisRows::observe(const Snapshot& snapshot) {
   look_since_last_row(snapshot);
   measures_.take_row(snapshot, !timed_ || rows_alone_);
   columns_.evaluate(snapshot, values_);
+  if (accuracy_) accuracy_->take(snapshot, values_);
   if (row_derivatives_) {
     const std::size_t plain = columns_.size(), first = plain > 0 && info_[0].unit == UnitKind::time ? 1 : 0;
     const auto parameters = static_cast<std::size_t>(derivatives_->parameters());
@@ -326,6 +327,7 @@ std::vector<MeasureResult> AnalysisRows::measured() const {
 
 void AnalysisRows::finish(AnalysisResult& result) {
   look_at_what_is_left();
+  if (accuracy_) result.digits = accuracy_->digits(result.report);
   take_rows(result, std::move(info_), rows_);
   for (const std::string& note : columns_.notes()) result.report.warnings.push_back(note);
   for (MeasureResult& measure : measured()) {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "catena/analysis/measures/measure_set.hpp"
+#include "catena/analysis/run/row_accuracy.hpp"
 #include "catena/analysis/run/row_observer.hpp"
 #include "catena/analysis/sensitivity/state_derivatives.hpp"
 #include "catena/results/analysis_result.hpp"
@@ -37,6 +38,8 @@ class AnalysisRows final : public RowObserver {
   void take_rows_alone() { rows_alone_ = true; }
   /// One-sided elements do not take part in the analysis: the rows tell which of them are violated.
   void watch_gaps(const Model& model) { gaps_.emplace(model); }
+  /// How many digits of the columns are right is wanted, and this is how it is found.
+  void judge(std::unique_ptr<RowAccuracy> accuracy) { accuracy_ = std::move(accuracy); }
   /// Announces the columns to the sink.
   void begin();
 
@@ -56,6 +59,7 @@ class AnalysisRows final : public RowObserver {
   bool cover(const MotionStretch& stretch) override;
 
   std::int64_t rows() const { return rows_; }
+  const ColumnSet& columns() const { return columns_; }
   /// Columns, rows, measures and what is to be said of them, after the report was taken over; the last call.
   void finish(AnalysisResult& result);
 
@@ -81,6 +85,7 @@ class AnalysisRows final : public RowObserver {
   Look look_;
   Drawn drawn_;
   std::optional<GapWatch> gaps_;
+  std::unique_ptr<RowAccuracy> accuracy_;
   ColumnSources sources_;
   std::vector<ColumnInfo> info_;
   std::vector<double> values_, row_gradients_;  // of one row, kept for their memory

@@ -1,4 +1,5 @@
 // The result document, written as results come: nothing but the row at hand is kept.
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -131,6 +132,19 @@ void append_extremes(std::string& out, const AnalysisResult& result) {
   out += '}';
 }
 
+/// "digits": {"crank.angle": 13.2}, of the columns of which they are known.
+void append_digits(std::string& out, const AnalysisResult& result) {
+  if (result.digits.empty()) return;
+  std::vector<std::pair<std::string, double>> known;
+  for (std::size_t k = 0; k < result.digits.size(); ++k) {
+    // Tenths, rounded down: more is not told by an estimate.
+    if (std::isfinite(result.digits[k]))
+      known.emplace_back(result.columns[k].name, std::floor(10 * result.digits[k]) / 10);
+  }
+  append_key(out, "digits");
+  append_object(out, known);
+}
+
 void append_counters(std::string& out, const Counters& c) {
   const std::pair<std::string_view, std::int64_t> all[] = {{"symbolic", c.symbolic},
                                                            {"factorizations", c.factorizations},
@@ -245,6 +259,7 @@ class JsonSink final : public ResultSink, private RowSink {
       append_key(text_, "set");
       append_object(text_, result.set);
     }
+    append_digits(text_, result);
     append_measures(text_, result);
     append_extremes(text_, result);
     for (const NamedField& field : result.fields) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "catena/analysis/accuracy/compared_rows.hpp"
 #include "catena/analysis/dynamics/dynamics_of_islands.hpp"
 #include "catena/analysis/dynamics/dynamics_with_events.hpp"
 #include "catena/analysis/dynamics/error_estimate.hpp"
@@ -152,8 +153,13 @@ void DynamicsTask::run_or_estimate(Analysis& analysis, const PlanOptions& plan) 
     return;
   }
   WithErrorEstimate both(analysis, model_, plan, options_);
-  run_over_time(context_, result_, both, *grid_, names_, sources,
-                [&](AnalysisRows& rows) { differentiate(rows, analysis.evaluator()); });
+  run_over_time(context_, result_, both, *grid_, names_, sources, [&](AnalysisRows& rows) {
+    differentiate(rows, analysis.evaluator());
+    if (!context_.digits || context_.design) return;
+    auto compared = std::make_unique<ComparedRows>(rows.columns());
+    both.show_asked(*compared);
+    rows.judge(std::move(compared));
+  });
   result_.fields.push_back({"estimated_error", records_of(both.error(), *model_)});
 }
 

@@ -1,6 +1,7 @@
 // equilibrium: the configuration at rest, certified.
 #include <fmt/format.h>
 
+#include "catena/analysis/accuracy/equilibrium_accuracy.hpp"
 #include "catena/analysis/contact/contact_points.hpp"
 #include "catena/analysis/contact/holding.hpp"
 #include "catena/analysis/run/energyless_forces.hpp"
@@ -145,10 +146,17 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
     derivatives = found.get();
     rows.differentiate(std::move(found));
   }
+  EquilibriumAccuracy* accuracy = nullptr;
+  if (context.digits && !context.design) {
+    auto judge = std::make_unique<EquilibriumAccuracy>(analysis, columns);
+    accuracy = judge.get();
+    rows.judge(std::move(judge));
+  }
   rows.begin();
   Needs needs = rows.needs();
   needs.multipliers = needs.multipliers || derivatives;
   EquilibriumReport report = failed ? *failed : analysis.run(TimeGrid::instant(start.t), needs, rows);
+  if (accuracy && (report.neutral || report.free_motions > 0)) accuracy->withhold();
   context.state = analysis.state();
   if (report.ok()) context.state.ropes = ways.turns(context.state);
   if (const int friction = first_friction(*context.model); friction >= 0) {

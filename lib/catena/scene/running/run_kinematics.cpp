@@ -1,6 +1,7 @@
 // kinematics and inverse_dynamics: a driven mechanism over time.
 #include <fmt/format.h>
 
+#include "catena/analysis/accuracy/kinematic_accuracy.hpp"
 #include "catena/analysis/kinematics/kinematic_look.hpp"
 #include "catena/analysis/kinematics/kinematics_with_events.hpp"
 #include "catena/analysis/kinematics/minimum_norm_motion.hpp"
@@ -217,6 +218,9 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
         return drawn->at(snapshot.t);
       });
     }
+    // Where ropes meet pulleys the model changes on the way.
+    if (context.digits && !context.design && rope_routes(*context.model).empty())
+      rows.judge(std::make_unique<KinematicAccuracy>(analysis, rows.columns()));
     if (!context.design) return;
     rows.differentiate(std::make_unique<KinematicDerivatives>(analysis.evaluator(), designs_of(context),
                                                               static_cast<int>(context.design->names.size())));

@@ -229,6 +229,7 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
                           .estimate_error = options_.estimate_error,
                           .checkpoint = checkpoints_.wanted() ? &checkpoint : nullptr,
                           .poses = options_.poses,
+                          .digits = true,
                           .threads = options_.threads,
                           .sweep = {.record = record_ ? &*record_ : nullptr,
                                     .link = options_.link,

@@ -1,0 +1,26 @@
+// Numbers of random signs and sizes with which equations are disturbed to see what their rounding does: the same in
+// every run.
+//
+// Rounding errors of a sum of terms are spread over +-eps of them: uniform, with a standard deviation of 1/sqrt(3).
+// Source of the recurrence: S. Vigna, "An experimental exploration of Marsaglia's xorshift generators" (2016).
+#pragma once
+
+#include <cstdint>
+
+namespace catena {
+
+class Disturbance {
+ public:
+  /// Between -1 and 1.
+  double next() {
+    state_ ^= state_ >> 12;
+    state_ ^= state_ << 25;
+    state_ ^= state_ >> 27;
+    return static_cast<double>(static_cast<std::int64_t>(state_ * 0x2545f4914f6cdd1dULL)) * 0x1p-63;
+  }
+
+ private:
+  std::uint64_t state_ = 0x9e3779b97f4a7c15ULL;
+};
+
+}  // namespace catena

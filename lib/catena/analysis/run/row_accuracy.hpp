@@ -1,0 +1,22 @@
+// Finds how many digits of the columns of an analysis are right (columns/column_errors.hpp): sees every row, and is
+// asked once after the run.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "catena/analysis/run/analysis_report.hpp"
+#include "catena/columns/snapshot.hpp"
+
+namespace catena {
+
+class RowAccuracy {
+ public:
+  virtual ~RowAccuracy() = default;
+  /// A row as the observer gets it, and the values of its columns.
+  virtual void take(const Snapshot& snapshot, std::span<const double> values) = 0;
+  /// Digits of every column, NaN where they are not known; nothing where those of no column are.
+  virtual std::vector<double> digits(const AnalysisReport& report) = 0;
+};
+
+}  // namespace catena

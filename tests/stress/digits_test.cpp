@@ -1,0 +1,39 @@
+// How many digits of a column are right, by its own claim and by a solution in long double.
+#include <gtest/gtest.h>
+
+#include "stress/cases.hpp"
+#include "stress/driven_digits.hpp"
+#include "stress/moving_digits.hpp"
+#include "stress/resting_digits.hpp"
+
+namespace catena::testing {
+namespace {
+
+TEST(Digits, OfDrivenMechanismsAreThoseClaimed) {
+  ClaimedDigits claims;
+  std::map<std::string, int> seen;
+  for (int seed = 1; seed <= stress_cases(10000); ++seed)
+    ++seen[add_driven_digits(static_cast<unsigned>(seed), claims)];
+  print_shares("digits of random driven mechanisms", seen);
+  claims.expect("driven");
+}
+
+TEST(Digits, OfMechanismsAtRestAreThoseClaimed) {
+  ClaimedDigits claims;
+  std::map<std::string, int> seen;
+  for (int seed = 1; seed <= stress_cases(10000); ++seed)
+    ++seen[add_resting_digits(static_cast<unsigned>(seed), claims)];
+  print_shares("digits of random mechanisms at rest", seen);
+  claims.expect("at rest");
+}
+
+TEST(Digits, OfMechanismsInMotionAreThoseClaimed) {
+  ClaimedDigits claims;
+  std::map<std::string, int> seen;
+  for (int seed = 1; seed <= stress_cases(2000); ++seed) ++seen[add_moving_digits(static_cast<unsigned>(seed), claims)];
+  print_shares("digits of random mechanisms in motion", seen);
+  claims.expect("in motion");
+}
+
+}  // namespace
+}  // namespace catena::testing
