@@ -67,7 +67,7 @@ struct RunOptions {
   /// twentieth of the analysis.
   std::string checkpoint;
   double checkpoint_every = 0;
-  int threads = 1;  ///< that a sweep may use
+  int threads = 1;  ///< that a sweep, or the starts of an optimisation, may use
   /// File that keeps every finished design of the scene's sweeps (models/sweep_record.hpp), or empty; `resume`: it is
   /// there, and the run goes on from it.
   std::string record;
