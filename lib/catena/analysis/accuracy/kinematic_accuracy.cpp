@@ -21,6 +21,10 @@ constexpr int most_attempts = 6;
 // Two standard deviations of the few disturbed values: the largest of a run's errors is about as far out.
 constexpr double deviations = 2;
 constexpr int disturbed_values = 3;
+// Four rows take some eighty solves and a few factorizations: that is a millisecond up to the first number of columns,
+// and a small part of the run from the second number of rows on, at six solves and a factorization each.
+constexpr int small_mechanism = 3000;
+constexpr std::int64_t many_rows = 400;
 // A row takes the place of the worst conditioned one if it is worse by this factor: copies are few.
 constexpr double clearly_worse = 0.7;
 
@@ -67,6 +71,7 @@ void KinematicAccuracy::take(const Snapshot& snapshot, std::span<const double> v
 }
 
 std::vector<double> KinematicAccuracy::digits(const AnalysisReport& report) {
+  if (plan_.columns > small_mechanism && count_ < many_rows) return {};
   if (!report.ok() || count_ == 0 || analysis_.interpolated() || !analysis_.singular_points().empty()) return {};
   // The rows' own counts are given already, and these are not of the run.
   left_of_rates_ = std::max(analysis_.solver().left_of_rates(), epsilon * epsilon);

@@ -16,8 +16,8 @@
 // refinement left of the largest of them in any row. The errors of a column follow from its values alone, whatever it
 // is made of. Rows: the fastest, the worst conditioned, one in the middle, the last. Nothing is said of a motion that
 // passes singular positions, where rows are interpolated, nor of work, which is summed up over time, nor of reactions
-// where equations depend on each other. Source: J. Vignes, "A stochastic arithmetic for reliable scientific
-// computation" (1993).
+// where equations depend on each other, nor of large mechanisms with few rows, where it would cost what the run does.
+// Source: J. Vignes, "A stochastic arithmetic for reliable scientific computation" (1993).
 #pragma once
 
 #include <vector>
