@@ -31,6 +31,8 @@ class ClaimedDigits {
     ASSERT_EQ(rows.empty() ? values.size() : rows.size(), exact.size()) << column;
     std::size_t k = 0;
     while (k < result.columns.size() && result.columns[k].name != column) ++k;
+    // No digit is right where none is claimed to be.
+    if (k < result.digits.size() && result.digits[k] == 0) return;
     ++asked_;
     if (k >= result.digits.size() || std::isnan(result.digits[k])) return;
     double size = 0;
