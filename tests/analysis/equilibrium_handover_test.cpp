@@ -6,7 +6,7 @@
 #include <random>
 
 #include "catena/analysis/statics/equilibrium.hpp"
-#include "catena/analysis/statics/static_ipopt.hpp"
+#include "catena/analysis/statics/solvers/static_ipopt.hpp"
 #include "catena/elements/all.hpp"
 #include "oracles/static_scenes.hpp"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "catena/analysis/statics/equilibrium.hpp"
-#include "catena/analysis/statics/static_ipopt.hpp"
-#include "catena/analysis/statics/static_nlopt.hpp"
+#include "catena/analysis/statics/solvers/static_ipopt.hpp"
+#include "catena/analysis/statics/solvers/static_nlopt.hpp"
 #include "catena/elements/constraints/revolute.hpp"
 #include "catena/model/model_add.hpp"
 #include "oracles/static_reference.hpp"

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "catena/analysis/statics/equilibrium.hpp"
-#include "catena/analysis/statics/static_ipopt.hpp"
+#include "catena/analysis/statics/solvers/static_ipopt.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/model_add.hpp"

@@ -3,7 +3,7 @@
 
 #include "catena/analysis/spectrum/certificate.hpp"
 #include "catena/analysis/statics/equilibrium.hpp"
-#include "catena/analysis/statics/static_newton.hpp"
+#include "catena/analysis/statics/solvers/static_newton.hpp"
 #include "economy/allocations.hpp"
 #include "oracles/static_scenes.hpp"
 

@@ -7,7 +7,7 @@
 # umbrella header lib/catena/catena.hpp. `part[folder]` lists what a folder inside of a layer may include of its own
 # layer; a folder that is not listed there is an error, and so is one of more than 30 files:
 #
-#   analysis  run <- pose <- motion <- events <- {kinematics, contact <- dynamics};  pose <- balance <- spectrum <- statics <- stability
+#   analysis  run <- pose <- motion <- events <- {kinematics, contact <- dynamics};  pose <- balance <- spectrum <- statics/solvers <- statics <- stability
 #             run <- measures;  motion <- sensitivity;  minimiser <- {statics, design};  kinematics <- batch
 #             {kinematics, statics} <- accuracy
 #   scene     json <- numbers <- describing <- reading <- building <- models <- judging <- running <- designing <- viewing <- loading
@@ -36,13 +36,14 @@ BEGIN {
   after("analysis", "balance", "run pose")
   after("analysis", "spectrum", "run pose balance")
   after("analysis", "minimiser", "")
-  after("analysis", "statics", "run pose balance spectrum minimiser")
-  after("analysis", "stability", "run pose motion balance spectrum statics")
+  after("analysis", "statics/solvers", "run pose balance spectrum minimiser")
+  after("analysis", "statics", "run pose balance spectrum minimiser statics/solvers")
+  after("analysis", "stability", "run pose motion balance spectrum statics statics/solvers")
   after("analysis", "measures", "run")
   after("analysis", "sensitivity", "run motion")
   after("analysis", "design", "minimiser")
   after("analysis", "batch", "run pose motion events kinematics")
-  after("analysis", "accuracy", "run pose motion events kinematics balance spectrum statics")
+  after("analysis", "accuracy", "run pose motion events kinematics balance spectrum statics statics/solvers")
   chain("scene", "json numbers describing reading building models judging running designing viewing explaining loading")
   chain("drawing", "shapes figures")
   chain("linalg", "patterns kernels")

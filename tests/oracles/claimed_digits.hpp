@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
@@ -31,8 +32,6 @@ class ClaimedDigits {
     ASSERT_EQ(rows.empty() ? values.size() : rows.size(), exact.size()) << column;
     std::size_t k = 0;
     while (k < result.columns.size() && result.columns[k].name != column) ++k;
-    // No digit is right where none is claimed to be.
-    if (k < result.digits.size() && result.digits[k] == 0) return;
     ++asked_;
     if (k >= result.digits.size() || std::isnan(result.digits[k])) return;
     double size = 0;
@@ -42,7 +41,9 @@ class ClaimedDigits {
       error = std::max(error, std::abs(values.at(rows.empty() ? r : rows[r]) - exact[r]));
     const double claimed = std::pow(10.0, -result.digits[k]);
     error = std::max(0.0L, error - noise);
-    const double part = error == 0 ? 0 : size > 0 ? static_cast<double>(error / size) : 1e300;
+    double part = error == 0 ? 0 : size > 0 ? static_cast<double>(error / size) : 1e300;
+    // A column that claims no digit may be off by more than it is large.
+    if (result.digits[k] == 0) part = std::min(part, 1.0);
     samples_.push_back({claimed, std::max(part, least_error), what + " " + column});
   }
 

@@ -258,6 +258,21 @@ double time_down(double alpha, double rate_square, double from) {
   return sum / (3 * parts);
 }
 
+// y(t) after the bounce of a ball of radius 0.1 m from 1 m above the floor. A measure keeps all in one run, in which
+// every one of 130 impacts is a change at the same instant.
+TEST(SideBySide, MoreThanAHundredStrikeTheFloorAtOnce) {
+  const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -9.81], "replicate": [{"count": 130,
+    "bodies": {"ball{k}": {"mass": 1, "inertia": 0.01, "position": ["=k", 1.1]}},
+    "forces": [{"type": "contact", "name": "c{k}", "i": "ground", "j": "ball{k}", "radius": 0.1, "restitution": 0.5,
+      "curve": {"line": {"point": [0, 0], "axis": [1, 0]}}}]}],
+    "outputs": ["ball1.y", "ball130.y"], "analyses": [{"type": "dynamics", "until": 0.6, "tolerance": 1e-8,
+      "measures": {"highest": {"max": "ball1.y"}}}]})");
+  ASSERT_EQ(run.analysis().report.status, Status::ok) << run.analysis().report.message;
+  const double t = 0.6 - std::sqrt(2 / 9.81), y = 0.1 + 0.5 * std::sqrt(2 * 9.81) * t - 0.5 * 9.81 * t * t;
+  EXPECT_NEAR(run.last("ball1.y"), y, 1e-8);
+  EXPECT_NEAR(run.last("ball130.y"), y, 1e-8);
+}
+
 // Slender blocks rock on their corners without slip or rebound: every impact leaves 1 - 1.5 sin^2 alpha of the angular
 // velocity.
 TEST(SideBySide, BlocksRock) {

@@ -6,12 +6,16 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
 #include <numbers>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "results/temporary_folder.hpp"
 #include "scene/run_text.hpp"
 
 namespace catena::testing {
@@ -85,29 +89,35 @@ struct LobedCam {
     return {values, Radius(values)};
   }
 
-  std::string scene(const std::string& analyses) const {
+  /// Its bodies, constraints and driver, with its number at the end of every name.
+  std::array<std::string, 3> parts(std::size_t number) const {
     std::string angles, radii;
     for (std::size_t k = 0; k < values.size(); ++k) {
       angles += fmt::format("{}\"=2*pi*{}/{}\"", k > 0 ? ", " : "", k, values.size());
       radii += fmt::format("{}{:.17g}", k > 0 ? ", " : "", values[k]);
     }
-    return fmt::format(R"({{"catena": 1, "bodies": {{"cam": {{"mass": 1, "inertia": 0.01}},
-      "tappet": {{"mass": 0.2, "inertia": 0.001, "position": [0, {:.17g}]}}}},
-      "constraints": [{{"type": "revolute", "name": "O", "i": "ground", "j": "cam"}},
-        {{"type": "translational", "name": "guide", "i": "ground", "j": "tappet", "axis_i": [0, 1], "axis_j": [0, 1]}},
-        {{"type": "point_on_curve", "name": "edge", "i": "cam", "j": "tappet",
-          "curve": {{"polar": {{"angle": [{}], "radius": [{}]}}}}}}],
-      "drivers": [{{"type": "absolute_angle", "name": "turn", "i": "cam", "value": {{"polynomial": [0, 1]}}}}],
-      "outputs": ["tappet.y", "tappet.vy"], "analyses": [{}]}})",
-                       radius(std::numbers::pi / 2), angles, radii, analyses);
+    const double x = static_cast<double>(number);
+    return {fmt::format(R"("cam{0}": {{"mass": 1, "inertia": 0.01, "position": [{1}, 0]}},
+              "tappet{0}": {{"mass": 0.2, "inertia": 0.001, "position": [{1}, {2:.17g}]}})",
+                        number, x, radius(std::numbers::pi / 2)),
+            fmt::format(R"({{"type": "revolute", "name": "O{0}", "at": [{1}, 0], "i": "ground", "j": "cam{0}"}},
+              {{"type": "translational", "name": "guide{0}", "i": ["ground", [{1}, 0]], "j": "tappet{0}",
+                "axis_i": [0, 1], "axis_j": [0, 1]}},
+              {{"type": "point_on_curve", "name": "edge{0}", "i": "cam{0}", "j": "tappet{0}",
+                "curve": {{"polar": {{"angle": [{2}], "radius": [{3}]}}}}}})",
+                        number, x, angles, radii),
+            fmt::format(R"({{"type": "absolute_angle", "name": "turn{0}", "i": "cam{0}",
+              "value": {{"polynomial": [0, 1]}}}})",
+                        number)};
   }
 
   /// The rows of an analysis beside the spline: t, y, vy.
-  void check(const TextRun& run, std::size_t analysis, double tolerance) const {
+  void check(const TextRun& run, std::size_t analysis, double tolerance, std::size_t number = 0) const {
     const Report& report = run.analysis(analysis).report;
     ASSERT_EQ(report.status, Status::ok) << report.message;
-    const std::vector<double> t = run.column("t", analysis), y = run.column("tappet.y", analysis),
-                              rate = run.column("tappet.vy", analysis);
+    const std::string tappet = fmt::format("tappet{}", number);
+    const std::vector<double> t = run.column("t", analysis), y = run.column(tappet + ".y", analysis),
+                              rate = run.column(tappet + ".vy", analysis);
     ASSERT_FALSE(t.empty());
     for (std::size_t k = 0; k < t.size(); ++k) {
       const double angle = std::numbers::pi / 2 - t[k];
@@ -116,6 +126,19 @@ struct LobedCam {
     }
   }
 };
+
+std::string scene_of(const std::vector<LobedCam>& cams, const std::string& analyses) {
+  std::array<std::string, 3> all;
+  std::string outputs;
+  for (std::size_t k = 0; k < cams.size(); ++k) {
+    const std::array<std::string, 3> parts = cams[k].parts(k);
+    for (std::size_t n = 0; n < all.size(); ++n) all[n] += (k > 0 ? ", " : "") + parts[n];
+    outputs += fmt::format(R"({}"tappet{}.y", "tappet{}.vy")", k > 0 ? ", " : "", k, k);
+  }
+  return fmt::format(R"({{"catena": 1, "bodies": {{{}}}, "constraints": [{}], "drivers": [{}],
+    "outputs": [{}], "analyses": [{}]}})",
+                     all[0], all[1], all[2], outputs, analyses);
+}
 
 std::string at(std::vector<double> instants) {
   std::sort(instants.begin(), instants.end());
@@ -134,7 +157,7 @@ TEST(LobedCams, AKnifeEdgeStaysOnItsLobeWhateverTheRows) {
     const LobedCam cam = LobedCam::random(generator);
     std::vector<double> instants(std::array<std::size_t, 3>{1, 3, 20}[generator() % 3]);
     for (double& t : instants) t = instant(generator);
-    cam.check(run_text(cam.scene(fmt::format(R"({{"type": "kinematics", "at": {}}})", at(instants)))), 0, 1e-10);
+    cam.check(run_text(scene_of({cam}, fmt::format(R"({{"type": "kinematics", "at": {}}})", at(instants)))), 0, 1e-10);
   }
 }
 
@@ -146,9 +169,9 @@ TEST(LobedCams, TheNextAnalysisGoesOnOnTheSameLobe) {
     const LobedCam cam = LobedCam::random(generator);
     const double first = instant(generator), second = first + more(generator);
     const std::string between = std::array{"", R"({"type": "assemble"},)", R"({"type": "check"},)"}[generator() % 3];
-    const TextRun run = run_text(
-        cam.scene(fmt::format(R"({{"type": "kinematics", "until": {:.17g}}}, {} {{"type": "kinematics", "at": {}}})",
-                              first, between, at({first, second}))));
+    const TextRun run = run_text(scene_of(
+        {cam}, fmt::format(R"({{"type": "kinematics", "until": {:.17g}}}, {} {{"type": "kinematics", "at": {}}})",
+                           first, between, at({first, second}))));
     cam.check(run, run.outcome.analyses.size() - 1, 1e-10);
   }
 }
@@ -163,7 +186,46 @@ TEST(LobedCams, StepsOfDynamicsThatAreRejectedLeaveItThere) {
     const LobedCam cam = LobedCam::random(generator);
     const std::string analysis = fmt::format(R"({{"type": "dynamics", "method": "{}", "tolerance": 1e-9, "at": {}}})",
                                              method, at({instant(generator)}));
-    cam.check(run_text(cam.scene(analysis)), 0, 1e-7);
+    cam.check(run_text(scene_of({cam}, analysis)), 0, 1e-7);
+  }
+}
+
+// Three cams in one run, whose searches go on from the file: the same motion, bit for bit.
+TEST(LobedCams, CheckpointsKnowWhereCurvesTouch) {
+  std::mt19937 generator(4);
+  std::vector<LobedCam> three;
+  for (int k = 0; k < 3; ++k) three.push_back(LobedCam::random(generator));
+  const std::string text = scene_of(three, R"({"type": "dynamics", "tolerance": 1e-9, "at": [3, 5.5]})");
+  TemporaryFolder folder;
+  const std::string file = folder / "cams", early = folder / "early";
+  RunOptions options;
+  options.checkpoint = file;
+  options.checkpoint_every = 0.1;
+  options.progress = [&](const Progress& progress) {
+    if (progress.fraction > 0.3 && progress.fraction < 0.6)
+      std::filesystem::copy_file(file, early, std::filesystem::copy_options::overwrite_existing);
+  };
+  const TextRun whole = run_text(text, options);
+  RunOptions restart;
+  restart.restart = early;
+  const TextRun rest = run_text(text, restart);
+  for (std::size_t k = 0; k < three.size(); ++k) {
+    three[k].check(whole, 0, 1e-7, k);
+    three[k].check(rest, 0, 1e-7, k);
+    const std::string column = fmt::format("tappet{}.y", k);
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(rest.last(column)), std::bit_cast<std::uint64_t>(whole.last(column)));
+  }
+}
+
+// Mechanisms side by side that differ in pace are integrated apart.
+TEST(LobedCams, SideBySideKeepTheirLobes) {
+  std::mt19937 generator(5);
+  std::vector<LobedCam> two{LobedCam::random(generator), LobedCam::random(generator)};
+  const TextRun run = run_text(scene_of(two, R"({"type": "dynamics", "tolerance": 1e-9, "at": [0.4, 2.5, 6]},
+    {"type": "kinematics", "at": [6, 6.5]})"));
+  for (std::size_t k = 0; k < two.size(); ++k) {
+    two[k].check(run, 0, 1e-7, k);
+    two[k].check(run, 1, 1e-10, k);
   }
 }
 

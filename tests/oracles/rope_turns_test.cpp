@@ -17,6 +17,7 @@
 #include "catena/scene/reading/scene_reader.hpp"
 #include "oracles/scene_text.hpp"
 #include "results/temporary_folder.hpp"
+#include "scene/event_entries.hpp"
 #include "scene/run_text.hpp"
 
 namespace catena::testing {
@@ -244,6 +245,24 @@ TEST(RopeTurns, GoOnThroughCheckpoints) {
   const double wound = (whole.last("rope.length", 1) - peg.first() - std::sqrt(d * d - peg.r * peg.r)) / peg.r;
   EXPECT_GT(wound, 4 * pi);
   EXPECT_NEAR(std::remainder(std::atan2(x, -y) + std::asin(peg.r / d) - peg.in() - wound, 2 * pi), 0, 1e-9);
+}
+
+// An elastic pendulum that swings off its peg once: a run that pauses fifteen times tells of it once.
+TEST(RopeTurns, WhatHappenedIsToldOnceWhateverThePauses) {
+  const std::string text = R"({"catena": 1, "gravity": [0, -9.81],
+    "bodies": {"b": {"particle": true, "mass": 1, "position": [0.7, -0.7]}},
+    "forces": [{"type": "rope", "name": "rope", "i": "ground", "j": "b", "k": 4000,
+      "over": [{"at": ["ground", [0, -0.5]], "radius": 0.05, "side": 1}]}],
+    "outputs": ["b.x"], "analyses": [{"type": "dynamics", "until": 1.6, "tolerance": 1e-9}]})";
+  const std::vector<EventEntry> plain = events_of(run_text(text));
+  ASSERT_EQ(plain.size(), 1u);
+  TemporaryFolder folder;
+  RunOptions options;
+  options.checkpoint = folder / "rope";
+  options.checkpoint_every = 0.1;
+  const std::vector<EventEntry> paused = events_of(run_text(text, options));
+  ASSERT_EQ(paused.size(), 1u);
+  EXPECT_NEAR(paused.front().t, plain.front().t, 1e-8);
 }
 
 TEST(RopeTurns, CheckpointsOfAnOlderFormatAreRefused) {

@@ -71,19 +71,21 @@ TEST(ShownDigits, AreTakenFromTheLargestOfAllRows) {
 }
 
 TEST(ColumnErrors, AreThoseOfTheLargestValue) {
-  ColumnErrors errors(4);
-  errors.take_row(std::array{1.0, -100.0, 1e-17, 0.0});
-  errors.take_row(std::array{-2.0, 3.0, std::numeric_limits<double>::infinity(), 0.0});
+  ColumnErrors errors(5);
+  errors.take_row(std::array{1.0, -100.0, 1e-17, 0.0, 1.0});
+  errors.take_row(std::array{-2.0, 3.0, std::numeric_limits<double>::infinity(), 0.0, 2.0});
   errors.take_error(0, 2e-9);
   errors.take_error(0, 1e-12);
   errors.take_error(1, std::numeric_limits<double>::quiet_NaN());
   errors.take_error(1, 1e-9);
   errors.take_error(2, 1e-16);
+  errors.take_error(3, 0);
   const std::vector<double> digits = errors.digits();
   EXPECT_NEAR(digits[0], 9, 1e-12);
   EXPECT_TRUE(std::isnan(digits[1])) << "once not known, never known";
   EXPECT_EQ(digits[2], 0) << "nothing but error";
   EXPECT_NEAR(digits[3], 15.95, 0.01) << "exactly zero";
+  EXPECT_TRUE(std::isnan(digits[4])) << "in no row an estimate was made";
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "catena/analysis/statics/static_ipopt.hpp"
-#include "catena/analysis/statics/static_nlopt.hpp"
+#include "catena/analysis/statics/solvers/static_ipopt.hpp"
+#include "catena/analysis/statics/solvers/static_nlopt.hpp"
 #include "scene/run_text.hpp"
 
 namespace catena::testing {

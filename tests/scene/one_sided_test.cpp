@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "catena/analysis/statics/static_ipopt.hpp"
-#include "catena/analysis/statics/static_nlopt.hpp"
+#include "catena/analysis/statics/solvers/static_ipopt.hpp"
+#include "catena/analysis/statics/solvers/static_nlopt.hpp"
 #include "scene/run_text.hpp"
 
 namespace catena::testing {

@@ -2,7 +2,7 @@
 // catenary. The long waits are why this is no test of every day.
 #include <gtest/gtest.h>
 
-#include "catena/analysis/statics/static_ipopt.hpp"
+#include "catena/analysis/statics/solvers/static_ipopt.hpp"
 #include "catena/elements/all.hpp"
 #include "oracles/static_reference.hpp"
 #include "oracles/static_scenes.hpp"

@@ -174,7 +174,8 @@ def sweep(
                 not notice that a worker died, as mpi4py's; none: there is no such limit
     progress    called with the number of designs done and the number of all
 
-    A design that cannot be analysed, or whose worker died, is one of `.failures`, with the reason; the others count.
+    A design that cannot be analysed, or whose worker died twice, is one of `.failures`, with the reason; the others
+    count.
     """
     designs = designs_of(parameters, together)
     for number, design in enumerate(designs):
@@ -212,14 +213,20 @@ def sweep(
             take(part, _run_some(scene, [designs[number] for number in part], only))
     else:
         running: dict[Future[list[_Answer]], range] = {}
+
+        def submit(to: Executor, part: range) -> Future[list[_Answer]] | None:
+            try:
+                future = to.submit(_run_some, scene, [designs[number] for number in part], only)
+            except Exception as error:  # an executor that is broken takes no more
+                lose(part, error)
+                return None
+            running[future] = part
+            return future
+
+        again: list[range] = []
         try:
             for part in parts:
-                try:
-                    future = executor.submit(_run_some, scene, [designs[number] for number in part], only)
-                except Exception as error:  # an executor that is broken takes no more
-                    lose(part, error)
-                else:
-                    running[future] = part
+                submit(executor, part)
             pending = set(running)
             while pending:
                 finished, pending = wait(pending, timeout=patience, return_when=FIRST_COMPLETED)
@@ -228,13 +235,24 @@ def sweep(
                     if problem is None:
                         take(running[future], future.result())
                     else:
-                        lose(running[future], problem)
+                        again.append(running[future])
                 if not finished:
                     silence = TimeoutError(f"no answer from any worker in {patience} s")
                     for future in pending:
                         future.cancel()
                         lose(running[future], silence)
                     break
+            # A worker that dies takes those that wait behind with it: each is tried once more, alone.
+            for number in itertools.chain.from_iterable(again):
+                one = range(number, number + 1)
+                repeated = submit(executor, one)
+                if repeated is None:
+                    continue
+                try:
+                    take(one, repeated.result(patience))
+                except (Exception, CancelledError) as error:
+                    repeated.cancel()
+                    lose(one, error)
         except BaseException:
             for future in running:
                 future.cancel()

@@ -54,6 +54,7 @@ struct ConstraintData {
   std::vector<Taylor<double>> value;  ///< c(t), one an element where E::functions == 1
   std::vector<double> scale;          ///< 1/(2c) for squared forms, else empty
   std::vector<Timed> timed;           ///< elements whose value is a function of time
+  std::vector<E> loose;               ///< without rows, that search on curves: their searches are the evaluator's own
 };
 
 /// Phi_qi and Phi_qj of one element's published equations, dense, for reactions.

@@ -122,8 +122,14 @@ void set_shift(Shift& shift, int body_i, int body_j, std::span<const Vec2<double
 
 template <class Block, class Data, class List>
 void load_constraints(const Block& block, Data& data, const List& list, std::span<const Vec2<double>> origin,
-                      int moving) {
+                      int moving, std::span<const int> place) {
   using E = ElementOf<decltype(list)>;
+  if constexpr (SearchesCurve<E>) {
+    data.loose.clear();
+    for (const auto& entry : list) {
+      if (place[at(entry.id)] < -1) data.loose.push_back(entry.element);
+    }
+  }
   const std::size_t n = at(block.size());
   data.element.resize(n);
   data.shift.resize(n);
@@ -192,13 +198,23 @@ Evaluator::Evaluator(std::shared_ptr<const Plan> plan, const Model& model) : pla
     const auto& block = std::get<ForceBlock<ElementOf<decltype(list)>>>(plan_->forces);
     for (int e = 0; e < block.size(); ++e) place_[at(list[at(block.entry[at(e)])].id)] = e;
   });
+  for_each_list(model.constraints, [&](const auto& list, int) {
+    if constexpr (SearchesCurve<ElementOf<decltype(list)>>) {
+      int loose = 0;
+      for (const auto& entry : list) {
+        if (place_[at(entry.id)] < 0) place_[at(entry.id)] = -2 - loose++;
+      }
+    }
+  });
   load_values();
 }
 
 void Evaluator::set_model(const Model& model) {
   require_same_structure(*model_, model, *plan_);
+  const std::vector<CurvePlace> places = curve_places();
   model_ = &model;
   load_values();
+  go_to_curve_places(places);
 }
 
 void Evaluator::load_values() {
@@ -216,7 +232,7 @@ void Evaluator::load_values() {
     frames_[at(p)] = pose;
   }
   for_each_block(plan_->blocks, values_, model_->constraints, [&](const auto& block, auto& data, const auto& list) {
-    load_constraints(block, data, list, origin_, plan_->moving);
+    load_constraints(block, data, list, origin_, plan_->moving, place_);
   });
   for_each_list(model_->forces, [&](const auto& list, int) {
     using E = ElementOf<decltype(list)>;

@@ -38,7 +38,8 @@ class Evaluator {
   const std::shared_ptr<const Plan>& shared_plan() const { return plan_; }
   const Model& model() const { return *model_; }
 
-  /// Takes over changed parameter values of a model with the same structure; the plan stays.
+  /// Takes over changed parameter values of a model with the same structure; the plan stays, and contacts on curves are
+  /// searched for from where they are.
   void set_model(const Model& model);
 
   /// The given configuration: poses relative to the origins; immobile bodies where they belong. Size coordinates().
@@ -146,11 +147,19 @@ class Evaluator {
   /// The place in use on a curve or table that has ends, with the nearer end in the ground frame; nothing for elements
   /// without one, or that do not use it at present.
   std::optional<CurveUse> curve_use(int element) const;
-  /// Where the contacts on curves are that were found last, by block and element: none for a mechanism without curves.
+  /// Where the contacts on curves are that were found last, of elements without equations as well: none for a mechanism
+  /// without curves.
   void curve_places(std::vector<CurvePlace>& places) const;
+  std::vector<CurvePlace> curve_places() const {
+    std::vector<CurvePlace> places;
+    curve_places(places);
+    return places;
+  }
   /// The next searches begin at these places: at those of the accepted state, after a trial that was rejected. Elements
   /// that the list lacks go on from where they are; one that the model lacks throws std::invalid_argument.
   void go_to_curve_places(std::span<const CurvePlace> places) const;
+  /// The next searches begin where contacts are in the given configuration.
+  void go_to_given_curve_places() const;
   /// Value of the element's function of time now: c, c', c''.
   Taylor<double> element_value(int element) const;
 
@@ -177,7 +186,8 @@ class Evaluator {
   Measured measure_released(int element, std::span<const double> qd) const;
   template <class E>
   const E& element_in_use(int element, const E& in_model) const;
-  /// Place of an element in its block, -1 if it has no rows.
+  /// Place of an element in its block; without rows -1, or of those that search on curves -2 - k: number k among the
+  /// loose ones of its type.
   template <class F>
   void with_element(int element, F&& f) const;
   int place(int element) const { return place_[static_cast<std::size_t>(element)]; }

@@ -42,6 +42,17 @@ void Evaluator::with_element(int element, F&& f) const {
   });
 }
 
+// The element whose search goes on from the place found last: that of the evaluator, not of the model.
+template <class E>
+const E& Evaluator::element_in_use(int element, const E& in_model) const {
+  if constexpr (SearchesCurve<E>) {
+    const ConstraintData<E>& data = std::get<ConstraintData<E>>(values_);
+    const int e = place(element);
+    return e >= 0 ? data.element[at(e)] : data.loose[at(-2 - e)];
+  }
+  return in_model;
+}
+
 // A constraint that does not hold for the time being is in no block, but its measured quantity can be evaluated all the
 // same.
 Measured Evaluator::measure_released(int element, std::span<const double> qd) const {
@@ -55,20 +66,12 @@ Measured Evaluator::measure_released(int element, std::span<const double> qd) co
   with_list(model_->constraints, record.type, [&](const auto& list) {
     const auto& entry = list[at(record.index)];
     if constexpr (requires { entry.element.measure(Frame<double>{}, Frame<double>{}); }) {
-      const Taylor<double> m = entry.element.measure(motion(entry.i), motion(entry.j));
+      using E = ElementOf<decltype(list)>;
+      const Taylor<double> m = element_in_use<E>(element, entry.element).measure(motion(entry.i), motion(entry.j));
       result = {m.f, m.d, m.dd};
     }
   });
   return result;
-}
-
-// The element of a block, where a search goes on from the place found last; else that of the model.
-template <class E>
-const E& Evaluator::element_in_use(int element, const E& in_model) const {
-  if constexpr (SearchesCurve<E>) {
-    if (place(element) >= 0) return std::get<ConstraintData<E>>(values_).element[at(place(element))];
-  }
-  return in_model;
 }
 
 Evaluator::ScalarMotion Evaluator::scalar_motion(int element, std::span<const double> qd) const {
@@ -189,29 +192,38 @@ std::optional<CurveUse> Evaluator::curve_use(int element) const {
 
 void Evaluator::curve_places(std::vector<CurvePlace>& places) const {
   places.clear();
-  for_each_list(plan_->blocks, model_->constraints, [&](const auto& block, const auto& list, int) {
+  for_each_list(model_->constraints, [&](const auto& list, int) {
     using E = ElementOf<decltype(list)>;
     if constexpr (SearchesCurve<E>) {
-      const auto& data = std::get<ConstraintData<E>>(values_);
-      for (int e = 0; e < block.size(); ++e) {
-        CurvePlace& place = places.emplace_back(data.element[at(e)].place());
-        place.element = list[at(block.entry[at(e)])].id;
+      for (const auto& entry : list) {
+        CurvePlace& place = places.emplace_back(element_in_use<E>(entry.id, entry.element).place());
+        place.element = entry.id;
       }
     }
   });
 }
 
 void Evaluator::go_to_curve_places(std::span<const CurvePlace> places) const {
-  const auto elements = static_cast<int>(place_.size());
   for (const CurvePlace& place : places) {
-    if (place.element < 0 || place.element >= elements)
+    if (place.element < 0 || at(place.element) >= place_.size())
       throw std::invalid_argument("a place on a curve is that of element number " + std::to_string(place.element) +
-                                  ", which the model does not have: it has " + std::to_string(elements));
-    with_element(place.element, [&](const auto& block, const auto& data, int e) {
-      using E = typename std::remove_cvref_t<decltype(block)>::Element;
-      if constexpr (SearchesCurve<E>) data.element[at(e)].go_to(place);
+                                  ", which the model does not have: it has " + std::to_string(place_.size()));
+    const ElementRecord& record = model_->elements[at(place.element)];
+    if (record.kind == ElementKind::force) continue;
+    with_list(model_->constraints, record.type, [&](const auto& list) {
+      using E = ElementOf<decltype(list)>;
+      if constexpr (SearchesCurve<E>) element_in_use<E>(place.element, list[at(record.index)].element).go_to(place);
     });
   }
+}
+
+void Evaluator::go_to_given_curve_places() const {
+  for_each_list(model_->constraints, [&](const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    if constexpr (SearchesCurve<E>) {
+      for (const auto& entry : list) element_in_use<E>(entry.id, entry.element).go_to(entry.element.place());
+    }
+  });
 }
 
 Taylor<double> Evaluator::element_value(int element) const {

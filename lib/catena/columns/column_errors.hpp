@@ -5,7 +5,7 @@
 //
 // The error of a column is one number for all of its rows, as its printed decimals are: in a row where the column
 // passes zero fewer digits are right, and as many decimals. Between 0, where the column is nothing but error,
-// and 15.95, all digits of a double. NaN: nothing is known of the error, which is then claimed by nobody.
+// and 15.95, all digits of a double. NaN: no estimate of the error was made.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace catena {
 
 class ColumnErrors {
  public:
-  explicit ColumnErrors(std::size_t columns) : size_(columns, 0.0), error_(columns, 0.0) {}
+  explicit ColumnErrors(std::size_t columns) : size_(columns, 0.0), error_(columns, none) {}
 
   /// Every row; values that are not finite do not count.
   void take_row(std::span<const double> values) {
@@ -36,7 +36,7 @@ class ColumnErrors {
   /// Places are sums of lengths of this size, m, even where a body cannot move and nothing is solved for.
   void take_places(std::span<const ColumnInfo> columns, double length) {
     for (std::size_t k = 0; k < error_.size(); ++k) {
-      if (columns[k].unit == UnitKind::length) take_error(k, 2 * rounding * length);
+      if (columns[k].unit == UnitKind::length && error_[k] >= 0) take_error(k, 2 * rounding * length);
     }
   }
   /// Of every column; NaN where it is not known.
@@ -44,13 +44,14 @@ class ColumnErrors {
     std::vector<double> all(size_.size());
     for (std::size_t k = 0; k < all.size(); ++k) {
       const double error = std::max(error_[k], size_[k] * rounding);
-      const bool known = std::isfinite(error_[k]);
+      const bool known = std::isfinite(error_[k]) && error_[k] >= 0;
       all[k] = !known ? std::numeric_limits<double>::quiet_NaN() : error > 0 ? digits_of(size_[k], error) : most;
     }
     return all;
   }
 
  private:
+  static constexpr double none = -1;  // no estimate was made: the column had no value where one would have been
   static constexpr double rounding = std::numeric_limits<double>::epsilon() / 2;
   static constexpr double most = 15.95;  // -log10(rounding)
   static double digits_of(double size, double error) { return size > error ? std::log10(size / error) : 0; }

@@ -44,6 +44,7 @@ void KinematicAccuracy::keep(Row& row, const Snapshot& snapshot, std::span<const
   row.t = snapshot.t;
   row.q.assign(snapshot.q.begin(), snapshot.q.end());
   row.values.assign(values.begin(), values.end());
+  snapshot.evaluator.curve_places(row.curves);
 }
 
 void KinematicAccuracy::take(const Snapshot& snapshot, std::span<const double> values) {
@@ -77,6 +78,7 @@ std::vector<double> KinematicAccuracy::digits(const AnalysisReport& report) {
   left_of_rates_ = std::max(analysis_.solver().left_of_rates(), epsilon * epsilon);
   left_of_multipliers_ = analysis_.solver().left_of_multipliers();
   last_.q.assign(analysis_.q().begin(), analysis_.q().end());
+  analysis_.evaluator().curve_places(last_.curves);
   unknown_.assign(analysis_.evaluator().model().elements.size(), not_known);
   std::vector<double> examined;
   for (const Row* row : {&fastest_, &worst_, &middle_, &last_}) {
@@ -107,12 +109,15 @@ bool KinematicAccuracy::examine(const Row& row) {
   Evaluator& evaluator = analysis_.evaluator();
   DrivenSolver& solver = analysis_.solver();
   evaluator.set_time(row.t);
+  evaluator.go_to_curve_places(row.curves);
   if (!(solver.factor_at(row.q) > 0)) return false;
   State exact;
   exact.q = row.q;
   change_.resize(exact.q.size());
   if (!solver.respond(solver.phi(), change_)) return false;
   for (std::size_t k = 0; k < change_.size(); ++k) exact.q[k] -= change_[k];
+  // A row that is further off was not solved to the equations that hold here.
+  if (!(solver.distance(exact.q, row.q, nullptr) <= largest_change)) return false;
   solver.residual_at(exact.q);
   if (!solve_rates(exact, nullptr, 0)) return false;
   values_at(row, exact, first_);
@@ -170,6 +175,7 @@ double KinematicAccuracy::change(const State& exact, const State& state) const {
 bool KinematicAccuracy::disturb_by(double size, const Row& row, const State& exact, State& state) {
   Evaluator& evaluator = analysis_.evaluator();
   DrivenSolver& solver = analysis_.solver();
+  evaluator.go_to_curve_places(row.curves);
   evaluator.set_time_along(row.t * (1 + size * epsilon * random_.next()), row.t);
   solver.residual_at(exact.q);
   // Of the equations off by this, and by the time.

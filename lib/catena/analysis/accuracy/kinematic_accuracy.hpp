@@ -44,6 +44,7 @@ class KinematicAccuracy final : public RowAccuracy {
   struct Row {
     double t = 0;
     std::vector<double> q, values;
+    std::vector<CurvePlace> curves{};  // where contacts are at q
   };
   struct State {
     std::vector<double> q, qd, qdd, lambda;

@@ -1,5 +1,6 @@
 #include "catena/analysis/design/design_starts.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <exception>
 #include <mutex>
@@ -57,6 +58,7 @@ class OtherStarts {
   void follow(MinimiserEnd end) {
     const std::lock_guard lock(mutex_);
     end_ = end;
+    if (!search_.go_on()) enough_ = true;  // there are no designs left for others
     put_together();
   }
   /// How the search that found the best design ended, once all are done.
@@ -129,12 +131,12 @@ std::optional<MinimiserEnd> search_from_all_starts(const DesignProblem& problem,
   if (outcome.x.empty()) return {};
   std::vector<double> u = starts[k];
   starts.erase(starts.begin(), starts.begin() + static_cast<std::ptrdiff_t>(k) + 1);
-  const int helpers = std::min(options.threads - 1, static_cast<int>(starts.size()));
+  const int other_threads = std::min(options.threads - 1, static_cast<int>(starts.size()));
   OtherStarts others(problem, options, search, std::move(starts), outcome.evaluations);
   const MinimiserOptions wanted = minimiser_options(options, outcome.evaluations, u.size());
   {
     std::vector<std::jthread> threads;
-    for (int n = 0; n < helpers; ++n) threads.emplace_back([&] { others.work(); });
+    for (int n = 0; n < other_threads; ++n) threads.emplace_back([&] { others.work(); });
     others.follow(minimise(search, wanted, u));
     others.work();
   }

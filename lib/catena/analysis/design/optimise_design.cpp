@@ -131,9 +131,32 @@ MinimiserEnd lessen_violation(const DesignOptions& options, DesignSearch& search
   std::vector<double> x = search.best();
   x.push_back(outcome.violation);
   MinimiserOptions wanted = minimiser_options(options, outcome.evaluations, x.size());
-  wanted.method = uses_gradients(options.method) ? MinimiserMethod::slsqp : MinimiserMethod::cobyla;
+  const bool slsqp = minimiser_is_built_in(MinimiserMethod::slsqp);
+  wanted.method = !uses_gradients(options.method) ? MinimiserMethod::cobyla
+                  : slsqp                         ? MinimiserMethod::slsqp
+                                                  : MinimiserMethod::ipopt;
   wanted.upper.back() = 2 * outcome.violation + 1;
   return minimise(problem, wanted, x);
+}
+
+/// How a search ended, and whether a step downhill leads on from its best design.
+struct Ended {
+  MinimiserEnd end;
+  bool downhill;
+};
+
+/// A start without slope may be an optimum, or nothing depends on the variables: a design aside of it tells. Where that
+/// one is better the search goes on from there.
+void look_aside(const DesignProblem& problem, const DesignOptions& options, DesignSearch& search,
+                DesignOutcome& outcome, Ended& ended) {
+  std::vector<double> aside = search.best();
+  for (double& u : aside) u = u < 0.5 ? beside : -beside;
+  const int before = search.improvements();
+  outcome.is_constant = search.change_along(aside, std::numeric_limits<double>::infinity()) == 0.0;
+  if (search.improvements() == before) return;
+  if (std::vector<double> u = search.best(); search.begin(u))
+    ended.end = minimise(search, minimiser_options(options, outcome.evaluations, u.size()), u);
+  ended.downhill = goes_downhill(problem, options, search, outcome);
 }
 
 }  // namespace
@@ -148,8 +171,8 @@ DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions&
     if (search.was_cancelled()) outcome.end = DesignEnd::cancelled;
     return outcome;
   }
-  MinimiserEnd end = *found;
-  bool downhill = goes_downhill(problem, options, search, outcome);
+  Ended ended{*found, goes_downhill(problem, options, search, outcome)};
+  auto& [end, downhill] = ended;
   for (int n = 0; downhill && end == MinimiserEnd::converged && n < most_renewals && search.go_on(); ++n) {
     std::vector<double> u = search.best();
     if (!search.begin(u)) break;
@@ -166,12 +189,7 @@ DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions&
       downhill = goes_downhill(problem, options, search, outcome);
     }
   }
-  // A start without slope may be an optimum, or nothing depends on the variables.
-  if (search.gradient_size() == 0 && search.go_on()) {
-    std::vector<double> aside = search.best();
-    for (double& u : aside) u = u < 0.5 ? beside : -beside;
-    outcome.is_constant = search.change_along(aside, std::numeric_limits<double>::infinity()) == 0.0;
-  }
+  if (search.gradient_size() == 0 && search.go_on()) look_aside(problem, options, search, outcome, ended);
   for (std::size_t v = 0; v < outcome.x.size(); ++v) {
     if (outcome.x[v] == problem.lower[v]) outcome.at_lower.push_back(static_cast<int>(v));
     if (outcome.x[v] == problem.upper[v]) outcome.at_upper.push_back(static_cast<int>(v));

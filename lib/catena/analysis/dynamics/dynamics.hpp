@@ -120,6 +120,7 @@ class Dynamics {
   std::optional<RedundantRows::GenericPlace> place_along(const SingularStart& start);
   void remark_on_singularities(std::vector<std::string>& warnings) const;
   Report check_order() const;
+  int freedoms() const;
   Report check_freedoms() const;
   Report start();
   Report set_out();

@@ -70,15 +70,16 @@ Report Dynamics::check_order() const {
   return report;
 }
 
+int Dynamics::freedoms() const { return plan_->columns - acting_rows(*plan_) + redundant_.count(); }
+
 Report Dynamics::check_freedoms() const {
   Report report;
-  const int freedoms = plan_->columns - acting_rows(*plan_) + redundant_.count();
-  if (freedoms > CoordinatePartition::most_freedoms) {
+  if (freedoms() > CoordinatePartition::most_freedoms) {
     report.status = Status::refused;
     report.message = fmt::format(
         "partitioning serves up to {} degrees of freedom, and this mechanism has {} degrees of freedom; other methods "
         "have no limit",
-        CoordinatePartition::most_freedoms, freedoms);
+        CoordinatePartition::most_freedoms, freedoms());
   }
   return report;
 }
@@ -94,11 +95,13 @@ void Dynamics::choose_method() {
 }
 
 std::unique_ptr<Integrator> Dynamics::make_integrator(const Motion& motion, double horizon) const {
+  // A motion that drivers alone decide follows them from a flat start; where something moves freely, steps near that
+  // start are known by the pivots of other places.
   RungeKuttaOptions options{.tolerance = step_part * options_.tolerance,
                             .fixed_step = options_.step,
                             .horizon = horizon,
                             .may_lower_order = options_.method != IntegrationMethod::rk8,
-                            .usual_ratio = redundant_.generic_ratio()};
+                            .usual_ratio = freedoms() > 0 ? redundant_.generic_ratio() : 0};
   const double finer = std::min(options.tolerance, std::max(finer_part * options.tolerance, least_step_tolerance));
   switch (method_) {
     case IntegrationMethod::automatic:

@@ -114,11 +114,6 @@ class DynamicsOfIslands::Part final : public RowObserver {
   void show_last() {
     if (!ahead_.empty()) show(ahead_.back());
   }
-  std::vector<CurvePlace> curve_places() const {
-    std::vector<CurvePlace> places = dynamics_.state().curves;
-    for (CurvePlace& place : places) place.element = part_.elements[at(place.element)];
-    return places;
-  }
   std::vector<SingularPoint> singular_points() const {
     std::vector<SingularPoint> points = dynamics_.singular_points();
     for (SingularPoint& point : points) {
@@ -158,6 +153,8 @@ class DynamicsOfIslands::Part final : public RowObserver {
       values.clear();
       if (!of.empty()) values.assign(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(3 * body_.size()));
     };
+    s.evaluator.curve_places(row.curves);
+    for (CurvePlace& place : row.curves) place.element = part_.elements[at(place.element)];
     take(row.q, s.q);
     take(row.qd, s.qd);
     take(row.qdd, s.qdd);
@@ -190,6 +187,7 @@ class DynamicsOfIslands::Part final : public RowObserver {
   /// A row of the part, by its bodies, equations and elements.
   struct Row {
     std::vector<double> q, qd, qdd, lambda, driver_work;
+    std::vector<CurvePlace> curves;  // by elements of all
     std::vector<ContactLoad> contacts;
     Sums sums;
   };
@@ -204,6 +202,7 @@ class DynamicsOfIslands::Part final : public RowObserver {
     const auto scatter = [&](const std::vector<double>& values, std::vector<double>& all) {
       for (std::size_t p = 0; 3 * p < values.size(); ++p) std::copy_n(&values[3 * p], 3, &all[3 * at(body_[p])]);
     };
+    owner_.evaluator_.go_to_curve_places(row.curves);
     scatter(row.q, owner_.q_);
     scatter(row.qd, owner_.qd_);
     scatter(row.qdd, owner_.qdd_);
@@ -262,16 +261,7 @@ void DynamicsOfIslands::start_from(const SystemState& state) {
   for (const auto& part : parts_) part->start_from(state);
 }
 
-SystemState DynamicsOfIslands::state() const {
-  SystemState state = state_of(evaluator_, t_, q_, qd_);
-  // The evaluator of all does not follow the motion.
-  state.curves.clear();
-  for (const auto& part : parts_) {
-    const std::vector<CurvePlace> places = part->curve_places();
-    state.curves.insert(state.curves.end(), places.begin(), places.end());
-  }
-  return state;
-}
+SystemState DynamicsOfIslands::state() const { return state_of(evaluator_, t_, q_, qd_); }
 
 std::vector<IntegrationMethod> DynamicsOfIslands::methods() const {
   std::vector<IntegrationMethod> methods;

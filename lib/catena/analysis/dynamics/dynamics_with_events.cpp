@@ -179,6 +179,7 @@ Report DynamicsWithEvents::resume_ropes(const MotionMemory& memory) {
   for (std::size_t p = 0; p < memory.turns.size(); ++p) q[3 * p + 2] += 2 * std::numbers::pi * memory.turns[p];
   SystemState state = state_of(evaluator, memory.t, q);
   state.ropes = memory.ropes;
+  state.curves = memory.curves;
   std::vector<ContactEvent> events;
   for (const RopeEvent& event : memory.rope_events)
     events.push_back({event.element, event.met != 0 ? met_pulley : left_pulley, event.t});
@@ -194,6 +195,7 @@ void DynamicsWithEvents::save_and_resume(std::int64_t rows_given, std::int64_t n
   memory.events.turned = turned_;
   memory.jolts = jolts_;
   memory.ropes = contacts_.turns(dynamics_->state());
+  memory.rope_events.clear();  // of the pause before
   for (const ContactEvent& event : contacts_.events())
     memory.rope_events.push_back({event.element, event.kind == met_pulley, event.t});
   if (pauses_.save) pauses_.save(memory);

@@ -10,7 +10,8 @@
 namespace catena {
 namespace {
 
-// Events that act this often without time going on, and as often as there are contacts, would do so for ever.
+// Events that act this often without time going on would do so for ever; so would contacts that change more often than
+// each closes and opens once.
 constexpr int most_at_once = 100;
 
 /// Passes rows on and counts them.
@@ -133,7 +134,7 @@ bool DynamicsWithEvents::end_phase(RowObserver& rows) {
       total_.message = fmt::format("event \"{}\" ended it at t = {:.12g} s", stop->name, end_->t);
     return false;
   }
-  if (next.ok() && at_once_ > most_at_once) {
+  if (next.ok() && at_once_ > most_at_once + 2 * static_cast<int>(contacts_.places())) {
     next.status = Status::step_too_small;
     next.message = fmt::format(
         "{} without end at t = {:.12g} s",

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "catena/analysis/minimiser/ipopt_program.hpp"
@@ -49,6 +50,8 @@ class Problem final : public IpoptProgram {
     std::fill(lambda.begin(), lambda.end(), 0.0);
   }
   double objective(const double* x) override {
+    // A line search would go on without being asked: what is not finite ends it.
+    if (!go_on(0)) return std::numeric_limits<double>::quiet_NaN();
     ++evaluations_;
     const double f = problem_.objective({x, x_.size()}, {});
     stopped_ = stopped_ || !problem_.go_on();
@@ -108,7 +111,7 @@ MinimiserEnd minimise_by_ipopt(MinimisationProblem& problem, const MinimiserOpti
     case IpoptEnd::stopped:
       return program.why_stopped();
     default:
-      return MinimiserEnd::failed;
+      return program.go_on(0) ? MinimiserEnd::failed : program.why_stopped();
   }
 }
 

@@ -31,6 +31,7 @@ void take_over_places(const Evaluator& evaluator, const SystemState& state, std:
   if (!std::isfinite(state.t)) throw std::invalid_argument("the state's time is not finite");
   check_values(evaluator.model(), state.q, "places");
   check_values(evaluator.model(), state.qd, "velocities");
+  evaluator.go_to_given_curve_places();
   if (state.q.empty()) return;
   const Plan& plan = evaluator.plan();
   for (int p = 0; p < plan.moving; ++p) {

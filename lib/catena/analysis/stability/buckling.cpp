@@ -14,7 +14,7 @@
 #include "catena/analysis/run/watched_elements.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/analysis/spectrum/static_balance.hpp"
-#include "catena/analysis/statics/static_active_set.hpp"
+#include "catena/analysis/statics/solvers/static_active_set.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {

@@ -28,7 +28,7 @@
 #include "catena/analysis/run/system_state.hpp"
 #include "catena/analysis/spectrum/modes_dense.hpp"
 #include "catena/analysis/spectrum/static_balance.hpp"
-#include "catena/analysis/statics/static_gaps.hpp"
+#include "catena/analysis/statics/solvers/static_gaps.hpp"
 
 namespace catena {
 

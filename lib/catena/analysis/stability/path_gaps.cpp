@@ -15,7 +15,7 @@
 
 #include "catena/analysis/stability/path_march.hpp"
 #include "catena/analysis/statics/active_set_at.hpp"
-#include "catena/analysis/statics/static_active_set.hpp"
+#include "catena/analysis/statics/solvers/static_active_set.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {

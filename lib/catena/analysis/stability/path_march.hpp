@@ -19,7 +19,7 @@
 #include "catena/analysis/spectrum/certificate.hpp"
 #include "catena/analysis/spectrum/static_balance.hpp"
 #include "catena/analysis/stability/path.hpp"
-#include "catena/analysis/statics/static_gaps.hpp"
+#include "catena/analysis/statics/solvers/static_gaps.hpp"
 
 namespace catena {
 

@@ -6,7 +6,7 @@
 
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
-#include "catena/analysis/statics/static_active_set.hpp"
+#include "catena/analysis/statics/solvers/static_active_set.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 

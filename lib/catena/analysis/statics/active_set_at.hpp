@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "catena/analysis/spectrum/static_balance.hpp"
-#include "catena/analysis/statics/static_gaps.hpp"
+#include "catena/analysis/statics/solvers/static_gaps.hpp"
 
 namespace catena {
 

@@ -1,6 +1,6 @@
 #include "catena/analysis/statics/static_attempts.hpp"
 
-#include "catena/analysis/statics/static_ipopt.hpp"
+#include "catena/analysis/statics/solvers/static_ipopt.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "catena/analysis/balance/static_accuracy.hpp"
-#include "catena/analysis/statics/static_newton.hpp"
+#include "catena/analysis/statics/solvers/static_newton.hpp"
 #include "catena/analysis/statics/static_result.hpp"
 
 namespace catena {

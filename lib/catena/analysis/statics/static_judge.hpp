@@ -11,7 +11,7 @@
 
 #include "catena/analysis/balance/static_accuracy.hpp"
 #include "catena/analysis/spectrum/certificate.hpp"
-#include "catena/analysis/statics/static_gaps.hpp"
+#include "catena/analysis/statics/solvers/static_gaps.hpp"
 
 namespace catena {
 

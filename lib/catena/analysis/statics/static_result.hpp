@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "catena/analysis/spectrum/certificate.hpp"
-#include "catena/analysis/statics/static_gaps.hpp"
+#include "catena/analysis/statics/solvers/static_gaps.hpp"
 #include "catena/base/status.hpp"
 
 namespace catena {

@@ -5,10 +5,10 @@
 #include "catena/analysis/balance/static_turns.hpp"
 #include "catena/analysis/pose/whole_turns.hpp"
 #include "catena/analysis/run/energyless_forces.hpp"
+#include "catena/analysis/statics/solvers/static_descent.hpp"
+#include "catena/analysis/statics/solvers/static_settling.hpp"
 #include "catena/analysis/statics/static_attempts.hpp"
-#include "catena/analysis/statics/static_descent.hpp"
 #include "catena/analysis/statics/static_explanation.hpp"
-#include "catena/analysis/statics/static_settling.hpp"
 #include "catena/analysis/statics/static_trial.hpp"
 
 namespace catena {
@@ -25,17 +25,22 @@ void StaticSearch::leave(const Certificate& certificate, std::vector<double>& q,
   const double largest = system_.change_norm(certificate.mode);
   std::vector<double> best;
   double lowest = 0;
+  const std::vector<CurvePlace> start = system_.evaluator().curve_places();
+  std::vector<CurvePlace> places;  // of the best
   for (const double side : {1.0, -1.0}) {
     std::vector<double> trial = q;
+    system_.evaluator().go_to_curve_places(start);
     system_.advance(trial, certificate.mode, side * size / largest, 10);
     const bool restored = restore_constraints(system_, trial);
     const double energy = restored ? system_.energy() : 0;
     if (best.empty() || (restored && energy < lowest)) {
       best = trial;
       lowest = energy;
+      system_.evaluator().curve_places(places);
     }
   }
   q = best;
+  system_.evaluator().go_to_curve_places(places);
 }
 
 // Forces that follow their body, laws of state: only the residual is solved, and the result cannot be certified.
@@ -44,9 +49,11 @@ StaticResult StaticSearch::find_without_energy(std::vector<double>& q, std::vect
   result.has_energy = false;
   result.solver = "settling";
   const std::vector<double> start = q;
+  const std::vector<CurvePlace> places = system_.evaluator().curve_places();
   StaticOutcome outcome;
   for (unsigned trial = 0; trial < starts_before_ipopt; ++trial) {
     if (trial > 0) q = start_of({.way = StaticWay::settling, .displacement = trial}, system_, start);
+    system_.evaluator().go_to_curve_places(places);
     outcome = solve_by_settling(system_, q, lambda, {.tolerance = options_.tolerance});
     result.iterations += outcome.iterations;
     if (outcome.end == StaticEnd::unbounded || outcome.end == StaticEnd::cancelled) break;
@@ -70,8 +77,7 @@ StaticResult StaticSearch::find_without_energy(std::vector<double>& q, std::vect
 StaticResult StaticSearch::find_minimum(std::vector<double>& q, std::vector<double>& lambda) {
   StaticResult result;
   const std::vector<double> start = q;
-  std::vector<CurvePlace> places;  // at the start
-  system_.evaluator().curve_places(places);
+  const std::vector<CurvePlace> places = system_.evaluator().curve_places();  // at the start
   StaticAttempts attempts(system_, options_);
   StaticTrial trials(system_, options_);
   StaticOutcome outcome;

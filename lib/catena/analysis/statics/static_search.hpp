@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
+#include "catena/analysis/statics/solvers/static_newton.hpp"
 #include "catena/analysis/statics/static_judge.hpp"
-#include "catena/analysis/statics/static_newton.hpp"
 #include "catena/analysis/statics/static_result.hpp"
 
 namespace catena {

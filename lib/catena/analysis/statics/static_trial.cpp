@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "catena/analysis/pose/assemble.hpp"
-#include "catena/analysis/statics/static_descent.hpp"
-#include "catena/analysis/statics/static_ipopt.hpp"
-#include "catena/analysis/statics/static_nlopt.hpp"
-#include "catena/analysis/statics/static_settling.hpp"
+#include "catena/analysis/statics/solvers/static_descent.hpp"
+#include "catena/analysis/statics/solvers/static_ipopt.hpp"
+#include "catena/analysis/statics/solvers/static_nlopt.hpp"
+#include "catena/analysis/statics/solvers/static_settling.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -62,10 +62,12 @@ StaticOutcome StaticTrial::run_smooth(std::vector<double>& q, std::vector<double
   if (way == StaticWay::valley) {
     Assembler assembler(system_.evaluator());
     std::vector<double> start = q;
+    const std::vector<CurvePlace> places = system_.evaluator().curve_places();
     if (system_.phi_norm() <= assembled || assembler.assemble(start).ok()) {
       q = start;
       return solve_by_descent(system_, q, lambda, {.tolerance = options_.tolerance});
     }
+    system_.evaluator().go_to_curve_places(places);
   }
   StaticOutcome outcome = solve_by_newton(
       system_, q, lambda, {.tolerance = options_.tolerance, .warm = warm, .stationary = options_.stationary});
@@ -100,11 +102,13 @@ StaticOutcome StaticTrial::run_with_gaps(std::vector<double>& q, std::vector<dou
   if (warm) {
     // Where the closed gaps stay closed this suffices for a small change of parameters.
     const std::vector<double> before = q, multipliers = lambda;
+    const std::vector<CurvePlace> places = system_.evaluator().curve_places();
     outcome = finish_with_gaps(system_, q, lambda, result.gaps, exact);
     result.iterations += outcome.iterations;
     if (outcome.converged()) return outcome;
     q = before;
     lambda = multipliers;
+    system_.evaluator().go_to_curve_places(places);
   }
   outcome = solve_with_gaps(system_, q, lambda, result.gaps, exact);
   result.iterations += outcome.iterations;
@@ -115,6 +119,7 @@ StaticOutcome StaticTrial::run_with_gaps(std::vector<double>& q, std::vector<dou
 StaticOutcome StaticTrial::polish_by_newton(std::vector<double>& q, std::vector<double>& lambda,
                                             StaticOutcome outcome) {
   const std::vector<double> found = q, multipliers = lambda;
+  const std::vector<CurvePlace> places = system_.evaluator().curve_places();
   // To rounding, whatever the tolerance: the steps cost little beside those before.
   const StaticOutcome polished = solve_by_newton(
       system_, q, lambda, {.max_iterations = 20, .tolerance = rounding_tolerance, .warm = true, .stationary = true});
@@ -131,6 +136,7 @@ StaticOutcome StaticTrial::polish_by_newton(std::vector<double>& q, std::vector<
   }
   q = found;
   lambda = multipliers;
+  system_.evaluator().go_to_curve_places(places);
   system_.move_to(q);
   return outcome;
 }

@@ -8,8 +8,8 @@
 
 #include <vector>
 
+#include "catena/analysis/statics/solvers/static_newton.hpp"
 #include "catena/analysis/statics/static_attempts.hpp"
-#include "catena/analysis/statics/static_newton.hpp"
 
 namespace catena {
 

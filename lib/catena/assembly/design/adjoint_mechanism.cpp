@@ -44,6 +44,7 @@ std::string AdjointMechanism::why_not(const Model& model) {
     using E = ElementOf<decltype(list)>;
     if (list.empty()) return;
     if constexpr (is_custom<E>) why = "elements made in C++ act";
+    if constexpr (SearchesCurve<E>) why = "contacts run on curves";
     if constexpr (Joining<E>) why = "a rope runs over several pulleys";
   };
   for_each_list(model.constraints, look);

@@ -107,7 +107,8 @@ std::string LaneDesigns::prepare(Lane& lane, const ParameterSeeds& seeds) {
   std::string why;
   std::shared_ptr<const Model> model = outer_.models->model(*lane.task.table, seeds, &why);
   if (!model) return why;
-  lane.model = std::move(model);
+  // The evaluator may still refer to it.
+  const std::shared_ptr<const Model> before = std::exchange(lane.model, std::move(model));
   try {
     evaluator_.set_model(*lane.model);
   } catch (const std::invalid_argument&) {

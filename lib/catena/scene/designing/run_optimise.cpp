@@ -108,9 +108,9 @@ Report report_of(const DesignOutcome& outcome, int max_evaluations, const std::v
   }
   if (outcome.is_constant) {
     report.warnings.push_back(fmt::format(
-        "the objective is {:.9g} in all {} designs that were looked at: no variable changes it; likely cause: measures "
+        "the objective is {:.9g} in all designs that could be analysed: no variable changes it; likely cause: measures "
         "that do not depend on the variables",
-        outcome.values.objective, outcome.evaluations));
+        outcome.values.objective));
   }
   if (outcome.end == DesignEnd::converged && outcome.at_kink) {
     report.warnings.push_back(

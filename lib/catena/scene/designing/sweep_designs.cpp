@@ -120,7 +120,9 @@ std::string Sweep::describe_missing() const {
   if (!under_way.empty()) parts.push_back(fmt::format("{} under way", design_ranges(under_way)));
   if (!finished.empty()) parts.push_back(fmt::format("{} finished behind these", design_ranges(finished)));
   if (next_ < count_) parts.push_back(fmt::format("{} to {} not begun", next_ + 1, count_));
-  return fmt::format("{}", fmt::join(parts, "; "));
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : "; ") + part;
+  return text;
 }
 
 std::string Sweep::describe_lanes() const {

@@ -118,7 +118,9 @@ void run_assemble(AnalysisContext& context, AnalysisResult& result) {
                   .q = analysis.q(),
                   .residual = outcome.residual * scale});
     // Places alone change hands: the velocities and the time stay those of the motion so far.
-    context.state.q = analysis.state().q;
+    SystemState found = analysis.state();
+    context.state.q = std::move(found.q);
+    context.state.curves = std::move(found.curves);
     context.state.ropes = ways.turns(context.state);
     for (std::string& doubt : violated_gaps(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
   }

@@ -10,8 +10,8 @@
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/sensitivity/static_derivatives.hpp"
 #include "catena/analysis/statics/equilibrium.hpp"
-#include "catena/analysis/statics/static_ipopt.hpp"
-#include "catena/analysis/statics/static_nlopt.hpp"
+#include "catena/analysis/statics/solvers/static_ipopt.hpp"
+#include "catena/analysis/statics/solvers/static_nlopt.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 #include "catena/scene/running/drawn_shapes.hpp"
 
@@ -40,7 +40,9 @@ void run_holding(AnalysisContext& context, AnalysisResult& result) {
   report.message = holding.message;
   if (holding.ok()) {
     rows.observe({.evaluator = evaluator, .t = start.t, .q = q});
-    context.state.q = state_of(evaluator, start.t, q).q;
+    SystemState held = state_of(evaluator, start.t, q);
+    context.state.q = std::move(held.q);
+    context.state.curves = std::move(held.curves);
     context.state.ropes = ways.turns(context.state);
     result.fields = {{"held", holding.held()}};
     if (holding.utilisation) result.fields.push_back({"utilisation", *holding.utilisation});

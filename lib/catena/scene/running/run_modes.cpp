@@ -114,7 +114,9 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
   draw_shapes(context, analysis.evaluator(), start.t, analysis.q(), report.shapes);
   // Places alone change hands, if they had to be assembled: velocities and time stay those of the motion so far.
   if (report.ok()) {
-    context.state.q = analysis.state().q;
+    SystemState found = analysis.state();
+    context.state.q = std::move(found.q);
+    context.state.curves = std::move(found.curves);
     context.state.ropes = ways.turns(context.state);
   }
   result.fields = {

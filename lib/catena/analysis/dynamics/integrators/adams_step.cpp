@@ -27,7 +27,6 @@ bool Adams::advance(double limit) {
     motion_.equations().evaluator().take_turns(motion_.q(std::span(y_)));
     stepped_by_runge_kutta_ = false;
   }
-  motion_.equations().evaluator().curve_places(curve_places_);
   while (by_itself()) {
     motion_.equations().evaluator().go_to_curve_places(curve_places_);
     const double remaining = limit - t_;
@@ -79,6 +78,7 @@ bool Adams::try_step(double h) {
   t_before_ = t_;
   t_ = t_new_;
   y_.swap(y_new_);
+  motion_.equations().evaluator().curve_places(curve_places_);
   stepped_by_runge_kutta_ = false;
   ++motion_.equations().evaluator().counters.steps;
   observe_ratio();
@@ -142,6 +142,7 @@ void Adams::choose(double h, const Errors& errors, bool lower, double above) {
 bool Adams::advance_by_runge_kutta(double limit) {
   const bool fixed = options_.fixed_step > 0;
   if (!stepped_by_runge_kutta_ || runge_kutta_.time() != t_) {
+    motion_.equations().evaluator().go_to_curve_places(curve_places_);
     if (!runge_kutta_.take_over(t_, y_, longer * h_, scale_, usual_ratio_)) return false;
   }
   const bool advanced = runge_kutta_.advance(limit);
@@ -155,6 +156,7 @@ bool Adams::advance_by_runge_kutta(double limit) {
   std::copy(runge_kutta_.state().begin(), runge_kutta_.state().end(), y_.begin());
   std::copy(runge_kutta_.slope().begin(), runge_kutta_.slope().end(), slope_.begin());
   scale_ = runge_kutta_.scale();
+  motion_.equations().evaluator().curve_places(curve_places_);
   stepped_by_runge_kutta_ = true;
   observe_ratio();
   if (!crossing_) {

@@ -107,7 +107,6 @@ bool RungeKutta::advance(double limit) {
   motion_.equations().evaluator().take_turns(motion_.q(std::span(y_)));
   interpolant_ready_ = false;
   h_ = proposed;
-  motion_.equations().evaluator().curve_places(curve_places_);
   while (true) {
     motion_.equations().evaluator().go_to_curve_places(curve_places_);
     const double remaining = limit - t_;
@@ -192,6 +191,7 @@ void RungeKutta::accept(double growth, double proposed) {
   y_before_.swap(y_);
   y_.swap(y_new_);
   slope_.swap(slope_new_);
+  motion_.equations().evaluator().curve_places(curve_places_);
   observe_ratio();
   observe_rates();
   // A step that was shortened by a limit does not change the usual step.

@@ -1,4 +1,4 @@
-#include "catena/analysis/statics/static_settling.hpp"
+#include "catena/analysis/statics/solvers/static_settling.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -19,7 +19,7 @@
 #include <span>
 #include <vector>
 
-#include "catena/analysis/statics/static_newton.hpp"
+#include "catena/analysis/statics/solvers/static_newton.hpp"
 
 namespace catena {
 

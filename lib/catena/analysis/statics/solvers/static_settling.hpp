@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-#include "catena/analysis/statics/static_newton.hpp"
+#include "catena/analysis/statics/solvers/static_newton.hpp"
 #include "catena/linalg/factorization/factorization.hpp"
 
 namespace catena {

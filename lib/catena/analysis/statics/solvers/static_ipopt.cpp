@@ -1,4 +1,4 @@
-#include "catena/analysis/statics/static_ipopt.hpp"
+#include "catena/analysis/statics/solvers/static_ipopt.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "catena/analysis/statics/static_nlopt.hpp"
+#include "catena/analysis/statics/solvers/static_nlopt.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "catena/analysis/statics/static_newton.hpp"
+#include "catena/analysis/statics/solvers/static_newton.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -63,6 +63,7 @@ bool first_tensions(StaticSystem& system, std::span<double> lambda) {
 
 void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda, StaticOutcome& outcome) {
   std::vector<double> residual(at(system.plan().columns)), gap(at(system.plan().rows)), q_before, lambda_before;
+  std::vector<CurvePlace> places_before;
   const double force = system.force_size(), rounding = system.rounding_change();
   // In units of the possible rounding.
   const auto size = [&] {
@@ -81,6 +82,7 @@ void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda,
     const double change = system.change_norm(step.change);
     q_before.assign(q.begin(), q.end());
     lambda_before.assign(lambda.begin(), lambda.end());
+    system.evaluator().curve_places(places_before);
     system.advance(q, step.change, 1, newton_turn);
     for (std::size_t r = 0; r < lambda.size(); ++r) lambda[r] += step.lambda[r];
     system.move_to(q);
@@ -91,6 +93,7 @@ void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda,
     if (!(then < now || (rounded && (k == 0 || change < 0.1 * before)))) {
       std::copy(q_before.begin(), q_before.end(), q.begin());
       std::copy(lambda_before.begin(), lambda_before.end(), lambda.begin());
+      system.evaluator().go_to_curve_places(places_before);
       system.move_to(q);
       size();
       return;
@@ -113,6 +116,7 @@ StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::sp
   StaticOutcome outcome;
   const Plan& plan = system.plan();
   std::vector<double> residual(at(plan.columns)), q_before(q.size()), lambda_before(lambda.size());
+  std::vector<CurvePlace> places_before;
   system.move_to(q);
   const bool linear = system.has_linear_constraints();
   if (!options.warm) {
@@ -175,6 +179,7 @@ StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::sp
     if (balanced) {
       std::copy(q.begin(), q.end(), q_before.begin());
       std::copy(lambda.begin(), lambda.end(), lambda_before.begin());
+      system.evaluator().curve_places(places_before);
     }
     system.foresee(step.change, 1, newton_turn);
     system.advance(q, step.change, 1, newton_turn);
@@ -185,6 +190,7 @@ StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::sp
     if (balanced && change > polished_change && !(outcome.residual <= no_gain * residual_before)) {
       std::copy(q_before.begin(), q_before.end(), q.begin());
       std::copy(lambda_before.begin(), lambda_before.end(), lambda.begin());
+      system.evaluator().go_to_curve_places(places_before);
       system.move_to(q);
       outcome.residual = residual_before;
       outcome.end = StaticEnd::stationary;

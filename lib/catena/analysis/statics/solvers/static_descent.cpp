@@ -1,4 +1,4 @@
-#include "catena/analysis/statics/static_descent.hpp"
+#include "catena/analysis/statics/solvers/static_descent.hpp"
 
 #include <algorithm>
 #include <cmath>

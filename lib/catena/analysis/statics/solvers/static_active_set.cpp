@@ -1,10 +1,10 @@
-#include "catena/analysis/statics/static_active_set.hpp"
+#include "catena/analysis/statics/solvers/static_active_set.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "catena/analysis/statics/static_gaps.hpp"
+#include "catena/analysis/statics/solvers/static_gaps.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {

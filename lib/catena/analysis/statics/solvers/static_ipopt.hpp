@@ -11,7 +11,7 @@
 
 #include <span>
 
-#include "catena/analysis/statics/static_newton.hpp"
+#include "catena/analysis/statics/solvers/static_newton.hpp"
 
 namespace catena {
 

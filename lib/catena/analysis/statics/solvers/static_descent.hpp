@@ -12,7 +12,7 @@
 // Source: Nocedal and Wright, Numerical Optimization, sections 3.1 and 15.6 (reduced gradients).
 #pragma once
 
-#include "catena/analysis/statics/static_newton.hpp"
+#include "catena/analysis/statics/solvers/static_newton.hpp"
 
 namespace catena {
 
