@@ -13,8 +13,8 @@
 
 namespace catena {
 
-/// Puts the sweep in place of `tasks`: `values` of the parameters `names`, SI, row after row. Returns what is wrong with
-/// the table, or that there is nothing to be measured.
+/// Puts the sweep in place of `tasks`: `values` of the parameters `names`, SI, row after row. Returns what is wrong
+/// with the table, or that there is nothing to be measured.
 std::optional<std::string> sweep_over_given(const std::vector<std::string>& names, std::span<const double> values,
                                             const ParameterTable& parameters, std::vector<AnalysisTask>& tasks);
 
