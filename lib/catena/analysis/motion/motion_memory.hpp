@@ -67,7 +67,7 @@ struct MotionMemory {
   EventMemory events;
   std::vector<Jolt> jolts;  ///< so far
   std::vector<RopeTurns> ropes{};
-  std::vector<CurvePlace> curves{};  ///< where contacts on curves are
+  std::vector<CurvePlace> curves{};      ///< where contacts on curves are
   std::vector<RopeEvent> rope_events{};  ///< so far
 };
 
