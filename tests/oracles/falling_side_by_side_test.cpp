@@ -283,7 +283,7 @@ TEST(SideBySide, BlocksRock) {
   std::vector<Block> blocks;
   std::vector<Piece> pieces;
   for (int k = 0; k < 8; ++k) {
-    const Block& b = blocks.emplace_back(random(0.15, 0.35), random(0.3, 0.8), random(0.04, 0.1));
+    const Block& b = blocks.emplace_back(Block{random(0.15, 0.35), random(0.3, 0.8), random(0.04, 0.1)});
     const double half_width = b.R * std::sin(b.alpha), half_height = b.R * std::cos(b.alpha);
     const std::string number = std::to_string(k), block = "block" + number;
     // Tilted by `tilt` about the right corner, which stands at (0, 0).

@@ -6,11 +6,19 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 namespace catena {
 
 class Disturbance {
  public:
+  static constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  /// So many times their rounding equations are off, so that differences have six digits or more.
+  static constexpr double amplification = 0x1p20;
+  /// Standard deviations of the few disturbed values: the largest of a run's errors is about as far out.
+  static constexpr double deviations = 2;
+  static constexpr int disturbed_values = 3;
+
   /// Between -1 and 1.
   double next() {
     state_ ^= state_ >> 12;

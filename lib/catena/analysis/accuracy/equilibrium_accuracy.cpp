@@ -10,15 +10,11 @@
 namespace catena {
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-// As in kinematic_accuracy.cpp.
-constexpr double amplification = 0x1p20;
-constexpr double largest_shift = 1e-5;  // length scales, rad
-constexpr double deviations = 2;
-constexpr int disturbed_values = 3;
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+// A place that a disturbance moves further, length scales or rad, is not judged by it: K changes along the way.
+constexpr double largest_shift = 1e-5;
 // One factorization and some ten solves: beyond this many columns they are a part of the search that shows.
-constexpr int small_mechanism = 3000;
+constexpr int most_columns = 3000;
 // Of the rounding of a balance, which is a bound: with all of it claims were optimistic by 1 at most, and half of them
 // pessimistic by 92 and more, over 275 random mechanisms.
 constexpr double usual = 0.5;
@@ -35,7 +31,7 @@ void EquilibriumAccuracy::take(const Snapshot& snapshot, std::span<const double>
 }
 
 std::vector<double> EquilibriumAccuracy::digits(const AnalysisReport& report) {
-  if (analysis_.plan().columns > small_mechanism) return {};
+  if (analysis_.plan().columns > most_columns) return {};
   if (!report.ok() || rows_ != 1 || withheld_) return {};
   StaticSystem& system = analysis_.system();
   unique_ = report.redundant.empty();
@@ -48,12 +44,13 @@ std::vector<double> EquilibriumAccuracy::digits(const AnalysisReport& report) {
   values_at(q_, lambda_, first_);
   rounding_ = balance_rounding(system, lambda_);
   square_.assign(columns_.size(), 0.0);
-  for (int k = 0; k < disturbed_values; ++k) {
+  for (int k = 0; k < Disturbance::disturbed_values; ++k) {
     if (!disturb()) return {};
   }
   for (std::size_t k = 0; k < square_.size(); ++k) {
     if (std::isnan(values_[k])) continue;
-    errors_.take_error(k, std::abs(values_[k] - first_[k]) + deviations * std::sqrt(square_[k] / disturbed_values));
+    errors_.take_error(k, std::abs(values_[k] - first_[k]) +
+                              Disturbance::deviations * std::sqrt(square_[k] / Disturbance::disturbed_values));
   }
   errors_.take_places(columns_.info(), system.evaluator().length_scale());
   return errors_.digits();
@@ -73,7 +70,7 @@ bool EquilibriumAccuracy::answer(std::span<double> force, std::span<double> gap)
   if (size == 0) return true;
   for (double& f : force) f /= size;
   for (double& g : gap) g /= size;
-  const StaticStep step = system.solve(force, gap, solved * epsilon);
+  const StaticStep step = system.solve(force, gap, solved * Disturbance::epsilon);
   if (!(step.residual <= solved)) return false;
   for (std::size_t c = 0; c < change_.size(); ++c) change_[c] = size * step.change[c];
   for (std::size_t r = 0; r < gap.size(); ++r) change_lambda_[r] = size * step.lambda[r];
@@ -100,29 +97,30 @@ bool EquilibriumAccuracy::disturb() {
   const Plan& plan = system.plan();
   // How far all is off for a relative rounding of one: of the time first, by differences.
   std::vector<double> force(at(plan.columns)), gap(at(plan.rows)), late(force.size());
-  const double t = analysis_.time(), instant = amplification * epsilon * random_.next();
+  const double t = analysis_.time(), instant = Disturbance::amplification * Disturbance::epsilon * random_.next();
   system.residual(lambda_, force);
   std::copy(system.phi().begin(), system.phi().end(), gap.begin());
   evaluator.set_time_along(t * (1 + instant), t);
   system.move_to(q_);
   system.residual(lambda_, late);
   for (std::size_t c = 0; c < force.size(); ++c)
-    force[c] = (force[c] - late[c]) / amplification + usual * random_.next() * rounding_[c];
+    force[c] = (force[c] - late[c]) / Disturbance::amplification + usual * random_.next() * rounding_[c];
   std::vector<double> moduli;
   place_moduli(evaluator, q_, moduli);
   const std::span<const double> terms = terms_.sum(system.jacobian(), moduli);
   for (std::size_t r = 0; r < gap.size(); ++r)
-    gap[r] = (gap[r] - system.phi()[r]) / amplification + random_.next() * epsilon * terms[r];
+    gap[r] = (gap[r] - system.phi()[r]) / Disturbance::amplification + random_.next() * Disturbance::epsilon * terms[r];
   if (!answer(force, gap)) return false;
   const double shift = system.change_norm(change_);
-  const double size = std::min(amplification, shift > 0 ? largest_shift / shift : amplification);
+  const double size =
+      std::min(Disturbance::amplification, shift > 0 ? largest_shift / shift : Disturbance::amplification);
   std::vector<double> q = q_, lambda = lambda_;
   for (std::size_t c = 0; c < change_.size(); ++c) {
     const std::size_t k = at(plan.coordinate[c]);
-    q[k] += size * (change_[c] + epsilon / 2 * random_.next() * moduli[k]);
+    q[k] += size * (change_[c] + Disturbance::epsilon / 2 * random_.next() * moduli[k]);
   }
   for (std::size_t r = 0; r < lambda.size(); ++r)
-    lambda[r] += size * (change_lambda_[r] + epsilon / 2 * random_.next() * lambda_[r]);
+    lambda[r] += size * (change_lambda_[r] + Disturbance::epsilon / 2 * random_.next() * lambda_[r]);
   values_at(q, lambda, other_);
   evaluator.set_time(t);
   system.move_to(q_);
@@ -137,8 +135,8 @@ std::vector<double>& EquilibriumAccuracy::values_at(std::span<const double> q, s
                                                     std::vector<double>& values) {
   Evaluator& evaluator = analysis_.evaluator();
   evaluator.set_configuration(q);
-  Snapshot snapshot{.evaluator = evaluator, .t = analysis_.time(), .q = q, .lambda = lambda, .residual = not_known};
-  const std::vector<double> unknown(lambda.size(), not_known);
+  Snapshot snapshot{.evaluator = evaluator, .t = analysis_.time(), .q = q, .lambda = lambda, .residual = no_value};
+  const std::vector<double> unknown(lambda.size(), no_value);
   if (!unique_) snapshot.lambda = unknown;
   values.resize(columns_.size());
   columns_.evaluate(snapshot, values);

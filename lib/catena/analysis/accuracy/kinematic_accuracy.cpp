@@ -10,17 +10,11 @@
 namespace catena {
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-// So many times their rounding equations are off, so that differences have six digits or more, and so far places
-// (length scales, rad) and rates (of the largest) may change by it: what is of second order is then small beside the
-// change.
-constexpr double amplification = 0x1p20;
+// So far places (length scales, rad) and rates (of the largest) may change by a disturbance: what is of second order is
+// then small beside the change.
 constexpr double largest_change = 1e-4;
 constexpr int most_attempts = 6;
-// Two standard deviations of the few disturbed values: the largest of a run's errors is about as far out.
-constexpr double deviations = 2;
-constexpr int disturbed_values = 3;
 // Four rows take some eighty solves and a few factorizations: that is a millisecond up to the first number of columns,
 // and a small part of the run from the second number of rows on, at six solves and a factorization each.
 constexpr int small_mechanism = 3000;
@@ -75,7 +69,7 @@ std::vector<double> KinematicAccuracy::digits(const AnalysisReport& report) {
   if (plan_.columns > small_mechanism && count_ < many_rows) return {};
   if (!report.ok() || count_ == 0 || analysis_.interpolated() || !analysis_.singular_points().empty()) return {};
   // The rows' own counts are given already, and these are not of the run.
-  left_of_rates_ = std::max(analysis_.solver().left_of_rates(), epsilon * epsilon);
+  left_of_rates_ = std::max(analysis_.solver().left_of_rates(), Disturbance::epsilon * Disturbance::epsilon);
   left_of_multipliers_ = analysis_.solver().left_of_multipliers();
   last_.q.assign(analysis_.q().begin(), analysis_.q().end());
   analysis_.evaluator().curve_places(last_.curves);
@@ -122,13 +116,14 @@ bool KinematicAccuracy::examine(const Row& row) {
   if (!solve_rates(exact, nullptr, 0)) return false;
   values_at(row, exact, first_);
   square_.assign(columns_.size(), 0.0);
-  for (int k = 0; k < disturbed_values; ++k) {
+  for (int k = 0; k < Disturbance::disturbed_values; ++k) {
     if (!disturb(row, exact)) return false;
   }
   for (std::size_t k = 0; k < square_.size(); ++k) {
     // Columns that are not defined here, alike in both, are judged in other rows.
     if (std::isnan(row.values[k])) continue;
-    errors_.take_error(k, std::abs(row.values[k] - first_[k]) + deviations * std::sqrt(square_[k] / disturbed_values));
+    errors_.take_error(k, std::abs(row.values[k] - first_[k]) +
+                              Disturbance::deviations * std::sqrt(square_[k] / Disturbance::disturbed_values));
   }
   return true;
 }
@@ -138,7 +133,7 @@ bool KinematicAccuracy::examine(const Row& row) {
 bool KinematicAccuracy::disturb(const Row& row, const State& exact) {
   const Disturbance begin = random_;
   State state;
-  double size = amplification;
+  double size = Disturbance::amplification;
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     random_ = begin;
     if (!disturb_by(size, row, exact, state)) return false;
@@ -176,19 +171,19 @@ bool KinematicAccuracy::disturb_by(double size, const Row& row, const State& exa
   Evaluator& evaluator = analysis_.evaluator();
   DrivenSolver& solver = analysis_.solver();
   evaluator.go_to_curve_places(row.curves);
-  evaluator.set_time_along(row.t * (1 + size * epsilon * random_.next()), row.t);
+  evaluator.set_time_along(row.t * (1 + size * Disturbance::epsilon * random_.next()), row.t);
   solver.residual_at(exact.q);
   // Of the equations off by this, and by the time.
   place_moduli(evaluator, exact.q, moduli_);
   const std::span<double> rows = terms_.sum(solver.jacobian(), moduli_);
   for (int r = 0; r < plan_.rows; ++r) {
     const double unit = plan_.row_is_angle[at(r)] ? 1 / evaluator.length_scale() : 1;
-    rows[at(r)] = size * random_.next() * (epsilon * rows[at(r)] + residual_ * unit) - solver.phi()[at(r)];
+    rows[at(r)] = size * random_.next() * (Disturbance::epsilon * rows[at(r)] + residual_ * unit) - solver.phi()[at(r)];
   }
   if (!solver.respond(rows, change_)) return false;
   state.q = exact.q;
   for (const int k : plan_.coordinate)
-    state.q[at(k)] += change_[at(k)] + size * epsilon / 2 * random_.next() * moduli_[at(k)];
+    state.q[at(k)] += change_[at(k)] + size * Disturbance::epsilon / 2 * random_.next() * moduli_[at(k)];
   solver.residual_at(state.q);
   return solve_rates(state, &exact, size);
 }
@@ -230,13 +225,13 @@ bool KinematicAccuracy::solve_loads(State& state, double size) {
     double terms = sizes[at(plan_.coordinate[at(c)])] + std::abs(inertia_force(c));
     for (int k = plan_.jacobian.column_start[at(c)]; k < plan_.jacobian.column_start[at(c) + 1]; ++k)
       terms += std::abs(jacobian[at(k)] * state.lambda[at(plan_.jacobian.row_index[at(k)])]);
-    loads_[at(c)] += size * epsilon * random_.next() * terms;
+    loads_[at(c)] += size * Disturbance::epsilon * random_.next() * terms;
   }
   if (!solver.solve_multipliers(loads_, state.lambda)) return false;
   double largest = 0;
   for (const double lambda : state.lambda) largest = std::max(largest, std::abs(lambda));
   for (double& lambda : state.lambda)
-    lambda += size * random_.next() * (epsilon / 2 * std::abs(lambda) + left_of_multipliers_ * largest);
+    lambda += size * random_.next() * (Disturbance::epsilon / 2 * std::abs(lambda) + left_of_multipliers_ * largest);
   return true;
 }
 
@@ -244,11 +239,11 @@ bool KinematicAccuracy::add_response(std::span<double> x, double size, std::span
                                      std::span<const double> rates) {
   DrivenSolver& solver = analysis_.solver();
   const std::span<double> rows = terms_.sum(solver.jacobian(), moduli, rates);
-  for (double& term : rows) term *= size * epsilon * random_.next();
+  for (double& term : rows) term *= size * Disturbance::epsilon * random_.next();
   if (!solver.respond(rows, change_)) return false;
   const double left = size * left_of_rates_ * solver.rate_norm(x), length = analysis_.evaluator().length_scale();
   for (const int k : plan_.coordinate) {
-    const double rounding = epsilon / 2 * std::abs(moduli[at(k)]);
+    const double rounding = Disturbance::epsilon / 2 * std::abs(moduli[at(k)]);
     x[at(k)] += change_[at(k)] + size * random_.next() * rounding + left * random_.next() * (k % 3 == 2 ? 1 : length);
   }
   return true;

@@ -24,7 +24,7 @@ namespace {
 // Faults (static_active_set.hpp) below the first are rounding of a point that is solved; the place of a change is
 // located until the largest is below the second, and all above its negative change there.
 constexpr double no_fault = 1e-10, located_fault = 1e-12, changes_too = 1e-9;
-constexpr int most_trials = 80;
+constexpr int most_bisections = 80;
 // Of the place of a change: a bracket shorter than this is rounding.
 constexpr double shortest_bracket = 1e-14;
 // Part of the parameter's range by which the path is followed to see to which side a gap opens: its effect on a gap is
@@ -54,7 +54,7 @@ bool Path::March::change_within(PathPoint& next, double& s, bool& located) {
   PathPoint point = x_;
   s = 0;
   // What touched at the present point, without force, may be about to change there.
-  for (int k = 0; k < most_trials && fault < -located_fault && high - low > shortest_bracket * high; ++k) {
+  for (int k = 0; k < most_bisections && fault < -located_fault && high - low > shortest_bracket * high; ++k) {
     double trial = low + (high - low) * low_fault / (low_fault - high_fault);
     if (k % 3 == 2) trial = 0.5 * (low + high);
     PathPoint found = system_.advanced(x_, direction_, trial);
