@@ -79,5 +79,28 @@ TEST(AssemblyScene, WhatIsHeldIsNamedWhereItIsInTheWay) {
       << held.analysis().report.message;
 }
 
+// Turning a body whose points all lie at its centroid weighs by the arms of its own mechanism: an arm and a disc that
+// are drawn 0.5 rad off share the correction alike whatever stands beside them, held or moving.
+TEST(AssemblyScene, WhatStandsBesideDoesNotChangeWhereItIsAssembled) {
+  const auto scene = [](const std::string& bodies, const std::string& constraints) {
+    return R"({"catena": 1, "bodies": {"arm": {"position": [0.5, 0]}, "disc": {"position": [1, 0], "angle": 0.5})" +
+           bodies + R"(}, "constraints": [
+      {"type": "revolute", "name": "O", "i": "ground", "j": ["arm", [-0.5, 0]]},
+      {"type": "revolute", "name": "A", "i": ["arm", [0.5, 0]], "j": "disc"},
+      {"type": "relative_angle", "name": "B", "i": "arm", "j": "disc", "value": 0})" +
+           constraints + R"(], "analyses": [{"type": "assemble"}], "outputs": ["arm.angle", "disc.angle"]})";
+  };
+  const TextRun alone = run_text(scene("", ""));
+  ASSERT_EQ(alone.outcome.exit_code, 0) << alone.outcome.error_text;
+  EXPECT_GT(alone.last("arm.angle"), 0.01);
+  for (const char* beside : {R"({"type": "weld", "name": "W", "i": ["ground", [9, 7]], "j": ["other", [-9, -7]]})",
+                             R"({"type": "revolute", "name": "W", "i": "ground", "j": ["other", [-18, -14]]})"}) {
+    const TextRun both = run_text(scene(R"(, "other": {"position": [18, 14]})", std::string(", ") + beside));
+    ASSERT_EQ(both.outcome.exit_code, 0) << both.outcome.error_text;
+    EXPECT_NEAR(both.last("arm.angle"), alone.last("arm.angle"), 1e-12) << beside;
+    EXPECT_NEAR(both.last("disc.angle"), alone.last("disc.angle"), 1e-12) << beside;
+  }
+}
+
 }  // namespace
 }  // namespace catena::testing

@@ -10,6 +10,7 @@
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/elements/gap_element.hpp"
+#include "catena/model/model_part.hpp"
 
 namespace catena {
 namespace {
@@ -234,28 +235,28 @@ Taylor<double> Evaluator::element_value(int element) const {
   return value;
 }
 
-// Points of constraints; where all points of a body are at its centroid, those of force elements; else the length
-// scale. Every length comes from the scene.
+// Points of constraints; where all points of a body are at its centroid, those of force elements; else the mean of what
+// it hangs together with, or the length scale. Every length comes from the scene, and from the same mechanism: what
+// stands beside it does not change where it is assembled.
 std::vector<double> Evaluator::attachment_radii(double* mean) const {
   struct Points {
-    double squares = 0;
+    double squares = 0, sum = 0;
     int count = 0;
     void add(double square) {
       squares += square;
+      sum += std::sqrt(square);
       ++count;
     }
   };
   std::vector<Points> held(at(plan_->bodies)), forced(at(plan_->bodies));
-  double sum = 0;
-  std::int64_t points = 0;
+  Points all;
   for_each_list(model_->constraints, [&](const auto& list, int) {
     for (const auto& entry : list) {
       visit_points(entry, [&](const Vec2<double>& local, int body) {
         if (body < 0) return;
         const double square = squared_norm(local);
         held[at(plan_->plan_body[at(body)])].add(square);
-        sum += std::sqrt(square);
-        ++points;
+        all.add(square);
       });
     }
   });
@@ -266,12 +267,32 @@ std::vector<double> Evaluator::attachment_radii(double* mean) const {
       });
     }
   });
-  std::vector<double> radius(held.size());
+  std::vector<double> radius(held.size(), 0.0);
+  bool lacks = false;
   for (std::size_t b = 0; b < radius.size(); ++b) {
     const Points& of = held[b].squares > 0 ? held[b] : forced[b];
-    radius[b] = of.squares > 0 ? std::sqrt(of.squares / of.count) : length_scale_;
+    if (of.squares > 0) radius[b] = std::sqrt(of.squares / of.count);
+    lacks = lacks || (radius[b] == 0 && !model_->bodies[at(plan_->model_body[b])].particle);
   }
-  if (mean) *mean = points > 0 ? sum / static_cast<double>(points) : 0;
+  if (lacks) {
+    for (const std::vector<int>& group : separate_groups(*model_)) {
+      Points own;
+      for (const int body : group) {
+        const Points& of = held[at(plan_->plan_body[at(body)])];
+        own.sum += of.sum;
+        own.count += of.count;
+      }
+      if (own.sum == 0) continue;
+      for (const int body : group) {
+        double& r = radius[at(plan_->plan_body[at(body)])];
+        if (r == 0) r = own.sum / own.count;
+      }
+    }
+  }
+  for (double& r : radius) {
+    if (r == 0) r = length_scale_;
+  }
+  if (mean) *mean = all.count > 0 ? all.sum / all.count : 0;
   return radius;
 }
 
