@@ -163,8 +163,8 @@ class Evaluator {
   /// Value of the element's function of time now: c, c', c''.
   Taylor<double> element_value(int element) const;
 
-  /// Per plan body: RMS distance of its attachment points from the centroid; where there is none the mean distance in its
-  /// mechanism, else length_scale(). The mean over all attachment points goes to `mean` (Lc in
+  /// Per plan body: RMS distance of its attachment points from the centroid; where there is none the mean distance in
+  /// its mechanism, else length_scale(). The mean over all attachment points goes to `mean` (Lc in
   /// apps/manual/dynamics.md#least-reactions).
   std::vector<double> attachment_radii(double* mean = nullptr) const;
   /// nullptr, or why a rope, elastic or not, means nothing at this configuration, as a phrase: it has no straight line
