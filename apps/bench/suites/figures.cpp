@@ -58,8 +58,7 @@ class FigureMaker {
   }
   void append_to(std::vector<Figure>& figures) {
     if (plot_.panels.front().lines.empty()) return;
-    if (plot_.panels.front().lines.size() > 1)
-      plot_.panels.front().unit = with_unit(y_name_, plot_.panels.front().unit);
+    plot_.panels.front().name = y_name_;
     const auto canvas = [this](double w, double h) -> std::unique_ptr<VectorCanvas> {
       return std::make_unique<SvgCanvas>(w, h, plot_.title);
     };

@@ -24,6 +24,7 @@ struct PlotLine {
 struct PlotPanel {
   std::string unit;  ///< of y; may be empty
   std::vector<PlotLine> lines;
+  std::string name{};  ///< of y, where there are several lines; may be empty
 };
 
 struct Plot {

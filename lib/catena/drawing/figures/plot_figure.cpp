@@ -89,6 +89,7 @@ void draw_panel(VectorCanvas& canvas, const Plot& plot, const PlotPanel& panel, 
   }
   canvas.unclip();
   const std::string name = panel.lines.size() == 1 ? with_unit(panel.lines.front().name, panel.unit)
+                           : !panel.name.empty()   ? with_unit(panel.name, panel.unit)
                            : panel.unit.empty()    ? std::string()
                                                    : "[" + panel.unit + "]";
   canvas.text(box.at(0, 0.5) - Vec2<double>{left - 11, 0}, name,
