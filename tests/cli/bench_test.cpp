@@ -139,7 +139,7 @@ TEST(Bench, DocumentsAreAsTheirSchemaSays) {
     ++files;
     EXPECT_EQ(schema_fault(json::parse(read_file(entry.path())), bench_schema(), "document"), "") << entry.path();
   }
-  EXPECT_GE(files, 2);
+  EXPECT_GE(files, 1);
   json document = json::parse(bench::to_json(made_document(1)));
   EXPECT_EQ(schema_fault(document, bench_schema(), "document"), "");
   EXPECT_FALSE(document["growth"].empty());
