@@ -76,7 +76,7 @@ class Batches(unittest.TestCase):
 
     def test_leave_the_interpreter_to_others(self):
         bar = FourBar(1)
-        table = numpy.linspace(0.99, 1.01, 4000)[:, None] * bar.b
+        table = numpy.linspace(0.99, 1.01, 20000)[:, None] * bar.b
         seen = []
         done = threading.Event()
 
