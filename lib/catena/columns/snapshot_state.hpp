@@ -23,7 +23,6 @@ class SnapshotState {
   Frame<double> frame(int plan_body) const { return s_.evaluator.ground_frame(plan_body); }
   Twist<double> twist(int plan_body) const { return three(s_.qd, plan_body); }
   Twist<double> acceleration(int plan_body) const { return three(s_.qdd, plan_body); }
-  bool at_rest() const { return s_.qd.empty(); }
   double law_value(int law) const { return s_.evaluator.law_value(law, s_.qd); }
 
  private:

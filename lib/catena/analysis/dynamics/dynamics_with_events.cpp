@@ -91,10 +91,7 @@ void DynamicsWithEvents::make_dynamics() {
   }
   std::vector<int> released = plan.released_elements;
   std::sort(released.begin(), released.end());
-  if (!take_up_kept(released)) {
-    dynamics_ = std::make_unique<Dynamics>(model_, plan, options_);
-    ++plans_;
-  }
+  if (!take_up_kept(released)) dynamics_ = std::make_unique<Dynamics>(model_, plan, options_);
   released_ = std::move(released);
   if (contacts_.any() && contacts_.started()) contacts_.attach(*dynamics_, *watch_);
 }

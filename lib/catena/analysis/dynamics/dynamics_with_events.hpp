@@ -46,8 +46,6 @@ class DynamicsWithEvents {
                      bool ropes = true);
 
   const Plan& plan() const { return dynamics_->plan(); }
-  /// Plans made so far.
-  int plans() const { return plans_; }
   IntegrationMethod method() const { return dynamics_->method(); }
   Evaluator& evaluator() { return dynamics_->evaluator(); }
   void pause(Pauses pauses) { pauses_ = std::move(pauses); }
@@ -138,7 +136,6 @@ class DynamicsWithEvents {
   bool in_phase_ = false, over_ = false;
   double last_action_ = -1;  // s; and how often events acted then
   int at_once_ = 0;
-  int plans_ = 0;
 };
 
 }  // namespace catena
