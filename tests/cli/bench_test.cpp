@@ -203,7 +203,8 @@ TEST(Bench, BriefRunOfAllSuitesIsRight) {
     EXPECT_TRUE(row.at("allowed").is_number() || row.at("method") == "baumgarte") << name;
     EXPECT_LE(row.at("error"), largest_error(row)) << name;
   }
-  for (const char* suite : {"kinematics", "dynamics", "equilibrium", "design", "kernels", "scaling", "economy"})
+  for (const char* suite :
+       {"kinematics", "dynamics", "contact", "equilibrium", "design", "kernels", "scaling", "economy"})
     EXPECT_GE(rows[suite], 4) << suite;
   // The page holds the plots, which name what they clip to differently.
   const std::string page = read_file(folder / "b.html");

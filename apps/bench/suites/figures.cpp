@@ -76,21 +76,22 @@ std::string line_name(const Row& row) { return row.engine == "catena" ? row.meth
 bool shown(const Row& row) { return row.failure.empty(); }
 
 void work_precision(const Document& document, std::vector<Figure>& figures) {
-  std::vector<std::string> problems;
+  std::vector<std::pair<std::string, std::string>> problems;  // with their suites
   for (const Row& row : document.rows) {
-    if (row.suite == "dynamics" && std::find(problems.begin(), problems.end(), row.problem) == problems.end())
-      problems.push_back(row.problem);
+    const std::pair of(row.suite, row.problem);
+    if ((row.suite == "dynamics" || row.suite == "contact") &&
+        std::find(problems.begin(), problems.end(), of) == problems.end())
+      problems.push_back(of);
   }
-  for (const std::string& problem : problems) {
-    const auto first = std::find_if(document.rows.begin(), document.rows.end(), [&](const Row& r) {
-      return r.suite == "dynamics" && r.problem == problem && !r.error_of.empty();
-    });
-    FigureMaker figure("dynamics_" + file_name(problem),
+  for (const auto& [suite, problem] : problems) {
+    const auto is_of = [&](const Row& row) { return row.suite == suite && row.problem == problem; };
+    const auto first = std::find_if(document.rows.begin(), document.rows.end(),
+                                    [&](const Row& r) { return is_of(r) && !r.error_of.empty(); });
+    FigureMaker figure(suite + "_" + file_name(problem),
                        problem + ": " + (first == document.rows.end() ? "error" : first->error_of), "processor time",
                        "ms", "error", "");
     for (const Row& row : document.rows) {
-      if (row.suite == "dynamics" && row.problem == problem && shown(row))
-        figure.add(line_name(row), 1e3 * row.seconds, row.error);
+      if (is_of(row) && shown(row)) figure.add(line_name(row), 1e3 * row.seconds, row.error);
     }
     figure.append_to(figures);
   }

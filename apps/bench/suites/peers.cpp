@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "catena/scene/json/source_text.hpp"
+#include "suites/contact_problems.hpp"
 #include "suites/exact_chain.hpp"
 #include "suites/pendulum_gradient.hpp"
 
@@ -19,18 +20,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a program is asked for, the table that it answers with, and the suite that this belongs to. CVODES, which is no
-/// engine, knows the scene of gradients alone, and no other program knows it.
+/// What a program is asked for, the table that it answers with, and the suite that this belongs to. Programs whose
+/// names begin with `only` know no other scene, and no other program knows this one.
 struct PeerScene {
   const char* scene;
   const char* table;
   const char* suite;
-  const char* only = nullptr;
+  std::string_view only = {};
 };
-constexpr const char* cvodes = "peer_cvodes";
-constexpr PeerScene scenes[] = {{"acceleration", "S1a", "kernels"},   {"chain", "S1b", "dynamics"},
-                                {"fourbar", "S2", "dynamics"},        {"squeezer", "S3", "dynamics"},
-                                {"equilibrium", "S4", "equilibrium"}, {"gradient", "S5", "design", cvodes}};
+constexpr PeerScene scenes[] = {{"acceleration", "S1a", "kernels"},
+                                {"chain", "S1b", "dynamics"},
+                                {"fourbar", "S2", "dynamics"},
+                                {"squeezer", "S3", "dynamics"},
+                                {"equilibrium", "S4", "equilibrium"},
+                                {"gradient", "S5", "design", "peer_cvodes"},
+                                {"contact", "S6", "contact", "peer_contact_"}};
 constexpr int time_limit = 60;  // s a scene; records printed so far are kept
 
 using Fields = std::vector<std::string>;
@@ -112,6 +116,15 @@ bool read_record(const Fields& f, Row& row) {
     row.counts.emplace_back("parameters", number(f, 6));
     return !row.problem.empty();
   }
+  if (f[0] == "S6" && f.size() >= 8) {
+    row.suite = "contact", row.problem = f[4];
+    row.bodies = row.problem == BouncingBalls::name       ? BouncingBalls::count
+                 : row.problem == BouncingDumbbells::name ? BouncingDumbbells::count
+                                                          : 1;
+    row.counts.emplace_back("steps", number(f, 5));
+    row.seconds = 1e-3 * number(f, 6), row.error = number(f, 7), row.error_of = "worst place, m";
+    return true;
+  }
   return false;
 }
 
@@ -129,9 +142,11 @@ int add_records(Bench& bench, const std::string& text, const std::function<bool(
 }
 
 void run_program(Bench& bench, const fs::path& program, const std::function<bool(std::string_view)>& wanted) {
+  const std::string file = program.filename().string();
+  const auto is_of = [&](const PeerScene& scene) { return !scene.only.empty() && file.starts_with(scene.only); };
+  const bool special = std::any_of(std::begin(scenes), std::end(scenes), is_of);
   for (const PeerScene& scene : scenes) {
-    const bool is_cvodes = program.filename() == cvodes;
-    if (!wanted(scene.suite) || (scene.only != nullptr) != is_cvodes) continue;
+    if (!wanted(scene.suite) || (special ? !is_of(scene) : !scene.only.empty())) continue;
     std::string quoted = "'";
     for (const char c : program.string()) quoted += c == '\'' ? "'\\''" : std::string(1, c);
     const std::string command =

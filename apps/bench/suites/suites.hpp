@@ -10,6 +10,7 @@ namespace bench {
 
 void kinematics_suite(Bench& bench);   ///< driven linkages against closed forms, by tolerance
 void dynamics_suite(Bench& bench);     ///< every method at tolerances 1e-3 ... 1e-12: error against time
+void contact_suite(Bench& bench);      ///< bounces, friction and sticking against closed forms, by tolerance
 void equilibrium_suite(Bench& bench);  ///< hanging chains by every solver, small oscillations
 void design_suite(Bench& bench);       ///< gradients and searches against closed forms
 void kernels_suite(Bench& bench);      ///< accelerations, Jacobians, plans, factorizations: a body
@@ -21,8 +22,9 @@ struct Suite {
   void (*run)(Bench&);
 };
 
-inline constexpr std::array<Suite, 7> suites{{{"kinematics", kinematics_suite},
+inline constexpr std::array<Suite, 8> suites{{{"kinematics", kinematics_suite},
                                               {"dynamics", dynamics_suite},
+                                              {"contact", contact_suite},
                                               {"equilibrium", equilibrium_suite},
                                               {"design", design_suite},
                                               {"kernels", kernels_suite},
