@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "catena/analysis/motion/equations_of_motion.hpp"
 #include "catena/base/at.hpp"
@@ -15,7 +16,6 @@ namespace {
 // Newton's method on forces that are nearly linear in each other: without joints one step is exact, with joints the
 // error is squared in every step.
 constexpr int most_iterations = 30;
-constexpr double settled = 1e-15;
 
 }  // namespace
 
@@ -48,18 +48,26 @@ std::string names_of(const Model& model, const std::vector<ContactPoint>& points
 
 /// f + mu sigma N(lambda_0 + B f) = 0, with the memory for its solution.
 struct ContactLoads::Sizes {
-  Eigen::VectorXd f, residual, step;
+  Eigen::VectorXd f, residual, terms, step;
   Eigen::MatrixXd slope;
   Eigen::PartialPivLU<Eigen::MatrixXd> factors;
-  std::vector<double> lambda;  // lambda_0 + B f
+  std::vector<double> lambda;        // lambda_0 + B f
+  std::vector<double> lambda_terms;  // sums of the sizes of its terms
 
   void resize(std::size_t points, std::size_t rows) {
     const auto m = static_cast<Eigen::Index>(points);
     f.resize(m);
     residual.resize(m);
+    terms.resize(m);
     step.resize(m);
     slope.resize(m, m);
     lambda.resize(rows);
+    lambda_terms.resize(rows);
+  }
+  /// Whether what is left of the equations is rounding: of sums of m + 1 products in lambda, of few in what follows.
+  bool is_solved() const {
+    const double rounding = std::numeric_limits<double>::epsilon() * static_cast<double>(f.size() + 6);
+    return (residual.array().abs() <= rounding * terms.array()).all();
   }
 };
 
@@ -157,15 +165,21 @@ void ContactLoads::add(std::span<const double> qd, std::span<double> loads) {
 // Residual and slope of the equations for the sizes of friction, at their present values.
 void ContactLoads::linearise(std::span<const double> lambda) {
   Sizes& s = *sizes_;
-  std::copy(lambda.begin(), lambda.end(), s.lambda.begin());
-  for (std::size_t l = 0; l < coupled_.size(); ++l) {
-    for (std::size_t r = 0; r < lambda.size(); ++r) s.lambda[r] += response_[l][r] * s.f(static_cast<Eigen::Index>(l));
+  for (std::size_t r = 0; r < lambda.size(); ++r) {
+    s.lambda[r] = lambda[r];
+    s.lambda_terms[r] = std::abs(lambda[r]);
+    for (std::size_t l = 0; l < coupled_.size(); ++l) {
+      const double part = response_[l][r] * s.f(static_cast<Eigen::Index>(l));
+      s.lambda[r] += part;
+      s.lambda_terms[r] += std::abs(part);
+    }
   }
   for (std::size_t p = 0; p < coupled_.size(); ++p) {
     const ContactPoint& point = points_[coupled_[p]];
     const double factor = point.mu * sigma(coupled_[p]);
     const auto row = static_cast<Eigen::Index>(p);
     s.residual(row) = s.f(row) + factor * normal_from(coupled_[p], {}, s.lambda);
+    s.terms(row) = std::abs(s.f(row)) + std::abs(factor * normal_from(coupled_[p], {}, s.lambda_terms));
     for (std::size_t l = 0; l < coupled_.size(); ++l) {
       const double change = point.kind == ContactKind::joint
                                 ? joint_slope(point, s.lambda, response_[l])
@@ -180,6 +194,7 @@ bool ContactLoads::find_sizes(std::span<const double> lambda) {
   s.f.setZero();
   for (int iteration = 0; iteration <= most_iterations; ++iteration) {
     linearise(lambda);
+    if (s.is_solved() && iteration > 0) return true;
     s.factors.compute(s.slope);
     const double determinant = s.factors.determinant();
     if (!std::isfinite(determinant)) break;
@@ -192,7 +207,6 @@ bool ContactLoads::find_sizes(std::span<const double> lambda) {
     }
     s.step.noalias() = s.factors.solve(s.residual);
     s.f -= s.step;
-    if (s.step.lpNorm<Eigen::Infinity>() <= settled * s.f.lpNorm<Eigen::Infinity>()) return true;
   }
   trouble_ = fmt::format("the friction of {} and the reactions that press there do not settle",
                          names_of(evaluator_.model(), points_, coupled_));

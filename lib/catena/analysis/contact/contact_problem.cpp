@@ -3,14 +3,13 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace catena {
 namespace {
 
 // Sweeps over all places. Two places of a body converge within some dozen, a stack of n within some n^2.
 constexpr int most_sweeps = 100000;
-// Changes of this part of the largest x are rounding.
-constexpr double settled_change = 1e-15;
 // The answer of all places at once replaces that of the sweeps where it keeps every inequality to this part.
 constexpr double tolerated = 1e-9;
 
@@ -144,6 +143,18 @@ bool ContactProblem::fits(double size) const {
   return true;
 }
 
+// Of x: of the sums that it is the solution of.
+double ContactProblem::rounding() const {
+  double largest = 0;
+  for (std::size_t r = 0; r < x.size(); ++r) {
+    if (!(D(r, r) > 0)) continue;
+    double terms = std::abs(b[r]);
+    for (std::size_t c = 0; c < x.size(); ++c) terms += std::abs(D(r, c) * x[c]);
+    largest = std::max(largest, terms / D(r, r));
+  }
+  return std::numeric_limits<double>::epsilon() * static_cast<double>(x.size() + 2) * largest;
+}
+
 bool ContactProblem::solve() {
   double size = 0;
   for (int sweep = 0;; ++sweep) {
@@ -156,7 +167,7 @@ bool ContactProblem::solve() {
       size = std::max({size, std::abs(x[2 * k]), std::abs(x[2 * k + 1])});
     }
     if (!std::isfinite(size)) return false;
-    if (change <= settled_change * size) break;
+    if (change <= tolerated * size && change <= rounding()) break;
     if (sweep == most_sweeps) return false;
   }
   const std::vector<double> swept = x;

@@ -52,6 +52,7 @@ class ContactProblem {
   void solve_along(std::size_t k, double w_t);
   /// w at place k, across (0) or along (1), but for the part of its own x.
   double without_own(std::size_t k, std::size_t along) const;
+  double rounding() const;
   void solve_states();
   bool close_redundant(double size);
   bool fits(double size) const;
