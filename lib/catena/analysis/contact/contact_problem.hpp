@@ -6,7 +6,9 @@
 //
 // D = J M^-1 J^T on the constraints is symmetric and positive semidefinite. Places are solved one after the other, over
 // and over, until nothing changes (nonlinear Gauss-Seidel); the states found are then solved for at once, so that the
-// answer is exact to rounding however slow that was. Several places of one body may be redundant: the least x is taken.
+// answer is exact to rounding however slow that was. Sweeps need not settle where places share a body, and cannot tell
+// what several that stick hold together: up to six places are then searched for states that fit (contact_search.cpp).
+// Several places of one body may be redundant: the least x is taken.
 // Not solvable where friction wedges a place (D_nn <= mu |D_tn|): solve() is then false.
 // Source: Stewart (2000), see contact_loads.hpp; Jean and Moreau, Unilaterality and dry friction (1992).
 #pragma once
@@ -40,6 +42,11 @@ class ContactProblem {
 
   /// Finds x and the states. False: there is no solution, or none that the iteration finds.
   bool solve();
+  /// What solve() finds from now on has other states than `state` and `direction` are now.
+  void rule_out_states() {
+    ruled_out_state_ = state;
+    ruled_out_direction_ = direction;
+  }
 
   std::vector<Place> place;
   std::vector<double> b;
@@ -54,10 +61,17 @@ class ContactProblem {
   double without_own(std::size_t k, std::size_t along) const;
   double rounding() const;
   void solve_states();
+  bool sweep(double& size);
   bool close_redundant(double size);
   bool fits(double size) const;
+  // contact_search.cpp
+  bool sticks_together() const;
+  bool search();
+  bool try_states();
 
   std::vector<double> d_;
+  std::vector<State> ruled_out_state_;  // empty: none
+  std::vector<int> ruled_out_direction_;
 };
 
 }  // namespace catena

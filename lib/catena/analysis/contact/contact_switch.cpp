@@ -367,6 +367,17 @@ Report ContactSwitch::choose(double t, std::span<const double> q, std::span<cons
       if (static_cast<int>(k) == cause.place && cause.rests) place.slip = cause.leaves;
     }
   }
+  if (cause.shares) {
+    for (std::size_t a = 0; a < active_.size(); ++a) {
+      const ContactState& state = states[active_[a]];
+      const bool sticks = points_[active_[a]].has_friction() && state.direction == 0;
+      problem.state[a] = !state.closed ? ContactProblem::State::open
+                         : sticks      ? ContactProblem::State::sticks
+                                       : ContactProblem::State::slides;
+      problem.direction[a] = state.direction;
+    }
+    problem.rule_out_states();
+  }
   if (Report pressed = press_joints(t, qd, loads, problem); !pressed.ok()) {
     return is_jammed(true) ? blocked(t, active_) : pressed;
   }
@@ -378,7 +389,16 @@ Report ContactSwitch::choose(double t, std::span<const double> q, std::span<cons
     if (!joint) states[k].closed = problem.state[a] != ContactProblem::State::open;
     states[k].direction = problem.state[a] == ContactProblem::State::slides ? problem.direction[a] : 0;
   }
+  find_shared(problem);
   return {};
+}
+
+void ContactSwitch::find_shared(const ContactProblem& problem) {
+  std::erase_if(shared_, [&](const SharedForces& forces) {
+    return std::find(active_.begin(), active_.end(), forces.places().front()) != active_.end();
+  });
+  SharedForces forces(problem, active_);
+  if (!forces.places().empty()) shared_.push_back(std::move(forces));
 }
 
 void ContactSwitch::tell_changes(double t, const std::vector<ContactState>& before,

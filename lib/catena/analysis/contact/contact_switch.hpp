@@ -31,6 +31,7 @@
 
 #include "catena/analysis/contact/contact_loads.hpp"
 #include "catena/analysis/contact/contact_problem.hpp"
+#include "catena/analysis/contact/shared_forces.hpp"
 #include "catena/analysis/events/strike.hpp"
 #include "catena/analysis/motion/equations_of_motion.hpp"
 #include "catena/analysis/motion/impulses.hpp"
@@ -62,11 +63,12 @@ class ContactSwitch {
 
   /// Why contacts are decided about.
   struct Cause {
-    int place = -1;      ///< the one that changed; -1: something else did
-    bool opens = false;  ///< nothing presses it any more, to rounding
-    bool rests = false;  ///< its slide is at rest, to rounding
-    int leaves = 0;      ///< sign of the slip with which it leaves a state of sticking: friction has reached its limit
-    bool tell = true;    ///< changes of places are events; impacts always are
+    int place = -1;       ///< the one that changed; -1: something else did
+    bool opens = false;   ///< nothing presses it any more, to rounding
+    bool rests = false;   ///< its slide is at rest, to rounding
+    bool shares = false;  ///< places that hold each other, this one among them, keep no limit any more
+    int leaves = 0;       ///< sign of the slip with which it leaves a state of sticking: friction has reached its limit
+    bool tell = true;     ///< changes of places are events; impacts always are
     const Strike* strike = nullptr;  ///< acts before anything closes
     bool jolts = false;  ///< velocities need not meet the constraints: one was engaged, or a driver's velocity jumps
   };
@@ -84,6 +86,8 @@ class ContactSwitch {
   std::vector<ConstraintImpulse> take_impulses() { return std::move(impulses_); }
   /// Where drivers ask for a motion that closed places rule out, once decide() has said so.
   const std::optional<SingularPoint>& blocked() const { return blocked_; }
+  /// Of places that hold each other since they were decided about last.
+  const std::vector<SharedForces>& shared() const { return shared_; }
   /// What happened since this was called last.
   std::vector<ContactEvent> take_events() { return std::move(events_); }
 
@@ -103,6 +107,7 @@ class ContactSwitch {
   Report choose(double t, std::span<const double> q, std::span<const double> qd, std::vector<ContactState>& states,
                 const Cause& cause);
   Report press_joints(double t, std::span<const double> qd, const ContactLoads& loads, ContactProblem& problem);
+  void find_shared(const ContactProblem& problem);
   void tell_changes(double t, const std::vector<ContactState>& before, const std::vector<ContactState>& after);
   double kinetic_energy(std::span<const double> qd) const;
   Report failure(double t, const std::string& why) const;
@@ -133,6 +138,7 @@ class ContactSwitch {
   std::vector<std::size_t> active_;
   std::vector<std::vector<double>> change_, multipliers_;
   std::vector<double> load_, nothing_, qdd_;
+  std::vector<SharedForces> shared_;
   std::vector<ContactEvent> events_;
 };
 

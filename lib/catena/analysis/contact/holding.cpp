@@ -11,6 +11,7 @@
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/base/at.hpp"
+#include "catena/linalg/rank/nonnegative_least_squares.hpp"
 
 namespace catena {
 namespace {
@@ -21,51 +22,6 @@ constexpr double balanced = 1e-11;
 constexpr double closed_place = 1e-6;
 // Friction beyond this is as good as any: the edges of the cone are then along the tangent to this part.
 constexpr double most_friction = 1e8;
-
-/// The least |A x + b| over x >= 0.
-double least_residual(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
-  const Eigen::Index n = A.cols();
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
-  std::vector<char> used(static_cast<std::size_t>(n), 0);
-  const auto solve_used = [&](Eigen::VectorXd& s) {
-    std::vector<Eigen::Index> columns;
-    for (Eigen::Index c = 0; c < n; ++c)
-      if (used[static_cast<std::size_t>(c)]) columns.push_back(c);
-    Eigen::MatrixXd part(A.rows(), static_cast<Eigen::Index>(columns.size()));
-    for (std::size_t k = 0; k < columns.size(); ++k) part.col(static_cast<Eigen::Index>(k)) = A.col(columns[k]);
-    const Eigen::VectorXd solution = part.completeOrthogonalDecomposition().solve(-b);
-    s.setZero(n);
-    for (std::size_t k = 0; k < columns.size(); ++k) s(columns[k]) = solution(static_cast<Eigen::Index>(k));
-  };
-  const double rounding = 1e-13 * A.norm() * b.norm();
-  for (Eigen::Index outer = 0; outer < 3 * n; ++outer) {
-    const Eigen::VectorXd slope = -(A.transpose() * (A * x + b));
-    Eigen::Index enters = -1;
-    for (Eigen::Index c = 0; c < n; ++c) {
-      if (!used[static_cast<std::size_t>(c)] && slope(c) > rounding && (enters < 0 || slope(c) > slope(enters)))
-        enters = c;
-    }
-    if (enters < 0) break;
-    used[static_cast<std::size_t>(enters)] = 1;
-    Eigen::VectorXd s;
-    for (Eigen::Index inner = 0; inner <= n; ++inner) {
-      solve_used(s);
-      double part = 1;
-      for (Eigen::Index c = 0; c < n; ++c) {
-        if (used[static_cast<std::size_t>(c)] && s(c) < 0) part = std::min(part, x(c) / (x(c) - s(c)));
-      }
-      x += part * (s - x);
-      if (part == 1) break;
-      for (Eigen::Index c = 0; c < n; ++c) {
-        if (used[static_cast<std::size_t>(c)] && x(c) <= 1e-15 * x.lpNorm<Eigen::Infinity>()) {
-          used[static_cast<std::size_t>(c)] = 0;
-          x(c) = 0;
-        }
-      }
-    }
-  }
-  return (A * x + b).norm();
-}
 
 }  // namespace
 
@@ -154,7 +110,8 @@ Holding ContactHolding::find(const SystemState& state, std::vector<double>& q) {
         A.col(2 * static_cast<Eigen::Index>(k) + s) = edge / std::max(edge.norm(), 1e-300);
       }
     }
-    return least_residual(A, b) <= balanced * force(loads).norm();
+    Eigen::VectorXd sizes;
+    return nonnegative_least_squares(A, b, sizes) <= balanced * force(loads).norm();
   };
   if (holds(0)) {
     holding.utilisation = 0;

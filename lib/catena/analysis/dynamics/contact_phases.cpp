@@ -193,7 +193,9 @@ Report ContactPhases::change(int transition, SystemState& state) {
     states_[watched.place].closed = !states_[watched.place].closed;
     states_[watched.place].direction = 0;
   }
-  ContactSwitch::Cause cause{.place = static_cast<int>(watched.place), .rests = watched.ends == End::slide};
+  ContactSwitch::Cause cause{.place = static_cast<int>(watched.place),
+                             .rests = watched.ends == End::slide,
+                             .shares = watched.ends == End::shares};
   cause.opens = watched.ends == End::contact && states_[watched.place].closed;
   // What stuck goes the way that friction no longer prevents; by rounding alone the limit might seem not to be reached.
   if (cause.rests && states_[watched.place].direction == 0) cause.leaves = loads_->friction(watched.place) > 0 ? -1 : 1;
@@ -211,6 +213,26 @@ Report ContactPhases::change_way(std::size_t transition, SystemState& state) {
   return decide(state, {});
 }
 
+bool ContactPhases::shares(std::size_t k) const {
+  return std::any_of(switch_->shared().begin(), switch_->shared().end(), [k](const SharedForces& forces) {
+    return std::find(forces.places().begin(), forces.places().end(), k) != forces.places().end();
+  });
+}
+
+void ContactPhases::add_shared_transitions(const Dynamics& dynamics, std::vector<Transition>& transitions,
+                                           Needs& needs) {
+  for (const SharedForces& forces : switch_->shared()) {
+    const auto margin = [this, &forces, &plan = dynamics.plan()](const Snapshot& s) {
+      const auto normal = [&](std::size_t k) { return loads_->normal_from(k, s.qd, s.lambda); };
+      const auto along = [&](std::size_t k) { return -s.lambda[at(plan.element_row[at(contacts_.points[k].slide)])]; };
+      return forces.margin(normal, along);
+    };
+    transitions.push_back({margin, 1});
+    watched_.push_back({forces.places().front(), End::shares});
+    needs.multipliers = true;
+  }
+}
+
 void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std::vector<Transition>& transitions,
                                     Needs& needs) {
   const ContactPoint& point = contacts_.points[k];
@@ -225,7 +247,7 @@ void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std
   if (point.kind == ContactKind::rigid && !state.closed)
     watch([element](const Snapshot& s) { return s.evaluator.measure(element, {}, {}).value; }, 1, End::contact);
   if (point.kind == ContactKind::rigid && state.closed) {
-    watch(normal, 1, End::contact);
+    if (!shares(k)) watch(normal, 1, End::contact);
     needs.multipliers = true;
   }
   if (point.kind == ContactKind::compliant && state.closed) watch(normal, 1, End::pressing);
@@ -240,7 +262,7 @@ void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std
     watch([slide,
            sign = state.direction](const Snapshot& s) { return sign * s.evaluator.scalar_motion(slide, s.qd).rate; },
           1, End::slide);
-  } else {
+  } else if (!shares(k)) {
     const int row = dynamics.plan().element_row[at(slide)];
     watch(
         [normal, row, mu = point.mu_static](const Snapshot& s) { return mu * normal(s) - std::abs(s.lambda[at(row)]); },
@@ -255,6 +277,7 @@ void ContactPhases::attach(Dynamics& dynamics, EventWatch& watch) {
   watched_.clear();
   Needs needs{.velocity = true};
   for (std::size_t k = 0; k < states_.size(); ++k) add_transitions(k, dynamics, transitions, needs);
+  add_shared_transitions(dynamics, transitions, needs);
   if (ropes_) ropes_->add_transitions(transitions);
   watch.watch(std::move(transitions), needs);
 }

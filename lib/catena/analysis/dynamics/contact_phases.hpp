@@ -4,7 +4,7 @@
 //
 //   open, rigid        the gap                        open, compliant    the lesser of depth and force
 //   pressing           what presses                   slides             the slip, in its direction
-//   sticks             mu_static N - |T|
+//   sticks             mu_static N - |T|              hold each other    margin of all their shares (shared_forces.hpp)
 //
 // and where a rope meets or leaves a pulley (rope_phases.hpp).
 //
@@ -64,13 +64,16 @@ class ContactPhases {
   }
 
  private:
-  /// What ends a phase: a gap or a reaction, the force of a compliant place, a slide that comes to rest or begins.
-  enum class End : unsigned char { contact, pressing, slide };
+  /// What ends a phase: a gap or a reaction, the force of a compliant place, a slide that comes to rest or begins,
+  /// places that hold each other no longer.
+  enum class End : unsigned char { contact, pressing, slide, shares };
   struct Watched {
     std::size_t place;
     End ends;
   };
   void add_rows(PlanOptions& options, const std::vector<ContactState>& states) const;
+  void add_shared_transitions(const Dynamics& dynamics, std::vector<Transition>& transitions, Needs& needs);
+  bool shares(std::size_t k) const;
   void add_transitions(std::size_t k, const Dynamics& dynamics, std::vector<Transition>& transitions, Needs& needs);
   void make_switch(const PlanOptions& options);
   Report renew_switch(const PlanOptions& options, const SystemState& state);

@@ -1,0 +1,186 @@
+// States of a ContactProblem by trial: for every place whether it sticks, slides one way or the other, or is open.
+//
+// With given states the forces are columns with coefficients that are not negative - of a place that sticks the two
+// edges of its cone, J_n +- mu_static J_t, of one that slides or only presses its one edge -, which have to keep closed
+// gaps closed and stuck slides at rest: least squares with a residual of nothing (nonnegative_least_squares.hpp). So it
+// does not matter which of several forces that sticking places could share are looked at. States fit if open gaps do
+// not close then, and slides from rest go the way that was meant. The more places stick, the earlier a choice is tried:
+// what can be held is at rest.
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "catena/analysis/contact/contact_problem.hpp"
+#include "catena/linalg/rank/nonnegative_least_squares.hpp"
+
+namespace catena {
+namespace {
+
+// Four states each: 4096 choices, some 20 us each.
+constexpr std::size_t most_searched = 6;
+// Of the terms of a sum: what counts as rounding of it. Choices that do not fit miss by parts of their loads.
+constexpr double fitting = 1e-9;
+// Of the largest diagonal entry: what dependent rows leave.
+constexpr double dependent = 1e-11;
+
+}  // namespace
+
+// Whether what sticks or could stick depends on each other, so that its forces are not unique.
+bool ContactProblem::sticks_together() const {
+  std::vector<std::size_t> rows;
+  int at_rest = 0;
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    if (state[k] == State::open) continue;
+    const bool rests = place[k].has_friction && place[k].slip == 0;
+    at_rest += rests;
+    if (place[k].has_normal) rows.push_back(2 * k);
+    if (rests) rows.push_back(2 * k + 1);
+  }
+  if (at_rest < 2) return false;
+  const auto size = static_cast<Eigen::Index>(rows.size());
+  Eigen::MatrixXd held(size, size);
+  for (Eigen::Index r = 0; r < size; ++r) {
+    const double own = D(rows[static_cast<std::size_t>(r)], rows[static_cast<std::size_t>(r)]);
+    for (Eigen::Index c = 0; c < size; ++c) {
+      const double other = D(rows[static_cast<std::size_t>(c)], rows[static_cast<std::size_t>(c)]);
+      const double scale = std::sqrt(own * other);
+      held(r, c) = scale > 0 ? D(rows[static_cast<std::size_t>(r)], rows[static_cast<std::size_t>(c)]) / scale : 0;
+    }
+  }
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors;
+  factors.setThreshold(dependent);
+  return factors.compute(held).rank() < size;
+}
+
+// Whether the present states fit; x is then what goes with them.
+bool ContactProblem::try_states() {
+  struct Edge {
+    std::size_t place;
+    double normal, along;  // of x that one unit of it makes
+  };
+  std::vector<Edge> columns;
+  std::vector<double> known(x.size(), 0.0);
+  std::vector<std::size_t> held;
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    const Place& p = place[k];
+    if (state[k] == State::open) continue;
+    if (p.has_normal) held.push_back(2 * k);
+    if (state[k] == State::sticks) {
+      held.push_back(2 * k + 1);
+      if (p.has_normal) {
+        columns.push_back({k, 1, p.mu_static});
+        columns.push_back({k, 1, -p.mu_static});
+      } else {
+        known[2 * k + 1] = -p.limit;
+        columns.push_back({k, 0, 1});
+      }
+    } else if (p.has_normal) {
+      columns.push_back({k, 1, p.has_friction ? -p.mu * direction[k] : 0});
+    } else {
+      known[2 * k + 1] = -direction[k] * p.kinetic;
+    }
+  }
+  Eigen::MatrixXd A(static_cast<Eigen::Index>(held.size()), static_cast<Eigen::Index>(columns.size()));
+  Eigen::VectorXd right(A.rows()), unit(A.rows());
+  for (Eigen::Index r = 0; r < A.rows(); ++r) {
+    const std::size_t row = held[static_cast<std::size_t>(r)];
+    // Rows across and along, and of places that turn, have different sizes.
+    unit(r) = D(row, row) > 0 ? 1 / std::sqrt(D(row, row)) : 0;
+    right(r) = b[row];
+    for (std::size_t c = 0; c < known.size(); ++c) right(r) += D(row, c) * known[c];
+    right(r) *= unit(r);
+    for (Eigen::Index c = 0; c < A.cols(); ++c) {
+      const Edge& of = columns[static_cast<std::size_t>(c)];
+      A(r, c) = unit(r) * (D(row, 2 * of.place) * of.normal + D(row, 2 * of.place + 1) * of.along);
+    }
+  }
+  Eigen::VectorXd sizes(A.cols());
+  if (A.rows() > 0) nonnegative_least_squares(A, right, sizes);
+  x = known;
+  for (Eigen::Index c = 0; c < A.cols(); ++c) {
+    const Edge& of = columns[static_cast<std::size_t>(c)];
+    x[2 * of.place] += of.normal * sizes(c);
+    x[2 * of.place + 1] += of.along * sizes(c);
+  }
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    for (const std::size_t along : {0, 1}) {
+      const Place& p = place[k];
+      if (along == 0 ? !p.has_normal : !p.has_friction || state[k] == State::open) continue;
+      const std::size_t row = 2 * k + along;
+      double w = b[row], terms = std::abs(b[row]);
+      for (std::size_t c = 0; c < x.size(); ++c) {
+        w += D(row, c) * x[c];
+        terms += std::abs(D(row, c) * x[c]);
+      }
+      const double rounding = fitting * terms;
+      if (!std::isfinite(w)) return false;
+      if (along == 0 && (state[k] == State::open ? w < -rounding : std::abs(w) > rounding)) return false;
+      if (along == 0) continue;
+      if (state[k] == State::sticks && std::abs(w) > rounding) return false;
+      if (state[k] == State::slides && p.slip == 0 && direction[k] * w < -rounding) return false;
+    }
+    if (state[k] == State::sticks && !place[k].has_normal && x[2 * k + 1] > place[k].limit * (1 + fitting))
+      return false;
+  }
+  return true;
+}
+
+bool ContactProblem::search() {
+  if (place.size() > most_searched) return false;
+  struct Choice {
+    State state;
+    int direction;
+  };
+  std::vector<std::vector<Choice>> choices(place.size());
+  std::size_t count = 1;
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    const Place& p = place[k];
+    const double across = D(2 * k, 2 * k);
+    const bool presses = !p.has_normal || across > 0;
+    if (p.has_friction && p.has_normal && p.slip != 0 && across > 0 &&
+        !(across - p.mu * p.slip * D(2 * k, 2 * k + 1) > 0))
+      return false;
+    if (presses && p.has_friction) {
+      if (p.slip == 0) choices[k].push_back({State::sticks, 0});
+      for (const int s : {1, -1}) {
+        if (p.slip == 0 || p.slip == s) choices[k].push_back({State::slides, s});
+      }
+    } else if (presses && p.has_normal) {
+      choices[k].push_back({State::slides, 0});
+    }
+    if (p.has_normal || !p.has_friction) choices[k].push_back({State::open, 0});
+    count *= choices[k].size();
+  }
+  const std::vector<State> states = state;
+  const std::vector<int> directions = direction;
+  const std::vector<double> before = x;
+  const auto take = [&](std::size_t number) {
+    int moving = 0;
+    for (std::size_t k = 0; k < place.size(); ++k) {
+      const Choice& choice = choices[k][number % choices[k].size()];
+      number /= choices[k].size();
+      state[k] = choice.state;
+      direction[k] = choice.direction;
+      moving += choice.state != State::sticks;
+    }
+    return moving;
+  };
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<int> moving(count);
+  for (std::size_t number = 0; number < count; ++number) moving[number] = take(number);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t c) { return moving[a] < moving[c]; });
+  for (const std::size_t number : order) {
+    take(number);
+    if (state == ruled_out_state_ && direction == ruled_out_direction_) continue;
+    if (try_states()) return true;
+  }
+  state = states;
+  direction = directions;
+  x = before;
+  return false;
+}
+
+}  // namespace catena
