@@ -16,8 +16,6 @@ namespace {
 // A gap of this part of the length scale (or rad) is closed: instants of impacts are found to rounding, configurations
 // are given to some ten digits.
 constexpr double closed_gap = 1e-9;
-// Of the speed of the motion: the default of rest_speed.
-constexpr double default_rest = 1e-4;
 // Of the kinetic energy before an impact: rounding of work.
 constexpr double energy_rounding = 1e-12;
 
@@ -52,6 +50,7 @@ ContactSwitch::ContactSwitch(std::shared_ptr<const Model> model, const std::vect
       bounced_at_(points.size(), -std::numeric_limits<double>::infinity()),
       landing_(points.size(), std::numeric_limits<double>::quiet_NaN()),
       left_at_(bounced_at_),
+      flight_(points.size(), std::numeric_limits<double>::quiet_NaN()),
       gap_(points.size()),
       slide_(points.size()) {
   const auto coordinates = at(evaluator_.plan().coordinates());
@@ -63,6 +62,7 @@ ContactSwitch::ContactSwitch(std::shared_ptr<const Model> model, const std::vect
 void ContactSwitch::take_over(const ContactSwitch& earlier) {
   know_speed(earlier.speed_);
   bounced_at_ = earlier.bounced_at_;
+  flight_ = earlier.flight_;
   left_at_ = earlier.left_at_;
 }
 
@@ -220,7 +220,7 @@ bool ContactSwitch::apply(double restitution_part, std::span<double> qd, double&
     }
     place.mu_static = place.mu;
     const double closing = std::min(gap_[k].rate, 0.0);
-    const double rest = points_[k].rest_speed >= 0 ? points_[k].rest_speed : part_of_speed(k, default_rest);
+    const double rest = rest_speed(k);
     const double rebound = -points_[k].restitution * closing;
     problem.b[2 * a] = gap_[k].rate - (rebound >= rest ? restitution_part * rebound : 0);
     problem.b[2 * a + 1] = place.has_friction ? slide_[k].rate : 0;
@@ -241,6 +241,11 @@ bool ContactSwitch::apply(double restitution_part, std::span<double> qd, double&
 
 double ContactSwitch::part_of_speed(std::size_t k, double part) const {
   return part * speed_ / (points_[k].turns ? evaluator_.length_scale() : 1);
+}
+
+double ContactSwitch::rest_speed(std::size_t k) const {
+  constexpr double of_the_motion = 1e-4;  // the default
+  return points_[k].rest_speed >= 0 ? points_[k].rest_speed : part_of_speed(k, of_the_motion);
 }
 
 // Whether a touching place is hit: its gap closes.
@@ -266,6 +271,7 @@ Report ContactSwitch::collide(double t, std::span<double> qd, std::vector<Contac
   }
   look(qd);
   if (std::any_of(hit.begin(), hit.end(), [&](std::size_t k) { return hits(k); })) return blocked(t, hit);
+  const double end = end_rocking(t, hit, qd);
   for (const std::size_t k : hit) {
     events_.push_back({points_[k].element, "impact", t});
     const double rebound = gap_[k].rate;
@@ -275,13 +281,14 @@ Report ContactSwitch::collide(double t, std::span<double> qd, std::vector<Contac
       continue;
     }
     // It stays. The bounces that were left out would have taken their time.
-    landing_[k] = t;
+    landing_[k] = end;
     if (points_[k].restitution > 0 && points_[k].restitution < 1 &&
         bounced_at_[k] > -std::numeric_limits<double>::infinity()) {
       const double fall = std::max(t - bounced_at_[k], 0.0);
       landing_[k] = t + fall * points_[k].restitution / (1 - points_[k].restitution);
     }
   }
+  note_flights(t, hit);
   return {};
 }
 

@@ -100,6 +100,8 @@ class ContactSwitch {
   void fill(ContactProblem& problem) const;
   /// Of point k: what cannot be told from rest, m/s or rad/s, as a part of the largest speed.
   double part_of_speed(std::size_t k, double part) const;
+  /// Of point k: slower than that a rebound is none.
+  double rest_speed(std::size_t k) const;
   bool hits(std::size_t k) const;
   Report collide(double t, std::span<double> qd, std::vector<ContactState>& states);
   bool apply(double restitution_part, std::span<double> qd, double& work);
@@ -112,6 +114,10 @@ class ContactSwitch {
   double kinetic_energy(std::span<const double> qd) const;
   Report failure(double t, const std::string& why) const;
   Report wedged(double t) const;
+  // Feet that land and lift in turns: contact_rocking.cpp.
+  std::vector<std::size_t> rocking(double t, const std::vector<std::size_t>& hit) const;
+  double end_rocking(double t, const std::vector<std::size_t>& hit, std::span<double> qd);
+  void note_flights(double t, const std::vector<std::size_t>& hit);
   // Drivers that move on against closed places: contact_jam.cpp.
   bool gives_way(std::size_t a, double response) const;
   bool is_jammed(bool accelerates) const;
@@ -131,6 +137,7 @@ class ContactSwitch {
   std::vector<double> bounced_at_;  // by point: when it hit and came back last
   std::vector<double> landing_;     // by point: instant of the `contact` event under way, or NaN
   std::vector<double> left_at_;     // by point: when it was last let go, by its speed or by drivers
+  std::vector<double> flight_;      // by point: how long it was open before it landed last; NaN: it never was
   std::optional<SingularPoint> blocked_;
   std::vector<Evaluator::ScalarMotion> gap_, slide_;
   std::vector<int> group_;  // by point: impulses and forces at one point reach only points of its group

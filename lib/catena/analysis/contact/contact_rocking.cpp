@@ -1,0 +1,70 @@
+// Feet that land and lift in turns, as those of a block that rocks: each landing lifts the other foot more slowly, and
+// the instants accumulate as those of a bouncing ball do, though nothing bounces.
+//
+//   T_0, T_1, T_2 ...  time aloft of the feet in turns,  T_n+1 = r T_n      they end at  t + T r / (1 - r)
+//
+// A foot that lifts more slowly than `rest_speed` in such a row of ever shorter flights stays where it is. Source:
+// G. W. Housner, The behavior of inverted pendulum structures during earthquakes (1963), for r.
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "catena/analysis/contact/contact_switch.hpp"
+
+namespace catena {
+
+// Closed places that an impact opens too slowly to matter, where the places that are hit and they took turns before.
+std::vector<std::size_t> ContactSwitch::rocking(double t, const std::vector<std::size_t>& hit) const {
+  std::vector<std::size_t> lifted;
+  const bool shorter = std::all_of(hit.begin(), hit.end(), [&](std::size_t k) { return t - left_at_[k] < flight_[k]; });
+  if (!shorter) return lifted;
+  for (const std::size_t k : active_) {
+    if (points_[k].kind != ContactKind::rigid || std::isnan(flight_[k])) continue;
+    if (std::find(hit.begin(), hit.end(), k) != hit.end()) continue;
+    if (gap_[k].rate > part_of_speed(k, no_speed) && gap_[k].rate < rest_speed(k)) lifted.push_back(k);
+  }
+  return lifted;
+}
+
+// Both feet are then at rest: what was left of their rates is taken away, in the metric of the masses. Returns
+// when ever shorter flights would have ended, or t.
+double ContactSwitch::end_rocking(double t, const std::vector<std::size_t>& hit, std::span<double> qd) {
+  std::vector<std::size_t> held = rocking(t, hit);
+  if (held.empty()) return t;
+  held.insert(held.end(), hit.begin(), hit.end());
+  // Rows across, and along where friction holds what moves so little.
+  std::vector<std::size_t> rows;
+  for (const std::size_t k : held) {
+    const auto a = static_cast<std::size_t>(std::find(active_.begin(), active_.end(), k) - active_.begin());
+    rows.push_back(2 * a);
+    const bool grips = points_[k].has_friction() && points_[k].is_exact();
+    if (grips && std::abs(slide_[k].rate) < rest_speed(k)) rows.push_back(2 * a + 1);
+  }
+  const auto size = static_cast<Eigen::Index>(rows.size());
+  const auto row = [&](Eigen::Index r) { return rows[static_cast<std::size_t>(r)]; };
+  Eigen::MatrixXd response(size, size);
+  Eigen::VectorXd rate(size);
+  for (Eigen::Index r = 0; r < size; ++r) {
+    const std::size_t k = active_[row(r) / 2];
+    const Evaluator::ScalarMotion& motion = row(r) % 2 == 0 ? gap_[k] : slide_[k];
+    rate(r) = motion.rate;
+    for (Eigen::Index c = 0; c < size; ++c) response(r, c) = product(motion, change_[row(c)]);
+  }
+  const Eigen::VectorXd impulse = response.completeOrthogonalDecomposition().solve(-rate);
+  for (Eigen::Index c = 0; c < size; ++c) {
+    for (std::size_t k = 0; k < qd.size(); ++k) qd[k] += change_[row(c)][k] * impulse(c);
+    for (std::size_t r = 0; r < p_.size(); ++r) p_[r] += multipliers_[row(c)][r] * impulse(c);
+  }
+  look(qd);
+  // Two flights of one foot lie two ratios apart.
+  const double flight = t - left_at_[hit.front()], ratio = std::sqrt(flight / flight_[hit.front()]);
+  return t + flight * ratio / (1 - ratio);
+}
+
+void ContactSwitch::note_flights(double t, const std::vector<std::size_t>& hit) {
+  for (const std::size_t k : hit) {
+    if (std::isfinite(left_at_[k])) flight_[k] = t - left_at_[k];
+  }
+}
+
+}  // namespace catena
