@@ -1,5 +1,5 @@
 // Prediction from earlier instants: exact for polynomials, and no worse where two instants lie close together.
-#include "catena/analysis/kinematics/predictor.hpp"
+#include "catena/analysis/kinematics/course/predictor.hpp"
 
 #include <gtest/gtest.h>
 

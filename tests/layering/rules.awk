@@ -9,7 +9,7 @@
 #
 #   analysis  run <- pose <- motion <- events <- {kinematics, contact <- dynamics};  pose <- balance <- spectrum <- statics/solvers <- statics <- stability
 #             run <- measures;  motion <- sensitivity;  minimiser <- {statics, design};  kinematics <- batch
-#             {kinematics, statics} <- accuracy
+#             {kinematics, statics} <- accuracy;  kinematics/course <- kinematics
 #   scene     json <- numbers <- describing <- reading <- building <- models <- judging <- running <- designing <- viewing <- loading
 #             <- explaining
 #   drawing   shapes <- figures
@@ -29,7 +29,8 @@ BEGIN {
   every = may["scene"]
 
   chain("analysis", "run pose motion events")
-  after("analysis", "kinematics", "run pose motion events")
+  after("analysis", "kinematics/course", "run pose")
+  after("analysis", "kinematics", "run pose motion events kinematics/course")
   after("analysis", "dynamics/integrators", "run pose motion")
   after("analysis", "contact", "run pose motion events")
   after("analysis", "dynamics", "run pose motion events contact dynamics/integrators")
@@ -42,8 +43,8 @@ BEGIN {
   after("analysis", "measures", "run")
   after("analysis", "sensitivity", "run motion")
   after("analysis", "design", "minimiser")
-  after("analysis", "batch", "run pose motion events kinematics")
-  after("analysis", "accuracy", "run pose motion events kinematics balance spectrum statics statics/solvers")
+  after("analysis", "batch", "run pose motion events kinematics/course kinematics")
+  after("analysis", "accuracy", "run pose motion events kinematics/course kinematics balance spectrum statics statics/solvers")
   chain("scene", "json numbers describing reading building models judging running designing viewing explaining loading")
   chain("drawing", "shapes figures")
   chain("linalg", "patterns kernels")

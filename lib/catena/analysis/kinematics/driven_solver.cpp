@@ -147,62 +147,9 @@ void DrivenSolver::evaluate_at(std::span<const double> q) {
   }
 }
 
-double DrivenSolver::redundant_residual(std::span<const double> residual_of_all, int* worst) const {
-  double largest = 0;
-  for (int row = 0; row < plan_.rows && !all_rows_; ++row) {
-    if (in_use_[at(row)]) continue;
-    const double size = std::abs(residual_of_all[at(row)]) * scaling_.row_unit(row);
-    if (!(size <= largest)) largest = size, *worst = row;
-  }
-  return largest;
-}
-
-std::span<const BlockMargin> DrivenSolver::block_margins() {
-  if (!factorization_.is_factorized()) return {};
-  return factorization_.block_margins();
-}
-
 double DrivenSolver::residual_at(std::span<const double> q) {
   evaluate_at(q);
   return gather_rows(phi_, step_);
-}
-
-double DrivenSolver::distance(std::span<const double> a, std::span<const double> b, double* angle) const {
-  const double unit = 1 / motion_unit_;
-  double shift = 0, turn = 0;
-  for (std::size_t k = 0; k + 2 < 3 * at(plan_.moving); k += 3) {
-    const double x = std::abs(a[k] - b[k]), y = std::abs(a[k + 1] - b[k + 1]), phi = std::abs(a[k + 2] - b[k + 2]);
-    shift = x > shift ? x : shift;
-    shift = y > shift ? y : shift;
-    turn = phi > turn ? phi : turn;
-  }
-  if (angle) *angle = turn;
-  return std::max(shift * unit, turn);
-}
-
-bool DrivenSolver::null_vectors(std::span<double> w, std::span<double> z) {
-  if (!is_square() || !factors_valid_) return false;
-  // A start without symmetry: a null vector orthogonal to it would be missed.
-  for (std::size_t k = 0; k < step_.size(); ++k) step_[k] = 1 + 0.37 * std::sin(1.0 + static_cast<double>(k));
-  const auto normalise = [&] {
-    double square = 0;
-    for (double x : step_) square += x * x;
-    for (double& x : step_) x /= std::sqrt(square);
-    return square > 0 && std::isfinite(square);
-  };
-  for (int iteration = 0; iteration < 4; ++iteration) {
-    factorization_.solve_transposed(step_, evaluator_.counters);
-    if (!normalise()) return false;
-    if (iteration == 3) {
-      std::fill(w.begin(), w.end(), 0.0);
-      for (std::size_t k = 0; k < rows_.size(); ++k) w[at(rows_[k])] = step_[k];
-    }
-    factorization_.solve(step_, evaluator_.counters);
-    if (!normalise()) return false;
-  }
-  std::fill(z.begin(), z.end(), 0.0);
-  to_coordinates(step_, z);
-  return true;
 }
 
 bool DrivenSolver::factors_serve() const {
@@ -371,13 +318,6 @@ bool DrivenSolver::solve_acceleration(std::span<const double> qd, std::span<doub
   if (!is_square()) return false;
   evaluator_.gamma(qd, rhs_);
   return solve_rate(qdd, has_start);
-}
-
-double DrivenSolver::rate_norm(std::span<const double> rates) const {
-  double largest = 0;
-  for (const int k : plan_.coordinate)
-    largest = std::max(largest, std::abs(rates[at(k)]) * (k % 3 == 2 ? 1 : 1 / evaluator_.length_scale()));
-  return largest;
 }
 
 bool DrivenSolver::respond(std::span<const double> rows, std::span<double> change) {

@@ -29,6 +29,12 @@ struct NewtonOutcome {
   FactorResult factor;          ///< why there was no factorization, if so
 };
 
+/// One instant of a driven motion, in plan order. Rates that are not known are empty.
+struct DrivenInstant {
+  double t = 0;
+  std::span<const double> q, qd, qdd;
+};
+
 class DrivenSolver {
  public:
   explicit DrivenSolver(Evaluator& evaluator);
@@ -70,10 +76,11 @@ class DrivenSolver {
   std::span<const BlockMargin> block_margins();
   /// Sets the configuration and returns the largest residual of the rows in use, in length scales or rad.
   double residual_at(std::span<const double> q);
-  /// The distance of two configurations, or the size of a rate: the larger of the largest angle, rad, and the largest
-  /// shift in length scales (of a structure much longer than these: in hundredths of its extent). `angle`: the angle
-  /// alone.
+  /// The distance of two configurations: the larger of the largest angle, rad, and the largest shift in length scales
+  /// (of a structure much longer than these: in hundredths of its extent). `angle`: the angle alone.
   double distance(std::span<const double> a, std::span<const double> b, double* angle) const;
+  /// The size of a rate, measured in the same way.
+  double rate_size(std::span<const double> rate, double* angle = nullptr) const;
   /// Left and right null vector of the matrix near a singular configuration, by inverse iteration with the factors at
   /// the last configuration: over the rows of the plan and over all coordinates, Euclidean length one. False if there
   /// are no factors.
@@ -88,6 +95,8 @@ class DrivenSolver {
   double tolerance = 1e-12;  ///< on residuals, relative to the length scale
 
  private:
+  template <class Entry>
+  double motion_size(Entry&& entry, double* angle) const;
   void evaluate_at(std::span<const double> q);
   bool factors_serve() const;
   double refinement_rate() const;

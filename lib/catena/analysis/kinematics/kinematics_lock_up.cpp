@@ -15,21 +15,24 @@ namespace {
 constexpr double most_steps_left = 4;
 // A zero of a determinant further away than so many times the distance estimated from the rates is a different one.
 constexpr double longest_way = 1e3;
+// A row whose smallest pivot has fallen to this part of the most that it has been is as near to a dead point as
+// positions can tell: they meet the constraints to 1e-12, the square of the distance.
+constexpr double locked_part = 1e-5;
 
 }  // namespace
 
 // No step can be made: determines whether the drivers prescribe an impossible motion (w^T nu != 0) or branches meet
 // here.
 Report Kinematics::stuck(double next, double target) {
-  evaluator_.set_time(t_);
-  trial_ = q_;
-  std::vector<double> w(at(plan_->rows)), nu(at(plan_->rows)), z(q_.size(), 0.0);
-  solver_.factor_at(q_);
+  evaluator_.set_time(now_.t);
+  trial_ = now_.q;
+  std::vector<double> w(at(plan().rows)), nu(at(plan().rows)), z(now_.q.size(), 0.0);
+  solver_.factor_at(now_.q);
   const bool found = solver_.null_vectors(w, z);
   evaluator_.nu(nu);
   SingularPoint point;
-  point.t = t_ + (next - t_) / 2;
-  point.q = q_;
+  point.t = now_.t + (next - now_.t) / 2;
+  point.q = now_.q;
   if (found) {
     point.name_bodies(evaluator_, std::span(&z, 1));
     point.find_driver(evaluator_, w, nu);
@@ -41,12 +44,12 @@ Report Kinematics::stuck(double next, double target) {
   }
   std::size_t heaviest = 0;
   const auto weight = [&](std::size_t r) {
-    return std::abs(w[r]) * (plan_->row_is_angle[r] ? 1 : evaluator_.length_scale());
+    return std::abs(w[r]) * (plan().row_is_angle[r] ? 1 : evaluator_.length_scale());
   };
   for (std::size_t r = 0; r < w.size(); ++r) {
     if (weight(r) > weight(heaviest)) heaviest = r;
   }
-  const int element = plan_->row_element[heaviest];
+  const int element = plan().row_element[heaviest];
   const bool moving = std::any_of(nu.begin(), nu.end(), [](double rate) { return rate != 0; });
   Report report;
   report.status = found && moving ? Status::bifurcation : Status::singular;
@@ -58,34 +61,58 @@ Report Kinematics::stuck(double next, double target) {
   return report;
 }
 
+// The drivers prescribe a velocity along a vanishing combination of equations.
+Report Kinematics::lock_up(SingularPoint point) {
+  Report report = point.report_lock_up(*model_);
+  singular_points_.push_back(std::move(point));
+  return report;
+}
+
+// The present configuration, if it is a dead point to rounding; velocities there are meaningless.
+std::optional<SingularPoint> Kinematics::dead_point_here() {
+  if (!(solver_.factor_at(now_.q) > 0)) return std::nullopt;
+  const bool near = margins_.has_fallen(solver_.block_margins(), locked_part);
+  std::vector<double> w(at(plan().rows)), nu(w), z(now_.q.size());
+  if (!near || !solver_.null_vectors(w, z)) return std::nullopt;
+  evaluator_.nu(nu);
+  if (!(disagreement(evaluator_, w, nu) > clear_disagreement)) return std::nullopt;
+  SingularPoint point;
+  point.kind = SingularPoint::Kind::lock_up;
+  point.t = now_.t;
+  point.q = now_.q;
+  point.name_bodies(evaluator_, std::span(&z, 1));
+  point.find_driver(evaluator_, w, nu);
+  return point;
+}
+
 // Towards a dead point q = q* - a sqrt(t* - t), so that  t* - t = |qd|^2 / (2 qd . qdd)  and  q* = q + 2 (t* - t) qd,
 // but for terms of t* - t. However large the rounding of the rates, it is no further away than the failed step: point.t
 // is in the middle of that step. On this short distance the determinant of the singular block vanishes linearly: its
 // zero is q*, off the constraints by the square of the distance; and the instant follows from w^T Phi(q*, t*) = 0,
 // which this last distance does not change. False: no velocity leads there.
 bool Kinematics::locate_lock_up(double target, SingularPoint& point) {
-  std::vector<double> qd(q_.size(), 0.0), qdd(q_.size(), 0.0);
+  std::vector<double> qd(now_.q.size(), 0.0), qdd(now_.q.size(), 0.0);
   if (!solver_.solve_velocity(qd, false)) return false;
   if (!solver_.solve_acceleration(qd, qdd, false)) std::fill(qdd.begin(), qdd.end(), 0.0);
   double product = 0, square = 0;
-  for (std::size_t k = 0; k < 3 * at(plan_->moving); ++k) {
+  for (std::size_t k = 0; k < 3 * at(plan().moving); ++k) {
     const double unit = k % 3 == 2 ? 1 : evaluator_.length_scale();
     product += qd[k] / unit * (qdd[k] / unit);
     square += qd[k] / unit * (qd[k] / unit);
   }
-  const double furthest = std::min(2 * most_steps_left * std::abs(point.t - t_), std::abs(target - t_));
+  const double furthest = std::min(2 * most_steps_left * std::abs(point.t - now_.t), std::abs(target - now_.t));
   double rest = square / (2 * product);
   // So near that rounding determines the sign: the distance is taken as the largest possible.
-  if (!(rest * (target - t_) > 0)) rest = furthest;
-  rest = std::copysign(std::min(std::abs(rest), furthest), target - t_);
-  solver_.factor_at(q_);
-  std::vector<double> w(at(plan_->rows)), nu(w), z(q_.size());
+  if (!(rest * (target - now_.t) > 0)) rest = furthest;
+  rest = std::copysign(std::min(std::abs(rest), furthest), target - now_.t);
+  solver_.factor_at(now_.q);
+  std::vector<double> w(at(plan().rows)), nu(w), z(now_.q.size());
   const auto margins = solver_.block_margins();
   const auto smaller = [](const BlockMargin& a, const BlockMargin& b) { return std::abs(a.pivot) < std::abs(b.pivot); };
   const auto block = std::min_element(margins.begin(), margins.end(), smaller) - margins.begin();
   const bool measured = !margins.empty() && solver_.null_vectors(w, z);
   const auto determinant = [&](double part) {
-    for (std::size_t k = 0; k < q_.size(); ++k) point.q[k] = q_[k] + part * 2 * rest * qd[k];
+    for (std::size_t k = 0; k < now_.q.size(); ++k) point.q[k] = now_.q[k] + part * 2 * rest * qd[k];
     const bool regular = measured && solver_.factor_at(point.q) > 0;
     return regular ? solver_.block_margins()[static_cast<std::size_t>(block)].determinant : 0.0;
   };
@@ -93,13 +120,13 @@ bool Kinematics::locate_lock_up(double target, SingularPoint& point) {
   double part = here == there ? 1 : here / (here - there);
   if (const double left = determinant(part); left != here) part *= here / (here - left);
   determinant(part > 0 && part < longest_way ? part : 1);
-  point.t = t_ + rest;
+  point.t = now_.t + rest;
   solver_.residual_at(point.q);
   evaluator_.nu(nu);
   double off = 0, speed = 0;
   for (std::size_t r = 0; r < w.size(); ++r) off += w[r] * solver_.phi()[r], speed += w[r] * nu[r];
   const double time = off / speed;
-  if (time * (target - t_) >= 0 && std::abs(time) <= std::abs(target - t_)) point.t = t_ + time;
+  if (time * (target - now_.t) >= 0 && std::abs(time) <= std::abs(target - now_.t)) point.t = now_.t + time;
   if (point.driver >= 0) {
     evaluator_.set_time(point.t);
     point.driver_value = evaluator_.element_value(point.driver).f;
@@ -110,20 +137,15 @@ bool Kinematics::locate_lock_up(double target, SingularPoint& point) {
 // A row at the lock-up: places and times are known, rates and loads grow without bound.
 void Kinematics::give_row_at_lock_up(const Needs& needs, RowObserver& observer) {
   const SingularPoint& point = singular_points_.back();
-  const std::vector<double> none(std::max(q_.size(), at(plan_->rows)), std::numeric_limits<double>::quiet_NaN());
+  const std::vector<double> none(std::max(now_.q.size(), at(plan().rows)), std::numeric_limits<double>::quiet_NaN());
   const std::span<const double> unknown(none);
   evaluator_.set_time(point.t);
   Snapshot row{.evaluator = evaluator_, .t = point.t, .q = point.q};
   row.residual = solver_.residual_at(point.q) * evaluator_.length_scale();
-  if (needs.velocity || needs.acceleration || needs.multipliers) row.qd = unknown.first(q_.size());
-  if (needs.acceleration || needs.multipliers) row.qdd = unknown.first(q_.size());
-  if (needs.multipliers) row.lambda = unknown.first(at(plan_->rows));
-  if (needs.work) {
-    row.work = row.dissipated = none.front();
-    driver_work_.assign(model_->elements.size(), none.front());
-    row.driver_work = driver_work_;
-    row.initial_energy = initial_energy_;
-  }
+  if (needs.velocity || needs.acceleration || needs.multipliers) row.qd = unknown.first(now_.q.size());
+  if (needs.acceleration || needs.multipliers) row.qdd = unknown.first(now_.q.size());
+  if (needs.multipliers) row.lambda = unknown.first(at(plan().rows));
+  if (needs.work) work_.show_unknown(row, model_->elements.size());
   observer.observe(row);
 }
 

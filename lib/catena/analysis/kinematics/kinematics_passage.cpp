@@ -3,16 +3,16 @@
 // The branch is extrapolated from two instants before the suspected one to two behind it and solved for there, where
 // the equations determine it again. Hermite's polynomial through the four (kinematics_bridge.hpp) must then meet the
 // constraints along the whole bridge: with links that only nearly align it does not, since the true branch turns away.
-// Along it the singular instants are found (kinematics_instants.cpp), and there the null spaces and the branches are
+// Along it the singular instants are found (bridge_search.hpp), and there the null spaces and the branches are
 // taken.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numeric>
 
+#include "catena/analysis/kinematics/bridge_search.hpp"
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/analysis/pose/departure.hpp"
 #include "catena/base/at.hpp"
@@ -37,19 +37,22 @@ constexpr double dependence = 1e-7;
 
 }  // namespace
 
-// Whether functions of time are as smooth at t as within the run: outside of it those of the user's own end.
-bool Kinematics::functions_go_on(double t) const { return functions_exist_at(evaluator_, t); }
+// A bridge over a stretch that may be singular. h: step between its nodes, s, negative backwards in time.
+struct Kinematics::Crossing {
+  MotionBridge bridge;
+  double from = 0, to = 0, h = 0;
+};
 
 // Solves at t from the prediction in trial_.
 bool Kinematics::add_node(MotionBridge& bridge, double t, double allowed) {
-  if (!functions_go_on(t)) return false;
+  if (!functions_exist_at(evaluator_, t)) return false;
   evaluator_.set_time(t);
-  restore_fixed(trial_, {}, {});
+  fixed_.restore(now_.q, trial_, {}, {});
   newton_ = solver_.solve_position(trial_);
   if (!newton_.converged || newton_.first_correction > allowed) return false;
   // A second solve, since the bridge magnifies rounding in a node.
   if (!solver_.solve_position(trial_).converged) return false;
-  std::vector<double> rates(q_.size(), 0.0), accelerations(q_.size(), 0.0);
+  std::vector<double> rates(now_.q.size(), 0.0), accelerations(now_.q.size(), 0.0);
   if (!solver_.solve_velocity(rates, false) || !solver_.solve_acceleration(rates, accelerations, false)) return false;
   bridge.add(t, trial_, rates, accelerations);
   return true;
@@ -62,9 +65,9 @@ bool Kinematics::build_bridge(MotionBridge& bridge, double centre, double h, dou
   MotionBridge before;
   for (int k = 1; k <= MotionBridge::capacity; ++k) {
     const double t = centre - k * h;
-    if (!functions_go_on(t)) break;
+    if (!functions_exist_at(evaluator_, t)) break;
     if (before.empty()) {
-      trial_ = q_;
+      trial_ = now_.q;
       predict(t, trial_, {}, {});
     } else {
       before.evaluate(t, trial_, {}, {});
@@ -73,7 +76,7 @@ bool Kinematics::build_bridge(MotionBridge& bridge, double centre, double h, dou
   }
   if (before.size() < 2) return false;
   bridge = before;
-  if (!functions_go_on(centre + 2 * h)) return true;
+  if (!functions_exist_at(evaluator_, centre + 2 * h)) return true;
   bridge.keep_first(2);
   for (int k = 1; k <= 2; ++k) {
     (k == 1 ? before : bridge).evaluate(centre + k * h, trial_, {}, {});
@@ -83,10 +86,11 @@ bool Kinematics::build_bridge(MotionBridge& bridge, double centre, double h, dou
 }
 
 bool Kinematics::follows_constraints(const MotionBridge& bridge, double from, double to) {
-  std::vector<double> q(q_.size());
+  std::vector<double> q(now_.q.size());
   double extent = 0, place = 0;
-  for (std::size_t k = 0; k < q_.size(); ++k) extent = std::max(extent, std::abs(q_[k]) / evaluator_.length_scale());
-  for (int p = 0; p < plan_->bodies; ++p) {
+  for (std::size_t k = 0; k < now_.q.size(); ++k)
+    extent = std::max(extent, std::abs(now_.q[k]) / evaluator_.length_scale());
+  for (int p = 0; p < plan().bodies; ++p) {
     const Vec2<double> origin = evaluator_.origin(p);
     place = std::max({place, std::abs(origin.x), std::abs(origin.y)});
   }
@@ -102,26 +106,28 @@ bool Kinematics::follows_constraints(const MotionBridge& bridge, double from, do
   return true;
 }
 
-SingularPoint Kinematics::look_at(const MotionBridge& bridge, double t, double from, double to) {
-  const bool rests = find_rest(bridge, t, from, to);
-  std::vector<double> q(q_.size()), qd(q_.size());
+// The singular configuration at an instant that was located on the bridge.
+SingularPoint Kinematics::look_at(const Crossing& crossing, double t) {
+  const auto& [bridge, from, to, h] = crossing;
+  const bool rests = BridgeSearch(evaluator_, solver_, bridge, from, to).find_rest(t);
+  std::vector<double> q(now_.q.size()), qd(now_.q.size());
   bridge.evaluate(t, q, qd, {});
   evaluator_.set_time(t);
   SingularPoint point = find_branches(evaluator_, q, qd, dependence);
   if (!rests || point.nullity == 0) return point;
   // Where the drivers rest the velocity is zero; it is evaluated a moment later.
-  const double later = t + std::copysign(moment * (to - from), t - t_);
+  const double later = t + std::copysign(moment * (to - from), t - now_.t);
   bridge.evaluate(later, {}, qd, {});
   evaluator_.set_time(later);
   point = find_branches(evaluator_, q, {}, dependence, Drivers::about_to_move);
   point.kind = SingularPoint::Kind::rest;
   point.t = t;
   // The branch that goes on as before comes first.
-  const double rate = solver_.distance(qd, nothing_, nullptr);
+  const double rate = solver_.rate_size(qd);
   std::size_t before = 0;
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < point.tangents.size(); ++k) {
-    const double size = rate / solver_.distance(point.tangents[k], nothing_, nullptr);
+    const double size = rate / solver_.rate_size(point.tangents[k]);
     for (std::size_t c = 0; c < trial_.size(); ++c) trial_[c] = size * point.tangents[k][c];
     if (const double off = solver_.distance(trial_, qd, nullptr); off < nearest) nearest = off, before = k;
   }
@@ -159,15 +165,15 @@ void Kinematics::announce(const SingularPoint& point, Report& report) {
 // The time in which the mechanism moves by `reach`, at the greatest speed that the drivers have within twice that time:
 // where they come to rest the present speed gives no estimate. 0: it does not move.
 double Kinematics::bridge_length(double centre, double reach) {
-  const double rate = largest_rate();
-  std::vector<double> nu(at(plan_->rows));
+  const double rate = solver_.rate_size(now_.qd);
+  std::vector<double> nu(at(plan().rows));
   const auto speed = [&](double t) {
-    if (!functions_go_on(t)) return 0.0;
+    if (!functions_exist_at(evaluator_, t)) return 0.0;
     evaluator_.set_time(t);
     evaluator_.nu(nu);
     return std::sqrt(std::inner_product(nu.begin(), nu.end(), nu.begin(), 0.0));
   };
-  const double present = speed(t_);
+  const double present = speed(now_.t);
   double h = reach / rate;
   if (!(present > 0) || !std::isfinite(h)) return 0;
   for (int k = 0; k < 60; ++k) {
@@ -179,117 +185,136 @@ double Kinematics::bridge_length(double centre, double reach) {
   return 0;
 }
 
-// Looks for singular configurations about the suspected stretch from t_ to `next`. Passed: the bridge is in place.
-Kinematics::Passage Kinematics::pass_singular(double next, double target, double reach, Report& report) {
-  const double middle = t_ + (next - t_) / 2, length = bridge_length(middle, reach);
-  if (!(length > 0)) return Passage::none;
-  const double h = target > t_ ? length : -length;
-  // A node that falls on the singular instant makes the first bridge useless, not the second.
-  MotionBridge bridge;
-  double from = 0, to = 0;
-  bool built = false;
+// A bridge over the suspected stretch from the present instant to `next`. A node that falls on the singular instant
+// makes the first bridge useless, not the second.
+bool Kinematics::build_crossing(Crossing& crossing, double next, double target, double reach) {
+  const double middle = now_.t + (next - now_.t) / 2, length = bridge_length(middle, reach);
+  if (!(length > 0)) return false;
+  const double h = crossing.h = target > now_.t ? length : -length;
   for (double shift : {0.0, 0.5}) {
     const double centre = middle + shift * h;
-    from = centre - length, to = centre + length;
-    if (!functions_go_on(centre + 2 * h)) (h > 0 ? to : from) = target;
-    built = build_bridge(bridge, centre, h, reach) && follows_constraints(bridge, from, to);
-    if (built) break;
-    bridge.clear();
+    crossing.from = centre - length;
+    crossing.to = centre + length;
+    if (!functions_exist_at(evaluator_, centre + 2 * h)) (h > 0 ? crossing.to : crossing.from) = target;
+    if (build_bridge(crossing.bridge, centre, h, reach) &&
+        follows_constraints(crossing.bridge, crossing.from, crossing.to)) {
+      return true;
+    }
+    crossing.bridge.clear();
   }
-  if (!built) return Passage::none;
-  // Instants before the present one were handled already.
-  std::vector<double> instants = singular_instants(bridge, from, to);
-  std::erase_if(instants, [&](double instant) { return (instant - t_) * h <= 0; });
-  if (instants.empty()) return follow_bridge(bridge, h > 0 ? std::min(to, target) : std::max(from, target));
-  // Nodes placed about the singular instant itself have the least rounding.
-  const double first = h > 0 ? instants.front() : instants.back();
+  return false;
+}
+
+// Nodes placed about the singular instant itself have the least rounding: they replace the others where they can.
+void Kinematics::centre_crossing(Crossing& crossing, double instant, double target, double reach) {
+  const double h = crossing.h, length = std::abs(h);
+  if (!functions_exist_at(evaluator_, instant - 2 * h) || !functions_exist_at(evaluator_, instant + 2 * h)) return;
   MotionBridge centred;
-  bool moved = functions_go_on(first - 2 * h) && functions_go_on(first + 2 * h);
   for (int k : {-1, -2, 1, 2}) {
-    if (!moved) break;
-    bridge.evaluate(first + k * h, trial_, {}, {});
-    moved = add_node(centred, first + k * h, allowance * reach);
+    crossing.bridge.evaluate(instant + k * h, trial_, {}, {});
+    if (!add_node(centred, instant + k * h, allowance * reach)) return;
   }
-  if (moved && (target - (first - h)) * h >= 0 && follows_constraints(centred, first - length, first + length)) {
-    bridge = std::move(centred);
-    from = first - length;
-    to = first + length;
+  if (!((target - (instant - h)) * h >= 0)) return;
+  if (!follows_constraints(centred, instant - length, instant + length)) return;
+  crossing = {std::move(centred), instant - length, instant + length, h};
+}
+
+// Looks for singular configurations about the suspected stretch from the present instant to `next`. Passed: the bridge
+// is in place.
+Kinematics::Passage Kinematics::pass_singular(double next, double target, double reach, Report& report) {
+  Crossing crossing;
+  if (!build_crossing(crossing, next, target, reach)) return Passage::none;
+  const double h = crossing.h, length = std::abs(h);
+  std::vector<double> instants =
+      BridgeSearch(evaluator_, solver_, crossing.bridge, crossing.from, crossing.to).singular_instants();
+  // Instants before the present one were handled already.
+  std::erase_if(instants, [&](double instant) { return (instant - now_.t) * h <= 0; });
+  if (instants.empty()) {
+    return follow_bridge(crossing.bridge, h > 0 ? std::min(crossing.to, target) : std::max(crossing.from, target));
   }
+  const double first = h > 0 ? instants.front() : instants.back();
+  centre_crossing(crossing, first, target, reach);
   for (double instant : instants) {
-    if (instant > latest_ + same_instant * length || instant < earliest_ - same_instant * length) continue;
+    if (instant > run_.latest + same_instant * length || instant < run_.earliest - same_instant * length) continue;
     // Instants closer than their accuracy count as one.
     if (!singular_points_.empty() && instant != first &&
-        std::abs(instant - singular_points_.back().t) < same_instant * (to - from)) {
+        std::abs(instant - singular_points_.back().t) < same_instant * (crossing.to - crossing.from)) {
       continue;
     }
-    SingularPoint point = look_at(bridge, instant, from, to);
+    SingularPoint point = look_at(crossing, instant);
     // Only the equations in use depend on each other; others replace them.
     if (point.nullity == 0) continue;
-    const bool branches = point.kind == SingularPoint::Kind::branch_point ||
-                          (point.kind == SingularPoint::Kind::rest && point.tangents.size() > 1);
-    if (options_.branch > 1 && branches) {
-      if (options_.branch > static_cast<int>(point.tangents.size())) {
-        report.status = Status::bifurcation;
-        report.message =
-            fmt::format("at t = {:.12g} s branch {} was asked for, but {} meet: {}", point.t, options_.branch,
-                        point.tangents.size(),
-                        point.kind == SingularPoint::Kind::rest ? point.describe_ways() : point.describe_branches());
-        singular_points_.push_back(std::move(point));
-        return Passage::failed;
-      }
-      choice_ = point;
-    }
-    announce(point, report);
-    singular_points_.push_back(std::move(point));
-    if (choice_) break;
+    if (!take_point(std::move(point), report)) return Passage::failed;
+    if (stretch_.choice) break;
   }
-  bridge_ = std::move(bridge);
-  bridge_from_ = from;
-  bridge_to_ = to;
-  if (choice_) (h > 0 ? bridge_to_ : bridge_from_) = choice_->t;
+  stretch_.bridge = std::move(crossing.bridge);
+  stretch_.from = crossing.from;
+  stretch_.to = crossing.to;
+  if (stretch_.choice) (h > 0 ? stretch_.to : stretch_.from) = stretch_.choice->t;
   return Passage::passed;
+}
+
+// Records a singular configuration on the way, and whether another branch is taken there. False: there is no such
+// branch.
+bool Kinematics::take_point(SingularPoint point, Report& report) {
+  const bool rests = point.kind == SingularPoint::Kind::rest;
+  const bool branches = point.kind == SingularPoint::Kind::branch_point || (rests && point.tangents.size() > 1);
+  if (options_.branch > 1 && branches) {
+    if (options_.branch > static_cast<int>(point.tangents.size())) {
+      report.status = Status::bifurcation;
+      report.message =
+          fmt::format("at t = {:.12g} s branch {} was asked for, but {} meet: {}", point.t, options_.branch,
+                      point.tangents.size(), rests ? point.describe_ways() : point.describe_branches());
+      singular_points_.push_back(std::move(point));
+      return false;
+    }
+    stretch_.choice = point;
+  }
+  announce(point, report);
+  singular_points_.push_back(std::move(point));
+  return true;
 }
 
 // The stretch is not singular after all: the bridge crosses it.
 Kinematics::Passage Kinematics::follow_bridge(const MotionBridge& bridge, double t) {
   evaluator_.set_time(t);
   bridge.evaluate(t, trial_, {}, {});
-  restore_fixed(trial_, {}, {});
+  fixed_.restore(now_.q, trial_, {}, {});
   newton_ = solver_.solve_position(trial_);
   if (!newton_.converged || newton_.first_correction > 1e3 * bridge_tolerance) return Passage::none;
-  q_.swap(trial_);
-  t_ = t;
-  has_velocity_ = has_acceleration_ = false;
+  now_.q.swap(trial_);
+  now_.t = t;
+  now_.has_velocity = now_.has_acceleration = false;
   ++evaluator_.counters.steps;
-  solver_.factor_at(q_);
+  solver_.factor_at(now_.q);
   remember_margins();
-  if (solver_.solve_velocity(qd_, false)) {
-    has_velocity_ = true;
-    predictor_.push(t_, q_, qd_, {});
+  if (solver_.solve_velocity(now_.qd, false)) {
+    now_.has_velocity = true;
+    predictor_.push(now_.t, now_.q, now_.qd, {});
   }
   return Passage::regular;
 }
 
 void Kinematics::place_on_bridge(double t) {
-  bridge_.evaluate(t, trial_, qd_, qdd_);
-  restore_fixed(trial_, qd_, qdd_);
-  q_.swap(trial_);
-  t_ = t;
-  has_velocity_ = has_acceleration_ = on_bridge_ = true;
+  stretch_.bridge.evaluate(t, trial_, now_.qd, now_.qdd);
+  fixed_.restore(now_.q, trial_, now_.qd, now_.qdd);
+  now_.q.swap(trial_);
+  now_.t = t;
+  now_.has_velocity = now_.has_acceleration = now_.on_bridge = true;
   evaluator_.set_time(t);
   newton_ = {};
   newton_.converged = true;
-  newton_.residual = solver_.residual_at(q_);
+  newton_.residual = solver_.residual_at(now_.q);
 }
 
 void Kinematics::leave_bridge(double end) {
   place_on_bridge(end);
   predictor_.clear();
-  predictor_.push(t_, q_, qd_, qdd_);
-  bridge_.clear();
-  on_bridge_ = false;
-  solver_.factor_at(q_);
-  evaluator_.curve_places(curve_places_);
+  predictor_.push(now_.t, now_.q, now_.qd, now_.qdd);
+  stretch_.bridge.clear();
+  now_.on_bridge = false;
+  solver_.factor_at(now_.q);
+  evaluator_.curve_places(curves_.found);
   margins_.clear();
   remember_margins();
   choose_better_rows();

@@ -1,4 +1,4 @@
-#include "catena/analysis/kinematics/predictor.hpp"
+#include "catena/analysis/kinematics/course/predictor.hpp"
 
 #include <algorithm>
 #include <array>

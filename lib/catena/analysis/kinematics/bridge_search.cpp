@@ -1,13 +1,9 @@
-// The instants at which a motion is singular, located on the bridge that interpolates it (kinematics_bridge.hpp).
-//
-// Along the bridge the smallest pivots of the blocks are smooth, without the rounding that Newton's method suffers near
-// a singular matrix: the instant at which one vanishes, with or without a change of its sign, is found to some 1e-13 of
-// the bridge.
+#include "catena/analysis/kinematics/bridge_search.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -23,10 +19,10 @@ constexpr double slow = 1e-3, resting = 1e-6;
 }  // namespace
 
 // False where the matrix is singular to the last digit.
-bool Kinematics::margins_on(const MotionBridge& bridge, double t, std::vector<BlockMargin>& margins) {
+bool BridgeSearch::margins_at(double t, std::vector<BlockMargin>& margins) {
   evaluator_.set_time(t);
-  bridge.evaluate(t, trial_, {}, {});
-  if (!(solver_.factor_at(trial_) > 0)) return false;
+  bridge_.evaluate(t, q_, {}, {});
+  if (!(solver_.factor_at(q_) > 0)) return false;
   const auto found = solver_.block_margins();
   margins.assign(found.begin(), found.end());
   return true;
@@ -34,11 +30,11 @@ bool Kinematics::margins_on(const MotionBridge& bridge, double t, std::vector<Bl
 
 // The instant between a and b where the block's determinant changes its sign, or else where it is least: nearly so
 // first, since a pivot alone may be small elsewhere, then by the pivot, which vanishes more sharply.
-double Kinematics::refine_instant(const MotionBridge& bridge, std::size_t block, double a, double b) {
+double BridgeSearch::refine_instant(std::size_t block, double a, double b) {
   std::vector<BlockMargin> margins;
   bool hit = false, sharp = false;
   const auto margin = [&](double t) {
-    hit = hit || !margins_on(bridge, t, margins);
+    hit = hit || !margins_at(t, margins);
     return hit ? 0.0 : sharp ? margins[block].pivot : margins[block].determinant;
   };
   double fa = margin(a), fb = margin(b);
@@ -80,14 +76,14 @@ double Kinematics::refine_instant(const MotionBridge& bridge, std::size_t block,
   return (a + b) / 2;
 }
 
-std::vector<double> Kinematics::singular_instants(const MotionBridge& bridge, double from, double to) {
+std::vector<double> BridgeSearch::singular_instants() {
   std::vector<double> instants, times;
   std::vector<std::vector<BlockMargin>> margins;
   for (int k = 0; k < samples; ++k) {
-    double t = from + (to - from) * k / (samples - 1);
+    double t = from_ + (to_ - from_) * k / (samples - 1);
     std::vector<BlockMargin> found;
     // A sample that falls on the singular instant itself is moved away from it.
-    for (int nudge = 0; nudge < 3 && !margins_on(bridge, t, found); ++nudge) t += 1e-9 * (to - from);
+    for (int nudge = 0; nudge < 3 && !margins_at(t, found); ++nudge) t += 1e-9 * (to_ - from_);
     if (found.empty()) continue;
     times.push_back(t);
     margins.push_back(std::move(found));
@@ -99,11 +95,11 @@ std::vector<double> Kinematics::singular_instants(const MotionBridge& bridge, do
     std::vector<char> explained(blocks, 0);
     for (std::size_t b = 0; b < blocks; ++b) {
       if (explained[b] || (margins[k][b].pivot < 0) == (margins[k + 1][b].pivot < 0)) continue;
-      const double t = refine_instant(bridge, b, times[k], times[k + 1]);
+      const double t = refine_instant(b, times[k], times[k + 1]);
       instants.push_back(t);
       // Other changes at the same instant have the same cause.
-      const double near = 1e-7 * (to - from);
-      if (!margins_on(bridge, t - near, before) || !margins_on(bridge, t + near, after)) continue;
+      const double near = 1e-7 * (to_ - from_);
+      if (!margins_at(t - near, before) || !margins_at(t + near, after)) continue;
       for (std::size_t other = b; other < blocks; ++other) {
         if ((before[other].pivot < 0) != (after[other].pivot < 0)) explained[other] = 1;
       }
@@ -123,9 +119,8 @@ std::vector<double> Kinematics::singular_instants(const MotionBridge& bridge, do
     if (least < 1) {
       const double ends =
           std::max(std::abs(margins.front()[block].determinant), std::abs(margins.back()[block].determinant));
-      const double t = refine_instant(bridge, block, times[place - 1], times[place + 1]);
-      if (!margins_on(bridge, t, before) || std::abs(before[block].determinant) < vanishing * ends)
-        instants.push_back(t);
+      const double t = refine_instant(block, times[place - 1], times[place + 1]);
+      if (!margins_at(t, before) || std::abs(before[block].determinant) < vanishing * ends) instants.push_back(t);
     }
   }
   std::sort(instants.begin(), instants.end());
@@ -134,37 +129,37 @@ std::vector<double> Kinematics::singular_instants(const MotionBridge& bridge, do
 
 // The instant near t at which the drivers rest: where they turn back the velocity tells it better than a pivot that
 // only touches zero, and where they go through the pivot is flat. t itself if they do not rest.
-bool Kinematics::find_rest(const MotionBridge& bridge, double& t, double from, double to) {
-  std::vector<double> nu(at(plan_->rows)), reference(nu), q(q_.size());
+bool BridgeSearch::find_rest(double& t) {
+  std::vector<double> nu(at(evaluator_.plan().rows)), reference(nu), q(q_.size());
   const auto nu_at = [&](double instant, std::vector<double>& out) {
     evaluator_.set_time(instant);
-    bridge.evaluate(instant, q, {}, {});
+    bridge_.evaluate(instant, q, {}, {});
     evaluator_.set_configuration(q);
     evaluator_.nu(out);
     return std::sqrt(std::inner_product(out.begin(), out.end(), out.begin(), 0.0));
   };
-  const double most = std::max(nu_at(to, nu), nu_at(from, reference));
+  const double most = std::max(nu_at(to_, nu), nu_at(from_, reference));
   if (nu_at(t, nu) > slow * most) return false;
   const auto along = [&](double instant) {
     nu_at(instant, nu);
     return std::inner_product(nu.begin(), nu.end(), reference.begin(), 0.0);
   };
-  double a = from, b = to, rest = t;
+  double a = from_, b = to_, rest = t;
   if (along(b) < 0) {
-    while (std::abs(b - a) > 1e-15 * std::abs(to - from) && (a + b) / 2 != a && (a + b) / 2 != b) {
+    while (std::abs(b - a) > 1e-15 * std::abs(to_ - from_) && (a + b) / 2 != a && (a + b) / 2 != b) {
       const double middle = (a + b) / 2;
       (along(middle) > 0 ? a : b) = middle;
     }
     rest = (a + b) / 2;
   } else {
-    a = t - 0.05 * (to - from), b = t + 0.05 * (to - from);
+    a = t - 0.05 * (to_ - from_), b = t + 0.05 * (to_ - from_);
     for (int k = 0; k < 80; ++k) {
       const double left = a + (b - a) / 3, right = b - (b - a) / 3;
       (nu_at(left, nu) < nu_at(right, nu) ? b : a) = nu_at(left, nu) < nu_at(right, nu) ? right : left;
     }
     rest = (a + b) / 2;
   }
-  if (nu_at(rest, nu) > resting * most || std::abs(rest - t) > 0.05 * std::abs(to - from)) return false;
+  if (nu_at(rest, nu) > resting * most || std::abs(rest - t) > 0.05 * std::abs(to_ - from_)) return false;
   t = rest;
   return true;
 }

@@ -1,4 +1,4 @@
-#include "catena/analysis/kinematics/kinematics_bridge.hpp"
+#include "catena/analysis/kinematics/course/kinematics_bridge.hpp"
 
 #include <algorithm>
 #include <array>
