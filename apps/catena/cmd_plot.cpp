@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "catena/scene/running/units_sink.hpp"
+#include "catena/scene/writing/units_sink.hpp"
 #include "figure_files.hpp"
 #include "recorded_run.hpp"
 

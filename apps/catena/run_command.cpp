@@ -12,8 +12,8 @@
 #include "catena/results/csv_writer.hpp"
 #include "catena/results/terminal/interrupt.hpp"
 #include "catena/results/terminal/text_sink.hpp"
-#include "catena/scene/running/units_sink.hpp"
 #include "catena/scene/viewing/run_recorder.hpp"
+#include "catena/scene/writing/units_sink.hpp"
 #include "commands.hpp"
 #include "result_folder.hpp"
 #include "run_messages.hpp"
@@ -88,6 +88,23 @@ void print_messages(const RunCommand& command, const SceneOutcome& outcome) {
   }
 }
 
+/// Checked first, so that hours of results are not lost at their end: the exit code of what stands in their way.
+int find_obstacle(const RunCommand& command) {
+  if (!command.directory.empty()) {
+    if (const std::string obstacle = ResultFolder::obstacle(command.directory); !obstacle.empty()) {
+      complain(fmt::format("catena: {}\n", obstacle));
+      return no_file;
+    }
+  }
+  if (!command.page.empty()) {
+    if (const std::string obstacle = viewer_obstacle(); !obstacle.empty()) {
+      complain(obstacle);
+      return usage;
+    }
+  }
+  return solved;
+}
+
 /// Whether everything could be written; says so if not.
 bool finish_output(const TextOutput& output, const ResultFolder* folder, bool quiet) {
   if (!output.ok() && !output.reader_gone()) complain(fmt::format("catena: {}\n", output.error()));
@@ -103,6 +120,7 @@ bool finish_output(const TextOutput& output, const ResultFolder* folder, bool qu
 }  // namespace
 
 int execute(const RunCommand& command) {
+  if (const int obstacle = find_obstacle(command); obstacle != solved) return obstacle;
   // A reader that closes the pipe ends the program, as it ends any other; files are completed before.
   if (!command.directory.empty()) std::signal(SIGPIPE, SIG_IGN);
 
@@ -127,23 +145,9 @@ int execute(const RunCommand& command) {
   } else if (!command.quiet) {
     converted.add(table);
   }
-  if (!command.directory.empty()) {
-    // Checked first, so that hours of results are not lost at their end.
-    if (const std::string obstacle = ResultFolder::obstacle(command.directory); !obstacle.empty()) {
-      complain(fmt::format("catena: {}\n", obstacle));
-      return no_file;
-    }
-  }
   if (!command.directory.empty()) converted.add(folder.emplace(command.directory, command.format));
-
   std::optional<RunRecorder> recorder;
-  if (!command.page.empty()) {
-    if (const std::string obstacle = viewer_obstacle(); !obstacle.empty()) {
-      complain(obstacle);
-      return usage;
-    }
-    sinks.add(recorder.emplace());
-  }
+  if (!command.page.empty()) sinks.add(recorder.emplace());
 
   RunOptions options = command.options;
   options.poses = recorder ? &*recorder : nullptr;

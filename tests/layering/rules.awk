@@ -10,7 +10,7 @@
 #   analysis  run <- pose <- motion <- events <- {kinematics, contact <- dynamics};  pose <- balance <- spectrum <- statics/solvers <- statics <- stability
 #             run <- measures;  motion <- sensitivity;  minimiser <- {statics, design};  kinematics <- batch
 #             {kinematics, statics} <- accuracy;  kinematics/course <- kinematics
-#   scene     json <- numbers <- describing <- reading <- building <- models <- judging <- running <- designing <- viewing <- loading
+#   scene     json <- numbers <- describing <- reading <- building <- models <- judging <- running <- writing <- designing <- viewing <- loading
 #             <- explaining
 #   drawing   shapes <- figures
 #   results   . <- terminal
@@ -45,7 +45,7 @@ BEGIN {
   after("analysis", "design", "minimiser")
   after("analysis", "batch", "run pose motion events kinematics/course kinematics")
   after("analysis", "accuracy", "run pose motion events kinematics/course kinematics balance spectrum statics statics/solvers")
-  chain("scene", "json numbers describing reading building models judging running designing viewing explaining loading")
+  chain("scene", "json numbers describing reading building models judging running writing designing viewing explaining loading")
   chain("drawing", "shapes figures")
   chain("linalg", "patterns kernels")
   after("linalg", "factorization", "patterns kernels")

@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "catena/scene/running/units_sink.hpp"
+#include "catena/scene/writing/units_sink.hpp"
 #include "scene/run_text.hpp"
 
 namespace catena::testing {

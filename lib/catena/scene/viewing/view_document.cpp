@@ -12,9 +12,9 @@
 #include "catena/drawing/shapes/pen.hpp"
 #include "catena/results/measure_gradient.hpp"
 #include "catena/results/status_word.hpp"
-#include "catena/scene/running/field_json.hpp"
 #include "catena/scene/viewing/packed_numbers.hpp"
 #include "catena/scene/viewing/view_json.hpp"
+#include "catena/scene/writing/field_json.hpp"
 
 namespace catena {
 namespace {

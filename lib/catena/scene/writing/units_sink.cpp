@@ -1,4 +1,4 @@
-#include "catena/scene/running/units_sink.hpp"
+#include "catena/scene/writing/units_sink.hpp"
 
 namespace catena {
 namespace {

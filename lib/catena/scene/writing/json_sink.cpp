@@ -6,8 +6,8 @@
 #include "catena/results/measure_gradient.hpp"
 #include "catena/results/status_word.hpp"
 #include "catena/scene/json/json_text.hpp"
-#include "catena/scene/running/field_json.hpp"
 #include "catena/scene/running/scene_runner.hpp"
+#include "catena/scene/writing/field_json.hpp"
 
 namespace catena {
 namespace {
