@@ -22,6 +22,27 @@ struct BodyNumbers {
   std::size_t offset(BodyNumber n) const { return offsets[static_cast<std::size_t>(n)]; }
 };
 
+/// The body without its place.
+template <class S>
+BasicBody<S> body_as_given(const BodyTemplate& source, const BodyNumbers<S>& numbers) {
+  BasicBody<S> body;
+  body.has_mass = source.has(BodyNumber::mass);
+  body.has_inertia = source.has(BodyNumber::inertia);
+  body.mass = numbers.get(BodyNumber::mass);
+  body.inertia = numbers.get(BodyNumber::inertia);
+  body.angle = numbers.get(BodyNumber::angle);
+  body.velocity_given = source.has(BodyNumber::velocity_x);
+  body.velocity = numbers.pair(BodyNumber::velocity_x);
+  body.angular_velocity_given = source.has(BodyNumber::angular_velocity);
+  body.angular_velocity = numbers.get(BodyNumber::angular_velocity);
+  body.fixed = source.fixed;
+  body.particle = source.particle;
+  body.hold_x = source.hold_x;
+  body.hold_y = source.hold_y;
+  body.hold_angle = source.hold_angle;
+  return body;
+}
+
 /// The middle of a rod, its angle and half its length, which is zero where its ends coincide; its inertia too, unless
 /// that is given or its centroid is.
 template <class S>
@@ -59,12 +80,7 @@ void ModelBuilder<S>::add_body(const BodyTemplate& source) {
                          in_quotes(name_), value_of(numbers.get(n))));
     }
   }
-  BasicBody<S> body;
-  body.has_mass = source.has(BodyNumber::mass);
-  body.has_inertia = source.has(BodyNumber::inertia);
-  body.mass = numbers.get(BodyNumber::mass);
-  body.inertia = numbers.get(BodyNumber::inertia);
-  body.angle = numbers.get(BodyNumber::angle);
+  BasicBody<S> body = body_as_given(source, numbers);
   Vec2<S> position = numbers.pair(BodyNumber::position_x), centroid = numbers.pair(BodyNumber::centroid_x);
   S half{};
   const bool rod = source.has(BodyNumber::from_x);
@@ -77,15 +93,6 @@ void ModelBuilder<S>::add_body(const BodyTemplate& source) {
   if (source.parts > 0) compose(source, name_, body, centroid);
   body.origin = -centroid;
   body.position = make_frame(position.x, position.y, body.angle).point(centroid);
-  body.velocity_given = source.has(BodyNumber::velocity_x);
-  body.velocity = numbers.pair(BodyNumber::velocity_x);
-  body.angular_velocity_given = source.has(BodyNumber::angular_velocity);
-  body.angular_velocity = numbers.get(BodyNumber::angular_velocity);
-  body.fixed = source.fixed;
-  body.particle = source.particle;
-  body.hold_x = source.hold_x;
-  body.hold_y = source.hold_y;
-  body.hold_angle = source.hold_angle;
   if (name_.empty()) return;  // reported by the reader
   int number = 0;
   try {

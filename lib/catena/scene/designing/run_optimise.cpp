@@ -54,6 +54,54 @@ std::vector<std::string> active_limits(const DesignGoal& goal, const DesignOutco
   return active;
 }
 
+/// What an end without an optimum means, and what may help.
+std::string describe_end(const DesignOutcome& outcome, int max_evaluations) {
+  switch (outcome.end) {
+    case DesignEnd::converged:
+      break;
+    case DesignEnd::slow:
+      return fmt::format("{} designs did not lead to an optimum (max_evaluations = {}); the best so far is given",
+                         outcome.evaluations, max_evaluations);
+    case DesignEnd::broken_off:
+      return fmt::format(
+          "the method gave up after {} designs without an optimum; the best so far is given; likely cause: kinks or "
+          "noise in measures; another \"solver\", such as \"bobyqa\", may go on",
+          outcome.evaluations);
+    case DesignEnd::not_stationary:
+      return fmt::format(
+          "the method counts itself done after {} designs, but its best one is not stationary: its optimality is "
+          "{:.3g}, and a short step against the gradient leads to a better design; likely cause: a valley too flat or "
+          "too narrow for the method; a smaller \"tolerance\", another \"solver\" or \"start\" may go on",
+          outcome.evaluations, outcome.optimality.value_or(std::numeric_limits<double>::quiet_NaN()));
+    case DesignEnd::cancelled:
+      return "stopped; the best design so far is given";
+    case DesignEnd::infeasible:
+      return fmt::format(
+          "the constraints cannot be met: the least infeasible design misses them by {:.3g} of their size; likely "
+          "cause: relations that exclude each other within the bounds",
+          outcome.violation);
+    case DesignEnd::failed: {
+      std::string text = "no design could be analysed, neither the start nor others within the bounds:";
+      for (const auto& [reason, count] : outcome.failed) text += fmt::format(" {} ({})", reason, count);
+      return text;
+    }
+  }
+  return {};
+}
+
+Status status_of(DesignEnd end) {
+  switch (end) {
+    case DesignEnd::converged:
+      return Status::ok;
+    case DesignEnd::cancelled:
+      return Status::cancelled;
+    case DesignEnd::infeasible:
+      return Status::infeasible;
+    default:
+      return Status::not_converged;
+  }
+}
+
 /// `doubts`: derivatives that were missing.
 Report report_of(const DesignOutcome& outcome, int max_evaluations, const std::vector<std::string>& doubts) {
   Report report;
@@ -64,48 +112,8 @@ Report report_of(const DesignOutcome& outcome, int max_evaluations, const std::v
                      "something else";
     return report;
   }
-  switch (outcome.end) {
-    case DesignEnd::converged:
-      break;
-    case DesignEnd::slow:
-      report.status = Status::not_converged;
-      report.message =
-          fmt::format("{} designs did not lead to an optimum (max_evaluations = {}); the best so far is given",
-                      outcome.evaluations, max_evaluations);
-      break;
-    case DesignEnd::broken_off:
-      report.status = Status::not_converged;
-      report.message = fmt::format(
-          "the method gave up after {} designs without an optimum; the best so far is given; likely cause: kinks or "
-          "noise in measures; another \"solver\", such as \"bobyqa\", may go on",
-          outcome.evaluations);
-      break;
-    case DesignEnd::not_stationary:
-      report.status = Status::not_converged;
-      report.message = fmt::format(
-          "the method counts itself done after {} designs, but its best one is not stationary: its optimality is "
-          "{:.3g}, "
-          "and a short step against the gradient leads to a better design; likely cause: a valley too flat or too "
-          "narrow for the method; a smaller \"tolerance\", another \"solver\" or \"start\" may go on",
-          outcome.evaluations, outcome.optimality.value_or(std::numeric_limits<double>::quiet_NaN()));
-      break;
-    case DesignEnd::cancelled:
-      report.status = Status::cancelled;
-      report.message = "stopped; the best design so far is given";
-      break;
-    case DesignEnd::infeasible:
-      report.status = Status::infeasible;
-      report.message = fmt::format(
-          "the constraints cannot be met: the least infeasible design misses them by {:.3g} of "
-          "their size; likely cause: relations that exclude each other within the bounds",
-          outcome.violation);
-      break;
-    case DesignEnd::failed:
-      report.status = Status::not_converged;
-      report.message = "no design could be analysed, neither the start nor others within the bounds:";
-      for (const auto& [reason, count] : outcome.failed) report.message += fmt::format(" {} ({})", reason, count);
-      break;
-  }
+  report.status = status_of(outcome.end);
+  report.message = describe_end(outcome, max_evaluations);
   if (outcome.is_constant) {
     report.warnings.push_back(fmt::format(
         "the objective is {:.9g} in all designs that could be analysed: no variable changes it; likely cause: measures "
@@ -113,13 +121,11 @@ Report report_of(const DesignOutcome& outcome, int max_evaluations, const std::v
         outcome.values.objective));
   }
   if (outcome.end == DesignEnd::converged && outcome.at_kink) {
-    report.warnings.push_back(
-        fmt::format("the design found is not stationary to first order (optimality {:.3g}), though short steps against "
-                    "its gradient "
-                    "lead to no better one: a kink of the objective or of a constraint holds it there, or a limit that "
-                    "the gradient "
-                    "does not see; check its neighbours, by a \"sweep\"",
-                    *outcome.optimality));
+    report.warnings.push_back(fmt::format(
+        "the design found is not stationary to first order (optimality {:.3g}), though short steps against its "
+        "gradient lead to no better one: a kink of the objective or of a constraint holds it there, or a limit that "
+        "the gradient does not see; check its neighbours, by a \"sweep\"",
+        *outcome.optimality));
   }
   return report;
 }
@@ -146,7 +152,7 @@ void add_fields(AnalysisResult& result, const DesignGoal& goal, const DesignOutc
   result.fields.push_back({"solver", std::string(names[static_cast<std::size_t>(method)])});
 }
 
-/// The analyses of the start and of the design found, for who draws.
+/// Runs the analyses of the start and of the design found once more, for the pose sink.
 void show_designs(const AnalysisContext& context, const DesignRuns& runs, const std::vector<double>& start,
                   const std::vector<double>& found, std::int64_t rows) {
   if (!context.poses || found.empty()) return;

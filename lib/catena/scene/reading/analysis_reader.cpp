@@ -98,6 +98,31 @@ void AnalysisReader::read_parameters(const JsonValue& set, AnalysisTask& task) {
   task.table = std::move(table);
 }
 
+void AnalysisReader::read_times(const AnalysisKey& key, const JsonValue& value, AnalysisTask& task) {
+  const FieldName field{key.name, task.type()};
+  task.at.emplace();
+  if (!value.is(JsonKind::array)) {
+    task.at->push_back(number(key, value, field, {.place = TaskNumber::Place::instant}));
+    return;
+  }
+  for (const JsonValue& instant : value.elements()) {
+    const TaskNumber place{.place = TaskNumber::Place::instant, .item = task.at->size()};
+    task.at->push_back(number(key, instant, field, place));
+  }
+  if (value.size() == 0) error(value, field.text() + " may not be an empty list");
+}
+
+// The number of a parameter that is named; -1 where there is none of that name.
+int AnalysisReader::read_parameter(const JsonValue& value, const FieldName& field) {
+  const std::string_view name = read_string(value, field, diagnostics_);
+  const int index = parameters_.names().find(name);
+  if (value.is(JsonKind::string) && index < 0) {
+    error(value, fmt::format("{}: unknown parameter {}{}", field.text(), in_quotes(name),
+                             NearMiss(name).consider_all(parameters_.names().all()).hint()));
+  }
+  return index;
+}
+
 void AnalysisReader::read_key(const AnalysisKey& key, const JsonValue& value, AnalysisTask& task) {
   const FieldName field{key.name, task.type()};
   switch (key.kind) {
@@ -109,16 +134,7 @@ void AnalysisReader::read_key(const AnalysisKey& key, const JsonValue& value, An
       task.at = std::vector<double>{number(key, value, field, {.place = TaskNumber::Place::instant})};
       break;
     case KeyKind::times:
-      task.at.emplace();
-      if (!value.is(JsonKind::array)) {
-        task.at->push_back(number(key, value, field, {.place = TaskNumber::Place::instant}));
-        break;
-      }
-      for (const JsonValue& instant : value.elements()) {
-        const TaskNumber place{.place = TaskNumber::Place::instant, .item = task.at->size()};
-        task.at->push_back(number(key, instant, field, place));
-      }
-      if (value.size() == 0) error(value, field.text() + " may not be an empty list");
+      read_times(key, value, task);
       break;
     case KeyKind::flag:
       task.numbers[key.name] = read_flag(value, field, diagnostics_) ? 1 : 0;
@@ -129,16 +145,9 @@ void AnalysisReader::read_key(const AnalysisKey& key, const JsonValue& value, An
     case KeyKind::columns:
       task.outputs = names(value, field, task.parameters);
       break;
-    case KeyKind::parameter: {
-      const std::string_view name = read_string(value, field, diagnostics_);
-      const int index = parameters_.names().find(name);
-      if (value.is(JsonKind::string) && index < 0) {
-        error(value, fmt::format("{}: unknown parameter {}{}", field.text(), in_quotes(name),
-                                 NearMiss(name).consider_all(parameters_.names().all()).hint()));
-      }
-      task.numbers[key.name] = index;
+    case KeyKind::parameter:
+      task.numbers[key.name] = read_parameter(value, field);
       break;
-    }
     case KeyKind::set:
     case KeyKind::impulse:  // of events
       break;

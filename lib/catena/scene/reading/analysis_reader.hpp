@@ -25,6 +25,8 @@ class AnalysisReader {
   std::vector<Formula<double>::Table> tables() const { return parameters_.tables<double>(scene_.expressions, values_); }
   const AnalysisDescription* read_type(const JsonValue& object);
   void read_key(const AnalysisKey& key, const JsonValue& value, AnalysisTask& task);
+  void read_times(const AnalysisKey& key, const JsonValue& value, AnalysisTask& task);
+  int read_parameter(const JsonValue& value, const FieldName& field);
   double number(const AnalysisKey& key, const JsonValue& value, const FieldName& field, TaskNumber place);
   double evaluated(const NumberValue& read, const JsonValue& value, TaskNumber place);
   void read_parameters(const JsonValue& set, AnalysisTask& task);

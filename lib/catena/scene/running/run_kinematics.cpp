@@ -152,6 +152,42 @@ void run_with_events(AnalysisContext& context, AnalysisResult& result, const Tim
   entries.give(result, true);
 }
 
+/// Nothing, or why a motion that nothing drives cannot be had.
+std::string trouble_without_drivers(const AnalysisContext& context, bool inverse_dynamics) {
+  if (inverse_dynamics) {
+    return "\"minimum_norm\" is for kinematics alone: motions that nothing drives would need forces of their own; add "
+           "drivers";
+  }
+  if (context.design) return "motions that nothing drives have no derivatives yet: leave \"free\" out, or add drivers";
+  if (!context.task.events.empty()) {
+    return "events are not looked for in a motion of least velocity, which is not looked at between its rows: leave "
+           "\"free\" out and add drivers";
+  }
+  return {};
+}
+
+/// A motion that constraints and drivers do not determine.
+void run_of_least_velocity(AnalysisContext& context, AnalysisResult& result, const TimeGrid& grid,
+                           const PlanOptions& plan, const ColumnSources& sources, RopeWaysAt& ways) {
+  MinimumNormMotion analysis(context.model, plan);
+  WithRopes followed(analysis, ways);
+  run_over_time(context, result, followed, grid, context.task.output_names(), sources, [&](AnalysisRows& rows) {
+    rows.watch_gaps(*context.model);
+    rows.take_rows_alone();
+  });
+  add_singular_points(result, analysis.singular_points(), *context.model);
+}
+
+/// What of the motion does not go on where a rope meets or leaves a pulley.
+std::string obstacle_for_ropes(const AnalysisContext& context) {
+  if (context.design) return "derivatives do not go on: end the analysis before";
+  const std::vector<PlacedMeasure>& measures = context.task.measures;
+  const bool looks_between = std::any_of(measures.begin(), measures.end(), [](const PlacedMeasure& measure) {
+    return measure.request.kind != MeasureKind::final && measure.request.kind != MeasureKind::first;
+  });
+  return looks_between ? "measures of what is between rows do not go on: end the analysis before" : "";
+}
+
 void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics) {
   const AnalysisTask& task = context.task;
   if (const std::string why = conflict(context, inverse_dynamics); !why.empty()) return refuse(result, why);
@@ -161,7 +197,6 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
   if (const std::string why = trouble_of_ropes(context, ways); !why.empty()) return refuse(result, why);
   const std::optional<TimeGrid> grid = time_grid(context, result.report);
   if (!grid) return;
-  const std::vector<std::string> names = task.output_names();
   const PlanOptions plan = plan_without_gaps(*context.model, task.column_names());
   KinematicsOptions options;
   options.inverse_dynamics = inverse_dynamics;
@@ -176,25 +211,9 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
                               .multipliers = inverse_dynamics,
                               .work = inverse_dynamics};
   if (task.word("free") != 0 && !is_driven(context)) {
-    if (inverse_dynamics) {
-      return refuse(result,
-                    "\"minimum_norm\" is for kinematics alone: motions that nothing drives would need forces of their "
-                    "own; add drivers");
-    }
-    if (context.design)
-      return refuse(result, "motions that nothing drives have no derivatives yet: leave \"free\" out, or add drivers");
-    if (!task.events.empty()) {
-      return refuse(result,
-                    "events are not looked for in a motion of least velocity, which is not looked at between its rows: "
-                    "leave \"free\" out and add drivers");
-    }
-    MinimumNormMotion analysis(context.model, plan);
-    WithRopes followed(analysis, ways);
-    run_over_time(context, result, followed, *grid, names, sources, [&](AnalysisRows& rows) {
-      rows.watch_gaps(*context.model);
-      rows.take_rows_alone();
-    });
-    return add_singular_points(result, analysis.singular_points(), *context.model);
+    if (const std::string why = trouble_without_drivers(context, inverse_dynamics); !why.empty())
+      return refuse(result, why);
+    return run_of_least_velocity(context, result, *grid, plan, sources, ways);
   }
   if (!task.events.empty()) return run_with_events(context, result, *grid, options, sources, ways);
   Kinematics analysis(context.model, plan, options);
@@ -225,14 +244,8 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
     rows.differentiate(std::make_unique<KinematicDerivatives>(analysis.evaluator(), designs_of(context),
                                                               static_cast<int>(context.design->names.size())));
   };
-  const bool looks_between = std::any_of(task.measures.begin(), task.measures.end(), [](const PlacedMeasure& measure) {
-    return measure.request.kind != MeasureKind::final && measure.request.kind != MeasureKind::first;
-  });
-  WithRopes followed(analysis, ways,
-                     context.design  ? "derivatives do not go on: end the analysis before"
-                     : looks_between ? "measures of what is between rows do not go on: end the analysis before"
-                                     : std::string());
-  run_over_time(context, result, followed, *grid, names, sources, prepare);
+  WithRopes followed(analysis, ways, obstacle_for_ropes(context));
+  run_over_time(context, result, followed, *grid, task.output_names(), sources, prepare);
   add_singular_points(result, analysis.singular_points(), *context.model);
 }
 
