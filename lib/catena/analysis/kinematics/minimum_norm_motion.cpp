@@ -24,6 +24,7 @@ constexpr double tolerance = 1e-13;           // of a step's error, length scale
 constexpr double largest_residual = 1e-11;    // of positions after a step
 constexpr double longest_norm_step = 0.5;     // rad, length scales
 constexpr double smallest_norm_step = 1e-13;  // part of the time, or of the time a motion of 1 takes
+// Step control as usual: E. Hairer, S. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", II.4.
 constexpr double safety = 0.9, largest_growth = 4, largest_cut = 0.1;
 // Velocities larger than this multiple of their average are taken to grow without bound.
 constexpr double runaway = 30;
@@ -241,70 +242,91 @@ std::optional<double> MinimumNormMotion::jump(double limit, bool breaks, double 
   return std::nullopt;
 }
 
+// The part of the way to one instant within which functions of time are smooth: to the next breakpoint.
+struct MinimumNormMotion::Leg {
+  double direction;     // 1 or -1, of time
+  double limit;         // its end, s
+  bool breaks = false;  // a function breaks there
+  double rate = 0;      // of the largest velocity at its start, rad/s or length scales a second
+};
+
+MinimumNormMotion::Leg MinimumNormMotion::next_leg(double t) const {
+  Leg leg{.direction = t > t_ ? 1.0 : -1.0, .limit = t};
+  for (const auto& function : model_->functions) {
+    for (double instant : function.breakpoints(std::min(t_, leg.limit), std::max(t_, leg.limit))) {
+      if (leg.direction * (leg.limit - instant) > 0) leg.limit = instant, leg.breaks = true;
+    }
+  }
+  return leg;
+}
+
 Report MinimumNormMotion::move_to(double t, RowObserver& observer) {
-  const double direction = t > t_ ? 1 : -1;
   while (t_ != t) {
     if (!observer.proceed(t_)) return cancelled();
-    // Functions of time are smooth between their breakpoints only.
-    double limit = t;
-    bool breaks = false;
-    for (const auto& function : model_->functions) {
-      for (double instant : function.breakpoints(std::min(t_, limit), std::max(t_, limit))) {
-        if (direction * (limit - instant) > 0) limit = instant, breaks = true;
-      }
-    }
-    if (!least_.velocity(t_, direction > 0 ? Side::after : Side::before, q_, stage_[0])) {
+    Leg leg = next_leg(t);
+    if (!least_.velocity(t_, leg.direction > 0 ? Side::after : Side::before, q_, stage_[0])) {
       return t_ == started_ ? no_velocity() : stuck(t);
     }
     evaluator_.curve_places(curve_places_);
-    const double rate = least_.size(stage_[0]);
-    if (step_ == 0) step_ = rate > 0 ? 0.2 * std::pow(tolerance, 1.0 / 8) / rate : std::abs(limit - t_);
-    const double smallest = smallest_norm_step * std::max(std::abs(t_), rate > 0 ? 1 / rate : 0.0);
-    bool rejected = false;
-    while (true) {
-      const double remaining = std::abs(limit - t_);
-      double h = std::min(step_, rate > 0 ? longest_norm_step / rate : step_);
-      const bool lands = h >= remaining * (1 - 1e-9);
-      if (lands) h = remaining;
-      double end = lands ? limit : t_ + direction * h;
-      if (!lands && (h < smallest || end == t_)) return stuck(t);
-      // Backwards in time a jump lies on the other side.
-      const double error = try_step(end, direction > 0 && lands && breaks, false);
-      if (error <= 1 && watched_.has_ends()) {
-        evaluator_.set_configuration(trial_);
-        if (Report left = watched_.check(); !left.ok()) {
-          if (h < smallest) return left;
-          step_ = h / 2;
-          continue;
-        }
-      }
-      const double growth =
-          std::clamp(safety * std::pow(std::max(error, 1e-10), -1.0 / 8), largest_cut, largest_growth);
-      if (!(error <= 1)) {
-        ++evaluator_.counters.rejected;
-        const bool first = !rejected;
-        rejected = true;
-        const std::optional<double> across =
-            first && h * rate < suspicious_step ? jump(limit, direction > 0 && breaks, rate) : std::nullopt;
-        if (!across) {
-          step_ = h * (std::isfinite(error) ? std::min(growth, 0.9) : 0.25);
-          continue;
-        }
-        end = *across;
-        h = std::abs(end - t_);
-        step_ = h;
-      } else if (!lands || growth < 1) {
-        step_ = h * (rejected ? std::min(growth, 1.0) : growth);
-      }
-      ++evaluator_.counters.steps;
-      travelled_ += rate * h;
-      q_.swap(trial_);
-      t_ = end;
-      has_velocity_ = false;
-      break;
+    leg.rate = least_.size(stage_[0]);
+    if (step_ == 0) {
+      step_ = leg.rate > 0 ? 0.2 * std::pow(tolerance, 1.0 / 8) / leg.rate : std::abs(leg.limit - t_);
     }
+    if (Report made = make_step(leg, t); !made.ok()) return made;
   }
   return {};
+}
+
+// One step of the leg, from the velocity in the first stage; `target`: where the motion is to come.
+Report MinimumNormMotion::make_step(const Leg& leg, double target) {
+  const auto [direction, limit, breaks, rate] = leg;
+  const double smallest = smallest_norm_step * std::max(std::abs(t_), rate > 0 ? 1 / rate : 0.0);
+  for (bool rejected = false;;) {
+    const double remaining = std::abs(limit - t_);
+    double h = std::min(step_, rate > 0 ? longest_norm_step / rate : step_);
+    const bool lands = h >= remaining * (1 - 1e-9);
+    if (lands) h = remaining;
+    double end = lands ? limit : t_ + direction * h;
+    if (!lands && (h < smallest || end == t_)) return stuck(target);
+    // Backwards in time a jump lies on the other side.
+    const double error = try_step(end, direction > 0 && lands && breaks, false);
+    if (error <= 1 && watched_.has_ends()) {
+      evaluator_.set_configuration(trial_);
+      if (Report left = watched_.check(); !left.ok()) {
+        if (h < smallest) return left;
+        step_ = h / 2;
+        continue;
+      }
+    }
+    const double growth = std::clamp(safety * std::pow(std::max(error, 1e-10), -1.0 / 8), largest_cut, largest_growth);
+    if (!(error <= 1)) {
+      ++evaluator_.counters.rejected;
+      const bool first = !rejected;
+      rejected = true;
+      const std::optional<double> across =
+          first && h * rate < suspicious_step ? jump(limit, direction > 0 && breaks, rate) : std::nullopt;
+      if (!across) {
+        step_ = h * (std::isfinite(error) ? std::min(growth, 0.9) : 0.25);
+        continue;
+      }
+      end = *across;
+      h = std::abs(end - t_);
+      step_ = h;
+    } else if (!lands || growth < 1) {
+      step_ = h * (rejected ? std::min(growth, 1.0) : growth);
+    }
+    take_step(end, rate * h);
+    return {};
+  }
+}
+
+// The step to `end`, which was tried, is made.
+void MinimumNormMotion::take_step(double end, double way) {
+  ++evaluator_.counters.steps;
+  travelled_ += way;
+  q_.swap(trial_);
+  t_ = end;
+  has_velocity_ = false;
 }
 
 Report MinimumNormMotion::solve_rates(const Needs& needs) {

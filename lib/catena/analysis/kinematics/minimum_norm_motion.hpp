@@ -43,7 +43,11 @@ class MinimumNormMotion {
 
  private:
   Report prepare(AnalysisReport& report);
+  struct Leg;
+  Leg next_leg(double t) const;
   Report move_to(double t, RowObserver& observer);
+  Report make_step(const Leg& leg, double target);
+  void take_step(double end, double way);
   bool evaluate_stages(double h, double end, bool lands_on_break, bool on_constraints);
   double error_size(double h) const;
   double try_step(double end, bool lands_on_break, bool on_constraints);

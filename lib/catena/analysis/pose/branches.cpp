@@ -14,50 +14,81 @@ namespace {
 
 constexpr double vanishing = Quadratics::vanishing;
 
-/// w_i^T (gamma(qd0 + rate sum a_j z_j) - own) / rate^2; `own`: what is no condition on the direction, empty: nothing.
-Quadratics make_quadratics(Evaluator& evaluator, const NullSpaces& spaces, std::span<const double> qd0, double rate,
-                           std::span<const double> own) {
-  const Plan& plan = evaluator.plan();
-  const std::size_t k = spaces.z.size();
-  const auto count = at(spaces.rank.left_null_vectors.count());
-  std::vector<double> gamma(at(plan.rows)), qd(qd0.begin(), qd0.end());
-  std::vector<double> size(count, 0.0);  // of the terms
-  const auto values_at = [&](std::span<const double> a) {
-    for (std::size_t c = 0; c < qd.size(); ++c) {
-      qd[c] = qd0[c];
-      for (std::size_t j = 0; j < k; ++j) qd[c] += rate * a[j] * spaces.z[j][c];
+/// f_i(a) = w_i^T gamma(qd0 + rate sum a_j z_j) / rate^2, quadratic in a.
+class Conditions {
+ public:
+  /// All must outlive this object.
+  Conditions(Evaluator& evaluator, const NullSpaces& spaces, std::span<const double> qd0, double rate)
+      : evaluator_(evaluator),
+        spaces_(spaces),
+        qd0_(qd0),
+        rate_(rate),
+        qd_(qd0.begin(), qd0.end()),
+        gamma_(at(evaluator.plan().rows)),
+        sizes_(at(spaces.rank.left_null_vectors.count()), 0.0) {}
+
+  std::size_t count() const { return sizes_.size(); }
+  std::vector<double> at_weights(std::span<const double> a) {
+    for (std::size_t c = 0; c < qd_.size(); ++c) {
+      qd_[c] = qd0_[c];
+      for (std::size_t j = 0; j < a.size(); ++j) qd_[c] += rate_ * a[j] * spaces_.z[j][c];
     }
-    evaluator.gamma(qd, gamma);
-    std::vector<double> f(count, 0.0);
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto rows = spaces.rank.left_null_vectors.indices(static_cast<int>(i));
-      const auto weights = spaces.rank.left_null_vectors.values(static_cast<int>(i));
+    evaluator_.gamma(qd_, gamma_);
+    std::vector<double> f = of(gamma_);
+    for (std::size_t i = 0; i < f.size(); ++i) {
       double terms = 0;
-      for (std::size_t n = 0; n < rows.size(); ++n) {
-        f[i] += weights[n] * gamma[at(rows[n])] / (rate * rate);
-        terms += std::abs(weights[n] * gamma[at(rows[n])]) / (rate * rate);
-      }
-      size[i] = std::max(size[i], terms);
+      visit(i, [&](double weight, std::size_t row) { terms += std::abs(weight * gamma_[row]) / (rate_ * rate_); });
+      sizes_[i] = std::max(sizes_[i], terms);
     }
     return f;
-  };
+  }
+  /// w_i^T r / rate^2.
+  std::vector<double> of(std::span<const double> r) const {
+    std::vector<double> f(count(), 0.0);
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      visit(i, [&](double weight, std::size_t row) { f[i] += weight * r[row] / (rate_ * rate_); });
+    }
+    return f;
+  }
+  /// The largest sum of terms that condition i was made of so far.
+  double size(std::size_t i) const { return sizes_[i]; }
+
+ private:
+  template <class F>
+  void visit(std::size_t i, F&& f) const {
+    const auto rows = spaces_.rank.left_null_vectors.indices(static_cast<int>(i));
+    const auto weights = spaces_.rank.left_null_vectors.values(static_cast<int>(i));
+    for (std::size_t n = 0; n < rows.size(); ++n) f(weights[n], at(rows[n]));
+  }
+
+  Evaluator& evaluator_;
+  const NullSpaces& spaces_;
+  std::span<const double> qd0_;
+  double rate_;
+  std::vector<double> qd_, gamma_, sizes_;
+};
+
+/// w_i^T (gamma(qd0 + rate sum a_j z_j) - own) / rate^2, from values at points where one or two of the a_j are not
+/// zero; `own`: what is no condition on the direction, empty: nothing.
+Quadratics make_quadratics(Evaluator& evaluator, const NullSpaces& spaces, std::span<const double> qd0, double rate,
+                           std::span<const double> own) {
+  Conditions conditions(evaluator, spaces, qd0, rate);
+  const std::size_t k = spaces.z.size(), count = conditions.count();
   std::vector<double> a(k, 0.0);
-  const std::vector<double> centre = values_at(a);
+  const std::vector<double> centre = conditions.at_weights(a);
   std::vector<std::vector<double>> plus(k), minus(k);
   for (std::size_t j = 0; j < k; ++j) {
     a[j] = 1;
-    plus[j] = values_at(a);
+    plus[j] = conditions.at_weights(a);
     a[j] = -1;
-    minus[j] = values_at(a);
+    minus[j] = conditions.at_weights(a);
     a[j] = 0;
   }
-  Quadratics all;
-  all.k = k;
   std::vector<std::vector<double>> mixed(count, std::vector<double>(k * k, 0.0));
   for (std::size_t j = 0; j < k; ++j) {
     for (std::size_t l = 0; l < j; ++l) {
       a[j] = a[l] = 1;
-      const std::vector<double> both = values_at(a);
+      const std::vector<double> both = conditions.at_weights(a);
       a[j] = a[l] = 0;
       for (std::size_t i = 0; i < count; ++i) {
         const double twice = both[i] - plus[j][i] - plus[l][i] + centre[i];
@@ -66,12 +97,9 @@ Quadratics make_quadratics(Evaluator& evaluator, const NullSpaces& spaces, std::
     }
     for (std::size_t i = 0; i < count; ++i) mixed[i][j * k + j] = (plus[j][i] + minus[j][i]) / 2 - centre[i];
   }
-  std::vector<double> still(count, 0.0);
-  for (std::size_t i = 0; i < count && !own.empty(); ++i) {
-    const auto rows = spaces.rank.left_null_vectors.indices(static_cast<int>(i));
-    const auto weights = spaces.rank.left_null_vectors.values(static_cast<int>(i));
-    for (std::size_t n = 0; n < rows.size(); ++n) still[i] += weights[n] * own[at(rows[n])] / (rate * rate);
-  }
+  const std::vector<double> still = own.empty() ? std::vector<double>(count, 0.0) : conditions.of(own);
+  Quadratics all;
+  all.k = k;
   for (std::size_t i = 0; i < count; ++i) {
     std::vector<double> linear(k);
     double largest = 0;
@@ -81,7 +109,7 @@ Quadratics make_quadratics(Evaluator& evaluator, const NullSpaces& spaces, std::
     }
     for (double value : mixed[i]) largest = std::max(largest, std::abs(value));
     // Redundant equations add no condition.
-    if (!(largest > vanishing * size[i])) continue;
+    if (!(largest > vanishing * conditions.size(i))) continue;
     all.constant.push_back((centre[i] - still[i]) / largest);
     for (double& value : linear) value /= largest;
     for (double& value : mixed[i]) value /= largest;
@@ -156,6 +184,61 @@ bool is_held(Evaluator& evaluator, const NullSpaces& spaces, std::span<const dou
   });
 }
 
+/// The least velocity that nu allows.
+std::vector<double> least_velocity_for(Evaluator& evaluator, const NullSpaces& spaces, std::span<const double> nu) {
+  const Plan& plan = evaluator.plan();
+  std::vector<double> qd(at(plan.coordinates()), 0.0);
+  if (plan.rows == 0) return qd;
+  ConstraintProjector projector(evaluator.shared_plan());
+  std::vector<double> inverse(at(plan.columns)), x(at(plan.columns)), lambda(at(plan.rows));
+  const double square = evaluator.length_scale() * evaluator.length_scale();
+  for (int c = 0; c < plan.columns; ++c) inverse[at(c)] = plan.coordinate[at(c)] % 3 == 2 ? 1 / square : 1;
+  projector.set_inverse_weights(inverse);
+  if (projector.factorize(spaces.values, evaluator.counters).ok()) projector.solve(nu, x, lambda, evaluator.counters);
+  for (int c = 0; c < plan.columns; ++c) qd[at(plan.coordinate[at(c)])] = x[at(c)];
+  return qd;
+}
+
+/// The largest entry of rates of moving bodies, in length scales or rad.
+double largest_of_rates(const Evaluator& evaluator, std::span<const double> qd) {
+  double rate = 0;
+  for (int c = 0; c < 3 * evaluator.plan().moving; ++c) {
+    rate = std::max(rate, std::abs(qd[at(c)]) / (c % 3 == 2 ? 1 : evaluator.length_scale()));
+  }
+  return rate;
+}
+
+/// The rate at which drivers that rest for an instant leave a dead point: square root of the largest entry of gamma.
+double rate_of_leaving(const Evaluator& evaluator, std::span<const double> own) {
+  const Plan& plan = evaluator.plan();
+  double gain = 0;
+  for (int r = 0; r < plan.rows; ++r) {
+    gain = std::max(gain, std::abs(own[at(r)]) / (plan.row_is_angle[at(r)] ? 1 : evaluator.length_scale()));
+  }
+  return std::sqrt(gain);
+}
+
+/// The velocities qd0 + rate sum a_j z_j with which the motion may go on, for drivers of this speed. `along`: qd0 is
+/// that of the motion, and comes first.
+void find_tangents(Evaluator& evaluator, const NullSpaces& spaces, std::span<const double> qd0, bool along, double rate,
+                   std::span<const double> own, double speed, SingularPoint& point) {
+  const Quadratics system = make_quadratics(evaluator, spaces, qd0, rate, own);
+  std::vector<double> first;
+  if (along) first.assign(system.k, 0.0);
+  for (const auto& root : real_roots(system, first)) {
+    std::vector<double> tangent(qd0.begin(), qd0.end());
+    for (std::size_t c = 0; c < tangent.size(); ++c) {
+      for (std::size_t j = 0; j < system.k; ++j) tangent[c] += rate * root[j] * spaces.z[j][c];
+      tangent[c] /= speed;
+    }
+    point.tangents.push_back(std::move(tangent));
+  }
+  point.kind = point.tangents.empty()       ? SingularPoint::Kind::isolated
+               : point.tangents.size() == 1 ? SingularPoint::Kind::tangency
+                                            : SingularPoint::Kind::branch_point;
+  if (!point.tangents.empty()) put_into_words(evaluator, point);
+}
+
 }  // namespace
 
 SingularPoint find_branches(Evaluator& evaluator, std::span<const double> q, std::span<const double> along,
@@ -167,36 +250,21 @@ SingularPoint find_branches(Evaluator& evaluator, std::span<const double> q, std
   const NullSpaces spaces = find_null_spaces(evaluator, q, threshold);
   point.nullity = plan.columns - spaces.rank.rank;
   point.name_bodies(evaluator, spaces.z);
-  // A particular velocity: the least one if none is known.
-  std::vector<double> nu(at(plan.rows)), qd0(at(plan.coordinates()), 0.0);
+  std::vector<double> nu(at(plan.rows)), own(at(plan.rows));
   evaluator.nu(nu);
   const Opposed opposed = most_opposed(evaluator, spaces.rank, nu);
   point.find_driver(evaluator, opposed.w, nu);
-  const std::vector<double> nothing(qd0.size(), 0.0);
-  std::vector<double> own(at(plan.rows));
-  evaluator.gamma(nothing, own);
+  evaluator.gamma(std::vector<double>(at(plan.coordinates()), 0.0), own);
   point.held_to_second_order = !spaces.z.empty() && is_held(evaluator, spaces, own);
   if (along.empty() && opposed.part > clear_disagreement) {
     point.kind = SingularPoint::Kind::lock_up;
     return point;
   }
-  if (!along.empty()) {
-    qd0.assign(along.begin(), along.end());
-  } else if (plan.rows > 0) {
-    ConstraintProjector projector(evaluator.shared_plan());
-    std::vector<double> inverse(at(plan.columns)), x(at(plan.columns)), lambda(at(plan.rows));
-    const double square = evaluator.length_scale() * evaluator.length_scale();
-    for (int c = 0; c < plan.columns; ++c) inverse[at(c)] = plan.coordinate[at(c)] % 3 == 2 ? 1 / square : 1;
-    projector.set_inverse_weights(inverse);
-    if (projector.factorize(spaces.values, evaluator.counters).ok()) projector.solve(nu, x, lambda, evaluator.counters);
-    for (int c = 0; c < plan.columns; ++c) qd0[at(plan.coordinate[at(c)])] = x[at(c)];
-  }
-  double rate = 0;
-  for (int c = 0; c < 3 * plan.moving; ++c) {
-    rate = std::max(rate, std::abs(qd0[at(c)]) / (c % 3 == 2 ? 1 : evaluator.length_scale()));
-  }
-  const bool searchable = !spaces.z.empty() && point.nullity <= most_nullity && std::isfinite(rate);
-  if (!searchable) {
+  // A particular velocity: the least one if none is known.
+  const std::vector<double> qd0 =
+      along.empty() ? least_velocity_for(evaluator, spaces, nu) : std::vector<double>(along.begin(), along.end());
+  double rate = largest_of_rates(evaluator, qd0);
+  if (spaces.z.empty() || point.nullity > most_nullity || !std::isfinite(rate)) {
     if (!along.empty()) point.tangents.push_back(qd0);
     return point;
   }
@@ -206,11 +274,7 @@ SingularPoint find_branches(Evaluator& evaluator, std::span<const double> q, std
   const bool starts = along.empty() && largest_nu == 0 && drivers == Drivers::moving &&
                       most_opposed(evaluator, spaces.rank, own).part > clear_disagreement;
   if (starts) {
-    double gain = 0;
-    for (int r = 0; r < plan.rows; ++r) {
-      gain = std::max(gain, std::abs(own[at(r)]) / (plan.row_is_angle[at(r)] ? 1 : evaluator.length_scale()));
-    }
-    rate = std::sqrt(gain);
+    rate = rate_of_leaving(evaluator, own);
   } else if (!(rate > 0) || largest_nu == 0) {
     point.kind = SingularPoint::Kind::rest;
     point.tangents.push_back(qd0);
@@ -222,21 +286,7 @@ SingularPoint find_branches(Evaluator& evaluator, std::span<const double> q, std
   } else {
     own.clear();
   }
-  const Quadratics system = make_quadratics(evaluator, spaces, qd0, rate, own);
-  std::vector<double> first;
-  if (!along.empty()) first.assign(system.k, 0.0);
-  for (const auto& root : real_roots(system, first)) {
-    std::vector<double> tangent = qd0;
-    for (std::size_t c = 0; c < tangent.size(); ++c) {
-      for (std::size_t j = 0; j < system.k; ++j) tangent[c] += rate * root[j] * spaces.z[j][c];
-      tangent[c] /= speed;
-    }
-    point.tangents.push_back(std::move(tangent));
-  }
-  point.kind = point.tangents.empty()       ? SingularPoint::Kind::isolated
-               : point.tangents.size() == 1 ? SingularPoint::Kind::tangency
-                                            : SingularPoint::Kind::branch_point;
-  if (!point.tangents.empty()) put_into_words(evaluator, point);
+  find_tangents(evaluator, spaces, qd0, !along.empty(), rate, own, speed, point);
   return point;
 }
 

@@ -11,6 +11,16 @@
 namespace catena {
 namespace {
 
+// The updates of a small block are few enough to name their slots one by one.
+template <class Segment>
+void name_slots(const Segment* segment, int below, const int* relatives, std::vector<int>& slots) {
+  for (int j = 0; j < below; ++j) {
+    if (j == segment->end) ++segment;
+    const int* const relative = relatives + segment->relative - segment->first;
+    for (int i = j; i < below; ++i) slots.push_back(segment->panel + segment->height * relative[j] + relative[i]);
+  }
+}
+
 std::size_t product(int a, int b) { return static_cast<std::size_t>(a) * static_cast<std::size_t>(b); }
 
 }  // namespace
@@ -81,15 +91,9 @@ void BlockFactorization::place_updates() {
       ++step.segments;
     }
     if (step.shape != 0) {
-      // Few enough to name them one by one.
       const Segment* segment = segments_.data() + segments_.size() - step.segments;
       const int first_relative = step.segments > 0 ? segment->relative : 0;
-      for (int j = 0; j < block.below; ++j) {
-        if (j == segment->end) ++segment;
-        const int* const relative = relative_.data() + segment->relative - segment->first;
-        for (int i = j; i < block.below; ++i)
-          update_slots_.push_back(segment->panel + segment->height * relative[j] + relative[i]);
-      }
+      name_slots(segment, block.below, relative_.data(), update_slots_);
       segments_.resize(segments_.size() - static_cast<std::size_t>(step.segments));
       if (step.segments > 0) relative_.resize(static_cast<std::size_t>(first_relative));
     } else {

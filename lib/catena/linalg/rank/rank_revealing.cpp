@@ -136,6 +136,25 @@ std::string warning_for(const RankReport& report, int column_rank, int structura
   return {};
 }
 
+/// Where all rows are independent the columns that a matching leaves over are free: a part of the matrix that
+/// determines its columns has as many rows, which match them.
+ColumnDependencies dependencies_by_matching(const Matching& matching, int columns) {
+  ColumnDependencies result;
+  result.dependent = matching.unmatched_columns;
+  for (int c = 0; c < columns; ++c) {
+    if (matching.row_of_column[static_cast<std::size_t>(c)] >= 0) result.independent.push_back(c);
+  }
+  return result;
+}
+
+/// Whether the kernel is there and the values are finite.
+FactorStatus can_be_analysed(std::span<const double> values, const RankOptions& options, bool by_qr) {
+  if (!std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); }))
+    return FactorStatus::not_finite;
+  const bool known = by_qr || options.kernel == Kernel::cholmod || options.kernel == Kernel::automatic;
+  return known ? FactorStatus::ok : FactorStatus::unavailable;
+}
+
 }  // namespace
 
 RankReport reveal_rank(const SparsePattern& pattern, std::span<const double> values, const RankOptions& options) {
@@ -144,10 +163,7 @@ RankReport reveal_rank(const SparsePattern& pattern, std::span<const double> val
   RankReport report;
   const bool by_qr =
       options.kernel == Kernel::spqr || (options.kernel == Kernel::automatic && is_compiled_in(Kernel::spqr));
-  if (!by_qr && options.kernel != Kernel::cholmod && options.kernel != Kernel::automatic)
-    report.status = FactorStatus::unavailable;
-  if (!std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); }))
-    report.status = FactorStatus::not_finite;
+  report.status = can_be_analysed(values, options, by_qr);
   if (!report.ok()) return report;
 
   const ScaledMatrix scaled = scale(pattern, values);
@@ -172,18 +188,11 @@ RankReport reveal_rank(const SparsePattern& pattern, std::span<const double> val
   ColumnDependencies by_rows = analyse(turned.pattern, turned_values, options.most_dependencies);
   const Matching matching = maximum_matching(pattern);
   const int nullity = pattern.columns - static_cast<int>(by_rows.independent.size());
-  ColumnDependencies by_columns;
-  // Where all rows are independent and there are more free columns than null vectors are wanted, the columns that a
-  // matching leaves over are free: a part of the matrix that determines its columns has as many rows, which match them.
-  if (by_qr && report.ok() && by_rows.dependent.empty() && nullity > options.most_null_vectors &&
-      static_cast<int>(matching.unmatched_columns.size()) == nullity) {
-    by_columns.dependent = matching.unmatched_columns;
-    for (int c = 0; c < pattern.columns; ++c) {
-      if (matching.row_of_column[static_cast<std::size_t>(c)] >= 0) by_columns.independent.push_back(c);
-    }
-  } else {
-    by_columns = analyse(pattern, scaled.values, options.most_null_vectors);
-  }
+  // More free columns than null vectors are wanted need no null vectors.
+  const bool matched = by_qr && report.ok() && by_rows.dependent.empty() && nullity > options.most_null_vectors &&
+                       static_cast<int>(matching.unmatched_columns.size()) == nullity;
+  ColumnDependencies by_columns = matched ? dependencies_by_matching(matching, pattern.columns)
+                                          : analyse(pattern, scaled.values, options.most_null_vectors);
   if (!report.ok()) return report;
 
   report.rank = static_cast<int>(by_rows.independent.size());
