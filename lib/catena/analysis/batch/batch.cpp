@@ -57,7 +57,7 @@ int BatchRows::place(int body, int entry) const {
 
 Frame<double> BatchRows::position(int row, int body, int lane) const {
   const auto number = [&](int entry) { return positions(row, body, entry)[lane]; };
-  return make_frame(number(0) + origin_.x, number(1) + origin_.y, number(2));
+  return make_frame(number(0), number(1), number(2));
 }
 
 Rates BatchRows::velocity(int row, int body, int lane) const {
@@ -85,7 +85,6 @@ class Batch::Worker {
     motion_.solver().tolerance = batch.options_.tolerance;
     rows_.motion_ = &motion_;
     rows_.plan_ = batch.plan_.get();
-    rows_.origin_ = {batch.program_->code().origin_x, batch.program_->code().origin_y};
     rows_.rows = static_cast<int>(instants.size());
   }
 

@@ -43,11 +43,10 @@ class BatchRows {
   Frame<double> position(int row, int body, int lane) const;
   Rates velocity(int row, int body, int lane) const;
   Rates acceleration(int row, int body, int lane) const;
-  /// The same numbers side by side, of all lanes: entry 0, 1, 2 is x, y (from origin()), phi.
+  /// The same numbers side by side, of all lanes: entry 0, 1, 2 is x, y, phi.
   const double* positions(int row, int body, int entry) const { return motion_->q(row) + place(body, entry); }
   const double* velocities(int row, int body, int entry) const { return motion_->qd(row) + place(body, entry); }
   const double* accelerations(int row, int body, int entry) const { return motion_->qdd(row) + place(body, entry); }
-  Vec2<double> origin() const { return origin_; }
 
   Status status(int lane) const { return outcome_[static_cast<std::size_t>(lane)].status; }
   const std::string& message(int lane) const { return outcome_[static_cast<std::size_t>(lane)].message; }
@@ -60,7 +59,6 @@ class BatchRows {
 
   const LaneMotion* motion_ = nullptr;
   const Plan* plan_ = nullptr;
-  Vec2<double> origin_{};
   std::array<Report, lane_count> outcome_;
   std::array<std::string, lane_count> left_;
 };

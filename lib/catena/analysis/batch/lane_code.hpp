@@ -97,7 +97,6 @@ struct LaneUnknown {
 
 struct LaneCode {
   int moving, frames, rows, slots;  ///< frames: of moving bodies, of those that stand still, of the ground
-  double origin_x, origin_y;        ///< of all frames, in the ground frame
   const LaneElement* element;       ///< type after type
   const LaneElements* of_type;
   int types;         ///< that have elements

@@ -90,7 +90,6 @@ class LaneEquations {
     if (e.function < 0) return {};
     return {at(job_.function, e.function), at(job_.function, e.function + 1), at(job_.function, e.function + 2)};
   }
-  Vec2<double> origin() const { return {code_.origin_x, code_.origin_y}; }
   template <class F>
   void for_each_element(F&& f) const;
   template <class E>
@@ -188,7 +187,7 @@ void LaneEquations<V>::differentiate(const LaneElement& e, P* values) const {
   Frame<D> j;
   if constexpr (E::bodies == 2) j = seed<P, columns>(frame(e.body_j), 3);
   D rows[E::rows];
-  element<E>(e).phi(Arguments<D>{i, j, D(value(e).f), origin()}, rows);
+  element<E>(e).phi(Arguments<D>{i, j, D(value(e).f), {}}, rows);
   for (int r = 0; r < E::rows; ++r) values[r] = rows[r].v;
   const int* place = code_.place + e.first_place;
   for (std::size_t n = 0; n < pattern.size(); ++n) {
@@ -207,7 +206,7 @@ typename LaneEquations<V>::P LaneEquations<V>::equations() {
     P rows[E::rows];
     if constexpr (!with_jacobian || varying_entries<E>() == 0) {
       const Frame<P> i = frame(e.body_i), j = E::bodies == 2 ? frame(e.body_j) : Frame<P>{};
-      element<E>(e).phi(Arguments<P>{i, j, value(e).f, origin()}, rows);
+      element<E>(e).phi(Arguments<P>{i, j, value(e).f, {}}, rows);
     } else if constexpr (std::is_same_v<E, Revolute<P>>) {
       pin<E>(e, rows);
     } else {
@@ -229,7 +228,7 @@ void LaneEquations<V>::nu() {
       auto j = i;
       if constexpr (E::bodies == 2) j = moving(frame(e.body_j), zero, zero, zero);
       Taylor<P> rows[E::rows];
-      element<E>(e).phi(Arguments<Taylor<P>>{i, j, value(e), origin()}, rows);
+      element<E>(e).phi(Arguments<Taylor<P>>{i, j, value(e), {}}, rows);
       for (int r = 0; r < E::rows; ++r) put(job_.right, e.row + r, -(scale(e) * rows[r].d));
     }
   });
@@ -258,7 +257,7 @@ void LaneEquations<V>::gamma() {
       auto j = i;
       if constexpr (E::bodies == 2) j = moved(e.body_j);
       Taylor<P> rows[E::rows];
-      element<E>(e).phi(Arguments<Taylor<P>>{i, j, value(e), origin()}, rows);
+      element<E>(e).phi(Arguments<Taylor<P>>{i, j, value(e), {}}, rows);
       for (int r = 0; r < E::rows; ++r) put(job_.right, e.row + r, -(scale(e) * rows[r].dd));
     }
   });

@@ -36,8 +36,7 @@ void LaneLook::follow(const LaneMotion& motion, int lane, const Model& model, st
     if (*columns) (*columns)->set_designs(model, solver_.frame());
   q_ = evaluator_.given_configuration();
   const LaneCode& code = solver_.program().code();
-  for (int b = 0; b < code.moving; ++b)
-    shift_[catena::at(b)] = Vec2<double>{code.origin_x, code.origin_y} - evaluator_.origin(b);
+  for (int b = 0; b < code.moving; ++b) shift_[catena::at(b)] = Vec2<double>{} - evaluator_.origin(b);
   for (int k = 0; k < lane_count; ++k) foretell(k, instants.front());
 }
 

@@ -45,10 +45,6 @@ bool LaneMotion::set_design(int lane, const Model& model, double length_scale) {
 
 void LaneMotion::set_start(int lane, std::span<const double> q) {
   for (int k = 0; k < coordinates_; ++k) now_.q[k][lane] = q[at(k)];
-  for (int k = 0; k < coordinates_; k += 3) {
-    now_.q[k][lane] -= solver_.program().code().origin_x;
-    now_.q[k + 1][lane] -= solver_.program().code().origin_y;
-  }
 }
 
 unsigned LaneMotion::assemble(const std::array<double, lane_count>& t) {
@@ -207,10 +203,8 @@ void LaneMotion::clear_rows(int lane, int rows) {
 
 void LaneMotion::put_row(int row, int lane, std::span<const double> q, std::span<const double> qd,
                          std::span<const double> qdd) {
-  const LaneCode& code = solver_.program().code();
   for (int k = 0; k < coordinates_; ++k) {
-    const double origin = k % 3 == 0 ? code.origin_x : k % 3 == 1 ? code.origin_y : 0;
-    rows_q_[row * coordinates_ + k][lane] = q[at(k)] - origin;
+    rows_q_[row * coordinates_ + k][lane] = q[at(k)];
     if (!qd.empty()) rows_qd_[row * coordinates_ + k][lane] = qd[at(k)];
     if (!qdd.empty()) rows_qdd_[row * coordinates_ + k][lane] = qdd[at(k)];
   }

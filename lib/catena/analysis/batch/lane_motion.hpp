@@ -22,8 +22,6 @@ inline constexpr double least_margin = 1e-3;
 
 class LaneMotion {
  public:
-  static constexpr unsigned all_lanes = (1U << lane_count) - 1;
-
   /// `program` must outlive this object.
   explicit LaneMotion(const LaneProgram& program);
 
@@ -59,8 +57,7 @@ class LaneMotion {
   void clear_rows(int lane, int rows);
   int coordinates() const { return coordinates_; }
   int tails() const { return tails_; }
-  /// x, y, phi of the moving bodies of all lanes at a row, from the origin of
-  /// the frames; their rates.
+  /// x, y, phi of the moving bodies of all lanes at a row; their rates.
   const double* q(int row) const { return rows_q_[row * coordinates_]; }
   const double* qd(int row) const { return rows_qd_[row * coordinates_]; }
   const double* qdd(int row) const { return rows_qdd_[row * coordinates_]; }

@@ -155,8 +155,8 @@ void LaneProgram::close() {
 Frame<double> LaneProgram::given_pose(const Model& model, int plan_body) const {
   const auto& body = model.bodies[at(plan_->model_body[at(plan_body)])];
   Frame<double> pose;
-  pose.x = body.position.x - code_.origin_x;
-  pose.y = body.position.y - code_.origin_y;
+  pose.x = body.position.x;
+  pose.y = body.position.y;
   pose.phi = body.angle;
   return pose;
 }
@@ -190,7 +190,7 @@ bool LaneProgram::put(const Model& model, double length_scale, int lane, LaneNum
     }
   });
   const auto put_frame = [&](int number, const Frame<double>& pose) {
-    const double values[] = {pose.x - code_.origin_x, pose.y - code_.origin_y, pose.phi, pose.c, pose.s};
+    const double values[] = {pose.x, pose.y, pose.phi, pose.c, pose.s};
     for (int k = 0; k < 5; ++k) frame[5 * number + k][lane] = values[k];
   };
   put_frame(plan.bodies, {});

@@ -35,7 +35,7 @@ class LaneProgram {
   /// point, an axis or a constant is not finite.
   bool put(const Model& model, double length_scale, int lane, LaneNumbers& field, LaneNumbers& function,
            LaneNumbers& frame) const;
-  /// The given pose of a moving body, from the origin of the frames.
+  /// The given pose of a moving body.
   Frame<double> given_pose(const Model& model, int plan_body) const;
   /// Puts c, c', c'' at t into a lane.
   void put_functions(const Model& model, double t, int lane, LaneNumbers& function) const;

@@ -43,7 +43,6 @@ class DrivenSolver {
   void use_rows(std::vector<int> rows);
   /// Exchanges rows in use at q for others that make the matrix better conditioned; false: there are none.
   bool exchange_rows(std::span<const double> q);
-  const std::vector<int>& rows_in_use() const { return rows_; }
   bool is_square() const { return static_cast<int>(rows_.size()) == plan_.columns; }
 
   /// Factors the matrix at q, at the evaluator's time; returns its crude reciprocal condition number, 0 if singular.
