@@ -6,6 +6,7 @@
 #include <charconv>
 #include <fstream>
 #include <iterator>
+#include <tuple>
 
 #include "catena/results/text_output.hpp"
 
@@ -19,50 +20,31 @@ std::uint64_t sum_over(std::string_view text, std::uint64_t sum = 0xcbf29ce48422
   return sum;
 }
 
-/// The order of the values in the file.
-template <class Channel>
-void pass(Channel& channel, EventRecord& record) {
-  channel.value(record.name);
-  channel.value(record.event);
-  channel.value(record.t);
-  channel.value(record.row);
+// The parts of what a checkpoint holds, in the order in which the file has them.
+auto parts(EventRecord& record) { return std::tie(record.name, record.event, record.t, record.row); }
+auto parts(ConstraintImpulse& p) { return std::tie(p.element, p.x, p.y, p.moment, p.load); }
+auto parts(Jolt& jolt) { return std::tie(jolt.t, jolt.event, jolt.drivers, jolt.impulses); }
+auto parts(RopeTurns& turns) { return std::tie(turns.theta, turns.contact); }
+auto parts(CurvePlace& place) { return std::tie(place.element, place.s_i, place.s_j); }
+auto parts(RopeEvent& event) { return std::tie(event.element, event.met, event.t); }
+auto parts(SparseVectors& vectors) { return std::tie(vectors.start, vectors.index, vectors.value); }
+auto parts(IntegratorMemory& m) { return std::tie(m.step, m.rate, m.root_energy, m.radians, m.usual_ratio); }
+auto parts(WorkSoFar& m) { return std::tie(m.supplied, m.dissipated, m.initial_energy, m.energy, m.by_driver); }
+auto parts(EventMemory& m) { return std::tie(m.released, m.turned, m.sides, m.largest, m.records); }
+auto parts(MotionMemory& m) {
+  return std::tie(m.t, m.y, m.turns, m.initial_energy, m.next_row, m.steps, m.rows_given, m.left_out, m.integrator,
+                  m.earlier, m.events, m.jolts, m.ropes, m.curves, m.rope_events);
 }
+auto parts(Checkpoint& c) { return std::tie(c.owner, c.analysis, c.begin, c.every, c.motion); }
 
-template <class Channel>
-void pass(Channel& channel, ConstraintImpulse& impulse) {
-  channel.value(impulse.element);
-  channel.value(impulse.x);
-  channel.value(impulse.y);
-  channel.value(impulse.moment);
-  channel.value(impulse.load);
-}
+template <class T>
+concept HasParts = requires(T& value) {
+  parts(value);
+};
 
-template <class Channel>
-void pass(Channel& channel, Jolt& jolt) {
-  channel.value(jolt.t);
-  channel.value(jolt.event);
-  channel.value(jolt.drivers);
-  channel.value(jolt.impulses);
-}
-
-template <class Channel>
-void pass(Channel& channel, RopeTurns& turns) {
-  channel.value(turns.theta);
-  channel.value(turns.contact);
-}
-
-template <class Channel>
-void pass(Channel& channel, CurvePlace& place) {
-  channel.value(place.element);
-  channel.value(place.s_i);
-  channel.value(place.s_j);
-}
-
-template <class Channel>
-void pass(Channel& channel, RopeEvent& event) {
-  channel.value(event.element);
-  channel.value(event.met);
-  channel.value(event.t);
+template <class Channel, class T>
+void pass(Channel& channel, T& value) {
+  std::apply([&](auto&... part) { (channel.value(part), ...); }, parts(value));
 }
 
 /// Writes a line a value, or reads it back; damage shows as a CheckpointError.
@@ -74,12 +56,10 @@ class Writer {
   void value(double& number) { text += fmt::format("{:016x}\n", std::bit_cast<std::uint64_t>(number)); }
   void value(std::int64_t& number) { text += fmt::format("{}\n", number); }
   void value(int& number) { text += fmt::format("{}\n", number); }
-  void value(EventRecord& record) { pass(*this, record); }
-  void value(ConstraintImpulse& impulse) { pass(*this, impulse); }
-  void value(Jolt& jolt) { pass(*this, jolt); }
-  void value(RopeTurns& turns) { pass(*this, turns); }
-  void value(CurvePlace& place) { pass(*this, place); }
-  void value(RopeEvent& event) { pass(*this, event); }
+  template <HasParts T>
+  void value(T& record) {
+    pass(*this, record);
+  }
   template <class T>
   void value(std::vector<T>& list) {
     text += fmt::format("{}\n", list.size());
@@ -95,12 +75,10 @@ class Reader {
   void value(double& number) { number = std::bit_cast<double>(whole<std::uint64_t>(16)); }
   void value(std::int64_t& number) { number = whole<std::int64_t>(10); }
   void value(int& number) { number = whole<int>(10); }
-  void value(EventRecord& record) { pass(*this, record); }
-  void value(ConstraintImpulse& impulse) { pass(*this, impulse); }
-  void value(Jolt& jolt) { pass(*this, jolt); }
-  void value(RopeTurns& turns) { pass(*this, turns); }
-  void value(CurvePlace& place) { pass(*this, place); }
-  void value(RopeEvent& event) { pass(*this, event); }
+  template <HasParts T>
+  void value(T& record) {
+    pass(*this, record);
+  }
   template <class T>
   void value(std::vector<T>& list) {
     const auto size = whole<std::size_t>(10);
@@ -134,50 +112,12 @@ class Reader {
   const std::string& path_;
 };
 
-template <class Channel>
-void pass(Channel& channel, Checkpoint& checkpoint) {
-  channel.value(checkpoint.owner);
-  channel.value(checkpoint.analysis);
-  channel.value(checkpoint.begin);
-  channel.value(checkpoint.every);
-  MotionMemory& motion = checkpoint.motion;
-  channel.value(motion.t);
-  channel.value(motion.y);
-  channel.value(motion.turns);
-  channel.value(motion.initial_energy);
-  channel.value(motion.next_row);
-  channel.value(motion.steps);
-  channel.value(motion.rows_given);
-  channel.value(motion.left_out.start);
-  channel.value(motion.left_out.index);
-  channel.value(motion.left_out.value);
-  channel.value(motion.integrator.step);
-  channel.value(motion.integrator.rate);
-  channel.value(motion.integrator.root_energy);
-  channel.value(motion.integrator.radians);
-  channel.value(motion.integrator.usual_ratio);
-  channel.value(motion.earlier.supplied);
-  channel.value(motion.earlier.dissipated);
-  channel.value(motion.earlier.initial_energy);
-  channel.value(motion.earlier.energy);
-  channel.value(motion.earlier.by_driver);
-  channel.value(motion.events.released);
-  channel.value(motion.events.turned);
-  channel.value(motion.events.sides);
-  channel.value(motion.events.largest);
-  channel.value(motion.events.records);
-  channel.value(motion.jolts);
-  channel.value(motion.ropes);
-  channel.value(motion.curves);
-  channel.value(motion.rope_events);
-}
-
 }  // namespace
 
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint) {
   Writer writer;
   Checkpoint copy = checkpoint;
-  pass(writer, copy);
+  writer.value(copy);
   writer.text += fmt::format("{:016x}\n", sum_over(writer.text));
   TextOutput file = TextOutput::file(path);
   file.write(writer.text);
@@ -204,7 +144,7 @@ Checkpoint read_checkpoint(const std::string& path) {
   if (std::string_view(text).substr(body.size()) != fmt::format("{:016x}\n", sum_over(body))) whole.damaged();
   Reader reader(body.substr(first_line.size()), path);
   Checkpoint checkpoint;
-  pass(reader, checkpoint);
+  reader.value(checkpoint);
   if (!reader.at_end()) reader.damaged();
   return checkpoint;
 }
