@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "catena/base/at.hpp"
+#include "catena/model/disjoint_sets.hpp"
 
 namespace catena {
 namespace {
@@ -87,21 +88,13 @@ std::vector<int> number_bodies(int bodies, std::span<const BodyPair> ties, const
 
 std::vector<int> find_islands(int bodies, std::span<const BodyPair> ties, const std::vector<char>& immobile,
                               int* count) {
-  std::vector<int> parent(at(bodies));
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int b) {
-    while (parent[at(b)] != b) b = parent[at(b)] = parent[at(parent[at(b)])];
-    return b;
-  };
-  for (const BodyPair& t : ties_of_moving(ties, immobile)) {
-    const int a = root(t.i), b = root(t.j);
-    parent[at(std::max(a, b))] = std::min(a, b);
-  }
+  DisjointSets sets(bodies);
+  for (const BodyPair& t : ties_of_moving(ties, immobile)) sets.join(t.i, t.j);
   std::vector<int> island(at(bodies), -1), number(at(bodies), -1);
   *count = 0;
   for (int b = 0; b < bodies; ++b) {
     if (immobile[at(b)]) continue;
-    int& n = number[at(root(b))];
+    int& n = number[at(sets.root(b))];
     if (n < 0) n = (*count)++;
     island[at(b)] = n;
   }

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
+#include "catena/model/disjoint_sets.hpp"
 #include "catena/model/model_add.hpp"
 
 namespace catena {
@@ -165,22 +165,17 @@ std::vector<ModelPart> parts_of(const Model& whole, std::span<const std::vector<
 }
 
 std::vector<std::vector<int>> separate_groups(const Model& model) {
-  std::vector<int> leader(model.bodies.size());
-  std::iota(leader.begin(), leader.end(), 0);
-  const auto find = [&](int body) {
-    while (leader[at(body)] != body) body = leader[at(body)] = leader[at(leader[at(body)])];
-    return body;
-  };
+  DisjointSets sets(static_cast<int>(model.bodies.size()));
   const auto fixed = [&](int body) { return !moves(model, body); };
   for_each_element(model, [&](const auto& entry, ElementKind) {
     if (fixed(entry.i) || fixed(entry.j)) return;
-    leader[at(find(entry.i))] = find(entry.j);
+    sets.join(entry.i, entry.j);
   });
   for (const StateLaw<double>& law : model.laws) {
     int first = ground;
     const auto tie = [&](int body) {
       if (fixed(body)) return;
-      if (first >= 0) leader[at(find(body))] = find(first);
+      if (first >= 0) sets.join(body, first);
       first = body;
     };
     const Attachment attachment = attachment_of(model, law.element);
@@ -192,7 +187,7 @@ std::vector<std::vector<int>> separate_groups(const Model& model) {
   std::vector<std::vector<int>> groups;
   for (int body = 0; body < static_cast<int>(model.bodies.size()); ++body) {
     if (fixed(body)) continue;
-    int& number = group[at(find(body))];
+    int& number = group[at(sets.root(body))];
     if (number < 0) {
       number = static_cast<int>(groups.size());
       groups.emplace_back();

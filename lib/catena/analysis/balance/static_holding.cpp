@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numeric>
 #include <string>
 #include <vector>
 
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
+#include "catena/model/disjoint_sets.hpp"
 
 namespace catena {
 namespace {
@@ -19,19 +19,14 @@ constexpr double rounding_of_loads = 1e-9;
 // Groups of plan bodies tied together; immobile bodies and the ground share the last place.
 class Groups {
  public:
-  explicit Groups(int moving) : ground_(moving), parent_(at(moving) + 1) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  void tie(int a, int b) { parent_[at(root(std::min(a, ground_)))] = root(std::min(b, ground_)); }
-  int root(int b) {
-    while (parent_[at(b)] != b) b = parent_[at(b)] = parent_[at(parent_[at(b)])];
-    return b;
-  }
-  bool is_held(int b) { return root(b) == root(ground_); }
+  explicit Groups(int moving) : ground_(moving), sets_(moving + 1) {}
+  void tie(int a, int b) { sets_.join(std::min(a, ground_), std::min(b, ground_)); }
+  bool are_tied(int a, int b) { return sets_.are_joined(a, b); }
+  bool is_held(int b) { return are_tied(b, ground_); }
 
  private:
   int ground_;
-  std::vector<int> parent_;
+  DisjointSets sets_;
 };
 
 /// The bodies and the ground, tied by constraints and by forces that hold: loads act on a body without holding it.
@@ -72,7 +67,7 @@ LooseBodies first_loose(Groups& groups, const StaticSystem& system, const Evalua
   for (int b = 0; b < plan.moving; ++b) {
     if (groups.is_held(b)) continue;
     if (first < 0) first = b;
-    if (groups.root(b) != groups.root(first)) continue;
+    if (!groups.are_tied(b, first)) continue;
     if (++loose.count <= most_names) {
       loose.names +=
           fmt::format("{}\"{}\"", loose.count > 1 ? ", " : "", evaluator.model().body_name(plan.model_body[at(b)]));

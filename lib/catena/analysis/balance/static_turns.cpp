@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <type_traits>
 #include <vector>
 
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
+#include "catena/model/disjoint_sets.hpp"
 
 namespace catena {
 namespace {
@@ -34,30 +34,25 @@ void drop_whole_turns(StaticSystem& system, std::span<const double> start, std::
   for (int b = 0; b < plan.moving; ++b) any = any || turns(b) != 0;
   if (!any) return;
   // Groups of bodies; immobile ones and the ground share the last place.
-  std::vector<int> parent(at(plan.moving) + 1);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int b) {
-    while (parent[at(b)] != b) b = parent[at(b)] = parent[at(parent[at(b)])];
-    return b;
-  };
+  DisjointSets groups(plan.moving + 1);
   const auto tie = [&](const auto& block, int) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
     if constexpr (counts_turns<E>) {
       for (int e = 0; e < block.size(); ++e) {
         const int i = std::min(block.body_i[at(e)], plan.moving);
         const int j = E::bodies == 1 ? plan.moving : std::min(block.body_j[at(e)], plan.moving);
-        parent[at(root(i))] = root(j);
+        groups.join(i, j);
       }
     }
   };
   for_each_list(plan.blocks, tie);
   for_each_list(plan.forces, tie);
   // A law of state may read any angle, turns included.
-  for (const auto& [acted, read] : plan.law_pairs) parent[at(root(read))] = root(plan.moving);
+  for (const auto& [acted, read] : plan.law_pairs) groups.join(read, plan.moving);
   std::vector<double> taken(at(plan.moving) + 1, std::nan(""));
-  taken[at(root(plan.moving))] = 0;
+  taken[at(groups.root(plan.moving))] = 0;
   for (int b = 0; b < plan.moving; ++b) {
-    double& group = taken[at(root(b))];
+    double& group = taken[at(groups.root(b))];
     if (std::isnan(group)) group = turns(b);
     q[at(3 * b + 2)] -= turn * group;
   }

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "catena/analysis/pose/jacobian_rank.hpp"
 #include "catena/base/at.hpp"
+#include "catena/model/disjoint_sets.hpp"
 
 namespace catena {
 namespace {
@@ -18,19 +18,6 @@ constexpr int most_columns = 2000;
 // the largest; a value below a few hundred of these roundings cannot be distinguished from zero. Of coordinates far
 // from the origin the last digits are unknown.
 constexpr double stiffness_rounding = 2e-13, place_rounding = 4 * std::numeric_limits<double>::epsilon();
-
-class Union {
- public:
-  explicit Union(int count) : parent_(at(count)) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int root(int k) {
-    while (parent_[at(k)] != k) k = parent_[at(k)] = parent_[at(parent_[at(k)])];
-    return k;
-  }
-  void tie(int a, int b) { parent_[at(root(a))] = root(b); }
-
- private:
-  std::vector<int> parent_;
-};
 
 }  // namespace
 
@@ -44,17 +31,17 @@ MotionGroups::MotionGroups(StaticSystem& system, bool split) : system_(system) {
     options.most_dependencies = options.most_null_vectors = 0;
     independent = jacobian_rank(system.evaluator(), plan.jacobian, jacobian, options).independent_rows;
   }
-  Union ties(columns + plan.rows);
+  DisjointSets ties(columns + plan.rows);
   const SparsePattern& pattern = system.matrix().structure().pattern;
   const std::span<const double> values = system.matrix().values();
   for (int c = 0; c < columns; ++c) {
-    if (!split && c > 0) ties.tie(c, c - 1);
+    if (!split && c > 0) ties.join(c, c - 1);
     for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k) {
-      if (jacobian[at(k)] != 0) ties.tie(c, columns + plan.jacobian.row_index[at(k)]);
+      if (jacobian[at(k)] != 0) ties.join(c, columns + plan.jacobian.row_index[at(k)]);
     }
     for (int k = pattern.column_start[at(c)]; split && k < pattern.column_start[at(c) + 1]; ++k) {
       const int r = pattern.row_index[at(k)];
-      if (r < columns && values[at(k)] != 0) ties.tie(c, r);
+      if (r < columns && values[at(k)] != 0) ties.join(c, r);
     }
   }
   std::vector<int> group_of(at(columns + plan.rows), -1);
