@@ -4,10 +4,10 @@
 //   latin    n points, in every direction one in each of n equal strips
 //   sobol    a (t, s)-sequence in base 2: point k is the exclusive or of direction numbers by the Gray code of k
 //
-// Point k is the same whoever asks for it, in whatever order and from however many threads: random and latin take their
-// numbers from (seed, k) by a counter-based generator. The first point of Sobol's sequence, the corner, is left out.
-// Source: S. Joe and F. Kuo, Constructing Sobol sequences with better two-dimensional projections, SIAM J. Sci. Comput.
-// 30 (2008); McKay, Beckman, Conover (1979); Steele, Lea, Flood, Fast splittable generators (2014).
+// Point k depends on the seed alone, not on the order of calls nor on the thread: random and latin take their numbers
+// from (seed, k) by a counter-based generator. The first point of Sobol's sequence, the corner, is left out. Source: S.
+// Joe and F. Kuo, Constructing Sobol sequences with better two-dimensional projections, SIAM J. Sci. Comput. 30 (2008);
+// McKay, Beckman, Conover (1979); Steele, Lea, Flood, Fast splittable generators (2014).
 #pragma once
 
 #include <cstdint>

@@ -3,8 +3,8 @@
 //   force F = -Phi_r^T lambda        torque T = -(Phi_phi^T - (R A s'P)^T Phi_r^T) lambda
 //
 // per body, about that body's own attachment point P, or about the one place that the element names (the pitch point of
-// gears); Phi_r and Phi_phi are the columns of the body's position and
-// angle. The ground's are taken as if it could move, so that its reactions come from the same formula. Units: N, N m.
+// gears); Phi_r and Phi_phi are the columns of the body's position and angle. The ground's are taken as if it could
+// move, so that its reactions come from the same formula. Units: N, N m.
 #pragma once
 
 #include "catena/columns/snapshot.hpp"

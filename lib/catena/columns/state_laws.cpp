@@ -18,7 +18,7 @@ class Flattening {
  public:
   explicit Flattening(const BasicModel<S>& model) : model_(model) {}
 
-  /// False where own columns are read in a circle, which whoever reads columns reports.
+  /// False where own columns are read in a circle, which find_own_inputs() reports.
   bool flatten(StateLaw<S>& law) {
     bool any = false;
     for (const std::string& name : law.names) any = any || model_.find_own_column(name) >= 0;

@@ -1,4 +1,4 @@
-// The derivatives of a measure with the names of the parameters they are by: for whoever writes results.
+// The derivatives of a measure with the names of the parameters they are by, as result sinks write them.
 #pragma once
 
 #include <limits>

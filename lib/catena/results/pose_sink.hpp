@@ -1,4 +1,4 @@
-// Where an analysis tells where the bodies are, beside its rows: for those who draw the mechanism.
+// Takes the poses of the bodies that an analysis goes through, beside its rows: for drawings of the mechanism.
 //
 //   begin_poses   ( pose   shape* | watch_design ... add_design )*
 //

@@ -4,9 +4,9 @@
 //   together        the k-th value of every parameter; a single value holds for all
 //   sobol, latin, random     points of the unit cube, brought to each parameter's range or distribution
 //
-// Design k is the same whoever asks for it, in whatever order. A list, or `from ... to` in `count` equal steps, counts
-// as a range from its least to its greatest value in a sampled design. A normal distribution is cut nowhere. Source:
-// base/sampling.hpp. Units: those of the parameters.
+// Design k depends on the plan alone, not on the order of calls. A list, or `from ... to` in `count` equal steps,
+// counts as a range from its least to its greatest value in a sampled design. A normal distribution is cut nowhere.
+// Source: base/sampling.hpp. Units: those of the parameters.
 #pragma once
 
 #include <cstdint>

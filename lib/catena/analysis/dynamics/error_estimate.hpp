@@ -105,7 +105,7 @@ class WithErrorEstimate {
     return report;
   }
   const EstimatedError& error() const { return error_; }
-  /// Who gets every row of the run that was asked for before the finer one's, with what is needed of that.
+  /// `beside` gets every row of the run that was asked for, before the finer run's row, with the same quantities.
   void show_asked(RowObserver& beside) { beside_ = &beside; }
 
  private:

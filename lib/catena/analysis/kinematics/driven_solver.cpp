@@ -11,6 +11,8 @@
 namespace catena {
 namespace {
 
+// Newton's method that contracts by 1/4, the least that steps are accepted with (kinematics_march.cpp), brings an error
+// of one length scale to 1e-12 in 20 iterations. Refinement by keep_rate a step, below, brings an error to 1e-14 in 7.
 constexpr int max_iterations = 25;
 constexpr int max_refinements = 10;
 // All in length scales or rad. A residual of `rounding` is zero; corrections below `rounding_floor` need not shrink any

@@ -183,8 +183,8 @@ class Kinematics {
     std::vector<CurvePlace> found;
     std::vector<double> places[3], halfway;
   } curves_;
-  /// What holds in run(): who decides between rows whether to go on (else nullptr), and outside of which instants
-  /// singular configurations are not reported; and whether some row of the last one was interpolated.
+  /// Of run(): its observer, which may end it between rows (nullptr outside of it), and the instants outside of which
+  /// singular configurations are not reported; and whether some row of the last run was interpolated.
   struct Running {
     RowObserver* observer = nullptr;
     double earliest = -std::numeric_limits<double>::infinity();

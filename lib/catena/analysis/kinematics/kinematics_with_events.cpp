@@ -35,7 +35,7 @@ struct Place {
 
 }  // namespace
 
-// Between Kinematics and whoever wants the rows: looks through the way to each row before it is given.
+// Stands between Kinematics and the observer of the rows: looks for events on the way to each row before it gives it.
 class KinematicsWithEvents::Rows final : public RowObserver {
  public:
   Rows(KinematicsWithEvents& owner, KinematicLook& look, RowObserver& target, std::int64_t& given, double from)

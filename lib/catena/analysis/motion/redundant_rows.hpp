@@ -16,8 +16,8 @@
 // p is the rank deficiency at a place where the mechanism is not singular by accident: a start in a flat position shows
 // too low a rank, so that the rank is also taken 0.1 rad along the drivers' or a free motion, and the larger one
 // counts. A mechanism that is driven and starts in a singular position is no such place itself, and its drivers may
-// rest there: whoever knows along which branch it starts gives a place on that. Source: S. Goreinov, I. Oseledets et
-// al., "How to find a good submatrix" (2010), with blocks as pivots.
+// rest there: the caller, which knows along which branch it starts, gives a place on that branch. Source: S. Goreinov,
+// I. Oseledets et al., "How to find a good submatrix" (2010), with blocks as pivots.
 #pragma once
 
 #include <span>

@@ -14,25 +14,22 @@
 namespace catena {
 namespace {
 
-/// A body whose angle follows that of another: by the same turns, or with a
-/// turn + b other = 0 in a pair that rolls, up to whole periods 2 pi (a + b),
-/// on which its equation does not depend (gear.hpp).
+/// A body whose angle follows that of another: by the same turns, or with a turn + b other = 0 in a pair that rolls, up
+/// to whole periods 2 pi (a + b), on which its equation does not depend (gear.hpp).
 struct Tie {
   int body;
   double a, b;
   bool rolls;
 };
 
-/// The turn of the other body of a rolling pair if one turns by `by`:
-/// of all possible turns the one that changes its pose least, and of these the
-/// smallest.
+/// The turn of the other body of a rolling pair if one turns by `by`: of all possible turns the one that changes its
+/// pose least, and of these the smallest.
 double least_turn(const Tie& tie, double by) {
   constexpr double turn = 2 * std::numbers::pi;
   constexpr int most_periods = 24;
   const double period = turn * (tie.a + tie.b) / tie.b, first = -tie.a / tie.b * by;
   if (period == 0) return first;
-  // Whole turns of the other body come round with the periods; those nearest to
-  // no turn at all are looked at.
+  // Whole turns of the other body come round with the periods; those nearest to no turn at all are looked at.
   const double centre = std::round(-first / period);
   double best = first + centre * period;
   const auto pose = [&](double x) { return std::abs(std::remainder(x, turn)); };

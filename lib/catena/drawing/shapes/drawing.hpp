@@ -13,7 +13,7 @@
 //   rope      0         x axis of the ground, m              its y axis, m: corners from rope_points.hpp
 //
 // P is fixed in body i at point_i, Q in body j at point_j; the ground's frame is that of body -1. s is the size of
-// symbols in m, which whoever draws chooses, so that pins look alike on a watch and on a crane; R turns by a quarter.
+// symbols in m, which the figure chooses, so that pins look alike on a watch and on a crane; R turns by a quarter.
 // Where P and Q coincide a span has no direction: e_v then points upwards. Lengths m, angles rad.
 #pragma once
 

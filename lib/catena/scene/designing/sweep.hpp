@@ -34,7 +34,7 @@ namespace catena {
 
 /// What came of one design.
 struct SweptDesign : SweepRecord::Design {
-  std::unique_ptr<DesignSink> seen{};  // by who draws, if at all
+  std::unique_ptr<DesignSink> seen{};  // by a pose sink, if there is one
   bool is_recorded = false;            // it comes from the record
 };
 

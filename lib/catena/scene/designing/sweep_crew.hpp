@@ -22,8 +22,8 @@
 namespace catena {
 
 struct CrewTerms {
-  int sweep = 1;             ///< number of the sweep in the run: messages of another are none
-  std::string_view owner{};  ///< a hash of what is swept: who has another cannot take part
+  int sweep = 1;             ///< number of the sweep in the run: messages of other sweeps are dropped
+  std::string_view owner{};  ///< a hash of what is swept: a process with another one cannot take part
   double patience = 10;      ///< s
 };
 

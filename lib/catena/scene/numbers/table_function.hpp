@@ -35,7 +35,7 @@ typename Formula<S>::Table make_table(const TableFunction& table, const Expressi
   return std::make_shared<const NamedTable<S>>(NamedTable<S>{table.name, Spline<S>(x, y, table.end, table.beyond)});
 }
 
-/// The same, null for one that cannot be made: whoever builds the model reports it.
+/// The same, null for one that cannot be made: the model's builder reports it.
 template <class S>
 typename Formula<S>::Table try_to_make(const TableFunction& table, const ExpressionPool& pool,
                                        std::span<const S> parameters) {

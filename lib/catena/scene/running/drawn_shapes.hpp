@@ -1,4 +1,4 @@
-// Shapes of modes and of buckling for those who draw: the pose about which they are, and each as rates of the plan's
+// Shapes of modes and of buckling for a pose sink: the pose about which they are, and each as rates of the plan's
 // coordinates, m and rad.
 #pragma once
 
