@@ -9,7 +9,8 @@
 #
 #   analysis  run <- pose <- motion <- events <- {kinematics, contact <- dynamics};  pose <- balance <- spectrum <- statics/solvers <- statics <- stability
 #             run <- measures;  motion <- sensitivity;  minimiser <- {statics, design};  kinematics <- batch
-#             {kinematics, statics} <- accuracy;  kinematics/course <- kinematics
+#             {kinematics, statics} <- accuracy
+#             run, pose <- kinematics/course <- kinematics
 #   scene     json <- numbers <- describing <- reading <- building <- models <- judging <- running <- writing <- designing <- viewing <- loading
 #             <- explaining
 #   drawing   shapes <- figures

@@ -39,30 +39,6 @@ std::vector<double> critical_gradient(const AnalysisContext& context, const std:
   return gradient ? *gradient : none;
 }
 
-std::vector<FieldRecord> critical_points(const PathReport& report) {
-  std::vector<FieldRecord> records;
-  for (const PathCritical& point : report.critical) {
-    records.push_back({{"kind", std::string(point.branch ? "branch" : "limit")},
-                       {"value", point.value},
-                       {"row", static_cast<std::int64_t>(point.row)},
-                       {"mode", point.mode},
-                       {"modes", static_cast<std::int64_t>(point.modes)}});
-  }
-  return records;
-}
-
-/// Of one-sided elements that close or open.
-std::vector<FieldRecord> changes_of(const PathReport& report, const Model& model) {
-  std::vector<FieldRecord> records;
-  for (const PathChange& change : report.changes) {
-    records.push_back({{"element", model.element_name(change.element)},
-                       {"kind", std::string(change.closes ? "closes" : "opens")},
-                       {"value", change.value},
-                       {"row", static_cast<std::int64_t>(change.row)}});
-  }
-  return records;
-}
-
 void add_column_measures(const AnalysisContext& context, const MeasureSet& measures, AnalysisResult& result) {
   for (MeasureResult& measure : measures.results()) {
     measure.t.reset();
@@ -122,12 +98,27 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
   context.state = analysis.state();
   if (report.ok()) context.state.ropes = RopeWaysAt(context.model).turns(context.state);
   if (report.ok() && rows > 0) context.values_at_end = {{parameter, row[0]}};
-  result.fields = {{"critical", critical_points(report)},
+  std::vector<FieldRecord> critical;
+  for (const PathCritical& point : report.critical) {
+    critical.push_back({{"kind", std::string(point.branch ? "branch" : "limit")},
+                        {"value", point.value},
+                        {"row", static_cast<std::int64_t>(point.row)},
+                        {"mode", point.mode},
+                        {"modes", static_cast<std::int64_t>(point.modes)}});
+  }
+  std::vector<FieldRecord> changes;
+  for (const PathChange& change : report.changes) {
+    changes.push_back({{"element", context.model->element_name(change.element)},
+                       {"kind", std::string(change.closes ? "closes" : "opens")},
+                       {"value", change.value},
+                       {"row", static_cast<std::int64_t>(change.row)}});
+  }
+  result.fields = {{"critical", std::move(critical)},
                    {"negative_modes", report.negative_modes},
                    {"steps", static_cast<std::int64_t>(report.steps)}};
   if (!analysis.plan().gap_rows.empty()) {
     result.fields.push_back({"active", report.active});
-    result.fields.push_back({"changes", changes_of(report, *context.model)});
+    result.fields.push_back({"changes", std::move(changes)});
   }
   result.report = report;
   for (const std::string& note : columns.notes()) result.report.warnings.push_back(note);
