@@ -11,27 +11,10 @@
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/model_add.hpp"
-#include "scene/run_text.hpp"
+#include "design/lane_families.hpp"
 
 namespace catena::testing {
 namespace {
-
-/// A scene with parameters and measures, and the ranges of its designs.
-struct Family {
-  std::string mechanism;
-  std::vector<std::string> names, measures;
-  std::vector<std::array<double, 2>> ranges;
-};
-
-const std::string four_bar = R"json( "bodies": {
-  "crank": {"rod": {"from": [0, 0], "to": ["a", 0]}},
-  "coupler": {"rod": {"from": ["a", 0], "to": ["=a + b*cos(0.9)", "=b*sin(0.9)"]}, "points": {"pen": [0.1, 0.2]}},
-  "rocker": {"rod": {"from": ["d", 0], "to": ["=d + c*cos(1.8)", "=c*sin(1.8)"]}}},
- "constraints": [{"type": "revolute", "i": "ground", "j": "crank.from"},
-  {"type": "revolute", "i": "crank.to", "j": "coupler.from"}, {"type": "revolute", "i": "coupler.to", "j": "rocker.to"},
-  {"type": "revolute", "i": ["ground", ["d", 0]], "j": "rocker.from"})json";
-const std::string drive =
-    R"json( "drivers": [{"type": "absolute_angle", "i": "crank", "value": {"polynomial": [0, "w"]}}],)json";
 
 /// Crank-rockers and others: some lock, some cannot be assembled.
 Family four_bars() {
@@ -91,69 +74,9 @@ Family six_bars() {
           {{0.2, 0.4}, {1.0, 1.4}, {0.8, 1.1}, {1.1, 1.5}, {0.8, 1.2}, {1, 2}}};
 }
 
-std::string scene_of(const Family& family, const std::vector<double>& values, const std::string& analysis) {
-  std::string text = R"json({"catena": 1, "parameters": {)json";
-  for (std::size_t p = 0; p < family.names.size(); ++p)
-    text += fmt::format("{}\"{}\": {:.17g}", p ? ", " : "", family.names[p], values[p]);
-  return text + "}," + family.mechanism + R"json("outputs": [], "analyses": [)json" + analysis + "]}";
-}
-
-std::string kinematics_of(const Family& family) {
-  std::string text = R"json({"type": "kinematics", "until": "=6/w", "every": "=6/w/48", "measures": {)json";
-  for (std::size_t m = 0; m < family.measures.size(); ++m)
-    text += fmt::format("{}\"m{}\": {}", m ? ", " : "", m, family.measures[m]);
-  return text + "}}";
-}
-
 class RandomDesigns : public ::testing::TestWithParam<Family (*)()> {};
 
-TEST_P(RandomDesigns, AreWhatEachIsByItself) {
-  const Family family = GetParam()();
-  constexpr int designs = 40;
-  std::mt19937 random(7);
-  std::vector<std::vector<double>> values;
-  for (int k = 0; k < designs; ++k) {
-    values.emplace_back();
-    for (const auto& [low, high] : family.ranges)
-      values.back().push_back(std::uniform_real_distribution(low, high)(random));
-  }
-  std::string over;
-  for (std::size_t p = 0; p < family.names.size(); ++p) {
-    over += fmt::format("{}\"{}\": [", p ? ", " : "", family.names[p]);
-    for (int k = 0; k < designs; ++k)
-      over += fmt::format("{}{:.17g}", k ? ", " : "", values[static_cast<std::size_t>(k)][p]);
-    over += "]";
-  }
-  const TextRun sweep = run_text(scene_of(family, values[0],
-                                          R"json({"type": "sweep", "design": "together", "of": )json" +
-                                              kinematics_of(family) + R"json(, "over": {)json" + over + "}}"));
-  ASSERT_EQ(sweep.outcome.exit_code, 0) << sweep.outcome.error_text << sweep.analysis().report.message;
-  int good = 0;
-  for (std::size_t k = 0; k < designs; ++k) {
-    SCOPED_TRACE(k);
-    const TextRun alone = run_text(scene_of(family, values[k], kinematics_of(family)));
-    ASSERT_EQ(alone.outcome.analyses.size(), 1u) << alone.outcome.error_text;
-    const AnalysisResult& result = alone.analysis();
-    EXPECT_EQ(sweep.column("status")[k], static_cast<double>(result.report.status)) << result.report.message;
-    good += result.report.ok();
-    for (std::size_t m = 0; m < family.measures.size(); ++m) {
-      const double value = sweep.column(fmt::format("m{}", m))[k];
-      if (!result.report.ok()) {
-        EXPECT_TRUE(std::isnan(value));
-        continue;
-      }
-      ASSERT_TRUE(result.measures[m].value);
-      // Lengths, angles and rates are about one.
-      EXPECT_NEAR(value, *result.measures[m].value, 1e-12 * std::max(1.0, std::abs(value))) << m;
-    }
-  }
-  EXPECT_GT(good, designs / 4);
-  EXPECT_LT(good, designs);
-  // Those that move stay in their lanes, but for a few that come near to where they lock.
-  const auto in_lanes = field<std::int64_t>(sweep, "in_lanes");
-  EXPECT_LE(in_lanes, good);
-  EXPECT_GE(in_lanes, 8 * good / 10);
-}
+TEST_P(RandomDesigns, AreWhatEachIsByItself) { expect_same_as_alone(GetParam()()); }
 
 INSTANTIATE_TEST_SUITE_P(Lanes, RandomDesigns,
                          ::testing::Values(four_bars, formulas, joint_angles, slider_cranks, six_bars));
@@ -305,14 +228,15 @@ TEST(Batch, SaysWhatIsWrong) {
   auto redundant = four_bar_model();
   redundant->add("again", Revolute<double>{}, ground, 0);
   EXPECT_NE(refusal([&] { Batch twice(redundant); }).find("11 equations for 9"), std::string::npos);
-  auto geared = four_bar_model();
-  const int wheel = geared->add_body("wheel", {});
-  geared->bodies[static_cast<std::size_t>(wheel)].position = {0.5, 0.5};
-  geared->add("hub", Revolute<double>{}, ground, wheel);
-  Gear<double> gear;
-  gear.radius_i = gear.radius_j = 0.2;
-  geared->add("mesh", gear, 0, wheel);
-  EXPECT_NE(Batch::obstacle(*geared).find("\"mesh\" is of a type"), std::string::npos);
+  auto cammed = four_bar_model();
+  const int follower = cammed->add_body("follower", {});
+  cammed->bodies[static_cast<std::size_t>(follower)].position = {0, 0.5};
+  cammed->add("guide", Translational<double>{.axis_i = {0, 1}, .axis_j = {0, 1}}, ground, follower);
+  CamFlat<double> cam;
+  cam.curve = Curve<double>::circle({0.1, 0}, 0.3);
+  cam.axis_j = {1, 0};
+  cammed->add("cam", cam, 0, follower);
+  EXPECT_NE(Batch::obstacle(*cammed).find("\"cam\" is of a type"), std::string::npos);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/base/at.hpp"
+#include "catena/columns/energy.hpp"
 
 namespace catena {
 namespace {
@@ -36,8 +37,8 @@ class LaneRows final : public RowObserver {
       q[3 * b] += row.evaluator.origin(static_cast<int>(b)).x;
       q[3 * b + 1] += row.evaluator.origin(static_cast<int>(b)).y;
     }
-    motion_.put_row(next_++, lane_, q, moves ? row.qd.first(count) : none,
-                    is_accelerated ? row.qdd.first(count) : none);
+    motion_.put_row(next_++, lane_, q, moves ? row.qd.first(count) : none, is_accelerated ? row.qdd.first(count) : none,
+                    row.lambda);
     return true;
   }
 
@@ -70,6 +71,23 @@ Rates BatchRows::acceleration(int row, int body, int lane) const {
   return {number(0), number(1), number(2)};
 }
 
+const double* BatchRows::multipliers(int row, int element, int k) const {
+  const int first_row = plan_->element_row[at(element)];
+  if (!has_loads_ || first_row < 0)
+    throw std::out_of_range("a batch has multipliers of constraints, where loads are wanted");
+  return motion_->lambda(row) + lane_count * (first_row + k);
+}
+
+double BatchRows::load(int row, int element, int lane) const {
+  const Model& model = *model_[at(lane)];
+  const LaneProgram& program = motion_->solver().program();
+  const LaneProgram::Constraint constraint = program.constraint(model, element, lane, motion_->solver().field());
+  const double lambda = constraint.scale * multipliers(row, element, 0)[lane];
+  if (!constraint.squared) return -lambda;
+  const auto& [constant, function, law] = constraint.value;
+  return -2 * (function < 0 ? constant : model.functions[at(function)].evaluate(instants_[at(row)]).f) * lambda;
+}
+
 /// One thread's designs.
 class Batch::Worker {
  public:
@@ -86,6 +104,8 @@ class Batch::Worker {
     rows_.motion_ = &motion_;
     rows_.plan_ = batch.plan_.get();
     rows_.rows = static_cast<int>(instants.size());
+    rows_.instants_ = instants;
+    rows_.has_loads_ = batch.options_.loads;
   }
 
   const BatchRows& follow(std::int64_t first, int count, const Design& design) {
@@ -96,11 +116,12 @@ class Batch::Worker {
       if (!motion_.set_design(lane, models_[at(lane < count ? lane : 0)], length_scale_))
         throw std::invalid_argument(
             fmt::format("batch: a pose, point or constant of design {} is not finite", first + lane));
+      rows_.model_[at(lane)] = &models_[at(lane)];
       rows_.outcome_[at(lane)] = {};
       rows_.left_[at(lane)].clear();
     }
     const unsigned lanes = (1U << count) - 1;
-    const unsigned in_lanes = assemble(lanes);
+    const unsigned in_lanes = assemble(lanes & ~without_mass(count));
     motion_.run(in_lanes, rows_.rows, [&](int row, int) { return instants_[at(row)]; });
     for (int lane = 0; lane < count; ++lane) {
       if (motion_.alive() & 1U << lane) continue;
@@ -111,6 +132,17 @@ class Batch::Worker {
   }
 
  private:
+  /// Loads need masses: Kinematics refuses designs that lack some.
+  unsigned without_mass(int count) {
+    unsigned lacking = 0;
+    for (int lane = 0; batch_.options_.loads && lane < count; ++lane) {
+      if (body_without_mass(models_[at(lane)], *batch_.plan_) < 0) continue;
+      lacking |= 1U << lane;
+      rows_.left_[at(lane)] = "a body has no mass";
+    }
+    return lacking;
+  }
+
   unsigned assemble(unsigned lanes) {
     unsigned near = motion_.assemble({});
     const auto& bodies = batch_.model_->bodies;
@@ -146,10 +178,12 @@ class Batch::Worker {
     motion_.clear_rows(lane, rows_.rows);
     KinematicsOptions options;
     options.tolerance = batch_.options_.tolerance;
+    options.inverse_dynamics = batch_.options_.loads;
     Kinematics kinematics(std::make_shared<const Model>(models_[at(lane)]), plan_options(models_[at(lane)]), options);
     LaneRows rows(motion_, lane);
     Needs needs;
     needs.velocity = needs.acceleration = true;
+    needs.multipliers = batch_.options_.loads;
     const AnalysisReport report = kinematics.run(grid_, needs, rows);
     rows_.outcome_[at(lane)] = static_cast<const Report&>(report);
   }
@@ -173,13 +207,13 @@ Batch::Batch(std::shared_ptr<const Model> model, const BatchOptions& options)
   if (options.threads < 1) throw std::invalid_argument("batch: it needs one thread at least");
   plan_ = Plan::make(*model_, plan_options(*model_));
   std::string why_not;
-  program_ = LaneProgram::make(*model_, plan_, why_not);
+  program_ = LaneProgram::make(*model_, plan_, options.loads, why_not);
   if (!program_) throw std::invalid_argument("designs of this mechanism cannot be computed in lanes: " + why_not);
 }
 
-std::string Batch::obstacle(const Model& model) {
+std::string Batch::obstacle(const Model& model, bool loads) {
   std::string why_not;
-  return LaneProgram::make(model, Plan::make(model, plan_options(model)), why_not) ? std::string() : why_not;
+  return LaneProgram::make(model, Plan::make(model, plan_options(model)), loads, why_not) ? std::string() : why_not;
 }
 
 BatchReport Batch::run(std::int64_t designs, const TimeGrid& grid, const Design& design, const Take& take) {

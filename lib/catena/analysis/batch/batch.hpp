@@ -1,4 +1,5 @@
-// Many designs of one driven mechanism at once: positions, velocities and accelerations at the instants of a grid.
+// Many designs of one driven mechanism at once: positions, velocities, accelerations and, where they are wanted, loads
+// of drivers and multipliers, at the instants of a grid.
 //
 //   catena::Batch batch(model);
 //   batch.run(1'000'000, grid,
@@ -9,13 +10,15 @@
 // They are followed in lanes, eight side by side, and several threads share them out (lane_motion.hpp). A design that
 // leaves its lane is followed by Kinematics instead, and ends as that says, with its message: the others do not notice.
 // The results are those of Kinematics to rounding, the same for any number of threads.
-// What cannot be computed in lanes at all is refused, with the reason (lane_program.hpp). Units SI, rad.
+// What cannot be computed in lanes at all is refused, with the reason (lane_program.hpp). Designs do not change flags
+// and sides of elements. Units SI, rad.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +31,7 @@ namespace catena {
 struct BatchOptions {
   double tolerance = 1e-12;  ///< of constraint residuals, relative to the length scale
   int threads = 1;
+  bool loads = false;  ///< multipliers and loads are wanted: every body needs its mass
   /// Designs do not touch functions of time: these are evaluated once an instant for all lanes.
   bool same_functions = false;
   const std::atomic<bool>* cancel = nullptr;
@@ -47,6 +51,11 @@ class BatchRows {
   const double* positions(int row, int body, int entry) const { return motion_->q(row) + place(body, entry); }
   const double* velocities(int row, int body, int entry) const { return motion_->qd(row) + place(body, entry); }
   const double* accelerations(int row, int body, int entry) const { return motion_->qdd(row) + place(body, entry); }
+  /// The load of a driver, a number of the model's list of elements, N or N m; needs BatchOptions::loads.
+  double load(int row, int element, int lane) const;
+  /// Multiplier number k of a constraint, of all lanes side by side, in the solver's scale: that of the published
+  /// equation but for squared distances, whose equation is scaled by 1/(2c).
+  const double* multipliers(int row, int element, int k) const;
 
   Status status(int lane) const { return outcome_[static_cast<std::size_t>(lane)].status; }
   const std::string& message(int lane) const { return outcome_[static_cast<std::size_t>(lane)].message; }
@@ -59,6 +68,9 @@ class BatchRows {
 
   const LaneMotion* motion_ = nullptr;
   const Plan* plan_ = nullptr;
+  std::array<const Model*, lane_count> model_{};
+  std::span<const double> instants_;
+  bool has_loads_ = false;
   std::array<Report, lane_count> outcome_;
   std::array<std::string, lane_count> left_;
 };
@@ -80,7 +92,7 @@ class Batch {
   ~Batch();
 
   /// Empty, or why designs of this model cannot be computed in lanes.
-  static std::string obstacle(const Model& model);
+  static std::string obstacle(const Model& model, bool loads = false);
 
   /// Both functions are called by several threads at once where there are several, each for designs of its own. An
   /// exception of theirs ends the run and is thrown on. Throws std::invalid_argument for a grid that is empty or not in

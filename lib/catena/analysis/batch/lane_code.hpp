@@ -2,12 +2,13 @@
 // of designs, number after number, the designs of a group beside each other.
 //
 //   Phi(q, t) = 0     Newton-Raphson, every lane its own      Phi_q qd = nu      Phi_q qdd = gamma
+//   Phi_q^T lambda = Q - M qdd      where loads are wanted
 //
 // Phi_q is eliminated in steps that are listed once for all designs (lane_elimination.hpp); what is left of its
 // diagonal blocks are tails, small dense matrices whose rows are exchanged lane by lane.
 //
 // Kernels are compiled once for every instruction set: they see nothing but these plain pointers, and no function of
-// theirs can take the place of another part's. Units: m, rad, s.
+// theirs can take the place of another part's. Units: m, rad, s, kg, N.
 #pragma once
 
 namespace catena {
@@ -21,8 +22,11 @@ inline constexpr int lane_count = 8;
   X(AbsoluteDistance)           \
   X(AbsoluteX)                  \
   X(AbsoluteY)                  \
+  X(Belt)                       \
   X(Coupler)                    \
   X(Displacement)               \
+  X(Gear)                       \
+  X(RackPinion)                 \
   X(RelativeAngle)              \
   X(RelativeDistance)           \
   X(RelativeX)                  \
@@ -36,6 +40,20 @@ inline constexpr int lane_count = 8;
 enum LaneType { CATENA_LANE_ELEMENTS(CATENA_LANE_NAME) lane_types };
 #undef CATENA_LANE_NAME
 
+/// Force types that are evaluated in lanes; springs without a curve.
+#define CATENA_LANE_FORCES(X) \
+  X(Bushing)                  \
+  X(ElasticCable)             \
+  X(JointDamper)              \
+  X(PointForce)               \
+  X(SpringDamper)             \
+  X(Torque)                   \
+  X(TorsionSpring)
+
+#define CATENA_LANE_NAME(Type) Type##_in_lanes,
+enum LaneForceType { CATENA_LANE_FORCES(CATENA_LANE_NAME) lane_force_types };
+#undef CATENA_LANE_NAME
+
 /// Largest tail of a block: 2 in a loop of links.
 inline constexpr int largest_tail = 6;
 
@@ -45,12 +63,24 @@ struct LaneElement {
   int function;             ///< place of c, c', c'' in `function`; -1: it has none
   int scale;                ///< place of its factor in `field`; -1: 1
   int first_place;          ///< of its varying entries, in `place`
+  int choice;               ///< its flag, or its side: the same in all designs
   bool timed;               ///< c may change with time
+};
+
+struct LaneForce {
+  int body_i, body_j;  ///< frames
+  int field;           ///< place of its first parameter
+  int function;        ///< place of its first value, and two rates, in `function`; -1: it has none
+  int choice;
 };
 
 /// So many elements of one type.
 struct LaneElements {
   LaneType type;
+  int count;
+};
+struct LaneForces {
+  LaneForceType type;
   int count;
 };
 
@@ -101,13 +131,19 @@ struct LaneCode {
   const LaneElements* of_type;
   int types;         ///< that have elements
   const int* place;  ///< in the matrix, of the varying entries of elements
-  int factor_runs, solve_runs, resets, tails;
-  const LaneRun *factor, *solve;  ///< of Phi_q, in which all places of steps are; of a right-hand side
+  int factor_runs, solve_runs, transposed_runs, resets, tails;
+  /// Of Phi_q, in which all places of steps are; of a right-hand side; of one of the transposed equations.
+  const LaneRun *factor, *solve, *transposed;
   const LaneStep* step;
   const LaneReset* reset;
   const LaneTail* tail;
   const LaneUnknown* unknown;  ///< lengths, then angles
   int lengths;
+  // Of loads; where none are wanted there are none.
+  const LaneForce* force;  ///< type after type
+  const LaneForces* of_force_type;
+  int force_types;
+  int masses, gravity;  ///< places in `field`: of mass and inertia, body after body; of two components
 };
 
 /// One group at one instant. Arrays hold lane_count values a number and are aligned to 64 bytes.
@@ -118,6 +154,8 @@ struct LaneJob {
   const double* unit;      ///< one over the length scale
   double* frame;           ///< x, y, phi, cos, sin of every frame; those after the moving ones are given
   double *q, *qd, *qdd;    ///< of the moving bodies; q: the start of Newton's iteration
+  double* load;            ///< Q - M qdd of the moving bodies
+  double* lambda;          ///< rows
   double *matrix, *right;  ///< slots, those of constants filled; scratch: rows
   double *tail, *exchange;
   int lanes;  ///< in use; packs beyond them are left out
@@ -144,6 +182,8 @@ struct LaneForetelling {
 struct LaneKernels {
   const char* name;  ///< of the instruction set
   void (*solve)(LaneJob&);
+  /// Multipliers at the configuration, with the rates and the factors that solve() left.
+  void (*find_loads)(LaneJob&);
   void (*foretell)(const LaneForetelling&);
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "catena/base/at.hpp"
+#include "catena/model/attachment.hpp"
 
 namespace catena {
 namespace {
@@ -61,6 +62,12 @@ void evaluate(ColumnKind kind, const BodyView& b, const Vec2<double>& local, int
   }
 }
 
+// What multipliers tell.
+bool is_load(ColumnKind kind) {
+  return kind == ColumnKind::load || kind == ColumnKind::power || kind == ColumnKind::multiplier ||
+         kind == ColumnKind::reaction_x || kind == ColumnKind::reaction_y;
+}
+
 }  // namespace
 
 std::optional<LaneColumns> LaneColumns::make(const LaneProgram& program, const Model& model,
@@ -73,7 +80,7 @@ std::optional<LaneColumns> LaneColumns::make(const LaneProgram& program, const M
       return {};
   }
   if (named.size() != names.size()) return {};
-  LaneColumns columns(program, std::move(inputs));
+  LaneColumns columns(program, model, std::move(inputs));
   columns.inputs_.resize(columns.own_inputs_.size());
   for (const NamedColumn& one : named) {
     if (!columns.add(one.column, columns.columns_.emplace_back())) return {};
@@ -93,7 +100,7 @@ bool LaneColumns::add(const Column& column, Source& source) {
     inputs_[source.number] = std::move(inputs);
     return true;
   }
-  if (column.kind != ColumnKind::time && !is_body_column(column.kind)) return false;
+  if (column.kind != ColumnKind::time && !is_body_column(column.kind) && !is_load_in_lanes(column)) return false;
   const auto known = std::find_if(quantities_.begin(), quantities_.end(),
                                   [&](const Quantity& quantity) { return quantity.column == column; });
   source = {false, static_cast<std::size_t>(known - quantities_.begin())};
@@ -101,11 +108,20 @@ bool LaneColumns::add(const Column& column, Source& source) {
   return true;
 }
 
-void LaneColumns::set_designs(const Model& model, const LaneNumbers& frame) {
+bool LaneColumns::is_load_in_lanes(const Column& column) const {
+  if (!program_.has_loads() || !is_load(column.kind)) return false;
+  const LaneNumbers none(program_.fields());
+  const LaneProgram::Constraint constraint = program_.constraint(*model_, column.index, 0, none);
+  const bool is_force = column.kind == ColumnKind::reaction_x || column.kind == ColumnKind::reaction_y;
+  return constraint.row >= 0 && (!is_force || constraint.pin);
+}
+
+void LaneColumns::set_designs(const Model& model, const LaneSolver& solver) {
   model_ = &model;
-  fixed_.copy(frame);
+  fixed_.copy(solver.frame());
   for (Quantity& quantity : quantities_) {
     const Column& column = quantity.column;
+    if (is_load(column.kind)) quantity.constraint = program_.constraint(model, column.index, 0, solver.field());
     if (!is_body_column(column.kind)) continue;
     if (column.detail >= 0)
       quantity.local = model.points[at(column.detail)].local;
@@ -117,16 +133,55 @@ void LaneColumns::set_designs(const Model& model, const LaneNumbers& frame) {
 void LaneColumns::evaluate(const LaneView& view) {
   const Plan& plan = program_.plan();
   for (std::size_t k = 0; k < quantities_.size(); ++k) {
-    const auto& [column, local] = quantities_[k];
+    const auto& [column, local, constraint] = quantities_[k];
     double* const out = values_[static_cast<int>(k)];
     if (column.kind == ColumnKind::time) {
       std::copy(view.t + view.first, view.t + view.last, out + view.first);
+      continue;
+    }
+    if (is_load(column.kind)) {
+      evaluate_load(quantities_[k], view, out);
       continue;
     }
     const int body = column.index < 0 ? plan.bodies : plan.plan_body[at(column.index)];
     const BodyView seen = body_view(body, program_.code().moving, view, fixed_.data());
     catena::evaluate(column.kind, seen, local, view.first, view.last, out);
   }
+}
+
+void LaneColumns::evaluate_load(const Quantity& quantity, const LaneView& view, double* out) const {
+  const auto& [column, local, constraint] = quantity;
+  const double* const lambda = view.lambda + lane_count * constraint.row;
+  if (column.kind == ColumnKind::reaction_x || column.kind == ColumnKind::reaction_y)
+    return evaluate_pin(column, lambda, view, out);
+  if (column.kind == ColumnKind::multiplier) {
+    for (int k = view.first; k < view.last; ++k) out[k] = constraint.scale * lambda[lane_count * column.detail + k];
+    return;
+  }
+  for (int k = view.first; k < view.last; ++k) {
+    const Taylor<double> c = constraint.value.function < 0
+                                 ? Taylor<double>(constraint.value.constant)
+                                 : model_->functions[at(constraint.value.function)].evaluate(view.t[k]);
+    const double load = (constraint.squared ? -2 * c.f : -1) * constraint.scale * lambda[k];
+    out[k] = column.kind == ColumnKind::load ? load : load * c.d;
+  }
+}
+
+// The force of a pin on one of its bodies; in the joint's axes these are those of body i.
+void LaneColumns::evaluate_pin(const Column& column, const double* lambda, const LaneView& view, double* out) const {
+  const bool is_x = column.kind == ColumnKind::reaction_x;
+  const double *const x = lambda, *const y = lambda + lane_count;
+  if (column.detail != on_j_in_joint) {
+    const double sign = column.detail == on_i ? 1 : -1;
+    for (int k = view.first; k < view.last; ++k) out[k] = sign * (is_x ? x[k] : y[k]);
+    return;
+  }
+  const int i = attachment_of(*model_, column.index).i;
+  const Plan& plan = program_.plan();
+  const BodyView seen =
+      body_view(i < 0 ? plan.bodies : plan.plan_body[at(i)], program_.code().moving, view, fixed_.data());
+  for (int k = view.first; k < view.last; ++k)
+    out[k] = is_x ? -(seen.c[k] * x[k] + seen.s[k] * y[k]) : seen.s[k] * x[k] - seen.c[k] * y[k];
 }
 
 double LaneColumns::value_of(const Source& source, int lane) const {

@@ -225,6 +225,7 @@ void Chooser::finish() {
   for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) list_solution(*block);
   out_.factor = factor_.finish(out_.step);
   out_.solve = solve_.finish(out_.step);
+  out_.transposed = solve_.transposed(out_.tail).finish(out_.step);
   for (const bool angles : {false, true}) {
     for (int c = 0; c < plan_.columns; ++c) {
       const int coordinate = plan_.coordinate[at(c)];

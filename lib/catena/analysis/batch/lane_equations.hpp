@@ -3,9 +3,11 @@
 //
 //   gamma = -d2Phi/dt2 along q + qd t      nu = -dPhi/dt at rest      both from
 //   the Taylor series of phi, as the derived operations of
-//   assembly/constraint_operations.hpp; Phi_q from dual numbers. Pins have
-//   their closed forms.
+//   assembly/constraint_operations.hpp; Phi_q from dual numbers. Pins, gears
+//   and belts have their closed forms (revolute.hpp, rolling_pair.hpp).
 #pragma once
+
+#include <numbers>
 
 #include "catena/analysis/batch/lane_code.hpp"
 #include "catena/analysis/batch/lane_pack.hpp"
@@ -13,8 +15,11 @@
 #include "catena/elements/constraints/absolute_distance.hpp"
 #include "catena/elements/constraints/absolute_x.hpp"
 #include "catena/elements/constraints/absolute_y.hpp"
+#include "catena/elements/constraints/belt.hpp"
 #include "catena/elements/constraints/coupler.hpp"
 #include "catena/elements/constraints/displacement.hpp"
+#include "catena/elements/constraints/gear.hpp"
+#include "catena/elements/constraints/rack_pinion.hpp"
 #include "catena/elements/constraints/relative_angle.hpp"
 #include "catena/elements/constraints/relative_distance.hpp"
 #include "catena/elements/constraints/relative_x.hpp"
@@ -36,7 +41,7 @@ class LaneEquations {
   LaneEquations(const LaneJob& job, int lane) : job_(job), code_(*job.code), unit_(P::load(job.unit + lane)) {
     // One by one: an object whose members have their addresses taken would be kept in memory.
     job_.field += lane, job_.function += lane, job_.frame += lane;
-    job_.q += lane, job_.qd += lane, job_.qdd += lane;
+    job_.q += lane, job_.qd += lane, job_.qdd += lane, job_.load += lane, job_.lambda += lane;
     job_.matrix += lane, job_.right += lane, job_.tail += lane, job_.exchange += lane;
     job_.converged += lane, job_.first_size += lane, job_.first_turn += lane, job_.contraction += lane;
     job_.residual += lane, job_.margin += lane;
@@ -56,28 +61,34 @@ class LaneEquations {
   void nu();
   void gamma();
 
+  Frame<P> frame(int body) const {
+    const double* const f = job_.frame + 5 * lane_count * body;
+    return {at(f, 0), at(f, 1), at(f, 2), at(f, 3), at(f, 4)};
+  }
+  /// `Code` is a LaneElement or a LaneForce.
+  template <class E, class Code>
+  E element(const Code& e) const {
+    E result;
+    int k = e.field;
+    std::apply([&](const auto&... field) { (load(result, field, e.choice, k), ...); }, E::fields());
+    if constexpr (requires { result.angle; }) result.angle = at(job_.field, k++);
+    if constexpr (requires { result.constant; }) result.constant = at(job_.field, k++);
+    return result;
+  }
+
   LaneJob job_;  // its arrays begin at the lanes of this pack
   LaneCode code_;
   P unit_;
 
  private:
-  Frame<P> frame(int body) const {
-    const double* const f = job_.frame + 5 * lane_count * body;
-    return {at(f, 0), at(f, 1), at(f, 2), at(f, 3), at(f, 4)};
-  }
-  template <class E>
-  E element(const LaneElement& e) const {
-    E result;
-    int k = e.field;
-    std::apply([&](const auto&... field) { (load(result, field, k), ...); }, E::fields());
-    if constexpr (requires { result.angle; }) result.angle = at(job_.field, k++);
-    return result;
-  }
   template <class E, class Field>
-  void load(E& element, const Field& field, int& k) const {
+  void load(E& element, const Field& field, int choice, int& k) const {
     if constexpr (requires { field.member; }) {
       auto& member = element.*field.member;
-      if constexpr (requires { member.x; }) {
+      using Member = std::remove_cvref_t<decltype(member)>;
+      if constexpr (std::is_same_v<Member, bool> || std::is_same_v<Member, int>) {
+        member = static_cast<Member>(choice);
+      } else if constexpr (requires { member.x; }) {
         member = {at(job_.field, k), at(job_.field, k + 1)};
         k += 2;
       } else {
@@ -98,6 +109,23 @@ class LaneEquations {
   void pin(const LaneElement& e, P* rows) const;
   template <class E>
   void differentiate(const LaneElement& e, P* rows) const;
+  // Of gears and belts, whose angle of the line of centres has whole turns taken out of it:
+  template <class E>
+  static constexpr bool rolls = std::is_same_v<E, Gear<P>> || std::is_same_v<E, Belt<P>>;
+  struct Rolling {
+    P a, b;  ///< of rolling_pair.hpp
+    Vec2<P> arm_i, arm_j, h;
+    P square;  ///< h^T h
+  };
+  template <class E>
+  Rolling rolling(const E& pair, const Frame<P>& i, const Frame<P>& j) const;
+  template <class E>
+  P roll(const LaneElement& e) const;
+  template <class E>
+  void roll_jacobian(const LaneElement& e) const;
+  template <class E>
+  P roll_gamma(const LaneElement& e) const;
+  Vec2<P> turned(const Vec2<P>& v, const P& omega) const { return {-(omega * v.y), omega * v.x}; }
 };
 
 template <class V>
@@ -199,12 +227,70 @@ void LaneEquations<V>::differentiate(const LaneElement& e, P* values) const {
 }
 
 template <class V>
+template <class E>
+typename LaneEquations<V>::Rolling LaneEquations<V>::rolling(const E& pair, const Frame<P>& i,
+                                                             const Frame<P>& j) const {
+  bool is_alike;  // the wheels turn alike
+  if constexpr (std::is_same_v<E, Gear<P>>) {
+    is_alike = pair.internal;
+  } else {
+    is_alike = !pair.crossed;
+  }
+  Rolling r;
+  r.a = pair.radius_i;
+  r.b = is_alike ? -pair.radius_j : pair.radius_j;
+  r.arm_i = i.axis(pair.s_i), r.arm_j = j.axis(pair.s_j);
+  r.h = {(j.x - i.x) + (r.arm_j.x - r.arm_i.x), (j.y - i.y) + (r.arm_j.y - r.arm_i.y)};
+  r.square = squared_norm(r.h);
+  return r;
+}
+
+template <class V>
+template <class E>
+typename LaneEquations<V>::P LaneEquations<V>::roll(const LaneElement& e) const {
+  const E pair = element<E>(e);
+  const Frame<P> i = frame(e.body_i), j = frame(e.body_j);
+  const Rolling r = rolling(pair, i, j);
+  const P d = r.a + r.b, period = P(2 * std::numbers::pi) * d;
+  const P principal = (r.a * i.phi + r.b * j.phi - d * atan2(r.h.y, r.h.x)) - pair.constant;
+  const P turns = round(principal / select(abs(period) > P(0), period, P(1)));
+  return principal - turns * period;
+}
+
+template <class V>
+template <class E>
+void LaneEquations<V>::roll_jacobian(const LaneElement& e) const {
+  const Rolling r = rolling(element<E>(e), frame(e.body_i), frame(e.body_j));
+  const P part = (r.a + r.b) / r.square;
+  const Vec2<P> g{-(part * r.h.y), part * r.h.x};
+  const P entries[] = {g.x, g.y, r.a + cross(r.arm_i, g), -g.x, -g.y, r.b - cross(r.arm_j, g)};
+  const int* const place = code_.place + e.first_place;
+  for (int k = 0; k < 6; ++k) entries[k].store(job_.matrix + place[k]);
+}
+
+template <class V>
+template <class E>
+typename LaneEquations<V>::P LaneEquations<V>::roll_gamma(const LaneElement& e) const {
+  const Rolling r = rolling(element<E>(e), frame(e.body_i), frame(e.body_j));
+  const auto rate = [&](int body, int k) { return body < code_.moving ? at(job_.qd, 3 * body + k) : P(0); };
+  const P w_i = rate(e.body_i, 2), w_j = rate(e.body_j, 2);
+  const Vec2<P> apart{rate(e.body_j, 0) - rate(e.body_i, 0), rate(e.body_j, 1) - rate(e.body_i, 1)};
+  const Vec2<P> hd = (apart + turned(r.arm_j, w_j)) - turned(r.arm_i, w_i);
+  const Vec2<P> hdd = (w_i * w_i) * r.arm_i - (w_j * w_j) * r.arm_j;
+  const P turning = cross(r.h, hd) / r.square;
+  return (r.a + r.b) * (cross(r.h, hdd) - P(2) * turning * dot(r.h, hd)) / r.square;
+}
+
+template <class V>
 template <bool with_jacobian>
 typename LaneEquations<V>::P LaneEquations<V>::equations() {
   P largest(0);
   for_each_element([&]<class E>(const LaneElement& e) {
     P rows[E::rows];
-    if constexpr (!with_jacobian || varying_entries<E>() == 0) {
+    if constexpr (rolls<E>) {
+      rows[0] = roll<E>(e);
+      if constexpr (with_jacobian) roll_jacobian<E>(e);
+    } else if constexpr (!with_jacobian || varying_entries<E>() == 0) {
       const Frame<P> i = frame(e.body_i), j = E::bodies == 2 ? frame(e.body_j) : Frame<P>{};
       element<E>(e).phi(Arguments<P>{i, j, value(e).f, {}}, rows);
     } else if constexpr (std::is_same_v<E, Revolute<P>>) {
@@ -252,6 +338,8 @@ void LaneEquations<V>::gamma() {
           turning(e.body_j) * frame(e.body_j).axis(pin.s_j) - turning(e.body_i) * frame(e.body_i).axis(pin.s_i);
       put(job_.right, e.row, g.x);
       put(job_.right, e.row + 1, g.y);
+    } else if constexpr (rolls<E>) {
+      put(job_.right, e.row, roll_gamma<E>(e));
     } else {
       const auto i = moved(e.body_i);
       auto j = i;

@@ -9,12 +9,12 @@
 
 #include <limits>
 
-#include "catena/analysis/batch/lane_solution.hpp"
+#include "catena/analysis/batch/lane_loads.hpp"
 
 namespace catena {
 
 template <class V>
-class LaneKernel : LaneSolution<V> {
+class LaneKernel : LaneLoads<V> {
  public:
   // Everything in one function: what is stored in packs might be any memory for all that the compiler knows, but not
   // the members of an object that never leaves its function.
@@ -24,10 +24,16 @@ class LaneKernel : LaneSolution<V> {
       kernel.solve();
     }
   }
+  [[gnu::flatten]] static void find_loads(LaneJob& job) {
+    for (int lane = 0; lane < job.lanes; lane += P::size) {
+      LaneKernel kernel(job, lane);
+      kernel.Base::find_loads();
+    }
+  }
   [[gnu::flatten]] static void foretell(const LaneForetelling& f);
 
  private:
-  using Base = LaneSolution<V>;
+  using Base = LaneLoads<V>;
   using Base::at;
   using Base::code_;
   using Base::job_;
@@ -142,7 +148,7 @@ void LaneKernel<V>::foretell(const LaneForetelling& f) {
 /// The kernels in packs V: of the instruction set that the including file is compiled for.
 template <class V>
 constexpr LaneKernels make_lane_kernels(const char* name) {
-  return {name, LaneKernel<V>::solve, LaneKernel<V>::foretell};
+  return {name, LaneKernel<V>::solve, LaneKernel<V>::find_loads, LaneKernel<V>::foretell};
 }
 
 }  // namespace catena

@@ -22,6 +22,7 @@ LaneLook::LaneLook(const LaneProgram& program, Evaluator& evaluator, std::option
       q_(catena::at(program.plan().coordinates()), 0.0),
       qd_(q_.size(), 0.0),
       qdd_(q_.size(), 0.0),
+      lambda_(program.has_loads() ? catena::at(program.code().rows) : 0, 0.0),
       shift_(catena::at(program.code().moving)) {}
 
 void LaneLook::follow(const LaneMotion& motion, int lane, const Model& model, std::span<const double> instants) {
@@ -33,7 +34,7 @@ void LaneLook::follow(const LaneMotion& motion, int lane, const Model& model, st
   lost_ = false;
   solver_.set_designs(model, evaluator_.length_scale());
   for (std::optional<LaneColumns>* columns : {&columns_, &row_columns_})
-    if (*columns) (*columns)->set_designs(model, solver_.frame());
+    if (*columns) (*columns)->set_designs(model, solver_);
   q_ = evaluator_.given_configuration();
   const LaneCode& code = solver_.program().code();
   for (int b = 0; b < code.moving; ++b) shift_[catena::at(b)] = Vec2<double>{} - evaluator_.origin(b);
@@ -88,8 +89,8 @@ void LaneLook::expect(std::span<const double> instants) {
   for (int lane = 0; lane < count; ++lane) is_seen_[catena::at(lane)] = is_sound(lane);
   next_lane_ = 0;
   if (columns_)
-    columns_->evaluate(
-        {0, count, seen_.t.data(), seen_.q.data(), seen_.qd.data(), seen_.qdd.data(), seen_.turned.data()});
+    columns_->evaluate({0, count, seen_.t.data(), seen_.q.data(), seen_.qd.data(), seen_.qdd.data(),
+                        seen_.turned.data(), seen_.lambda.data()});
 }
 
 std::optional<LaneLook::Place> LaneLook::find_seen(double t) {
@@ -131,8 +132,8 @@ bool LaneLook::values(double t, std::span<double> out) {
   const int row = place->row, lane = motion_lane_;
   std::array<double, lane_count> instant{};
   instant[catena::at(lane)] = t;
-  row_columns_->evaluate(
-      {lane, lane + 1, instant.data(), motion_->q(row), motion_->qd(row), motion_->qdd(row), motion_->turned(row)});
+  row_columns_->evaluate({lane, lane + 1, instant.data(), motion_->q(row), motion_->qd(row), motion_->qdd(row),
+                          motion_->turned(row), motion_->lambda(row)});
   for (std::size_t k = 0; k < out.size(); ++k) out[k] = row_columns_->value(k, lane);
   return true;
 }
@@ -141,6 +142,7 @@ Snapshot LaneLook::show(double t, double residual) {
   evaluator_.set_time(t);
   evaluator_.set_configuration(q_);
   Snapshot snapshot{.evaluator = evaluator_, .t = t, .q = q_, .qd = qd_, .qdd = qdd_};
+  snapshot.lambda = lambda_;
   snapshot.residual = residual * evaluator_.length_scale();
   return snapshot;
 }
@@ -160,6 +162,8 @@ std::optional<Snapshot> LaneLook::at(double t) {
     qd_[catena::at(n)] = qd[number];
     qdd_[catena::at(n)] = qdd[number];
   }
+  const double* const lambda = is_row ? motion_->lambda(place->row) : seen_.lambda.data();
+  for (std::size_t r = 0; r < lambda_.size(); ++r) lambda_[r] = lambda[lane_count * static_cast<int>(r) + lane];
   return show(t, is_row ? 0 : solver_.residual(lane));
 }
 

@@ -62,10 +62,10 @@ class LaneLook {
   std::array<bool, lane_count> is_seen_{};
   std::array<int, lane_count> row_before_{};  // of the instants in lanes
   int next_lane_ = 0,
-      next_row_ = 0;                  // where instants are looked for first: they come in order
-  std::vector<double> q_, qd_, qdd_;  // of a snapshot, in plan order
-  std::vector<Vec2<double>> shift_;   // from the origins of the evaluator's
-                                      // coordinates to that of the frames
+      next_row_ = 0;                           // where instants are looked for first: they come in order
+  std::vector<double> q_, qd_, qdd_, lambda_;  // of a snapshot, in plan order
+  std::vector<Vec2<double>> shift_;            // from the origins of the evaluator's
+                                               // coordinates to that of the frames
   bool lost_ = false;
 };
 

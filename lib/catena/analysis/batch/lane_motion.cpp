@@ -26,6 +26,7 @@ LaneMotion::LaneMotion(const LaneProgram& program)
     : solver_(program),
       coordinates_(solver_.coordinates()),
       tails_(program.code().tails),
+      multipliers_(program.has_loads() ? program.code().rows : 0),
       largest_margin_(tails_),
       before_(program),
       now_(program),
@@ -74,6 +75,7 @@ void LaneMotion::begin(unsigned lanes, int rows) {
   for (LaneNumbers* kept : {&rows_q_, &rows_qd_, &rows_qdd_}) *kept = LaneNumbers(rows * coordinates_);
   rows_turned_ = LaneNumbers(rows * 2 * (coordinates_ / 3));
   rows_margin_ = LaneNumbers(rows * tails_);
+  rows_lambda_ = LaneNumbers(rows * multipliers_);
 }
 
 void LaneMotion::leave(unsigned lanes, const char* why) {
@@ -188,7 +190,7 @@ void LaneMotion::take(unsigned lanes) {
         to.data()[k] = from.data()[k];
     };
     for (LaneNumbers LaneState::*numbers :
-         {&LaneState::q, &LaneState::qd, &LaneState::qdd, &LaneState::turned, &LaneState::margin}) {
+         {&LaneState::q, &LaneState::qd, &LaneState::qdd, &LaneState::turned, &LaneState::margin, &LaneState::lambda}) {
       move(before_.*numbers, now_.*numbers);
       move(now_.*numbers, next_.*numbers);
     }
@@ -199,15 +201,17 @@ void LaneMotion::clear_rows(int lane, int rows) {
   for (LaneNumbers* kept : {&rows_q_, &rows_qd_, &rows_qdd_}) {
     for (int k = 0; k < rows * coordinates_; ++k) (*kept)[k][lane] = std::numeric_limits<double>::quiet_NaN();
   }
+  for (int k = 0; k < rows * multipliers_; ++k) rows_lambda_[k][lane] = std::numeric_limits<double>::quiet_NaN();
 }
 
 void LaneMotion::put_row(int row, int lane, std::span<const double> q, std::span<const double> qd,
-                         std::span<const double> qdd) {
+                         std::span<const double> qdd, std::span<const double> lambda) {
   for (int k = 0; k < coordinates_; ++k) {
     rows_q_[row * coordinates_ + k][lane] = q[at(k)];
     if (!qd.empty()) rows_qd_[row * coordinates_ + k][lane] = qd[at(k)];
     if (!qdd.empty()) rows_qdd_[row * coordinates_ + k][lane] = qdd[at(k)];
   }
+  for (int k = 0; k < multipliers_ && !lambda.empty(); ++k) rows_lambda_[row * multipliers_ + k][lane] = lambda[at(k)];
 }
 
 void LaneMotion::keep_row(int row) {
@@ -219,6 +223,7 @@ void LaneMotion::keep_row(int row) {
   keep(rows_qdd_, now_.qdd, coordinates_);
   keep(rows_turned_, now_.turned, 2 * (coordinates_ / 3));
   keep(rows_margin_, now_.margin, tails_);
+  keep(rows_lambda_, now_.lambda, multipliers_);
 }
 
 }  // namespace catena

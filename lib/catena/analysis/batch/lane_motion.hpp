@@ -29,6 +29,7 @@ class LaneMotion {
   /// hold the first design once more. False where a number of it is not finite.
   bool set_design(int lane, const Model& model, double length_scale);
   LaneSolver& solver() { return solver_; }
+  const LaneSolver& solver() const { return solver_; }
   /// Another configuration to start from: x, y, phi of the moving bodies in the ground frame.
   void set_start(int lane, std::span<const double> q);
 
@@ -52,7 +53,8 @@ class LaneMotion {
   /// Why a lane left the group.
   const std::string& why(int lane) const { return why_[static_cast<std::size_t>(lane)]; }
   /// A row that was computed elsewhere: x, y, phi in the ground frame, and rates where there are some.
-  void put_row(int row, int lane, std::span<const double> q, std::span<const double> qd, std::span<const double> qdd);
+  void put_row(int row, int lane, std::span<const double> q, std::span<const double> qd, std::span<const double> qdd,
+               std::span<const double> lambda);
   /// Rows without numbers.
   void clear_rows(int lane, int rows);
   int coordinates() const { return coordinates_; }
@@ -63,6 +65,8 @@ class LaneMotion {
   const double* qdd(int row) const { return rows_qdd_[row * coordinates_]; }
   /// Cosine and sine of the angle of every moving body.
   const double* turned(int row) const { return rows_turned_[row * 2 * (coordinates_ / 3)]; }
+  /// Multipliers of the solver's rows, where the program has loads.
+  const double* lambda(int row) const { return rows_lambda_[row * multipliers_]; }
   const double* margin(int row) const { return rows_margin_[row * tails_]; }
 
  private:
@@ -79,8 +83,8 @@ class LaneMotion {
   void keep_row(int row);
 
   LaneSolver solver_;
-  int coordinates_, tails_;
-  LaneNumbers largest_margin_, rows_q_, rows_qd_, rows_qdd_, rows_turned_, rows_margin_;
+  int coordinates_, tails_, multipliers_;
+  LaneNumbers largest_margin_, rows_q_, rows_qd_, rows_qdd_, rows_turned_, rows_margin_, rows_lambda_;
   int kept_rows_ = 0;
   LaneState before_, now_, next_;
   std::array<bool, lane_count> has_before_{};

@@ -25,7 +25,12 @@ struct Pack {
   friend Pack operator-(const Pack& a, const Pack& b) { return Pack(a.v - b.v); }
   friend Pack operator-(const Pack& a) { return Pack(-a.v); }
   friend Pack operator*(const Pack& a, const Pack& b) { return Pack(a.v * b.v); }
+  Pack& operator+=(const Pack& a) { return *this = *this + a; }
+  Pack& operator-=(const Pack& a) { return *this = *this - a; }
   friend Pack operator/(const Pack& a, const Pack& b) { return Pack(a.v / b.v); }
+  friend Pack sqrt(const Pack& a) { return Pack(xsimd::sqrt(a.v)); }
+  friend Pack atan2(const Pack& y, const Pack& x) { return Pack(xsimd::atan2(y.v, x.v)); }
+  friend Pack round(const Pack& a) { return Pack(xsimd::round(a.v)); }
   friend Pack abs(const Pack& a) { return Pack(xsimd::abs(a.v)); }
   friend Mask operator<(const Pack& a, const Pack& b) { return a.v < b.v; }
   friend Mask operator>(const Pack& a, const Pack& b) { return a.v > b.v; }

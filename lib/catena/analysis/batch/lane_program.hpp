@@ -3,7 +3,7 @@
 // Not every mechanism can be computed in lanes: make() says why not. It must be driven by as many independent equations
 // as it has coordinates, all of types that lanes know, without particles, laws of state and ropes over pulleys, whose
 // way or value is looked at along the motion, and no loop of it may hang together with so many others that a block's
-// tail exceeds largest_tail.
+// tail exceeds largest_tail. Where loads are wanted its forces, too, must be of types that lanes know.
 #pragma once
 
 #include <memory>
@@ -14,17 +14,20 @@
 #include "catena/analysis/batch/lane_elimination.hpp"
 #include "catena/analysis/batch/lane_numbers.hpp"
 #include "catena/assembly/plan.hpp"
+#include "catena/base/taylor.hpp"
 
 namespace catena {
 
 class LaneProgram {
  public:
   /// Nothing, with the reason, where the mechanism cannot be computed in lanes.
-  static std::unique_ptr<const LaneProgram> make(const Model& model, std::shared_ptr<const Plan> plan,
+  static std::unique_ptr<const LaneProgram> make(const Model& model, std::shared_ptr<const Plan> plan, bool loads,
                                                  std::string& why_not);
 
   const Plan& plan() const { return *plan_; }
   const LaneCode& code() const { return code_; }
+  /// Whether multipliers are computed.
+  bool has_loads() const { return has_loads_; }
   int fields() const { return fields_; }        ///< numbers of a group's parameters
   int functions() const { return functions_; }  ///< numbers of its values c, c', c''
   int slots() const { return code_.slots; }
@@ -39,6 +42,15 @@ class LaneProgram {
   Frame<double> given_pose(const Model& model, int plan_body) const;
   /// Puts c, c', c'' at t into a lane.
   void put_functions(const Model& model, double t, int lane, LaneNumbers& function) const;
+  /// A constraint of the model: its multipliers as published are `scale` x those of the rows from `row` on.
+  struct Constraint {
+    int row = -1;  ///< -1: it has none in lanes
+    double scale = 1;
+    bool squared = false, pin = false;
+    FunctionValue<double> value{};
+  };
+  /// With the numbers of the design in a lane, whose model is given.
+  Constraint constraint(const Model& model, int element, int lane, const LaneNumbers& field) const;
   /// Copies those of lane 0 to all others.
   void spread_functions(LaneNumbers& function) const;
 
@@ -48,15 +60,19 @@ class LaneProgram {
   };
   LaneProgram() = default;
   bool list_elements(const Model& model, std::string& why_not);
+  bool list_forces(const Model& model, std::string& why_not);
   bool list_steps(const Model& model, std::string& why_not);
   void close();
+  bool put_forces(const Model& model, int lane, LaneNumbers& field, LaneNumbers& function) const;
 
   std::shared_ptr<const Plan> plan_;
   LaneCode code_{};
   int fields_ = 0, functions_ = 0;
-  bool has_immobile_ = false;
+  bool has_immobile_ = false, has_loads_ = false;
   std::vector<LaneElement> element_;
   std::vector<LaneElements> of_type_;
+  std::vector<LaneForce> force_;
+  std::vector<LaneForces> of_force_type_;
   std::vector<int> slot_, constant_slot_, place_;
   std::vector<double> constant_;
   LaneElimination elimination_;

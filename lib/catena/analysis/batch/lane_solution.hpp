@@ -1,5 +1,5 @@
 // Phi_q x = right in packs of designs: the listed steps of an elimination (lane_code.hpp), and its tails, whose rows
-// are exchanged lane by lane. Part of the kernels (lane_kernel.hpp).
+// are exchanged lane by lane; and Phi_q^T x = right from the same factors. Part of the kernels (lane_kernel.hpp).
 #pragma once
 
 #include "catena/analysis/batch/lane_equations.hpp"
@@ -21,7 +21,9 @@ class LaneSolution : protected LaneEquations<V> {
 
   void factor();
   /// x of an unknown takes the place of the row of its pivot.
-  void solve_right() { take_steps(code_.solve, code_.solve_runs, job_.right); }
+  void solve_right() { take_steps<false>(code_.solve, code_.solve_runs, job_.right); }
+  /// The right-hand side of a column stands in the row of its pivot; x takes the place of its row.
+  void solve_transposed() { take_steps<true>(code_.transposed, code_.transposed_runs, job_.right); }
   /// Unknowns into the numbers of coordinates.
   void store_unknowns(double* numbers) const;
 
@@ -29,6 +31,7 @@ class LaneSolution : protected LaneEquations<V> {
   static P there(const double* base, int place) { return P::load(base + place); }
   template <class F>
   void for_each_step(const LaneRun& run, double* numbers, F&& f) const;
+  template <bool is_transposed>
   void take_steps(const LaneRun* run, int runs, double* numbers);
   template <class F>
   void with_size(const LaneTail& tail, F&& f);
@@ -36,6 +39,8 @@ class LaneSolution : protected LaneEquations<V> {
   void factor_tail(const LaneTail& tail, int number);
   template <int n>
   void solve_tail(const LaneTail& tail, int number);
+  template <int n>
+  void solve_tail_transposed(const LaneTail& tail, int number);
 };
 
 template <class V>
@@ -76,6 +81,7 @@ void LaneSolution<V>::for_each_step(const LaneRun& run, double* numbers, F&& f) 
 }
 
 template <class V>
+template <bool is_transposed>
 void LaneSolution<V>::take_steps(const LaneRun* run, int runs, double* numbers) {
   using From = const double*;
   for (const LaneRun* const last = run + runs; run != last; ++run) {
@@ -97,7 +103,13 @@ void LaneSolution<V>::take_steps(const LaneRun* run, int runs, double* numbers) 
         break;
       case LaneAct::solve_tail: {
         const LaneTail& tail = code_.tail[run->first];
-        with_size(tail, [&]<int n>() { solve_tail<n>(tail, run->first); });
+        with_size(tail, [&]<int n>() {
+          if constexpr (is_transposed) {
+            solve_tail_transposed<n>(tail, run->first);
+          } else {
+            solve_tail<n>(tail, run->first);
+          }
+        });
         break;
       }
     }
@@ -108,7 +120,7 @@ template <class V>
 void LaneSolution<V>::factor() {
   for (const LaneReset* r = code_.reset; r != code_.reset + code_.resets; ++r)
     P(r->value).store(job_.matrix + r->place);
-  take_steps(code_.factor, code_.factor_runs, job_.matrix);
+  take_steps<false>(code_.factor, code_.factor_runs, job_.matrix);
   for (int number = 0; number < code_.tails; ++number) {
     const LaneTail& tail = code_.tail[number];
     with_size(tail, [&]<int n>() { factor_tail<n>(tail, number); });
@@ -174,6 +186,31 @@ void LaneSolution<V>::solve_tail(const LaneTail& tail, int number) {
     x[r] = x[r] * factor(r, r);
     x[r].store(job_.right + tail.row[r]);
   }
+}
+
+// T = S^-1 L U with the exchanges S: T^-T = S^T L^-T U^-T.
+template <class V>
+template <int n>
+void LaneSolution<V>::solve_tail_transposed(const LaneTail& tail, int number) {
+  const int base = number * largest_tail * largest_tail;
+  P x[n];
+  for (int r = 0; r < n; ++r) x[r] = there(job_.right, tail.row[r]);
+  const auto factor = [&](int r, int c) { return at(job_.tail, base + n * r + c); };
+  for (int r = 0; r < n; ++r) {
+    for (int c = 0; c < r; ++c) x[r] = x[r] - factor(c, r) * x[c];
+    x[r] = x[r] * factor(r, r);
+  }
+  for (int r = n; r-- > 0;)
+    for (int c = r + 1; c < n; ++c) x[r] = x[r] - factor(c, r) * x[c];
+  for (int p = n; p-- > 0;) {
+    for (int i = n; i-- > p + 1;) {
+      const Mask exchanged = at(job_.exchange, base + n * p + i) > P(0.5);
+      const P upper = x[p];
+      x[p] = select(exchanged, x[i], upper);
+      x[i] = select(exchanged, upper, x[i]);
+    }
+  }
+  for (int r = 0; r < n; ++r) x[r].store(job_.right + tail.row[r]);
 }
 
 }  // namespace catena

@@ -18,6 +18,7 @@ LaneSolver::LaneSolver(const LaneProgram& program)
       right_(program.code().rows),
       tail_(largest_tail * largest_tail * program.code().tails),
       exchange_(largest_tail * largest_tail * program.code().tails),
+      load_(program.has_loads() ? coordinates_ : 0),
       converged_(1),
       first_size_(1),
       first_turn_(1),
@@ -34,6 +35,7 @@ LaneSolver::LaneSolver(const LaneProgram& program)
   job_.right = right_.data();
   job_.tail = tail_.data();
   job_.exchange = exchange_.data();
+  job_.load = load_.data();
   job_.converged = converged_.data();
   job_.first_size = first_size_.data();
   job_.first_turn = first_turn_.data();
@@ -71,7 +73,9 @@ void LaneSolver::solve(LaneState& state, int lanes) {
   job_.qd = state.qd.data();
   job_.qdd = state.qdd.data();
   job_.margin = state.margin.data();
+  job_.lambda = state.lambda.data();
   lane_kernels().solve(job_);
+  if (program_.has_loads()) lane_kernels().find_loads(job_);
   for (int b = 0; b < program_.code().moving; ++b) std::copy(frame_[5 * b + 3], frame_[5 * b + 5], state.turned[2 * b]);
 }
 

@@ -1,4 +1,5 @@
-// Solves for positions and rates of a group of designs, each lane at its own instant, from starts that are given.
+// Solves for positions and rates of a group of designs, each lane at its own instant, from starts that are given; and
+// for multipliers, where the program has loads.
 //
 // Owns the numbers of the designs and the scratch of the kernels. Allocates when it is made.
 #pragma once
@@ -17,12 +18,14 @@ struct LaneState {
         qd(3 * program.code().moving),
         qdd(3 * program.code().moving),
         turned(2 * program.code().moving),
-        margin(program.code().tails) {}
+        margin(program.code().tails),
+        lambda(program.has_loads() ? program.code().rows : 0) {}
 
   std::array<double, lane_count> t{};
   LaneNumbers q, qd, qdd;
   LaneNumbers turned;  ///< cosine and sine of the angle of every moving body, where it was solved for
   LaneNumbers margin;  ///< determinants of the blocks' tails
+  LaneNumbers lambda;  ///< multipliers of the solver's rows
 };
 
 class LaneSolver {
@@ -53,6 +56,7 @@ class LaneSolver {
   double contraction(int lane) const { return contraction_[0][lane]; }  ///< largest ratio of corrections
   /// x, y, phi, cos, sin of every frame; of bodies that do not move from set_design() on.
   const LaneNumbers& frame() const { return frame_; }
+  const LaneNumbers& field() const { return field_; }             ///< parameters of the designs
   double residual(int lane) const { return residual_[0][lane]; }  ///< rad or length scales
 
   double tolerance = 1e-12;  ///< of residuals, relative to the length scale
@@ -60,7 +64,7 @@ class LaneSolver {
  private:
   const LaneProgram& program_;
   int coordinates_;
-  LaneNumbers field_, function_, frame_, unit_, matrix_, right_, tail_, exchange_;
+  LaneNumbers field_, function_, frame_, unit_, matrix_, right_, tail_, exchange_, load_;
   LaneNumbers converged_, first_size_, first_turn_, contraction_, residual_, u_, h_;
   LaneJob job_{};
   std::array<const Model*, lane_count> model_{};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
+#include <utility>
 #include <vector>
 
 #include "catena/analysis/batch/lane_code.hpp"
@@ -18,6 +19,7 @@ class LaneSteps {
 
   /// Slots or rows; -1 for those that a step does not have.
   void append(LaneAct act, int target, int source = -1, int factor = -1) {
+    order_.push_back({act, {target, source, factor}});
     std::size_t earliest = std::max({after_writing(target), after_reading(target), after_writing(source)});
     if (factors_are_places_) earliest = std::max(earliest, after_writing(factor));
     const std::size_t run = run_of(act, earliest);
@@ -28,8 +30,24 @@ class LaneSteps {
   }
   /// The tail of this number, between other steps of its rows.
   void append_tail(int number, const LaneTail& tail) {
+    order_.push_back({LaneAct::solve_tail, {number, -1, -1}});
     runs_.push_back({LaneAct::solve_tail, {{number, -1, -1}}});
     for (int r = 0; r < tail.size; ++r) note(written_, tail.row[r], runs_.size() - 1);
+  }
+
+  /// The steps of the transposed operator: (E_n ... E_1)^T = E_1^T ... E_n^T, and (t += m s)^T is s += m t.
+  LaneSteps transposed(const std::vector<LaneTail>& tails) const {
+    LaneSteps result(factors_are_places_);
+    for (auto one = order_.rbegin(); one != order_.rend(); ++one) {
+      const auto& [act, step] = *one;
+      if (act == LaneAct::solve_tail)
+        result.append_tail(step.target, tails[at(step.target)]);
+      else if (act == LaneAct::negate)
+        result.append(act, step.target);
+      else
+        result.append(act, step.source, step.target, step.factor);
+    }
+    return result;
   }
 
   /// Puts all steps into `step`, with places of values, and returns their runs.
@@ -75,6 +93,7 @@ class LaneSteps {
 
   bool factors_are_places_;
   std::vector<Run> runs_;
+  std::vector<std::pair<LaneAct, LaneStep>> order_;  // as they were appended
   std::vector<std::size_t> written_,
       read_;                           // of every place: the last run that writes, or reads it
   std::array<std::size_t, 6> last_{};  // of every kind: one more than its last run

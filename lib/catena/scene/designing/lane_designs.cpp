@@ -9,12 +9,21 @@
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/run/watched_elements.hpp"
 #include "catena/base/at.hpp"
+#include "catena/columns/energy.hpp"
 
 namespace catena {
 namespace {
 
-constexpr ColumnSources kinematic_sources{
-    .analysis = "kinematics", .timed = true, .velocity = true, .acceleration = true};
+bool finds_loads(const AnalysisTask& task) { return task.type() == "inverse_dynamics"; }
+
+ColumnSources sources_of(const AnalysisTask& task) {
+  return {.analysis = task.type(),
+          .timed = true,
+          .velocity = true,
+          .acceleration = true,
+          .multipliers = finds_loads(task),
+          .work = finds_loads(task)};
+}
 
 PlanOptions options_of(const AnalysisTask& task, const Model& model) {
   PlanOptions options = plan_options(model, task.column_names());
@@ -26,7 +35,8 @@ PlanOptions options_of(const AnalysisTask& task, const Model& model) {
 std::string obstacle_of(const AnalysisContext& context) {
   if (context.task.of.size() != 1) return "it repeats more than one analysis";
   const AnalysisTask& inner = context.task.of.front();
-  if (inner.type() != "kinematics") return fmt::format("{} is not computed in lanes, only kinematics is", inner.type());
+  if (inner.type() != "kinematics" && !finds_loads(inner))
+    return fmt::format("{} is not computed in lanes, only kinematics and inverse_dynamics are", inner.type());
   if (context.poses) return "its designs are drawn";
   if (!context.state.q.empty() || context.state.t != 0) return "it goes on from where an analysis before it ended";
   if (!inner.events.empty()) return "its analysis has events";
@@ -65,7 +75,7 @@ std::unique_ptr<LaneDesigns> LaneDesigns::make(const AnalysisContext& context, s
   if (!model) return nullptr;
   try {
     std::shared_ptr<const Plan> plan = Plan::make(*model, options_of(inner, *model));
-    std::unique_ptr<const LaneProgram> program = LaneProgram::make(*model, plan, why_not);
+    std::unique_ptr<const LaneProgram> program = LaneProgram::make(*model, plan, finds_loads(inner), why_not);
     if (!program) return nullptr;
     const Evaluator watched(plan, *model);
     if (WatchedElements(watched).may_end()) {
@@ -74,7 +84,11 @@ std::unique_ptr<LaneDesigns> LaneDesigns::make(const AnalysisContext& context, s
     }
     // Throws for columns that such an analysis does not give.
     auto measures =
-        std::make_unique<MeasureSet>(inner.measure_requests(), *model, *plan, kinematic_sources, TimeRange{});
+        std::make_unique<MeasureSet>(inner.measure_requests(), *model, *plan, sources_of(inner), TimeRange{});
+    if (!measures->empty() && measures->needs().work) {
+      why_not = "some measure is of work, which is summed up along the motion";
+      return nullptr;
+    }
     return std::unique_ptr<LaneDesigns>(
         new LaneDesigns(context, std::move(model), std::move(plan), std::move(program), std::move(measures)));
   } catch (const std::invalid_argument& error) {
@@ -110,11 +124,12 @@ std::string LaneDesigns::prepare(Lane& lane, const ParameterSeeds& seeds) {
   // The evaluator may still refer to it.
   const std::shared_ptr<const Model> before = std::exchange(lane.model, std::move(model));
   try {
-    evaluator_.set_model(*lane.model);
+    take_model(*lane.model);
   } catch (const std::invalid_argument&) {
-    evaluator_.set_model(*model_);
+    take_model(*model_);
     return "it has other bodies or elements than the scene";
   }
+  if (finds_loads(lane.task) && body_without_mass(*lane.model, program_->plan()) >= 0) return "a body has no mass";
   lane.length_scale = evaluator_.length_scale();
   Report report;
   const std::optional<TimeGrid> grid = time_grid(context_of(lane), report);
@@ -127,6 +142,12 @@ std::string LaneDesigns::prepare(Lane& lane, const ParameterSeeds& seeds) {
   return {};
 }
 
+// Squared distances are scaled by their values at the start.
+void LaneDesigns::take_model(const Model& model) {
+  evaluator_.set_time(0);
+  evaluator_.set_model(model);
+}
+
 unsigned LaneDesigns::assemble(unsigned lanes, std::span<Outcome> outcomes) {
   const auto& bodies = model_->bodies;
   const bool held =
@@ -137,8 +158,7 @@ unsigned LaneDesigns::assemble(unsigned lanes, std::span<Outcome> outcomes) {
   if (far == 0) return lanes;
   for (int lane = 0; lane < lane_count; ++lane) {
     if (!(far & 1U << lane)) continue;
-    evaluator_.set_model(*lanes_[at(lane)].model);
-    evaluator_.set_time(0);
+    take_model(*lanes_[at(lane)].model);
     std::vector<double> q = evaluator_.given_configuration();
     if (!Assembler(evaluator_).assemble(q).ok()) {
       outcomes[at(lane)].why_not = "it is not assembled by Newton's method alone";
@@ -212,7 +232,7 @@ bool LaneDesigns::follow_rows(const std::vector<double>& instants) {
 
 void LaneDesigns::take_measures(int lane, Outcome& outcome) {
   const Lane& design = lanes_[at(lane)];
-  evaluator_.set_model(*design.model);
+  take_model(*design.model);
   look_.follow(motion_, lane, *design.model, design.instants);
   measures_->begin_again(design.task.measure_requests(), *design.model, {0, design.instants.back()});
   if (look_.has_columns())

@@ -1,10 +1,10 @@
 // Designs of a sweep in lanes: eight kinematic analyses side by side, with the measures that each would have by itself.
 //
-// A sweep can be computed so if it repeats one kinematic analysis without events, of a mechanism that lanes know
-// (analysis/batch/lane_program.hpp). The rows of all designs of a group are followed side by side; between its rows the
-// motion of every design is looked at by the measures of analysis/measures/, at several instants at once. A design that
-// leaves its group, or in which anything is missing, is left to the analysis itself: what lanes give is what that gives
-// to rounding, and every failure is its own.
+// A sweep can be computed so if it repeats one analysis kinematics or inverse_dynamics without events or work, of a
+// mechanism that lanes know (analysis/batch/lane_program.hpp). The rows of all designs of a group are followed side by
+// side; between its rows the motion of every design is looked at by the measures of analysis/measures/, at several
+// instants at once. A design that leaves its group, or in which anything is missing, is left to the analysis itself:
+// what lanes give is what that gives to rounding, and every failure is its own.
 #pragma once
 
 #include <array>
@@ -45,6 +45,7 @@ class LaneDesigns {
               std::unique_ptr<const LaneProgram> program, std::unique_ptr<MeasureSet> measures);
   /// Model and instants of a design; empty, or why it cannot be in a lane.
   std::string prepare(Lane& lane, const ParameterSeeds& seeds);
+  void take_model(const Model& model);
   /// Assembles those whose given configuration is far; takes out those that cannot be.
   unsigned assemble(unsigned lanes, std::span<Outcome> outcomes);
   void take_measures(int lane, Outcome& outcome);
