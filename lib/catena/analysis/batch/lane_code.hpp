@@ -156,6 +156,7 @@ struct LaneJob {
   double *q, *qd, *qdd;    ///< of the moving bodies; q: the start of Newton's iteration
   double* load;            ///< Q - M qdd of the moving bodies
   double* lambda;          ///< rows
+  double* turned;          ///< cosine and sine of the moving bodies at the configuration
   double *matrix, *right;  ///< slots, those of constants filled; scratch: rows
   double *tail, *exchange;
   int lanes;  ///< in use; packs beyond them are left out
@@ -171,12 +172,34 @@ struct LaneJob {
 };
 
 /// Positions foretold from two instants at which positions and rates are known: the quintic of Hermite through both.
-///   u = (t - t0) / (t1 - t0)        h = t1 - t0
+///   u = (t - t0) / h        h = t1 - t0        where h = 0: u = 1
+/// And whether a determinant, going on as it went from the first to the second, would lose too much of itself.
 struct LaneForetelling {
-  int numbers;
+  int numbers, tails;
+  const double *t0, *t1, *t;
   const double *q0, *qd0, *qdd0, *q1, *qd1, *qdd1;
-  const double *u, *h;
+  const double *margin0, *margin1;
+  double remaining_part;  ///< of a determinant
   double* q;
+  double* falls;  ///< 1 or 0
+};
+
+/// Whether the step from one instant to the next is one that Kinematics would take, by what solve() left.
+struct LaneJudgement {
+  int numbers, tails;
+  const double *q0, *q, *margin0, *margin;
+  const double *converged, *first_turn, *contraction;
+  double largest_turn, largest_contraction, longest_step, sudden_part;
+  double* sound;  ///< 1 or 0
+};
+
+/// Whether a determinant is below a part of the largest that it was, or of 1.
+struct LaneWatch {
+  int tails;
+  double least_part;
+  const double* margin;
+  double* largest;  ///< goes on
+  double* near;     ///< 1 or 0
 };
 
 struct LaneKernels {
@@ -184,7 +207,10 @@ struct LaneKernels {
   void (*solve)(LaneJob&);
   /// Multipliers at the configuration, with the rates and the factors that solve() left.
   void (*find_loads)(LaneJob&);
-  void (*foretell)(const LaneForetelling&);
+  // Whether any lane falls, all lanes are sound, any lane is near:
+  bool (*foretell)(const LaneForetelling&);
+  bool (*judge)(const LaneJudgement&);
+  bool (*watch)(const LaneWatch&);
 };
 
 }  // namespace catena

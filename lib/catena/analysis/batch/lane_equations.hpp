@@ -42,6 +42,7 @@ class LaneEquations {
     // One by one: an object whose members have their addresses taken would be kept in memory.
     job_.field += lane, job_.function += lane, job_.frame += lane;
     job_.q += lane, job_.qd += lane, job_.qdd += lane, job_.load += lane, job_.lambda += lane;
+    job_.turned += lane;
     job_.matrix += lane, job_.right += lane, job_.tail += lane, job_.exchange += lane;
     job_.converged += lane, job_.first_size += lane, job_.first_turn += lane, job_.contraction += lane;
     job_.residual += lane, job_.margin += lane;

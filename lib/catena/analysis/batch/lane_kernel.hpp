@@ -30,7 +30,9 @@ class LaneKernel : LaneLoads<V> {
       kernel.Base::find_loads();
     }
   }
-  [[gnu::flatten]] static void foretell(const LaneForetelling& f);
+  [[gnu::flatten]] static bool foretell(const LaneForetelling& f);
+  [[gnu::flatten]] static bool judge(const LaneJudgement& j);
+  [[gnu::flatten]] static bool watch(const LaneWatch& w);
 
  private:
   using Base = LaneLoads<V>;
@@ -113,6 +115,8 @@ void LaneKernel<V>::solve() {
   for (int b = 0; b < code_.moving; ++b) {
     lengths = lengths + (abs(at(job_.q, 3 * b)) + abs(at(job_.q, 3 * b + 1)));
     good = good && abs(at(job_.q, 3 * b + 2)) <= P(largest_angle);
+    put(job_.turned, 2 * b, at(job_.frame, 5 * b + 3));
+    put(job_.turned, 2 * b + 1, at(job_.frame, 5 * b + 4));
   }
   good = good && lengths <= P(std::numeric_limits<double>::max());
   put(job_.converged, 0, select(good, P(1), P(0)));
@@ -129,10 +133,14 @@ void LaneKernel<V>::solve() {
 }
 
 template <class V>
-void LaneKernel<V>::foretell(const LaneForetelling& f) {
+bool LaneKernel<V>::foretell(const LaneForetelling& f) {
+  bool any = false;
   for (int lane = 0; lane < lane_count; lane += P::size) {
     const auto at = [&](const double* base, int k) { return P::load(base + lane_count * k + lane); };
-    const P u = at(f.u, 0), h = at(f.h, 0), v = P(1) - u, u2 = u * u, u3 = u2 * u, v2 = v * v, v3 = v2 * v;
+    const P distance = at(f.t1, 0) - at(f.t0, 0);
+    const Mask apart = abs(distance) > P(0);
+    const P h = select(apart, distance, P(1)), u = select(apart, (at(f.t, 0) - at(f.t0, 0)) / h, P(1));
+    const P v = P(1) - u, u2 = u * u, u3 = u2 * u, v2 = v * v, v3 = v2 * v;
     const P a0 = v3 * (P(1) + u * (P(3) + P(6) * u)), b0 = h * u * v3 * (P(1) + P(3) * u);
     const P c0 = P(0.5) * h * h * u2 * v3;
     const P a1 = u3 * (P(1) + v * (P(3) + P(6) * v)), b1 = -(h * v * u3 * (P(1) + P(3) * v));
@@ -142,13 +150,62 @@ void LaneKernel<V>::foretell(const LaneForetelling& f) {
                   (c0 * at(f.qdd0, k) + c1 * at(f.qdd1, k));
       q.store(f.q + lane_count * k + lane);
     }
+    Mask falls = P(0) > P(1);
+    for (int k = 0; k < f.tails; ++k) {
+      const P here = abs(at(f.margin1, k)), before = abs(at(f.margin0, k));
+      falls = falls || here - v * (here - before) < P(f.remaining_part) * here;
+    }
+    select(falls, P(1), P(0)).store(f.falls + lane);
+    any = any || xsimd::any(falls);
   }
+  return any;
+}
+
+template <class V>
+bool LaneKernel<V>::judge(const LaneJudgement& j) {
+  bool all = true;
+  for (int lane = 0; lane < lane_count; lane += P::size) {
+    const auto at = [&](const double* base, int k) { return P::load(base + lane_count * k + lane); };
+    Mask sound = at(j.converged, 0) > P(0.5) && at(j.first_turn, 0) <= P(j.largest_turn) &&
+                 at(j.contraction, 0) <= P(j.largest_contraction);
+    for (int k = 2; k < j.numbers; k += 3) sound = sound && abs(at(j.q, k) - at(j.q0, k)) <= P(j.longest_step);
+    for (int k = 0; k < j.tails; ++k) {
+      const P here = at(j.margin0, k), there = at(j.margin, k);
+      sound = sound && here * there > P(0) && abs(there) >= P(j.sudden_part) * abs(here);
+    }
+    select(sound, P(1), P(0)).store(j.sound + lane);
+    all = all && xsimd::all(sound);
+  }
+  return all;
+}
+
+template <class V>
+bool LaneKernel<V>::watch(const LaneWatch& w) {
+  bool any = false;
+  for (int lane = 0; lane < lane_count; lane += P::size) {
+    Mask near = P(0) > P(1);
+    for (int k = 0; k < w.tails; ++k) {
+      const P margin = abs(P::load(w.margin + lane_count * k + lane));
+      double* const kept = w.largest + lane_count * k + lane;
+      const P before = P::load(kept), largest = select(margin > before, margin, before);
+      largest.store(kept);
+      near = near || !(margin > P(w.least_part) * select(largest < P(1), largest, P(1)));
+    }
+    select(near, P(1), P(0)).store(w.near + lane);
+    any = any || xsimd::any(near);
+  }
+  return any;
 }
 
 /// The kernels in packs V: of the instruction set that the including file is compiled for.
 template <class V>
 constexpr LaneKernels make_lane_kernels(const char* name) {
-  return {name, LaneKernel<V>::solve, LaneKernel<V>::find_loads, LaneKernel<V>::foretell};
+  return {name,
+          LaneKernel<V>::solve,
+          LaneKernel<V>::find_loads,
+          LaneKernel<V>::foretell,
+          LaneKernel<V>::judge,
+          LaneKernel<V>::watch};
 }
 
 }  // namespace catena

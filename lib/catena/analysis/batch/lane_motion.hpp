@@ -11,6 +11,7 @@
 #include <array>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "catena/analysis/batch/lane_solver.hpp"
 
@@ -44,9 +45,11 @@ class LaneMotion {
     for (int k = 0; k < rows && alive_ != 0; ++k) {
       std::array<double, lane_count> t{};
       for (int lane = 0; lane < lane_count; ++lane) t[static_cast<std::size_t>(lane)] = instant(k, lane);
+      row_ = &rows_[static_cast<std::size_t>(k)];
       move_to(t);
-      keep_row(k);
+      keep_row();
     }
+    use_own_states();
   }
 
   unsigned alive() const { return alive_; }
@@ -60,33 +63,35 @@ class LaneMotion {
   int coordinates() const { return coordinates_; }
   int tails() const { return tails_; }
   /// x, y, phi of the moving bodies of all lanes at a row; their rates.
-  const double* q(int row) const { return rows_q_[row * coordinates_]; }
-  const double* qd(int row) const { return rows_qd_[row * coordinates_]; }
-  const double* qdd(int row) const { return rows_qdd_[row * coordinates_]; }
+  const double* q(int row) const { return row_of(row).q.data(); }
+  const double* qd(int row) const { return row_of(row).qd.data(); }
+  const double* qdd(int row) const { return row_of(row).qdd.data(); }
   /// Cosine and sine of the angle of every moving body.
-  const double* turned(int row) const { return rows_turned_[row * 2 * (coordinates_ / 3)]; }
+  const double* turned(int row) const { return row_of(row).turned.data(); }
   /// Multipliers of the solver's rows, where the program has loads.
-  const double* lambda(int row) const { return rows_lambda_[row * multipliers_]; }
-  const double* margin(int row) const { return rows_margin_[row * tails_]; }
+  const double* lambda(int row) const { return row_of(row).lambda.data(); }
+  const double* margin(int row) const { return row_of(row).margin.data(); }
 
  private:
   void begin(unsigned lanes, int rows);
   void move_to(const std::array<double, lane_count>& t);
   void advance(unsigned lanes, const std::array<double, lane_count>& t, int depth);
   unsigned attempt(unsigned lanes, const std::array<double, lane_count>& t);
-  void foretell(const std::array<double, lane_count>& t);
-  bool is_sound(int lane) const;
-  bool heads_for_singularity(int lane, double t) const;
   void take(unsigned lanes);
   void leave(unsigned lanes, const char* why);
   void watch_margins();
-  void keep_row(int row);
+  void keep_row();
+  void use_own_states();
+  void make_own(LaneState*& state);
+  LaneState* free_state();
+  const LaneState& row_of(int row) const { return rows_[static_cast<std::size_t>(row)]; }
 
   LaneSolver solver_;
   int coordinates_, tails_, multipliers_;
-  LaneNumbers largest_margin_, rows_q_, rows_qd_, rows_qdd_, rows_turned_, rows_margin_, rows_lambda_;
-  int kept_rows_ = 0;
-  LaneState before_, now_, next_;
+  LaneNumbers largest_margin_;
+  // Rows are solved for where they are kept: the state to which lanes go is the row, where all lanes go there at once.
+  std::vector<LaneState> rows_, own_;
+  LaneState *before_ = nullptr, *now_ = nullptr, *next_ = nullptr, *row_ = nullptr;
   std::array<bool, lane_count> has_before_{};
   std::array<std::string, lane_count> why_;
   unsigned alive_ = 0;

@@ -24,8 +24,7 @@ LaneSolver::LaneSolver(const LaneProgram& program)
       first_turn_(1),
       contraction_(1),
       residual_(1),
-      u_(1),
-      h_(1) {
+      flag_(1) {
   job_.code = &program.code();
   job_.field = field_.data();
   job_.function = function_.data();
@@ -74,19 +73,38 @@ void LaneSolver::solve(LaneState& state, int lanes) {
   job_.qdd = state.qdd.data();
   job_.margin = state.margin.data();
   job_.lambda = state.lambda.data();
+  job_.turned = state.turned.data();
   lane_kernels().solve(job_);
   if (program_.has_loads()) lane_kernels().find_loads(job_);
-  for (int b = 0; b < program_.code().moving; ++b) std::copy(frame_[5 * b + 3], frame_[5 * b + 5], state.turned[2 * b]);
 }
 
-void LaneSolver::foretell(const LaneState& before, const LaneState& after, LaneState& state) {
-  for (int lane = 0; lane < lane_count; ++lane) {
-    const double h = after.t[at(lane)] - before.t[at(lane)];
-    h_[0][lane] = h != 0 ? h : 1;
-    u_[0][lane] = h != 0 ? (state.t[at(lane)] - before.t[at(lane)]) / h : 1;
-  }
-  lane_kernels().foretell({coordinates_, before.q.data(), before.qd.data(), before.qdd.data(), after.q.data(),
-                           after.qd.data(), after.qdd.data(), u_.data(), h_.data(), state.q.data()});
+unsigned LaneSolver::flagged() const {
+  unsigned lanes = 0;
+  for (int lane = 0; lane < lane_count; ++lane) lanes |= (flag_[0][lane] == 1 ? 1U : 0U) << lane;
+  return lanes;
+}
+
+unsigned LaneSolver::foretell(const LaneState& before, const LaneState& after, double remaining_part,
+                              LaneState& state) {
+  const bool any = lane_kernels().foretell({coordinates_, program_.code().tails, before.t.data(), after.t.data(),
+                                            state.t.data(), before.q.data(), before.qd.data(), before.qdd.data(),
+                                            after.q.data(), after.qd.data(), after.qdd.data(), before.margin.data(),
+                                            after.margin.data(), remaining_part, state.q.data(), flag_.data()});
+  return any ? flagged() : 0;
+}
+
+unsigned LaneSolver::judge(const LaneState& before, const LaneState& state, const Rules& rules) {
+  const bool all = lane_kernels().judge(
+      {coordinates_, program_.code().tails, before.q.data(), state.q.data(), before.margin.data(), state.margin.data(),
+       converged_.data(), first_turn_.data(), contraction_.data(), rules.largest_turn, rules.largest_contraction,
+       rules.longest_step, rules.sudden_part, flag_.data()});
+  return all ? (1U << lane_count) - 1 : flagged();
+}
+
+unsigned LaneSolver::watch(const LaneState& state, double least_part, LaneNumbers& largest) {
+  const bool any =
+      lane_kernels().watch({program_.code().tails, least_part, state.margin.data(), largest.data(), flag_.data()});
+  return any ? flagged() : 0;
 }
 
 }  // namespace catena

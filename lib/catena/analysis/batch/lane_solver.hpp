@@ -21,11 +21,32 @@ struct LaneState {
         margin(program.code().tails),
         lambda(program.has_loads() ? program.code().rows : 0) {}
 
-  std::array<double, lane_count> t{};
+  /// Takes over another group's state, or that of one lane; of the same program.
+  void copy(const LaneState& from) {
+    t = from.t;
+    each(from, [](LaneNumbers& to, const LaneNumbers& numbers) { to.copy(numbers); });
+  }
+  void take_lane(int lane, const LaneState& from) {
+    t[static_cast<std::size_t>(lane)] = from.t[static_cast<std::size_t>(lane)];
+    each(from, [lane](LaneNumbers& to, const LaneNumbers& numbers) {
+      for (std::size_t k = static_cast<std::size_t>(lane); k < to.values(); k += lane_count)
+        to.data()[k] = numbers.data()[k];
+    });
+  }
+
+  alignas(64) std::array<double, lane_count> t{};
   LaneNumbers q, qd, qdd;
   LaneNumbers turned;  ///< cosine and sine of the angle of every moving body, where it was solved for
   LaneNumbers margin;  ///< determinants of the blocks' tails
   LaneNumbers lambda;  ///< multipliers of the solver's rows
+
+ private:
+  template <class F>
+  void each(const LaneState& from, F&& f) {
+    for (LaneNumbers LaneState::*numbers :
+         {&LaneState::q, &LaneState::qd, &LaneState::qdd, &LaneState::turned, &LaneState::margin, &LaneState::lambda})
+      f(this->*numbers, from.*numbers);
+  }
 };
 
 class LaneSolver {
@@ -46,8 +67,16 @@ class LaneSolver {
   /// q, from where it is, and all rates, at the instants of the state, in the first lanes.
   void solve(LaneState& state, int lanes = lane_count);
   /// q at the instants of `state` by the quintic through two states; in lanes where both are at one instant the later
-  /// state's own.
-  void foretell(const LaneState& before, const LaneState& after, LaneState& state);
+  /// state's own. Returns the lanes in which a determinant, going on as it went, would keep less than `remaining_part`.
+  unsigned foretell(const LaneState& before, const LaneState& after, double remaining_part, LaneState& state);
+  /// What Kinematics asks of a step (kinematics/kinematics_march.cpp).
+  struct Rules {
+    double largest_turn, largest_contraction, longest_step, sudden_part;
+  };
+  /// The lanes in which the last solve, from `before` to `state`, meets them.
+  unsigned judge(const LaneState& before, const LaneState& state, const Rules& rules);
+  /// The lanes in which a determinant is below this part of its largest value so far, which goes on, or of 1.
+  unsigned watch(const LaneState& state, double least_part, LaneNumbers& largest);
 
   // Of the last solve:
   bool converged(int lane) const { return converged_[0][lane] == 1; }
@@ -62,10 +91,13 @@ class LaneSolver {
   double tolerance = 1e-12;  ///< of residuals, relative to the length scale
 
  private:
+  /// The lanes that have 1 in flag_.
+  unsigned flagged() const;
+
   const LaneProgram& program_;
   int coordinates_;
   LaneNumbers field_, function_, frame_, unit_, matrix_, right_, tail_, exchange_, load_;
-  LaneNumbers converged_, first_size_, first_turn_, contraction_, residual_, u_, h_;
+  LaneNumbers converged_, first_size_, first_turn_, contraction_, residual_, flag_;
   LaneJob job_{};
   std::array<const Model*, lane_count> model_{};
   bool shared_ = false;
