@@ -86,11 +86,8 @@ struct LaneForces {
 
 /// What a step does to its target t, with a source s and a factor m: an entry of Phi_q.
 enum class LaneAct {
-  add,               ///< t + s
-  subtract,          ///< t - s
   add_product,       ///< t + m s
   subtract_product,  ///< t - m s
-  negate,            ///< -t
   solve_tail         ///< of the numbers in the rows of a tail
 };
 

@@ -67,7 +67,13 @@ class BlockElimination {
 class Chooser {
  public:
   Chooser(const Plan& plan, LaneElimination& out, std::vector<double> constant)
-      : plan_(plan), out_(out), constant_(std::move(constant)), row_of_(at(plan.columns), -1) {}
+      : plan_(plan),
+        out_(out),
+        constant_(std::move(constant)),
+        row_of_(at(plan.columns), -1),
+        units_{new_slot(1), new_slot(-1), new_slot(-2)},
+        factor_(units_, true),
+        solve_(units_, false) {}
 
   void sort_into_blocks(const Factorization& form, const std::vector<int>& varying);
   /// False where the tail of a block is too large.
@@ -85,8 +91,8 @@ class Chooser {
     std::vector<Entry> outside;  // in rows of earlier blocks
     int tail = -1;
   };
-  int new_slot() {
-    constant_.push_back(0);
+  int new_slot(double constant = 0) {
+    constant_.push_back(constant);
     return static_cast<int>(constant_.size()) - 1;
   }
   void take_pivot(Block& block, int row, int column);
@@ -100,7 +106,8 @@ class Chooser {
   std::vector<double> constant_;  // of every slot
   std::vector<Block> blocks_;
   std::vector<int> row_of_;  // with the pivot of a column
-  LaneSteps factor_{true}, solve_{false};
+  LaneUnits units_;
+  LaneSteps factor_, solve_;
 };
 
 void Chooser::sort_into_blocks(const Factorization& form, const std::vector<int>& varying) {
@@ -129,7 +136,7 @@ void Chooser::sort_into_blocks(const Factorization& form, const std::vector<int>
 // t -= sign m s, of right-hand sides or entries.
 void Chooser::subtract(LaneSteps& steps, double sign, const Cell& m, int target, int source) {
   if (m.is_unit())
-    steps.append(sign * m.constant > 0 ? LaneAct::subtract : LaneAct::add, target, source);
+    steps.append_sum(sign * m.constant > 0 ? -1 : 1, target, source);
   else
     steps.append(sign > 0 ? LaneAct::subtract_product : LaneAct::add_product, target, source, m.slot);
 }
@@ -215,7 +222,7 @@ void Chooser::list_solution(const Block& block) {
   }
   if (block.tail >= 0) solve_.append_tail(block.tail, out_.tail[at(block.tail)]);
   for (auto pivot = block.pivots.rbegin(); pivot != block.pivots.rend(); ++pivot) {
-    if (pivot->value < 0) solve_.append(LaneAct::negate, pivot->row);
+    if (pivot->value < 0) solve_.append_sum(-2, pivot->row, pivot->row);
     for (const auto& [m, column] : pivot->right) subtract(solve_, pivot->value, m, pivot->row, row_of_[at(column)]);
   }
   for (const auto& [cell, row, column] : block.outside) subtract(solve_, 1, cell, row, row_of_[at(column)]);

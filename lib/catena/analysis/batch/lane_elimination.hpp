@@ -3,12 +3,12 @@
 // Phi_q falls into diagonal blocks (block triangular form, the last one is solved first). In a block every entry that
 // is +1 or -1 whatever the design is a pivot that cannot vanish: they are eliminated first, that of least fill-in
 // before others. What is left, the tail, is a small dense matrix: its determinant is that of the block, up to its sign,
-// and vanishes where the block is singular. Products of constants are formed here, once; a factor +1 or -1 makes an
-// addition of a product. Pivots of right-hand sides are divided by in the same way. The transposed equations are solved
-// by the same steps, transposed, in the opposite order.
+// and vanishes where the block is singular. Products of constants are formed here, once. Pivots of right-hand sides are
+// divided by in the same way. The transposed equations are solved by the same steps, transposed, in the opposite order.
 //
 // Steps that do the same stand together as far as their order allows: a step goes to the last run of its kind unless a
-// later run writes what it needs, or needs what it writes.
+// later run writes what it needs, or needs what it writes. Additions and changes of sign are products with constants,
+// of whichever kind has a run that takes them.
 #pragma once
 
 #include <string>

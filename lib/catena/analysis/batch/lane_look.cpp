@@ -113,9 +113,11 @@ bool LaneLook::row_at(double t) {
          is_row(static_cast<int>(std::lower_bound(instants_.begin(), instants_.end(), t) - instants_.begin()));
 }
 
+// Rows, which come one after the other, and what was just seen are found at once.
 std::optional<LaneLook::Place> LaneLook::find(double t) {
+  const bool is_next = is_seen_[catena::at(next_lane_)] && seen_.t[catena::at(next_lane_)] == t;
+  if (!is_next && row_at(t)) return Place{next_row_, -1};
   if (const std::optional<Place> place = find_seen(t)) return place;
-  if (row_at(t)) return Place{next_row_, -1};
   expect(std::span(&t, 1));
   const std::optional<Place> place = find_seen(t);
   lost_ = lost_ || !place;

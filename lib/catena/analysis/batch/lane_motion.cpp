@@ -47,7 +47,7 @@ LaneState* LaneMotion::free_state() {
 
 // A row is not written to once it is complete.
 void LaneMotion::make_own(LaneState*& state) {
-  if (state >= own_.data() && state < own_.data() + own_.size()) return;
+  if (is_own(state)) return;
   LaneState* const copy = free_state();
   copy->copy(*state);
   state = copy;

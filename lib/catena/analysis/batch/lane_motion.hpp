@@ -84,6 +84,7 @@ class LaneMotion {
   void use_own_states();
   void make_own(LaneState*& state);
   LaneState* free_state();
+  bool is_own(const LaneState* state) const { return state >= own_.data() && state < own_.data() + own_.size(); }
   const LaneState& row_of(int row) const { return rows_[static_cast<std::size_t>(row)]; }
 
   LaneSolver solver_;

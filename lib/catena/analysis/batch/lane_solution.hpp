@@ -86,20 +86,11 @@ void LaneSolution<V>::take_steps(const LaneRun* run, int runs, double* numbers) 
   using From = const double*;
   for (const LaneRun* const last = run + runs; run != last; ++run) {
     switch (run->act) {
-      case LaneAct::add:
-        for_each_step(*run, numbers, [](const P& t, From s, From) { return t + P::load(s); });
-        break;
-      case LaneAct::subtract:
-        for_each_step(*run, numbers, [](const P& t, From s, From) { return t - P::load(s); });
-        break;
       case LaneAct::add_product:
         for_each_step(*run, numbers, [](const P& t, From s, From m) { return t + P::load(m) * P::load(s); });
         break;
       case LaneAct::subtract_product:
         for_each_step(*run, numbers, [](const P& t, From s, From m) { return t - P::load(m) * P::load(s); });
-        break;
-      case LaneAct::negate:
-        for_each_step(*run, numbers, [](const P& t, From, From) { return -t; });
         break;
       case LaneAct::solve_tail: {
         const LaneTail& tail = code_.tail[run->first];

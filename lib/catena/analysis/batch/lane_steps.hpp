@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
-#include <utility>
 #include <vector>
 
 #include "catena/analysis/batch/lane_code.hpp"
@@ -12,38 +11,47 @@
 
 namespace catena {
 
+/// Slots that hold constants.
+struct LaneUnits {
+  int one, minus_one, minus_two;
+};
+
 class LaneSteps {
  public:
   /// `factors_are_places`: of the same numbers as targets and sources.
-  explicit LaneSteps(bool factors_are_places) : factors_are_places_(factors_are_places) {}
+  LaneSteps(const LaneUnits& units, bool factors_are_places) : units_(units), factors_are_places_(factors_are_places) {}
 
-  /// Slots or rows; -1 for those that a step does not have.
-  void append(LaneAct act, int target, int source = -1, int factor = -1) {
-    order_.push_back({act, {target, source, factor}});
-    std::size_t earliest = std::max({after_writing(target), after_reading(target), after_writing(source)});
-    if (factors_are_places_) earliest = std::max(earliest, after_writing(factor));
-    const std::size_t run = run_of(act, earliest);
-    runs_[run].steps.push_back({target, source, factor});
-    note(written_, target, run);
-    note(read_, source, run);
-    if (factors_are_places_) note(read_, factor, run);
+  /// Slots or rows.
+  void append(LaneAct act, int target, int source, int factor) {
+    order_.push_back({act, 0, {target, source, factor}});
+    put(act, {target, source, factor});
+  }
+  /// t + m s with m = 1, -1 or -2: of two ways to write it that which begins no run.
+  void append_sum(int m, int target, int source) {
+    order_.push_back({LaneAct::add_product, m, {target, source, -1}});
+    const std::size_t earliest = earliest_run({target, source, -1});
+    const auto run = [&](LaneAct act) { return last_[static_cast<std::size_t>(act)]; };
+    const bool adds =
+        m == -2 || (run(LaneAct::add_product) > earliest && run(LaneAct::add_product) > run(LaneAct::subtract_product));
+    const int factor = m == -2 ? units_.minus_two : (m == 1) == adds ? units_.one : units_.minus_one;
+    put(adds ? LaneAct::add_product : LaneAct::subtract_product, {target, source, factor});
   }
   /// The tail of this number, between other steps of its rows.
   void append_tail(int number, const LaneTail& tail) {
-    order_.push_back({LaneAct::solve_tail, {number, -1, -1}});
+    order_.push_back({LaneAct::solve_tail, 0, {number, -1, -1}});
     runs_.push_back({LaneAct::solve_tail, {{number, -1, -1}}});
     for (int r = 0; r < tail.size; ++r) note(written_, tail.row[r], runs_.size() - 1);
   }
 
   /// The steps of the transposed operator: (E_n ... E_1)^T = E_1^T ... E_n^T, and (t += m s)^T is s += m t.
   LaneSteps transposed(const std::vector<LaneTail>& tails) const {
-    LaneSteps result(factors_are_places_);
+    LaneSteps result(units_, factors_are_places_);
     for (auto one = order_.rbegin(); one != order_.rend(); ++one) {
-      const auto& [act, step] = *one;
+      const auto& [act, sum, step] = *one;
       if (act == LaneAct::solve_tail)
         result.append_tail(step.target, tails[at(step.target)]);
-      else if (act == LaneAct::negate)
-        result.append(act, step.target);
+      else if (sum != 0)
+        result.append_sum(sum, step.source, step.target);
       else
         result.append(act, step.source, step.target, step.factor);
     }
@@ -59,7 +67,7 @@ class LaneSteps {
         continue;
       }
       const int first = static_cast<int>(step.size());
-      const auto place = [](int number) { return lane_count * std::max(number, 0); };
+      const auto place = [](int number) { return lane_count * number; };
       for (const LaneStep& s : run.steps) step.push_back({place(s.target), place(s.source), place(s.factor)});
       runs.push_back({run.act, first, static_cast<int>(step.size())});
     }
@@ -71,6 +79,22 @@ class LaneSteps {
     LaneAct act;
     std::vector<LaneStep> steps;
   };
+  struct Appended {
+    LaneAct act;
+    int sum;  ///< the constant factor; 0: none
+    LaneStep step;
+  };
+  std::size_t earliest_run(const LaneStep& s) const {
+    const std::size_t earliest = std::max({after_writing(s.target), after_reading(s.target), after_writing(s.source)});
+    return factors_are_places_ ? std::max(earliest, after_writing(s.factor)) : earliest;
+  }
+  void put(LaneAct act, const LaneStep& step) {
+    const std::size_t run = run_of(act, earliest_run(step));
+    runs_[run].steps.push_back(step);
+    note(written_, step.target, run);
+    note(read_, step.source, run);
+    if (factors_are_places_) note(read_, step.factor, run);
+  }
   /// The last run of its kind, if it is not before `earliest`; else a new one. Steps of one run keep their order.
   std::size_t run_of(LaneAct act, std::size_t earliest) {
     std::size_t& last = last_[static_cast<std::size_t>(act)];
@@ -91,12 +115,13 @@ class LaneSteps {
     list[at(place)] = std::max(list[at(place)], run);
   }
 
+  LaneUnits units_;
   bool factors_are_places_;
   std::vector<Run> runs_;
-  std::vector<std::pair<LaneAct, LaneStep>> order_;  // as they were appended
+  std::vector<Appended> order_;  // as they were appended
   std::vector<std::size_t> written_,
       read_;                           // of every place: the last run that writes, or reads it
-  std::array<std::size_t, 6> last_{};  // of every kind: one more than its last run
+  std::array<std::size_t, 2> last_{};  // of every kind: one more than its last run
 };
 
 }  // namespace catena
