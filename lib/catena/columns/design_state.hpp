@@ -5,6 +5,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "catena/assembly/design/design_mechanism.hpp"
 #include "catena/columns/reaction.hpp"
@@ -13,6 +14,17 @@
 
 namespace catena {
 
+/// ContactLoad with derivatives.
+struct DesignContactLoad {
+  DesignScalar force, friction, slip;
+};
+
+/// What contacts do in a motion, by number of the element; empty where there are none.
+struct DesignContacts {
+  std::vector<DesignContactLoad> loads;
+  DesignScalar energy;  ///< stored in them, J
+};
+
 class DesignState {
  public:
   using Scalar = DesignScalar;
@@ -20,8 +32,8 @@ class DesignState {
   /// `mechanism` is set to the time and state of `snapshot`; all must outlive this object. Spans may be empty where the
   /// snapshot's are.
   DesignState(const DesignMechanism& mechanism, const Snapshot& snapshot, std::span<const DesignScalar> qdd,
-              std::span<const DesignScalar> lambda)
-      : mechanism_(mechanism), snapshot_(snapshot), qdd_(qdd), lambda_(lambda) {}
+              std::span<const DesignScalar> lambda, const DesignContacts* contacts = nullptr)
+      : mechanism_(mechanism), snapshot_(snapshot), qdd_(qdd), lambda_(lambda), contacts_(contacts) {}
 
   const DesignModel& model() const { return mechanism_.model(); }
   const Plan& plan() const { return mechanism_.plan(); }
@@ -49,9 +61,14 @@ class DesignState {
   Taylor<DesignScalar> prescribed(int element) const { return mechanism_.element_value(element); }
   BasicElementReactions<DesignScalar> reactions(int element) const;
   BasicSpringLoads<DesignScalar> spring_loads(int element) const;
-  DesignScalar potential() const { return mechanism_.potential().f; }
-  /// Loads of contacts in motion are not differentiated.
-  const ContactLoad* contact(int) const { return nullptr; }
+  DesignScalar potential() const {
+    const DesignScalar own = mechanism_.potential().f;
+    return contacts_ ? own + contacts_->energy : own;
+  }
+  const DesignContactLoad* contact(int element) const {
+    if (!contacts_ || contacts_->loads.empty()) return nullptr;
+    return &contacts_->loads[static_cast<std::size_t>(element)];
+  }
 
  private:
   static DesignScalar without_derivative(double value);
@@ -59,6 +76,7 @@ class DesignState {
   const DesignMechanism& mechanism_;
   const Snapshot& snapshot_;
   std::span<const DesignScalar> qdd_, lambda_;
+  const DesignContacts* contacts_;
 };
 
 }  // namespace catena

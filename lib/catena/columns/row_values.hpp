@@ -68,13 +68,13 @@ class RowValues {
       case ColumnKind::multiplier:
         return reactions(column).multiplier[column.detail];
       case ColumnKind::push:
-        if (const ContactLoad* load = s_.contact(column.index)) return S(load->force);
+        if (const auto* load = s_.contact(column.index)) return S(load->force);
         return S(0.0) - reactions(column).multiplier[0];
       case ColumnKind::friction:
-        if (const ContactLoad* load = s_.contact(column.index)) return S(load->friction);
+        if (const auto* load = s_.contact(column.index)) return S(load->friction);
         return S(0.0);
       case ColumnKind::slip:
-        if (const ContactLoad* load = s_.contact(column.index)) return S(load->slip);
+        if (const auto* load = s_.contact(column.index)) return S(load->slip);
         return S(0.0);
       case ColumnKind::gap:
         return s_.measured(column.index).f;

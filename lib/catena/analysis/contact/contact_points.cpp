@@ -37,7 +37,7 @@ int append_slide(Model& model, const ElementEntry<Contact<double>, double>& cont
   const double start = element.curve.nearest(i.to_local(j.point(element.s_j) - i.origin()));
   ElementEntry<CustomConstraint<double>, double> slide;
   slide.element =
-      custom_constraint(SlideOnCurve(element.curve, element.s_j, element.free_side() * element.radius, start));
+      custom_constraint(SlideOnCurve<double>(element.curve, element.s_j, element.free_side() * element.radius, start));
   slide.i = contact.i;
   slide.j = contact.j;
   return model.append({}, slide, ElementKind::constraint);

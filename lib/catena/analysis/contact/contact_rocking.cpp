@@ -55,6 +55,7 @@ double ContactSwitch::end_rocking(double t, const std::vector<std::size_t>& hit,
     for (std::size_t k = 0; k < qd.size(); ++k) qd[k] += change_[row(c)][k] * impulse(c);
     for (std::size_t r = 0; r < p_.size(); ++r) p_[r] += multipliers_[row(c)][r] * impulse(c);
   }
+  if (jump_) jump_->settles = true;
   look(qd);
   // Two flights of one foot lie two ratios apart.
   const double flight = t - left_at_[hit.front()], ratio = std::sqrt(flight / flight_[hit.front()]);

@@ -205,6 +205,30 @@ Report ContactSwitch::wedged(double t) const {
                              names_of(*model_, points_, active_)));
 }
 
+// The speed at which place k comes back; 0: it stays.
+double ContactSwitch::rebound(std::size_t k) const {
+  const double speed = -points_[k].restitution * std::min(gap_[k].rate, 0.0);
+  return speed >= rest_speed(k) ? speed : 0;
+}
+
+// Which places have impulses, at the velocities before them.
+void ContactSwitch::take_note(const ContactProblem& problem, double restitution_part) {
+  jump_->restitution_part = restitution_part;
+  jump_->places.clear();
+  for (std::size_t a = 0; a < active_.size(); ++a) {
+    const std::size_t k = active_[a];
+    const bool presses = problem.state[a] != ContactProblem::State::open;
+    if (!problem.place[a].has_normal || (!presses && !hits(k))) continue;
+    ImpactPlace& place = jump_->places.emplace_back();
+    place.place = k;
+    place.was_hit = hits(k);
+    place.presses = presses;
+    place.rebounds = restitution_part * rebound(k) > 0;
+    place.sticks = problem.state[a] == ContactProblem::State::sticks;
+    if (problem.place[a].has_friction && !place.sticks) place.direction = problem.direction[a];
+  }
+}
+
 // Impulses of the touching places that close, with the given part of every restitution, and their work.
 bool ContactSwitch::apply(double restitution_part, std::span<double> qd, double& work) {
   ContactProblem problem(active_.size());
@@ -219,13 +243,11 @@ bool ContactSwitch::apply(double restitution_part, std::span<double> qd, double&
       continue;
     }
     place.mu_static = place.mu;
-    const double closing = std::min(gap_[k].rate, 0.0);
-    const double rest = rest_speed(k);
-    const double rebound = -points_[k].restitution * closing;
-    problem.b[2 * a] = gap_[k].rate - (rebound >= rest ? restitution_part * rebound : 0);
+    problem.b[2 * a] = gap_[k].rate - restitution_part * rebound(k);
     problem.b[2 * a + 1] = place.has_friction ? slide_[k].rate : 0;
   }
   if (!problem.solve()) return false;
+  take_note(problem, restitution_part);
   for (std::size_t c = 0; c < problem.x.size(); ++c) {
     for (std::size_t n = 0; n < qd.size(); ++n) qd[n] += change_[c][n] * problem.x[c];
     for (std::size_t r = 0; r < p_.size(); ++r) p_[r] += multipliers_[c][r] * problem.x[c];
@@ -257,6 +279,7 @@ Report ContactSwitch::collide(double t, std::span<double> qd, std::vector<Contac
   std::vector<std::size_t> hit;
   std::copy_if(active_.begin(), active_.end(), std::back_inserter(hit), [&](std::size_t k) { return hits(k); });
   if (hit.empty()) return {};
+  if (!jump_) jump_.emplace();
   find_responses();
   const std::vector<double> before(qd.begin(), qd.end()), p_before(p_);
   const double energy = kinetic_energy(qd);
@@ -436,6 +459,11 @@ Report ContactSwitch::decide(double t, std::span<const double> q, std::span<doub
   const bool is_told = cause.jolts || cause.strike;
   p_.assign(is_told ? nothing_.size() : 0, 0.0);
   impulses_.clear();
+  jump_.reset();
+  if (is_told) {
+    jump_.emplace().meets_constraints = true;
+    if (cause.strike) jump_->strike = *cause.strike;
+  }
   if (cause.strike) apply(*cause.strike, q, qd);
   if (is_told) {
     const std::vector<double> given(qd.begin(), qd.end());

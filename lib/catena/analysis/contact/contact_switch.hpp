@@ -31,6 +31,7 @@
 
 #include "catena/analysis/contact/contact_loads.hpp"
 #include "catena/analysis/contact/contact_problem.hpp"
+#include "catena/analysis/contact/motion_phase.hpp"
 #include "catena/analysis/contact/shared_forces.hpp"
 #include "catena/analysis/events/strike.hpp"
 #include "catena/analysis/motion/equations_of_motion.hpp"
@@ -84,6 +85,8 @@ class ContactSwitch {
   /// What constraints exerted at the last decision, where it was about a strike or a jolt: collisions that followed at
   /// once included.
   std::vector<ConstraintImpulse> take_impulses() { return std::move(impulses_); }
+  /// How velocities jumped at the last decision; nothing where they did not.
+  const std::optional<VelocityJump>& jump() const { return jump_; }
   /// Where drivers ask for a motion that closed places rule out, once decide() has said so.
   const std::optional<SingularPoint>& blocked() const { return blocked_; }
   /// Of places that hold each other since they were decided about last.
@@ -105,6 +108,8 @@ class ContactSwitch {
   bool hits(std::size_t k) const;
   Report collide(double t, std::span<double> qd, std::vector<ContactState>& states);
   bool apply(double restitution_part, std::span<double> qd, double& work);
+  void take_note(const ContactProblem& problem, double restitution_part);
+  double rebound(std::size_t k) const;
   bool find_free_accelerations(double t, std::span<const double> q, std::span<const double> qd, ContactLoads& loads);
   Report choose(double t, std::span<const double> q, std::span<const double> qd, std::vector<ContactState>& states,
                 const Cause& cause);
@@ -139,6 +144,7 @@ class ContactSwitch {
   std::vector<double> left_at_;     // by point: when it was last let go, by its speed or by drivers
   std::vector<double> flight_;      // by point: how long it was open before it landed last; NaN: it never was
   std::optional<SingularPoint> blocked_;
+  std::optional<VelocityJump> jump_;
   std::vector<Evaluator::ScalarMotion> gap_, slide_;
   std::vector<int> group_;  // by point: impulses and forces at one point reach only points of its group
   // Of the touching places, two each: what a unit force across and along makes of accelerations and multipliers.

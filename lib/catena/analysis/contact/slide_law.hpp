@@ -7,7 +7,8 @@
 // contact x = p + R b n, so that w' is the velocity of the disc's material against the curve's along the tangent p': a
 // wheel that rolls has w' = 0. The foot is that of point_on_curve.hpp; two Newton steps in the scalar of the
 // derivatives carry its first and second derivatives exactly. On a closed curve s goes on beyond a period. Singular as
-// point_on_curve.hpp. Units: m, rad. Source: Haug, section 3.4; rolling without slip.
+// point_on_curve.hpp. S: the scalar of curve, point and R; that of the frames holds it. Units: m, rad. Source: Haug,
+// section 3.4; rolling without slip.
 #pragma once
 
 #include <array>
@@ -17,10 +18,11 @@
 
 namespace catena {
 
+template <class S>
 class SlideOnCurve {
  public:
   /// `arm`: R b.
-  SlideOnCurve(BodyCurve<double> curve, const Vec2<double>& point, double arm, double start)
+  SlideOnCurve(BodyCurve<S> curve, const Vec2<S>& point, const S& arm, double start)
       : curve_(std::move(curve)), point_(point), arm_(arm), start_(start), foot_(start) {}
 
   template <class T>
@@ -30,7 +32,9 @@ class SlideOnCurve {
     T s(foot_);
     if constexpr (!std::is_same_v<T, double>) {
       const double bend = descent(curve_.plain(foot_), plain(x)).bend;
-      for (int step = 0; step < 2; ++step) {
+      // Each step is exact to one order more: two in time, and one by design parameters.
+      constexpr int steps = std::is_same_v<S, double> ? 2 : 3;
+      for (int step = 0; step < steps; ++step) {
         const CurvePoint<T> c = curve_.evaluate(s);
         s = s - dot(c.p - x, c.d1) / T(bend);
       }
@@ -76,9 +80,10 @@ class SlideOnCurve {
     return {length, turn};
   }
 
-  BodyCurve<double> curve_;
-  Vec2<double> point_;
-  double arm_, start_;
+  BodyCurve<S> curve_;
+  Vec2<S> point_;
+  S arm_;
+  double start_;
   mutable double foot_;  // found last: where the search for the next one begins
 };
 

@@ -187,16 +187,16 @@ Report ContactPhases::decide(SystemState& state, const ContactSwitch::Cause& cau
 
 Report ContactPhases::change(int transition, SystemState& state) {
   if (at(transition) >= watched_.size()) return change_way(at(transition) - watched_.size(), state);
-  const Watched& watched = watched_[at(transition)];
-  if (watched.ends == End::pressing) {
+  const WatchedPlace& watched = watched_[at(transition)];
+  if (watched.ends == PhaseEnd::pressing) {
     // A compliant place is pressed by a force that its own depth decides about.
     states_[watched.place].closed = !states_[watched.place].closed;
     states_[watched.place].direction = 0;
   }
   ContactSwitch::Cause cause{.place = static_cast<int>(watched.place),
-                             .rests = watched.ends == End::slide,
-                             .shares = watched.ends == End::shares};
-  cause.opens = watched.ends == End::contact && states_[watched.place].closed;
+                             .rests = watched.ends == PhaseEnd::slide,
+                             .shares = watched.ends == PhaseEnd::shares};
+  cause.opens = watched.ends == PhaseEnd::contact && states_[watched.place].closed;
   // What stuck goes the way that friction no longer prevents; by rounding alone the limit might seem not to be reached.
   if (cause.rests && states_[watched.place].direction == 0) cause.leaves = loads_->friction(watched.place) > 0 ? -1 : 1;
   return decide(state, cause);
@@ -228,7 +228,7 @@ void ContactPhases::add_shared_transitions(const Dynamics& dynamics, std::vector
       return forces.margin(normal, along);
     };
     transitions.push_back({margin, 1});
-    watched_.push_back({forces.places().front(), End::shares});
+    watched_.push_back({forces.places().front(), PhaseEnd::shares});
     needs.multipliers = true;
   }
 }
@@ -237,7 +237,7 @@ void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std
                                     Needs& needs) {
   const ContactPoint& point = contacts_.points[k];
   const ContactState state = states_[k];
-  const auto watch = [&](std::function<double(const Snapshot&)> value, int side, End ends) {
+  const auto watch = [&](std::function<double(const Snapshot&)> value, int side, PhaseEnd ends) {
     transitions.push_back({std::move(value), side});
     watched_.push_back({k, ends});
   };
@@ -245,28 +245,28 @@ void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std
   const int element = point.element, slide = point.slide;
   const auto normal = [&loads, k](const Snapshot& s) { return loads.normal_from(k, s.qd, s.lambda); };
   if (point.kind == ContactKind::rigid && !state.closed)
-    watch([element](const Snapshot& s) { return s.evaluator.measure(element, {}, {}).value; }, 1, End::contact);
+    watch([element](const Snapshot& s) { return s.evaluator.measure(element, {}, {}).value; }, 1, PhaseEnd::contact);
   if (point.kind == ContactKind::rigid && state.closed) {
-    if (!shares(k)) watch(normal, 1, End::contact);
+    if (!shares(k)) watch(normal, 1, PhaseEnd::contact);
     needs.multipliers = true;
   }
-  if (point.kind == ContactKind::compliant && state.closed) watch(normal, 1, End::pressing);
+  if (point.kind == ContactKind::compliant && state.closed) watch(normal, 1, PhaseEnd::pressing);
   if (point.kind == ContactKind::compliant && !state.closed) {
     watch([element,
            normal](const Snapshot& s) { return std::min(-s.evaluator.measure(element, {}, {}).value, normal(s)); },
-          -1, End::pressing);
+          -1, PhaseEnd::pressing);
   }
   if (!point.has_friction() || !point.is_exact() || !state.closed) return;
   needs.multipliers = true;
   if (state.direction != 0) {
     watch([slide,
            sign = state.direction](const Snapshot& s) { return sign * s.evaluator.scalar_motion(slide, s.qd).rate; },
-          1, End::slide);
+          1, PhaseEnd::slide);
   } else if (!shares(k)) {
     const int row = dynamics.plan().element_row[at(slide)];
     watch(
         [normal, row, mu = point.mu_static](const Snapshot& s) { return mu * normal(s) - std::abs(s.lambda[at(row)]); },
-        1, End::slide);
+        1, PhaseEnd::slide);
   }
 }
 

@@ -58,19 +58,16 @@ class ContactPhases {
   /// Where drivers moved on against closed places, if that is why the last phase could not be found.
   const std::optional<SingularPoint>& blocked() const { return switch_->blocked(); }
   const std::vector<ContactEvent>& events() const { return events_; }
+  /// What holds now, and how velocities jumped when that was decided.
+  const std::vector<ContactState>& states() const { return states_; }
+  const std::vector<WatchedPlace>& watched() const { return watched_; }
+  const std::optional<VelocityJump>& jump() const { return switch_->jump(); }
   /// How far ropes are wound at a place of the present phase.
   std::vector<RopeTurns> turns(const SystemState& state) const {
     return ropes_ ? ropes_->turns(state) : std::vector<RopeTurns>();
   }
 
  private:
-  /// What ends a phase: a gap or a reaction, the force of a compliant place, a slide that comes to rest or begins,
-  /// places that hold each other no longer.
-  enum class End : unsigned char { contact, pressing, slide, shares };
-  struct Watched {
-    std::size_t place;
-    End ends;
-  };
   void add_rows(PlanOptions& options, const std::vector<ContactState>& states) const;
   void add_shared_transitions(const Dynamics& dynamics, std::vector<Transition>& transitions, Needs& needs);
   bool shares(std::size_t k) const;
@@ -89,8 +86,8 @@ class ContactPhases {
   std::unique_ptr<ContactSwitch> switch_;
   std::unique_ptr<ContactLoads> loads_;
   std::vector<ContactState> states_;
-  std::vector<double> anchors_;   // by point: the value of the slide's equation while it sticks
-  std::vector<Watched> watched_;  // by transition; behind these are those of ropes
+  std::vector<double> anchors_;        // by point: the value of the slide's equation while it sticks
+  std::vector<WatchedPlace> watched_;  // by transition; behind these are those of ropes
   std::vector<ContactEvent> events_;
 };
 

@@ -137,7 +137,7 @@ class Dynamics {
   Report check_ends_at(std::span<const double> y) const;
   Report check_curve_ends(double from, RowObserver& observer);
   Report find_events(double from, RowObserver& observer);
-  Report show(double from, double to, RowObserver& observer);
+  Report show(double from, double to, RowObserver& observer, int ended_by = -1);
   void find_multipliers();
   void describe_mobility(AnalysisReport& report);
   Report stuck();

@@ -185,16 +185,19 @@ Report Dynamics::stuck() {
 }
 
 // A part of the last step to whoever wants to look between rows.
-Report Dynamics::show(double from, double to, RowObserver& observer) {
+Report Dynamics::show(double from, double to, RowObserver& observer, int ended_by) {
   if (!observer.wants_stretches() || !(to > from)) return {};
-  return observer.cover({from, to, [this](double t) { return state_at(t); }}) ? Report{} : cancelled(to);
+  MotionStretch stretch{from, to, [this](double t) { return state_at(t); }};
+  stretch.ended_by = ended_by;
+  stretch.ends_phase = ended_by >= 0 && events_->acts(ended_by);
+  return observer.cover(stretch) ? Report{} : cancelled(to);
 }
 
 // Events within the last step, in order: rows before each, then its own.
 Report Dynamics::find_events(double from, RowObserver& observer) {
   const auto state = [&](double t) { return state_at(t); };
   while (const std::optional<FoundEvent> found = events_->find(from, t_, state)) {
-    if (const Report shown = show(from, found->t, observer); !shown.ok()) return shown;
+    if (const Report shown = show(from, found->t, observer, found->event); !shown.ok()) return shown;
     while (next_row_ < grid_.size() && grid_[next_row_] < found->t) {
       if (const Report given = give_row(grid_[next_row_++], observer); !given.ok()) return given;
     }

@@ -115,7 +115,26 @@ Report DynamicsWithEvents::start_contacts() {
   kept_.clear();
   make_dynamics();
   dynamics_->start_from(state);
+  MotionPhase first{.t = state.t};
+  take_note_of_jump(first);
+  tell(std::move(first));
   return {};
+}
+
+void DynamicsWithEvents::take_note_of_jump(MotionPhase& next) const {
+  if (!witness_ || !contacts_.jump()) return;
+  next.jumps.push_back(*contacts_.jump());
+  next.jumps.back().released = plan_options_.released_elements;
+}
+
+void DynamicsWithEvents::tell(MotionPhase next) const {
+  if (!witness_) return;
+  next.released = released_;
+  if (contacts_.any()) {
+    next.states = contacts_.states();
+    next.watched = contacts_.watched();
+  }
+  witness_->begin(next);
 }
 
 void DynamicsWithEvents::go_on_from(const SystemState& state, std::span<const int> engaged, bool sum_up_work,
@@ -137,7 +156,10 @@ void DynamicsWithEvents::go_on_from(const SystemState& state, std::span<const in
 Report DynamicsWithEvents::change_contacts(int transition, bool sum_up_work) {
   SystemState state = dynamics_->state();
   if (Report changed = contacts_.change(transition, state); !changed.ok()) return changed;
+  MotionPhase next{.t = state.t, .ended_by = transition};
+  take_note_of_jump(next);
   go_on_from(state, {}, sum_up_work);
+  tell(std::move(next));
   return {};
 }
 
@@ -148,7 +170,10 @@ Report DynamicsWithEvents::meet_jump(bool sum_up_work) {
   const auto by_driver = work_of_drivers(dynamics_->evaluator(), jolts_.back());
   double work = 0;
   for (const auto& [driver, own] : by_driver) work += own;
+  MotionPhase next{.t = state.t, .functions_jump = true};
+  take_note_of_jump(next);
   go_on_from(state, {}, sum_up_work, work, by_driver);
+  tell(std::move(next));
   return {};
 }
 
@@ -221,11 +246,15 @@ void DynamicsWithEvents::turn_values_to_bodies(std::span<const int> engaged, con
   dynamics_->start_from(state);
 }
 
-Report DynamicsWithEvents::act(const Event& event, SystemState& state, std::vector<int>& engaged, double& work) {
+Report DynamicsWithEvents::act(int number, SystemState& state, std::vector<int>& engaged, double& work,
+                               MotionPhase& next) {
+  const Event& event = watch_->events()[static_cast<std::size_t>(number)];
   if (event.action == EventAction::strike) {
     double own = 0;
     if (Report struck = contacts_.strike(event.strike, plan_options_, state, own); !struck.ok()) return struck;
     jolts_.push_back({state.t, event.name, {}, contacts_.take_impulses()});
+    take_note_of_jump(next);
+    if (!next.jumps.empty()) next.jumps.back().event = number;
     work += own;
     return {};
   }
@@ -236,6 +265,7 @@ Report DynamicsWithEvents::act(const Event& event, SystemState& state, std::vect
   if (!contacts_.any()) return {};
   if (Report changed = contacts_.change_constraints(plan_options_, state); !changed.ok()) return changed;
   jolts_.push_back({state.t, event.name, {}, contacts_.take_impulses()});
+  take_note_of_jump(next);
   return {};
 }
 
@@ -244,6 +274,7 @@ Report DynamicsWithEvents::act(bool sum_up_work, const Event*& stop) {
   std::vector<int> engaged;
   double work = 0;
   std::string engaging;
+  MotionPhase next{.t = state.t};
   for (const int acting : dynamics_->acting()) {
     const Event& event = watch_->events()[static_cast<std::size_t>(acting)];
     if (event.action == EventAction::stop) {
@@ -252,9 +283,15 @@ Report DynamicsWithEvents::act(bool sum_up_work, const Event*& stop) {
       return {};
     }
     if (event.action == EventAction::engage) engaging += (engaging.empty() ? "" : ", ") + event.name;
-    if (Report acted = act(event, state, engaged, work); !acted.ok()) return acted;
+    next.events.push_back(acting);
+    if (Report acted = act(acting, state, engaged, work, next); !acted.ok()) return acted;
+  }
+  if (!contacts_.any() && !engaged.empty()) {
+    next.jumps.push_back({.meets_constraints = true});
+    next.jumps.back().released = plan_options_.released_elements;
   }
   go_on_from(state, engaged, sum_up_work, work);
+  tell(std::move(next));
   // With contacts these have decided about the jolt already.
   if (!contacts_.any()) dynamics_->expect_jolt(engaging);
   for (const int element : engaged) {

@@ -48,6 +48,8 @@ class DynamicsWithEvents {
   const Plan& plan() const { return dynamics_->plan(); }
   IntegrationMethod method() const { return dynamics_->method(); }
   Evaluator& evaluator() { return dynamics_->evaluator(); }
+  /// Told of every phase of the motion; nullptr: nobody is.
+  void witness(PhaseWitness* witness) { witness_ = witness; }
   void pause(Pauses pauses) { pauses_ = std::move(pauses); }
   /// Nothing in a motion that is taken up.
   void start_from(const SystemState& state);
@@ -97,12 +99,14 @@ class DynamicsWithEvents {
   /// Releases, engages and strikes what the events say at which the run ended; a report if that cannot be. `stop`: the
   /// one of them that ends the analysis.
   Report act(bool sum_up_work, const Event*& stop);
-  Report act(const Event& event, SystemState& state, std::vector<int>& engaged, double& work);
+  Report act(int number, SystemState& state, std::vector<int>& engaged, double& work, MotionPhase& next);
   /// Takes up ropes as `memory` has them.
   Report resume_ropes(const MotionMemory& memory);
   void turn_values_to_bodies(std::span<const int> engaged, const SystemState& state);
   std::vector<double> place();
   void end_in_lock_up(const Needs& needs, RowObserver& rows);
+  void take_note_of_jump(MotionPhase& next) const;
+  void tell(MotionPhase next) const;
 
   ContactPhases contacts_;
   std::optional<SystemState> start_, end_;  // of the first phase; where events acted before one that stopped it
@@ -134,6 +138,7 @@ class DynamicsWithEvents {
   AnalysisReport total_;
   std::int64_t rows_ = 0, next_row_ = 0;  // given, those at events as well; of the grid, where the phase begins
   bool in_phase_ = false, over_ = false;
+  PhaseWitness* witness_ = nullptr;
   double last_action_ = -1;  // s; and how often events acted then
   int at_once_ = 0;
 };

@@ -53,7 +53,10 @@ void DynamicsWithEvents::begin(const TimeGrid& grid, const Needs& needs) {
   last_action_ = -1;
   at_once_ = 0;
   in_phase_ = over_ = false;
-  if (!contacts_.any()) return;
+  if (!contacts_.any()) {
+    tell({.t = dynamics_->time()});
+    return;
+  }
   if (const Report started = resumed_ ? taken_up_ : start_contacts(); !started.ok()) {
     over_ = true;
     give_up(started);

@@ -74,6 +74,12 @@ class EventWatch {
   void watch(std::vector<Transition> transitions, const Needs& needs);
   /// Whether what was found is a transition, and which.
   bool is_transition(const FoundEvent& found) const { return found.event >= static_cast<int>(events_.size()); }
+  /// Whether the motion goes on in another way after it.
+  bool acts(int found) const {
+    if (found >= static_cast<int>(events_.size())) return true;
+    const EventAction action = events_[static_cast<std::size_t>(found)].action;
+    return action != EventAction::record && action != EventAction::stop;
+  }
   int transition(int found) const { return found - static_cast<int>(events_.size()); }
   /// The first event in (from, to]; `state_at` gives the mechanism at an instant of that interval. Where it has some
   /// that are simultaneous with it, the next calls give these.

@@ -72,6 +72,7 @@ void MeasureSet::begin_again(std::vector<MeasureRequest> requests, const Model& 
   earliest_row_.reset();
   latest_row_.reset();
   end_.reset();
+  broken_at_.reset();
   looked_ = true;
 }
 
@@ -94,13 +95,15 @@ void MeasureSet::differentiate(int parameters, DifferentiateColumns derivatives,
 void MeasureSet::cover(const MotionStretch& stretch) {
   if (empty()) return;
   double from = stretch.from;
-  bool breaks = breakpoints_.contain(from);
+  bool breaks = breakpoints_.contain(from) || from == broken_at_;
   while (from < stretch.to) {
     // A breakpoint that rounding puts beside the end is the end's own.
     double to = std::min(breakpoints_.next(from), stretch.to);
     if (!(stretch.to - to > 1e-12 * std::abs(to))) to = stretch.to;
-    const bool breaks_after = to < stretch.to || breakpoints_.contain(to);
+    const bool ends_phase = to == stretch.to && stretch.ends_phase && parameters_ > 0;
+    const bool breaks_after = to < stretch.to || ends_phase || breakpoints_.contain(to);
     cover_piece({{from, to, stretch.at, stretch.expect}, breaks, breaks_after});
+    if (ends_phase) broken_at_ = to;
     from = to;
     breaks = breaks_after;
   }

@@ -9,9 +9,10 @@
 //   integrals         sum of weights x gradients at the nodes        mean, rms       from these
 //   paths             of each point the nearest instant is fixed     first, final, at
 //
-// Pieces end at breakpoints of functions of time. Where these jump at an instant t* that parameters move, an integral
-// of v has the part (v(t*-) - v(t*+)) dt*/dp besides, and what is largest, or nearest, at t* itself moves with it
-// (motion_samples.hpp). Where the run ends at T, or a measure is taken at an instant, that moves:
+// Pieces end at breakpoints of functions of time, and where the motion goes on in another way by itself. Where these
+// jump at an instant t* that parameters move, an integral of v has the part (v(t*-) - v(t*+)) dt*/dp besides, and what
+// is largest, or nearest, at t* itself moves with it (motion_samples.hpp). Where the run ends at T, or a measure is
+// taken at an instant, that moves:
 //
 //   dm/dp = (dm/dp) at fixed instants + (dm/dT) dT/dp
 //
@@ -109,8 +110,9 @@ class MeasureSet {
   int parameters_ = 0;
   std::optional<double> earliest_row_, latest_row_;
   std::optional<End> end_;
-  bool wants_samples_ = false;  // some measure depends on what is between rows
-  bool looked_ = true;          // whether every stretch could be looked at
+  std::optional<double> broken_at_;  // the end of the last stretch behind which the motion goes on in another way
+  bool wants_samples_ = false;       // some measure depends on what is between rows
+  bool looked_ = true;               // whether every stretch could be looked at
   bool may_end_ = false;
 };
 

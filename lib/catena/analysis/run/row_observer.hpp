@@ -17,6 +17,10 @@ struct MotionStretch {
   /// May be empty. Told of instants of the stretch that will be asked for next, at most eight: who can look at several
   /// at once does so. Nobody has to ask for them.
   std::function<void(std::span<const double>)> expect = {};
+  /// The event that ends it, by its number: in the list, then among the changes of the mechanism itself; -1: none.
+  int ended_by = -1;
+  /// The motion goes on in another way from its end, at an instant that the motion itself determines.
+  bool ends_phase = false;
 
   void announce(std::span<const double> instants) const {
     if (expect) expect(instants);

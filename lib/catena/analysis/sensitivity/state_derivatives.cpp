@@ -7,7 +7,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "catena/columns/design_state.hpp"
 #include "catena/columns/state_laws.hpp"
 
 namespace catena {
@@ -78,7 +77,7 @@ void StateDerivatives::differentiate(const ColumnSet& columns, const Snapshot& s
   const auto parameters = static_cast<std::size_t>(parameters_);
   std::size_t first = 0;
   for (Group& group : groups_) {
-    columns.differentiate(DesignState(group.mechanism, snapshot, group.qdd, group.lambda), values_);
+    columns.differentiate(DesignState(group.mechanism, snapshot, group.qdd, group.lambda, &group.contacts), values_);
     for (std::size_t k = 0; k < values_.size(); ++k) {
       if (first == 0 && !values.empty()) values[k] = values_[k].v;
       for (std::size_t p = 0; p < static_cast<std::size_t>(group.count); ++p)

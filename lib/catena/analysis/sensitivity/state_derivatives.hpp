@@ -21,6 +21,7 @@
 #include "catena/analysis/sensitivity/moving_instants.hpp"
 #include "catena/assembly/design/design_mechanism.hpp"
 #include "catena/columns/column_set.hpp"
+#include "catena/columns/design_state.hpp"
 
 namespace catena {
 
@@ -60,6 +61,11 @@ class StateDerivatives {
   const std::string& jump() const { return jump_; }
   /// What the functions of time do at t.
   const MovingInstant& instant_at(double t);
+  /// dt/dp of an instant of the motion at which it goes on in another way; nothing where it does not.
+  virtual const std::vector<double>* phase_instant(double t) const {
+    static_cast<void>(t);
+    return nullptr;
+  }
 
  protected:
   /// The state just before the snapshot's instant, at which functions of time jump; false where it is not known.
@@ -79,6 +85,7 @@ class StateDerivatives {
     DesignMechanism mechanism;
     std::vector<DesignScalar> q, qd, qdd, lambda, loads;
     std::vector<Taylor<DesignScalar>> rows;
+    DesignContacts contacts;
     int count = 0;  ///< of parameters
   };
 

@@ -30,6 +30,18 @@ bool begins_with(const AnalysisTask& task, const TaskNumber& number, const Measu
   return !alone || (first && (t < 0 || own->request.kind == MeasureKind::first));
 }
 
+bool records_or_stops(const AnalysisTask& task, const TaskNumber& number) {
+  const EventRequest& event = task.events[number.item];
+  constexpr int record_action = 0, stop_action = 1;
+  return !event.impulse && (event.action == record_action || event.action == stop_action);
+}
+
+bool is_instant_of_event(const AnalysisTask& task, const MeasureResult& measure) {
+  return std::any_of(task.measures.begin(), task.measures.end(), [&](const PlacedMeasure& placed) {
+    return placed.request.name == measure.name && placed.request.field == "events" && placed.request.part == "t";
+  });
+}
+
 /// Whether what follows from the number is in the measure's gradient already, or the measure does not depend on it.
 bool is_in_gradient(const AnalysisTask& task, const TaskNumber& number, const MeasureResult& measure) {
   if (measure.of_rows_alone) return false;
@@ -37,12 +49,13 @@ bool is_in_gradient(const AnalysisTask& task, const TaskNumber& number, const Me
   using Place = TaskNumber::Place;
   if (number.place == Place::measured_instant || number.place == Place::path_point) return true;
   if (number.place == Place::instant) return task.description->timed && !begins_with(task, number, measure);
-  if (number.place != TaskNumber::Place::event) return false;
-  // Events that are recorded leave the motion alone; one that stopped it is in the instant at which the run ended.
-  const EventRequest& event = task.events[number.item];
-  constexpr int record_action = 0, stop_action = 1;
+  // Events that are recorded leave the motion alone; one that stopped it is in the instant at which the run ended, one
+  // that acted in the motion. Of fields the instants of events have derivatives, by what moves these.
   const bool is_field = std::isnan(measure.by_last_instant);
-  return !event.impulse && (event.action == record_action || event.action == stop_action) && !is_field;
+  if (task.type() != "dynamics") return number.place == Place::event && records_or_stops(task, number) && !is_field;
+  const bool of_event =
+      number.place == Place::event || number.place == Place::impulse || number.place == Place::struck_point;
+  return of_event && (!is_field || is_instant_of_event(task, measure));
 }
 
 }  // namespace

@@ -119,6 +119,7 @@ void AnalysisRows::differentiate(std::unique_ptr<StateDerivatives> derivatives) 
     if (measured_jump_.empty()) measured_jump_ = derivatives_->jump();
   };
   columns.moving = [this, known = std::map<double, std::vector<double>>()](double t) mutable {
+    if (const std::vector<double>* rates = derivatives_->phase_instant(t)) return *rates;
     const auto found = known.find(t);
     if (found != known.end()) return found->second;
     const MovingInstant& instant = derivatives_->instant_at(t);
@@ -387,11 +388,11 @@ void add_field_measures(const AnalysisContext& context, AnalysisResult& result) 
 }
 
 void set_field_gradient(const AnalysisContext& context, AnalysisResult& result, std::string_view field, int number,
-                        const std::vector<double>& gradient, const std::string& trouble) {
+                        const std::vector<double>& gradient, const std::string& trouble, std::string_view part) {
   for (const PlacedMeasure& placed : context.task.measures) {
     const MeasureRequest& request = placed.request;
     const bool meant = request.kind == MeasureKind::field && request.field == field && request.number == number;
-    if (!meant || (number > 0 && !request.part.empty() && request.part != "value")) continue;
+    if (!meant || (number > 0 && !request.part.empty() && request.part != part)) continue;
     for (MeasureResult& measure : result.measures) {
       if (measure.name != request.name || !measure.value) continue;
       measure.gradient = gradient;

@@ -102,6 +102,7 @@ class AnalysisRows final : public RowObserver {
 void add_field_measures(const AnalysisContext& context, AnalysisResult& result);
 /// The gradient of the measures of a field, after add_field_measures(); number 0: it is no list.
 void set_field_gradient(const AnalysisContext& context, AnalysisResult& result, std::string_view field, int number,
-                        const std::vector<double>& gradient, const std::string& trouble = {});
+                        const std::vector<double>& gradient, const std::string& trouble = {},
+                        std::string_view part = "value");
 
 }  // namespace catena

@@ -12,6 +12,7 @@
 #include "catena/analysis/sensitivity/motion_derivatives.hpp"
 #include "catena/model/rope_routes.hpp"
 #include "catena/scene/running/analysis_run.hpp"
+#include "catena/scene/running/design_events.hpp"
 #include "catena/scene/running/event_entries.hpp"
 #include "catena/scene/running/singular_entries.hpp"
 
@@ -71,6 +72,8 @@ class DynamicsTask {
         estimates_(context.estimate_error || context.task.number("estimate_error", 0) != 0) {}
 
   void run();
+  /// How instants of the motion move with the parameters.
+  const InstantRates& instants() const { return *instants_; }
 
  private:
   /// Nothing, or why the analysis cannot do all that is asked for at once.
@@ -81,7 +84,10 @@ class DynamicsTask {
   /// Runs what was prepared.
   void run_on();
   void run_with_events_or_pauses();
-  void differentiate(AnalysisRows& rows, const Evaluator& evaluator) const;
+  void differentiate(AnalysisRows& rows, Dynamics& analysis);
+  void differentiate(AnalysisRows& rows, DynamicsWithEvents& analysis);
+  /// Whether instants of the motion itself are to be differentiated.
+  bool has_phases() const;
   /// Has the motion saved now and then; where it cannot be, `failure` says why.
   Pauses pauses(std::string& failure) const;
   void run_apart(const std::vector<std::vector<int>>& classes);
@@ -104,15 +110,13 @@ class DynamicsTask {
   bool touches_;  // it has contacts, or friction
   std::vector<RopeRoute> routes_;
   bool estimates_;
+  PlanOptions plan_;  // with which it runs
+  std::shared_ptr<InstantRates> instants_ = std::make_shared<InstantRates>();
 };
 
 std::string DynamicsTask::conflict() const {
   const std::vector<EventRequest>& events = context_.task.events;
-  const bool acts = std::any_of(events.begin(), events.end(), [](const EventRequest& event) {
-    const auto action = static_cast<EventAction>(event.action);
-    return event.impulse || action == EventAction::release || action == EventAction::engage;
-  });
-  if (estimates_ && acts) {
+  if (estimates_ && std::any_of(events.begin(), events.end(), acts)) {
     return "the error cannot be estimated where events release or engage a constraint or strike a body: they would "
            "happen at other instants in the second run";
   }
@@ -133,14 +137,7 @@ std::string DynamicsTask::conflict() const {
   }
   if (touches_ && context_.checkpoint)
     return "checkpoints do not keep the state of contacts: run without --checkpoint and --restart";
-  if (context_.design && acts) {
-    return "derivatives are not carried through events that release or engage a constraint or strike a body";
-  }
   if (context_.design && context_.checkpoint) return "derivatives and checkpoints do not go together";
-  if (context_.design && touches_) {
-    return "derivatives are not carried through impacts, contacts and friction: leave these out, or take differences "
-           "from a \"sweep\" over the parameter";
-  }
   if (context_.checkpoint && estimates_) return "an estimate of the error and checkpoints do not go together";
   return {};
 }
@@ -149,12 +146,12 @@ template <class Analysis>
 void DynamicsTask::run_or_estimate(Analysis& analysis, const PlanOptions& plan) {
   if (!estimates_) {
     run_over_time(context_, result_, analysis, *grid_, names_, sources,
-                  [&](AnalysisRows& rows) { differentiate(rows, analysis.evaluator()); });
+                  [&](AnalysisRows& rows) { differentiate(rows, analysis); });
     return;
   }
   WithErrorEstimate both(analysis, model_, plan, options_);
   run_over_time(context_, result_, both, *grid_, names_, sources, [&](AnalysisRows& rows) {
-    differentiate(rows, analysis.evaluator());
+    differentiate(rows, analysis);
     if (!context_.digits || context_.design) return;
     auto compared = std::make_unique<ComparedRows>(rows.columns());
     both.show_asked(*compared);
@@ -163,11 +160,32 @@ void DynamicsTask::run_or_estimate(Analysis& analysis, const PlanOptions& plan) 
   result_.fields.push_back({"estimated_error", records_of(both.error(), *model_)});
 }
 
-void DynamicsTask::differentiate(AnalysisRows& rows, const Evaluator& evaluator) const {
+void DynamicsTask::differentiate(AnalysisRows& rows, Dynamics& analysis) {
   if (!context_.design) return;
   rows.differentiate(std::make_unique<MotionDerivatives>(
-      evaluator, designs_of(context_), static_cast<int>(context_.design->names.size()),
+      analysis.evaluator(), designs_of(context_), static_cast<int>(context_.design->names.size()),
       GivenByModel{context_.state.q.empty(), context_.state.qd.empty()}));
+}
+
+bool DynamicsTask::has_phases() const {
+  const auto& events = context_.task.events;
+  const auto& measures = context_.task.measures;
+  return touches_ || std::any_of(events.begin(), events.end(), acts) ||
+         std::any_of(measures.begin(), measures.end(), reads_events);
+}
+
+void DynamicsTask::differentiate(AnalysisRows& rows, DynamicsWithEvents& analysis) {
+  if (!context_.design) return;
+  const GivenByModel given{context_.state.q.empty(), context_.state.qd.empty()};
+  const auto count = static_cast<int>(context_.design->names.size());
+  if (!has_phases()) {
+    rows.differentiate(std::make_unique<MotionDerivatives>(analysis.evaluator(), designs_of(context_), count, given));
+    return;
+  }
+  auto derivatives = std::make_unique<PhasedDerivatives>(
+      phased_design(context_, model_, plan_, analysis.plan(), sources), given, instants_);
+  analysis.witness(derivatives.get());
+  rows.differentiate(std::move(derivatives));
 }
 
 Pauses DynamicsTask::pauses(std::string& failure) const {
@@ -198,6 +216,7 @@ void DynamicsTask::run_with_events_or_pauses() {
                              restart->motion.t, restart->motion.rows_given);
     }
   }
+  plan_ = plan;
   run_or_estimate(analysis, plan);
   add_singular_points(result_, analysis.singular_points(), *model_);
   std::vector<std::string>& warnings = result_.report.warnings;
@@ -271,8 +290,10 @@ void DynamicsTask::run_on() {
 }  // namespace
 
 void run_dynamics(AnalysisContext& context, AnalysisResult& result) {
-  DynamicsTask(context, result).run();
+  DynamicsTask task(context, result);
+  task.run();
   add_field_measures(context, result);
+  if (context.design) set_event_gradients(context, result, task.instants());
 }
 
 }  // namespace catena

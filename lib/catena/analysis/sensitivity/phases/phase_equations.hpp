@@ -1,0 +1,115 @@
+// Accelerations, projections and jumps of velocities of one phase of a motion with contacts, with derivatives.
+//
+// One plan has the equations of all contacts and slides; those that do not hold in a phase are left out. A place that
+// presses by a force has a known multiplier of its equation, -N, and one that slides has one that follows from others:
+//
+//   [ M      Phi_q^T ] [ qdd    ]   [ Q     ]
+//   [ Phi_q  0       ] [ lambda ] = [ gamma ]      lambda_slide = -f,   f + mu sigma N(lambda) = 0
+//
+// The sizes f of friction forces follow from as many equations (contact_loads.hpp), lambda being linear in them; their
+// derivatives from the same matrix with the residual's. A jump of velocities is of the same form:
+//
+//   M (qd+ - qd-) + Phi_q^T p = F,   Phi_q qd+ = nu,   w+ = -e w-,   p_slide = -f,   f + mu s N(p) = 0
+//
+// and its derivatives run along an instant that moves: those of positions include qd- t*_p, those of nu nu_t t*_p.
+// Singular where friction wedges (Painleve), where constraints are. Sources: as contact_loads.hpp, contact_switch.hpp;
+// apps/manual/sensitivity.md.
+#pragma once
+
+#include <map>
+#include <span>
+#include <vector>
+
+#include "catena/analysis/contact/motion_phase.hpp"
+#include "catena/analysis/sensitivity/phases/design_places.hpp"
+#include "catena/analysis/sensitivity/saddle_system.hpp"
+#include "catena/columns/design_state.hpp"
+
+namespace catena {
+
+/// A blow with derivatives; symbols as in Strike.
+struct DesignStrike {
+  int body = -1;
+  Vec2<DesignScalar> point{}, impulse{};
+};
+
+class PhaseEquations {
+ public:
+  using Vector = std::vector<DesignScalar>;
+  /// A mechanism with derivatives by some parameters, and its places.
+  struct Design {
+    DesignMechanism& mechanism;
+    const std::vector<DesignPlace>& places;
+    std::size_t count;  ///< of parameters
+  };
+
+  /// `evaluator`: of the plan with all equations. Both must outlive this object.
+  PhaseEquations(Evaluator& evaluator, const ContactModel& contacts);
+
+  /// These elements have no equations from now on, and places do this.
+  void hold(const std::vector<int>& released, std::vector<ContactState> states);
+  const std::vector<ContactState>& states() const { return states_; }
+  /// Whether exact friction sticks at a place.
+  bool sticks(std::size_t place) const;
+  /// The row of a place's gap, of its slide; -1: none.
+  int gap_row(std::size_t place) const;
+  int slide_row(std::size_t place) const;
+  bool holds_row(int row) const { return held_[static_cast<std::size_t>(row)] != 0; }
+
+  /// Factors for the equations that hold, at this place.
+  bool factorize(double t, Side side, std::span<const DesignScalar> q, const DesignMechanism& masses);
+  /// qdd and lambda with derivatives at q, qd; the mechanism is at the time of the factors, and at this state then.
+  bool accelerate(const Design& design, std::span<const DesignScalar> q, std::span<const DesignScalar> qd,
+                  std::span<DesignScalar> qdd, std::span<DesignScalar> lambda);
+  /// What contacts do at the state of the last accelerate().
+  void contacts(const Design& design, std::span<const DesignScalar> lambda, DesignContacts& out) const;
+  /// What presses place k, with derivatives, from multipliers; the mechanism is at the state.
+  DesignScalar normal(const Design& design, std::size_t k, std::span<const DesignScalar> lambda) const;
+  /// Moves derivatives of positions and velocities onto the constraints, least in the metric of the masses. `anchor`:
+  /// of each row, how what it keeps moves with the parameters.
+  bool project(const Design& design, std::span<const DesignScalar> anchor, std::span<DesignScalar> q,
+               std::span<DesignScalar> qd);
+  /// qd- to qd+ by one step of a jump, whose equations are held and factored. `target`: what rates of rows become.
+  /// `instant`: dt/dp.
+  bool jump(const Design& design, const VelocityJump& jump, const DesignStrike* strike,
+            std::span<const DesignScalar> target, std::span<const double> instant, std::span<const DesignScalar> q,
+            std::span<DesignScalar> qd);
+  const std::vector<int>& dependent_rows() const { return system_->dependent_rows(); }
+  const Plan& plan() const { return evaluator_.plan(); }
+
+ private:
+  /// A friction force that depends on multipliers: f = -factor N.
+  struct Coupled {
+    std::size_t place;
+    int slide_row;
+    DesignScalar factor;  // mu sigma
+  };
+  struct Response {
+    std::vector<double> x, lambda;
+  };
+  DesignScalar compliant_force(const Design& design, std::size_t k) const;
+  DesignScalar row_factor(const Design& design, std::size_t k) const;
+  DesignScalar slip_sign(const Design& design, std::size_t k) const;
+  bool slides(std::size_t k) const;
+  double normal_value(const Design& design, std::size_t k, std::span<const double> lambda,
+                      std::span<const double> along, double& slope) const;
+  bool respond(const Design& design, std::span<const Coupled> coupled);
+  bool solve_values(const Design& design, std::span<const Coupled> coupled);
+  void add_slopes(const Design& design, std::span<const Coupled> coupled, std::span<DesignScalar> x,
+                  std::span<DesignScalar> lambda);
+  void find_slope(const Design& design, std::span<const Coupled> coupled, std::span<const double> lambda);
+
+  Evaluator& evaluator_;
+  const ContactModel& contacts_;
+  std::vector<ContactState> states_;
+  std::vector<char> held_;                            // by row
+  std::map<std::vector<int>, SaddleSystem> systems_;  // by the rows that are left out
+  SaddleSystem* system_ = nullptr;
+  std::vector<double> jacobian_, values_, f_, b_;
+  std::vector<double> sizes_, slope_;  // of friction forces; d(f + mu sigma N)/df, row by row
+  std::vector<Response> response_;
+  std::vector<Taylor<DesignScalar>> rows_;
+  Vector loads_, forces_, unit_;
+};
+
+}  // namespace catena

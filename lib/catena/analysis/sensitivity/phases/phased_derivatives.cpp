@@ -1,0 +1,345 @@
+#include "catena/analysis/sensitivity/phases/phased_derivatives.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "catena/base/at.hpp"
+
+namespace catena {
+namespace {
+
+// A row that holds from now on is met along the parameters to this part of what its place moves by: instants are found
+// to rounding, states to the tolerance.
+constexpr double row_is_met = 1e-6;
+
+}  // namespace
+
+PhasedDerivatives::~PhasedDerivatives() = default;
+
+PhasedDerivatives::PhasedDerivatives(PhasedDesign design, GivenByModel start, std::shared_ptr<InstantRates> rates)
+    : StateDerivatives(Evaluator(Plan::make(*design.contacts.model, design.all_rows), *design.contacts.model),
+                       design.models, design.parameters),
+      n_(at(plan().coordinates())),
+      models_(std::move(design.models)),
+      contacts_(std::move(design.contacts)),
+      open_plan_(Plan::make(*contacts_.model, design.open_rows)),
+      events_(std::move(design.events)),
+      given_start_(start),
+      instants_(std::move(rates)),
+      stage_(2 * n_),
+      y_(2 * n_) {
+  equations_ = std::make_unique<PhaseEquations>(evaluator(), contacts_);
+  for (const Group& group : groups()) {
+    Track& track = tracks_.emplace_back();
+    for (Vector* y : {&track.begin, &track.end, &track.before}) y->resize(2 * n_);
+    track.anchor.resize(at(plan().rows));
+    track.stage.assign(16, Vector(2 * n_));
+    track.interpolant.assign(7, Vector(2 * n_));
+    places_.push_back(design_places(group.mechanism.model(), contacts_.points));
+    if (std::string trouble = trouble_with_places(group.mechanism.model()); !trouble.empty()) fail(std::move(trouble));
+  }
+}
+
+PhaseEquations::Design PhasedDerivatives::design(std::size_t k) {
+  return {groups()[k].mechanism, places_[k], at(groups()[k].count)};
+}
+
+std::string PhasedDerivatives::name(std::size_t place) const {
+  return contacts_.model->element_name(contacts_.points[place].element);
+}
+
+bool PhasedDerivatives::singular(double t) {
+  return fail(
+      fmt::format("at t = {:.9g} s the motion passes a singular configuration, or friction wedges, beyond which its "
+                  "derivatives are not known",
+                  t));
+}
+
+bool PhasedDerivatives::not_shown(double t) {
+  return fail(
+      fmt::format("the motion could not be looked at at t = {:.9g} s, beyond which its derivatives are not known", t));
+}
+
+bool PhasedDerivatives::factorize(double t, Side side, const Vector& y) {
+  return equations_->factorize(t, side, std::span(y).first(n_), groups().front().mechanism);
+}
+
+// y' at y; the factors belong to its values, accelerations and multipliers of the group to it.
+bool PhasedDerivatives::slope(std::size_t k, double t, Side side, const Vector& y, Vector& out) {
+  Group& group = groups()[k];
+  group.mechanism.set_time(t, side);
+  const std::span<const DesignScalar> q = std::span(y).first(n_), qd = std::span(y).subspan(n_);
+  if (!equations_->accelerate(design(k), q, qd, group.qdd, group.lambda)) return false;
+  std::copy(qd.begin(), qd.end(), out.begin());
+  std::copy(group.qdd.begin(), group.qdd.end(), out.begin() + static_cast<std::ptrdiff_t>(n_));
+  return true;
+}
+
+void PhasedDerivatives::combine(const StageSum& sum, double h, const Vector& from, const std::vector<Vector>& stages,
+                                Vector& out) const {
+  out = from;
+  for (const StageTerm& term : sum) {
+    const DesignScalar weight(h * term.weight);
+    const Vector& k = stages[at(term.stage)];
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] += weight * k[i];
+  }
+}
+
+// A parameter has no derivatives from here on.
+void PhasedDerivatives::lose(std::size_t k, std::size_t p, Track& track) {
+  if (p >= at(groups()[k].count)) return;
+  for (DesignScalar& y : track.end) y.d[p] = std::numeric_limits<double>::quiet_NaN();
+}
+
+bool PhasedDerivatives::start(double t, std::span<const double> q_values, std::span<const double> qd_values) {
+  started_ = true;
+  from_ = to_ = t;
+  for (const VelocityJump& jump : phase_.jumps) {
+    if (!jump.places.empty()) return fail("the motion begins with an impact: earlier or later are different motions");
+  }
+  Evaluator open(open_plan_, *contacts_.model);
+  std::vector<CurvePlace> places;
+  evaluator().curve_places(places);
+  open.go_to_curve_places(places);
+  open.set_time(t);
+  open.set_configuration(q_values);
+  StartDerivatives start(open, given_start_);
+  for (std::size_t k = 0; k < tracks_.size(); ++k) {
+    DesignMechanism mechanism(open, models_[k]);
+    mechanism.lift_configuration(q_values, q(tracks_[k].end));
+    for (std::size_t c = 0; c < n_; ++c) tracks_[k].end[n_ + c] = qd_values[c];
+    if (!start.find(mechanism, groups()[k].count, q(tracks_[k].end), qd(tracks_[k].end)))
+      return fail("the start of the motion has no derivative: " + start.why());
+    groups()[k].mechanism.set_time(t);
+    find_anchors(k);
+    check_rows(k, t, true);
+  }
+  const MovingInstant& instant = instant_at(t);
+  if (!instant.moves()) return true;
+  lack_derivatives(
+      fmt::format("the motion begins at t = {:.9g} s, where a function of time jumps at an instant that moves with the "
+                  "parameters: earlier or later are different motions",
+                  t));
+  for (std::size_t p = 0; p < instant.rate.size(); ++p) {
+    if (instant.rate[p] != 0) lose(p / parameters_at_once, p % parameters_at_once, tracks_[p / parameters_at_once]);
+  }
+  return true;
+}
+
+// Slides of places that stick keep the value that they have now.
+void PhasedDerivatives::find_anchors(std::size_t k) {
+  Group& group = groups()[k];
+  Track& track = tracks_[k];
+  group.mechanism.set_state(q(track.end));
+  group.mechanism.rows(group.rows);
+  std::fill(track.anchor.begin(), track.anchor.end(), DesignScalar());
+  for (std::size_t place = 0; place < contacts_.points.size(); ++place) {
+    if (!equations_->sticks(place)) continue;
+    const std::size_t row = at(equations_->slide_row(place));
+    track.anchor[row].d = group.rows[row].f.d;
+  }
+}
+
+// A row that begins to hold must be met whatever the parameters are: else another motion begins there.
+void PhasedDerivatives::check_rows(std::size_t k, double t, bool starts) {
+  Group& group = groups()[k];
+  Track& track = tracks_[k];
+  group.mechanism.set_state(q(track.end), qd(track.end));
+  group.mechanism.rows(group.rows);
+  for (std::size_t p = 0; p < at(group.count); ++p) {
+    double moves = 0, moves_rate = 0;
+    for (std::size_t c = 0; c < n_; ++c) {
+      moves = std::max(moves, std::abs(track.end[c].d[p]));
+      moves_rate = std::max(moves_rate, std::abs(track.end[n_ + c].d[p]));
+    }
+    for (std::size_t r = 0; r < group.rows.size(); ++r) {
+      if (!equations_->holds_row(static_cast<int>(r))) continue;
+      const double miss = std::abs(group.rows[r].f.d[p] - track.anchor[r].d[p]);
+      const double slip = std::abs(group.rows[r].d.d[p]);
+      const bool holds_from_start = starts && open_plan_->element_row[at(plan().row_element[r])] >= 0;
+      if (holds_from_start || (miss <= row_is_met * moves && slip <= row_is_met * (moves_rate + moves))) continue;
+      lack_derivatives(
+          fmt::format("at t = {:.9g} s \"{}\" begins to hold, but a parameter opens it there or breaks it: "
+                      "one way and the other are different motions",
+                      t, contacts_.model->element_name(plan().row_element[r])));
+      lose(k, p, track);
+      break;
+    }
+  }
+}
+
+bool PhasedDerivatives::make_step(double h) {
+  const Tableau& table = dormand_prince_8();
+  for (int s = 0; s < table.stages; ++s) {
+    // Values of the stage are the same in all groups: one factorization serves them all.
+    for (std::size_t k = 0; k < tracks_.size(); ++k) {
+      Track& track = tracks_[k];
+      combine(table.a[at(s)], h, track.begin, track.stage, stage_);
+      const bool at_end = table.c[at(s)] == 1;
+      const double t = at_end ? to_ : from_ + table.c[at(s)] * h;
+      const Side side = at_end ? Side::before : Side::after;
+      if (k == 0 && !factorize(t, side, stage_)) return singular(t);
+      if (!slope(k, t, side, stage_, track.stage[at(s)])) return singular(t);
+    }
+  }
+  for (Track& track : tracks_) combine(table.b, h, track.begin, track.stage, track.end);
+  return true;
+}
+
+// Values are the motion's own: angles may have been moved by whole turns.
+bool PhasedDerivatives::take_values(const MotionStretch& stretch, double t, Vector Track::*y) {
+  const std::optional<Snapshot> state = stretch.at(t);
+  if (!state) return not_shown(t);
+  std::vector<CurvePlace> places;
+  state->evaluator.curve_places(places);
+  evaluator().go_to_curve_places(places);
+  for (std::size_t k = 0; k < tracks_.size(); ++k) {
+    groups()[k].mechanism.go_to_curve_places(places);
+    for (std::size_t c = 0; c < n_; ++c) {
+      (tracks_[k].*y)[c].v = state->q[c];
+      (tracks_[k].*y)[n_ + c].v = state->qd[c];
+    }
+  }
+  return true;
+}
+
+bool PhasedDerivatives::project(double t, Side side, Vector Track::*y) {
+  for (std::size_t k = 0; k < tracks_.size(); ++k) {
+    Track& track = tracks_[k];
+    if (k == 0 && !factorize(t, side, track.*y)) return singular(t);
+    groups()[k].mechanism.set_time(t, side);
+    if (!equations_->project(design(k), track.anchor, q(track.*y), qd(track.*y))) return singular(t);
+  }
+  return true;
+}
+
+// Once derivatives are lost they stay lost: why() says it, and find() fails.
+void PhasedDerivatives::cover(const MotionStretch& stretch) {
+  if (!why().empty()) return;
+  if (!started_) {
+    const std::optional<Snapshot> state = stretch.at(stretch.from);
+    if (!state) {
+      not_shown(stretch.from);
+      return;
+    }
+    const std::vector<double> q(state->q.begin(), state->q.end()), qd(state->qd.begin(), state->qd.end());
+    if (!start(stretch.from, q, qd)) return;
+  }
+  if (!take_values(stretch, stretch.from, &Track::end)) return;
+  for (Track& track : tracks_) track.begin = track.end;
+  from_ = stretch.from;
+  to_ = stretch.to;
+  has_step_ = true;
+  interpolant_ready_ = false;
+  if (!make_step(to_ - from_) || !take_values(stretch, to_, &Track::end) || !project(to_, Side::before, &Track::end))
+    return;
+  found_.clear();
+  if (stretch.ended_by >= 0) find_rates(stretch);
+  const MovingInstant& instant = instant_at(to_);
+  if (instant.order == 1 || instant.moves()) cross_functions();
+}
+
+// See runge_kutta_interpolant.cpp.
+bool PhasedDerivatives::prepare_interpolant() {
+  const Tableau& table = dormand_prince_8();
+  const double h = to_ - from_;
+  const DesignScalar length(h);
+  const Vector zero(2 * n_);
+  for (std::size_t k = 0; k < tracks_.size(); ++k) {
+    Track& track = tracks_[k];
+    const Vector& end = crossed_ == to_ ? track.before : track.end;
+    if (!factorize(to_, Side::before, end)) return singular(to_);
+    if (!slope(k, to_, Side::before, end, track.stage[12])) return singular(to_);
+    for (std::size_t s = 13; s < 16; ++s) {
+      const double t = from_ + table.c[s] * h;
+      combine(table.a[s], h, track.begin, track.stage, stage_);
+      if (!factorize(t, Side::after, stage_)) return singular(t);
+      if (!slope(k, t, Side::after, stage_, track.stage[s])) return singular(t);
+    }
+    for (std::size_t i = 0; i < 2 * n_; ++i) {
+      const DesignScalar difference = end[i] - track.begin[i], bend = length * track.stage[0][i] - difference;
+      track.interpolant[0][i] = difference;
+      track.interpolant[1][i] = bend;
+      track.interpolant[2][i] = difference - length * track.stage[12][i] - bend;
+    }
+    for (std::size_t j = 0; j < 4; ++j) combine(table.interpolant[j], h, zero, track.stage, track.interpolant[3 + j]);
+  }
+  return true;
+}
+
+void PhasedDerivatives::interpolate(const Track& track, double t, Vector& y) const {
+  const double s = (t - from_) / (to_ - from_), r = 1 - s;
+  const auto& c = track.interpolant;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    for (std::size_t p = 0; p < static_cast<std::size_t>(parameters_at_once); ++p) {
+      const auto d = [&](std::size_t k) { return c[k][i].d[p]; };
+      y[i].d[p] =
+          track.begin[i].d[p] + s * (d(0) + r * (d(1) + s * (d(2) + r * (d(3) + s * (d(4) + r * (d(5) + s * d(6)))))));
+    }
+  }
+}
+
+bool PhasedDerivatives::find(const Snapshot& snapshot) {
+  if (!why().empty()) return false;
+  if (!started_) {
+    const std::vector<double> q(snapshot.q.begin(), snapshot.q.end()), qd(snapshot.qd.begin(), snapshot.qd.end());
+    if (!start(snapshot.t, q, qd)) return false;
+  }
+  if (snapshot.t < from_ || snapshot.t > to_) return not_shown(snapshot.t);
+  const bool inside = has_step_ && snapshot.t != to_ && snapshot.t != from_;
+  if (inside && !interpolant_ready_) {
+    if (!prepare_interpolant()) return false;
+    interpolant_ready_ = true;
+  }
+  // At a jump of functions the motion may show velocities of either side: its own are those after it.
+  const bool jumps = crossed_ == snapshot.t;
+  std::vector<CurvePlace> places;
+  snapshot.evaluator.curve_places(places);
+  evaluator().go_to_curve_places(places);
+  for (std::size_t k = 0; k < tracks_.size(); ++k) {
+    Group& group = groups()[k];
+    Track& track = tracks_[k];
+    group.mechanism.go_to_curve_places(places);
+    y_ = has_step_ && snapshot.t == from_ ? track.begin : track.end;
+    if (inside) interpolate(track, snapshot.t, y_);
+    for (std::size_t c = 0; c < n_; ++c) {
+      y_[c].v = snapshot.q[c];
+      if (!jumps) y_[n_ + c].v = snapshot.qd[c];
+    }
+    if (k == 0 && !factorize(snapshot.t, Side::after, y_)) return singular(snapshot.t);
+    group.mechanism.set_time(snapshot.t, Side::after);
+    if (!equations_->project(design(k), track.anchor, q(y_), qd(y_))) return singular(snapshot.t);
+    if (!take_state(k, snapshot, Side::after, y_)) return false;
+  }
+  return true;
+}
+
+bool PhasedDerivatives::find_before(const Snapshot& snapshot) {
+  if (crossed_ != snapshot.t || !why().empty()) return false;
+  for (std::size_t k = 0; k < tracks_.size(); ++k) {
+    const Vector& y = tracks_[k].before;
+    if (k == 0 && !factorize(snapshot.t, Side::before, y)) return singular(snapshot.t);
+    if (!take_state(k, snapshot, Side::before, y)) return false;
+  }
+  return true;
+}
+
+bool PhasedDerivatives::take_state(std::size_t k, const Snapshot& snapshot, Side side, const Vector& y) {
+  Group& group = groups()[k];
+  std::copy_n(y.begin(), n_, group.q.begin());
+  std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(n_), n_, group.qd.begin());
+  if (!slope(k, snapshot.t, side, y, stage_)) return singular(snapshot.t);
+  equations_->contacts(design(k), group.lambda, group.contacts);
+  if (!equations_->dependent_rows().empty()) leave_out_reactions(group);
+  return true;
+}
+
+const std::vector<double>* PhasedDerivatives::phase_instant(double t) const {
+  const auto found = phase_instants_.find(t);
+  return found == phase_instants_.end() ? nullptr : &found->second;
+}
+
+}  // namespace catena

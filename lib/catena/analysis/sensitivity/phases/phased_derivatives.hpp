@@ -1,0 +1,141 @@
+// Derivatives of a motion that goes on in another way at instants of its own: contacts that open, close, hit, stick and
+// slip, constraints that events engage and release, blows.
+//
+// Between these instants as motion_derivatives.hpp, with the rows and forces of the phase (phase_equations.hpp). Where
+// a phase ends, because g(y, p) is zero there, the instant t* moves, and the state's derivatives jump:
+//
+//   t*_p = -g_p / g'        g_p along y_p-, g' along the motion before
+//   y_p+ = J_y (y_p- + y'- t*_p) + J_p - y'+ t*_p        y+ = J(y-, p): impacts, blows, constraints that are engaged
+//
+// (the saltation matrix). g: a gap; what presses; a slip; mu_static N - |T|; a column less the value of its event.
+// Where a place begins to stick, its slide keeps the value it has there, with its derivative.
+//
+// None: a gap that closes without a speed that can be told from rounding; several places that close at once and move
+// apart with the parameters; a motion that begins with an impact, or with a closed place that a parameter opens; phases
+// whose end cannot be told. Sources: P. C. Mueller, Calculation of Lyapunov exponents for dynamic systems with
+// discontinuities (1995); R. I. Leine, H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004),
+// chapter 7; apps/manual/sensitivity.md.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "catena/analysis/motion/tableau.hpp"
+#include "catena/analysis/sensitivity/phases/phase_equations.hpp"
+#include "catena/analysis/sensitivity/start_derivatives.hpp"
+#include "catena/analysis/sensitivity/state_derivatives.hpp"
+
+namespace catena {
+
+/// An event of the list as derivatives see it.
+struct DesignEvent {
+  ColumnSet column;
+  double value = 0;
+  std::vector<double> value_rate;     ///< of its value, by parameter
+  std::vector<DesignStrike> strikes;  ///< by group of parameters; empty: it strikes nothing
+};
+
+/// How instants of a motion move with the parameters, by instant; not a number where that is not known.
+using InstantRates = std::map<double, std::vector<double>>;
+
+/// What a motion with contacts and events is differentiated with.
+struct PhasedDesign {
+  ContactModel contacts;
+  PlanOptions all_rows, open_rows;  ///< plans of contacts.model: with all equations; with those that always hold
+  DesignModels models;              ///< see with_slides()
+  int parameters = 0;
+  std::vector<DesignEvent> events{};
+};
+
+class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
+ public:
+  /// `rates` is filled with the instants at which the motion goes on in another way, and of events.
+  PhasedDerivatives(PhasedDesign design, GivenByModel start, std::shared_ptr<InstantRates> rates);
+  ~PhasedDerivatives() override;
+
+  void begin(const MotionPhase& phase) override;
+  void cover(const MotionStretch& stretch) override;
+  bool find(const Snapshot& snapshot) override;
+  const std::vector<double>* phase_instant(double t) const override;
+
+ protected:
+  bool find_before(const Snapshot& snapshot) override;
+  int seen_order() const override { return 3; }
+
+ private:
+  using Vector = std::vector<DesignScalar>;
+  /// Of one group: y = [q, qd] where the present step begins, where it ends, just before the last crossing; its stages
+  /// and interpolant; and what its rows keep, see PhaseEquations::project().
+  struct Track {
+    Vector begin, end, before, anchor;
+    std::vector<Vector> stage, interpolant;
+  };
+  PhaseEquations::Design design(std::size_t group);
+  std::span<DesignScalar> q(Vector& y) const { return std::span(y).first(n_); }
+  std::span<DesignScalar> qd(Vector& y) const { return std::span(y).subspan(n_); }
+  bool start(double t, std::span<const double> q, std::span<const double> qd);
+  void find_anchors(std::size_t group);
+  void check_rows(std::size_t group, double t, bool starts);
+  void lose(std::size_t group, std::size_t p, Track& track);
+  bool take_values(const MotionStretch& stretch, double t, Vector Track::*y);
+  bool factorize(double t, Side side, const Vector& y);
+  bool slope(std::size_t group, double t, Side side, const Vector& y, Vector& out);
+  bool make_step(double h);
+  void combine(const StageSum& sum, double h, const Vector& from, const std::vector<Vector>& stages, Vector& out) const;
+  bool project(double t, Side side, Vector Track::*y);
+  bool prepare_interpolant();
+  void interpolate(const Track& track, double t, Vector& y) const;
+  bool take_state(std::size_t group, const Snapshot& snapshot, Side side, const Vector& y);
+  bool singular(double t);
+  bool not_shown(double t);
+  // Crossings: phased_crossing.cpp.
+  void find_rates(const MotionStretch& stretch);
+  std::optional<std::vector<double>> rate_of_place(const MotionStretch* stretch, const WatchedPlace& watched);
+  std::optional<std::vector<double>> rate_of_event(const MotionStretch& stretch, const DesignEvent& event,
+                                                   bool is_first);
+  std::vector<double> rates_of(const MotionPhase& phase);
+  void note_landings(const MotionPhase& phase, const std::vector<double>& rate);
+  bool cross(const MotionPhase& phase, const std::vector<double>& rate);
+  bool cross_functions();
+  std::span<const double> rates_of_group(const std::vector<double>& rate, std::size_t group);
+  bool jump(const VelocityJump& jump, const std::vector<double>& rate, std::vector<Vector>& there);
+  template <class Target>
+  bool jump_on(const VelocityJump& jump, const std::vector<double>& rate, std::vector<Vector>& there, Target&& target);
+  std::vector<int> released_in(const VelocityJump& jump) const;
+  void check_hits(const VelocityJump& jump, std::size_t group, const Vector& there);
+  void end_crossing(std::size_t group, const std::vector<double>& rate, const Vector& slope_before, bool jumps);
+  static void move_along(Vector& y, const Vector& slope, std::span<const double> rate, double sign);
+  DesignScalar end_value(std::size_t group, const WatchedPlace& watched);
+  std::optional<double> rate_along(const MotionStretch& stretch, const std::function<std::optional<double>(double)>& f);
+  static void note_instant(InstantRates& instants, double t, const std::vector<double>& rate);
+  std::string name(std::size_t place) const;
+
+  std::size_t n_;  // coordinates
+  DesignModels models_;
+  ContactModel contacts_;
+  std::vector<std::vector<DesignPlace>> places_;  // by group
+  std::shared_ptr<const Plan> open_plan_;
+  std::vector<DesignEvent> events_;
+  GivenByModel given_start_;
+  std::shared_ptr<InstantRates> instants_;
+  std::unique_ptr<PhaseEquations> equations_;
+  MotionPhase phase_;
+  std::vector<Track> tracks_;
+  bool has_phase_ = false, started_ = false, has_step_ = false, interpolant_ready_ = false;
+  double from_ = 0, to_ = 0;
+  std::optional<double> crossed_;  // where functions of time jumped last
+  // Of the end of the present phase, by the event or transition found there.
+  std::map<int, std::vector<double>> found_;
+  InstantRates phase_instants_;
+  std::vector<std::array<bool, parameters_at_once>> lose_;  // by group: parameters without derivatives after a crossing
+  struct Bounce {
+    double t = 0;
+    std::vector<double> rate;
+  };
+  std::map<std::size_t, Bounce> bounces_;  // by place, the last one
+  std::string lost_;
+  Vector stage_, y_;
+};
+
+}  // namespace catena

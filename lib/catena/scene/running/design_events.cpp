@@ -1,0 +1,128 @@
+#include "catena/scene/running/design_events.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "catena/scene/running/event_entries.hpp"
+
+namespace catena {
+namespace {
+
+/// A number of the task with derivatives by the parameters of a group.
+template <class IsMeant>
+DesignScalar lifted_number(double value, const std::vector<std::vector<SceneModels::MovingNumber>>& moving,
+                           std::size_t group, IsMeant&& is_meant) {
+  DesignScalar result(value);
+  for (std::size_t p = 0; p < static_cast<std::size_t>(parameters_at_once); ++p) {
+    const std::size_t k = group * static_cast<std::size_t>(parameters_at_once) + p;
+    if (k >= moving.size()) break;
+    for (const SceneModels::MovingNumber& one : moving[k]) {
+      if (is_meant(one.number)) result.d[p] += one.rate;
+    }
+  }
+  return result;
+}
+
+DesignStrike strike_with_derivatives(const EventRequest::Impulse& impulse, std::size_t event, std::size_t group,
+                                     const DesignModel& model,
+                                     const std::vector<std::vector<SceneModels::MovingNumber>>& moving) {
+  const auto pair = [&](const std::array<double, 2>& values, TaskNumber::Place place) {
+    const auto part = [&](std::size_t n) {
+      return lifted_number(values[n], moving, group, [&](const TaskNumber& number) {
+        return number.place == place && number.item == event && number.part == n;
+      });
+    };
+    return Vec2<DesignScalar>{part(0), part(1)};
+  };
+  DesignStrike strike;
+  strike.body = model.find_body(impulse.body);
+  const Vec2<DesignScalar>* const named =
+      impulse.point.empty() ? nullptr : model.find_point(strike.body, impulse.point);
+  const Vec2<DesignScalar> origin = model.bodies[static_cast<std::size_t>(strike.body)].origin;
+  strike.point = named ? *named : origin + pair(impulse.local, TaskNumber::Place::struck_point);
+  strike.impulse = pair(impulse.value, TaskNumber::Place::impulse);
+  return strike;
+}
+
+}  // namespace
+
+bool acts(const EventRequest& event) {
+  const auto action = static_cast<EventAction>(event.action);
+  return event.impulse || action == EventAction::release || action == EventAction::engage;
+}
+
+bool reads_events(const PlacedMeasure& measure) {
+  return measure.request.kind == MeasureKind::field && measure.request.field == "events";
+}
+
+PhasedDesign phased_design(const AnalysisContext& context, const std::shared_ptr<const Model>& model,
+                           const PlanOptions& options, const Plan& plan, const ColumnSources& sources) {
+  PhasedDesign design;
+  design.contacts = contact_points(model);
+  design.parameters = static_cast<int>(context.design->names.size());
+  for (const std::shared_ptr<const DesignModel>& one : designs_of(context))
+    design.models.push_back(with_slides(one, design.contacts));
+  const auto moving = context.models->moving_numbers(context.task, context.seeds, context.design->parameters);
+  PlanOptions all = options;
+  std::vector<int> released;
+  ColumnSources untimed = sources;
+  untimed.timed = false;
+  const std::vector<Event> events = events_of(context.task, *model);
+  for (std::size_t e = 0; e < events.size(); ++e) {
+    const EventRequest& request = context.task.events[e];
+    if (events[e].action == EventAction::release || events[e].action == EventAction::engage)
+      all.keep_elements.push_back(events[e].element);
+    if (events[e].action == EventAction::engage) released.push_back(events[e].element);
+    const std::string name[] = {request.column};
+    DesignEvent event{ColumnSet::resolve(*model, plan, name, untimed), request.value, {}, {}};
+    for (std::size_t p = 0; p < moving.size(); ++p) {
+      double rate = 0;
+      for (const SceneModels::MovingNumber& one : moving[p])
+        rate += one.number.place == TaskNumber::Place::event && one.number.item == e ? one.rate : 0;
+      event.value_rate.push_back(rate);
+    }
+    for (std::size_t k = 0; request.impulse && k < design.models.size(); ++k)
+      event.strikes.push_back(strike_with_derivatives(*request.impulse, e, k, *design.models[k], moving));
+    design.events.push_back(std::move(event));
+  }
+  all.one_sided = all.friction = true;
+  for (const ContactPoint& point : design.contacts.points) {
+    all.keep_elements.push_back(point.kind == ContactKind::joint ? point.joint : point.element);
+    if (point.has_friction()) all.keep_elements.push_back(point.slide);
+  }
+  design.all_rows = design.open_rows = all;
+  for (const ContactPoint& point : design.contacts.points) {
+    if (point.kind != ContactKind::joint) released.push_back(point.element);
+    if (point.has_friction()) released.push_back(point.slide);
+  }
+  for (const int friction : model->frictions()) {
+    released.push_back(friction);
+    const bool is_place = std::any_of(design.contacts.points.begin(), design.contacts.points.end(),
+                                      [&](const ContactPoint& point) { return point.element == friction; });
+    if (!is_place) design.all_rows.released_elements.push_back(friction);
+  }
+  design.open_rows.released_elements = released;
+  return design;
+}
+
+void set_event_gradients(const AnalysisContext& context, AnalysisResult& result, const InstantRates& instants) {
+  for (const PlacedMeasure& placed : context.task.measures) {
+    if (!reads_events(placed) || placed.request.part != "t") continue;
+    for (const MeasureResult& measure : result.measures) {
+      if (measure.name != placed.request.name || !measure.value) continue;
+      const auto found = instants.find(*measure.value);
+      std::vector<double> gradient(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
+      std::string trouble;
+      if (found == instants.end())
+        trouble = fmt::format("the derivative of the instant t = {:.9g} s is not known", *measure.value);
+      else
+        gradient = found->second;
+      set_field_gradient(context, result, placed.request.field, placed.request.number, gradient, trouble, "t");
+      break;
+    }
+  }
+}
+
+}  // namespace catena
