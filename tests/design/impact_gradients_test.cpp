@@ -260,6 +260,86 @@ TEST(ImpactGradients, OfAWeightThatIsLetGo) {
       run, "area", [](const auto& p) { return p[0] * p[0] * std::pow(1.0 - p[1], 3) / 3.0; }, at, 1e-8);
 }
 
+/// phi'' = -w2 sin(phi) from phi0 at rest until t, by Runge and Kutta's method, thrown back at phi = stop by the part
+/// e. All numbers are complex, steps and instants too: what follows from them has exact derivatives.
+Complex angle_of_pendulum(const Complex& w2, const Complex& start, const Complex& stop, const Complex& e, double t) {
+  using State = std::array<Complex, 2>;
+  const auto slope_at = [&](const State& y) { return State{y[1], -w2 * std::sin(y[0])}; };
+  const auto moved = [](const State& y, const State& k, const Complex& h) {
+    return State{y[0] + h * k[0], y[1] + h * k[1]};
+  };
+  const auto step = [&](const State& y, const Complex& h) {
+    const State a = slope_at(y), b = slope_at(moved(y, a, h / 2.0)), c = slope_at(moved(y, b, h / 2.0)),
+                d = slope_at(moved(y, c, h));
+    State sum = y;
+    for (std::size_t k = 0; k < 2; ++k) sum[k] += h / 6.0 * (a[k] + 2.0 * b[k] + 2.0 * c[k] + d[k]);
+    return sum;
+  };
+  State y{start, 0};
+  Complex now = 0;
+  const double h = 2e-4;
+  while (now.real() < t) {
+    const Complex length = now.real() + h < t ? Complex(h) : t - now;
+    const State next = step(y, length);
+    if (next[0].real() > stop.real()) {
+      y = next;
+      now += length;
+      continue;
+    }
+    Complex part = length / 2.0;
+    for (int n = 0; n < 30; ++n) {
+      const State there = step(y, part);
+      part -= (there[0] - stop) / there[1];
+    }
+    y = step(y, part);
+    y[1] *= -e;
+    now += part;
+  }
+  return y[0];
+}
+
+// A rod falls from the right and comes back from a stop on the left, twice.
+TEST(ImpactGradients, OfAPendulumThatHitsAStop) {
+  const std::string scene =
+      R"--({"catena": 1, "gravity": [0, "=-g"], "parameters": {"g": 9.81, "l": 0.8, "a": 0.9, "s": -0.2,
+    "e": 0.6}, "bodies": {"rod": {"mass": 2, "rod": {"from": [0, 0], "to": ["=l*sin(a)", "=-l*cos(a)"]}}},
+    "constraints": [{"type": "revolute", "name": "pin", "i": ["ground", [0, 0]], "j": "rod.from"}],
+    "forces": [{"type": "stop", "name": "bed", "column": "pin.angle", "min": "=s - pi/2", "restitution": "=e"}],
+    "outputs": ["rod.angle"], "analyses": [)--" +
+      sensitivity(R"("g", "l", "a", "s", "e")", R"("until": 2, "every": 0.1)",
+                  R"("end": {"final": "pin.angle"}, "then": {"at": 1, "of": "pin.angle"})") +
+      "]}";
+  const TextRun run = run_text(scene);
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+  const std::vector<double> at = {9.81, 0.8, 0.9, -0.2, 0.6};
+  const auto angle = [](double t) {
+    return [t](const std::vector<Complex>& p) {
+      return angle_of_pendulum(1.5 * p[0] / p[1], p[2], p[3], p[4], t) - std::acos(-1.0) / 2;
+    };
+  };
+  expect_measure(run, "then", angle(1), at, 1e-8);
+  expect_measure(run, "end", angle(2), at, 1e-8);
+}
+
+// Both ends of a plank reach the floor at once: higher or lower they still do, turned they do not.
+TEST(ImpactGradients, OfPlacesThatCloseAtOnce) {
+  const auto floor = [](const std::string& end) {
+    return R"({"type": "contact", "name": ")" + end + R"(", "i": "ground", "j": "plank.)" + end +
+           R"(", "restitution": 0.5, "curve": {"line": {"point": [0, 0], "axis": [1, 0]}}})";
+  };
+  const TextRun run = run_text(
+      R"--({"catena": 1, "gravity": [0, -9.81], "parameters": {"h": 0.3, "a": 0}, "bodies": {"plank": {"mass": 2,
+      "rod": {"from": ["=-0.4*cos(a)", "=h - 0.4*sin(a)"], "to": ["=0.4*cos(a)", "=h + 0.4*sin(a)"]}}}, "forces": [)--" +
+      floor("from") + ", " + floor("to") + R"(], "outputs": ["plank.y"], "analyses": [)" +
+      sensitivity(R"("h", "a")", R"("until": 0.4, "every": 0.1)", R"("end": {"final": "plank.from.y"})") + "]}");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+  const double t = std::sqrt(2 * 0.3 / 9.81), by_h = 1 / (9.81 * t), v = 0.5 * 9.81 * t;
+  // y = v (T - t) - g (T - t)^2 / 2
+  EXPECT_NEAR(gradient(run, "end", 0), 0.5 * 9.81 * by_h * (0.4 - t) - v * by_h + 9.81 * (0.4 - t) * by_h, 1e-9);
+  EXPECT_TRUE(std::isnan(gradient(run, "end", 1)));
+  EXPECT_TRUE(warns(run, "close at once"));
+}
+
 TEST(ImpactGradients, ThatDoNotExistAreNull) {
   // Opened or not at the start.
   const TextRun rests = run_text(

@@ -45,7 +45,7 @@ RandomScene chain_with_stops(RandomNumbers& random) {
     const std::string x2 = x + " + l*sin(" + angle + ")", y2 = y + " - l*cos(" + angle + ")";
     bodies += (n > 0 ? ", \"" : "\"") + name + R"(": {"mass": "=m*)" + text_of(random(0.5, 1.5)) +
               R"(", "rod": {"from": ["=)" + x + R"(", "=)" + y + R"("], "to": ["=)" + x2 + R"(", "=)" + y2 +
-              R"("]}, "omega": )" + text_of(random(2, 6) * (random(0, 1) < 0.5 ? -1 : 1)) + "}";
+              R"("]}, "angular_velocity": )" + text_of(random(2, 6) * (random(0, 1) < 0.5 ? -1 : 1)) + "}";
     const std::string before = n == 0 ? R"(["ground", [0, 0]])" : "\"b" + std::to_string(n - 1) + ".to\"";
     joints += (n > 0 ? ", " : "") + (R"({"type": "revolute", "name": "J)" + std::to_string(n)) + R"(", "i": )" +
               before + R"(, "j": ")" + name + R"(.from"})";
@@ -97,7 +97,7 @@ RandomScene thrown_disc(RandomNumbers& random) {
   const std::string curve = hump ? R"({"circle": {"centre": [0.4, "=-2*b*5"], "radius": "=2*b*5"}})"
                                  : R"({"line": {"point": [0, 0], "axis": [1, "=s"]}})";
   scene.body = R"("gravity": [0, "=-g"], "bodies": {"d": {"mass": "=m", "inertia": "=b*m*r^2", "position": [0, "=h"],
-      "velocity": ["=u", 0], "omega": "=w"}}, "constraints": [], "forces": [{"type": "contact", "name": "floor",
+      "velocity": ["=u", 0], "angular_velocity": "=w"}}, "constraints": [], "forces": [{"type": "contact", "name": "floor",
       "i": "ground", "j": "d", "radius": "=r", "mu": "=mu", )" +
                contact + R"(, "curve": )" + curve + "}]";
   scene.until = random(0.6, 1.1);
@@ -112,9 +112,9 @@ RandomScene slider_with_catch(RandomNumbers& random) {
                       {"at", random(0.02, 0.08)}, {"p", random(-1, 1)}};
   const bool exact = random(0, 1) < 0.6;
   scene.body = R"("gravity": [0, "=-g"], "bodies": {"s": {"mass": "=m", "inertia": 0.02, "position": [0, 0],
-      "velocity": ["=v", 0]}, "arm": {"mass": 1, "rod": {"from": [0, 0], "to": [0.3, -0.2]}, "omega": )" +
+      "velocity": ["=v", 0]}, "arm": {"mass": 1, "rod": {"from": [0, 0], "to": [0.3, -0.2]}, "angular_velocity": )" +
                text_of(random(-3, 3)) + R"(}},
-      "constraints": [{"type": "translational", "name": "guide", "i": "ground", "j": "s", "axis": [1, 0]},
+      "constraints": [{"type": "translational", "name": "guide", "i": "ground", "j": "s", "axis_i": [1, 0]},
                       {"type": "revolute", "name": "pin", "i": "s", "j": "arm.from"}],
       "forces": [{"type": "friction", "name": "rub", "joint": "guide", "mu": "=mu", "mu_static": "=q*mu")" +
                (exact ? "" : R"(, "vs": 0.05)") + R"(},

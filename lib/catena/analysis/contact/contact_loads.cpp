@@ -265,7 +265,10 @@ double ContactLoads::energy() const {
 void ContactLoads::scatter(std::span<ContactLoad> loads) const {
   std::fill(loads.begin(), loads.end(), ContactLoad{});
   for (std::size_t k = 0; k < points_.size(); ++k) {
-    if (states_[k].closed) loads[at(points_[k].element)] = {normal_[k], friction_[k], slide_[k].rate};
+    if (!states_[k].closed) continue;
+    // What sticks has no slip but rounding.
+    const bool sticks = points_[k].has_friction() && points_[k].is_exact() && states_[k].direction == 0;
+    loads[at(points_[k].element)] = {normal_[k], friction_[k], sticks ? 0 : slide_[k].rate};
   }
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "catena/analysis/accuracy/compared_rows.hpp"
 #include "catena/analysis/dynamics/dynamics_of_islands.hpp"
@@ -11,8 +12,8 @@
 #include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/sensitivity/motion_derivatives.hpp"
 #include "catena/model/rope_routes.hpp"
+#include "catena/scene/models/design_events.hpp"
 #include "catena/scene/running/analysis_run.hpp"
-#include "catena/scene/running/design_events.hpp"
 #include "catena/scene/running/event_entries.hpp"
 #include "catena/scene/running/singular_entries.hpp"
 
@@ -182,8 +183,14 @@ void DynamicsTask::differentiate(AnalysisRows& rows, DynamicsWithEvents& analysi
     rows.differentiate(std::make_unique<MotionDerivatives>(analysis.evaluator(), designs_of(context_), count, given));
     return;
   }
+  const std::vector<double> values = context_.models->values(*context_.task.table, context_.seeds);
+  std::vector<double> sizes;
+  for (const int parameter : context_.design->parameters) sizes.push_back(values[static_cast<std::size_t>(parameter)]);
   auto derivatives = std::make_unique<PhasedDerivatives>(
-      phased_design(context_, model_, plan_, analysis.plan(), sources), given, instants_);
+      phased_design(designs_of(context_), sizes, context_.task,
+                    context_.models->moving_numbers(context_.task, context_.seeds, context_.design->parameters), model_,
+                    plan_, analysis.plan(), sources),
+      given, instants_);
   analysis.witness(derivatives.get());
   rows.differentiate(std::move(derivatives));
 }
@@ -285,6 +292,25 @@ void DynamicsTask::run_on() {
   add_singular_points(result_, analysis.singular_points(), *model_);
   result_.fields.push_back({"method", std::string(to_string(analysis.method()))});
   add_jolts(analysis.jolts());
+}
+
+/// Gradients of the measures of instants in the field "events", after add_field_measures().
+void set_event_gradients(const AnalysisContext& context, AnalysisResult& result, const InstantRates& instants) {
+  for (const PlacedMeasure& placed : context.task.measures) {
+    if (!reads_events(placed) || placed.request.part != "t") continue;
+    for (const MeasureResult& measure : result.measures) {
+      if (measure.name != placed.request.name || !measure.value) continue;
+      const auto found = instants.find(*measure.value);
+      std::vector<double> gradient(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
+      std::string trouble;
+      if (found == instants.end())
+        trouble = fmt::format("the derivative of the instant t = {:.9g} s is not known", *measure.value);
+      else
+        gradient = found->second;
+      set_field_gradient(context, result, placed.request.field, placed.request.number, gradient, trouble, "t");
+      break;
+    }
+  }
 }
 
 }  // namespace

@@ -295,7 +295,7 @@ void PhaseEquations::contacts(const Design& design, std::span<const DesignScalar
     load.force = normal(design, k, lambda);
     if (point.has_friction()) {
       load.friction = -lambda[at(slide_row(k))];
-      load.slip = design.mechanism.measure(point.slide).d;
+      if (!sticks(k)) load.slip = design.mechanism.measure(point.slide).d;
     }
     if (point.kind != ContactKind::compliant) continue;
     const DesignScalar d = -design.mechanism.measure(point.element).f, order = place.exponent + DesignScalar(1.0);

@@ -20,6 +20,8 @@ constexpr double no_jump_of_slopes = 1e-9;
 // Of its size, or of 1: a column is at the value of an event that comes together with another one, both found to
 // rounding.
 constexpr double is_at_value = 1e-12;
+// One that changes by less than this part in the stretch stays at its value, and has no event there.
+constexpr double stays_at_value = 1e-9;
 // Differences for rates begin with this part of a stretch, and are halved until they settle to the second.
 constexpr double first_part = 1.0 / 16, settled_rate = 1e-10;
 constexpr int most_halved = 12;
@@ -149,6 +151,8 @@ std::optional<std::vector<double>> PhasedDerivatives::rate_of_event(const Motion
   };
   const std::optional<double> by_time = rate_along(stretch, column_at);
   if (!by_time) return {};
+  const double change = std::abs(*by_time) * (to_ - from_);
+  if (!is_first && change <= stays_at_value * std::max(std::abs(event.value), 1.0)) return {};
   const std::optional<Snapshot> again = stretch.at(to_);
   if (!again || !find(*again)) return {};
   differentiate(event.column, *again, rate);
@@ -225,7 +229,7 @@ void PhasedDerivatives::check_hits(const VelocityJump& jump, std::size_t k, cons
     for (std::size_t p = 0; p < at(group.count); ++p) {
       double moves = 0;
       for (std::size_t c = 0; c < n_; ++c) moves = std::max(moves, std::abs(there[c].d[p]));
-      if (std::abs(gap.d[p]) <= one_rate * moves) continue;
+      if (std::abs(gap.d[p]) <= one_rate * moves + rounding(k, p)) continue;
       lost_ = fmt::format(
           "at t = {:.9g} s several contacts close at once, \"{}\" among them, at instants that move apart with the "
           "parameters: which comes first decides about the impact",

@@ -14,6 +14,8 @@ namespace {
 // A row that holds from now on is met along the parameters to this part of what its place moves by: instants are found
 // to rounding, states to the tolerance.
 constexpr double row_is_met = 1e-6;
+// Of the length scale, for a parameter that is changed by its own size: derivatives that cancel out leave 1e-15.
+constexpr double rounding_of_derivatives = 1e-12;
 
 }  // namespace
 
@@ -27,11 +29,13 @@ PhasedDerivatives::PhasedDerivatives(PhasedDesign design, GivenByModel start, st
       contacts_(std::move(design.contacts)),
       open_plan_(Plan::make(*contacts_.model, design.open_rows)),
       events_(std::move(design.events)),
+      sizes_(std::move(design.sizes)),
       given_start_(start),
       instants_(std::move(rates)),
       stage_(2 * n_),
       y_(2 * n_) {
   equations_ = std::make_unique<PhaseEquations>(evaluator(), contacts_);
+  length_scale_ = std::max(evaluator().length_scale(), 1.0);
   for (const Group& group : groups()) {
     Track& track = tracks_.emplace_back();
     for (Vector* y : {&track.begin, &track.end, &track.before}) y->resize(2 * n_);
@@ -143,12 +147,22 @@ void PhasedDerivatives::find_anchors(std::size_t k) {
   }
 }
 
+// What a derivative of a place by a parameter may be though it is none.
+double PhasedDerivatives::rounding(std::size_t k, std::size_t p) const {
+  const std::size_t number = k * at(parameters_at_once) + p;
+  const double size = number < sizes_.size() && sizes_[number] != 0 ? std::abs(sizes_[number]) : 1;
+  return rounding_of_derivatives * length_scale_ / size;
+}
+
 // A row that begins to hold must be met whatever the parameters are: else another motion begins there.
 void PhasedDerivatives::check_rows(std::size_t k, double t, bool starts) {
   Group& group = groups()[k];
   Track& track = tracks_[k];
   group.mechanism.set_state(q(track.end), qd(track.end));
   group.mechanism.rows(group.rows);
+  // Of rates: the fastest turn or travel, in 1/s, at least 1.
+  double pace = 1;
+  for (std::size_t c = n_; c < 2 * n_; ++c) pace = std::max(pace, std::abs(track.end[c].v));
   for (std::size_t p = 0; p < at(group.count); ++p) {
     double moves = 0, moves_rate = 0;
     for (std::size_t c = 0; c < n_; ++c) {
@@ -160,7 +174,9 @@ void PhasedDerivatives::check_rows(std::size_t k, double t, bool starts) {
       const double miss = std::abs(group.rows[r].f.d[p] - track.anchor[r].d[p]);
       const double slip = std::abs(group.rows[r].d.d[p]);
       const bool holds_from_start = starts && open_plan_->element_row[at(plan().row_element[r])] >= 0;
-      if (holds_from_start || (miss <= row_is_met * moves && slip <= row_is_met * (moves_rate + moves))) continue;
+      const double none = rounding(k, p);
+      const bool is_met = miss <= row_is_met * moves + none && slip <= row_is_met * (moves_rate + moves) + none * pace;
+      if (holds_from_start || is_met) continue;
       lack_derivatives(
           fmt::format("at t = {:.9g} s \"{}\" begins to hold, but a parameter opens it there or breaks it: "
                       "one way and the other are different motions",

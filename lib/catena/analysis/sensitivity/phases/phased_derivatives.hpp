@@ -45,6 +45,7 @@ struct PhasedDesign {
   PlanOptions all_rows, open_rows;  ///< plans of contacts.model: with all equations; with those that always hold
   DesignModels models;              ///< see with_slides()
   int parameters = 0;
+  std::vector<double> sizes{};  ///< of the parameters: what derivatives are measured by; empty: 1
   std::vector<DesignEvent> events{};
 };
 
@@ -105,6 +106,7 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   std::vector<int> released_in(const VelocityJump& jump) const;
   void check_hits(const VelocityJump& jump, std::size_t group, const Vector& there);
   void end_crossing(std::size_t group, const std::vector<double>& rate, const Vector& slope_before, bool jumps);
+  double rounding(std::size_t group, std::size_t p) const;
   static void move_along(Vector& y, const Vector& slope, std::span<const double> rate, double sign);
   DesignScalar end_value(std::size_t group, const WatchedPlace& watched);
   std::optional<double> rate_along(const MotionStretch& stretch, const std::function<std::optional<double>(double)>& f);
@@ -117,13 +119,14 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   std::vector<std::vector<DesignPlace>> places_;  // by group
   std::shared_ptr<const Plan> open_plan_;
   std::vector<DesignEvent> events_;
+  std::vector<double> sizes_;
   GivenByModel given_start_;
   std::shared_ptr<InstantRates> instants_;
   std::unique_ptr<PhaseEquations> equations_;
   MotionPhase phase_;
   std::vector<Track> tracks_;
   bool has_phase_ = false, started_ = false, has_step_ = false, interpolant_ready_ = false;
-  double from_ = 0, to_ = 0;
+  double from_ = 0, to_ = 0, length_scale_ = 1;
   std::optional<double> crossed_;  // where functions of time jumped last
   // Of the end of the present phase, by the event or transition found there.
   std::map<int, std::vector<double>> found_;

@@ -1,11 +1,8 @@
-#include "catena/scene/running/design_events.hpp"
-
-#include <fmt/format.h>
+#include "catena/scene/models/design_events.hpp"
 
 #include <algorithm>
-#include <limits>
 
-#include "catena/scene/running/event_entries.hpp"
+#include "catena/analysis/events/event_watch.hpp"
 
 namespace catena {
 namespace {
@@ -57,24 +54,27 @@ bool reads_events(const PlacedMeasure& measure) {
   return measure.request.kind == MeasureKind::field && measure.request.field == "events";
 }
 
-PhasedDesign phased_design(const AnalysisContext& context, const std::shared_ptr<const Model>& model,
-                           const PlanOptions& options, const Plan& plan, const ColumnSources& sources) {
+PhasedDesign phased_design(const DesignModels& designs, const std::vector<double>& sizes, const AnalysisTask& task,
+                           const std::vector<std::vector<SceneModels::MovingNumber>>& moving,
+                           const std::shared_ptr<const Model>& model, const PlanOptions& options, const Plan& plan,
+                           const ColumnSources& sources) {
   PhasedDesign design;
   design.contacts = contact_points(model);
-  design.parameters = static_cast<int>(context.design->names.size());
-  for (const std::shared_ptr<const DesignModel>& one : designs_of(context))
+  design.sizes = sizes;
+  design.parameters = static_cast<int>(moving.size());
+  for (const std::shared_ptr<const DesignModel>& one : designs)
     design.models.push_back(with_slides(one, design.contacts));
-  const auto moving = context.models->moving_numbers(context.task, context.seeds, context.design->parameters);
   PlanOptions all = options;
   std::vector<int> released;
   ColumnSources untimed = sources;
   untimed.timed = false;
-  const std::vector<Event> events = events_of(context.task, *model);
-  for (std::size_t e = 0; e < events.size(); ++e) {
-    const EventRequest& request = context.task.events[e];
-    if (events[e].action == EventAction::release || events[e].action == EventAction::engage)
-      all.keep_elements.push_back(events[e].element);
-    if (events[e].action == EventAction::engage) released.push_back(events[e].element);
+  for (std::size_t e = 0; e < task.events.size(); ++e) {
+    const EventRequest& request = task.events[e];
+    if (acts(request) && !request.impulse) {
+      const int element = model->find_element(request.element);
+      all.keep_elements.push_back(element);
+      if (static_cast<EventAction>(request.action) == EventAction::engage) released.push_back(element);
+    }
     const std::string name[] = {request.column};
     DesignEvent event{ColumnSet::resolve(*model, plan, name, untimed), request.value, {}, {}};
     for (std::size_t p = 0; p < moving.size(); ++p) {
@@ -105,24 +105,6 @@ PhasedDesign phased_design(const AnalysisContext& context, const std::shared_ptr
   }
   design.open_rows.released_elements = released;
   return design;
-}
-
-void set_event_gradients(const AnalysisContext& context, AnalysisResult& result, const InstantRates& instants) {
-  for (const PlacedMeasure& placed : context.task.measures) {
-    if (!reads_events(placed) || placed.request.part != "t") continue;
-    for (const MeasureResult& measure : result.measures) {
-      if (measure.name != placed.request.name || !measure.value) continue;
-      const auto found = instants.find(*measure.value);
-      std::vector<double> gradient(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
-      std::string trouble;
-      if (found == instants.end())
-        trouble = fmt::format("the derivative of the instant t = {:.9g} s is not known", *measure.value);
-      else
-        gradient = found->second;
-      set_field_gradient(context, result, placed.request.field, placed.request.number, gradient, trouble, "t");
-      break;
-    }
-  }
 }
 
 }  // namespace catena
