@@ -22,8 +22,9 @@ constexpr double no_jump_of_slopes = 1e-9;
 constexpr double is_at_value = 1e-12;
 // One that changes by less than this part in the stretch stays at its value, and has no event there.
 constexpr double stays_at_value = 1e-9;
-// Differences for rates begin with this part of a stretch, and are halved until they settle to the second.
-constexpr double first_part = 1.0 / 16, settled_rate = 1e-10;
+// Differences for rates begin with this part of a stretch, and are halved until they settle to the second part; those
+// that have not settled to the third one tell nothing, as in a stretch that is no longer than rounding.
+constexpr double first_part = 1.0 / 16, settled_rate = 1e-10, unsettled_rate = 1e-5;
 constexpr int most_halved = 12;
 
 bool is_one(double a, double b) { return std::abs(a - b) <= one_rate * std::max(std::abs(a), std::abs(b)); }
@@ -60,6 +61,7 @@ std::optional<double> PhasedDerivatives::rate_along(const MotionStretch& stretch
     last = now;
     if (change <= settled_rate * std::abs(best)) break;
   }
+  if (!(change <= unsettled_rate * std::abs(best))) return {};
   return best;
 }
 
@@ -229,7 +231,7 @@ void PhasedDerivatives::check_hits(const VelocityJump& jump, std::size_t k, cons
     for (std::size_t p = 0; p < at(group.count); ++p) {
       double moves = 0;
       for (std::size_t c = 0; c < n_; ++c) moves = std::max(moves, std::abs(there[c].d[p]));
-      if (std::abs(gap.d[p]) <= one_rate * moves + rounding(k, p)) continue;
+      if (std::abs(gap.d[p]) <= same_place * moves + rounding(k, p)) continue;
       lost_ = fmt::format(
           "at t = {:.9g} s several contacts close at once, \"{}\" among them, at instants that move apart with the "
           "parameters: which comes first decides about the impact",

@@ -11,9 +11,6 @@
 namespace catena {
 namespace {
 
-// A row that holds from now on is met along the parameters to this part of what its place moves by: instants are found
-// to rounding, states to the tolerance.
-constexpr double row_is_met = 1e-6;
 // Of the length scale, for a parameter that is changed by its own size: derivatives that cancel out leave 1e-15.
 constexpr double rounding_of_derivatives = 1e-12;
 
@@ -121,6 +118,7 @@ bool PhasedDerivatives::start(double t, std::span<const double> q_values, std::s
     find_anchors(k);
     check_rows(k, t, true);
   }
+  if (!lost_.empty()) lack_derivatives(lost_);
   const MovingInstant& instant = instant_at(t);
   if (!instant.moves()) return true;
   lack_derivatives(
@@ -175,12 +173,13 @@ void PhasedDerivatives::check_rows(std::size_t k, double t, bool starts) {
       const double slip = std::abs(group.rows[r].d.d[p]);
       const bool holds_from_start = starts && open_plan_->element_row[at(plan().row_element[r])] >= 0;
       const double none = rounding(k, p);
-      const bool is_met = miss <= row_is_met * moves + none && slip <= row_is_met * (moves_rate + moves) + none * pace;
+      const bool is_met = miss <= same_place * moves + none && slip <= same_place * (moves_rate + moves) + none * pace;
       if (holds_from_start || is_met) continue;
-      lack_derivatives(
-          fmt::format("at t = {:.9g} s \"{}\" begins to hold, but a parameter opens it there or breaks it: "
-                      "one way and the other are different motions",
-                      t, contacts_.model->element_name(plan().row_element[r])));
+      if (lost_.empty())
+        lost_ = fmt::format(
+            "at t = {:.9g} s \"{}\" begins to hold, but a parameter opens it there or breaks it: one way and the other "
+            "are different motions",
+            t, contacts_.model->element_name(plan().row_element[r]));
       lose(k, p, track);
       break;
     }
