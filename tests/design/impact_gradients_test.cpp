@@ -341,6 +341,23 @@ TEST(ImpactGradients, OfPlacesThatCloseAtOnce) {
 }
 
 TEST(ImpactGradients, ThatDoNotExistAreNull) {
+  // The row at which a weight is let go.
+  const TextRun row = run_text(
+      R"({"catena": 1, "gravity": [0, -9.81], "parameters": {"T": 0.5, "m": 2}, "bodies": {"a": {"mass": "=m",
+      "particle": true}}, "constraints": [{"type": "absolute_y", "name": "rail", "i": "a", "value": 0}],
+      "outputs": ["a.vy"], "analyses": [)" +
+      sensitivity(R"("T", "m")",
+                  R"("until": 1, "every": 0.25, "events": [{"name": "let go", "when": "t", "value": "=T",
+      "action": "release", "element": "rail"}])",
+                  "") +
+      "]}");
+  ASSERT_EQ(row.outcome.exit_code, 0) << row.outcome.error_text;
+  const std::vector<double> by_T = row.column("d(a.vy)/d(T)"), by_m = row.column("d(a.vy)/d(m)");
+  ASSERT_EQ(by_T.size(), 5U);
+  EXPECT_TRUE(std::isnan(by_T[2]));
+  EXPECT_NEAR(by_T[3], 9.81, 1e-9);
+  EXPECT_NEAR(by_m[2], 0, 1e-9);
+  EXPECT_TRUE(warns(row, "the row at it has no derivatives"));
   // Opened or not at the start.
   const TextRun rests = run_text(
       R"({"catena": 1, "gravity": [0, -9.81], "parameters": {"h": 0}, "bodies": {"b": {"mass": 1, "particle": true,

@@ -15,6 +15,8 @@ namespace {
 
 // Differences of second order: the step that balances rounding (1e-12 of a run) with the cube of the step.
 constexpr double part_of_parameter = 1e-4;
+// A column that is below this everywhere, in SI units, is rounding of zero, and so are its differences.
+constexpr double no_output = 1e-13;
 // Instants of rows are multiples of a step, rounded to 1e-16.
 constexpr double same_instant = 1e-12;
 
@@ -156,6 +158,8 @@ class Comparison {
       has_derivatives = true;
       double scale = 0;
       for (std::size_t r = 0; r < rows_.rows(); ++r) scale = std::max(scale, std::abs(rows_.at(r, *plain)));
+      const auto is_none = [&](const auto& rows) { return std::abs(rows_.at(rows[0], *column)) <= no_output; };
+      if (scale <= no_output && std::all_of(matched.begin(), matched.end(), is_none)) continue;
       for (const auto& [r, low, high] : matched)
         take(rows_.at(r, *column), below.at(low, c), above.at(high, *other), scale);
     }

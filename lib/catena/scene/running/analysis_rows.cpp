@@ -225,6 +225,21 @@ std::string AnalysisRows::why_no_derivative() const {
   return "the derivative of its column is not a number there";
 }
 
+// A row at which the motion goes on in another way lies before or behind that instant where the parameters move it.
+void AnalysisRows::leave_out_at_instant(double t) {
+  const std::vector<double>* rates = derivatives_->phase_instant(t);
+  if (!rates) return;
+  for (std::size_t k = 0; k < row_gradients_.size(); ++k) {
+    if ((*rates)[k % rates->size()] == 0) continue;
+    row_gradients_[k] = std::numeric_limits<double>::quiet_NaN();
+    jump_ = fmt::format(
+        "at t = {:.9g} s the motion goes on in another way, at an instant that moves with the parameters: the row at "
+        "it "
+        "has no derivatives",
+        t);
+  }
+}
+
 bool AnalysisRows::observe(const Snapshot& snapshot) {
   tell(snapshot.t);
   if (gaps_) gaps_->observe(snapshot);
@@ -239,6 +254,7 @@ bool AnalysisRows::observe(const Snapshot& snapshot) {
     row_gradients_.assign(plain * parameters, std::numeric_limits<double>::quiet_NaN());
     if (!derivatives_->derive(columns_, snapshot, row_gradients_)) ++missing_;
     if (jump_.empty()) jump_ = derivatives_->jump();
+    leave_out_at_instant(snapshot.t);
     std::copy(row_gradients_.begin() + static_cast<std::ptrdiff_t>(first * parameters), row_gradients_.end(),
               values_.begin() + static_cast<std::ptrdiff_t>(plain));
   }

@@ -69,6 +69,7 @@ class AnalysisRows final : public RowObserver {
   /// Between rows, in stretches of as many rows as the motion is smooth over.
   void look_since_last_row(const Snapshot& snapshot);
   void look_at_what_is_left();
+  void leave_out_at_instant(double t);
   /// Why a measure's derivative is missing.
   std::string why_no_derivative() const;
   /// How the instants of the run and its measures move with the parameters. `results`: of all measures and of the
