@@ -95,7 +95,7 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   bool take_state(std::size_t group, const Snapshot& snapshot, Side side, const Vector& y);
   bool singular(double t);
   bool not_shown(double t);
-  // Crossings: phased_crossing.cpp.
+  // Instants and crossings: phased_instants.cpp, phased_crossing.cpp.
   void find_rates(const MotionStretch& stretch);
   std::optional<std::vector<double>> rate_of_place(const MotionStretch* stretch, const WatchedPlace& watched);
   std::optional<std::vector<double>> rate_of_event(const MotionStretch& stretch, const DesignEvent& event,

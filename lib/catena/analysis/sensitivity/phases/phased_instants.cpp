@@ -1,0 +1,211 @@
+// PhasedDerivatives: how the instants move at which phases end and events happen.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "catena/analysis/contact/contact_loads.hpp"
+#include "catena/analysis/sensitivity/phases/phased_derivatives.hpp"
+#include "catena/base/at.hpp"
+
+namespace catena {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+// Rates of two conditions of one instant that differ by less than this part are one: they are good to 1e-8.
+constexpr double one_rate = 1e-6;
+// Of its size, or of 1: a column is at the value of an event that comes together with another one, both found to
+// rounding.
+constexpr double is_at_value = 1e-12;
+// One that changes by less than this part in the stretch stays at its value, and has no event there.
+constexpr double stays_at_value = 1e-9;
+// Differences for rates begin with this part of a stretch, and are halved until they settle to the second part; those
+// that have not settled to the third one tell nothing, as in a stretch that is no longer than rounding.
+constexpr double first_part = 1.0 / 16, settled_rate = 1e-10, unsettled_rate = 1e-5;
+constexpr int most_halved = 12;
+
+bool is_one(double a, double b) { return std::abs(a - b) <= one_rate * std::max(std::abs(a), std::abs(b)); }
+
+/// The rates of an instant that is given by two conditions; where they move apart it has none.
+void join(std::vector<double>& rate, const std::vector<double>& other) {
+  for (std::size_t p = 0; p < rate.size(); ++p) {
+    if (!is_one(rate[p], other[p])) rate[p] = unknown;
+  }
+}
+
+}  // namespace
+
+// df/dt at the end of a stretch, from its inside: differences of order 4.
+std::optional<double> PhasedDerivatives::rate_along(const MotionStretch& stretch,
+                                                    const std::function<std::optional<double>(double)>& f) {
+  constexpr double weights[] = {25, -48, 36, -16, 3};
+  const std::optional<double> end = f(stretch.to);
+  if (!end) return {};
+  double best = unknown, last = unknown, change = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < most_halved; ++n) {
+    const double d = std::ldexp(first_part * (stretch.to - stretch.from), -n);
+    double sum = weights[0] * *end;
+    for (int k = 1; k < 5; ++k) {
+      const std::optional<double> value = f(stretch.to - k * d);
+      if (!value) return {};
+      sum += weights[k] * *value;
+    }
+    const double now = sum / (12 * d);
+    if (!(std::abs(now - last) >= change)) {
+      if (n > 0) change = std::abs(now - last);
+      best = now;
+    }
+    last = now;
+    if (change <= settled_rate * std::abs(best)) break;
+  }
+  if (!(change <= unsettled_rate * std::abs(best))) return {};
+  return best;
+}
+
+// What is zero where a place's phase ends, at the group's state; see ContactPhases.
+DesignScalar PhasedDerivatives::end_value(std::size_t k, const WatchedPlace& watched) {
+  const PhaseEquations::Design of = design(k);
+  const ContactPoint& point = contacts_.points[watched.place];
+  const ContactState& state = equations_->states()[watched.place];
+  const auto pressing = [&] { return equations_->normal(of, watched.place, groups()[k].lambda); };
+  if (watched.ends == PhaseEnd::slide) {
+    if (state.direction != 0) return of.mechanism.measure(point.slide).d;
+    return of.places[watched.place].mu_static * pressing() -
+           abs(groups()[k].lambda[at(equations_->slide_row(watched.place))]);
+  }
+  if (state.closed) return pressing();
+  const DesignScalar gap = of.mechanism.measure(point.element).f;
+  if (watched.ends == PhaseEnd::contact || point.c == 0) return gap;
+  return -gap.v < pressing().v ? gap : pressing();
+}
+
+// t*_p of a place that changes at the end of the step.
+std::optional<std::vector<double>> PhasedDerivatives::rate_of_place(const MotionStretch* stretch,
+                                                                    const WatchedPlace& watched) {
+  const ContactPoint& point = contacts_.points[watched.place];
+  const ContactState state = equations_->states()[watched.place];
+  std::vector<double> by_parameter;
+  if (watched.ends == PhaseEnd::shares) {
+    lost_ = fmt::format("at t = {:.9g} s places that hold each other, \"{}\" among them, give way: when has no derivative",
+                        to_, name(watched.place));
+    for (const Group& group : groups()) by_parameter.insert(by_parameter.end(), at(group.count), unknown);
+    return by_parameter;
+  }
+  std::optional<double> by_time;
+  if (!factorize(to_, Side::before, tracks_.front().end)) return {};
+  for (std::size_t k = 0; k < tracks_.size(); ++k) {
+    if (!slope(k, to_, Side::before, tracks_[k].end, stage_)) return {};
+    const DesignScalar value = end_value(k, watched);
+    for (std::size_t p = 0; p < at(groups()[k].count); ++p) by_parameter.push_back(value.d[p]);
+    if (k > 0) continue;
+    const Taylor<DesignScalar> gap = groups()[0].mechanism.measure(point.element);
+    if (watched.ends == PhaseEnd::slide && state.direction != 0) {
+      by_time = groups()[0].mechanism.measure(point.slide).dd.v;
+    } else if (watched.ends != PhaseEnd::slide && !state.closed && value.v == gap.f.v) {
+      by_time = gap.d.v;
+      const double part = point.turns ? 1 / evaluator().length_scale() : 1;
+      std::vector<double> qd(n_);
+      for (std::size_t c = 0; c < n_; ++c) qd[c] = tracks_[0].end[n_ + c].v;
+      if (std::abs(*by_time) <= no_speed * part * fastest(evaluator(), qd)) {
+        lost_ = fmt::format(
+            "at t = {:.9g} s \"{}\" touches with a speed of {:.3g} that cannot be told from rounding: a little more or "
+            "less is another motion",
+            to_, name(watched.place), *by_time);
+        by_time.reset();
+      }
+    }
+  }
+  const bool touches = !by_time && !lost_.empty();
+  if (!by_time && !touches && stretch) {
+    by_time = rate_along(*stretch, [&](double t) -> std::optional<double> {
+      const std::optional<Snapshot> there = stretch->at(t);
+      if (!there) return {};
+      for (std::size_t c = 0; c < n_; ++c) {
+        y_[c] = DesignScalar(there->q[c]);
+        y_[n_ + c] = DesignScalar(there->qd[c]);
+      }
+      if (!factorize(t, Side::before, y_) || !slope(0, t, Side::before, y_, stage_)) return {};
+      return end_value(0, watched).v;
+    });
+  }
+  for (double& rate : by_parameter) rate = rate == 0 ? 0 : by_time && *by_time != 0 ? -rate / *by_time : unknown;
+  return by_parameter;
+}
+
+// t*_p of an event whose column is at its value at the end of the step.
+std::optional<std::vector<double>> PhasedDerivatives::rate_of_event(const MotionStretch& stretch,
+                                                                    const DesignEvent& event, bool is_first) {
+  std::vector<double> rate(at(parameters()), unknown);
+  const std::optional<Snapshot> end = stretch.at(to_);
+  if (!end) return {};
+  double value = 0;
+  event.column.evaluate(*end, {&value, 1});
+  if (!is_first && !(std::abs(value - event.value) <= is_at_value * std::max(std::abs(event.value), 1.0))) return {};
+  const auto column_at = [&](double t) -> std::optional<double> {
+    const std::optional<Snapshot> there = stretch.at(t);
+    if (!there) return {};
+    double column = 0;
+    event.column.evaluate(*there, {&column, 1});
+    return column;
+  };
+  const std::optional<double> by_time = rate_along(stretch, column_at);
+  if (!by_time) return {};
+  const double change = std::abs(*by_time) * (to_ - from_);
+  if (!is_first && change <= stays_at_value * std::max(std::abs(event.value), 1.0)) return {};
+  const std::optional<Snapshot> again = stretch.at(to_);
+  if (!again || !find(*again)) return {};
+  differentiate(event.column, *again, rate);
+  for (std::size_t p = 0; p < rate.size(); ++p) {
+    const double rest = rate[p] - event.value_rate[p];
+    rate[p] = rest == 0 ? 0 : -rest / *by_time;
+    if (!std::isfinite(rate[p])) rate[p] = unknown;
+  }
+  return rate;
+}
+
+void PhasedDerivatives::find_rates(const MotionStretch& stretch) {
+  const auto take = [&](int number, std::optional<std::vector<double>> rate) {
+    if (!rate) return;
+    note_instant(*instants_, to_, *rate);
+    if (stretch.ends_phase) note_instant(phase_instants_, to_, *rate);
+    found_[number] = std::move(*rate);
+  };
+  const int listed = static_cast<int>(events_.size());
+  if (stretch.ended_by < listed) {
+    for (int e = 0; e < listed; ++e) take(e, rate_of_event(stretch, events_[at(e)], e == stretch.ended_by));
+    return;
+  }
+  const std::size_t transition = at(stretch.ended_by - listed);
+  if (transition < phase_.watched.size()) take(stretch.ended_by, rate_of_place(&stretch, phase_.watched[transition]));
+}
+
+void PhasedDerivatives::note_instant(InstantRates& instants, double t, const std::vector<double>& rate) {
+  const auto [known, is_new] = instants.emplace(t, rate);
+  if (!is_new) join(known->second, rate);
+}
+
+// How the instant moves at which this phase begins.
+std::vector<double> PhasedDerivatives::rates_of(const MotionPhase& phase) {
+  std::vector<double> none(at(parameters()), 0.0), rate = none;
+  if (phase.functions_jump) rate = instant_at(phase.t).rate;
+  if (phase.ended_by >= 0 && at(phase.ended_by) < phase_.watched.size()) {
+    const int number = static_cast<int>(events_.size()) + phase.ended_by;
+    if (const auto found = found_.find(number); found != found_.end()) return found->second;
+    const auto own = rate_of_place(nullptr, phase_.watched[at(phase.ended_by)]);
+    rate = own ? *own : std::vector<double>(none.size(), unknown);
+    note_instant(*instants_, phase.t, rate);
+    note_instant(phase_instants_, phase.t, rate);
+  }
+  for (std::size_t k = 0; k < phase.events.size(); ++k) {
+    const auto found = found_.find(phase.events[k]);
+    const std::vector<double> own = found != found_.end() ? found->second : std::vector<double>(none.size(), unknown);
+    if (k == 0)
+      rate = own;
+    else
+      join(rate, own);
+  }
+  return rate;
+}
+
+}  // namespace catena
