@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "catena/base/at.hpp"
 #include "catena/columns/state_laws.hpp"
 
 namespace catena {
@@ -22,6 +25,28 @@ std::string refused_without_energy(const Model& model, std::string_view what) {
       "follower forces have no energy, and {} not built; give the forces in ground "
       "axes",
       what);
+}
+
+bool is_damped(const Evaluator& evaluator) {
+  std::vector<double> qd(at(evaluator.plan().coordinates()), 0.0);
+  for (int k = 0; k < 3 * evaluator.plan().moving; ++k) qd[at(k)] = std::sin(1.0 + k) + std::cos(0.7 * k * k);
+  if (evaluator.dissipation(qd) != 0) return true;
+  for (std::size_t k = 0; k < evaluator.laws().size(); ++k) {
+    for (const int body : evaluator.laws()[k].bodies) {
+      const std::array<double, 6> gradient = evaluator.law_gradient(static_cast<int>(k), body, {});
+      if (gradient[3] != 0 || gradient[4] != 0 || gradient[5] != 0) return true;
+    }
+  }
+  return false;
+}
+
+Report too_large_without_energy(const Model& model, int freedoms, int most_freedoms) {
+  return {
+      Status::refused,
+      fmt::format("{}: their stiffness is unsymmetric, which dense algebra treats up to {} degrees of freedom; this "
+                  "mechanism has {}",
+                  forces_without_energy(model), most_freedoms, freedoms),
+      {}};
 }
 
 }  // namespace catena

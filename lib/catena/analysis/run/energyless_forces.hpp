@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "catena/assembly/evaluate.hpp"
+#include "catena/base/status.hpp"
 #include "catena/model/model.hpp"
 
 namespace catena {
@@ -14,5 +16,12 @@ std::string forces_without_energy(const Model& model);
 /// Why an analysis that needs an energy is refused; `what` is "paths of forces without one are"
 /// and the like.
 std::string refused_without_energy(const Model& model, std::string_view what);
+
+/// Whether forces depend on velocities: any motion loses power to damping, or a law of state reads a rate. The
+/// evaluator must be at a configuration.
+bool is_damped(const Evaluator& evaluator);
+
+/// Refuses an analysis of the stability of such forces in a mechanism that is too large for dense algebra.
+Report too_large_without_energy(const Model& model, int freedoms, int most_freedoms);
 
 }  // namespace catena

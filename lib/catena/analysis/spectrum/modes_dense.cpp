@@ -1,10 +1,10 @@
 #include "catena/analysis/spectrum/modes_dense.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/spectrum/mass_basis.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -16,81 +16,19 @@ Basis basis_of(MotionGroup& group) {
   return {group.basis.data(), static_cast<Eigen::Index>(group.columns.size()), group.freedoms()};
 }
 
-// Part of a motion, in lengths, that must be that of coordinates with mass: the same measure as for ranks.
-constexpr double least_part = 1e-10;
-
 }  // namespace
 
 DenseModes::DenseModes(StaticSystem& system, MotionGroups& groups, std::span<const double> mass,
                        const std::function<bool()>& go_on, std::span<const AddedSpring> added)
     : system_(system), groups_(groups), added_(added) {
-  // Coordinates without mass get the weight of a length; their groups are made orthonormal in M below.
-  std::vector<double> weight(mass.begin(), mass.end());
-  for (const MotionGroup& group : groups_.groups()) {
-    const bool complete =
-        std::all_of(group.columns.begin(), group.columns.end(), [&](int c) { return mass[at(c)] > 0; });
-    for (int c : group.columns) {
-      const double arm = 1 / system.matrix().inverse_arms()[at(c)];
-      if (!complete) weight[at(c)] = arm * arm;
-    }
-  }
-  cancelled_ = !groups_.orthonormalise(weight, go_on);
+  cancelled_ = !groups_.orthonormalise(basis_weights(system, groups_, mass), go_on);
   for (int k = 0; k < static_cast<int>(groups_.groups().size()) && !massless_ && !cancelled_; ++k) {
     MotionGroup& group = groups_.groups()[at(k)];
-    if (group.freedoms() == 0 || !use_masses(group, mass)) continue;
-    solve(group, k, go_on);
+    if (group.freedoms() == 0) continue;
+    massless_ = use_masses(system, group, mass);
+    if (!massless_) solve(group, k, go_on);
   }
   std::sort(found_.begin(), found_.end(), [](const Found& a, const Found& b) { return a.value < b.value; });
-}
-
-// Z^T M Z = I by the QR decomposition of M^1/2 Z where some coordinates have no mass. False: there is no such basis.
-bool DenseModes::use_masses(MotionGroup& group, std::span<const double> mass) {
-  std::vector<int> heavy;
-  for (int k = 0; k < static_cast<int>(group.columns.size()); ++k) {
-    if (mass[at(group.columns[at(k)])] > 0) heavy.push_back(k);
-  }
-  if (heavy.size() == group.columns.size()) return true;
-  Basis z = basis_of(group);
-  Eigen::MatrixXd moved(static_cast<Eigen::Index>(heavy.size()), z.cols());
-  for (std::size_t k = 0; k < heavy.size(); ++k) {
-    const int c = group.columns[at(heavy[k])];
-    moved.row(static_cast<Eigen::Index>(k)) = z.row(heavy[k]) / system_.matrix().inverse_arms()[at(c)];
-  }
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> geometry(moved.rows(), moved.cols());
-  geometry.setThreshold(least_part);
-  geometry.compute(moved);
-  if (geometry.rank() < z.cols()) {
-    // The motion that pivoting found last moves no mass: its largest massless coordinate.
-    const Eigen::Index rank = geometry.rank();
-    Eigen::VectorXd y = Eigen::VectorXd::Zero(z.cols());
-    if (rank > 0) {
-      y.head(rank) = geometry.matrixR()
-                         .topLeftCorner(rank, rank)
-                         .triangularView<Eigen::Upper>()
-                         .solve(-geometry.matrixR().col(rank).head(rank));
-    }
-    y[rank] = 1;
-    const Eigen::VectorXd v = z * (geometry.colsPermutation() * y);
-    Eigen::Index largest = -1;
-    double most = -1;
-    for (Eigen::Index k = 0; k < v.size(); ++k) {
-      const int c = group.columns[static_cast<std::size_t>(k)];
-      const double travel = std::abs(v[k]) / system_.matrix().inverse_arms()[at(c)];
-      if (mass[at(c)] > 0 || travel <= most) continue;
-      most = travel;
-      largest = k;
-    }
-    massless_ = group.columns[static_cast<std::size_t>(largest)];
-    return false;
-  }
-  for (std::size_t k = 0; k < heavy.size(); ++k) {
-    moved.row(static_cast<Eigen::Index>(k)) = std::sqrt(mass[at(group.columns[at(heavy[k])])]) * z.row(heavy[k]);
-  }
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(moved);
-  const Eigen::MatrixXd r = factors.matrixR().topRows(z.cols()).triangularView<Eigen::Upper>();
-  z = (z * factors.colsPermutation()).eval();
-  r.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(z);
-  return true;
 }
 
 void DenseModes::solve(MotionGroup& group, int number, const std::function<bool()>& go_on) {

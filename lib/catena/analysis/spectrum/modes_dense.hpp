@@ -51,7 +51,6 @@ class DenseModes {
     double value = 0;
     int group = 0, place = 0;
   };
-  bool use_masses(MotionGroup& group, std::span<const double> mass);
   void solve(MotionGroup& group, int number, const std::function<bool()>& go_on);
 
   StaticSystem& system_;

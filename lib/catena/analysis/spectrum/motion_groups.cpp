@@ -237,4 +237,10 @@ double StiffnessFloor::operator()(std::span<const double> v) const {
   return sum;
 }
 
+double StiffnessFloor::between(std::span<const double> u, std::span<const double> v) const {
+  double sum = 0;
+  for (std::size_t c = 0; c < floor_.size(); ++c) sum += floor_[c] * std::abs(u[c] * v[c]);
+  return sum;
+}
+
 }  // namespace catena

@@ -63,6 +63,8 @@ class StiffnessFloor {
   StiffnessFloor(StaticSystem& system, std::span<const double> lambda, double residual,
                  const MotionGroups* groups = nullptr);
   double operator()(std::span<const double> v) const;
+  /// The same for u^T K v.
+  double between(std::span<const double> u, std::span<const double> v) const;
 
  private:
   std::vector<double> floor_;  // per column

@@ -17,6 +17,7 @@
 #include "catena/analysis/spectrum/modes_dense.hpp"
 #include "catena/analysis/spectrum/modes_search.hpp"
 #include "catena/analysis/statics/active_set_at.hpp"
+#include "catena/analysis/statics/static_explanation.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -26,13 +27,6 @@ constexpr int default_count = 10;
 // Degrees of freedom up to which all modes are computed at once where a third of them or more are wanted: some ten
 // seconds.
 constexpr int most_complete_freedoms = 1500;
-
-// Whether any motion loses power to damping.
-bool is_damped(const Evaluator& evaluator) {
-  std::vector<double> qd(at(evaluator.plan().coordinates()), 0.0);
-  for (int k = 0; k < 3 * evaluator.plan().moving; ++k) qd[at(k)] = std::sin(1.0 + k) + std::cos(0.7 * k * k);
-  return evaluator.dissipation(qd) != 0;
-}
 
 }  // namespace
 
@@ -52,18 +46,20 @@ void Modes::start_from(const SystemState& state) {
 
 SystemState Modes::state() const { return state_of(evaluator_, t_, q_); }
 
+Report Modes::undetermined(int column) const {
+  const int coordinate = plan_->coordinate[at(column)];
+  return {
+      Status::refused,
+      fmt::format("the motion of body \"{}\" is not determined: its {} is zero and no constraint ties it to a body "
+                  "with mass",
+                  model_->body_name(plan_->model_body[at(coordinate / 3)]), coordinate % 3 == 2 ? "inertia" : "mass"),
+      {}};
+}
+
 // The `count` lowest modes and all that are zero or negative, where dense algebra is affordable; of a larger mechanism
 // the `count` lowest.
 Report Modes::find_modes(const MassMatrix& masses, std::span<const double> mass, std::span<const double> lambda,
                          double residual, int count, std::vector<Mode>& modes, const std::function<bool()>& go_on) {
-  const auto undetermined = [&](int coordinate) {
-    return Report{
-        Status::refused,
-        fmt::format("the motion of body \"{}\" is not determined: its {} is zero and no constraint ties it to "
-                    "a body with mass",
-                    model_->body_name(plan_->model_body[at(coordinate / 3)]), coordinate % 3 == 2 ? "inertia" : "mass"),
-        {}};
-  };
   system_.fill(lambda, Curvature::exact, 0);
   MotionGroups groups(system_, added_.empty());
   const StiffnessFloor floor(system_, lambda, residual, &groups);
@@ -72,7 +68,7 @@ Report Modes::find_modes(const MassMatrix& masses, std::span<const double> mass,
   if (groups.are_small(most_of_all ? most_complete_freedoms : MotionGroups::usual_freedoms)) {
     const DenseModes dense(system_, groups, mass, go_on, added_);
     if (dense.cancelled()) return {Status::cancelled, "stopped while modes were looked for", {}};
-    if (dense.massless_column()) return undetermined(plan_->coordinate[at(*dense.massless_column())]);
+    if (dense.massless_column()) return undetermined(*dense.massless_column());
     if (!dense.ok()) {
       return {
           Status::not_converged, "the eigenvalues of the stiffness did not settle: is a number in it infinite?", {}};
@@ -148,9 +144,8 @@ ModesReport Modes::run(const std::function<bool()>& go_on) {
     report.seconds = timer.seconds();
     return report;
   };
-  if (!evaluator_.conservative()) {
-    return end({Status::refused, refused_without_energy(*model_, "the modes of forces without one are"), {}});
-  }
+  const bool circulatory = !evaluator_.conservative();
+  if (circulatory && system_.has_gaps()) return end(refuse_gaps_without_energy(system_));
   if (Report functions = check_time_functions(*model_, {t_, t_}); !functions.ok()) return end(std::move(functions));
   evaluator_.set_time(t_);
   std::vector<double> mass(at(plan_->columns)), lambda(at(plan_->rows));
@@ -160,12 +155,19 @@ ModesReport Modes::run(const std::function<bool()>& go_on) {
   MassMatrix masses;
   if (Report missing = masses.load(evaluator_); !missing.ok()) return end(std::move(missing));
   for (int c = 0; c < plan_->columns; ++c) mass[at(c)] = masses.mass[at(plan_->coordinate[at(c)])];
-  if (is_damped(evaluator_)) report.warnings.emplace_back("damping is left out: these are the undamped modes");
+  if (is_damped(evaluator_)) {
+    report.warnings.emplace_back(circulatory
+                                     ? "damping is left out: these are the undamped modes; under forces without "
+                                       "an energy a little damping may bring flutter on earlier"
+                                     : "damping is left out: these are the undamped modes");
+  }
   if (moving_) report.warnings.emplace_back("velocities are left out: these are the modes of the mechanism at rest");
 
   const int wanted = options_.count > 0 ? options_.count : default_count;
   std::vector<Mode> modes;
-  Report outcome = find_modes(masses, mass, lambda, left.negligible() ? left.force : 0, wanted, modes, go_on);
+  const double residual = left.negligible() ? left.force : 0;
+  Report outcome = circulatory ? find_circulatory(mass, lambda, residual, wanted, report)
+                               : find_modes(masses, mass, lambda, residual, wanted, modes, go_on);
   if (!left.negligible()) {
     const int body = plan_->model_body[at(plan_->coordinate[at(left.column)] / 3)];
     report.warnings.push_back(fmt::format(
@@ -173,6 +175,7 @@ ModesReport Modes::run(const std::function<bool()>& go_on) {
         "this one finds the place about which it oscillates",
         left.force, model_->body_name(body)));
   }
+  if (circulatory) return end(std::move(outcome));
   std::vector<std::vector<double>> free;
   for (const Mode& mode : modes) {
     report.unstable += mode.omega2 < 0;

@@ -7,8 +7,14 @@
 // Lanczos' method the lowest (modes_search.hpp), and the inertia of K - mu M just below the highest one proves that
 // none is missing. Functions of time, drivers among them, are frozen; damping and gyroscopic terms are left out, and
 // warnings say so. Where forces are not in balance there are no small oscillations about that place: modes are given
-// all the same, with a warning. Refused: bodies without mass that the constraints tie to no mass; forces without a
-// potential.
+// all the same, with a warning. Refused: bodies without mass that the constraints tie to no mass.
+//
+// Forces without a potential make K unsymmetric (circulatory_modes.hpp): a pair omega2 +- i b takes two places, that of
+// the motion that grows first,
+//
+//   Re (v e^(growth t + i omega t)),   (growth + i omega)^2 = -(omega2 - i b)      shapes: Re v, then Im v
+//
+// Refused beside these: more than 500 degrees of freedom, one-sided elements.
 //
 // One-sided elements that are closed with a force hold as equations, the others not at all (active_set_at.hpp); those
 // that touch without force are named. A closed one with a stiffness k is a spring instead,
@@ -26,6 +32,7 @@
 #include "catena/analysis/motion/mass_matrix.hpp"
 #include "catena/analysis/run/analysis_report.hpp"
 #include "catena/analysis/run/system_state.hpp"
+#include "catena/analysis/spectrum/circulatory_modes.hpp"
 #include "catena/analysis/spectrum/modes_dense.hpp"
 #include "catena/analysis/spectrum/static_balance.hpp"
 #include "catena/analysis/statics/solvers/static_gaps.hpp"
@@ -41,7 +48,10 @@ struct ModesReport : AnalysisReport {
   std::vector<double> omega;                ///< sqrt(|omega2|), rad/s; a growth rate, 1/s, where omega2 < 0
   std::vector<std::vector<double>> shapes;  ///< over columns, v^T M v = 1 kg m^2; the largest angle or, where none
                                             ///< turns, the largest displacement is positive
-  int unstable = 0;                         ///< how many omega^2 below zero there are in all
+  int unstable = 0;                         ///< how many omega^2 below zero there are in all, and pairs
+  int flutter = 0;                          ///< how many pairs omega2 +- i imaginary
+  std::vector<double> imaginary;            ///< rad^2/s^2, of every omega2; empty where all are real
+  std::vector<double> growth;               ///< 1/s; of a pair omega is the frequency; empty where all are real
   int free_motions = 0;                     ///< how many zeros: in all, or among those found in a large mechanism
   std::vector<std::string> free_bodies;     ///< bodies that take part in them
   std::vector<std::string> active;          ///< one-sided elements that hold
@@ -72,6 +82,11 @@ class Modes {
   Report take_place(std::span<double> lambda, Imbalance& left, ModesReport& report);
   Report find_modes(const MassMatrix& masses, std::span<const double> mass, std::span<const double> lambda,
                     double residual, int count, std::vector<Mode>& modes, const std::function<bool()>& go_on);
+  Report undetermined(int column) const;
+  /// The modes under forces without a potential, to the report.
+  Report find_circulatory(std::span<const double> mass, std::span<const double> lambda, double residual, int count,
+                          ModesReport& report);
+  void list(const CirculatoryModes& found, int count, ModesReport& report);
 
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const Plan> plan_;

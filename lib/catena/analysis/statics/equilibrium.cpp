@@ -108,12 +108,23 @@ EquilibriumReport Equilibrium::solve() {
   report.residual = result.residual;
   report.energy = system_.energy();
   const Certificate& c = result.certificate;
+  report.has_energy = result.has_energy;
   report.certified = c.valid && result.has_energy && result.report.status != Status::not_converged;
   report.stable = report.certified && c.stable;
   report.neutral = report.certified && c.neutral;
   report.negative_modes = report.certified ? c.negative_modes : 0;
   report.free_motions = report.certified ? c.neutral_modes : 0;
   if (report.certified) report.free_bodies = c.free_bodies;
+  if (result.stability && result.stability->judged) {
+    const CirculatoryModes& motions = result.stability->motions;
+    report.certified = true;
+    report.stable = result.stability->stable;
+    report.neutral = motions.neutral > 0;
+    report.negative_modes = motions.negative;
+    report.flutter = result.stability->in_masses ? motions.pairs : 0;
+    report.free_motions = motions.neutral;
+    report.free_bodies = result.free_bodies;
+  }
   report.softest_stiffness = c.softest_stiffness;
   if (!c.mode.empty()) {
     report.softest_mode = describe_mode(evaluator_, c.mode, system_.radius());

@@ -6,9 +6,9 @@
 // Solvers: Newton's method from any start (StaticNewton), descent on the constraints with few degrees of freedom, which
 // finds the minimum nearest downhill from the start (StaticDescent), Ipopt, NLopt. `automatic` tries them one after the
 // other and refines results of the last two by Newton's method. Forces that follow a body have no potential: their
-// balance is found by settling. Every result is certified; a stationary point that is no minimum is left along its most
-// negative mode, and minimising goes on, unless stationary points were asked for. Refused, with the motion named:
-// bodies that nothing holds; energies without a minimum.
+// balance is found by settling and judged by its small motions (static_stability.hpp). Every result is certified; a
+// stationary point that is no minimum is left along its most negative mode, and minimising goes on, unless stationary
+// points were asked for. Refused, with the motion named: bodies that nothing holds; energies without a minimum.
 #pragma once
 
 #include <memory>
@@ -48,10 +48,12 @@ struct FoundEquilibrium {
 /// Outcome of the last equilibrium computed; see apps/manual/scenes.md#analyses.
 struct EquilibriumReport : AnalysisReport {
   double energy = 0;       ///< potential energy, J
-  bool certified = false;  ///< false where there is no energy (follower forces): then the next four say nothing
+  bool has_energy = true;  ///< false beside forces without a potential (follower forces, laws of state)
+  bool certified = false;  ///< false where stability could not be judged: then the next five say nothing
   bool stable = false;
   bool neutral = false;  ///< to second order
   int negative_modes = 0;
+  int flutter = 0;                       ///< pairs of complex omega2, without an energy only
   int free_motions = 0;                  ///< that nothing resists to second order: how many
   std::vector<std::string> free_bodies;  ///< and which bodies take part in them
   double softest_stiffness = 0;          ///< N/m, of the mode below

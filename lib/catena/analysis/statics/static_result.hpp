@@ -1,11 +1,14 @@
 // What a search for a static equilibrium is asked for, and what it returns.
 #pragma once
 
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "catena/analysis/spectrum/certificate.hpp"
 #include "catena/analysis/statics/solvers/static_gaps.hpp"
+#include "catena/analysis/statics/static_stability.hpp"
 #include "catena/base/status.hpp"
 
 namespace catena {
@@ -24,6 +27,8 @@ struct StaticResult {
   Report report;
   Certificate certificate;
   bool has_energy = true;
+  std::optional<StaticStability> stability;  ///< where there is no energy, in place of the certificate
+  std::vector<std::string> free_bodies{};    ///< that take part in motions without stiffness, with these forces
   std::string_view solver = "newton";
   int iterations = 0;
   double residual = 0;              ///< largest residual force, N

@@ -43,36 +43,6 @@ void StaticSearch::leave(const Certificate& certificate, std::vector<double>& q,
   system_.evaluator().go_to_curve_places(places);
 }
 
-// Forces that follow their body, laws of state: only the residual is solved, and the result cannot be certified.
-StaticResult StaticSearch::find_without_energy(std::vector<double>& q, std::vector<double>& lambda) {
-  StaticResult result;
-  result.has_energy = false;
-  result.solver = "settling";
-  const std::vector<double> start = q;
-  const std::vector<CurvePlace> places = system_.evaluator().curve_places();
-  StaticOutcome outcome;
-  for (unsigned trial = 0; trial < starts_before_ipopt; ++trial) {
-    if (trial > 0) q = start_of({.way = StaticWay::settling, .displacement = trial}, system_, start);
-    system_.evaluator().go_to_curve_places(places);
-    outcome = solve_by_settling(system_, q, lambda, {.tolerance = options_.tolerance});
-    result.iterations += outcome.iterations;
-    if (outcome.end == StaticEnd::unbounded || outcome.end == StaticEnd::cancelled) break;
-    judge_.weigh(lambda);
-    if (outcome.converged() && judge_.accuracy().holds()) break;
-    if (outcome.converged()) outcome.end = StaticEnd::slow;
-  }
-  result.residual = outcome.residual;
-  if (!outcome.converged()) {
-    result.report = explain(outcome, start, result);
-    return result;
-  }
-  warn_of_rounding(judge_.accuracy(), result.report);
-  drop_whole_turns(system_, start, q);
-  result.report.warnings.push_back(forces_without_energy(system_.evaluator().model()) +
-                                   ": the forces balance here, but nothing certifies that this equilibrium is stable");
-  return result;
-}
-
 // Attempts one after the other until a point is accepted; one that is no minimum is left towards lower energy.
 StaticResult StaticSearch::find_minimum(std::vector<double>& q, std::vector<double>& lambda) {
   StaticResult result;

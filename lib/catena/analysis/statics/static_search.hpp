@@ -3,7 +3,9 @@
 //   attempts from the start, in the order of static_attempts.hpp, each by one solver (static_trial.hpp)
 //   a point that is accepted (static_judge.hpp) ends it
 //   stationary but no minimum                 a push along the most negative mode, and on with the same solver
-//   forces that follow their body: no energy  damped settling (static_settling.hpp), no certificate
+//   forces that follow their body: no energy  damped settling (static_settling.hpp), judged by its small motions
+//                                             (static_stability.hpp); one that diverges is left to either side for a
+//                                             stable one, and kept where there is none
 //
 // Random numbers are fixed: the same scene gives the same answer.
 #pragma once
@@ -28,6 +30,10 @@ class StaticSearch {
  private:
   StaticResult find_minimum(std::vector<double>& q, std::vector<double>& lambda);
   StaticResult find_without_energy(std::vector<double>& q, std::vector<double>& lambda);
+  StaticOutcome settle(std::vector<double>& q, std::vector<double>& lambda, int most_steps, StaticResult& result);
+  /// Looks beside an equilibrium that diverges for a stable one; false, and nothing changed, where there is none.
+  bool leave_divergence(std::vector<double>& q, std::vector<double>& lambda, StaticResult& result);
+  void describe_stability(std::span<const double> lambda, StaticResult& result);
   void leave(const Certificate& certificate, std::vector<double>& q, double size);
   Report explain(const StaticOutcome& outcome, const std::vector<double>& start, const StaticResult& result);
 

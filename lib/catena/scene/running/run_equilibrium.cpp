@@ -168,10 +168,11 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
         context.model->element_name(friction)));
   }
   if (report.certified) {
-    result.fields = {{"energy", report.energy},
-                     {"stable", report.stable},
-                     {"neutral", report.neutral},
-                     {"negative_modes", static_cast<std::int64_t>(report.negative_modes)}};
+    if (report.has_energy) result.fields.push_back({"energy", report.energy});
+    result.fields.push_back({"stable", report.stable});
+    result.fields.push_back({"neutral", report.neutral});
+    result.fields.push_back({"negative_modes", static_cast<std::int64_t>(report.negative_modes)});
+    if (report.flutter > 0) result.fields.push_back({"flutter", static_cast<std::int64_t>(report.flutter)});
     if (report.free_motions > 0) {
       result.fields.push_back({"free_motions", static_cast<std::int64_t>(report.free_motions)});
       result.fields.push_back({"moving_freely", report.free_bodies});
@@ -197,7 +198,7 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   result.report = report;
   rows.finish(result);
   add_field_measures(context, result);
-  if (!derivatives || !report.certified || !report.ok()) return;
+  if (!derivatives || !report.certified || !report.has_energy || !report.ok()) return;
   const Snapshot snapshot{
       .evaluator = analysis.evaluator(), .t = analysis.time(), .q = analysis.q(), .lambda = analysis.lambda()};
   if (derivatives->find(snapshot)) set_field_gradient(context, result, "energy", 0, derivatives->energy_gradient());

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/run/energyless_forces.hpp"
 #include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/sensitivity/spectrum_derivatives.hpp"
 #include "catena/analysis/stability/modes.hpp"
@@ -58,6 +59,17 @@ void differentiate(const AnalysisContext& context, Modes& analysis, const ModesR
   }
 }
 
+/// The vectors that an unsymmetric stiffness has on its left are not those that frequencies are differentiated with.
+void leave_out_derivatives(const AnalysisContext& context, const ModesReport& report, AnalysisResult& result) {
+  const std::vector<double> none(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
+  const std::string trouble =
+      forces_without_energy(*context.model) + ": derivatives of their frequencies are not built";
+  for (std::size_t k = 0; k < report.omega2.size(); ++k) {
+    set_field_gradient(context, result, "omega2", static_cast<int>(k) + 1, none, trouble);
+    set_field_gradient(context, result, "omega", static_cast<int>(k) + 1, none, trouble);
+  }
+}
+
 }  // namespace
 
 void run_modes(AnalysisContext& context, AnalysisResult& result) {
@@ -93,6 +105,12 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
 
   std::vector<ColumnInfo> info{
       {"mode", UnitKind::none}, {"omega2", UnitKind::squared_frequency}, {"omega", UnitKind::angular_velocity}};
+  const bool complex = report.flutter > 0;
+  if (complex) {
+    info.push_back({"omega2_imaginary", UnitKind::squared_frequency});
+    info.push_back({"growth", UnitKind::angular_velocity});
+  }
+  const std::size_t values = info.size();
   std::optional<ShapeColumns> shapes;
   if (task.number("shapes", 0) != 0) {
     shapes.emplace(*context.model, analysis.plan(), task.output_names(), task.type());
@@ -107,8 +125,12 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
     row[0] = static_cast<double>(k + 1);
     row[1] = report.omega2[k];
     row[2] = report.omega[k];
+    if (complex) {
+      row[3] = report.imaginary[k];
+      row[4] = report.growth[k];
+    }
     if (shapes)
-      shapes->evaluate(analysis.evaluator(), analysis.q(), report.shapes[k], std::span<double>(row).subspan(3));
+      shapes->evaluate(analysis.evaluator(), analysis.q(), report.shapes[k], std::span<double>(row).subspan(values));
     if (!context.rows.row(row)) break;
   }
   draw_shapes(context, analysis.evaluator(), start.t, analysis.q(), report.shapes);
@@ -121,6 +143,11 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
   }
   result.fields = {
       {"omega2", report.omega2}, {"omega", report.omega}, {"unstable", static_cast<std::int64_t>(report.unstable)}};
+  if (complex) {
+    result.fields.push_back({"flutter", static_cast<std::int64_t>(report.flutter)});
+    result.fields.push_back({"omega2_imaginary", report.imaginary});
+    result.fields.push_back({"growth", report.growth});
+  }
   if (analysis.plan().gap_rows.size() > 0) result.fields.push_back({"active", report.active});
   if (report.free_motions > 0) {
     result.fields.push_back({"free_motions", static_cast<std::int64_t>(report.free_motions)});
@@ -129,6 +156,10 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
   result.report = report;
   take_rows(result, std::move(info), rows);
   add_field_measures(context, result);
+  if (context.design && report.ok() && !analysis.evaluator().conservative()) {
+    leave_out_derivatives(context, report, result);
+    return;
+  }
   if (context.design && report.ok()) differentiate(context, analysis, report, from_model, result);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/balance/static_tangent.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -20,83 +21,6 @@ constexpr double settling_lost_extents = 1e5;
 // Without damping no further gain is possible below this, length scales or rad.
 constexpr double settling_last_change = 1e-10;
 
-// The unsymmetric matrix, its pattern from the plan.
-class Tangent {
- public:
-  explicit Tangent(StaticSystem& system) : system_(system) {
-    const Plan& plan = system.plan();
-    const int size = plan.columns + plan.rows;
-    std::vector<MatrixEntry> places;
-    for (int k = 0; k < size; ++k) places.push_back({k, k});
-    for (int c = 0; c < plan.columns; ++c) {
-      for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k) {
-        const int row = plan.columns + plan.jacobian.row_index[at(k)];
-        places.push_back({row, c});
-        places.push_back({c, row});
-      }
-    }
-    const std::size_t first = places.size();
-    visit([&](int row, int column, double) { places.push_back({row, column}); });
-    SlottedPattern built = build_pattern(size, size, places);
-    slot_.assign(built.slot.begin(), built.slot.begin() + static_cast<std::ptrdiff_t>(first));
-    element_slot_.assign(built.slot.begin() + static_cast<std::ptrdiff_t>(first), built.slot.end());
-    values_.resize(built.pattern.row_index.size());
-    usable_ = factorization_.analyze(built.pattern, Kernel::automatic, system.evaluator().counters).ok();
-  }
-
-  bool factorize(std::span<const double> lambda, double damping, double stiffness) {
-    const Plan& plan = system_.plan();
-    lambda_ = lambda;
-    std::fill(values_.begin(), values_.end(), 0.0);
-    std::size_t k = 0;
-    for (int c = 0; c < plan.columns; ++c, ++k) {
-      const int coordinate = plan.coordinate[at(c)];
-      const double arm = coordinate % 3 == 2 ? system_.radius()[at(coordinate / 3)] : 1;
-      values_[at(slot_[k])] += damping * arm * arm;
-    }
-    for (int r = 0; r < plan.rows; ++r, ++k) values_[at(slot_[k])] -= regularisation / stiffness;
-    for (double value : system_.jacobian()) {
-      values_[at(slot_[k++])] += value;
-      values_[at(slot_[k++])] += value;
-    }
-    k = 0;
-    visit([&](int, int, double value) { values_[at(element_slot_[k++])] += value; });
-    return usable_ && factorization_.factorize(values_, system_.evaluator().counters).ok();
-  }
-
-  bool solve(std::span<double> x) {
-    return factorization_.solve_checked(values_, x, system_.evaluator().counters).ok();
-  }
-
- private:
-  // All entries of -dQ/dq and of sum lambda Phi_qq over columns.
-  template <class F>
-  void visit(F&& entry) {
-    const Plan& plan = system_.plan();
-    const auto element = [&](int i, int j, const ElementMatrix& m) {
-      for (int a = 0; a < 6; ++a) {
-        const int body_a = a < 3 ? i : j;
-        const int row = body_a >= 0 && body_a < plan.moving ? plan.column[at(3 * body_a + a % 3)] : -1;
-        for (int b = 0; b < 6 && row >= 0; ++b) {
-          const int body_b = b < 3 ? i : j;
-          const int column = body_b >= 0 && body_b < plan.moving ? plan.column[at(3 * body_b + b % 3)] : -1;
-          if (column >= 0) entry(row, column, m[at(6 * a + b)]);
-        }
-      }
-    };
-    if (lambda_.empty()) lambda_ = zero_ = std::vector<double>(at(plan.rows) + 1, 0.0);
-    system_.evaluator().visit_stiffness({}, element);
-    system_.evaluator().visit_constraint_hessians(lambda_, element);
-  }
-
-  StaticSystem& system_;
-  Factorization factorization_;
-  std::span<const double> lambda_;
-  std::vector<double> zero_, values_;
-  std::vector<int> slot_, element_slot_;
-  bool usable_ = false;
-};
-
 }  // namespace
 
 StaticOutcome solve_by_settling(StaticSystem& system, std::span<double> q, std::span<double> lambda,
@@ -109,7 +33,7 @@ StaticOutcome solve_by_settling(StaticSystem& system, std::span<double> q, std::
     outcome.end = StaticEnd::singular;
     return outcome;
   }
-  Tangent tangent(system);
+  StaticTangent tangent(system);
   std::vector<double> x(columns + at(plan.rows)), residual(columns);
   std::vector<double> q_before, lambda_before;
   const std::vector<double> start(q.begin(), q.end());
@@ -127,7 +51,8 @@ StaticOutcome solve_by_settling(StaticSystem& system, std::span<double> q, std::
       outcome.end = StaticEnd::cancelled;
       return outcome;
     }
-    if (!tangent.factorize(lambda, damping, stiffness)) {
+    tangent.fill(lambda, damping, regularisation / stiffness);
+    if (!tangent.factorize()) {
       damping = std::max(settling_stiffening * damping, 1e-6 * stiffness);
       if (damping > largest_damping * stiffness) break;
       continue;

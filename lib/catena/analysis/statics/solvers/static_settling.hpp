@@ -7,7 +7,7 @@
 // s = W / time step, N/m: reduced in proportion to the residual force, raised where a step made it much larger. K is
 // the true tangent and need not be symmetric: forces that follow a body's axes have no energy, and this is the solver
 // for them. Where there is an energy it is the last method tried: it descends in general, but need not end at a
-// minimum. E is tiny and admits dependent equations; it does not enter the solution. Singular case: a direction in
+// minimum. The matrix is that of static_tangent.hpp. Singular case: a direction in
 // which nothing resists and nothing pulls. Source: Kelley and Keyes, SIAM J. Numer. Anal. 35 (1998), pseudo-transient
 // continuation.
 #pragma once
@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "catena/analysis/statics/solvers/static_newton.hpp"
-#include "catena/linalg/factorization/factorization.hpp"
 
 namespace catena {
 

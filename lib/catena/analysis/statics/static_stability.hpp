@@ -1,0 +1,30 @@
+// Whether an equilibrium under forces without a potential is stable, by the small motions about it.
+//
+//   M x'' + K x = 0 on the null space of Phi_q, K unsymmetric:   stable where every omega2 is real and above zero
+//
+// (circulatory_modes.hpp). Masses decide about flutter, so that bodies need some. Where they lack them, K tells what
+// does not depend on masses: everything where K is symmetric on the null space, as that of laws which read what they
+// act on; else an odd number of negative values, which is one of divergence in any metric. Damping is left out. Not
+// judged: other equilibria without masses, mechanisms beyond dense algebra; the reason is given.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "catena/analysis/spectrum/circulatory_modes.hpp"
+
+namespace catena {
+
+struct StaticStability {
+  bool judged = false;
+  bool stable = false;
+  CirculatoryModes motions;  ///< in the metric of lengths where the masses are not known
+  bool in_masses = false;    ///< else in that of lengths
+  std::string why_not;       ///< where it was not judged: a clause
+};
+
+/// At the point where the system is.
+StaticStability judge_stability(StaticSystem& system, std::span<const double> lambda);
+
+}  // namespace catena
