@@ -14,19 +14,6 @@ std::string forces_without_energy(const Model& model) {
   return fmt::format("laws of state such as {} have no energy", describe_law(model, 0));
 }
 
-std::string refused_without_energy(const Model& model, std::string_view what) {
-  if (!model.laws.empty()) {
-    return fmt::format(
-        "laws of state such as {} have no energy, and {} not built; springs, curves and functions "
-        "of time have one",
-        describe_law(model, 0), what);
-  }
-  return fmt::format(
-      "follower forces have no energy, and {} not built; give the forces in ground "
-      "axes",
-      what);
-}
-
 bool is_damped(const Evaluator& evaluator) {
   std::vector<double> qd(at(evaluator.plan().coordinates()), 0.0);
   for (int k = 0; k < 3 * evaluator.plan().moving; ++k) qd[at(k)] = std::sin(1.0 + k) + std::cos(0.7 * k * k);

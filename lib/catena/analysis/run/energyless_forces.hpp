@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "catena/assembly/evaluate.hpp"
 #include "catena/base/status.hpp"
@@ -12,10 +11,6 @@ namespace catena {
 
 /// "forces that turn with their body have no energy", or that a law has none.
 std::string forces_without_energy(const Model& model);
-
-/// Why an analysis that needs an energy is refused; `what` is "paths of forces without one are"
-/// and the like.
-std::string refused_without_energy(const Model& model, std::string_view what);
 
 /// Whether forces depend on velocities: any motion loses power to damping, or a law of state reads a rate. The
 /// evaluator must be at a configuration.

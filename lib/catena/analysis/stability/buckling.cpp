@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "catena/analysis/balance/static_holding.hpp"
-#include "catena/analysis/run/energyless_forces.hpp"
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
@@ -15,6 +14,7 @@
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/analysis/spectrum/static_balance.hpp"
 #include "catena/analysis/statics/solvers/static_active_set.hpp"
+#include "catena/analysis/statics/static_explanation.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -27,6 +27,9 @@ constexpr int most_vectors = 300, most_refinements = 20;
 constexpr double refined = 1e-12, linear_part = 1e-9;
 // Constraints met to this, in length scales or rad, do not depend on the parameter.
 constexpr double kept_place = 1e-9;
+constexpr const char* moved_by_load =
+    "the load moves the equilibrium: these are estimates of linear buckling theory; an analysis of type path finds the "
+    "critical points on the way";
 
 // K0^-1 (K0 - K1) in the metric K0, K0 the factored K of the system's matrix.
 class BucklingOperator final : public SpectralOperator {
@@ -103,7 +106,7 @@ Report Buckling::not_stable() const {
 
 SystemState Buckling::state() const { return state_of(evaluator_, t_, point_.q); }
 
-Report Buckling::stiffness_at(double p, KktMatrix& matrix) {
+Report Buckling::place_load(double p, std::vector<double>& lambda) {
   PathPoint loaded = point_;
   loaded.p = p;
   outside_ = !path_.move_to(loaded);
@@ -119,7 +122,14 @@ Report Buckling::stiffness_at(double p, KktMatrix& matrix) {
   // The multipliers are needed even if the load is already known to move the equilibrium.
   const bool moves = !balance_loads(system_, loaded.lambda).negligible();
   moves_ = moves_ || moves;
-  matrix.set_hessian(evaluator_, loaded.lambda, Curvature::exact);
+  lambda = std::move(loaded.lambda);
+  return {};
+}
+
+Report Buckling::stiffness_at(double p, KktMatrix& matrix) {
+  std::vector<double> lambda;
+  if (Report placed = place_load(p, lambda); !placed.ok()) return placed;
+  matrix.set_hessian(evaluator_, lambda, Curvature::exact);
   matrix.complete(system_.jacobian(), 0);
   return {};
 }
@@ -129,7 +139,7 @@ Report Buckling::find_with(double step, int count, std::vector<Load>& loads, dou
   loads.clear();
   KktMatrix other(plan_, system_.radius());
   if (Report outcome = stiffness_at(options_.present + step, other); !outcome.ok()) return outcome;
-  if (!path_.factorize(point_) || path_.negative_modes() > 0) return not_stable();
+  if (!path_.factorize(point_) || path_.stability().negative > 0) return not_stable();
   BucklingOperator op(system_, other);
   Lanczos lanczos(op);
   const auto wanted = [&](std::span<const double> theta) { return largest_ones(theta, count); };
@@ -192,6 +202,11 @@ Report Buckling::find(BucklingReport& report, const std::function<bool()>& go_on
         "the configuration is no equilibrium; an equilibrium analysis before this one finds it");
   }
   if (!path_.move_to(point_)) return {Status::refused, "the scene does not allow the parameter's present value", {}};
+  if (!evaluator_.conservative()) {
+    Report outcome = find_without_energy(report, go_on);
+    if (outcome.ok() && moves_ && !unbalanced) report.warnings.emplace_back(moved_by_load);
+    return outcome;
+  }
   std::vector<Load> loads;
   groups_.emplace(system_, false);
   const bool dense = groups_->are_small() && plan_->columns > 0;
@@ -208,9 +223,7 @@ Report Buckling::find(BucklingReport& report, const std::function<bool()>& go_on
     report.shapes.push_back(std::move(load.shape));
   }
   if (moves_ && !unbalanced) {
-    report.warnings.emplace_back(
-        "the load moves the equilibrium: these are estimates of linear buckling theory; an analysis of type path finds "
-        "the critical points on the way");
+    report.warnings.emplace_back(moved_by_load);
   }
   check_gaps(report);
   if (static_cast<int>(report.loads.size()) < options_.count) {
@@ -268,8 +281,8 @@ BucklingReport Buckling::run(const std::function<bool()>& go_on) {
   if (outcome.ok()) {
     evaluator_.set_time(t_);
     path_.set_time(t_);
-    outcome = {Status::refused, refused_without_energy(*model_, "buckling under forces without one is"), {}};
-    if (evaluator_.conservative()) outcome = find(report, go_on);
+    const bool treated = evaluator_.conservative() || !system_.has_gaps();
+    outcome = treated ? find(report, go_on) : refuse_gaps_without_energy(system_);
     path_.move_to(point_);
     const WatchedElements watched(evaluator_);
     if (outcome.ok()) outcome = watched.check_ends();

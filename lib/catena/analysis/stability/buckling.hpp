@@ -10,6 +10,10 @@
 // critical points. The values nearest to the present one come first. Refused: an equilibrium that is not stable, a
 // parameter that moves constraints.
 //
+// Forces without a potential make K unsymmetric: besides the loads of K v = 0 (divergence) there are those at which two
+// frequencies meet and one motion begins to grow (flutter), which masses decide about. Up to 500 degrees of freedom;
+// not beside one-sided elements (buckling_circulatory.cpp).
+//
 // One-sided elements hold as they do at the present value (active_set_at.hpp); those that would open or close before a
 // load is reached are named.
 #pragma once
@@ -33,8 +37,14 @@ struct BucklingOptions {
 };
 
 struct BucklingReport : AnalysisReport {
+  /// A load under forces without a potential, and the frequency, rad/s, at which it meets: 0 of divergence.
+  struct Critical {
+    double value = 0, omega = 0;
+  };
   std::vector<double> loads;                ///< values of the parameter, nearest to the present one first
   std::vector<std::vector<double>> shapes;  ///< over columns; the largest turning or displacement is 1 rad or m
+  std::vector<double> flutter;              ///< loads of flutter
+  std::vector<Critical> critical;           ///< of both kinds, nearest first, as the shapes; only without an energy
   std::vector<std::string> active;          ///< one-sided elements that hold
 };
 
@@ -57,6 +67,13 @@ class Buckling {
  private:
   class Spectrum;
   class Search;
+  class CirculatorySearch;
+  struct CriticalLoad {
+    double distance = 0;  // p - p0
+    bool flutter = false;
+    double omega = 0;
+    std::vector<double> shape;
+  };
   struct Load {
     double distance = 0;  // p - p0
     std::vector<double> shape;
@@ -71,6 +88,10 @@ class Buckling {
   Report find_by_dense(std::vector<Load>& loads, const std::function<bool()>& go_on);
   /// K at a value of the parameter to `matrix`, with the multipliers that belong to it.
   Report stiffness_at(double p, KktMatrix& matrix);
+  /// Takes the system to a value of the parameter, the configuration kept, with the multipliers that belong to it.
+  Report place_load(double p, std::vector<double>& lambda);
+  /// Divergence and flutter, to the report.
+  Report find_without_energy(BucklingReport& report, const std::function<bool()>& go_on);
   Report not_stable() const;
   /// Loads by the difference of K between p0 and p0 + step.
   Report find_with(double step, int count, std::vector<Load>& loads, double& effect,

@@ -10,6 +10,7 @@
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/analysis/stability/path_march.hpp"
 #include "catena/analysis/statics/active_set_at.hpp"
+#include "catena/analysis/statics/static_explanation.hpp"
 
 namespace catena {
 
@@ -41,14 +42,20 @@ SystemState Path::state() const { return state_of(evaluator_, t_, q_); }
 Report Path::follow(PathReport& report, const std::function<bool(double, const Snapshot&)>& observe) {
   evaluator_.set_time(t_);
   path_.set_time(t_);
-  if (!evaluator_.conservative()) {
-    return {Status::refused, refused_without_energy(evaluator_.model(), "paths of forces without one are"), {}};
-  }
+  if (path_.is_circulatory() && system_.has_gaps()) return refuse_gaps_without_energy(system_);
   if (options_.to == options_.from) {
     return {Status::refused, "the path ends where it begins: \"to\" is the present value of the parameter", {}};
   }
+  if (path_.is_circulatory()) {
+    system_.move_to(q_);
+    const MotionGroups groups(system_, false);
+    if (!groups.are_small())
+      return too_large_without_energy(evaluator_.model(), groups.freedoms(), CirculatoryMotions::most_freedoms);
+  }
   March march(*this, observe);
   Report outcome = march.run(report);
+  if (!path_.lack_of_masses().empty())
+    report.warnings.push_back("flutter depends on masses and was not looked for: " + path_.lack_of_masses());
   if (!march.point().q.empty()) {
     path_.move_to(march.point());
     q_.assign(path_.q().begin(), path_.q().end());

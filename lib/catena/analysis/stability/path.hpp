@@ -35,11 +35,13 @@ struct PathOptions {
 };
 
 struct PathCritical {
-  bool branch = false;  ///< else a limit point
-  double value = 0;     ///< of the parameter
-  int row = 0;          ///< from 0: the row at this point
-  std::string mode;     ///< the body that moves most in the singular mode
-  int modes = 1;        ///< how many become singular there
+  bool branch = false;   ///< else a limit point
+  bool flutter = false;  ///< neither: a motion begins to grow as an oscillation, or ceases to
+  double omega = 0;      ///< its frequency there, rad/s
+  double value = 0;      ///< of the parameter
+  int row = 0;           ///< from 0: the row at this point
+  std::string mode;      ///< the body that moves most in the singular mode
+  int modes = 1;         ///< how many become singular there
 };
 
 /// A one-sided element that closes or opens on the path.
@@ -55,6 +57,7 @@ struct PathReport : AnalysisReport {
   std::vector<PathChange> changes;
   std::vector<std::string> active;     ///< one-sided elements that hold at the start
   std::vector<double> negative_modes;  ///< a row: how many; 0 is stable
+  std::vector<double> flutter;         ///< a row: how many pairs; only beside forces without a potential
   int steps = 0;
 };
 

@@ -36,7 +36,7 @@ class Locator {
     if (!trial.found) return trial;
     trial.singular = !system_.factorize(trial.point);
     if (trial.singular) return trial;
-    trial.modes = system_.negative_modes();
+    trial.modes = system_.stability().negative;
     return trial;
   }
 
@@ -78,25 +78,9 @@ class Locator {
     return system_.product(system_.tangent(point, step_.tangent), system_.along_parameter(1));
   }
 
-  /// Whether another path crosses at a critical point: certainly where the parameter continues in the same sense behind
-  /// it. Where it turns back, which also happens on the branches of a pitchfork, the component of the derivative by p
-  /// along the null vector decides.
   bool is_branch(const PathPoint& point, double part_before, double part_after) {
-    if (part_before * part_after > 0) return true;
-    std::vector<double> derivative;
     const std::vector<double> vector = x_;
-    system_.parameter_derivative(point, derivative);
-    double sum = 0, terms = 0, v = 0, d = 0, travel = 0;
-    for (std::size_t k = 0; k < vector.size(); ++k) {
-      travel += std::abs(vector[k]);
-      sum += vector[k] * derivative[k];
-      terms += std::abs(vector[k] * derivative[k]);
-      v += vector[k] * vector[k];
-      d += derivative[k] * derivative[k];
-    }
-    const double range = system_.along_parameter(1).p;
-    return std::abs(sum) <= limit_part * terms || terms <= no_overlap * std::sqrt(v * d) ||
-           terms * range <= no_force_change * system_.statics().force_size() * travel;
+    return crosses_another(system_, point, vector, part_before, part_after);
   }
 
   void forget_mode() { mode_.clear(); }
@@ -141,11 +125,30 @@ std::optional<Trial> locate(Locator& locator, Trial low, Trial high) {
 
 }  // namespace
 
+bool crosses_another(PathSystem& system, const PathPoint& point, std::span<const double> left_vector,
+                     double part_before, double part_after) {
+  if (part_before * part_after > 0) return true;
+  std::vector<double> derivative;
+  system.parameter_derivative(point, derivative);
+  double sum = 0, terms = 0, v = 0, d = 0, travel = 0;
+  for (std::size_t k = 0; k < left_vector.size(); ++k) {
+    travel += std::abs(left_vector[k]);
+    sum += left_vector[k] * derivative[k];
+    terms += std::abs(left_vector[k] * derivative[k]);
+    v += left_vector[k] * left_vector[k];
+    d += derivative[k] * derivative[k];
+  }
+  const double range = system.along_parameter(1).p;
+  return std::abs(sum) <= limit_part * terms || terms <= no_overlap * std::sqrt(v * d) ||
+         terms * range <= no_force_change * system.statics().force_size() * travel;
+}
+
 std::vector<CriticalPoint> find_critical_points(PathSystem& system, const PathStep& step, bool& complete) {
+  if (system.is_circulatory()) return find_circulatory_points(system, step, complete);
   std::vector<CriticalPoint> found;
   Locator locator(system, step);
-  Trial low{.s = 0, .modes = step.modes_before};
-  const Trial high{.s = step.s, .modes = step.modes_after};
+  Trial low{.s = 0, .modes = step.modes_before.negative};
+  const Trial high{.s = step.s, .modes = step.modes_after.negative};
   while (low.modes != high.modes && found.size() < 20) {
     const std::optional<Trial> place = locate(locator, low, high);
     if (!place) break;

@@ -71,7 +71,8 @@ bool Path::March::write(const PathPoint& x) {
     left_curve_.message = fmt::format("at the value {:.10g} of the parameter: {}", x.p, left_curve_.message);
     return false;
   }
-  report_->negative_modes.push_back(modes_);
+  report_->negative_modes.push_back(modes_.negative);
+  if (system_.is_circulatory()) report_->flutter.push_back(system_.lack_of_masses().empty() ? modes_.pairs : 0);
   const Snapshot snapshot{.evaluator = path_.evaluator_,
                           .t = path_.t_,
                           .q = system_.q(),
@@ -168,7 +169,7 @@ Path::March::Progress Path::March::step() {
       length_ *= 0.9;
       continue;
     }
-    const int modes = system_.negative_modes();
+    const PathStability modes = system_.stability();
     PathPoint direction = system_.tangent(next, direction_);
     if (system_.product(direction, direction_) < largest_bend || !is_smooth(next, direction)) {
       length_ *= 0.5;
@@ -211,6 +212,8 @@ bool Path::March::pass(const std::vector<CriticalPoint>& points, bool& left) {
   for (const CriticalPoint& critical : points) {
     if (!write(critical.point)) return false;
     report_->critical.push_back({.branch = critical.branch,
+                                 .flutter = critical.flutter,
+                                 .omega = critical.omega,
                                  .value = critical.point.p,
                                  .row = static_cast<int>(report_->negative_modes.size()) - 1,
                                  .mode = describe_mode(path_.evaluator_, critical.mode, path_.system_.radius()),
@@ -238,7 +241,7 @@ bool Path::March::leave(const CriticalPoint& critical) {
   for (double s = options_.arc; s > 1e-4 * options_.arc; s *= 0.5) {
     PathPoint next = system_.advanced(critical.point, side, s);
     if (system_.correct(next, critical.point, side, s) < 0 || !system_.factorize(next)) continue;
-    modes_ = system_.negative_modes();
+    modes_ = system_.stability();
     direction_ = system_.tangent(next, side);
     x_ = std::move(next);
     length_ = s;

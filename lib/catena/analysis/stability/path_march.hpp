@@ -93,7 +93,7 @@ class Path::March {
   std::vector<std::size_t> changing_;  // by their place in Plan::gap_rows
   std::vector<double> faults_;
   int changed_here_ = 0;  // how often some did without a step between
-  int modes_ = 0;
+  PathStability modes_;
   bool switched_ = false;
 };
 

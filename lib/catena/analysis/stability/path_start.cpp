@@ -27,7 +27,7 @@ std::optional<CriticalStart> step_across(PathSystem& system, const PathPoint& x,
   if (!system.move_to(from)) return {};
   balance_loads(system.statics(), from.lambda);
   if (system.correct(from, x, direction, side * beside) < 0 || !system.factorize(from)) return {};
-  const int modes_there = system.negative_modes();
+  const PathStability modes_there = system.stability();
   const PathPoint outwards = system.tangent(from, system.along_parameter(side * direction.p));
   const PathPoint tangent = system.tangent(from, system.along_parameter(-side * direction.p));
   PathPoint way{tangent.q, {}, x.p - from.p};
@@ -38,7 +38,7 @@ std::optional<CriticalStart> step_across(PathSystem& system, const PathPoint& x,
   PathStep step{.start = from, .tangent = tangent, .s = 2 * system.product(way, tangent), .modes_before = modes_there};
   PathPoint to = system.advanced(from, step.tangent, step.s);
   if (system.correct(to, from, step.tangent, step.s) < 0 || !system.factorize(to)) return {};
-  step.modes_after = system.negative_modes();
+  step.modes_after = system.stability();
   CriticalStart start;
   start.direction = side < 0 ? system.tangent(to, step.tangent) : outwards;
   start.modes_before = side < 0 ? modes_there : step.modes_after;
@@ -101,8 +101,13 @@ Report Path::March::find_start() {
   x_.p = options_.from;
   length_ = options_.arc;
   direction_ = system_.along_parameter(options_.to - options_.from);
+  if (result.stability) {
+    result.certificate.neutral_modes = result.stability->motions.neutral;
+    result.certificate.neutral = result.certificate.neutral_modes > 0;
+    result.certificate.free_bodies = result.free_bodies;
+  }
   if (result.certificate.neutral || !system_.factorize(x_)) return start_at_critical_point(result.certificate);
-  modes_ = system_.negative_modes();
+  modes_ = system_.stability();
   direction_ = system_.tangent(x_, direction_);
   return write(x_) ? Report{} : stopped();
 }

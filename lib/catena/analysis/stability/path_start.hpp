@@ -20,7 +20,7 @@ namespace catena {
 struct CriticalStart {
   CriticalPoint critical;
   PathPoint direction;  ///< of the path behind the point, along which it goes straight on
-  int modes_before = 0, modes_after = 0;
+  PathStability modes_before, modes_after;
 };
 
 /// What lies around the start x of a path that goes along `direction`, the one of the parameter alone. Leaves the

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/motion/mass_matrix.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/base/at.hpp"
 
@@ -17,6 +18,9 @@ constexpr double nearly_solved = 1e-9;
 // Steps larger than this have left the path: parts of the mechanism's extent, or rad.
 constexpr double astray = 3;
 constexpr double difference = 1e-5;
+// E of the unsymmetric matrix times the largest stiffness; steps of inverse iteration for its left null vector.
+constexpr double path_regularisation = 1e-11;
+constexpr int left_vector_steps = 4;
 
 }  // namespace
 
@@ -43,6 +47,11 @@ PathSystem::PathSystem(StaticSystem& system, ModelAt model_at, double p, double 
   }
   placed_.assign(at(plan_.coordinates()), 0.0);
   given_.resize(at(plan_.columns + plan_.rows));
+  if (!evaluator_.conservative()) {
+    system_.move_to(evaluator_.given_configuration());
+    tangent_.emplace(system_);
+    spectrum_tangent_.emplace(system_);
+  }
   for (auto* vector : {&correction_, &newton_, &along_, &derivative_, &side_}) vector->resize(given_.size());
 }
 
@@ -81,8 +90,60 @@ bool PathSystem::move_to(const PathPoint& x) {
 
 bool PathSystem::factorize(const PathPoint& x) {
   if (!move_to(x)) return false;
-  system_.fill(x.lambda, Curvature::exact, 0);
-  return system_.factorize().ok();
+  if (is_circulatory()) factored_ = x;
+  return factorize_here(x.lambda, 0);
+}
+
+bool PathSystem::factorize_here(std::span<const double> lambda, double shift) {
+  system_.fill(lambda, Curvature::exact, shift);
+  if (!is_circulatory()) return system_.factorize().ok();
+  tangent_->fill(lambda, shift, 0);
+  const double stiffness = std::max(tangent_->largest_stiffness(), system_.force_size() / system_.length());
+  tangent_->fill(lambda, shift, path_regularisation / stiffness);
+  return tangent_->factorize();
+}
+
+double PathSystem::largest_stiffness() const {
+  return is_circulatory() ? tangent_->largest_stiffness() : system_.matrix().largest_stiffness();
+}
+
+PathStability PathSystem::stability() {
+  if (!is_circulatory()) return {system_.matrix().negative_modes(), 0};
+  CirculatoryModes found;
+  if (!spectrum(factored_, found)) return {};
+  return {found.negative, found.pairs};
+}
+
+bool PathSystem::spectrum(const PathPoint& x, CirculatoryModes& found) {
+  if (!move_to(x)) return false;
+  lack_of_masses_.clear();
+  MassMatrix masses;
+  std::vector<double> mass;
+  if (const Report missing = masses.load(evaluator_); missing.ok()) {
+    for (int c = 0; c < plan_.columns; ++c) mass.push_back(masses.mass[at(plan_.coordinate[at(c)])]);
+  } else {
+    lack_of_masses_ = missing.message;
+  }
+  std::optional<CirculatoryMotions> motions(std::in_place, system_, *spectrum_tangent_, mass);
+  if (motions->massless_column()) {
+    const int body = plan_.model_body[at(plan_.coordinate[at(*motions->massless_column())] / 3)];
+    lack_of_masses_ = "a motion of body \"" + std::string(evaluator_.model().body_name(body)) + "\" moves no mass";
+    motions.emplace(system_, *spectrum_tangent_, std::span<const double>{});
+  }
+  return motions->are_small() && motions->find(x.lambda, 0, found);
+}
+
+std::vector<double> PathSystem::left_null_vector() {
+  std::vector<double> given(given_.size(), 0.0), w(given_.size());
+  for (std::size_t c = 0; c < weight_.size(); ++c) w[c] = std::sin(1.0 + 1.7 * static_cast<double>(c));
+  for (int k = 0; k < left_vector_steps; ++k) {
+    for (std::size_t c = 0; c < weight_.size(); ++c) given[c] = weight_[c] * w[c];
+    tangent_->solve_to_rounding(given, w, true);
+    double square = 0;
+    for (std::size_t c = 0; c < weight_.size(); ++c) square += weight_[c] * w[c] * w[c];
+    for (double& value : w) value /= std::sqrt(square);
+  }
+  return w;
 }
 
 void PathSystem::residual(const PathPoint& x, std::vector<double>& out) {
@@ -108,7 +169,10 @@ void PathSystem::parameter_derivative(const PathPoint& x, std::vector<double>& d
 }
 
 void PathSystem::solve(std::span<const double> given, std::span<double> x) {
-  solve_to_rounding(system_, weight_, given, x, correction_);
+  if (is_circulatory())
+    tangent_->solve_to_rounding(given, x);
+  else
+    solve_to_rounding(system_, weight_, given, x, correction_);
 }
 
 PathPoint PathSystem::tangent(const PathPoint& x, const PathPoint& previous) {
@@ -177,12 +241,8 @@ int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t,
     } else {
       parameter_derivative(x, derivative_);
     }
-    system_.fill(x.lambda, Curvature::exact, 0);
-    if (!system_.factorize().ok()) {
-      // Exactly singular: a matrix slightly away from it serves for a step.
-      system_.fill(x.lambda, Curvature::exact, 1e-10 * system_.matrix().largest_stiffness());
-      if (!system_.factorize().ok()) return -1;
-    }
+    // Exactly singular: a matrix slightly away from it serves for a step.
+    if (!factorize_here(x.lambda, 0) && !factorize_here(x.lambda, 1e-10 * largest_stiffness())) return -1;
     for (double& r : given_) r = -r;
     solve(given_, newton_);
     for (double& d : derivative_) d = -d;
@@ -200,6 +260,10 @@ int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t,
     }
     // A residual that may be rounding of the stiffest spring counts as such only if a step would move nothing.
     if (error <= noise && system_.change_norm({newton_.data(), at(plan_.columns)}) <= nearly_solved) return k;
+    // A law whose own value is zero at rest leaves no force to compare the residual with.
+    if (is_circulatory() && k > 0 && system_.phi_norm() <= exact && std::abs(place) <= place_solved &&
+        std::abs(dp) <= solved * scale_ && system_.change_norm({newton_.data(), at(plan_.columns)}) <= solved)
+      return k;
     for (int c = 0; c < plan_.columns; ++c) x.q[at(plan_.coordinate[at(c)])] += newton_[at(c)];
     for (int r = 0; r < plan_.rows; ++r) x.lambda[at(r)] += newton_[at(plan_.columns + r)];
     x.p += dp;

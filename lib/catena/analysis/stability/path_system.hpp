@@ -9,17 +9,22 @@
 // by Newton's method with the factorization of equilibrium, two solutions an iteration. The derivative by p is a
 // difference of the residual over 1e-5 of the parameter's range: it affects the convergence only, since the residual
 // itself decides whether a point is solved. A parameter may change anything but the structure: loads, stiffnesses,
-// lengths, places. Source: H. Keller, Lectures on Numerical Methods in Bifurcation Problems, 1987, chapters 4 and 5.
+// lengths, places. Beside forces without a potential K is unsymmetric and factored as it is (static_tangent.hpp), and
+// the kind of a point follows from its small motions (circulatory_modes.hpp), up to 500 degrees of freedom; without
+// masses in the metric of lengths, in which pairs of complex values mean nothing. Source: H. Keller, Lectures on
+// Numerical Methods in Bifurcation Problems, 1987, chapters 4 and 5.
 #pragma once
 
 #include <array>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "catena/analysis/balance/static_system.hpp"
+#include "catena/analysis/spectrum/circulatory_modes.hpp"
 
 namespace catena {
 
@@ -31,6 +36,14 @@ struct PathPoint {
   std::vector<double> q;       ///< coordinates(); of a direction: columns
   std::vector<double> lambda;  ///< rows
   double p = 0;
+};
+
+/// How many motions of a point of a path are unstable.
+struct PathStability {
+  int negative = 0;  ///< values below zero
+  int pairs = 0;     ///< of complex ones, beside forces without a potential
+
+  bool operator==(const PathStability&) const = default;
 };
 
 class PathSystem {
@@ -46,8 +59,16 @@ class PathSystem {
   std::span<const double> q() const { return placed_; }
   /// Factors the exact matrix at x, to which it moves. False where a pivot vanishes or there is no model.
   bool factorize(const PathPoint& x);
-  /// Negative modes of the matrix factored last.
-  int negative_modes() { return system_.matrix().negative_modes(); }
+  /// Of the point factored last.
+  PathStability stability();
+  /// Whether there are forces without a potential.
+  bool is_circulatory() const { return tangent_.has_value(); }
+  /// The spectrum at a point, to which the system moves. False where there is none.
+  bool spectrum(const PathPoint& x, CirculatoryModes& found);
+  /// Why the spectrum says nothing of flutter; empty where it does. Of the last spectrum.
+  const std::string& lack_of_masses() const { return lack_of_masses_; }
+  /// columns + rows: w of w^T [K, Phi_q^T; Phi_q, 0] = 0, with the factors of a matrix that is nearly singular.
+  std::vector<double> left_null_vector();
 
   /// Derivatives of the residual by the parameter at x, columns + rows. Leaves the system at x.
   void parameter_derivative(const PathPoint& x, std::vector<double>& derivative);
@@ -74,6 +95,9 @@ class PathSystem {
 
  private:
   bool set_parameter(double p);
+  /// Fills and factors the matrix where the system is; `shift` N/m.
+  bool factorize_here(std::span<const double> lambda, double shift);
+  double largest_stiffness() const;
   void residual(const PathPoint& x, std::vector<double>& out);
 
   StaticSystem& system_;
@@ -85,6 +109,9 @@ class PathSystem {
   std::size_t next_model_ = 0;
   std::optional<double> refused_value_;
   double p_, scale_, time_, extent_ = 1;
+  std::optional<StaticTangent> tangent_, spectrum_tangent_;
+  std::string lack_of_masses_;
+  PathPoint factored_;  // where there are forces without a potential
   std::vector<Vec2<double>> first_origin_;
   std::vector<double> weight_, placed_, correction_, given_, newton_, along_, derivative_, side_;
 };

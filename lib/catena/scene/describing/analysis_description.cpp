@@ -90,8 +90,9 @@ std::vector<AnalysisDescription> describe_all() {
             replicated,
             measures}),
       make("equilibrium", "A configuration at rest, and whether it is stable.",
-           "energy, stable, neutral, negative_modes, free_motions and moving_freely (what nothing resists to second "
-           "order), residual, solver, iterations, active (the closed gaps), equilibria; with friction "
+           "energy, stable, neutral, negative_modes, flutter (pairs of complex omega2, of forces without a potential), "
+           "free_motions and moving_freely (what nothing resists to second order), residual, solver, iterations, "
+           "active (the closed gaps), equilibria; with friction "
            "held and utilisation",
            false,
            {outputs,
@@ -109,7 +110,9 @@ std::vector<AnalysisDescription> describe_all() {
              {"leave_out", "hold"}},
             measures}),
       make("path", "Equilibria as a parameter changes, one row a step and one a critical point.",
-           "critical, negative_modes, steps; active and changes (one-sided elements that hold, that open and close)",
+           "critical (limit and branch points, of forces without a potential flutter too), negative_modes, steps; "
+           "flutter (pairs of complex omega2 of every row); active and changes (one-sided elements that hold, that "
+           "open and close)",
            false,
            {outputs,
             at_time,
@@ -126,12 +129,13 @@ std::vector<AnalysisDescription> describe_all() {
             measures}),
       make("buckling",
            "Values of a load parameter at which the current equilibrium, kept in place, loses its stability.",
-           "loads; active (one-sided elements that hold)", false,
-           {outputs, at_time, parameter, {"count", KeyKind::whole, "how many loads (default 1)"}, measures}),
+           "loads; flutter and flutter_omega (of forces without a potential: where two frequencies meet and one motion "
+           "begins to grow; loads are those of divergence then); active (one-sided elements that hold)",
+           false, {outputs, at_time, parameter, {"count", KeyKind::whole, "how many loads (default 1)"}, measures}),
       make("modes", "Small undamped oscillations about the current configuration at rest: omega^2 ascending.",
            "omega2, omega, unstable, free_motions and moving_freely (those with omega2 = 0), active (one-sided "
-           "elements that "
-           "hold)",
+           "elements that hold); of forces without a potential flutter (pairs of complex omega2), omega2_imaginary and "
+           "growth (1/s), the motion that grows first",
            false,
            {outputs,
             at_time,

@@ -87,8 +87,8 @@ Example
   of a torsion_spring, the torque of a torque, columns of one's own made of these. Reactions, accelerations and the
   force itself would close an algebraic loop. A name that is no plain identifier stands in single quotes:
   'long rod'.angle, in a replicate block 'link{k}'.angle.
-  A law has no potential: its power (A.power) counts as work of applied loads in energy.balance. modes, path and
-  buckling refuse it; equilibrium balances forces, and cannot certify stability.
+  A law has no potential: its power (A.power) counts as work of applied loads in energy.balance. equilibrium, modes,
+  path and buckling take its unsymmetric stiffness: negative omega2 are divergence, complex pairs flutter.
 
 Example
   "forces": [{"type": "torque", "name": "motor", "i": "arm", "torque": "=-40*(arm.angle - 0.5) - 3*arm.omega"}]

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/run/energyless_forces.hpp"
 #include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/sensitivity/spectrum_derivatives.hpp"
 #include "catena/analysis/stability/buckling.hpp"
@@ -63,6 +64,16 @@ void differentiate(const AnalysisContext& context, Buckling& analysis, const Buc
   }
 }
 
+/// The vectors that an unsymmetric stiffness has on its left are not those that loads are differentiated with.
+void leave_out_derivatives(const AnalysisContext& context, const BucklingReport& report, AnalysisResult& result) {
+  const std::vector<double> none(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
+  const std::string trouble = forces_without_energy(*context.model) + ": derivatives of critical loads are not built";
+  for (std::size_t k = 0; k < report.loads.size(); ++k)
+    set_field_gradient(context, result, "loads", static_cast<int>(k) + 1, none, trouble);
+  for (std::size_t k = 0; k < report.flutter.size(); ++k)
+    set_field_gradient(context, result, "flutter", static_cast<int>(k) + 1, none, trouble);
+}
+
 }  // namespace
 
 void run_buckling(AnalysisContext& context, AnalysisResult& result) {
@@ -80,6 +91,10 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result) {
   BucklingReport report = analysis.run([&] { return !(context.cancel && context.cancel->load()); });
 
   std::vector<ColumnInfo> info{{std::string(context.parameter_name), UnitKind::own}};
+  // Forces without a potential: the frequency tells divergence, 0, from flutter.
+  const bool circulatory = !analysis.evaluator().conservative();
+  if (circulatory) info.push_back({"omega", UnitKind::angular_velocity});
+  const std::size_t values = info.size();
   std::optional<ShapeColumns> shapes;
   if (!task.outputs.empty()) {
     shapes.emplace(*context.model, analysis.plan(), task.output_names(), task.type());
@@ -89,10 +104,11 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result) {
   context.rows.begin(info);
   std::vector<double> row(info.size());
   std::int64_t rows = 0;
-  for (std::size_t k = 0; k < report.loads.size(); ++k, ++rows) {
-    row[0] = report.loads[k];
+  for (std::size_t k = 0; k < report.shapes.size(); ++k, ++rows) {
+    row[0] = circulatory ? report.critical[k].value : report.loads[k];
+    if (circulatory) row[1] = report.critical[k].omega;
     if (shapes)
-      shapes->evaluate(analysis.evaluator(), analysis.q(), report.shapes[k], std::span<double>(row).subspan(1));
+      shapes->evaluate(analysis.evaluator(), analysis.q(), report.shapes[k], std::span<double>(row).subspan(values));
     if (!context.rows.row(row)) break;
   }
   draw_shapes(context, analysis.evaluator(), start.t, analysis.q(), report.shapes);
@@ -104,10 +120,22 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result) {
     context.state.ropes = RopeWaysAt(context.model).turns(context.state);
   }
   result.fields = {{"loads", report.loads}};
+  if (circulatory) {
+    result.fields.push_back({"flutter", report.flutter});
+    std::vector<double> omega;
+    for (const BucklingReport::Critical& load : report.critical) {
+      if (load.omega > 0) omega.push_back(load.omega);
+    }
+    result.fields.push_back({"flutter_omega", std::move(omega)});
+  }
   if (!analysis.plan().gap_rows.empty()) result.fields.push_back({"active", report.active});
   result.report = report;
   take_rows(result, std::move(info), rows);
   add_field_measures(context, result);
+  if (context.design && report.ok() && circulatory) {
+    leave_out_derivatives(context, report, result);
+    return;
+  }
   if (context.design && report.ok()) differentiate(context, analysis, report, result);
 }
 

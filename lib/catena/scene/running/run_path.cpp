@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "catena/analysis/measures/measure_set.hpp"
+#include "catena/analysis/run/energyless_forces.hpp"
 #include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/sensitivity/spectrum_derivatives.hpp"
 #include "catena/analysis/stability/path.hpp"
@@ -100,11 +101,14 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
   if (report.ok() && rows > 0) context.values_at_end = {{parameter, row[0]}};
   std::vector<FieldRecord> critical;
   for (const PathCritical& point : report.critical) {
-    critical.push_back({{"kind", std::string(point.branch ? "branch" : "limit")},
+    critical.push_back({{"kind", std::string(point.flutter  ? "flutter"
+                                             : point.branch ? "branch"
+                                                            : "limit")},
                         {"value", point.value},
                         {"row", static_cast<std::int64_t>(point.row)},
                         {"mode", point.mode},
                         {"modes", static_cast<std::int64_t>(point.modes)}});
+    if (point.flutter) critical.back().push_back({"omega", point.omega});
   }
   std::vector<FieldRecord> changes;
   for (const PathChange& change : report.changes) {
@@ -116,6 +120,7 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
   result.fields = {{"critical", std::move(critical)},
                    {"negative_modes", report.negative_modes},
                    {"steps", static_cast<std::int64_t>(report.steps)}};
+  if (!analysis.evaluator().conservative()) result.fields.push_back({"flutter", report.flutter});
   if (!analysis.plan().gap_rows.empty()) {
     result.fields.push_back({"active", report.active});
     result.fields.push_back({"changes", std::move(changes)});
@@ -127,6 +132,12 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
   add_field_measures(context, result);
   for (std::size_t k = 0; context.design && k < report.critical.size(); ++k) {
     std::string trouble;
+    if (!analysis.evaluator().conservative()) {
+      trouble = forces_without_energy(*context.model) + ": derivatives of critical values are not built";
+      const std::vector<double> none(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
+      set_field_gradient(context, result, "critical", static_cast<int>(k) + 1, none, trouble);
+      continue;
+    }
     const std::vector<double> gradient =
         critical_gradient(context, analysis.evaluator().shared_plan(),
                           places[static_cast<std::size_t>(report.critical[k].row)], start.t, trouble);

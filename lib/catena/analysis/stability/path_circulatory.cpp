@@ -1,0 +1,89 @@
+// Critical points of a path beside forces without a potential.
+//
+//   divergence   a real omega2 passes zero: the matrix of equilibrium is singular, with left null vector w and right v,
+//                limit point: w^T F_p != 0, branch point: = 0
+//   flutter      two omega2 meet and become a pair, or a pair ends; the matrix is regular
+//
+// Located by the spectrum along the step (spectrum_crossings.hpp).
+#include <algorithm>
+#include <cmath>
+
+#include "catena/analysis/spectrum/modes_operator.hpp"
+#include "catena/analysis/spectrum/spectrum_crossings.hpp"
+#include "catena/analysis/stability/path_critical.hpp"
+
+namespace catena {
+namespace {
+
+// Part of s beside a critical point at which the path's direction is looked at.
+constexpr double beside_point = 1e-6;
+
+/// The points of one step.
+class StepPoints {
+ public:
+  StepPoints(PathSystem& system, const PathStep& step) : system_(system), step_(step) {}
+
+  bool point_at(double s, PathPoint& point) {
+    point = system_.advanced(step_.start, step_.tangent, s);
+    return system_.correct(point, step_.start, step_.tangent, s) >= 0;
+  }
+  bool spectrum_at(double s, CirculatoryModes& found) {
+    PathPoint point;
+    return point_at(s, point) && system_.spectrum(point, found);
+  }
+  /// The parameter's part of the path's direction at s, -1 ... 1; 0 where that is not known. The factors are those at
+  /// s.
+  double parameter_part(double s) {
+    PathPoint point;
+    if (!point_at(s, point) || !system_.factorize(point)) return 0;
+    return system_.product(system_.tangent(point, step_.tangent), system_.along_parameter(1));
+  }
+
+ private:
+  PathSystem& system_;
+  const PathStep& step_;
+};
+
+/// Length 1 in <v, v>, the decisive component positive.
+void normalise_mode(const PathSystem& system, const Plan& plan, std::vector<double>& mode) {
+  double square = 0;
+  for (std::size_t c = 0; c < mode.size(); ++c) square += system.weight()[c] * mode[c] * mode[c];
+  const double factor = std::copysign(1 / std::sqrt(square), decisive_component(plan, mode));
+  for (double& v : mode) v *= factor;
+}
+
+}  // namespace
+
+std::vector<CriticalPoint> find_circulatory_points(PathSystem& system, const PathStep& step, bool& complete) {
+  StepPoints points(system, step);
+  complete = false;
+  SpectrumSample low, high;
+  high.s = step.s;
+  if (!points.spectrum_at(0, low.found) || !points.spectrum_at(step.s, high.found)) return {};
+  const bool sees_flutter = system.lack_of_masses().empty();
+  const SpectrumAt at_place = [&](double s, CirculatoryModes& found) { return points.spectrum_at(s, found); };
+  std::vector<CriticalPoint> result;
+  for (SpectrumCrossing& crossing : find_crossings(at_place, low, high, complete)) {
+    if (crossing.flutter && !sees_flutter) continue;
+    CriticalPoint critical;
+    critical.s = crossing.s;
+    if (!points.point_at(crossing.s, critical.point)) {
+      complete = false;
+      return result;
+    }
+    critical.flutter = crossing.flutter;
+    critical.omega = crossing.flutter ? std::sqrt(std::max(crossing.omega2, 0.0)) : 0;
+    critical.modes = std::abs(crossing.flutter ? crossing.pairs : crossing.values);
+    if (!crossing.flutter) {
+      const double before = points.parameter_part(std::max(crossing.s - beside_point * step.s, 0.0));
+      const double after = points.parameter_part(std::min(crossing.s + beside_point * step.s, step.s));
+      critical.branch = crosses_another(system, critical.point, system.left_null_vector(), before, after);
+    }
+    critical.mode = std::move(crossing.mode);
+    normalise_mode(system, system.statics().plan(), critical.mode);
+    result.push_back(std::move(critical));
+  }
+  return result;
+}
+
+}  // namespace catena
