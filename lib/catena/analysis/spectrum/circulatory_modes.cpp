@@ -1,5 +1,7 @@
 #include "catena/analysis/spectrum/circulatory_modes.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -193,6 +195,28 @@ bool CirculatoryMotions::find(std::span<const double> lambda, double residual, C
   std::stable_sort(modes.modes.begin(), modes.modes.end(),
                    [](const CirculatoryMode& a, const CirculatoryMode& b) { return a.omega2 < b.omega2; });
   return true;
+}
+
+std::unique_ptr<CirculatoryMotions> motions_in_masses(StaticSystem& system, StaticTangent& tangent, std::string& lack) {
+  const Plan& plan = system.plan();
+  const Model& model = system.evaluator().model();
+  lack.clear();
+  std::vector<double> mass;
+  for (int c = 0; c < plan.columns && lack.empty(); ++c) {
+    const int number = plan.model_body[at(plan.coordinate[at(c)] / 3)];
+    const auto& body = model.bodies[at(number)];
+    const bool turns = plan.coordinate[at(c)] % 3 == 2;
+    mass.push_back(turns ? body.inertia : body.mass);
+    if (!(turns ? body.has_inertia : body.has_mass))
+      lack = fmt::format("no {} of body \"{}\" is given", turns ? "inertia" : "mass", model.body_name(number));
+  }
+  if (lack.empty()) {
+    auto motions = std::make_unique<CirculatoryMotions>(system, tangent, mass);
+    if (!motions->massless_column()) return motions;
+    const int number = plan.model_body[at(plan.coordinate[at(*motions->massless_column())] / 3)];
+    lack = fmt::format("a motion of body \"{}\" moves no mass", model.body_name(number));
+  }
+  return std::make_unique<CirculatoryMotions>(system, tangent, std::span<const double>{});
 }
 
 }  // namespace catena

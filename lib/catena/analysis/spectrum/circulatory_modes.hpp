@@ -15,8 +15,10 @@
 // 4th ed., sections 7.1 and 7.2; H. Ziegler, Principles of Structural Stability, 1968.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "catena/analysis/balance/static_tangent.hpp"
@@ -69,5 +71,9 @@ class CirculatoryMotions {
   MotionGroups groups_;
   std::optional<int> massless_;
 };
+
+/// The motions in the masses of the bodies or, where one has none or a motion moves none, in lengths; then `lack` says
+/// which. At the configuration where the system is.
+std::unique_ptr<CirculatoryMotions> motions_in_masses(StaticSystem& system, StaticTangent& tangent, std::string& lack);
 
 }  // namespace catena

@@ -12,7 +12,6 @@
 #include <cmath>
 #include <limits>
 
-#include "catena/analysis/motion/mass_matrix.hpp"
 #include "catena/analysis/run/energyless_forces.hpp"
 #include "catena/analysis/spectrum/circulatory_words.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
@@ -87,25 +86,12 @@ class Buckling::CirculatorySearch {
   };
 
   Report take_masses(BucklingReport& report) {
-    const Plan& plan = *buckling_.plan_;
-    MassMatrix masses;
-    std::vector<double> mass;
     std::string lack;
-    if (const Report missing = masses.load(buckling_.evaluator_); missing.ok()) {
-      for (int c = 0; c < plan.columns; ++c) mass.push_back(masses.mass[at(plan.coordinate[at(c)])]);
-    } else {
-      lack = missing.message;
-    }
-    motions_.emplace(buckling_.system_, tangent_, mass);
+    motions_ = motions_in_masses(buckling_.system_, tangent_, lack);
     if (!motions_->are_small())
       return too_large_without_energy(*buckling_.model_, motions_->freedoms(), CirculatoryMotions::most_freedoms);
-    if (motions_->massless_column()) {
-      const int body = plan.model_body[at(plan.coordinate[at(*motions_->massless_column())] / 3)];
-      lack = fmt::format("a motion of body \"{}\" moves no mass", buckling_.model_->body_name(body));
-      motions_.emplace(buckling_.system_, tangent_, std::span<const double>{});
-    }
     sees_flutter_ = lack.empty();
-    if (!sees_flutter_) report.warnings.push_back("flutter depends on masses and was not looked for: " + lack);
+    if (!sees_flutter_) report.warnings.push_back("flutter depends on masses, and was not looked for: " + lack);
     return {};
   }
 
@@ -209,7 +195,7 @@ class Buckling::CirculatorySearch {
   Buckling& buckling_;
   const std::function<bool()>& go_on_;
   StaticTangent tangent_;
-  std::optional<CirculatoryMotions> motions_;
+  std::unique_ptr<CirculatoryMotions> motions_;
   bool sees_flutter_ = false;
   CirculatoryModes present_;
   double step_ = 0, farthest_ = 0;

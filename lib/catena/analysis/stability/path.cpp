@@ -55,7 +55,7 @@ Report Path::follow(PathReport& report, const std::function<bool(double, const S
   March march(*this, observe);
   Report outcome = march.run(report);
   if (!path_.lack_of_masses().empty())
-    report.warnings.push_back("flutter depends on masses and was not looked for: " + path_.lack_of_masses());
+    report.warnings.push_back("flutter depends on masses, and was not looked for: " + path_.lack_of_masses());
   if (!march.point().q.empty()) {
     path_.move_to(march.point());
     q_.assign(path_.q().begin(), path_.q().end());

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/motion/mass_matrix.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/base/at.hpp"
 
@@ -116,20 +115,7 @@ PathStability PathSystem::stability() {
 
 bool PathSystem::spectrum(const PathPoint& x, CirculatoryModes& found) {
   if (!move_to(x)) return false;
-  lack_of_masses_.clear();
-  MassMatrix masses;
-  std::vector<double> mass;
-  if (const Report missing = masses.load(evaluator_); missing.ok()) {
-    for (int c = 0; c < plan_.columns; ++c) mass.push_back(masses.mass[at(plan_.coordinate[at(c)])]);
-  } else {
-    lack_of_masses_ = missing.message;
-  }
-  std::optional<CirculatoryMotions> motions(std::in_place, system_, *spectrum_tangent_, mass);
-  if (motions->massless_column()) {
-    const int body = plan_.model_body[at(plan_.coordinate[at(*motions->massless_column())] / 3)];
-    lack_of_masses_ = "a motion of body \"" + std::string(evaluator_.model().body_name(body)) + "\" moves no mass";
-    motions.emplace(system_, *spectrum_tangent_, std::span<const double>{});
-  }
+  const auto motions = motions_in_masses(system_, *spectrum_tangent_, lack_of_masses_);
   return motions->are_small() && motions->find(x.lambda, 0, found);
 }
 

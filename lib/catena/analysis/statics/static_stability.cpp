@@ -2,32 +2,13 @@
 
 #include <fmt/format.h>
 
-#include "catena/analysis/motion/mass_matrix.hpp"
-#include "catena/base/at.hpp"
-
 namespace catena {
-namespace {
-
-/// The masses by columns; none, and why, where a body lacks one.
-std::vector<double> masses_of(StaticSystem& system, std::string& why_not) {
-  const Plan& plan = system.plan();
-  MassMatrix masses;
-  std::vector<double> mass;
-  if (const Report missing = masses.load(system.evaluator()); !missing.ok()) {
-    why_not = "whether this equilibrium is stable depends on masses that are not given: " + missing.message;
-    return mass;
-  }
-  for (int c = 0; c < plan.columns; ++c) mass.push_back(masses.mass[at(plan.coordinate[at(c)])]);
-  return mass;
-}
-
-}  // namespace
 
 StaticStability judge_stability(StaticSystem& system, std::span<const double> lambda) {
   StaticStability result;
   StaticTangent tangent(system);
-  const std::vector<double> mass = masses_of(system, result.why_not);
-  std::optional<CirculatoryMotions> motions(std::in_place, system, tangent, mass);
+  std::string lack;
+  const std::unique_ptr<CirculatoryMotions> motions = motions_in_masses(system, tangent, lack);
   if (!motions->are_small()) {
     result.why_not = fmt::format(
         "their stiffness is unsymmetric, which dense algebra treats up to {} degrees of freedom; this mechanism has "
@@ -36,14 +17,8 @@ StaticStability judge_stability(StaticSystem& system, std::span<const double> la
         CirculatoryMotions::most_freedoms, motions->freedoms());
     return result;
   }
-  if (const std::optional<int> column = motions->massless_column()) {
-    const int coordinate = system.plan().coordinate[at(*column)];
-    result.why_not =
-        fmt::format("whether this equilibrium is stable depends on masses, and a motion of body \"{}\" moves none",
-                    system.evaluator().model().body_name(system.plan().model_body[at(coordinate / 3)]));
-    motions.emplace(system, tangent, std::span<const double>{});
-  }
-  result.in_masses = result.why_not.empty();
+  if (!lack.empty()) result.why_not = "whether this equilibrium is stable depends on masses, and " + lack;
+  result.in_masses = lack.empty();
   if (!motions->find(lambda, 0, result.motions)) {
     result.why_not = "the eigenvalues of their stiffness did not settle, so that nothing certifies this equilibrium";
     return result;

@@ -93,6 +93,22 @@ Example
 Example
   "forces": [{"type": "torque", "name": "motor", "i": "arm", "torque": "=-40*(arm.angle - 0.5) - 3*arm.omega"}]
 )"},
+      {{"follower_force", "flutter"},
+       R"(follower_force: a force that turns with its body, point_force with "frame": "body"
+  Such a force, and a state_law, is not minus the gradient of an energy: its stiffness is unsymmetric. equilibrium, modes,
+  buckling and path judge by M x'' + K x = 0: stable where every omega2 is real and above zero. A negative omega2 is
+  divergence; a pair of complex ones is flutter, an oscillation that grows. Masses decide about flutter; damping is
+  left out. Refused: more than 500 degrees of freedom, one-sided elements beside such forces.
+
+  modes        a pair takes two rows: omega2 (its real part) and omega (its frequency), then omega2_imaginary and growth,
+               1/s, the motion that grows first
+  buckling     loads of divergence, and flutter with flutter_omega, where two frequencies meet
+  path         critical points of kind flutter beside limit and branch
+
+Example
+  "forces": [{"type": "point_force", "i": "rod.to", "force": [0, "=-P"], "frame": "body"}],
+  "analyses": [{"type": "buckling", "parameter": "P"}]
+)"},
       {{"polynomial"},
        R"(polynomial: a function of time
   f = c0 + c1 t + c2 t^2 + ...        units: those of the value, per s, per s^2 ...
