@@ -41,6 +41,7 @@ class UnsymmetricChain {
   double gx = 0, gy = 0;
   /// torque on link i: sum_j law(i, j) (theta_j - given theta_j); empty: none.
   WideMatrix law;
+  std::vector<double> torques;  ///< of laws on the links where they are not at the given angles; empty: zero
 
   int size() const { return static_cast<int>(links.size()); }
 
@@ -96,15 +97,37 @@ class UnsymmetricChain {
     return values;
   }
 
+  /// The angles, relative to the link before, at which springs are without torque: the given angles are in balance.
+  std::vector<double> rest() const {
+    const auto q = loads();
+    std::vector<double> result(links.size());
+    double torque = 0;
+    for (int k = size() - 1; k >= 0; --k) {
+      torque += static_cast<double>(q[k]);
+      result[k] = links[k].angle - (k > 0 ? links[k - 1].angle : 0.0) - torque / links[k].spring;
+    }
+    return result;
+  }
+
+  /// Largest torque that is left on a link, with springs of these rest angles.
+  double imbalance(const std::vector<double>& rest_angles) const {
+    auto left = loads();
+    for (std::size_t k = 0; k < torques.size(); ++k) left[static_cast<Eigen::Index>(k)] += torques[k];
+    for (int k = 0; k < size(); ++k) {
+      const Wide before = k > 0 ? angle(k - 1) : Wide(0);
+      const Wide torque = Wide(links[k].spring) * (angle(k) - before - Wide(rest_angles[k]));
+      left[k] -= torque;
+      if (k > 0) left[k - 1] += torque;
+    }
+    return static_cast<double>(left.cwiseAbs().maxCoeff());
+  }
+
   /// The bodies, joints, springs and forces as lists of a scene; `scale`: an expression that forces are multiplied by.
   std::string scene(const std::string& scale = "1") const {
     std::string bodies, constraints, elements;
     const auto comma = [](std::string& list) { list += list.empty() ? "" : ",\n"; };
     double x = 0, y = 0;
-    const auto q = loads();
-    std::vector<double> torque(links.size());
-    for (int k = size() - 1; k >= 0; --k)
-      torque[k] = static_cast<double>(q[k]) + (k + 1 < size() ? torque[k + 1] : 0.0);
+    const std::vector<double> rest_angles = rest();
     for (int k = 0; k < size(); ++k) {
       const ChainLink& l = links[k];
       const double c = std::cos(l.angle), s = std::sin(l.angle);
@@ -117,10 +140,9 @@ class UnsymmetricChain {
                                               pair_of(links[k - 1].length - links[k - 1].centre, 0) + "]";
       constraints += "{\"type\": \"revolute\", \"i\": " + before + ", \"j\": [\"l" + std::to_string(k) + "\", " +
                      pair_of(-l.centre, 0) + "]}";
-      const double rest = l.angle - (k > 0 ? links[k - 1].angle : 0.0) - torque[k] / l.spring;
       elements += "{\"type\": \"torsion_spring\", \"i\": \"" + (k == 0 ? "ground" : "l" + std::to_string(k - 1)) +
                   "\", \"j\": \"l" + std::to_string(k) + "\", \"k\": " + text_of(l.spring) +
-                  ", \"angle\": " + text_of(rest) + "}";
+                  ", \"angle\": " + text_of(rest_angles[k]) + "}";
       x += l.length * c;
       y += l.length * s;
     }

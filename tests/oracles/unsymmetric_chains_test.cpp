@@ -268,6 +268,48 @@ std::string fault_of_loads(unsigned seed) {
 
 TEST(UnsymmetricChains, LoseTheirStabilityAtTheLoadsThatAreFound) { expect_no_fault(1, 30, fault_of_loads); }
 
+// Chains that the load bends: every row is in balance, and has as many negative values and pairs as dense algebra
+// finds.
+std::string fault_of_path(unsigned seed) {
+  const UnsymmetricChain chain = random_chain(seed + 500);
+  const TextRun run = run_text("{\"catena\": 1, \"parameters\": {\"P\": 1}, " + chain.scene("P") +
+                               R"(, "analyses": [{"type": "path", "parameter": "P", "to": 4, "max_steps": 60}]})");
+  const Status status = run.analysis().report.status;
+  if (status != Status::ok && status != Status::not_converged) return run.analysis().report.message;
+  const std::vector<double> load = run.column("P"), pairs = numbers(run, "flutter");
+  const std::vector<double> negative = numbers(run, "negative_modes"), rest = chain.rest();
+  std::vector<std::vector<double>> angles;
+  for (int k = 0; k < chain.size(); ++k) angles.push_back(run.column("l" + std::to_string(k) + ".angle"));
+  for (std::size_t row = 0; row < load.size(); ++row) {
+    UnsymmetricChain there = chain;
+    for (int k = 0; k < chain.size(); ++k) there.links[at(k)].angle = angles[at(k)][row];
+    for (ChainForce& force : there.forces) {
+      force.x *= load[row];
+      force.y *= load[row];
+    }
+    for (int i = 0; i < static_cast<int>(chain.law.rows()); ++i) {
+      // What the laws give where they are no longer zero, as torques of dead forces would.
+      there.torques.push_back(0);
+      for (int j = 0; j < chain.size(); ++j)
+        there.torques.back() += static_cast<double>(chain.law(i, j)) * (angles[at(j)][row] - chain.links[at(j)].angle);
+    }
+    if (const double left = there.imbalance(rest); left > 1e-8) return "out of balance by " + text_of(left);
+    const std::vector<WideValue> values = there.omega2();
+    int below = 0, complex = 0;
+    bool doubtful = false;
+    for (const WideValue& value : values) {
+      complex += value.imag() > 0;
+      below += value.imag() == 0 && value.real() < 0;
+      doubtful = doubtful || std::abs(value) < 1e-7L * std::abs(values.back());
+    }
+    doubtful = doubtful || closest(values) < 1e-4 * static_cast<double>(std::abs(values.back()));
+    if (!doubtful && (below != negative[row] || complex != pairs[row])) return "kinds at row " + std::to_string(row);
+  }
+  return load.size() > 5 ? "" : "too few rows";
+}
+
+TEST(PathsWithoutEnergy, StayInBalanceAndCountWhatGrows) { expect_no_fault(1, 25, fault_of_path); }
+
 /// Two bars on pins of their own under torques that are laws.
 std::string two_bars(const std::string& on_a, const std::string& on_b, const std::string& analyses) {
   return R"({"catena": 1, "parameters": {"P": 0}, "bodies": {"a": {"mass": 1, "inertia": 1},

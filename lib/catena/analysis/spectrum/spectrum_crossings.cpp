@@ -11,6 +11,8 @@ namespace {
 constexpr double crossing_accuracy = 1e-13;
 constexpr int most_crossing_steps = 90;
 constexpr std::size_t most_crossings = 40;
+// Crossings nearer to each other than this part of the interval are one.
+constexpr double same_crossing = 1e-9;
 // Golden section for a dip: steps, and its part.
 constexpr int most_dip_steps = 30;
 constexpr double golden_part = 0.381966011250105;
@@ -125,6 +127,21 @@ class Crossing {
   double accuracy_;
 };
 
+/// Equal mechanisms change at one place, where rounding makes one after the other do so, and back: their sum counts.
+std::vector<SpectrumCrossing> merged(const std::vector<SpectrumCrossing>& found, double together) {
+  std::vector<SpectrumCrossing> result;
+  for (const SpectrumCrossing& crossing : found) {
+    if (result.empty() || result.back().flutter != crossing.flutter || crossing.s - result.back().s > together) {
+      result.push_back(crossing);
+      continue;
+    }
+    result.back().values += crossing.values;
+    result.back().pairs += crossing.pairs;
+  }
+  std::erase_if(result, [](const SpectrumCrossing& c) { return (c.flutter ? c.pairs : c.values) == 0; });
+  return result;
+}
+
 }  // namespace
 
 std::vector<SpectrumCrossing> find_crossings(const SpectrumAt& at, const SpectrumSample& low,
@@ -140,7 +157,7 @@ std::vector<SpectrumCrossing> find_crossings(const SpectrumAt& at, const Spectru
     if (from.s >= high.s) break;
   }
   complete = from.is_like(high);
-  return found;
+  return merged(found, same_crossing * (high.s - low.s));
 }
 
 bool find_hidden_change(const SpectrumAt& at, const SpectrumSample& a, const SpectrumSample& b, const SpectrumSample& c,

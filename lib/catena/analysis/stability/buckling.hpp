@@ -44,6 +44,7 @@ struct BucklingReport : AnalysisReport {
   std::vector<double> loads;                ///< values of the parameter, nearest to the present one first
   std::vector<std::vector<double>> shapes;  ///< over columns; the largest turning or displacement is 1 rad or m
   std::vector<double> flutter;              ///< loads of flutter
+  bool flutter_sought = false;              ///< with the masses that it depends on
   std::vector<Critical> critical;           ///< of both kinds, nearest first, as the shapes; only without an energy
   std::vector<std::string> active;          ///< one-sided elements that hold
 };

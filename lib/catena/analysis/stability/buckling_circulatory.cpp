@@ -77,6 +77,7 @@ class Buckling::CirculatorySearch {
   }
   /// How far from the present value loads were looked for.
   double farthest() const { return farthest_; }
+  bool sees_flutter() const { return sees_flutter_; }
 
  private:
   struct Front {
@@ -98,6 +99,7 @@ class Buckling::CirculatorySearch {
   Report check_present() {
     Report outcome = spectrum(0, present_);
     if (!outcome.ok()) return outcome;
+    if (present_.negative > 0 || (sees_flutter_ && present_.pairs > 0)) return buckling_.not_stable();
     if (present_.neutral > 0) {
       return {Status::refused,
               fmt::format("the equilibrium is neutral at the present value of the parameter: nothing resists {}; hold "
@@ -106,7 +108,6 @@ class Buckling::CirculatorySearch {
                                                 free_bodies_of(buckling_.system_, buckling_.point_.lambda, present_))),
               {}};
     }
-    if (present_.negative > 0 || (sees_flutter_ && present_.pairs > 0)) return buckling_.not_stable();
     return {};
   }
 
@@ -208,6 +209,7 @@ Report Buckling::find_without_energy(BucklingReport& report, const std::function
   CirculatorySearch search(*this, go_on);
   std::vector<CriticalLoad> loads;
   if (Report outcome = search.run(loads, report); !outcome.ok()) return outcome;
+  report.flutter_sought = search.sees_flutter();
   for (CriticalLoad& load : loads) {
     const double value = options_.present + load.distance;
     (load.flutter ? report.flutter : report.loads).push_back(value);
@@ -219,8 +221,8 @@ Report Buckling::find_without_energy(BucklingReport& report, const std::function
   if (loads.empty()) {
     report.warnings.push_back(search.farthest() > 0
                                   ? fmt::format("no value of the parameter within {:.6g} of the present one makes this "
-                                                "equilibrium unstable",
-                                                search.farthest())
+                                                "equilibrium {}",
+                                                search.farthest(), search.sees_flutter() ? "unstable" : "diverge")
                                   : "the parameter does not change how this equilibrium moves");
   } else if (static_cast<int>(loads.size()) < options_.count) {
     report.warnings.push_back(

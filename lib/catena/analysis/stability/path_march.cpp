@@ -72,7 +72,7 @@ bool Path::March::write(const PathPoint& x) {
     return false;
   }
   report_->negative_modes.push_back(modes_.negative);
-  if (system_.is_circulatory()) report_->flutter.push_back(system_.lack_of_masses().empty() ? modes_.pairs : 0);
+  if (system_.is_circulatory() && system_.lack_of_masses().empty()) report_->flutter.push_back(modes_.pairs);
   const Snapshot snapshot{.evaluator = path_.evaluator_,
                           .t = path_.t_,
                           .q = system_.q(),

@@ -120,7 +120,7 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result) {
     context.state.ropes = RopeWaysAt(context.model).turns(context.state);
   }
   result.fields = {{"loads", report.loads}};
-  if (circulatory) {
+  if (report.flutter_sought) {
     result.fields.push_back({"flutter", report.flutter});
     std::vector<double> omega;
     for (const BucklingReport::Critical& load : report.critical) {

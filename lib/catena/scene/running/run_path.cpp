@@ -120,7 +120,7 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
   result.fields = {{"critical", std::move(critical)},
                    {"negative_modes", report.negative_modes},
                    {"steps", static_cast<std::int64_t>(report.steps)}};
-  if (!analysis.evaluator().conservative()) result.fields.push_back({"flutter", report.flutter});
+  if (!report.flutter.empty()) result.fields.push_back({"flutter", report.flutter});
   if (!analysis.plan().gap_rows.empty()) {
     result.fields.push_back({"active", report.active});
     result.fields.push_back({"changes", std::move(changes)});
