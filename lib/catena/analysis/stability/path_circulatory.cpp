@@ -17,6 +17,8 @@ namespace {
 
 // Part of s beside a critical point at which the path's direction is looked at.
 constexpr double beside_point = 1e-6;
+// Steps of inverse iteration for a left null vector.
+constexpr int left_vector_steps = 4;
 
 /// The points of one step.
 class StepPoints {
@@ -53,6 +55,25 @@ void normalise_mode(const PathSystem& system, const Plan& plan, std::vector<doub
 }
 
 }  // namespace
+
+bool PathSystem::spectrum(const PathPoint& x, CirculatoryModes& found) {
+  if (!move_to(x)) return false;
+  const auto motions = motions_in_masses(system_, *spectrum_tangent_, lack_of_masses_);
+  return motions->are_small() && motions->find(x.lambda, 0, found);
+}
+
+std::vector<double> PathSystem::left_null_vector() {
+  std::vector<double> given(given_.size(), 0.0), w(given_.size());
+  for (std::size_t c = 0; c < weight_.size(); ++c) w[c] = std::sin(1.0 + 1.7 * static_cast<double>(c));
+  for (int k = 0; k < left_vector_steps; ++k) {
+    for (std::size_t c = 0; c < weight_.size(); ++c) given[c] = weight_[c] * w[c];
+    tangent_->solve_to_rounding(given, w, true);
+    double square = 0;
+    for (std::size_t c = 0; c < weight_.size(); ++c) square += weight_[c] * w[c] * w[c];
+    for (double& value : w) value /= std::sqrt(square);
+  }
+  return w;
+}
 
 std::vector<CriticalPoint> find_circulatory_points(PathSystem& system, const PathStep& step, bool& complete) {
   StepPoints points(system, step);

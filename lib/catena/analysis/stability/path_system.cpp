@@ -17,9 +17,8 @@ constexpr double nearly_solved = 1e-9;
 // Steps larger than this have left the path: parts of the mechanism's extent, or rad.
 constexpr double astray = 3;
 constexpr double difference = 1e-5;
-// E of the unsymmetric matrix times the largest stiffness; steps of inverse iteration for its left null vector.
+// E of the unsymmetric matrix times the largest stiffness.
 constexpr double path_regularisation = 1e-11;
-constexpr int left_vector_steps = 4;
 
 }  // namespace
 
@@ -111,25 +110,6 @@ PathStability PathSystem::stability() {
   CirculatoryModes found;
   if (!spectrum(factored_, found)) return {};
   return {found.negative, found.pairs};
-}
-
-bool PathSystem::spectrum(const PathPoint& x, CirculatoryModes& found) {
-  if (!move_to(x)) return false;
-  const auto motions = motions_in_masses(system_, *spectrum_tangent_, lack_of_masses_);
-  return motions->are_small() && motions->find(x.lambda, 0, found);
-}
-
-std::vector<double> PathSystem::left_null_vector() {
-  std::vector<double> given(given_.size(), 0.0), w(given_.size());
-  for (std::size_t c = 0; c < weight_.size(); ++c) w[c] = std::sin(1.0 + 1.7 * static_cast<double>(c));
-  for (int k = 0; k < left_vector_steps; ++k) {
-    for (std::size_t c = 0; c < weight_.size(); ++c) given[c] = weight_[c] * w[c];
-    tangent_->solve_to_rounding(given, w, true);
-    double square = 0;
-    for (std::size_t c = 0; c < weight_.size(); ++c) square += weight_[c] * w[c] * w[c];
-    for (double& value : w) value /= std::sqrt(square);
-  }
-  return w;
 }
 
 void PathSystem::residual(const PathPoint& x, std::vector<double>& out) {
