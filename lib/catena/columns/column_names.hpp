@@ -46,7 +46,7 @@ std::vector<NamedColumn> default_columns(const Model& model);
 constexpr bool is_reaction(ColumnKind kind) {
   return (kind >= ColumnKind::reaction_x && kind <= ColumnKind::push) ||
          (kind >= ColumnKind::load && kind <= ColumnKind::work) || kind == ColumnKind::friction ||
-         kind == ColumnKind::slip;
+         kind == ColumnKind::slip || kind == ColumnKind::far_pull;
 }
 
 }  // namespace catena

@@ -56,6 +56,14 @@ bool uses_velocity(ColumnKind kind) {
          (kind >= ColumnKind::exerted_x && kind <= ColumnKind::applied_y);
 }
 
+/// Whether an elastic rope has friction on pulleys: its tension at an end is found with the accelerations.
+bool rubs(const Model& model, int element) {
+  return std::any_of(model.rope_paths.begin(), model.rope_paths.end(), [&](const RopePath& path) {
+    const auto has_mu = [](const RopeNode& node) { return node.mu > 0; };
+    return path.element == element && std::any_of(path.nodes.begin(), path.nodes.end(), has_mu);
+  });
+}
+
 bool needs_mass(ColumnKind kind, const Model& model) {
   if (kind == ColumnKind::potential) return model.gravity != Vec2<double>{};
   return kind == ColumnKind::kinetic || kind == ColumnKind::total || kind == ColumnKind::balance ||
@@ -114,7 +122,9 @@ class Resolver {
     if (needs.multipliers && !sources_.multipliers) return no_multipliers;
     if (needs.work && !sources_.work) return no_work;
     if (needs_mass(column.kind, model_) && without_mass_ >= 0) return no_mass;
-    if (is_reaction(column.kind) && plan_.element_row[static_cast<std::size_t>(column.index)] < 0 &&
+    const bool has_rows = column.kind != ColumnKind::far_pull ||
+                          model_.elements[static_cast<std::size_t>(column.index)].kind != ElementKind::force;
+    if (is_reaction(column.kind) && has_rows && plan_.element_row[static_cast<std::size_t>(column.index)] < 0 &&
         !plan_.is_released(column.index)) {
       return eliminated;
     }
@@ -201,6 +211,7 @@ ColumnSet ColumnSet::resolve(const Model& model, const Plan& plan, std::span<con
       const Needs needs = needs_of(read.kind);
       set.needs_ |= needs;
       set.needs_.velocity |= sources.velocity && uses_velocity(read.kind);
+      set.needs_.multipliers |= sources.multipliers && read.kind == ColumnKind::tension && rubs(model, read.index);
     });
     set.columns_.push_back(resolver.in_plan(column.column));
     if (set.only_angles_ && column.column.kind == ColumnKind::residual) column.info.unit = UnitKind::angle;

@@ -96,6 +96,7 @@ void add_loads(const Entry& entry, std::vector<ElementColumn>& out) {
     if (entry.element.pieces > 0) {
       out.push_back({"length", UnitKind::length, ColumnKind::way});
       out.push_back({"force", UnitKind::force, ColumnKind::tension});
+      out.push_back({"force_j", UnitKind::force, ColumnKind::far_pull});
       out.push_back({"gap", UnitKind::length, ColumnKind::slack});
     }
   }
@@ -133,6 +134,7 @@ std::vector<ElementColumn> columns_of_element(const Model& model, int element) {
     } else if constexpr (HasParts<typename Entry::Element>) {
       out.push_back({"length", UnitKind::length, ColumnKind::way});
       add_gap(entry, out);
+      out.push_back({"force_j", UnitKind::force, ColumnKind::far_pull});
       out.push_back({"lambda1", UnitKind::force, ColumnKind::multiplier, 0});
     } else if constexpr (Joining<typename Entry::Element>) {
       // A stretch of a rope: the rope has the columns.

@@ -80,6 +80,8 @@ class RowValues {
         return s_.measured(column.index).f;
       case ColumnKind::way:
         return way(column.index);
+      case ColumnKind::far_pull:
+        return far_pull(column);
       case ColumnKind::slack:
         return s_.spring_loads(column.index).slack;
       case ColumnKind::value:
@@ -107,7 +109,7 @@ class RowValues {
       case ColumnKind::turn:
         return joint(column).angle.f;
       case ColumnKind::tension:
-        return s_.spring_loads(column.index).tension;
+        return tension(column.index);
       case ColumnKind::spring_torque:
         return s_.spring_loads(column.index).torque;
       case ColumnKind::offset_x:
@@ -206,6 +208,20 @@ class RowValues {
     with_list(s_.model().constraints, record.type,
               [&](const auto& list) { squared = HasSquaredValue<ElementOf<decltype(list)>>; });
     return squared ? S(-2.0) * s_.prescribed(column.index).f * multiplier : -multiplier;
+  }
+
+  /// Of a spring, cable or rope; that of a rope with friction on pulleys is at its end i.
+  S tension(int element) const {
+    const S pull = s_.spring_loads(element).tension;
+    const ContactLoad* load = s_.contact(element);
+    return load && load->force != 0 ? pull + S(load->force) : pull;
+  }
+  /// Of a rope at its end j.
+  S far_pull(const Column& column) {
+    const bool elastic = s_.model().elements[static_cast<std::size_t>(column.index)].kind == ElementKind::force;
+    const ContactLoad* load = s_.contact(column.index);
+    if (elastic) return load ? tension(column.index) + S(load->friction) : tension(column.index);
+    return load ? S(load->force + load->friction) : S(0.0) - reactions(column).multiplier[0];
   }
 
   /// The length of a rope's way.

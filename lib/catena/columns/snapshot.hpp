@@ -12,7 +12,8 @@
 namespace catena {
 
 /// What a contact presses with, its friction, along the curve or in a joint, on j, and its slip, j relative to i.
-/// Units: N or N m, m/s or rad/s.
+/// Units: N or N m, m/s or rad/s. Of a rope: its tension at the end i, of an elastic one what friction on pulleys adds
+/// there; and what the tension at the end j exceeds that at i by.
 struct ContactLoad {
   double force = 0, friction = 0, slip = 0;
 };

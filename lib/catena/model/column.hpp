@@ -69,6 +69,8 @@ enum class ColumnKind : unsigned char {
   momentum_x,
   momentum_y,
   angular_momentum,  ///< about the ground's origin
+
+  far_pull,  ///< index = rope, elastic or not: its tension at its end j
 };
 
 /// Whether the column shows the place, velocity or acceleration of a body or its point.

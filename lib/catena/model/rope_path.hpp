@@ -1,5 +1,6 @@
-// The way of a rope as a model keeps it for figures: the circles and points that it passes, one after the other. No
-// analysis depends on it; its elements have the straight stretches alone (rope_way.hpp).
+// The way of a rope as a model keeps it: the circles and points that it passes, one after the other, for figures, for
+// ways that change (rope_routes.hpp) and for friction on pulleys (rope_grips.hpp). Its elements have the straight
+// stretches alone (rope_way.hpp).
 //
 // Local coordinates in the centroidal frames, m.
 #pragma once
@@ -22,6 +23,7 @@ struct RopeNode {
   Vec2<double> centre{};
   double radius = 0;  ///< positive where the circle lies on the left of the rope as it runs on, else negative
   bool rolls = false;
+  double mu = 0;  ///< of the friction of a rope that slides over it
 };
 
 /// The part of a rope's way that one element stands for.

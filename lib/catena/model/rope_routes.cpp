@@ -7,6 +7,7 @@
 
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
+#include "catena/model/model_add.hpp"
 #include "catena/model/rope_pieces.hpp"
 
 namespace catena {
@@ -17,7 +18,25 @@ RopePulley<double> pulley_of(const RopeNode& node) {
           .centre = node.centre,
           .radius = std::abs(node.radius),
           .side = node.radius < 0 ? -1 : 1,
-          .rolls = node.rolls};
+          .rolls = node.rolls,
+          .mu = node.mu};
+}
+
+/// Writes the lines of a rope over its elements.
+void write_rope(Model& model, int element, const std::vector<RopePiece<double>>& pieces) {
+  const std::size_t index = at(model.elements[at(element)].index);
+  auto& head = std::get<std::vector<ElementEntry<Rope<double>, double>>>(model.constraints)[index];
+  auto& parts = std::get<std::vector<ElementEntry<RopePart<double>, double>>>(model.constraints);
+  head.i = pieces.front().i;
+  head.j = pieces.front().j;
+  static_cast<RopeSpan<double>&>(head.element) = pieces.front().span;
+  for (std::size_t k = 1; k < pieces.size(); ++k) {
+    auto& part = parts[at(head.element.first_part) + k - 1];
+    part.i = pieces[k].i;
+    part.j = pieces[k].j;
+    static_cast<RopeSpan<double>&>(part.element) = pieces[k].span;
+    part.element.bridge = pieces[k].bridge;
+  }
 }
 
 RopeLayout<double> layout_of(const Model& model, const RopeRoute& route, const std::vector<Frame<double>>& frames) {
@@ -127,29 +146,68 @@ void lay(Model& model, RopeRoute& route, const std::vector<Frame<double>>& frame
   RopeStretch<double> stretch = layout.between(0, layout.last(), route.memory);
   stretch.skeleton = layout.skeleton(0, layout.last()).straight;
   const std::vector<RopePiece<double>> pieces = padded(model, stretch, route.elastic);
+  if (!route.elastic) return write_rope(model, route.element, pieces);
   const std::size_t first = at(model.elements[at(route.element)].index);
-  if (route.elastic) {
-    auto& list = std::get<std::vector<ElementEntry<ElasticRope<double>, double>>>(model.forces);
-    for (std::size_t k = 0; k < pieces.size(); ++k) {
-      auto& entry = list[first + k];
-      entry.i = pieces[k].i;
-      entry.j = pieces[k].j;
-      pieces[k].give(entry.element);
-    }
-    return;
+  auto& list = std::get<std::vector<ElementEntry<ElasticRope<double>, double>>>(model.forces);
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    auto& entry = list[first + k];
+    entry.i = pieces[k].i;
+    entry.j = pieces[k].j;
+    pieces[k].give(entry.element);
   }
-  auto& head = std::get<std::vector<ElementEntry<Rope<double>, double>>>(model.constraints)[first];
-  auto& parts = std::get<std::vector<ElementEntry<RopePart<double>, double>>>(model.constraints);
-  head.i = pieces.front().i;
-  head.j = pieces.front().j;
-  static_cast<RopeSpan<double>&>(head.element) = pieces.front().span;
+}
+
+namespace {
+
+/// The part of a route behind a node, which holds what winds on it; the whole route, as it is laid, behind node 0.
+RopeStretch<double> part_behind(const Model& model, const RopeRoute& route, int node, int first_line,
+                                const std::vector<Frame<double>>& frames) {
+  std::vector<RopePulley<double>> nodes = route.nodes;
+  if (node > 0) nodes[at(node)].rolls = true;
+  RopeLayout<double> layout(model, std::move(nodes), frames);
+  layout.off = route.off;
+  RopeMemory memory;
+  if (node == 0) memory = route.memory;
+  RopeStretch<double> stretch = layout.between(node, layout.last(), memory);
+  stretch.skeleton = layout.skeleton(first_line, layout.last()).straight;
+  return stretch;
+}
+
+}  // namespace
+
+double length_behind(const Model& model, const RopeRoute& route, int node, const std::vector<Frame<double>>& frames) {
+  const RopeLayout<double> layout = layout_of(model, route, frames);
+  double length = 0;
+  for (int a = node; a < layout.last(); a = layout.after(a)) {
+    const RopeSpan<double> span = layout.line(a, layout.after(a));
+    const Vec2<double> h = separation(frames[at(a)], frames[at(layout.after(a))], span.s_i, span.s_j);
+    length += span.line(h).length;
+    if (a > node) length += route.nodes[at(a)].radius * route.memory.contact[at(a)];
+  }
+  return length;
+}
+
+int append_behind(Model& model, const RopeRoute& route, int node, const std::vector<Frame<double>>& frames) {
+  const std::vector<RopePiece<double>> pieces = padded(model, part_behind(model, route, node, node, frames), false);
+  Rope<double> head;
+  head.length = 0;
+  head.first_part =
+      static_cast<int>(std::get<std::vector<ElementEntry<RopePart<double>, double>>>(model.constraints).size());
+  head.parts = static_cast<int>(pieces.size()) - 1;
+  const int id =
+      model.append({}, ElementEntry<Rope<double>, double>{head, pieces.front().i, pieces.front().j}, ElementKind::gap);
   for (std::size_t k = 1; k < pieces.size(); ++k) {
-    auto& part = parts[at(head.element.first_part) + k - 1];
-    part.i = pieces[k].i;
-    part.j = pieces[k].j;
-    static_cast<RopeSpan<double>&>(part.element) = pieces[k].span;
-    part.element.bridge = pieces[k].bridge;
+    RopePart<double> part;
+    part.head = id;
+    model.append({}, ElementEntry<RopePart<double>, double>{part, pieces[k].i, pieces[k].j}, ElementKind::constraint);
   }
+  write_rope(model, id, pieces);
+  return id;
+}
+
+void lay_behind(Model& model, const RopeRoute& route, int element, int node, int last_of_run,
+                const std::vector<Frame<double>>& frames) {
+  write_rope(model, element, padded(model, part_behind(model, route, node, last_of_run, frames), false));
 }
 
 RouteWatch::RouteWatch(const Model& model, const RopeRoute& route, const std::vector<Frame<double>>& frames) {

@@ -49,6 +49,18 @@ RouteStep go_on(const Model& model, RopeRoute& route, const std::vector<Frame<do
 /// has no straight line.
 void lay(Model& model, RopeRoute& route, const std::vector<Frame<double>>& frames);
 
+/// Appends an equation of how much of a route lies behind a node, from the material of that node's circle on: the other
+/// part of the rope as it would be if the circle held it. Its length is zero. The number of its element is returned.
+int append_behind(Model& model, const RopeRoute& route, int node, const std::vector<Frame<double>>& frames);
+
+/// Writes that part over the equation's elements as the route lies now, behind `node`; these have room for what is
+/// behind node `last_of_run`. Throws ModelError, as lay().
+void lay_behind(Model& model, const RopeRoute& route, int element, int node, int last_of_run,
+                const std::vector<Frame<double>>& frames);
+
+/// How long the way is behind a node that is touched, from where the rope leaves its circle, m.
+double length_behind(const Model& model, const RopeRoute& route, int node, const std::vector<Frame<double>>& frames);
+
 /// The tangents of a route: contacts and turning along the motion, from where it was laid.
 class RouteWatch {
  public:

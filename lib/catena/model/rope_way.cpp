@@ -11,6 +11,18 @@
 namespace catena {
 namespace {
 
+/// The length of the way from one node to another, with what lies on pulleys that roll between them.
+template <class S>
+S whole_way(const BasicModel<S>& model, const RopeLayout<S>& layout, const std::vector<Frame<S>>& frames, int from,
+            int to) {
+  std::vector<RopePulley<S>> nodes = layout.nodes();
+  for (RopePulley<S>& node : nodes) node.rolls = false;
+  RopeLayout<S> whole(model, std::move(nodes), frames);
+  whole.off = layout.off;
+  RopeMemory memory;
+  return whole.between(from, to, memory).way;
+}
+
 /// The stretches of a whole rope in the given configuration, from pulley that rolls to pulley that rolls.
 template <class S>
 std::vector<RopeStretch<S>> follow(const BasicModel<S>& model, const RopeWay<S>& way) {
@@ -29,12 +41,13 @@ std::vector<RopeStretch<S>> follow(const BasicModel<S>& model, const RopeWay<S>&
     frame.y = frame.y - origin.y;
     frames.push_back(frame);
   }
-  RopeLayout<S> layout(model, std::move(nodes), std::move(frames));
+  RopeLayout<S> layout(model, std::move(nodes), frames);
   layout.choose_sides();
   std::vector<RopeStretch<S>> all;
   const auto append_nodes = [&](RopeStretch<S>& stretch, int from, int to) {
     for (int k = from; k <= to; ++k) stretch.nodes.push_back(layout.nodes()[at(k)]);
   };
+  int from = 0, to = last;
   for (int first = 0, end = 1; first < last; first = end++) {
     while (end < last && !layout.nodes()[at(end)].rolls) ++end;
     layout.choose_off(first, end);
@@ -46,10 +59,16 @@ std::vector<RopeStretch<S>> follow(const BasicModel<S>& model, const RopeWay<S>&
       continue;
     }
     stretch.skeleton = layout.skeleton(first, end).straight;
+    if (all.empty()) from = first;
+    to = end;
     append_nodes(stretch, all.empty() ? 0 : first, end);
     all.push_back(std::move(stretch));
   }
   if (all.empty()) throw ModelError("it ties together what does not move relative to each other");
+  if (all.size() > 1) {
+    const S whole = whole_way(model, layout, frames, from, to);
+    for (RopeStretch<S>& stretch : all) stretch.part = stretch.way / whole;
+  }
   for (std::size_t k = 0; k + 1 < all.size(); ++k) {
     all[k].nodes.push_back(all[k + 1].nodes[1]);
     all[k].leads_on = true;
@@ -88,8 +107,8 @@ int add_elastic(BasicModel<S>& model, std::string_view name, const RopeStretch<S
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     ElementEntry<ElasticRope<S>, S> entry{{}, pieces[p].i, pieces[p].j};
     pieces[p].give(entry.element);
-    entry.element.k = values.k;
-    entry.element.length = value_of(values.length) < 0 ? stretch.way : values.length;
+    entry.element.k = values.k / stretch.part;
+    entry.element.length = value_of(values.length) < 0 ? stretch.way : values.length * stretch.part;
     if (p == 0) entry.element.pieces = static_cast<int>(pieces.size());
     const int added = model.append(p == 0 ? name : std::string_view(), entry, ElementKind::force);
     if (p == 0) id = added;
@@ -104,7 +123,8 @@ RopePath path_of(const RopeStretch<S>& stretch, int element) {
     path.nodes.push_back({.body = node.body,
                           .centre = {value_of(node.centre.x), value_of(node.centre.y)},
                           .radius = node.side * value_of(node.radius),
-                          .rolls = node.rolls});
+                          .rolls = node.rolls,
+                          .mu = node.mu});
   }
   return path;
 }

@@ -3,7 +3,12 @@
 //   way: end on body i, pulleys, end on body j      =>      straight stretches between neighbours (rope_span.hpp)
 //
 // A pulley that rolls is the end of one rope and the beginning of another, both of which wind on it: its stretches have
-// tensions of their own. What lies between two places of one body, or of bodies that stand still, is no element: it
+// tensions of their own. Of an elastic rope of length L and stiffness k each is a spring of the length that it has in
+// the given configuration, also while some winds on or off:
+//
+//   L_n = L way_n / way      k_n = k L / L_n      way: of all stretches, arcs on pulleys between included
+//
+//  What lies between two places of one body, or of bodies that stand still, is no element: it
 // adds to the length, or to what the body's turning winds. A pulley beside which the rope lies is passed over; which
 // these are may change in motion (rope_routes.hpp). Units: m. Errors: ModelError, as a phrase about the rope.
 #pragma once
@@ -24,6 +29,7 @@ struct RopePulley {
   S radius{};
   int side = 0;  ///< 1: on the left of the rope as it runs from i to j; 0: the side to which its way bends
   bool rolls = false;
+  double mu = 0;  ///< of the friction while the rope slides over it
 };
 
 template <class S>
@@ -48,6 +54,7 @@ struct RopeStretch {
   std::vector<Straight> straight;
   std::vector<Straight> skeleton{};  ///< bodies of its straight lines on all of its pulleys, also those it lies beside
   S way{};
+  S part{1.0};                         ///< of the length of all, with what lies on pulleys between
   std::vector<RopePulley<S>> nodes{};  ///< its ends and what is between, for figures
   bool leads_on = false;               ///< the last of them belongs to the next stretch (rope_path.hpp)
 };

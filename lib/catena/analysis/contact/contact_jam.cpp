@@ -48,6 +48,7 @@ bool ContactSwitch::is_jammed(bool accelerates) const {
   for (std::size_t a = 0; a < active_.size(); ++a) {
     problem.place[a].has_friction = false;
     problem.place[a].limit = problem.place[a].kinetic = 0;
+    problem.place[a].growth = 1;
     const Evaluator::ScalarMotion& gap = gap_[active_[a]];
     if (!problem.place[a].has_normal) continue;
     problem.b[2 * a] = accelerates ? gap.bend + product(gap, qdd_) : gap.rate;

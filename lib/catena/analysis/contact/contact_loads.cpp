@@ -79,17 +79,20 @@ ContactLoads::ContactLoads(const Evaluator& evaluator, const std::vector<Contact
       slide_(points.size()),
       normal_(points.size(), 0.0),
       friction_(points.size(), 0.0),
+      exponent_(points.size(), 0.0),
       sizes_(std::make_unique<Sizes>()) {
   const auto coordinates = at(evaluator.plan().coordinates());
   unit_.resize(coordinates);
   change_.resize(coordinates);
   nothing_.assign(at(evaluator.plan().rows), 0.0);
   for (std::size_t k = 0; k < points_.size(); ++k) {
-    const bool compliant = points_[k].kind == ContactKind::compliant;
+    const bool compliant = points_[k].kind == ContactKind::compliant || points_[k].is_elastic_grip();
     if (slides(k) && !compliant) coupled_.push_back(k);
     dissipates_ |= slides(k) || (compliant && states_[k].closed && points_[k].c > 0);
-    holds_ |= states_[k].closed &&
+    holds_ |= states_[k].closed && !points_[k].is_elastic_grip() &&
               (points_[k].kind == ContactKind::rigid || (points_[k].has_friction() && points_[k].is_exact()));
+    if (points_[k].is_elastic_grip() && states_[k].closed && points_[k].rope->grips.front() == k)
+      elastic_.emplace_back(points_, points_[k].rope);
   }
   response_.assign(coupled_.size(), nothing_);
   sizes_->resize(coupled_.size(), nothing_.size());
@@ -99,7 +102,7 @@ ContactLoads::~ContactLoads() = default;
 
 bool ContactLoads::slides(std::size_t k) const {
   if (!points_[k].has_friction() || !states_[k].closed || points_[k].mu == 0) return false;
-  return !points_[k].is_exact() || states_[k].direction != 0;
+  return !points_[k].is_exact() || states_[k].direction != 0 || states_[k].tied;
 }
 
 double ContactLoads::sigma(std::size_t k) const {
@@ -138,6 +141,7 @@ double ContactLoads::joint_slope(const ContactPoint& point, std::span<const doub
 double ContactLoads::normal_from(std::size_t k, std::span<const double> qd, std::span<const double> lambda) const {
   const ContactPoint& point = points_[k];
   if (point.kind == ContactKind::joint) return joint_force(point, lambda);
+  if (point.kind == ContactKind::grip) return point.is_elastic_grip() ? 0 : tension_before(k, lambda);
   if (point.kind == ContactKind::compliant) return compliant_force(point, evaluator_.scalar_motion(point.element, qd));
   const int row = evaluator_.plan().element_row[at(point.element)];
   return row < 0 ? 0 : -lambda[at(row)];
@@ -150,7 +154,9 @@ void ContactLoads::add(std::span<const double> qd, std::span<double> loads) {
     const ContactPoint& point = points_[k];
     normal_[k] = friction_[k] = 0;
     if (!states_[k].closed) continue;
+    if (point.is_elastic_grip()) continue;
     if (point.has_friction()) slide_[k] = evaluator_.scalar_motion(point.slide, qd);
+    if (point.lines) exponent_[k] = point.lines->exponent(evaluator_, {}).f;
     if (point.kind != ContactKind::compliant) continue;
     const Evaluator::ScalarMotion gap = evaluator_.scalar_motion(point.element, qd);
     normal_[k] = compliant_force(point, gap);
@@ -160,6 +166,28 @@ void ContactLoads::add(std::span<const double> qd, std::span<double> loads) {
     friction_[k] = -point.mu * sigma(k) * normal_[k];
     scatter_gradient(slide_[k], friction_[k], loads);
   }
+  for (ElasticGrips& rope : elastic_) {
+    rope.look(evaluator_, qd, states_);
+    rope.add(loads);
+    lost_in_springs_ += rope.dissipation(states_);
+    for (std::size_t n = 0; n < rope.rope().grips.size(); ++n) friction_[rope.rope().grips[n]] = rope.friction(n);
+    normal_[rope.rope().grips.front()] = rope.tension(0) - rope.rope().k * std::max(rope.stretch(), 0.0);
+  }
+}
+
+// The tension before a grip with the sizes of friction as the iteration has them.
+double ContactLoads::tension_of_sizes(std::size_t k) const {
+  double tension = -sizes_->lambda[at(evaluator_.plan().element_row[at(points_[k].element)])];
+  for (const std::size_t other : points_[k].rope->grips) {
+    if (other >= k) break;
+    if (slides(other)) {
+      const auto found = std::find(coupled_.begin(), coupled_.end(), other) - coupled_.begin();
+      tension += sizes_->f(static_cast<Eigen::Index>(found));
+    } else if (const int row = row_of_slide(other); row >= 0) {
+      tension -= sizes_->lambda[at(row)];
+    }
+  }
+  return tension;
 }
 
 // Residual and slope of the equations for the sizes of friction, at their present values.
@@ -178,6 +206,16 @@ void ContactLoads::linearise(std::span<const double> lambda) {
     const ContactPoint& point = points_[coupled_[p]];
     const double factor = point.mu * sigma(coupled_[p]);
     const auto row = static_cast<Eigen::Index>(p);
+    if (point.kind == ContactKind::grip) {
+      const double h = growth(coupled_[p]);
+      const double tension = tension_of_sizes(coupled_[p]);
+      s.residual(row) = s.f(row) + h * tension;
+      s.terms(row) = std::abs(s.f(row)) + std::abs(h) * tension_terms(coupled_[p]);
+      for (std::size_t l = 0; l < coupled_.size(); ++l)
+        s.slope(row, static_cast<Eigen::Index>(l)) =
+            (p == l ? 1 : 0) + h * tension_slope(coupled_[p], response_[l], coupled_[l]);
+      continue;
+    }
     s.residual(row) = s.f(row) + factor * normal_from(coupled_[p], {}, s.lambda);
     s.terms(row) = std::abs(s.f(row)) + std::abs(factor * normal_from(coupled_[p], {}, s.lambda_terms));
     for (std::size_t l = 0; l < coupled_.size(); ++l) {
@@ -240,7 +278,7 @@ void ContactLoads::finish(std::span<const double> lambda) {
   lost_ = lost_in_springs_;
   for (std::size_t k = 0; k < points_.size(); ++k) {
     const ContactPoint& point = points_[k];
-    if (!states_[k].closed) continue;
+    if (!states_[k].closed || point.is_elastic_grip()) continue;
     if (point.kind != ContactKind::compliant) normal_[k] = normal_from(k, {}, lambda);
     if (!point.has_friction()) continue;
     if (slides(k)) {
@@ -259,6 +297,7 @@ double ContactLoads::energy() const {
     const double d = -evaluator_.scalar_motion(point.element, {}).value;
     if (d > 0) sum += point.k * std::pow(d, point.exponent + 1) / (point.exponent + 1);
   }
+  for (const ElasticGrips& rope : elastic_) sum += rope.energy_at(evaluator_, states_);
   return sum;
 }
 
@@ -266,9 +305,13 @@ void ContactLoads::scatter(std::span<ContactLoad> loads) const {
   std::fill(loads.begin(), loads.end(), ContactLoad{});
   for (std::size_t k = 0; k < points_.size(); ++k) {
     if (!states_[k].closed) continue;
+    ContactLoad& load = loads[at(points_[k].element)];
     // What sticks has no slip but rounding.
     const bool sticks = points_[k].has_friction() && points_[k].is_exact() && states_[k].direction == 0;
-    loads[at(points_[k].element)] = {normal_[k], friction_[k], sticks ? 0 : slide_[k].rate};
+    // The grips of a rope come behind it, and have its tension at the end i.
+    if (points_[k].kind != ContactKind::grip) load = {normal_[k], friction_[k], sticks ? 0 : slide_[k].rate};
+    if (points_[k].kind == ContactKind::grip) load.friction += friction_[k];
+    if (points_[k].is_elastic_grip() && points_[k].rope->grips.front() == k) load.force = normal_[k];
   }
 }
 

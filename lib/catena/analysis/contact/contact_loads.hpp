@@ -4,6 +4,9 @@
 //   friction on j along the slide:  f_k = -mu sigma_k N_k        sigma_k: sign of the slip, or tanh(slip / vs)
 //   f + mu sigma N(f) = 0           N(f) = N(lambda_0 + B f)       B_l: multipliers that a unit of friction l makes
 //
+// A grip of an inextensible rope (rope_grips.hpp) has f_k = -(1 - e^(-sigma_k E_k)) T_k-1, with T_k-1 = -lambda + f_1 +
+// ... + f_k-1 of the same rope in place of N; those of an elastic one follow from the place (elastic_grips.hpp).
+//
 // As the multipliers are linear in the friction, the sizes of all friction forces follow from a system of as many
 // equations, solved by Newton's method (one step without joints): reactions and friction are those of the same instant.
 // Where its determinant is not positive - it is 1 without friction - there is no such friction, or there are several
@@ -17,6 +20,7 @@
 #include <vector>
 
 #include "catena/analysis/contact/contact_points.hpp"
+#include "catena/analysis/contact/elastic_grips.hpp"
 #include "catena/analysis/motion/state_loads.hpp"
 #include "catena/assembly/evaluate.hpp"
 #include "catena/columns/snapshot.hpp"
@@ -44,9 +48,12 @@ class ContactLoads final : public StateLoads {
   /// After complete(): what point k presses with, its friction, its slip.
   double normal(std::size_t k) const { return normal_[k]; }
   double friction(std::size_t k) const { return friction_[k]; }
+  /// E of a grip of an inextensible rope, at the last evaluation.
+  double exponent(std::size_t k) const { return exponent_[k]; }
   double slip(std::size_t k) const { return slide_[k].rate; }
   /// What presses a place, from multipliers: of a joint its whole force; of a compliant place the force at the
-  /// evaluator's configuration, negative where it would have to pull.
+  /// evaluator's configuration, negative where it would have to pull; of an inextensible rope's grip the tension before
+  /// it.
   double normal_from(std::size_t k, std::span<const double> qd, std::span<const double> lambda) const;
   /// Scatters what presses, friction and slip to `loads`, one entry an element.
   void scatter(std::span<ContactLoad> loads) const;
@@ -58,6 +65,12 @@ class ContactLoads final : public StateLoads {
  private:
   double compliant_force(const ContactPoint& point, const Evaluator::ScalarMotion& gap) const;
   double joint_force(const ContactPoint& point, std::span<const double> lambda) const;
+  double tension_before(std::size_t k, std::span<const double> lambda) const;
+  double tension_of_sizes(std::size_t k) const;
+  double tension_terms(std::size_t k) const;
+  double tension_slope(std::size_t k, std::span<const double> along, std::size_t sliding) const;
+  double growth(std::size_t k) const;
+  int row_of_slide(std::size_t k) const;
   double joint_slope(const ContactPoint& point, std::span<const double> lambda, std::span<const double> along) const;
   bool slides(std::size_t k) const;
   double sigma(std::size_t k) const;
@@ -70,8 +83,9 @@ class ContactLoads final : public StateLoads {
   const std::vector<ContactPoint>& points_;
   std::vector<ContactState> states_;
   std::vector<Evaluator::ScalarMotion> slide_;
-  std::vector<double> normal_, friction_;
-  std::vector<std::size_t> coupled_;  // whose friction depends on multipliers
+  std::vector<double> normal_, friction_, exponent_;
+  std::vector<ElasticGrips> elastic_;  // ropes
+  std::vector<std::size_t> coupled_;   // whose friction depends on multipliers
   std::vector<double> unit_, change_, nothing_;
   std::vector<std::vector<double>> response_;  // multipliers, by coupled point
   struct Sizes;

@@ -83,7 +83,51 @@ int first_friction(const Model& model) {
   for_each_place(model, [&](const auto&, const ContactPoint& point) {
     if (first < 0 && point.mu_static > 0) first = point.element;
   });
-  return first;
+  return first < 0 ? first_gripped_rope(model) : first;
+}
+
+namespace {
+
+/// The places of grips, behind all others.
+void append_grips(ContactModel& contacts) {
+  for (const GrippedRope& rope : contacts.ropes) {
+    auto places = std::make_shared<RopePlaces>();
+    for (std::size_t k = 0; k < contacts.points.size() && !rope.elastic; ++k) {
+      if (contacts.points[k].element == rope.element) places->head = static_cast<int>(k);
+    }
+    places->whole = rope.whole;
+    if (rope.elastic) {
+      const auto index = at(contacts.model->elements[at(rope.element)].index);
+      places->k =
+          std::get<std::vector<ElementEntry<ElasticRope<double>, double>>>(contacts.model->forces)[index].element.k;
+    }
+    for (const RopeGrip& grip : rope.grips) {
+      places->grips.push_back(contacts.points.size());
+      ContactPoint point;
+      point.element = rope.element;
+      point.kind = ContactKind::grip;
+      point.mu = point.mu_static = 1;
+      point.slide = grip.slide;
+      point.rope = places;
+      contacts.points.push_back(point);
+    }
+    contacts.places.push_back(std::move(places));
+  }
+}
+
+}  // namespace
+
+void lay_grips(ContactModel& contacts, const std::vector<RopeRoute>& routes,
+               const std::function<std::vector<Frame<double>>(const RopeRoute&)>& frames) {
+  if (contacts.ropes.empty()) return;
+  const auto model = std::make_shared<Model>(*contacts.model);
+  for (std::size_t r = 0; r < contacts.ropes.size(); ++r) {
+    const RopeRoute& route = routes[at(contacts.ropes[r].route)];
+    std::vector<GripLines> lines = lay_grips(*model, contacts.ropes[r], route, frames(route));
+    for (std::size_t k = 0; k < lines.size(); ++k)
+      contacts.points[contacts.places[r]->grips[k]].lines = std::make_shared<GripLines>(std::move(lines[k]));
+  }
+  contacts.model = model;
 }
 
 ContactModel contact_points(std::shared_ptr<const Model> model) {
@@ -99,7 +143,14 @@ ContactModel contact_points(std::shared_ptr<const Model> model) {
     }
     result.points.push_back(point);
   });
+  result.ropes = gripped_ropes(*model, expanded);
   if (expanded) result.model = expanded;
+  append_grips(result);
+  lay_grips(result, rope_routes(*model), [&](const RopeRoute& route) {
+    std::vector<Frame<double>> frames;
+    for (const RopePulley<double>& node : route.nodes) frames.push_back(model->frame(node.body));
+    return frames;
+  });
   return result;
 }
 

@@ -8,18 +8,33 @@
 //
 //   N = k d^n + c d',   d = -g        pressing while d > 0 and N > 0
 //
+// Where a rope with friction slides over pulleys, a grip (rope_grips.hpp) is a place of its own: what presses there is
+// the tension, and it is closed while the rope is taut.
+//
 // Units: m, N, m/s; of stops and joints that turn: rad, N m, rad/s.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
 
+#include "catena/analysis/contact/rope_grips.hpp"
 #include "catena/model/model.hpp"
 
 namespace catena {
 
-enum class ContactKind : unsigned char { rigid, compliant, joint };
+enum class ContactKind : unsigned char { rigid, compliant, joint, grip };
+
+/// The grips of one rope among the places of a model.
+struct RopePlaces {
+  int head = -1;                     ///< of an inextensible rope, its own place, before those of its grips
+  std::vector<std::size_t> grips{};  ///< from the end i on
+  int whole = -1;                    ///< of an elastic one, the element of what it lacks to being taut
+  double k = 0;                      ///< its stiffness, N/m; zero: inextensible
+  double length = 0;                 ///< of its way at the start of the motion, m
+  std::vector<double> yields{};      ///< of its parts between grips, m/N
+};
 
 struct ContactPoint {
   int element = -1;  ///< the one-sided element, or the joint's friction
@@ -34,15 +49,22 @@ struct ContactPoint {
   double radius = 1;     ///< of the pin, m: friction is a torque mu N radius; 1 where a joint slides
   double half_length = std::numeric_limits<double>::infinity();  ///< of a guide: its moment counts as moment / this
   bool turns = false;                                            ///< its gap, or its slide, is an angle
+  std::shared_ptr<const GripLines> lines = nullptr;              ///< of a grip
+  std::shared_ptr<const RopePlaces> rope = nullptr;              ///< of a grip: the rope's
 
-  bool has_friction() const { return slide >= 0; }
+  bool has_friction() const { return lines ? lines->touches() : slide >= 0; }
   bool is_exact() const { return smoothing == 0; }
+  /// A grip whose rope has a stiffness: its tensions follow from places and from how much rope has passed.
+  bool is_elastic_grip() const { return rope && rope->k > 0; }
 };
 
 /// What a place does for the time being.
 struct ContactState {
-  bool closed = false;  ///< a rigid one: its row holds; a compliant one: it presses; a joint always is
+  bool closed = false;  ///< a rigid one: its row holds; a compliant one: it presses; a joint always is; a grip: taut
   int direction = 0;    ///< of exact friction: the sign of the slip, 0: it sticks
+  double held = 0;      ///< of an elastic rope's grip that sticks: u and the stretch behind it, m; see also `tied`
+  /// Of a grip without stiffness that others keep from slipping: T_out / T_in = e^held as long as they do.
+  bool tied = false;
 
   friend bool operator==(const ContactState&, const ContactState&) = default;
 };
@@ -50,7 +72,13 @@ struct ContactState {
 struct ContactModel {
   std::shared_ptr<const Model> model;  ///< with the equations of slides behind the elements of the given one
   std::vector<ContactPoint> points;
+  std::vector<GrippedRope> ropes{};  ///< with grips, and where these are among the points
+  std::vector<std::shared_ptr<RopePlaces>> places{};
 };
+
+/// Lays the grips of the model's ropes as these lie, and lets their points know. Throws ModelError, as lay().
+void lay_grips(ContactModel& contacts, const std::vector<RopeRoute>& routes,
+               const std::function<std::vector<Frame<double>>(const RopeRoute&)>& frames);
 
 /// The first element of a model with dry friction; -1: none.
 int first_friction(const Model& model);

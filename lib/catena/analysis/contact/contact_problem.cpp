@@ -43,6 +43,8 @@ void ContactProblem::solve_along(std::size_t k, double w_t) {
 bool ContactProblem::solve_place(std::size_t k) {
   const std::size_t n = 2 * k, t = n + 1;
   const Place& p = place[k];
+  if (p.head >= 0) return true;  // with its rope
+  if (has_grips_ && !grips_of(k).empty()) return solve_rope(k);
   const double w_n = p.has_normal ? without_own(k, 0) : 0, w_t = p.has_friction ? without_own(k, 1) : 0;
   if (!p.has_normal) {
     solve_along(k, w_t);
@@ -90,15 +92,18 @@ bool ContactProblem::solve_place(std::size_t k) {
 
 // All places at once, with the states found; redundant ones share as the least x does.
 void ContactProblem::solve_states() {
-  struct Unknown {
-    std::size_t row;
-    std::vector<std::pair<std::size_t, double>> parts;  // of x that one unit of it makes
-  };
-  std::vector<Unknown> unknowns;
   std::vector<double> known(x.size(), 0.0);
+  std::vector<Unknown> unknowns;
   for (std::size_t k = 0; k < place.size(); ++k) {
     const std::size_t n = 2 * k, t = n + 1;
     if (state[k] == State::open) continue;
+    if (place[k].head >= 0) {
+      if (state[k] == State::sticks) {
+        unknowns.push_back({t, {{t, 1.0}}});
+        add_sliding_grips(k, unknowns.back().parts);
+      }
+      continue;
+    }
     if (!place[k].has_normal) {
       if (state[k] == State::sticks) unknowns.push_back({t, {{t, 1.0}}});
       if (state[k] == State::slides) known[t] = x[t];
@@ -107,8 +112,14 @@ void ContactProblem::solve_states() {
     unknowns.push_back({n, {{n, 1.0}}});
     if (place[k].has_friction && state[k] == State::slides)
       unknowns.back().parts.emplace_back(t, -place[k].mu * direction[k]);
+    add_sliding_grips(k, unknowns.back().parts);
     if (state[k] == State::sticks) unknowns.push_back({t, {{t, 1.0}}});
   }
+  solve_unknowns(unknowns, known);
+}
+
+// w = 0 in the rows of the unknowns, beside what is known of x.
+void ContactProblem::solve_unknowns(const std::vector<Unknown>& unknowns, const std::vector<double>& known) {
   const auto size = static_cast<Eigen::Index>(unknowns.size());
   if (size == 0) return;
   Eigen::MatrixXd matrix(size, size);
@@ -136,6 +147,10 @@ void ContactProblem::solve_states() {
 // Whether x keeps the inequalities of its states, to a part of its size.
 bool ContactProblem::fits(double size) const {
   for (std::size_t k = 0; k < place.size(); ++k) {
+    if (place[k].head >= 0) {
+      if (!std::isfinite(x[2 * k + 1]) || (state[k] == State::sticks && misfit(k) > tolerated * size)) return false;
+      continue;
+    }
     const double normal = place[k].has_normal ? x[2 * k] : 0, friction = std::abs(x[2 * k + 1]);
     if (normal < -tolerated * size || !std::isfinite(normal + friction)) return false;
     const double limit = place[k].has_normal ? place[k].mu_static * normal : place[k].limit;
@@ -160,7 +175,7 @@ double ContactProblem::rounding() const {
 bool ContactProblem::sweep(double& size) {
   for (int round = 0; round <= most_sweeps; ++round) {
     double change = 0;
-    size = 0;
+    size = grip_change_ = 0;
     for (std::size_t k = 0; k < place.size(); ++k) {
       const double n = x[2 * k], t = x[2 * k + 1];
       if (!solve_place(k)) return false;
@@ -168,13 +183,14 @@ bool ContactProblem::sweep(double& size) {
       size = std::max({size, std::abs(x[2 * k]), std::abs(x[2 * k + 1])});
     }
     if (!std::isfinite(size)) return false;
-    if (change <= tolerated * size && change <= rounding()) return true;
+    if (std::max(change, grip_change_) <= tolerated * size && std::max(change, grip_change_) <= rounding()) return true;
   }
   return false;
 }
 
 bool ContactProblem::solve() {
   double size = 0;
+  has_grips_ = std::any_of(place.begin(), place.end(), [](const Place& p) { return p.head >= 0; });
   if (!ruled_out_state_.empty() || !sweep(size)) return search();
   if (sticks_together() && search()) return true;
   const std::vector<double> swept = x;
@@ -202,6 +218,10 @@ bool ContactProblem::close_redundant(double size) {
     const bool rests = place[k].slip == 0 && std::abs(w_t) <= tolerated * D(t, t) * size;
     state[k] = place[k].has_friction && rests ? State::sticks : State::slides;
     if (place[k].has_friction && !rests) direction[k] = place[k].slip != 0 ? place[k].slip : w_t > 0 ? 1 : -1;
+    for (const std::size_t grip : grips_of(k)) {
+      direction[grip] = place[grip].slip;
+      state[grip] = place[grip].slip != 0 ? State::slides : State::sticks;
+    }
     any = true;
   }
   return any;

@@ -4,6 +4,13 @@
 //   x_n >= 0,  w_n >= 0,  x_n w_n = 0         an impact: w_n = v_n+ + e v_n-; forces: w_n = acceleration of the gap
 //   sticks: w_t = 0, |x_t| <= mu_static x_n   slides: x_t = -mu s x_n, s = sign of w_t, or of the slip there is
 //
+// A rope's place presses with its tension T_0 at the end i; its grips (rope_grips.hpp) follow it, in order:
+//
+//   T_n = T_n-1 + x_t      sticks: w_t = 0, 1/g <= T_n / T_n-1 <= g      slides: T_n = T_n-1 g^-s
+//
+// The rope and its grips are solved for together: grips that may stick do at first, and the first one that cannot is
+// changed until all can (Murty's least index).
+//
 // D = J M^-1 J^T on the constraints is symmetric and positive semidefinite. Places are solved one after the other, over
 // and over, until nothing changes (nonlinear Gauss-Seidel); the states found are then solved for at once, so that the
 // answer is exact to rounding however slow that was. Sweeps need not settle where places share a body, and cannot tell
@@ -14,6 +21,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace catena {
@@ -25,7 +33,9 @@ class ContactProblem {
     bool has_friction = false;
     double mu = 0, mu_static = 0;
     double limit = 0, kinetic = 0;
-    int slip = 0;  ///< sign of the slip there is already; 0: it may stick
+    int slip = 0;       ///< sign of the slip there is already; 0: it may stick
+    int head = -1;      ///< of a rope's grip: the rope's place, before it
+    double growth = 1;  ///< of a rope's grip: g = e^E
   };
   enum class State : unsigned char { open, slides, sticks };
 
@@ -56,6 +66,18 @@ class ContactProblem {
 
  private:
   bool solve_place(std::size_t k);
+  struct Unknown {
+    std::size_t row;
+    std::vector<std::pair<std::size_t, double>> parts;  // of x that one unit of it makes
+  };
+  bool solve_rope(std::size_t head);
+  void add_sliding_grips(std::size_t from, std::vector<std::pair<std::size_t, double>>& parts) const;
+  void solve_rope_states(std::size_t head);
+  void solve_unknowns(const std::vector<Unknown>& unknowns, const std::vector<double>& known);
+  std::vector<std::size_t> grips_of(std::size_t head) const;
+  /// Tension before a grip.
+  double tension_before(std::size_t grip) const;
+  double misfit(std::size_t grip) const;
   void solve_along(std::size_t k, double w_t);
   /// w at place k, across (0) or along (1), but for the part of its own x.
   double without_own(std::size_t k, std::size_t along) const;
@@ -72,6 +94,8 @@ class ContactProblem {
   std::vector<double> d_;
   std::vector<State> ruled_out_state_;  // empty: none
   std::vector<int> ruled_out_direction_;
+  bool has_grips_ = false;
+  double grip_change_ = 0;  // of x at grips, in a sweep
 };
 
 }  // namespace catena

@@ -38,7 +38,7 @@ bool ContactProblem::sticks_together() const {
     if (place[k].has_normal) rows.push_back(2 * k);
     if (rests) rows.push_back(2 * k + 1);
   }
-  if (at_rest < 2) return false;
+  if (at_rest < 2 || has_grips_) return false;
   const auto size = static_cast<Eigen::Index>(rows.size());
   Eigen::MatrixXd held(size, size);
   for (Eigen::Index r = 0; r < size; ++r) {
@@ -128,7 +128,7 @@ bool ContactProblem::try_states() {
 }
 
 bool ContactProblem::search() {
-  if (place.size() > most_searched) return false;
+  if (place.size() > most_searched || has_grips_) return false;
   struct Choice {
     State state;
     int direction;

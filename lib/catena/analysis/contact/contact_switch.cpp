@@ -25,6 +25,11 @@ constexpr int most_rounds = 1000;
 // Of the terms that a multiplier is the sum of.
 constexpr double multiplier_rounding = 1e-14;
 
+/// Not a joint or a grip, which have a slide alone.
+bool has_gap(const ContactPoint& point) {
+  return point.kind == ContactKind::rigid || point.kind == ContactKind::compliant;
+}
+
 int sign(double x, double none) { return x > none ? 1 : x < -none ? -1 : 0; }
 
 }  // namespace
@@ -78,8 +83,9 @@ Report ContactSwitch::prepare(std::span<const double> q) {
 void ContactSwitch::look(std::span<const double> qd) {
   know_speed(fastest(evaluator_, qd));
   for (std::size_t k = 0; k < points_.size(); ++k) {
-    if (points_[k].kind != ContactKind::joint) gap_[k] = evaluator_.scalar_motion(points_[k].element, qd);
-    if (points_[k].has_friction()) slide_[k] = evaluator_.scalar_motion(points_[k].slide, qd);
+    if (has_gap(points_[k])) gap_[k] = evaluator_.scalar_motion(points_[k].element, qd);
+    const bool slides = points_[k].has_friction() && !points_[k].is_elastic_grip();
+    if (slides) slide_[k] = evaluator_.scalar_motion(points_[k].slide, qd);
   }
 }
 
@@ -149,8 +155,25 @@ void ContactSwitch::find_touching(const std::vector<ContactState>& states, const
     touches = touches || (point.kind == ContactKind::rigid && static_cast<int>(k) == cause.place);
     // Compliant and smoothed places are forces; only exact friction is decided about there.
     if (point.kind != ContactKind::rigid) touches = touches && point.has_friction() && point.is_exact();
+    if (point.kind == ContactKind::grip)
+      touches = !point.is_elastic_grip() && point.has_friction() && is_active(at(point.rope->head));
     if (touches) active_.push_back(k);
   }
+}
+
+bool ContactSwitch::is_active(std::size_t k) const {
+  return std::find(active_.begin(), active_.end(), k) != active_.end();
+}
+
+// Without their ropes grips hold nothing.
+void ContactSwitch::let_grips_go(std::vector<ContactState>& states) {
+  std::vector<std::size_t> left;
+  for (const std::size_t k : active_) {
+    const bool holds = points_[k].kind != ContactKind::grip || is_active(at(points_[k].rope->head));
+    if (holds) left.push_back(k);
+    if (!holds) states[k] = {};
+  }
+  active_ = std::move(left);
 }
 
 // What a unit force at every touching place makes of accelerations and multipliers, on the constraints.
@@ -178,6 +201,11 @@ void ContactSwitch::fill(ContactProblem& problem) const {
     for (std::size_t c = 0; c < 2 * active_.size(); ++c) {
       if (problem.place[a].has_normal) problem.D(2 * a, c) = product(gap_[active_[a]], change_[c]);
       if (point.has_friction()) problem.D(2 * a + 1, c) = product(slide_[active_[a]], change_[c]);
+    }
+    if (point.kind == ContactKind::grip) {
+      const auto head = std::find(active_.begin(), active_.end(), at(point.rope->head)) - active_.begin();
+      problem.place[a].head = static_cast<int>(head);
+      problem.place[a].growth = std::exp(point.lines->exponent(evaluator_, {}).f);
     }
     if (!problem.place[a].has_normal || gives_way(a, problem.D(2 * a, 2 * a))) continue;
     for (std::size_t c = 0; c < 2 * active_.size(); ++c) problem.D(2 * a, c) = problem.D(c, 2 * a) = 0;
@@ -236,6 +264,10 @@ bool ContactSwitch::apply(double restitution_part, std::span<double> qd, double&
   for (std::size_t a = 0; a < active_.size(); ++a) {
     const std::size_t k = active_[a];
     ContactProblem::Place& place = problem.place[a];
+    if (!place.has_normal && place.head >= 0) {
+      problem.b[2 * a + 1] = slide_[k].rate;
+      continue;
+    }
     if (!place.has_normal) {
       // What is pressed by a force of finite size has no impulse, and no friction of one.
       place.has_friction = false;
@@ -335,7 +367,7 @@ Report ContactSwitch::press_joints(double t, std::span<const double> qd, const C
     double change = 0, size = 0;
     for (std::size_t a = 0; a < active_.size(); ++a) {
       ContactProblem::Place& place = problem.place[a];
-      if (place.has_normal) continue;
+      if (place.has_normal || place.head >= 0) continue;
       const double normal = std::max(loads.normal_from(active_[a], qd, lambda), 0.0);
       const double limit = points_[active_[a]].mu_static * normal;
       change = std::max(change, std::abs(limit - place.limit));
@@ -364,6 +396,7 @@ Report ContactSwitch::choose(double t, std::span<const double> q, std::span<cons
                              std::vector<ContactState>& states, const Cause& cause) {
   std::vector<ContactState> forces = states;
   for (std::size_t k = 0; k < forces.size(); ++k) {
+    if (points_[k].is_elastic_grip()) continue;
     if (points_[k].kind != ContactKind::compliant) forces[k].closed = false;
     if (points_[k].is_exact()) forces[k].direction = 0;
   }
@@ -383,6 +416,7 @@ Report ContactSwitch::choose(double t, std::span<const double> q, std::span<cons
     states[static_cast<std::size_t>(cause.place)] = {};
     std::erase(active_, static_cast<std::size_t>(cause.place));
   }
+  let_grips_go(states);
   if (active_.empty()) return {};
   find_responses();
   ContactProblem problem(active_.size());
@@ -415,11 +449,14 @@ Report ContactSwitch::choose(double t, std::span<const double> q, std::span<cons
     return blocked(t, pushed);
   for (std::size_t a = 0; a < active_.size(); ++a) {
     const std::size_t k = active_[a];
-    const bool joint = points_[k].kind != ContactKind::rigid;
+    const bool grip = points_[k].kind == ContactKind::grip;
+    const bool joint = points_[k].kind != ContactKind::rigid && !grip;
     if (!joint) states[k].closed = problem.state[a] != ContactProblem::State::open;
     states[k].direction = problem.state[a] == ContactProblem::State::slides ? problem.direction[a] : 0;
+    states[k].tied = false;
   }
   find_shared(problem);
+  tie_grips(problem, states);
   return {};
 }
 
@@ -436,6 +473,13 @@ void ContactSwitch::tell_changes(double t, const std::vector<ContactState>& befo
   for (std::size_t k = 0; k < points_.size(); ++k) {
     const int element = points_[k].element;
     const auto tell = [&](std::string_view kind, double when) { events_.push_back({element, kind, when}); };
+    // A rope tells for its grips.
+    const bool grip = points_[k].kind == ContactKind::grip;
+    if (grip) {
+      if (after[k].closed && before[k].closed && (after[k].direction == 0) != (before[k].direction == 0))
+        tell(after[k].direction == 0 ? "stick" : "slip", t);
+      continue;
+    }
     if (after[k].closed && !before[k].closed) tell("contact", std::isnan(landing_[k]) ? t : landing_[k]);
     if (!after[k].closed && before[k].closed && !(bounced_at_[k] == t)) tell("release", t);
     landing_[k] = std::numeric_limits<double>::quiet_NaN();

@@ -99,6 +99,9 @@ class ContactSwitch {
   void apply(const Strike& strike, std::span<const double> q, std::span<double> qd);
   void find_touching(const std::vector<ContactState>& states, const Cause& cause);
   void find_groups();
+  bool is_active(std::size_t k) const;
+  void let_grips_go(std::vector<ContactState>& states);
+  void tie_grips(const ContactProblem& problem, std::vector<ContactState>& states) const;
   void find_responses();
   void fill(ContactProblem& problem) const;
   /// Of point k: what cannot be told from rest, m/s or rad/s, as a part of the largest speed.

@@ -9,7 +9,9 @@
 
 #include "catena/analysis/contact/contact_loads.hpp"
 #include "catena/analysis/pose/assemble.hpp"
+#include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
+#include "catena/assembly/rope_ways.hpp"
 #include "catena/base/at.hpp"
 #include "catena/linalg/rank/nonnegative_least_squares.hpp"
 
@@ -23,6 +25,35 @@ constexpr double closed_place = 1e-6;
 // Friction beyond this is as good as any: the edges of the cone are then along the tangent to this part.
 constexpr double most_friction = 1e8;
 
+/// A contact: its forces form a cone with two edges.
+struct Edge {
+  Eigen::VectorXd normal, along;
+  double friction;
+};
+
+/// A rope with friction on pulleys: one edge for each choice of the side of every pulley on which the tension is
+/// larger.
+struct RopeEdges {
+  Eigen::VectorXd gap;
+  std::vector<Eigen::VectorXd> along;
+  std::vector<double> exponent;
+
+  /// The force for a largest tension of 1.
+  Eigen::VectorXd edge(double u, std::size_t signs) const {
+    std::vector<double> tension{0};  // logarithms
+    for (std::size_t k = 0; k < along.size(); ++k)
+      tension.push_back(tension.back() + ((signs >> k) & 1 ? 1 : -1) * u * exponent[k]);
+    const double largest = *std::max_element(tension.begin(), tension.end());
+    for (double& t : tension) t = std::exp(t - largest);
+    Eigen::VectorXd force = tension[0] * gap;
+    for (std::size_t k = 0; k < along.size(); ++k) force += (tension[k + 1] - tension[k]) * along[k];
+    return force;
+  }
+};
+
+// The edges of a rope double with every pulley.
+constexpr std::size_t most_held_grips = 8;
+
 }  // namespace
 
 ContactHolding::ContactHolding(std::shared_ptr<const Model> model) : contacts_(contact_points(std::move(model))) {
@@ -33,10 +64,35 @@ ContactHolding::ContactHolding(std::shared_ptr<const Model> model) : contacts_(c
           fmt::format("whether friction holds can be asked of contacts; that of joint \"{}\" is not treated there",
                       contacts_.model->element_name(point.joint)));
     }
-    options.released_elements.push_back(point.element);
-    if (point.has_friction()) options.released_elements.push_back(point.slide);
+    if (point.is_elastic_grip()) {
+      throw std::invalid_argument(fmt::format(
+          "whether friction holds can be asked of contacts and ropes without stiffness; that of rope \"{}\" "
+          "has one",
+          contacts_.model->element_name(point.element)));
+    }
+    if (point.kind != ContactKind::grip) options.released_elements.push_back(point.element);
+    if (point.kind == ContactKind::grip) options.released_elements.push_back(point.slide);
+    if (point.kind != ContactKind::grip && point.has_friction()) options.released_elements.push_back(point.slide);
   }
   evaluator_ = std::make_unique<Evaluator>(Plan::make(*contacts_.model, options), *contacts_.model);
+}
+
+// The grips of ropes as these lie there.
+void ContactHolding::lay_grips(const SystemState& state) {
+  if (contacts_.ropes.empty()) return;
+  std::vector<RopeRoute> routes = rope_routes(*contacts_.model);
+  if (!state.ropes.empty()) take_up(routes, state);
+  for (RopeRoute& route : routes) {
+    const std::vector<Frame<double>> frames = frames_of(*evaluator_, route);
+    if (state.ropes.empty()) {
+      find_off(*contacts_.model, route, frames);
+    } else {
+      go_on(*contacts_.model, route, frames);
+    }
+  }
+  const std::shared_ptr<const Model> before = contacts_.model;  // the evaluator's until it has the next one
+  catena::lay_grips(contacts_, routes, [&](const RopeRoute& route) { return frames_of(*evaluator_, route); });
+  evaluator_->set_model(*contacts_.model);
 }
 
 Holding ContactHolding::find(const SystemState& state, std::vector<double>& q) {
@@ -55,6 +111,8 @@ Holding ContactHolding::find(const SystemState& state, std::vector<double>& q) {
     return holding;
   }
   evaluator_->set_configuration(q);
+  lay_grips(state);
+  evaluator_->set_configuration(q);
   const double length = evaluator_->length_scale();
   const std::vector<double> rest(q.size(), 0.0);
   // Forces in columns, moments divided by the length scale so that they compare.
@@ -68,20 +126,36 @@ Holding ContactHolding::find(const SystemState& state, std::vector<double>& q) {
   };
   std::vector<double> loads(q.size(), 0.0), jacobian(at(plan.trash_slot()) + 1);
   evaluator_->applied_forces(rest, loads);
-  struct Edge {
-    Eigen::VectorXd normal, along;
-    double friction;
+  const auto unit_force = [&](const Evaluator::ScalarMotion& of) {
+    std::vector<double> by(q.size(), 0.0);
+    scatter_gradient(of, 1, by);
+    return force(by);
   };
   std::vector<Edge> edges;
-  for (const ContactPoint& point : contacts_.points) {
+  std::vector<RopeEdges> ropes;
+  for (std::size_t k = 0; k < contacts_.points.size(); ++k) {
+    const ContactPoint& point = contacts_.points[k];
+    if (point.kind == ContactKind::grip) continue;  // with its rope
     const Evaluator::ScalarMotion gap = evaluator_->scalar_motion(point.element, rest);
     if (gap.value > closed_place * length) continue;
-    const auto unit_force = [&](const Evaluator::ScalarMotion& of) {
-      std::vector<double> by(q.size(), 0.0);
-      scatter_gradient(of, 1, by);
-      return force(by);
-    };
-    Edge edge{unit_force(gap), Eigen::VectorXd::Zero(plan.columns), point.mu_static};
+    RopeEdges rope{unit_force(gap), {}, {}};
+    for (const ContactPoint& grip : contacts_.points) {
+      if (grip.kind != ContactKind::grip || grip.rope->head != static_cast<int>(k) || !grip.has_friction()) continue;
+      rope.along.push_back(unit_force(evaluator_->scalar_motion(grip.slide, rest)));
+      rope.exponent.push_back(grip.lines->exponent(*evaluator_, {}).f);
+    }
+    if (rope.along.size() > most_held_grips) {
+      holding.status = Status::refused;
+      holding.message =
+          fmt::format("whether friction holds is asked of ropes with friction on at most {} pulleys; \"{}\" has {}",
+                      most_held_grips, contacts_.model->element_name(point.element), rope.along.size());
+      return holding;
+    }
+    if (!rope.along.empty()) {
+      ropes.push_back(std::move(rope));
+      continue;
+    }
+    Edge edge{rope.gap, Eigen::VectorXd::Zero(plan.columns), point.mu_static};
     if (point.has_friction()) edge.along = unit_force(evaluator_->scalar_motion(point.slide, rest));
     edges.push_back(std::move(edge));
   }
@@ -101,8 +175,18 @@ Holding ContactHolding::find(const SystemState& state, std::vector<double>& q) {
     free = q_full.rightCols(plan.columns - factors.rank()).transpose();
   }
   const Eigen::VectorXd b = free * force(loads);
+  std::size_t rope_edges = 0;
+  for (const RopeEdges& rope : ropes) rope_edges += std::size_t{1} << rope.along.size();
   const auto holds = [&](double u) {
-    Eigen::MatrixXd A(free.rows(), 2 * static_cast<Eigen::Index>(edges.size()));
+    const auto columns = static_cast<Eigen::Index>(2 * edges.size() + rope_edges);
+    Eigen::MatrixXd A(free.rows(), columns);
+    Eigen::Index c = 2 * static_cast<Eigen::Index>(edges.size());
+    for (const RopeEdges& rope : ropes) {
+      for (std::size_t signs = 0; signs < std::size_t{1} << rope.along.size(); ++signs) {
+        const Eigen::VectorXd edge = free * rope.edge(u, signs);
+        A.col(c++) = edge / std::max(edge.norm(), 1e-300);
+      }
+    }
     for (std::size_t k = 0; k < edges.size(); ++k) {
       for (int s = 0; s < 2; ++s) {
         const double slope = (s == 0 ? u : -u) * edges[k].friction;

@@ -2,6 +2,9 @@
 //
 //   min u   such that   Q + sum_k (N_k J_n,k + T_k J_t,k) - Phi_q^T lambda = 0,   N_k >= 0,   |T_k| <= u mu_static N_k
 //
+// Of a rope without stiffness that slides over pulleys with friction: e^(-u E) <= T_out / T_in <= e^(u E) at each
+// (rope_grips.hpp), a cone with an edge for every choice of signs.
+//
 // For a given u the forces of a place form a cone with two edges, J_n +- u mu_static J_t, so that the question is one
 // of least squares with coefficients that are not negative (Lawson and Hanson); a larger u never makes it harder, so
 // that the least u is found by bisection. Places count as closed within 1e-6 length scales; as in all of equilibrium a
@@ -31,7 +34,8 @@ inline constexpr int most_held_coordinates = 600;
 /// The evaluator's plan has no rows of contacts; its model is the given one with equations of slides.
 class ContactHolding {
  public:
-  /// Throws std::invalid_argument where a joint has friction, whose limits are no cone.
+  /// Throws std::invalid_argument where a joint has friction, whose limits are no cone, or an elastic rope, whose
+  /// tensions are no free forces.
   explicit ContactHolding(std::shared_ptr<const Model> model);
 
   Evaluator& evaluator() { return *evaluator_; }
@@ -40,6 +44,8 @@ class ContactHolding {
   Holding find(const SystemState& state, std::vector<double>& q);
 
  private:
+  void lay_grips(const SystemState& state);
+
   ContactModel contacts_;
   std::unique_ptr<Evaluator> evaluator_;
 };

@@ -38,8 +38,8 @@ struct VelocityJump {
 };
 
 /// What ends a phase of a place: a gap or a reaction, the force of a compliant place, a slide that comes to rest or
-/// begins, places that hold each other no longer.
-enum class PhaseEnd : unsigned char { contact, pressing, slide, shares };
+/// begins, places that hold each other no longer, an elastic rope that becomes slack or taut.
+enum class PhaseEnd : unsigned char { contact, pressing, slide, shares, stretch };
 struct WatchedPlace {
   std::size_t place = 0;
   PhaseEnd ends = PhaseEnd::contact;

@@ -33,6 +33,7 @@ SharedForces::SharedForces(const ContactProblem& problem, const std::vector<std:
   for (std::size_t k = 0; k < problem.place.size(); ++k) {
     if (problem.state[k] == State::open) continue;
     const ContactProblem::Place& p = problem.place[k];
+    if (p.head >= 0) return;  // tensions beside grips are no cone: ContactSwitch::tie_grips()
     const bool slides = problem.state[k] == State::slides && p.has_friction;
     if (p.has_normal) held.push_back({k, false, slides ? -p.mu * problem.direction[k] : 0});
     if (problem.state[k] == State::sticks) held.push_back({k, true, 0});

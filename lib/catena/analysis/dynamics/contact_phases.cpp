@@ -19,15 +19,19 @@ constexpr double allowed_depth = 1e-6;
 
 /// An exact place of friction that does not slide holds by the row of its slide.
 bool sticks(const ContactPoint& point, const ContactState& state) {
-  return point.has_friction() && point.is_exact() && state.closed && state.direction == 0;
+  return !point.is_elastic_grip() && point.has_friction() && point.is_exact() && state.closed && state.direction == 0 &&
+         !state.tied;
 }
 
-/// Calls f with the constant of a slide's equation.
+/// Calls f with the constant of a slide's equation, and the sign of the equation's value in it: of a grip that is its
+/// length.
 template <class M, class F>
 void with_slide_value(M& model, int slide, F&& f) {
   const ElementRecord& record = model.elements[at(slide)];
   with_list(model.constraints, record.type, [&](auto& list) {
-    if constexpr (ElementOf<decltype(list)>::functions == 1) f(list[at(record.index)].values[0].constant);
+    using E = ElementOf<decltype(list)>;
+    if constexpr (E::functions == 1) f(list[at(record.index)].values[0].constant, 1);
+    if constexpr (HasParts<E>) f(list[at(record.index)].element.length, -1);
   });
 }
 
@@ -45,7 +49,12 @@ void ContactPhases::add_rows(PlanOptions& options, const std::vector<ContactStat
   for (std::size_t k = 0; k < states.size(); ++k) {
     const ContactPoint& point = contacts_.points[k];
     options.keep_elements.push_back(point.kind == ContactKind::joint ? point.joint : point.element);
-    if (point.has_friction()) options.keep_elements.push_back(point.slide);
+    if (point.has_friction() && point.slide >= 0) options.keep_elements.push_back(point.slide);
+    if (point.kind == ContactKind::grip) {
+      if (!sticks(point, states[k]) && point.slide >= 0) options.released_elements.push_back(point.slide);
+      if (point.rope->whole >= 0) options.released_elements.push_back(point.rope->whole);
+      continue;
+    }
     const bool row = point.kind == ContactKind::rigid && states[k].closed;
     if (point.kind != ContactKind::joint && !row) options.released_elements.push_back(point.element);
     if (point.has_friction() && !sticks(point, states[k])) options.released_elements.push_back(point.slide);
@@ -57,7 +66,7 @@ std::shared_ptr<const Model> ContactPhases::model() const {
   for (std::size_t k = 0; k < states_.size(); ++k) {
     if (!sticks(contacts_.points[k], states_[k])) continue;
     if (!changed) changed = std::make_shared<Model>(*contacts_.model);
-    with_slide_value(*changed, contacts_.points[k].slide, [&](double& constant) { constant = anchors_[k]; });
+    with_slide_value(*changed, contacts_.points[k].slide, [&](double& constant, int) { constant = anchors_[k]; });
   }
   return changed ? std::shared_ptr<const Model>(changed) : contacts_.model;
 }
@@ -106,6 +115,7 @@ Report ContactPhases::start(SystemState& state, const PlanOptions& options) {
   if (ropes_ && ropes_->any()) {
     switch_->evaluator().set_configuration(q);
     if (Report found = ropes_->start(state, switch_->evaluator(), contacts_.model); !found.ok()) return found;
+    lay_grips(switch_->evaluator());
     const SystemState assembled = state_of(switch_->evaluator(), state.t, q);
     make_switch(options);
     q = configuration_of(switch_->evaluator(), assembled);
@@ -127,6 +137,7 @@ Report ContactPhases::start(SystemState& state, const PlanOptions& options) {
       states_[k].closed = evaluator.measure(point.element, {}, {}).value < 0;
     }
   }
+  start_elastic(evaluator);
   return decide(state, {.tell = false});
 }
 
@@ -178,9 +189,11 @@ Report ContactPhases::decide(SystemState& state, const ContactSwitch::Cause& cau
   for (std::size_t k = 0; k < states_.size(); ++k) {
     const int slide = contacts_.points[k].slide;
     if (!sticks(contacts_.points[k], states_[k])) continue;
-    with_slide_value(*contacts_.model, slide,
-                     [&](double constant) { anchors_[k] = evaluator.scalar_motion(slide, {}).value + constant; });
+    with_slide_value(*contacts_.model, slide, [&](double constant, int sign) {
+      anchors_[k] = sign * evaluator.scalar_motion(slide, {}).value + constant;
+    });
   }
+  settle_elastic(evaluator, qd, cause, state.t);
   state = state_of(evaluator, state.t, q, qd);
   return report;
 }
@@ -188,6 +201,7 @@ Report ContactPhases::decide(SystemState& state, const ContactSwitch::Cause& cau
 Report ContactPhases::change(int transition, SystemState& state) {
   if (at(transition) >= watched_.size()) return change_way(at(transition) - watched_.size(), state);
   const WatchedPlace& watched = watched_[at(transition)];
+  if (contacts_.points[watched.place].is_elastic_grip()) return change_elastic(watched, state);
   if (watched.ends == PhaseEnd::pressing) {
     // A compliant place is pressed by a force that its own depth decides about.
     states_[watched.place].closed = !states_[watched.place].closed;
@@ -200,17 +214,6 @@ Report ContactPhases::change(int transition, SystemState& state) {
   // What stuck goes the way that friction no longer prevents; by rounding alone the limit might seem not to be reached.
   if (cause.rests && states_[watched.place].direction == 0) cause.leaves = loads_->friction(watched.place) > 0 ? -1 : 1;
   return decide(state, cause);
-}
-
-// Velocities meet the other way of a rope as well as this one; accelerations, and what presses, may differ.
-Report ContactPhases::change_way(std::size_t transition, SystemState& state) {
-  Evaluator& evaluator = switch_->evaluator();
-  evaluator.set_time(state.t);
-  evaluator.set_configuration(configuration_of(evaluator, state));
-  if (Report changed = ropes_->change(transition, evaluator, contacts_.model); !changed.ok()) return changed;
-  for (ContactEvent& event : ropes_->take_events()) events_.push_back(event);
-  if (Report renewed = renew_switch(PlanOptions(options_), state); !renewed.ok()) return renewed;
-  return decide(state, {});
 }
 
 bool ContactPhases::shares(std::size_t k) const {
@@ -241,6 +244,7 @@ void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std
     transitions.push_back({std::move(value), side});
     watched_.push_back({k, ends});
   };
+  if (point.kind == ContactKind::grip) return add_grip_transitions(k, dynamics, transitions, needs);
   const ContactLoads& loads = *loads_;
   const int element = point.element, slide = point.slide;
   const auto normal = [&loads, k](const Snapshot& s) { return loads.normal_from(k, s.qd, s.lambda); };

@@ -5,6 +5,8 @@
 //   open, rigid        the gap                        open, compliant    the lesser of depth and force
 //   pressing           what presses                   slides             the slip, in its direction
 //   sticks             mu_static N - |T|              hold each other    margin of all their shares (shared_forces.hpp)
+//   a rope's grip      what its tensions may still differ by
+//   elastic rope       its stretch, if it has grips (contact/elastic_grips.hpp)
 //
 // and where a rope meets or leaves a pulley (rope_phases.hpp).
 //
@@ -72,10 +74,20 @@ class ContactPhases {
   void add_shared_transitions(const Dynamics& dynamics, std::vector<Transition>& transitions, Needs& needs);
   bool shares(std::size_t k) const;
   void add_transitions(std::size_t k, const Dynamics& dynamics, std::vector<Transition>& transitions, Needs& needs);
+  void add_grip_transitions(std::size_t k, const Dynamics& dynamics, std::vector<Transition>& transitions,
+                            Needs& needs);
+  void lay_grips(const Evaluator& evaluator);
+  // Of elastic ropes with grips.
+  void start_elastic(const Evaluator& evaluator);
+  void settle_elastic(const Evaluator& evaluator, std::span<const double> qd, const ContactSwitch::Cause& cause,
+                      double t);
+  void keep_stretches(const Evaluator& evaluator, const std::vector<double>& stretch_behind,
+                      const std::vector<char>& touched, std::span<const double> qd);
   void make_switch(const PlanOptions& options);
   Report renew_switch(const PlanOptions& options, const SystemState& state);
   Report decide(SystemState& state, const ContactSwitch::Cause& cause);
   Report check_depth(std::span<const double> q);
+  Report change_elastic(const WatchedPlace& watched, SystemState& state);
   Report change_way(std::size_t transition, SystemState& state);
 
   ContactModel contacts_;

@@ -24,6 +24,8 @@ class RopePhases {
   explicit RopePhases(const Model& model) : routes_(rope_routes(model)) {}
 
   bool any() const { return !routes_.empty(); }
+  /// As they lie in the present phase.
+  const std::vector<RopeRoute>& routes() const { return routes_; }
   /// Finds the ways where the evaluator is, going on from what `state` says of ropes; `model` becomes one with these
   /// where it has others.
   Report start(const SystemState& state, const Evaluator& evaluator, std::shared_ptr<const Model>& model);

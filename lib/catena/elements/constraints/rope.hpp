@@ -6,7 +6,8 @@
 // One row, one tension: the rope slides over its pulleys. This element holds L and the first stretch, from a point of
 // body i to the first circle, on body j; the other stretches are elements of their own that add to its row
 // (rope_part.hpp). A rope over pulleys that roll is several of these, one from pulley to pulley. p at Psi = 0: the
-// tension, N. Singular where one circle holds the next. Source: rope_span.hpp, gap_element.hpp.
+// tension at the end i, N; friction on pulleys changes it on the way, in motion (analysis/contact/rope_grips.hpp).
+// Singular where one circle holds the next. Source: rope_span.hpp, gap_element.hpp.
 #pragma once
 
 #include "catena/elements/gap_element.hpp"
@@ -37,17 +38,17 @@ struct Rope : RopeSpan<S> {
   int first_part = 0, parts = 0;      // its other stretches, in the model's list of rope parts
 
   static constexpr auto fields() {
-    return std::make_tuple(PointField{"i", &Rope::s_i, 0, "the end P_i on body i"},
-                           PulleysField{"over", "what it runs over, from i to j"},
-                           PointField{"j", &Rope::s_j, 1, "the end P_j on body j"},
-                           NumberField{"length", &Rope::length, UnitKind::length, Domain::positive, false,
-                                       "its length L without tension (default: that of the given way)"},
-                           NumberField{"k", &Rope::k, UnitKind::stiffness, Domain::positive, false,
-                                       "stiffness of the whole rope when taut (default: inextensible)"},
-                           NumberField{"restitution", &Rope::restitution, UnitKind::none, Domain::not_negative, false,
-                                       "of the jerk when it becomes taut in motion, 0 ... 1 (default 0)"},
-                           NumberField{"rest_speed", &Rope::rest_speed, UnitKind::velocity, Domain::not_negative, false,
-                                       "a slower rebound is none (default: 1e-4 of the speed of the motion)"});
+    return std::make_tuple(
+        PointField{"i", &Rope::s_i, 0, "the end P_i on body i"}, PulleysField{"over", "what it runs over, from i to j"},
+        PointField{"j", &Rope::s_j, 1, "the end P_j on body j"},
+        NumberField{"length", &Rope::length, UnitKind::length, Domain::positive, false,
+                    "its length L without tension (default: that of the given way)"},
+        NumberField{"k", &Rope::k, UnitKind::stiffness, Domain::positive, false,
+                    "stiffness of the whole rope when taut, of its length without tension (default: inextensible)"},
+        NumberField{"restitution", &Rope::restitution, UnitKind::none, Domain::not_negative, false,
+                    "of the jerk when it becomes taut in motion, 0 ... 1 (default 0)"},
+        NumberField{"rest_speed", &Rope::rest_speed, UnitKind::velocity, Domain::not_negative, false,
+                    "a slower rebound is none (default: 1e-4 of the speed of the motion)"});
   }
   template <class Pen>
   void draw(Pen& pen) const {

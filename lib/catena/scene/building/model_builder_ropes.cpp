@@ -39,21 +39,22 @@ void ModelBuilder<S>::append_rope(const ElementTemplate& source, const ElementEn
       wrong(pulley.radius.offset(), "\"radius\" of " + name + " " + out_of_domain(radius, Domain::not_negative));
     if (!fits(mu, Domain::not_negative)) {
       wrong(pulley.mu.offset(), "\"mu\" of " + name + " " + out_of_domain(mu, Domain::not_negative));
-    } else if (mu > 0) {
-      wrong(pulley.mu.offset(), "\"mu\" of " + name +
-                                    " above zero: friction of a rope on a pulley is not treated yet; let the rope "
-                                    "slide without, or roll");
+    } else if (mu > 0 && (pulley.rolls || radius == 0)) {
+      wrong(pulley.mu.offset(),
+            "\"mu\" of " + name +
+                (pulley.rolls ? " above zero: a rope does not slide over a pulley that rolls; leave \"mu\" out, or let "
+                                "the rope slide"
+                              : " above zero: friction needs a \"radius\" above zero, round which the rope bends"));
     }
+    made.mu = mu;
     if (pulley.rolls && radius == 0) wrong(pulley.offset, name + " rolls: it needs a \"radius\" above zero");
     made.side = pulley.side;
     made.rolls = pulley.rolls;
     if (!pulley.rolls) continue;
-    if (value_of(entry.element.length) >= 0)
+    if (value_of(entry.element.length) >= 0 && !(value_of(entry.element.k) > 0))
       wrong(source.offset, name +
                                " rolls: the rope is several then, from pulley to pulley, whose lengths are those of "
-                               "the given configuration; leave \"length\" out");
-    if (value_of(entry.element.k) > 0)
-      wrong(source.offset, name + " rolls: an elastic rope may only slide over its pulleys; leave \"k\" out");
+                               "the given configuration; leave \"length\" out, or give a stiffness \"k\"");
   }
   if (!good) return;
   std::vector<RopeStretch<S>> stretches;

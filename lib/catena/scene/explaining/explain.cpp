@@ -76,7 +76,8 @@ std::string form(const FieldDescription& field, bool force) {
     case FieldKind::pulleys:
       return "a list of {\"at\": body point, \"radius\": m (default 0), \"side\": 1 where it lies on the left of the "
              "rope from i to j, or -1 (default: where the way bends to), \"pulley\": \"slides\" (default) or "
-             "\"rolls\", \"mu\": 0}";
+             "\"rolls\", \"mu\": 0, of the friction in motion where the rope slides: tensions differ by exp(mu angle) "
+             "at most}";
     case FieldKind::function:
       return fmt::format("{}, {}{}", unit_text(field.unit), force ? "" : "or ", varying);
     case FieldKind::function_pair:

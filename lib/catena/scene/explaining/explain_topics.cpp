@@ -229,6 +229,7 @@ inverse_dynamics to about 1e-10 of the energy exchanged, however far apart rows 
   A.gap [m, rad]     how far it is from closing; never negative at an equilibrium, but for an elastic cable's stretch
   A.force [N, N m]   what keeps it from closing, never negative: normal force, torque of the bound, tension
   A.friction [N], A.slip [m/s]   of a contact in motion, along the curve's direction, on j relative to i
+  A.force_j [N]      of a rope, its tension at j: with friction on pulleys (mu, in motion) it differs from that at i
   At an equilibrium one of gap and force is zero. The result "active" lists those whose gap is closed. In dynamics they
   close with impacts, or press by a stiffness k, rub and open again: "events" lists every change. kinematics, check and
   assemble leave them out and say which are violated; modes, buckling and path take those that hold at rest ("active"),

@@ -57,7 +57,7 @@ json number_schema(json limits) {
 constexpr std::string_view side_of_pulley =
     "1: it lies on the left of the rope as that runs from i to j, -1: on the right (default: where the way bends to)";
 constexpr std::string_view way_of_pulley =
-    "slides (default): the rope slides over it without friction; rolls: it turns the pulley's body";
+    "slides (default): the rope slides over it, with friction mu in motion; rolls: it turns the pulley's body";
 
 json field_schema(const FieldDescription& field) {
   switch (field.kind) {
@@ -91,7 +91,9 @@ json field_schema(const FieldDescription& field) {
            {"side", {{"enum", {1, -1}}, {"description", side_of_pulley}}},
            {"pulley", {{"enum", {"slides", "rolls"}}, {"description", way_of_pulley}}},
            {"mu",
-            number("friction while the rope slides over it: 0 alone so far", UnitKind::none, Domain::not_negative)}},
+            number("friction where the rope slides, in motion: tensions differ by exp(mu angle of contact) at most "
+                   "(default 0)",
+                   UnitKind::none, Domain::not_negative)}},
           {"at"});
       json list = list_of(std::move(pulley));
       list["minItems"] = 1;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "catena/analysis/accuracy/compared_rows.hpp"
+#include "catena/analysis/contact/rope_grips.hpp"
 #include "catena/analysis/dynamics/dynamics_of_islands.hpp"
 #include "catena/analysis/dynamics/dynamics_with_events.hpp"
 #include "catena/analysis/dynamics/error_estimate.hpp"
@@ -68,7 +69,7 @@ class DynamicsTask {
         options_(options_of(context.task)),
         used_options_(options_),
         names_(context.task.output_names()),
-        touches_(!model_->gaps().empty() || !model_->frictions().empty()),
+        touches_(!model_->gaps().empty() || !model_->frictions().empty() || first_gripped_rope(*model_) >= 0),
         routes_(rope_routes(*model_)),
         estimates_(context.estimate_error || context.task.number("estimate_error", 0) != 0) {}
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "catena/analysis/accuracy/kinematic_accuracy.hpp"
+#include "catena/analysis/contact/rope_grips.hpp"
 #include "catena/analysis/kinematics/kinematic_look.hpp"
 #include "catena/analysis/kinematics/kinematics_with_events.hpp"
 #include "catena/analysis/kinematics/minimum_norm_motion.hpp"
@@ -257,6 +258,13 @@ void run_kinematics(AnalysisContext& context, AnalysisResult& result) {
 }
 void run_inverse_dynamics(AnalysisContext& context, AnalysisResult& result) {
   run(context, result, true);
+  if (const int rope = first_gripped_rope(*context.model); rope >= 0 && result.report.ok()) {
+    result.report.warnings.push_back(
+        fmt::format("friction of rope \"{}\" on pulleys is left out: what it does depends on how the rope came there, "
+                    "which dynamics "
+                    "follows",
+                    context.model->element_name(rope)));
+  }
   add_field_measures(context, result);
 }
 

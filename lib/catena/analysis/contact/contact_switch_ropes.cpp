@@ -1,0 +1,69 @@
+// ContactSwitch: grips that cannot slip because others do not (a tackle in which two sheaves hold holds altogether).
+// Their equations would depend on those of the others, and the tensions beside them are not unique: they keep what was
+// found.
+#include <Eigen/QR>
+#include <cmath>
+
+#include "catena/analysis/contact/contact_switch.hpp"
+#include "catena/base/at.hpp"
+
+namespace catena {
+namespace {
+
+// Of what a row gives way without the others: rounding.
+constexpr double dependent = 1e-9;
+// Of the terms of an acceleration.
+constexpr double at_rest = 1e-9;
+
+/// Whether row r of D depends on others.
+bool depends(const ContactProblem& problem, const std::vector<std::size_t>& rows, std::size_t r) {
+  const auto size = static_cast<Eigen::Index>(rows.size());
+  Eigen::MatrixXd D(size, size);
+  Eigen::VectorXd d(size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    for (Eigen::Index j = 0; j < size; ++j) D(i, j) = problem.D(rows[at(i)], rows[at(j)]);
+    d(i) = problem.D(rows[at(i)], r);
+  }
+  const double left =
+      size > 0 ? problem.D(r, r) - d.dot(D.completeOrthogonalDecomposition().solve(d)) : problem.D(r, r);
+  return !(left > dependent * problem.D(r, r));
+}
+
+/// The acceleration along place a, zero if it is rounding.
+double acceleration(const ContactProblem& problem, std::size_t a) {
+  double sum = problem.b[2 * a + 1], terms = std::abs(sum);
+  for (std::size_t c = 0; c < problem.x.size(); ++c) {
+    sum += problem.D(2 * a + 1, c) * problem.x[c];
+    terms += std::abs(problem.D(2 * a + 1, c) * problem.x[c]);
+  }
+  return std::abs(sum) > at_rest * terms ? sum : 0;
+}
+
+}  // namespace
+
+void ContactSwitch::tie_grips(const ContactProblem& problem, std::vector<ContactState>& states) const {
+  std::vector<std::size_t> rows;
+  for (std::size_t a = 0; a < active_.size(); ++a) {
+    if (problem.place[a].head >= 0 || problem.state[a] == ContactProblem::State::open) continue;
+    if (problem.place[a].has_normal) rows.push_back(2 * a);
+    if (problem.state[a] == ContactProblem::State::sticks) rows.push_back(2 * a + 1);
+  }
+  std::vector<double> tension(active_.size(), 0.0);  // by place of a rope, behind the last grip that was looked at
+  for (std::size_t a = 0; a < active_.size(); ++a) {
+    const int head = problem.place[a].head;
+    if (head < 0) {
+      tension[a] = problem.x[2 * a];
+      continue;
+    }
+    const double before = tension[at(head)], behind = tension[at(head)] += problem.x[2 * a + 1];
+    const std::size_t k = active_[a];
+    if (!states[k].closed || !(before > 0) || !(behind > 0)) continue;
+    const bool rests = std::abs(slide_[k].rate) <= part_of_speed(k, no_speed);
+    const bool stays = rests && states[k].direction != 0 && acceleration(problem, a) == 0;
+    const bool repeats = states[k].direction == 0 && depends(problem, rows, 2 * a + 1);
+    if (states[k].direction == 0 && !repeats) rows.push_back(2 * a + 1);
+    if (stays || repeats) states[k] = {.closed = true, .held = std::log(behind / before), .tied = true};
+  }
+}
+
+}  // namespace catena

@@ -1,0 +1,505 @@
+// Ropes that slide over pulleys with friction against closed forms (Euler and Eytelwein), small systems of equations
+// that try every state of the pulleys, and Runge and Kutta's method of order four on equations of the tests' own.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "oracles/scene_text.hpp"
+#include "scene/run_text.hpp"
+
+namespace catena::testing {
+namespace {
+
+constexpr double g = 9.81, pi = std::numbers::pi;
+
+std::string weight(const std::string& name, double mass, double x, double y, double vx, double vy) {
+  return fmt::format(R"("{}": {{"particle": true, "mass": {:.17g}, "position": [{:.17g}, {:.17g}], "velocity": [{:.17g},
+    {:.17g}]}})",
+                     name, mass, x, y, vx, vy);
+}
+std::string scene(const std::string& bodies, const std::string& constraints, const std::string& forces,
+                  const std::string& outputs, const std::string& analyses, double gravity = g) {
+  return fmt::format(R"({{"catena": 1, "gravity": [0, {:.17g}], "bodies": {{{}}}, "constraints": [{}], "forces": [{}],
+    "outputs": [{}], "analyses": [{}]}})",
+                     -gravity, bodies, constraints, forces, outputs, analyses);
+}
+std::string dynamics(double t, const std::string& more = "") {
+  return fmt::format(R"({{"type": "dynamics", "at": [0, {:.17g}], "tolerance": 1e-11{}}})", t, more);
+}
+TextRun good_run(const std::string& text) {
+  TextRun run = run_text(text);
+  EXPECT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text
+                                      << (run.outcome.analyses.empty() ? "" : run.analysis().report.message) << text;
+  return run;
+}
+struct Change {
+  std::string kind;
+  double t;
+};
+std::vector<Change> changes(const TextRun& run) {
+  std::vector<Change> all;
+  for (const auto& [key, value] : run.analysis().fields) {
+    if (key != "events") continue;
+    for (const FieldRecord& record : std::get<std::vector<FieldRecord>>(value)) {
+      Change change;
+      for (const auto& [name, field] : record) {
+        if (name == "kind") change.kind = std::get<std::string>(field);
+        if (name == "t") change.t = std::get<double>(field);
+      }
+      all.push_back(change);
+    }
+  }
+  return all;
+}
+
+/// Two weights on a rope over a drum of the ground: both hang, a on the left (end i).
+struct Atwood {
+  double ma, mb, mu, r = 0.2, ya = -2, yb = -2, v = 0;  // v: of b downwards
+  std::string k = "";
+  std::string text(double t) const {
+    return scene(
+        weight("a", ma, -r, ya, 0, v) + "," + weight("b", mb, r, yb, 0, -v), "",
+        fmt::format(R"({{"type": "rope", "name": "rope", "i": "a", "over": [{{"at": ["ground", [0, 0]], "radius":
+      {:.17g}, "side": -1, "mu": {:.17g}}}], "j": "b"{}}})",
+                    r, mu, k),
+        R"("a.y", "b.y", "b.vy", "rope.force", "rope.force_j", "rope.length", "energy.dissipated", "energy.balance")",
+        dynamics(t));
+  }
+};
+
+TEST(RopeFriction, AtwoodsMachineSlides) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers random(seed);
+    Atwood at{.ma = random(0.5, 2), .mb = 0, .mu = random(0.05, 0.6), .r = random(0.05, 0.3)};
+    const double e = std::exp(at.mu * pi), t = 0.3;
+    at.mb = at.ma * e * random(1.1, 2);
+    const bool other_way = seed % 2 == 0;
+    if (other_way) std::swap(at.ma, at.mb);
+    const TextRun run = good_run(at.text(t));
+    const double light = std::min(at.ma, at.mb), heavy = std::max(at.ma, at.mb);
+    const double a = (heavy - light * e) / (heavy + light * e) * g, way = a * t * t / 2;
+    const double low = light * (g + a), high = heavy * (g - a);
+    EXPECT_NEAR(high / low, e, 1e-12 * e);
+    EXPECT_NEAR(run.last("b.y"), at.yb + (other_way ? way : -way), 1e-10);
+    EXPECT_NEAR(run.last("rope.force"), other_way ? high : low, 1e-9);
+    EXPECT_NEAR(run.last("rope.force_j"), other_way ? low : high, 1e-9);
+    EXPECT_NEAR(run.last("energy.dissipated"), (high - low) * way, 1e-8);
+    EXPECT_NEAR(run.last("energy.balance"), 0, 1e-9);
+  }
+}
+
+TEST(RopeFriction, TheDrumHolds) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers random(seed);
+    Atwood at{.ma = random(0.5, 2), .mb = 0, .mu = random(0.05, 0.6)};
+    at.mb = at.ma * std::exp(at.mu * pi * random(-0.99, 0.99));
+    const TextRun run = good_run(at.text(2));
+    EXPECT_NEAR(run.last("a.y"), at.ya, 1e-10);
+    EXPECT_NEAR(run.last("b.vy"), 0, 1e-10);
+    EXPECT_NEAR(run.last("rope.force"), at.ma * g, 1e-9);
+    EXPECT_NEAR(run.last("rope.force_j"), at.mb * g, 1e-9);
+    EXPECT_NEAR(run.last("energy.dissipated"), 0, 1e-12);
+    EXPECT_TRUE(changes(run).empty());
+  }
+}
+
+// Thrown, the heavier weight goes up until it comes to rest, and stays there or comes down again.
+TEST(RopeFriction, ComesToRestAndSticksOrSlidesBack) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers random(seed);
+    const bool sticks = seed % 2 == 0;
+    Atwood at{.ma = random(0.5, 2), .mb = 0, .mu = random(0.05, 0.4), .v = -random(0.3, 1)};
+    const double e = std::exp(at.mu * pi);
+    at.mb = at.ma * (sticks ? std::pow(e, random(0.2, 0.9)) : e * random(1.2, 2));
+    const double up = (at.mb * e - at.ma) / (at.mb * e + at.ma) * g;  // of b downwards, while it goes up
+    const double stop = -at.v / up, way = at.v * at.v / up / 2, t = stop + 0.3;
+    const double back = sticks ? 0 : (at.mb - at.ma * e) / (at.mb + at.ma * e) * g;
+    const TextRun run = good_run(at.text(t));
+    EXPECT_NEAR(run.last("b.y"), at.yb + way - back * 0.09 / 2, 1e-9);
+    EXPECT_NEAR(run.last("b.vy"), -back * 0.3, 1e-9);
+    EXPECT_NEAR(run.last("energy.balance"), 0, 1e-9);
+    const std::vector<Change> all = changes(run);
+    ASSERT_EQ(all.size(), sticks ? 1U : 0U);
+    if (!sticks) continue;
+    EXPECT_EQ(all[0].kind, "stick");
+    EXPECT_NEAR(all[0].t, stop, 1e-10);
+    EXPECT_NEAR(run.last("rope.force"), at.ma * g, 1e-9);
+    EXPECT_NEAR(run.last("rope.force_j"), at.mb * g, 1e-9);
+  }
+}
+
+// A drum on a pin takes part as long as the rope does not slip on it.
+TEST(RopeFriction, ADrumThatTurns) {
+  int slipped = 0, stuck = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers random(seed);
+    const double ma = random(0.5, 3), mb = random(0.5, 3), mu = random(0.02, 0.3), r = random(0.1, 0.3), t = 0.4;
+    const double inertia = random(0.001, 0.3);
+    const double e = std::exp(mu * pi);
+    // Of b downwards; the drum's rim, alpha r downwards on the side of b.
+    double a = (mb - ma) * g / (ma + mb + inertia / (r * r)), rim = a;
+    double ta = ma * (g + a), tb = mb * (g - a);
+    const bool slips = std::max(ta / tb, tb / ta) > e;
+    if (slips) {
+      const bool down = tb > ta;
+      a = down ? (mb - ma * e) / (mb + ma * e) * g : -(ma - mb * e) / (ma + mb * e) * g;
+      ta = ma * (g + a);
+      tb = mb * (g - a);
+      rim = (tb - ta) * r * r / inertia;
+    }
+    ++(slips ? slipped : stuck);
+    const TextRun run = good_run(scene(
+        weight("a", ma, -r, -2, 0, 0) + "," + weight("b", mb, r, -2, 0, 0) +
+            fmt::format(R"(, "drum": {{"mass": 1, "inertia": {:.17g}}})", inertia),
+        R"({"type": "revolute", "i": "ground", "j": "drum"})",
+        fmt::format(
+            R"({{"type": "rope", "name": "rope", "i": "a", "over": [{{"at": "drum", "radius": {:.17g}, "side": -1,
+        "mu": {:.17g}}}], "j": "b"}})",
+            r, mu),
+        R"("b.y", "drum.angle", "rope.force", "rope.force_j", "energy.balance", "energy.dissipated")", dynamics(t)));
+    EXPECT_NEAR(run.last("b.y"), -2 - a * t * t / 2, 1e-9);
+    EXPECT_NEAR(run.last("drum.angle"), -rim * t * t / 2 / r, 1e-8);
+    EXPECT_NEAR(run.last("rope.force"), ta, 1e-8);
+    EXPECT_NEAR(run.last("rope.force_j"), tb, 1e-8);
+    EXPECT_NEAR(run.last("energy.balance"), 0, 1e-8);
+    EXPECT_NEAR(run.last("energy.dissipated"), (tb - ta) * (a - rim) * t * t / 2, 1e-8);
+  }
+  EXPECT_GT(slipped, 5);
+  EXPECT_GT(stuck, 5);
+}
+
+/// A rope from weight a over a pulley of the ground, down round the pulley of a block c, up over another one of the
+/// ground, down to weight b; all move vertically.
+struct Tackle {
+  double ma, mb, mc, r = 0.1;
+  std::array<double, 3> mu;
+  std::array<double, 3> v{};  // of a, b, c upwards; v_a + v_b + 2 v_c = 0
+  double ya = -4, yb = -4, yc = -3;
+
+  std::string text(double t, const std::string& more = "") const {
+    std::string over;
+    const char* at[] = {R"(["ground", [)", R"(["c", [)", R"(["ground", [)"};
+    for (int k = 0; k < 3; ++k) {
+      const double x = k == 1 ? 0 : r * (2 * k - 2);
+      over += fmt::format(R"({}{{"at": {}{:.17g}, 0]], "radius": {:.17g}, "side": {}, "mu": {:.17g}}})",
+                          k > 0 ? "," : "", at[k], x, r, k == 1 ? 1 : -1, mu[static_cast<std::size_t>(k)]);
+    }
+    return scene(weight("a", ma, -3 * r, ya, 0, v[0]) + "," + weight("b", mb, 3 * r, yb, 0, v[1]) + "," +
+                     weight("c", mc, 0, yc, 0, v[2]),
+                 "", R"({"type": "rope", "name": "rope", "i": "a", "over": [)" + over + R"(], "j": "b")" + more + "}",
+                 R"("a.y", "b.y", "c.y", "a.vy", "b.vy", "c.vy", "rope.force", "rope.force_j", "energy.balance",
+                 "energy.dissipated")",
+                 dynamics(t));
+  }
+  /// Rates at which the rope passes the pulleys towards a, from velocities or accelerations of a, b, c.
+  static std::array<double, 3> passes(const std::array<double, 3>& w) { return {-w[0], -w[0] - w[2], w[1]}; }
+
+  struct Motion {
+    std::array<double, 3> a{};  // accelerations upwards
+    std::array<double, 4> tension{};
+  };
+  /// Accelerations where pulley k slides to the side sigma_k, or sticks where that is zero; nothing where the rope
+  /// would push.
+  std::optional<Motion> motion(const std::array<int, 3>& sigma) const {
+    // Unknowns a_a, a_b, a_c, T_0 ... T_3: seven equations.
+    std::array<std::array<double, 8>, 7> m{};
+    const auto row = [&](std::size_t n) -> std::array<double, 8>& { return m[n]; };
+    row(0) = {ma, 0, 0, -1, 0, 0, 0, -ma * g};
+    row(1) = {0, mb, 0, 0, 0, 0, -1, -mb * g};
+    row(2) = {0, 0, mc, 0, -1, -1, 0, -mc * g};
+    row(3) = {1, 1, 2, 0, 0, 0, 0, 0};
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (sigma[k] == 0) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          std::array<double, 3> unit{};
+          unit[c] = 1;
+          row(4 + k)[c] = passes(unit)[k];
+        }
+      } else {
+        row(4 + k)[3 + k] = std::exp(-sigma[k] * mu[k] * pi);
+        row(4 + k)[4 + k] = -1;
+      }
+    }
+    for (std::size_t c = 0; c < 7; ++c) {
+      std::size_t best = c;
+      for (std::size_t n = c; n < 7; ++n) best = std::abs(m[n][c]) > std::abs(m[best][c]) ? n : best;
+      if (std::abs(m[best][c]) < 1e-12) return {};
+      std::swap(m[c], m[best]);
+      for (std::size_t n = 0; n < 7; ++n) {
+        const double part = m[n][c] / m[c][c];
+        for (std::size_t k = c; k < 8 && n != c; ++k) m[n][k] -= part * m[c][k];
+      }
+    }
+    Motion found;
+    for (std::size_t k = 0; k < 7; ++k) (k < 3 ? found.a[k] : found.tension[k - 3]) = m[k][7] / m[k][k];
+    return found;
+  }
+  /// Whether all can stay at rest. Where two pulleys hold, all is at rest, and T_1 + T_2 alone is known.
+  bool can_rest() const {
+    const auto e = [&](std::size_t k) { return std::exp(mu[k] * pi); };
+    const double sum = mc * g;
+    const double low = std::max({ma * g / e(0), sum - mb * g * e(2), sum / (1 + e(1))});
+    const double high = std::min({ma * g * e(0), sum - mb * g / e(2), sum / (1 + 1 / e(1))});
+    return v == std::array<double, 3>{} && low <= high;
+  }
+  /// The states of the pulleys at the present velocities, and the motion: every state is tried.
+  std::optional<Motion> find() const {
+    if (can_rest()) return Motion{{}, {ma * g, std::nan(""), std::nan(""), mb * g}};
+    const std::array<double, 3> pass = passes(v);
+    for (int code = 0; code < 27; ++code) {
+      std::array<int, 3> sigma{code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1};
+      const std::optional<Motion> found = motion(sigma);
+      bool fits = found.has_value();
+      for (std::size_t k = 0; k < 3 && fits; ++k) {
+        const double e = std::exp(mu[k] * pi), ratio = found->tension[k + 1] / found->tension[k];
+        fits = found->tension[k] > 0 && found->tension[k + 1] > 0;
+        if (pass[k] != 0) fits = fits && sigma[k] == (pass[k] > 0 ? 1 : -1);
+        if (pass[k] == 0 && sigma[k] == 0) fits = fits && ratio < e && ratio > 1 / e;
+        if (pass[k] == 0 && sigma[k] != 0) fits = fits && passes(found->a)[k] * sigma[k] > 0;
+      }
+      if (fits) return found;
+    }
+    return {};
+  }
+};
+
+// From rest: which of three pulleys, one of them moving, slide is found by trying all.
+TEST(RopeFriction, TacklesFromRest) {
+  std::array<int, 4> sliding{};
+  for (unsigned seed = 1; seed <= 120; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers random(seed);
+    Tackle tackle{.ma = random(0.5, 3), .mb = random(0.5, 3), .mc = random(1, 6), .mu = {}};
+    for (double& mu : tackle.mu) mu = random(0.02, 0.3);
+    const std::optional<Tackle::Motion> motion = tackle.find();
+    ASSERT_TRUE(motion);
+    int slides = 0;
+    for (const double pass : Tackle::passes(motion->a)) slides += std::abs(pass) > 1e-9;
+    ++sliding[static_cast<std::size_t>(slides)];
+    const double t = 0.2;
+    const TextRun run = good_run(tackle.text(t));
+    EXPECT_NEAR(run.last("a.y"), tackle.ya + motion->a[0] * t * t / 2, 1e-9);
+    EXPECT_NEAR(run.last("b.y"), tackle.yb + motion->a[1] * t * t / 2, 1e-9);
+    EXPECT_NEAR(run.last("c.y"), tackle.yc + motion->a[2] * t * t / 2, 1e-9);
+    EXPECT_NEAR(run.last("rope.force"), motion->tension[0], 1e-7);
+    EXPECT_NEAR(run.last("rope.force_j"), motion->tension[3], 1e-7);
+    EXPECT_NEAR(run.last("energy.balance"), 0, 1e-9);
+  }
+  // Where two hold, all is at rest.
+  for (const std::size_t n : {0, 2, 3}) EXPECT_GT(sliding[n], 0) << n;
+  EXPECT_EQ(sliding[1], 0);
+}
+
+// In motion: from one instant at which a pulley comes to rest to the next one, accelerations are constant.
+TEST(RopeFriction, TacklesInMotion) {
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers random(1000 + seed);
+    Tackle tackle{.ma = random(0.5, 3), .mb = random(0.5, 3), .mc = random(1, 6), .mu = {}};
+    for (double& mu : tackle.mu) mu = random(0.02, 0.3);
+    tackle.v = {random(-1, 1), random(-1, 1), 0};
+    tackle.v[2] = -(tackle.v[0] + tackle.v[1]) / 2;
+    const std::string text = tackle.text(0.5);
+    double left = 0.5, dissipated = 0;
+    std::optional<Tackle::Motion> motion;
+    while (left > 0) {
+      motion = tackle.find();
+      ASSERT_TRUE(motion);
+      const std::array<double, 3> pass = Tackle::passes(tackle.v), more = Tackle::passes(motion->a);
+      double step = left;
+      std::size_t stops = 3;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (pass[k] * more[k] < 0 && -pass[k] / more[k] < step) {
+          step = -pass[k] / more[k];
+          stops = k;
+        }
+      }
+      for (std::size_t k = 0; k < 3 && !std::isnan(motion->tension[1]); ++k)
+        dissipated -= (motion->tension[k + 1] - motion->tension[k]) * (pass[k] * step + more[k] * step * step / 2);
+      const auto go = [&](double& y, std::size_t c) {
+        y += tackle.v[c] * step + motion->a[c] * step * step / 2;
+        tackle.v[c] += motion->a[c] * step;
+      };
+      go(tackle.ya, 0);
+      go(tackle.yb, 1);
+      go(tackle.yc, 2);
+      // What came to rest, or stays at rest, is so exactly.
+      if (stops == 0 || (pass[0] == 0 && std::abs(more[0]) < 1e-9)) tackle.v[0] = 0;
+      if (stops == 2 || (pass[2] == 0 && std::abs(more[2]) < 1e-9)) tackle.v[1] = 0;
+      if (stops == 1 || (pass[1] == 0 && std::abs(more[1]) < 1e-9)) tackle.v[2] = -tackle.v[0];
+      if (tackle.v[0] == 0 && tackle.v[1] == 0) tackle.v[2] = 0;
+      left = stops == 3 ? 0 : left - step;
+    }
+    const TextRun run = good_run(text);
+    EXPECT_NEAR(run.last("a.y"), tackle.ya, 1e-8);
+    EXPECT_NEAR(run.last("b.y"), tackle.yb, 1e-8);
+    EXPECT_NEAR(run.last("c.y"), tackle.yc, 1e-8);
+    EXPECT_NEAR(run.last("c.vy"), tackle.v[2], 1e-8);
+    EXPECT_NEAR(run.last("rope.force_j"), motion->tension[3], 1e-6);
+    EXPECT_NEAR(run.last("energy.dissipated"), dissipated, 1e-7);
+    EXPECT_NEAR(run.last("energy.balance"), 0, 1e-8);
+  }
+}
+
+// Drums that do not move relative to each other slip together: their exponents add up, also where a body carries them.
+TEST(RopeFriction, DrumsBesideEachOtherAreOne) {
+  for (const bool carried : {false, true}) {
+    const double mu1 = 0.1, mu2 = 0.25, r = 0.1, ma = 1, e = std::exp((mu1 + mu2) * pi / 2), t = 0.3;
+    const double mb = 1.3 * e * ma, a = (mb - ma * e) / (mb + ma * e) * g;
+    const std::string at = carried ? "frame" : "ground";
+    const TextRun run = good_run(scene(
+        weight("a", ma, -1 - r, -2, 0, 0) + "," + weight("b", mb, 1 + r, -2, 0, 0) +
+            (carried ? R"(, "frame": {"mass": 1, "inertia": 1})" : ""),
+        carried ? R"({"type": "weld", "i": "ground", "j": "frame"})" : "",
+        fmt::format(
+            R"({{"type": "rope", "name": "rope", "i": "a", "over": [{{"at": ["{0}", [-1, 0]], "radius": {1}, "side":
+          -1, "mu": {2}}}, {{"at": ["{0}", [1, 0]], "radius": {1}, "side": -1, "mu": {3}}}], "j": "b"}})",
+            at, r, mu1, mu2),
+        R"("b.y", "rope.force", "rope.force_j", "energy.balance")", dynamics(t)));
+    EXPECT_NEAR(run.last("b.y"), -2 - a * t * t / 2, 1e-10);
+    EXPECT_NEAR(run.last("rope.force_j") / run.last("rope.force"), e, 1e-10);
+    EXPECT_NEAR(run.last("energy.balance"), 0, 1e-9);
+  }
+}
+
+// A slack rope becomes taut with a jerk: both weights stop where the drum holds the impulses, else it slips in it.
+TEST(RopeFriction, AJerk) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers random(seed);
+    const double ma = random(0.5, 2), mb = random(0.5, 2), mu = random(0.05, 0.5), r = 0.1, slack = 0.1;
+    const double va = random(0.1, 1), vb = random(0.1, 1);  // both away from the drum
+    const double e = std::exp(mu * pi), t = slack / (va + vb) + 0.5;
+    const double ratio = mb * vb / (ma * va);
+    double after = 0;  // of b away
+    if (ratio > e) after = (mb * vb - e * ma * va) / (mb + e * ma);
+    if (ratio < 1 / e) after = -(ma * va - e * mb * vb) / (ma + e * mb);
+    // Without gravity and without tension nothing slows down what slides on.
+    const TextRun run = good_run(scene(
+        weight("a", ma, -r, -2, 0, -va) + "," + weight("b", mb, r, -2, 0, -vb), "",
+        fmt::format(
+            R"({{"type": "rope", "name": "rope", "i": "a", "over": [{{"at": "ground", "radius": {}, "side": -1, "mu":
+          {:.17g}}}], "j": "b", "length": {:.17g}}})",
+            r, mu, 4 + pi * r + slack),
+        R"("a.vy", "b.vy", "energy.balance", "energy.dissipated")", dynamics(t), 0));
+    EXPECT_NEAR(run.last("a.vy"), after, 1e-10);
+    EXPECT_NEAR(run.last("b.vy"), -after, 1e-10);
+    EXPECT_NEAR(run.last("energy.balance"), 0, 1e-10);
+    EXPECT_NEAR(run.last("energy.dissipated"), (ma * va * va + mb * vb * vb - (ma + mb) * after * after) / 2, 1e-10);
+  }
+}
+
+/// Runge and Kutta's method of order four.
+template <std::size_t n>
+void step(std::array<double, n>& y, double h,
+          const std::function<std::array<double, n>(const std::array<double, n>&)>& f) {
+  const auto plus = [](std::array<double, n> a, double part, const std::array<double, n>& b) {
+    for (std::size_t k = 0; k < n; ++k) a[k] += part * b[k];
+    return a;
+  };
+  const auto k1 = f(y), k2 = f(plus(y, h / 2, k1)), k3 = f(plus(y, h / 2, k2)), k4 = f(plus(y, h, k3));
+  for (std::size_t k = 0; k < n; ++k) y[k] += h / 6 * (k1[k] + 2 * k2[k] + 2 * k3[k] + k4[k]);
+}
+
+// A pendulum on a rope that runs off a drum while a weight pulls it in: the angle of contact changes with the swing.
+//
+//   b is l along the rope from where it leaves the drum, phi from the vertical; angle of contact pi - phi
+TEST(RopeFriction, APendulumIsPulledInOverADrum) {
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers random(seed);
+    const double r = random(0.05, 0.2), mu = random(0.05, 0.3), mb = random(0.5, 1), l0 = random(1, 2);
+    const double ma = mb * std::exp(mu * pi) * random(2.5, 3.5), phi0 = random(-0.6, 0.6), t = 0.3;
+    // The rope comes up to the drum on the left, a at x = -r, and leaves it on the right: tangent point
+    // r (cos phi, sin phi), along (sin phi, -cos phi).
+    const auto place = [&](double l, double phi) {
+      return std::array<double, 2>{r * std::cos(phi) + l * std::sin(phi), r * std::sin(phi) - l * std::cos(phi)};
+    };
+    // (length at a) + r (pi - phi) + l is constant: a moves down by s, s' = -(l' - r phi').
+    //   b, along: T_b = mb (g cos phi + l phi'^2 + s'')       across: l phi'' + 2 l' phi' - r phi'^2 = -g sin phi
+    //   a:        ma (g - s'') = T_a = T_b e^(mu (pi - phi))
+    using Y = std::array<double, 4>;  // l, phi, rates
+    const auto rates = [&](const Y& y) {
+      const double e = std::exp(mu * (pi - y[1]));
+      const double phi2 = -(g * std::sin(y[1]) + 2 * y[2] * y[3] - r * y[3] * y[3]) / y[0];
+      const double s2 = (ma * g - e * mb * (y[0] * y[3] * y[3] + g * std::cos(y[1]))) / (ma + e * mb);
+      return Y{y[2], y[3], -s2 + r * phi2, phi2};
+    };
+    Y y{l0, phi0, 0, 0};
+    const int steps = 3000;
+    for (int n = 0; n < steps; ++n) step<4>(y, t / steps, rates);
+    const auto b = place(l0, phi0), end = place(y[0], y[1]);
+    const TextRun run = good_run(scene(
+        weight("a", ma, -r, -1, 0, 0) + "," + weight("b", mb, b[0], b[1], 0, 0), "",
+        fmt::format(
+            R"({{"type": "rope", "name": "rope", "i": "a", "over": [{{"at": "ground", "radius": {:.17g}, "side": -1,
+          "mu": {:.17g}}}], "j": "b"}})",
+            r, mu),
+        R"("b.x", "b.y", "rope.force", "rope.force_j", "energy.balance")", dynamics(t)));
+    EXPECT_NEAR(run.last("b.x"), end[0], 1e-8);
+    EXPECT_NEAR(run.last("b.y"), end[1], 1e-8);
+    EXPECT_NEAR(run.last("rope.force") / run.last("rope.force_j"), std::exp(mu * (pi - y[1])), 1e-7);
+    EXPECT_NEAR(run.last("energy.balance"), 0, 1e-8);
+  }
+}
+
+// How much of the friction a given position uses up: ln(T_out / T_in) / E.
+TEST(RopeFriction, WhatHolds) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers random(seed);
+    Atwood at{.ma = random(0.5, 2), .mb = random(0.5, 2), .mu = random(0.05, 0.6)};
+    std::string text = at.text(1);
+    text.replace(text.find(R"("outputs")"), std::string::npos,
+                 R"("outputs": ["a.y"], "analyses": [{"type": "equilibrium", "friction": "hold"}]})");
+    const TextRun run = good_run(text);
+    const double used = std::abs(std::log(at.mb / at.ma)) / (at.mu * pi);
+    EXPECT_NEAR(field<double>(run, "utilisation"), used, 1e-9);
+    EXPECT_EQ(field<bool>(run, "held"), used <= 1);
+  }
+}
+
+// Two pulleys share, as little as they can of each.
+TEST(RopeFriction, WhatTacklesHold) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers random(seed);
+    Tackle tackle{.ma = random(0.5, 3), .mb = random(0.5, 3), .mc = random(1, 6), .mu = {}};
+    for (double& mu : tackle.mu) mu = random(0.02, 0.3);
+    std::string text = tackle.text(1);
+    text.replace(text.find(R"("outputs")"), std::string::npos,
+                 R"("outputs": ["a.y"], "analyses": [{"type": "equilibrium", "friction": "hold"}]})");
+    const TextRun run = good_run(text);
+    // T_0 = ma g, T_3 = mb g, T_1 + T_2 = mc g: the least u for some T_1.
+    const auto used = [&](double t1) {
+      const double t[] = {tackle.ma, t1, tackle.mc - t1, tackle.mb};
+      double most = 0;
+      for (std::size_t k = 0; k < 3; ++k)
+        most = std::max(most, std::abs(std::log(t[k + 1] / t[k])) / (tackle.mu[k] * pi));
+      return most;
+    };
+    // Each term is convex in ln or falls and rises once: golden section.
+    double low = 1e-9 * tackle.mc, high = tackle.mc - low;
+    const double golden = (std::sqrt(5.0) - 1) / 2;
+    for (int n = 0; n < 200; ++n) {
+      const double a = high - golden * (high - low), b = low + golden * (high - low);
+      (used(a) < used(b) ? high : low) = used(a) < used(b) ? b : a;
+    }
+    EXPECT_NEAR(field<double>(run, "utilisation"), used((low + high) / 2), 1e-7);
+  }
+}
+
+}  // namespace
+}  // namespace catena::testing
