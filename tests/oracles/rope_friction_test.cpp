@@ -455,6 +455,19 @@ TEST(RopeFriction, APendulumIsPulledInOverADrum) {
   }
 }
 
+// A weight hauls another one up that swings against a second drum and off it again.
+TEST(RopeFriction, MeetsAndLeavesAPulley) {
+  const TextRun run = good_run(scene(
+      weight("a", 3, -0.1, -2, 0, 0) + "," + weight("b", 0.5, 1.2, -0.9, -0.5, 0), "",
+      R"({"type": "rope", "name": "rope", "i": "a", "over": [{"at": "ground", "radius": 0.1, "side": -1, "mu": 0.2},
+        {"at": ["ground", [0.15, -0.4]], "radius": 0.05, "side": 1, "mu": 0.3}], "j": "b"})",
+      R"("energy.dissipated", "energy.balance")", dynamics(0.7)));
+  const std::vector<Change> all = changes(run);
+  EXPECT_TRUE(std::any_of(all.begin(), all.end(), [](const Change& change) { return change.kind == "unwrap"; }));
+  EXPECT_GT(run.last("energy.dissipated"), 1);
+  EXPECT_NEAR(run.last("energy.balance"), 0, 1e-8);
+}
+
 // How much of the friction a given position uses up: ln(T_out / T_in) / E.
 TEST(RopeFriction, WhatHolds) {
   for (unsigned seed = 1; seed <= 20; ++seed) {

@@ -205,7 +205,7 @@ void ContactSwitch::fill(ContactProblem& problem) const {
     if (point.kind == ContactKind::grip) {
       const auto head = std::find(active_.begin(), active_.end(), at(point.rope->head)) - active_.begin();
       problem.place[a].head = static_cast<int>(head);
-      problem.place[a].growth = std::exp(point.lines->exponent(evaluator_, {}).f);
+      problem.place[a].growth = std::exp(std::max(point.lines->exponent(evaluator_, {}).f, 0.0));
     }
     if (!problem.place[a].has_normal || gives_way(a, problem.D(2 * a, 2 * a))) continue;
     for (std::size_t c = 0; c < 2 * active_.size(); ++c) problem.D(2 * a, c) = problem.D(c, 2 * a) = 0;

@@ -142,7 +142,7 @@ Holding ContactHolding::find(const SystemState& state, std::vector<double>& q) {
     for (const ContactPoint& grip : contacts_.points) {
       if (grip.kind != ContactKind::grip || grip.rope->head != static_cast<int>(k) || !grip.has_friction()) continue;
       rope.along.push_back(unit_force(evaluator_->scalar_motion(grip.slide, rest)));
-      rope.exponent.push_back(grip.lines->exponent(*evaluator_, {}).f);
+      rope.exponent.push_back(std::max(grip.lines->exponent(*evaluator_, {}).f, 0.0));
     }
     if (rope.along.size() > most_held_grips) {
       holding.status = Status::refused;

@@ -87,8 +87,7 @@ Taylor<double> GripLines::exponent(const Evaluator& evaluator, std::span<const d
     const Vec2<Taylor<double>> h = separation(motion(line.i), motion(line.j), line.span.s_i, line.span.s_j);
     sum += Taylor<double>(line.factor) * line.span.heading(line.span.line(h).along);
   }
-  // Below zero, by rounding or between two samples, the rope no longer touches.
-  return sum.f > 0 ? sum : Taylor<double>(0.0);
+  return sum;
 }
 
 std::vector<GrippedRope> gripped_ropes(const Model& model, std::shared_ptr<Model>& expanded) {

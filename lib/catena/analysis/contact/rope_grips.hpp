@@ -29,7 +29,7 @@ struct GripLines {
   };
   std::vector<Line> lines{};
   bool touches() const { return !lines.empty(); }
-  /// E and its rate.
+  /// E and its rate; below zero where a step reaches beyond the instant at which the rope leaves: no kink is in it.
   Taylor<double> exponent(const Evaluator& evaluator, std::span<const double> qd) const;
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -26,8 +27,13 @@ WatchedElements::WatchedElements(const Evaluator& evaluator) : evaluator_(evalua
       }
     }
   };
+  // Equations of grips measure along ropes as well, but are no ropes: these have paths, if any has.
+  const std::vector<RopePath>& paths = evaluator.model().rope_paths;
   for (const int element : evaluator.model().gaps()) {
-    if (evaluator.model().element_type(element) == Rope<double>::type) ropes_.push_back(element);
+    const bool has_path =
+        std::any_of(paths.begin(), paths.end(), [&](const RopePath& p) { return p.element == element; });
+    const bool is_rope = evaluator.model().element_type(element) == Rope<double>::type;
+    if (is_rope && (has_path || paths.empty())) ropes_.push_back(element);
   }
   for (const auto& entry : std::get<std::vector<ElementEntry<ElasticRope<double>, double>>>(evaluator.model().forces)) {
     if (entry.element.pieces > 0) ropes_.push_back(entry.id);
