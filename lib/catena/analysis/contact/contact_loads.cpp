@@ -91,7 +91,8 @@ ContactLoads::ContactLoads(const Evaluator& evaluator, const std::vector<Contact
     dissipates_ |= slides(k) || (compliant && states_[k].closed && points_[k].c > 0);
     holds_ |= states_[k].closed && !points_[k].is_elastic_grip() &&
               (points_[k].kind == ContactKind::rigid || (points_[k].has_friction() && points_[k].is_exact()));
-    if (points_[k].is_elastic_grip() && states_[k].closed && points_[k].rope->grips.front() == k)
+    // Also of a slack rope: its spring would pull where a step reaches beyond the instant at which it becomes taut.
+    if (points_[k].is_elastic_grip() && points_[k].rope->grips.front() == k)
       elastic_.emplace_back(points_, points_[k].rope);
   }
   response_.assign(coupled_.size(), nothing_);

@@ -45,8 +45,9 @@ void ElasticGrips::share(std::size_t first, std::size_t end, const std::vector<C
     yields.d += y[n] * ratio_[n].d;
   }
   const Rate stretch{S_[first].f - behind.f, S_[first].d - behind.d};
+  // While it is taut also below zero, where a step reaches beyond the instant at which it slackens: no kink is in it.
   Rate pull;
-  if (stretch.f > 0 || (stretch.f == 0 && stretch.d > 0)) {
+  if (states[rope_->grips.front()].closed) {
     pull.f = stretch.f / yields.f;
     pull.d = (stretch.d - pull.f * yields.d) / yields.f;
   }
