@@ -69,7 +69,8 @@ void MeasureSet::Account::add(const MotionSamples& samples, const MotionSamples:
     const double weight = length * MotionSamples::weights()[k], v = sample.value[column_];
     sum_ += weight * v;
     squares_ += weight * v * v;
-    for (std::size_t p = 0; p < parameters_; ++p) {
+    if (keeps_nodes_) nodes_.push_back({sample.t, weight, v});
+    for (std::size_t p = 0; p < parameters_ && !keeps_nodes_; ++p) {
       const double gradient = gradient_of(sample, column_, p);
       sum_gradient_[p] += weight * gradient;
       squares_gradient_[p] += weight * 2 * v * gradient;

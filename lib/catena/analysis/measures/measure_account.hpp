@@ -40,6 +40,9 @@ class MeasureSet::Account {
     return request_.kind == MeasureKind::integral || request_.kind == MeasureKind::mean ||
            request_.kind == MeasureKind::rms;
   }
+  void give_pulses() { keeps_nodes_ = true; }
+  /// What the value is made of; false where an extreme is reached at two instants.
+  bool pulses(const MeasureResult& result, std::vector<ColumnPulse>& out) const;
   /// Whether it depends on what is between rows, single instants apart.
   bool wants_samples() const { return is_integral() || !extremes_.empty(); }
 
@@ -58,7 +61,8 @@ class MeasureSet::Account {
   /// The run ended early, and how its end moves is not known.
   void leave_out_early_end(MeasureResult& result) const;
   /// Puts in what moving instants make of the gradient; `measure`: its number.
-  void move(MeasureResult& result, const End* end, const MovingInstants& moving, std::size_t measure) const;
+  /// `given`: the gradient at fixed instants was not made of samples.
+  void move(MeasureResult& result, const End* end, const MovingInstants& moving, std::size_t measure, bool given) const;
 
  private:
   struct Instant {
@@ -81,6 +85,7 @@ class MeasureSet::Account {
                                      : sample.derivative[column * parameters_ + p];
   }
   void give(MeasureResult& result, const MotionSample& sample) const;
+  bool path_pulses(double value, std::vector<ColumnPulse>& out) const;
   void give_extreme(MeasureResult& result, const Extreme& extreme, double factor) const;
   void give_integral(MeasureResult& result) const;
   void give_path(MeasureResult& result) const;
@@ -98,6 +103,11 @@ class MeasureSet::Account {
   std::vector<double> sum_gradient_, squares_gradient_;
   std::optional<std::pair<double, double>> before_break_;  // the last breakpoint, and the column just before it
   std::int64_t rows_ = 0;
+  struct Node {
+    double t, weight, value;
+  };
+  bool keeps_nodes_ = false;
+  std::vector<Node> nodes_;  // of the integral, if they are kept
 };
 
 }  // namespace catena

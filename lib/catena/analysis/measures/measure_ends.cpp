@@ -97,12 +97,12 @@ void MeasureSet::Account::move_points(MeasureResult& result, std::span<const Mov
   }
 }
 
-void MeasureSet::Account::move(MeasureResult& result, const End* end, const MovingInstants& moving,
-                               std::size_t measure) const {
+void MeasureSet::Account::move(MeasureResult& result, const End* end, const MovingInstants& moving, std::size_t measure,
+                               bool given) const {
   if (!result.value || rows_ > 0) return;
   const bool jump_moves = end && !end->moving.empty(), early = last_->t != run_.last;
   const bool is_final = request_.kind == MeasureKind::final;
-  if (early && is_final) {
+  if (early && is_final && !given) {
     for (std::size_t p = 0; p < parameters_; ++p)
       result.gradient[p] = end ? gradient_of(end->sample, column_, p) : no_value;
   }

@@ -157,7 +157,25 @@ void MeasureSet::note_row(const MotionSample& sample, bool only_rows) {
   if (wants_samples_ && !only_rows) samples_->note_row(sample);
 }
 
-std::vector<MeasureResult> MeasureSet::results(const MovingInstants* moving) const {
+void MeasureSet::give_pulses() {
+  for (const auto& account : accounts_) account->give_pulses();
+}
+
+std::optional<std::vector<std::vector<ColumnPulse>>> MeasureSet::pulses(std::string& why) const {
+  std::optional<std::vector<std::vector<ColumnPulse>>> all;
+  std::vector<std::vector<ColumnPulse>> pulses(accounts_.size());
+  for (std::size_t k = 0; k < accounts_.size(); ++k) {
+    const MeasureResult result = accounts_[k]->result({}, looked_);
+    if (accounts_[k]->pulses(result, pulses[k])) continue;
+    why = fmt::format("measure \"{}\" reaches its extreme at two instants", requests_[k].name);
+    return all;
+  }
+  all = std::move(pulses);
+  return all;
+}
+
+std::vector<MeasureResult> MeasureSet::results(const MovingInstants* moving,
+                                               const std::vector<std::vector<double>>* given) const {
   std::vector<MeasureResult> results;
   for (std::size_t k = 0; k < accounts_.size(); ++k) {
     const auto& names = requests_[k].columns;
@@ -166,10 +184,11 @@ std::vector<MeasureResult> MeasureSet::results(const MovingInstants* moving) con
     const Account& account = *accounts_[k];
     results.push_back(account.result(info == columns_->info().end() ? ColumnInfo{} : *info, looked_));
     if (parameters_ == 0) continue;
+    if (given && results.back().value) results.back().gradient = (*given)[k];
     const End* end = end_ && latest_row_ && end_->t == *latest_row_ ? &*end_ : nullptr;
     results.back().by_last_instant = account.by_last_instant(results.back(), end);
     if (ended_early() && !moving) account.leave_out_early_end(results.back());
-    if (moving) account.move(results.back(), end, *moving, k);
+    if (moving) account.move(results.back(), end, *moving, k, given);
   }
   return results;
 }

@@ -19,6 +19,9 @@
 // Where T is itself an instant at which functions jump the two must move together; else m has no derivative if its
 // column jumps there. Points P_k of a path that move add -((x, y) - P_k) . dP_k/dp / (n m).
 //
+// Without derivatives of columns at hand a measure says what it is made of (pulses()), dm = sum weight x d(column at
+// t), and is given the gradient at fixed instants that someone else finds: one way back for any number of parameters.
+//
 // What a run could not be looked at for (between rows of a motion of least norm) is taken from its rows, and `trouble`
 // says so; integrals over time have no value there. Neither has a measure that is not a number.
 #pragma once
@@ -47,6 +50,13 @@ struct MovingInstants {
   std::string why_unknown;                       ///< where a rate is not a number: why
 };
 
+/// What a measure changes by with one of the set's columns at an instant.
+struct ColumnPulse {
+  double t;
+  std::size_t column;
+  double weight;
+};
+
 class MeasureSet {
  public:
   /// Measures of the kind `field` are passed over. Throws ColumnError, and std::invalid_argument for a measure whose
@@ -62,6 +72,9 @@ class MeasureSet {
   /// the run may end anywhere. `instants_move`: with the parameters, those at which measures look.
   void differentiate(int parameters, DifferentiateColumns derivatives, bool may_end = false,
                      bool instants_move = false);
+  /// After differentiate(): derivatives of columns are not at hand, pulses() are asked for instead. Columns are asked
+  /// at every instant that may have one.
+  void give_pulses();
 
   /// Columns come from who has them without snapshots: of stretches, and of
   /// rows that are given by their instants.
@@ -82,8 +95,12 @@ class MeasureSet {
   /// Whether the run ended before its last instant.
   bool ended_early() const { return latest_row_ && *latest_row_ != run_.last; }
   /// Of the measures passed in, those of the kind `field` left out. Without `moving` gradients are those at fixed
-  /// instants, of a run that ended early none.
-  std::vector<MeasureResult> results(const MovingInstants* moving = nullptr) const;
+  /// instants, of a run that ended early none. `given`: gradients at fixed instants, by give_pulses().
+  std::vector<MeasureResult> results(const MovingInstants* moving = nullptr,
+                                     const std::vector<std::vector<double>>* given = nullptr) const;
+  /// Of every measure, as in results(), what it is made of; nothing, and `why` says it, where an extreme is reached at
+  /// two instants, which may have different gradients.
+  std::optional<std::vector<std::vector<ColumnPulse>>> pulses(std::string& why) const;
 
  private:
   class Account;

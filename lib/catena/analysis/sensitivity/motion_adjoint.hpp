@@ -9,15 +9,20 @@
 //   f_y^T k^ = [ w^T R_q - mu^T (Phi_q)'' ;  k_q^ + w^T R_qd - 2 mu^T (Phi_q)' ]        (adjoint_mechanism.hpp)
 //
 // and the projection P of positions, then velocities, of motion_derivatives.hpp transposed. The measure is a sum over
-// instants of m(q, qd); one inside of a step is reached by a step of the same method up to it. The equations that are
-// transposed are those of MotionDerivatives: both give the same gradient, to rounding, at the ends of steps. Stages are
-// recomputed from stored ends of steps: memory 4 x coordinates a step. Steps of another method, shorter than this one
-// needs, are gone back over several at once, as long as what is recomputed misses the motion's own end by no more than
-// its single steps do. No gradient: where functions of time jump with
+// instants of m(q, qd, qdd, lambda). Inside of a step it is reached by the interpolant of order 7 and a projection,
+//
+//   y(t) = P(y0 + e (y1 - y0) + h sum_s c_s k_s),  k_12 the slope at y1, k_13 ... k_15 further stages,
+//
+// and accelerations and multipliers by [M, Phi_q^T; Phi_q, 0] [w; mu] = [m_qdd; m_lambda] as stages are. The equations
+// that are transposed are those of MotionDerivatives: both give the same gradient to rounding. Several measures share
+// stages, factors and instants. Stages are recomputed from stored ends of steps: memory 4 x coordinates a step. Steps
+// of another method, shorter than this one needs, are gone back over several at once, as long as what is recomputed
+// misses the motion's own end by no more than its single steps do. No gradient: where functions of time jump with
 // velocities, or at instants that parameters move; equations that depend on each other; laws of state, ropes over
 // pulleys. Source: apps/manual/sensitivity.md; A. Griewank, A. Walther, Evaluating Derivatives, chapter 3.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -29,25 +34,30 @@
 
 namespace catena {
 
-/// What a measure changes by with the state at an instant: sizes coordinates(), plan order; empty: nothing.
+/// What a measure changes by with the state at an instant: sizes coordinates(), plan order, of by_lambda the rows of
+/// the plan in the solver's scale; empty: nothing.
 struct MotionPulse {
   double t = 0;
   std::vector<double> by_q, by_qd;
+  std::vector<double> by_qdd{}, by_lambda{};
 };
 
-class MotionAdjoint final : public StateDerivatives {
+class MotionAdjoint : public StateDerivatives {
  public:
   /// As MotionDerivatives.
   MotionAdjoint(const Evaluator& evaluator, const DesignModels& models, int parameters, GivenByModel start);
   ~MotionAdjoint() override;
 
+  bool goes_back() const override { return true; }
   /// Keeps a step of the motion.
   void cover(const MotionStretch& stretch) override;
   /// False: states have no derivatives here, only measures have. The gradient is none the worse for being asked.
   bool find(const Snapshot& snapshot) override;
 
-  /// dm/dp by parameter at fixed p in the pulses themselves; nothing, and why() says it, where there is none. Pulses in
-  /// any order, within the motion.
+  using Gradients = std::vector<std::vector<double>>;
+  /// dm/dp of every measure by parameter, at fixed p in the pulses themselves; nothing, and why() says it, where there
+  /// is none. Pulses in any order, within the motion.
+  std::optional<Gradients> gradients(const std::vector<std::vector<MotionPulse>>& measures);
   std::optional<std::vector<double>> gradient(std::vector<MotionPulse> pulses);
 
   int steps() const { return static_cast<int>(steps_.size()); }
@@ -74,35 +84,57 @@ class MotionAdjoint final : public StateDerivatives {
     Side side = Side::after;
     Vector y, slope, lambda, back;  // back: Y^
   };
+  /// What a pulse belongs to.
+  struct Look {
+    const MotionPulse* pulse;
+    std::size_t measure;
+  };
+  /// One measure on its way back.
+  struct Way {
+    Vector y1, y0, gradient;     // y^ at the end of the step and at its beginning; what parameters have gathered
+    std::vector<Vector> slopes;  // k_s^ by the interpolant
+    bool begun = false;
+  };
 
   bool lose(double t, std::string_view what);
+  std::unique_ptr<Stage> make_stage();
+  /// Slope and multipliers at the stage's y.
+  bool evaluate(Stage& stage, double t, Side side);
   bool recompute(const Step& step, double h);
+  /// The stages of the interpolant, once the step has been recomputed.
+  bool prepare_interpolant(const Step& step);
   /// How far the recomputed end of a step lies from that of the motion, relative to what it moves by.
   double misfit(const Step& step) const;
   /// Recomputes the steps before number `end`, as many as can be taken as one, and joins them; how many.
   std::size_t join(std::size_t end, double bound, Step& joined);
-  /// y1^ at t, the end of a step or an instant inside, to y0^, which is added to; `values`: the state there. The step
-  /// has been recomputed up to t.
-  bool go_back(const Step& step, double t, std::span<const double> values, Vector y1, Vector& y0);
-  bool project_back(double t, Side side, std::span<const double> values, Vector& y1);
-  bool stage_back(Stage& stage, const Vector& k);
-  void add_parameters(double t, Side side, const AdjointWeights& weights, std::span<const double> qdd);
-  bool add_start(const Vector& y0);
-  /// The state inside of a step, by a step of the method up to it.
-  Vector state_inside(const Step& step, double t);
+  /// From y1^ at the end of a step, which has been recomputed, to y0^, which is added to.
+  void go_back(const Step& step, Way& way, bool interpolated);
+  /// y^ through the projection at the end, which factorize_end() has prepared.
+  bool factorize_end(double t, Side side, std::span<const double> values);
+  void project_back(double t, Side side, std::span<const double> values, Way& way, Vector& y1);
+  void stage_back(Stage& stage, const Vector& k, Way& way);
+  void add_parameters(double t, Side side, const AdjointWeights& weights, std::span<const double> qdd, Way& way);
+  /// What pulses at an instant with this state add to y^ there.
+  bool add_pulses(std::span<const Look> looks, double t, std::span<const double> values,
+                  const std::function<Vector&(std::size_t)>& target);
+  /// Pulses at one instant inside of a step, to slopes and ends.
+  bool add_inside(const Step& step, std::span<const Look> looks);
+  bool add_start(const Vector& y0, Vector& gradient);
 
   std::size_t n_;  // coordinates
   GivenByModel given_start_;
   AdjointMechanism mechanism_;
   std::vector<std::unique_ptr<AdjointMechanism::Reached>> reached_;  // by group
-  std::vector<std::unique_ptr<Stage>> stages_;                       // and the projection at the end, the last
+  std::vector<std::unique_ptr<Stage>> stages_;                       // of the step; of the interpolant once it is used
+  std::unique_ptr<Stage> end_;                                       // for projections and pulses
   std::vector<Step> steps_;
+  std::vector<Way> ways_;     // by measure
   std::size_t at_once_ = 1;   // steps that were joined last
   double single_misfit_ = 0;  // of a step by itself
   int blocks_ = 0;
   int waits_ = 0;      // blocks until one more is tried
   bool joins_ = true;  // whether more may be tried
-  Vector gradient_, w_, mu_, zero_rows_, masses_;
+  Vector w_, mu_, zero_rows_, zero_loads_, masses_, slope_;
 };
 
 }  // namespace catena

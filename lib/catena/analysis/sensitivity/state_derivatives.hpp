@@ -37,6 +37,8 @@ class StateDerivatives {
   StateDerivatives& operator=(const StateDerivatives&) = delete;
 
   int parameters() const { return parameters_; }
+  /// Whether these are derivatives of what measures look at alone, by adjoints.
+  virtual bool goes_back() const { return false; }
   /// Derivatives of this state; false where there are none, and why() says it.
   virtual bool find(const Snapshot& snapshot) = 0;
   /// A stretch of the motion that find() may ask about from now on, if the motion has a memory.
@@ -56,7 +58,8 @@ class StateDerivatives {
   /// find() and differentiate() of a row; not a number where there is none. `change`, if it is not empty: of every
   /// column the value just before the instant less that just after, where a parameter moves the instant; else zero.
   /// False where there are none at all, and why() says it.
-  bool derive(const ColumnSet& columns, const Snapshot& snapshot, std::span<double> out, std::span<double> change = {});
+  virtual bool derive(const ColumnSet& columns, const Snapshot& snapshot, std::span<double> out,
+                      std::span<double> change = {});
   /// Why the last derive() left out columns at an instant that moves; empty if it did not.
   const std::string& jump() const { return jump_; }
   /// What the functions of time do at t.

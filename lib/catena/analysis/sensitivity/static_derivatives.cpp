@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace catena {
 namespace {
@@ -52,18 +53,28 @@ bool StaticDerivatives::leave_open_gaps_out(const Snapshot& snapshot) {
   return true;
 }
 
-bool StaticDerivatives::find(const Snapshot& snapshot) {
+bool StaticDerivatives::neutral() {
+  return fail("the equilibrium is neutral or at a critical point: its place has no derivative");
+}
+
+bool StaticDerivatives::factorize(const Snapshot& snapshot, bool transposed) {
   evaluator().set_time(snapshot.t);
   evaluator().set_configuration(snapshot.q);
   if (!leave_open_gaps_out(snapshot)) return false;
-  const auto neutral = [&] {
-    return fail("the equilibrium is neutral or at a critical point: its place has no derivative");
-  };
   if (!system_.begin(jacobian())) return neutral();
-  evaluator().visit_stiffness(rest_, [&](int i, int j, const ElementMatrix& m) { system_.add_element(i, j, m); });
+  evaluator().visit_stiffness(rest_, [&](int i, int j, ElementMatrix m) {
+    for (std::size_t r = 0; transposed && r < 6; ++r) {
+      for (std::size_t c = 0; c < r; ++c) std::swap(m[6 * r + c], m[6 * c + r]);
+    }
+    system_.add_element(i, j, m);
+  });
   evaluator().visit_constraint_hessians(snapshot.lambda,
                                         [&](int i, int j, const ElementMatrix& m) { system_.add_element(i, j, m); });
-  if (!system_.factorize()) return neutral();
+  return system_.factorize() || neutral();
+}
+
+bool StaticDerivatives::find(const Snapshot& snapshot) {
+  if (!factorize(snapshot, false)) return false;
   const std::span<double> f = loads_scratch(), b = rows_scratch();
   const bool unique = system_.dependent_rows().empty();
   for (Group& group : groups()) {

@@ -14,14 +14,20 @@
 
 namespace catena {
 
-class StaticDerivatives final : public StateDerivatives {
+class StaticDerivatives : public StateDerivatives {
  public:
   StaticDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters);
 
   /// The snapshot must have multipliers.
   bool find(const Snapshot& snapshot) override;
   /// dV/dp at the state of the last find(), by parameter.
-  std::vector<double> energy_gradient();
+  virtual std::vector<double> energy_gradient();
+
+ protected:
+  /// Factors the matrix at the snapshot, or its transpose; false where there are no derivatives.
+  bool factorize(const Snapshot& snapshot, bool transposed);
+  bool neutral();
+  SaddleSystem& system() { return system_; }
 
  private:
   bool leave_open_gaps_out(const Snapshot& snapshot);

@@ -145,13 +145,13 @@ std::vector<AnalysisDescription> describe_all() {
             measures}),
       make(
           "sensitivity", "Total derivatives of rows and measures of an analysis with respect to parameters.",
-          "what the analysis has; gradients; deviation", false,
+          "what the analysis has; gradients; mode; deviation", false,
           {{"of", KeyKind::analysis, "the analysis", UnitKind::none, Domain::any, {}, true},
            {"parameters", KeyKind::names, "which derivatives", UnitKind::none, Domain::any, {}, true},
            {"mode",
             KeyKind::word,
-            "forward: a column d(O)/d(p) for every output and parameter, and gradients of measures; adjoint: gradients "
-            "alone",
+            "forward, which auto is: a column d(O)/d(p) for every output and parameter, and gradients of measures; "
+            "adjoint: gradients alone, at a cost that does not grow with the number of parameters",
             {},
             {},
             {"auto", "forward", "adjoint"}},

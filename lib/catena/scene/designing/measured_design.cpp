@@ -23,17 +23,11 @@ std::string why_without_value(const PlacedMeasure& measure, const AnalysisResult
   return "measure \"" + measure.request.name + "\" has no value" + (trouble.empty() ? "" : ": " + trouble);
 }
 
-}  // namespace
-
-bool run_inner(const AnalysisContext& outer, const AnalysisTask& inner, InnerRun& run, AnalysisResult& result) {
-  AnalysisTask task = inner;
-  if (std::optional<std::string> why = outer.models->set_parameters(task, run.seeds)) {
-    refuse(result, std::move(*why));
-    return false;
-  }
-  std::string no_model;
+/// One run; why gradients by adjoints do not exist, or are not found, empty where they are or were not asked for.
+std::string run_once(const AnalysisContext& outer, const AnalysisTask& task, std::shared_ptr<const Model> model,
+                     InnerRun& run, AnalysisResult& result) {
   AnalysisContext context{.task = task,
-                          .model = outer.models->model(*task.table, run.seeds, &no_model),
+                          .model = std::move(model),
                           .state = run.state,
                           .rows = run.rows,
                           .cancel = outer.cancel,
@@ -42,10 +36,6 @@ bool run_inner(const AnalysisContext& outer, const AnalysisTask& inner, InnerRun
                           .seeds = run.seeds,
                           .design = run.design,
                           .poses = run.poses};
-  if (!context.model) {
-    refuse(result, std::move(no_model));
-    return false;
-  }
   if (context.poses) context.poses->begin_poses(context.model);
   if (run.is_shown) {
     context.progress = outer.progress;
@@ -62,6 +52,41 @@ bool run_inner(const AnalysisContext& outer, const AnalysisTask& inner, InnerRun
     refuse(result, error.what());
   }
   run.values_at_end = std::move(context.values_at_end);
+  run.went_back = context.goes_back;
+  return context.goes_back ? std::move(context.no_adjoint) : std::move(context.forward_because);
+}
+
+}  // namespace
+
+bool run_inner(const AnalysisContext& outer, const AnalysisTask& inner, InnerRun& run, AnalysisResult& result) {
+  AnalysisTask task = inner;
+  if (std::optional<std::string> why = outer.models->set_parameters(task, run.seeds)) {
+    refuse(result, std::move(*why));
+    return false;
+  }
+  std::string no_model;
+  const std::shared_ptr<const Model> model = outer.models->model(*task.table, run.seeds, &no_model);
+  if (!model) {
+    refuse(result, std::move(no_model));
+    return false;
+  }
+  const SystemState start = run.state;
+  std::string forward_because = run_once(outer, task, model, run, result);
+  if (run.went_back && !forward_because.empty()) {
+    DesignRequest forward = *run.design;
+    forward.mode = GradientMode::forward;
+    NoRows nobody;
+    run.state = start;
+    InnerRun again{.seeds = run.seeds, .state = run.state, .rows = nobody, .design = &forward};
+    AnalysisResult anew;
+    anew.type = result.type;
+    result = std::move(anew);
+    static_cast<void>(run_once(outer, task, model, again, result));
+    run.values_at_end = std::move(again.values_at_end);
+    run.went_back = false;
+  }
+  if (run.design && run.design->mode == GradientMode::adjoint && !forward_because.empty())
+    result.report.warnings.push_back("derivatives: carried forward, not by the adjoint: " + forward_because);
   return true;
 }
 

@@ -19,9 +19,11 @@ struct InnerRun {
   bool is_shown = false;           ///< its progress and iterations are told to whom the outer analysis tells its own
   PoseSink* poses = nullptr;       ///< nullptr: nobody draws
   ParameterSeeds values_at_end{};  ///< what it leaves to the next, as AnalysisContext has it
+  bool went_back = false;          ///< gradients were found by adjoints
 };
 
-/// Runs an inner analysis on a model of its own; `refused`, with the message, for one that throws. Its gradients are
+/// Runs an inner analysis on a model of its own, once more where gradients by adjoints turn out not to exist, to carry
+/// them forward; `refused`, with the message, for one that throws. Its gradients are
 /// those of its equations alone (missing_derivatives.hpp). Returns false, with the reason as message, where the scene
 /// allows no such analysis. Nothing of `outer` changes.
 bool run_inner(const AnalysisContext& outer, const AnalysisTask& inner, InnerRun& run, AnalysisResult& result);

@@ -183,7 +183,8 @@ class Comparison {
 
 void run_sensitivity(AnalysisContext& context, AnalysisResult& result) {
   const AnalysisTask& inner = context.task.of.front();
-  DesignRequest design{context.task.design_parameters, {}, context.task.word("mode") != 2};
+  const auto mode = static_cast<GradientMode>(context.task.word("mode"));
+  DesignRequest design{context.task.design_parameters, {}, mode != GradientMode::adjoint, mode};
   for (const int parameter : design.parameters)
     design.names.push_back(context.models->names().all()[static_cast<std::size_t>(parameter)]);
   if (inner.from_initial) context.state = {};
@@ -197,6 +198,7 @@ void run_sensitivity(AnalysisContext& context, AnalysisResult& result) {
                .is_shown = true,
                .poses = context.poses};
   if (!run_inner(context, inner, run, result)) return;
+  result.fields.push_back({"mode", std::string(run.went_back ? "adjoint" : "forward")});
   MissingDerivatives(*context.models, design).complete(inner, context.seeds, result);
   context.values_at_end = std::move(run.values_at_end);
   result.gradient_parameters = design.names;

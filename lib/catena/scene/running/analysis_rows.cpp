@@ -115,6 +115,7 @@ void AnalysisRows::differentiate(std::unique_ptr<StateDerivatives> derivatives) 
   if (measures_.empty()) return;
   DifferentiateColumns columns;
   columns.at = [this](const Snapshot& snapshot, std::span<double> out, std::span<double> change) {
+    if (back_) return back_->keep(snapshot);
     derivatives_->derive(measures_.columns(), snapshot, out, change);
     if (measured_jump_.empty()) measured_jump_ = derivatives_->jump();
   };
@@ -145,6 +146,12 @@ void AnalysisRows::differentiate(std::unique_ptr<StateDerivatives> derivatives) 
     }
   }
   measures_.differentiate(derivatives_->parameters(), std::move(columns), end_moves, instants_move);
+}
+
+void AnalysisRows::differentiate_back(std::unique_ptr<MotionMeasures> derivatives) {
+  back_ = derivatives.get();
+  differentiate(std::move(derivatives));
+  measures_.give_pulses();
 }
 
 void AnalysisRows::begin() {
@@ -327,15 +334,27 @@ MovingInstants AnalysisRows::moving_instants(const std::vector<MeasureResult>& r
   return instants;
 }
 
+std::optional<MotionAdjoint::Gradients> AnalysisRows::gradients_back() const {
+  std::optional<MotionAdjoint::Gradients> gradients;
+  std::string why;
+  const auto pulses = measures_.pulses(why);
+  if (pulses) gradients = back_->find_gradients(measures_.columns(), *pulses);
+  if (!gradients) context_.no_adjoint = pulses ? back_->why() : why;
+  return gradients;
+}
+
 std::vector<MeasureResult> AnalysisRows::measured() const {
-  std::vector<MeasureResult> results = measures_.results();
+  const bool back = back_ && !measures_.empty();
+  const std::optional<MotionAdjoint::Gradients> found = back ? gradients_back() : std::nullopt;
+  const MotionAdjoint::Gradients* given = found ? &*found : nullptr;
+  std::vector<MeasureResult> results = measures_.results(nullptr, given);
   if (!derivatives_ || !timed_ || rows_alone_ || results.empty()) {
     results.resize(results.size() - stops_.size());
     return results;
   }
   const MovingInstants still;
-  const MovingInstants instants = moving_instants(measures_.results(&still));
-  results = measures_.results(&instants);
+  const MovingInstants instants = moving_instants(measures_.results(&still, given));
+  results = measures_.results(&instants, given);
   results.resize(results.size() - stops_.size());
   // What the last instant adds is in the gradients.
   for (MeasureResult& result : results) result.by_last_instant = 0;
@@ -363,6 +382,8 @@ void AnalysisRows::finish(AnalysisResult& result) {
     for (std::string& doubt : gaps_->warnings()) result.report.warnings.push_back(std::move(doubt));
   }
   if (context_.design) result.gradient_parameters = context_.design->names;
+  if (derivatives_ && derivatives_->goes_back() && context_.no_adjoint.empty())
+    context_.no_adjoint = derivatives_->why();
   if (derivatives_) {
     for (const std::string& why : {derivatives_->why(), derivatives_->lack(), jump_}) {
       if (!why.empty()) result.report.warnings.push_back("derivatives: " + why);

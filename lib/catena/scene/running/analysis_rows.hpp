@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "catena/analysis/adjoint/motion_measures.hpp"
 #include "catena/analysis/measures/measure_set.hpp"
 #include "catena/analysis/run/row_accuracy.hpp"
 #include "catena/analysis/run/row_observer.hpp"
@@ -26,6 +27,8 @@ class AnalysisRows final : public RowObserver {
 
   /// Derivatives of rows and measures are wanted, and this is how they are found; before begin().
   void differentiate(std::unique_ptr<StateDerivatives> derivatives);
+  /// Gradients of measures are wanted alone, and found by the way back of the motion; before begin().
+  void differentiate_back(std::unique_ptr<MotionMeasures> derivatives);
   /// How the mechanism is looked at between rows, where the analysis does not show it by itself; before begin(). It is
   /// made at the first row, from its snapshot.
   using Look = std::function<std::optional<Snapshot>(double)>;
@@ -77,11 +80,14 @@ class AnalysisRows final : public RowObserver {
   MovingInstants moving_instants(const std::vector<MeasureResult>& results) const;
   std::vector<double> end_by_event(const std::vector<MeasureResult>& results, std::string& why) const;
   std::vector<MeasureResult> measured() const;
+  /// Gradients of all that is measured by the way back; nothing where there are none, and the context is told why.
+  std::optional<MotionAdjoint::Gradients> gradients_back() const;
 
   const ColumnSet& columns_;
   AnalysisContext& context_;
   MeasureSet measures_;
   std::unique_ptr<StateDerivatives> derivatives_;
+  MotionMeasures* back_ = nullptr;  // the same, where they go back
   std::function<Look(const Snapshot&)> make_look_;
   Look look_;
   Drawn drawn_;

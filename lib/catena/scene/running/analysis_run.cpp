@@ -6,11 +6,16 @@
 
 #include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
+#include "catena/assembly/design/adjoint_mechanism.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/scene/judging/distance_check.hpp"
 
 namespace catena {
 namespace {
+
+// In parameters that could be carried forward at the same cost: the way back by itself, and what an integral adds,
+// which has pulses inside of every step.
+constexpr double dynamics_base = 2, dynamics_integral = 3;
 
 struct Runner {
   std::string_view type;
@@ -23,6 +28,20 @@ constexpr Runner entries[] = {{"check", run_check},           {"assemble", run_a
                               {"modes", run_modes},           {"path", run_path},
                               {"buckling", run_buckling},     {"sensitivity", run_sensitivity},
                               {"optimise", run_optimise},     {"sweep", run_sweep}};
+
+/// Whether one way back for the measures costs less than to carry all parameters forward.
+bool adjoint_is_cheaper(const AnalysisContext& context) {
+  const std::vector<PlacedMeasure>& measures = context.task.measures;
+  const auto count = static_cast<double>(measures.size()),
+             parameters = static_cast<double>(context.design->names.size());
+  const auto is_integral = [](const PlacedMeasure& measure) {
+    const MeasureKind kind = measure.request.kind;
+    return kind == MeasureKind::integral || kind == MeasureKind::mean || kind == MeasureKind::rms;
+  };
+  const auto integrals = static_cast<double>(std::count_if(measures.begin(), measures.end(), is_integral));
+  if (context.task.type() != "dynamics") return parameters > parameters_at_once * count;
+  return parameters > dynamics_base + count + dynamics_integral * integrals;
+}
 
 Report refuse(std::string message) {
   Report report;
@@ -52,6 +71,18 @@ DesignModels designs_of(const AnalysisContext& context, int last, std::optional<
   std::vector<int> parameters = context.design->parameters;
   if (last >= 0) parameters.push_back(last);
   return context.models->designs(*context.task.table, seeds, parameters);
+}
+
+bool goes_back(AnalysisContext& context, std::string_view obstacle) {
+  if (!context.design || context.design->rows || context.design->mode == GradientMode::forward) return false;
+  std::string why(obstacle);
+  if (why.empty()) why = AdjointMechanism::why_not(*context.model);
+  if (!why.empty()) {
+    context.forward_because = why;
+    return false;
+  }
+  context.goes_back = context.design->mode == GradientMode::adjoint || adjoint_is_cheaper(context);
+  return context.goes_back;
 }
 
 std::string trouble_with_one_sided(const AnalysisContext& context, const SystemState& start) {

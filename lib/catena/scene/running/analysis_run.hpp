@@ -23,11 +23,15 @@
 
 namespace catena {
 
+/// How gradients are found, in the order of the words of `mode`.
+enum class GradientMode { automatic, forward, adjoint };
+
 /// Derivatives that are wanted of an analysis.
 struct DesignRequest {
   std::vector<int> parameters;
   std::vector<std::string> names;  ///< of these
-  bool rows = true;                ///< of rows as well, not of measures alone
+  bool rows = true;                ///< of rows as well, not of measures alone: forward
+  GradientMode mode = GradientMode::automatic;
 };
 
 class ProcessLink;
@@ -54,7 +58,11 @@ struct AnalysisContext {
   const SceneModels* models = nullptr;    ///< of the scene, for other values of parameters
   ParameterSeeds seeds{};                 ///< values of parameters besides those of the task's table
   const DesignRequest* design = nullptr;  ///< nullptr: no derivatives
-  std::string_view parameter_name{};      ///< of the task's parameter
+  bool goes_back = false;                 ///< gradients were sought by adjoints
+  /// Why gradients are carried forward although the adjoint was asked for; and why the adjoint gave none, so that the
+  /// analysis has to be run once more.
+  std::string forward_because{}, no_adjoint{};
+  std::string_view parameter_name{};  ///< of the task's parameter
   /// Of parameters that a path or an optimisation changed: with these values the next analysis begins. Empty where it
   /// did not succeed.
   ParameterSeeds values_at_end{};
@@ -72,6 +80,10 @@ std::shared_ptr<const Model> model_at(const AnalysisContext& context, int parame
 /// Models with derivatives by the parameters of the context's design request, and by one more, `last` >= 0; parameter
 /// `at` with another value where one is given.
 DesignModels designs_of(const AnalysisContext& context, int last = -1, std::optional<ParameterSeed<double>> at = {});
+
+/// Whether the gradients that the context's design request asks for are found by adjoints: where they can be and,
+/// unless they are asked for, where they are the cheaper way. `obstacle`: why this analysis has none, if so.
+bool goes_back(AnalysisContext& context, std::string_view obstacle = {});
 
 using AnalysisFunction = void (*)(AnalysisContext& context, AnalysisResult& result);
 

@@ -86,7 +86,7 @@ class DynamicsTask {
   /// Runs what was prepared.
   void run_on();
   void run_with_events_or_pauses();
-  void differentiate(AnalysisRows& rows, Dynamics& analysis);
+  void differentiate(AnalysisRows& rows, const Evaluator& evaluator);
   void differentiate(AnalysisRows& rows, DynamicsWithEvents& analysis);
   /// Whether instants of the motion itself are to be differentiated.
   bool has_phases() const;
@@ -162,11 +162,17 @@ void DynamicsTask::run_or_estimate(Analysis& analysis, const PlanOptions& plan) 
   result_.fields.push_back({"estimated_error", records_of(both.error(), *model_)});
 }
 
-void DynamicsTask::differentiate(AnalysisRows& rows, Dynamics& analysis) {
+void DynamicsTask::differentiate(AnalysisRows& rows, const Evaluator& evaluator) {
   if (!context_.design) return;
-  rows.differentiate(std::make_unique<MotionDerivatives>(
-      analysis.evaluator(), designs_of(context_), static_cast<int>(context_.design->names.size()),
-      GivenByModel{context_.state.q.empty(), context_.state.qd.empty()}));
+  const GivenByModel start{context_.state.q.empty(), context_.state.qd.empty()};
+  const auto parameters = static_cast<int>(context_.design->names.size());
+  const std::string_view obstacle = estimates_ ? "an estimate of the error is wanted"
+                                    : touches_ ? "contacts and friction act"
+                                               : "";
+  if (goes_back(context_, obstacle))
+    rows.differentiate_back(std::make_unique<MotionMeasures>(evaluator, designs_of(context_), parameters, start));
+  else
+    rows.differentiate(std::make_unique<MotionDerivatives>(evaluator, designs_of(context_), parameters, start));
 }
 
 bool DynamicsTask::has_phases() const {
@@ -179,11 +185,11 @@ bool DynamicsTask::has_phases() const {
 void DynamicsTask::differentiate(AnalysisRows& rows, DynamicsWithEvents& analysis) {
   if (!context_.design) return;
   const GivenByModel given{context_.state.q.empty(), context_.state.qd.empty()};
-  const auto count = static_cast<int>(context_.design->names.size());
   if (!has_phases()) {
-    rows.differentiate(std::make_unique<MotionDerivatives>(analysis.evaluator(), designs_of(context_), count, given));
+    differentiate(rows, analysis.evaluator());
     return;
   }
+  static_cast<void>(goes_back(context_, "contacts, friction or events act"));
   const std::vector<double> values = context_.models->values(*context_.task.table, context_.seeds);
   std::vector<double> sizes;
   for (const int parameter : context_.design->parameters) sizes.push_back(values[static_cast<std::size_t>(parameter)]);

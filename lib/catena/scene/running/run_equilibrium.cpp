@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "catena/analysis/accuracy/equilibrium_accuracy.hpp"
+#include "catena/analysis/adjoint/static_adjoint.hpp"
 #include "catena/analysis/contact/contact_points.hpp"
 #include "catena/analysis/contact/holding.hpp"
 #include "catena/analysis/run/energyless_forces.hpp"
@@ -143,8 +144,12 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   AnalysisRows rows(columns, context, *context.model, analysis.plan(), sources, {start.t, start.t});
   StaticDerivatives* derivatives = nullptr;
   if (context.design) {
-    auto found = std::make_unique<StaticDerivatives>(analysis.evaluator(), designs_of(context),
-                                                     static_cast<int>(context.design->names.size()));
+    const auto parameters = static_cast<int>(context.design->names.size());
+    std::unique_ptr<StaticDerivatives> found;
+    if (goes_back(context))
+      found = std::make_unique<StaticAdjoint>(analysis.evaluator(), designs_of(context), parameters);
+    else
+      found = std::make_unique<StaticDerivatives>(analysis.evaluator(), designs_of(context), parameters);
     derivatives = found.get();
     rows.differentiate(std::move(found));
   }

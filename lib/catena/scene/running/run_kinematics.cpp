@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "catena/analysis/accuracy/kinematic_accuracy.hpp"
+#include "catena/analysis/adjoint/kinematic_adjoint.hpp"
 #include "catena/analysis/contact/rope_grips.hpp"
 #include "catena/analysis/kinematics/kinematic_look.hpp"
 #include "catena/analysis/kinematics/kinematics_with_events.hpp"
@@ -132,6 +133,14 @@ std::string conflict(const AnalysisContext& context, bool inverse_dynamics) {
   return {};
 }
 
+void differentiate(AnalysisContext& context, AnalysisRows& rows, const Evaluator& evaluator) {
+  const auto parameters = static_cast<int>(context.design->names.size());
+  if (goes_back(context))
+    rows.differentiate(std::make_unique<KinematicAdjoint>(evaluator, designs_of(context), parameters));
+  else
+    rows.differentiate(std::make_unique<KinematicDerivatives>(evaluator, designs_of(context), parameters));
+}
+
 /// The same motion with events; rows, measures and derivatives as without.
 void run_with_events(AnalysisContext& context, AnalysisResult& result, const TimeGrid& grid,
                      const KinematicsOptions& options, const ColumnSources& sources, RopeWaysAt& ways) {
@@ -144,8 +153,7 @@ void run_with_events(AnalysisContext& context, AnalysisResult& result, const Tim
   run_over_time(context, result, watched, grid, task.output_names(), sources, [&](AnalysisRows& rows) {
     rows.watch_gaps(*context.model);
     if (!context.design) return;
-    rows.differentiate(std::make_unique<KinematicDerivatives>(analysis.evaluator(), designs_of(context),
-                                                              static_cast<int>(context.design->names.size())));
+    differentiate(context, rows, analysis.evaluator());
   });
   add_singular_points(result, analysis.singular_points(), *context.model);
   EventEntries entries(*context.model);
@@ -242,8 +250,7 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
     if (context.digits && !context.design && rope_routes(*context.model).empty())
       rows.judge(std::make_unique<KinematicAccuracy>(analysis, rows.columns()));
     if (!context.design) return;
-    rows.differentiate(std::make_unique<KinematicDerivatives>(analysis.evaluator(), designs_of(context),
-                                                              static_cast<int>(context.design->names.size())));
+    differentiate(context, rows, analysis.evaluator());
   };
   WithRopes followed(analysis, ways, obstacle_for_ropes(context));
   run_over_time(context, result, followed, *grid, task.output_names(), sources, prepare);

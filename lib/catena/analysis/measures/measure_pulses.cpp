@@ -1,0 +1,59 @@
+// What measures are made of: pulses of columns at instants.
+#include "catena/analysis/measures/measure_account.hpp"
+
+namespace catena {
+
+bool MeasureSet::Account::path_pulses(double value, std::vector<ColumnPulse>& out) const {
+  const double scale = 1 / (static_cast<double>(request_.points.size()) * value);
+  for (std::size_t k = 0; k < request_.points.size(); ++k) {
+    const MotionSample& sample = request_.timed ? *instants_[k].sample : extremes_[k].best();
+    out.push_back({sample.t, column_, scale * (sample.value[column_] - request_.points[k].x)});
+    out.push_back({sample.t, second_, scale * (sample.value[second_] - request_.points[k].y)});
+  }
+  return true;
+}
+
+bool MeasureSet::Account::pulses(const MeasureResult& result, std::vector<ColumnPulse>& out) const {
+  if (!result.value) return true;
+  const double value = *result.value;
+  switch (request_.kind) {
+    case MeasureKind::maximum:
+    case MeasureKind::minimum:
+    case MeasureKind::range:
+      for (std::size_t k = 0; k < extremes_.size(); ++k) {
+        if (!extremes_[k].others().empty()) return false;
+        out.push_back({extremes_[k].best().t, column_, k == 0 ? 1.0 : -1.0});
+      }
+      return true;
+    case MeasureKind::first:
+      out.push_back({first_->t, column_, 1});
+      return true;
+    case MeasureKind::final:
+      out.push_back({last_->t, column_, 1});
+      return true;
+    case MeasureKind::at:
+      out.push_back({instants_[0].sample->t, column_, 1});
+      return true;
+    case MeasureKind::path:
+      return path_pulses(value, out);
+    case MeasureKind::integral:
+    case MeasureKind::mean:
+    case MeasureKind::rms:
+      if (!(duration_ > 0)) {
+        if (last_ && request_.kind != MeasureKind::integral) out.push_back({last_->t, column_, 1});
+        return true;
+      }
+      for (const Node& node : nodes_) {
+        const double weight = request_.kind == MeasureKind::integral ? 1
+                              : request_.kind == MeasureKind::mean   ? 1 / duration_
+                                                                     : node.value / (value * duration_);
+        out.push_back({node.t, column_, weight * node.weight});
+      }
+      return true;
+    case MeasureKind::field:
+      return true;
+  }
+  return true;
+}
+
+}  // namespace catena

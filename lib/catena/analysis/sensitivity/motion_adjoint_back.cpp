@@ -1,0 +1,277 @@
+// MotionAdjoint: the way back.
+#include <algorithm>
+#include <cmath>
+
+#include "catena/analysis/sensitivity/motion_adjoint.hpp"
+#include "catena/base/at.hpp"
+
+namespace catena {
+namespace {
+
+// Most rounds of Newton's method that bring the interpolant onto the constraints: it is as near to them as the
+// tolerance of the motion.
+constexpr int most_rounds_inside = 4;
+
+/// y(t) = (1 - end) y0 + end y1 + h sum slope_s k_s at the part s of a step; see motion_derivatives.cpp.
+struct InterpolantWeights {
+  double end = 0;
+  std::array<double, 16> slope{};
+};
+InterpolantWeights interpolant_at(double s) {
+  const Tableau& table = dormand_prince_8();
+  const double r = 1 - s, first = s, second = s * r, third = s * s * r;
+  const double higher[] = {third * r, third * r * s, third * r * s * r, third * r * s * r * s};
+  InterpolantWeights weights;
+  weights.end = first - second + 2 * third;
+  weights.slope[0] += second - third;
+  weights.slope[12] -= third;
+  for (std::size_t k = 0; k < table.interpolant.size(); ++k) {
+    for (const StageTerm& term : table.interpolant[k]) weights.slope[at(term.stage)] += higher[k] * term.weight;
+  }
+  return weights;
+}
+
+void add_scaled(std::vector<double>& y, double weight, const std::vector<double>& k) {
+  for (std::size_t i = 0; i < y.size(); ++i) y[i] += weight * k[i];
+}
+
+bool any(const std::vector<double>& y) {
+  return std::any_of(y.begin(), y.end(), [](double x) { return x != 0; });
+}
+
+}  // namespace
+
+void MotionAdjoint::add_parameters(double t, Side side, const AdjointWeights& weights, std::span<const double> qdd,
+                                   Way& way) {
+  std::size_t first = 0;
+  for (std::size_t g = 0; g < groups().size(); ++g) {
+    Group& group = groups()[g];
+    group.mechanism.set_time(t, side);
+    const auto part = mechanism_.by_parameters(group.mechanism, *reached_[g], weights, qdd);
+    for (std::size_t p = 0; p < at(group.count); ++p) way.gradient[first + p] += part[p];
+    first += at(group.count);
+  }
+}
+
+bool MotionAdjoint::factorize_end(double t, Side side, std::span<const double> values) {
+  if (plan().rows == 0) return true;
+  if (end_->equations.factorize(t, side, values.first(n_)) && !end_->equations.is_dependent()) return true;
+  return lose(t, "constraints depend on each other");
+}
+
+// Velocities are projected after positions: back in the other order.
+void MotionAdjoint::project_back(double t, Side side, std::span<const double> values, Way& way, Vector& y1) {
+  if (plan().rows == 0) return;
+  const std::span<double> q = std::span(y1).first(n_), qd = std::span(y1).subspan(n_);
+  mechanism_.set_motion(end_->evaluator, values.subspan(n_), {});
+  for (const bool velocity : {true, false}) {
+    const std::span<double> part = velocity ? qd : q;
+    end_->equations.solve_motion(part, zero_rows_, w_, mu_);
+    for (std::size_t c = 0; c < n_; ++c) part[c] = masses_[c] > 0 ? masses_[c] * w_[c] : 0;
+    AdjointWeights weights;
+    (velocity ? weights.rate : weights.phi) = mu_;
+    if (velocity) mechanism_.add_by_state(end_->evaluator, weights, q, qd);
+    add_parameters(t, side, weights, {}, way);
+  }
+}
+
+void MotionAdjoint::stage_back(Stage& stage, const Vector& k, Way& way) {
+  const std::span<const double> k_q = std::span(k).first(n_), k_qd = std::span(k).subspan(n_);
+  stage.equations.solve_motion(k_qd, zero_rows_, w_, mu_);
+  const std::span<const double> y(stage.y), qdd = std::span<const double>(stage.slope).subspan(n_);
+  mechanism_.set_motion(stage.evaluator, y.subspan(n_), qdd);
+  std::fill(stage.back.begin(), stage.back.end(), 0.0);
+  const std::span<double> back_q = std::span(stage.back).first(n_), back_qd = std::span(stage.back).subspan(n_);
+  std::copy(k_q.begin(), k_q.end(), back_qd.begin());
+  const AdjointWeights weights{.w = w_, .lambda = stage.lambda, .bend = mu_};
+  mechanism_.add_by_state(stage.evaluator, weights, back_q, back_qd);
+  // Coordinates that are no unknowns stay where they are.
+  for (std::size_t c = 0; c < n_; ++c) {
+    if (c >= plan().column.size() || plan().column[c] < 0) back_q[c] = back_qd[c] = 0;
+  }
+  add_parameters(stage.t, stage.side, weights, qdd, way);
+}
+
+void MotionAdjoint::go_back(const Step& step, Way& way, bool interpolated) {
+  const Tableau& table = dormand_prince_8();
+  const double h = step.to - step.from;
+  const int stages = interpolated ? static_cast<int>(table.c.size()) : table.stages;
+  for (int s = stages; s-- > 0;) {
+    // Stage 12 is the step's end: all before it are reached through the projection there.
+    if (s == table.stages - 1) project_back(step.to, Side::before, step.end, way, way.y1);
+    if (interpolated)
+      slope_ = way.slopes[at(s)];
+    else
+      std::fill(slope_.begin(), slope_.end(), 0.0);
+    for (const StageTerm& term : table.b) {
+      if (term.stage == s) add_scaled(slope_, h * term.weight, way.y1);
+    }
+    for (int j = s + 1; j < stages; ++j) {
+      for (const StageTerm& term : table.a[at(j)]) {
+        if (term.stage == s && j != table.stages) add_scaled(slope_, h * term.weight, stages_[at(j)]->back);
+      }
+    }
+    stage_back(*stages_[at(s)], slope_, way);
+    if (s == table.stages) add_scaled(way.y1, 1, stages_[at(s)]->back);
+  }
+  for (int s = 0; s < stages; ++s) {
+    if (s != table.stages) add_scaled(way.y0, 1, stages_[at(s)]->back);
+  }
+  add_scaled(way.y0, 1, way.y1);
+}
+
+// Accelerations and multipliers there are functions of the state.
+bool MotionAdjoint::add_pulses(std::span<const Look> looks, double t, std::span<const double> values,
+                               const std::function<Vector&(std::size_t)>& target) {
+  bool evaluated = false;
+  for (const Look& look : looks) {
+    const MotionPulse& pulse = *look.pulse;
+    Vector& y = target(look.measure);
+    for (std::size_t c = 0; c < pulse.by_q.size(); ++c) y[c] += pulse.by_q[c];
+    for (std::size_t c = 0; c < pulse.by_qd.size(); ++c) y[n_ + c] += pulse.by_qd[c];
+    if (pulse.by_qdd.empty() && pulse.by_lambda.empty()) continue;
+    if (!evaluated) {
+      std::copy(values.begin(), values.end(), end_->y.begin());
+      if (!evaluate(*end_, t, Side::after)) return false;
+    }
+    evaluated = true;
+    const std::span<const double> qdd = std::span<const double>(end_->slope).subspan(n_);
+    end_->equations.solve_motion(pulse.by_qdd.empty() ? zero_loads_ : pulse.by_qdd,
+                                 pulse.by_lambda.empty() ? zero_rows_ : pulse.by_lambda, w_, mu_);
+    mechanism_.set_motion(end_->evaluator, values.subspan(n_), qdd);
+    const AdjointWeights weights{.w = w_, .lambda = end_->lambda, .bend = mu_};
+    mechanism_.add_by_state(end_->evaluator, weights, std::span(y).first(n_), std::span(y).subspan(n_));
+    add_parameters(t, Side::after, weights, qdd, ways_[look.measure]);
+  }
+  return true;
+}
+
+bool MotionAdjoint::add_inside(const Step& step, std::span<const Look> looks) {
+  const double t = looks.front().pulse->t, h = step.to - step.from;
+  const InterpolantWeights weights = interpolant_at((t - step.from) / h);
+  Vector there(2 * n_);
+  for (std::size_t i = 0; i < there.size(); ++i) there[i] = step.begin[i] + weights.end * (step.end[i] - step.begin[i]);
+  for (std::size_t s = 0; s < weights.slope.size(); ++s) {
+    if (weights.slope[s] != 0) add_scaled(there, h * weights.slope[s], stages_[s]->slope);
+  }
+  if (!factorize_end(t, Side::after, there)) return false;
+  end_->equations.project_position(std::span(there).first(n_), most_rounds_inside);
+  end_->equations.project_velocity(std::span(there).subspan(n_), 1 / h);
+  std::vector<Vector> back(ways_.size());
+  const bool added = add_pulses(looks, t, there, [&](std::size_t measure) -> Vector& {
+    back[measure].resize(2 * n_, 0.0);
+    return back[measure];
+  });
+  if (!added) return false;
+  for (std::size_t m = 0; m < back.size(); ++m) {
+    if (back[m].empty()) continue;
+    Way& way = ways_[m];
+    project_back(t, Side::after, there, way, back[m]);
+    add_scaled(way.y1, weights.end, back[m]);
+    add_scaled(way.y0, 1 - weights.end, back[m]);
+    for (std::size_t s = 0; s < weights.slope.size(); ++s) add_scaled(way.slopes[s], h * weights.slope[s], back[m]);
+    way.begun = true;
+  }
+  return true;
+}
+
+bool MotionAdjoint::add_start(const Vector& y0, Vector& gradient) {
+  const Step& first = steps_.front();
+  evaluator().set_time(first.from);
+  StartDerivatives start(evaluator(), given_start_);
+  std::size_t p0 = 0;
+  std::vector<DesignScalar> y(2 * n_);
+  for (Group& group : groups()) {
+    const std::span<DesignScalar> q = std::span(y).first(n_), qd = std::span(y).subspan(n_);
+    group.mechanism.lift_configuration(std::span(first.begin).first(n_), q);
+    for (std::size_t c = 0; c < n_; ++c) qd[c] = first.begin[n_ + c];
+    if (!start.find(group.mechanism, group.count, q, qd))
+      return fail("the start of the motion has no derivative: " + start.why());
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      for (std::size_t p = 0; p < at(group.count); ++p) gradient[p0 + p] += y0[i] * y[i].d[p];
+    }
+    p0 += at(group.count);
+  }
+  return true;
+}
+
+std::optional<std::vector<double>> MotionAdjoint::gradient(std::vector<MotionPulse> pulses) {
+  std::optional<Gradients> all = gradients({std::move(pulses)});
+  if (!all) return {};
+  return std::move(all->front());
+}
+
+std::optional<MotionAdjoint::Gradients> MotionAdjoint::gradients(
+    const std::vector<std::vector<MotionPulse>>& measures) {
+  if (!why().empty()) return {};
+  if (steps_.empty()) {
+    fail("the motion was not looked at");
+    return {};
+  }
+  std::vector<Look> looks;
+  for (std::size_t m = 0; m < measures.size(); ++m) {
+    for (const MotionPulse& pulse : measures[m]) looks.push_back({&pulse, m});
+  }
+  std::stable_sort(looks.begin(), looks.end(), [](const Look& a, const Look& b) { return a.pulse->t < b.pulse->t; });
+  const auto t_of = [](const Look& look) { return look.pulse->t; };
+  if (!looks.empty() && (t_of(looks.front()) < steps_.front().from || t_of(looks.back()) > steps_.back().to)) {
+    lose(t_of(looks.front()) < steps_.front().from ? t_of(looks.front()) : t_of(looks.back()), "there is no motion");
+    return {};
+  }
+  const Way still{Vector(2 * n_, 0.0), Vector(2 * n_, 0.0), Vector(at(parameters()), 0.0), {}};
+  ways_.assign(measures.size(), still);
+  at_once_ = 1;
+  single_misfit_ = 0;
+  blocks_ = 0;
+  waits_ = 1;  // the last step by itself tells what is usual
+  joins_ = true;
+  Step joined;
+  // The pulses at the last instant of those left, taken away from them.
+  const auto take_last = [&] {
+    std::size_t first = looks.size() - 1;
+    while (first > 0 && t_of(looks[first - 1]) == t_of(looks.back())) --first;
+    std::vector<Look> last(looks.begin() + static_cast<std::ptrdiff_t>(first), looks.end());
+    looks.resize(first);
+    return last;
+  };
+  const auto end_of_way = [this](std::size_t m) -> Vector& {
+    ways_[m].begun = true;
+    return ways_[m].y1;
+  };
+  for (std::size_t k = steps_.size(); k > 0;) {
+    const Step& last = steps_[k - 1];
+    while (!looks.empty() && t_of(looks.back()) >= last.to) {
+      if (!add_pulses(take_last(), last.to, last.end, end_of_way)) return {};
+    }
+    // No further than to the instant of the next pulse: the step that has one inside by itself.
+    const bool inside = !looks.empty() && t_of(looks.back()) > last.from;
+    const double bound = inside ? last.from : looks.empty() ? steps_.front().from : t_of(looks.back());
+    const std::size_t count = join(k, bound, joined);
+    if (count == 0) return {};
+    for (Way& way : ways_) {
+      std::fill(way.y0.begin(), way.y0.end(), 0.0);
+      if (inside) way.slopes.assign(dormand_prince_8().c.size(), Vector(2 * n_, 0.0));
+    }
+    if (inside && !prepare_interpolant(joined)) return {};
+    while (!looks.empty() && t_of(looks.back()) > joined.from) {
+      if (!add_inside(joined, take_last())) return {};
+    }
+    if (!factorize_end(joined.to, Side::before, joined.end)) return {};
+    for (Way& way : ways_) {
+      if (!way.begun) continue;
+      go_back(joined, way, inside);
+      std::swap(way.y0, way.y1);
+    }
+    ++blocks_;
+    k -= count;
+  }
+  if (!looks.empty() && !add_pulses(looks, steps_.front().from, steps_.front().begin, end_of_way)) return {};
+  Gradients gradients;
+  for (Way& way : ways_) {
+    if (any(way.y1) && !add_start(way.y1, way.gradient)) return {};
+    gradients.push_back(std::move(way.gradient));
+  }
+  return gradients;
+}
+
+}  // namespace catena
