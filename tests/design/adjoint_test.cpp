@@ -280,6 +280,7 @@ TEST(AdjointOfAMotion, JoinsTheStepsOfAnotherMethod) {
   const auto gradient = both.adjoint->gradient({pulse});
   ASSERT_TRUE(gradient) << both.adjoint->why();
   EXPECT_LT(both.adjoint->blocks(), both.adjoint->steps());
+  EXPECT_LT(both.forward->blocks(), both.adjoint->steps());
   for (std::size_t p = 0; p < both.parameters(); ++p) {
     const double forward =
         both.forward->configuration(p / 4)[0].d[p % 4] + both.forward->configuration(p / 4)[5].d[p % 4];

@@ -182,6 +182,42 @@ TEST(AdjointInScenes, GoesForwardWhereItMustAndSaysWhy) {
   }
 }
 
+// A law that is nothing takes the mechanism out of those whose derivatives are carried as tangents for all parameters
+// at once: in dual numbers, step by step, they are the same.
+TEST(ForwardInMotions, ByTangentsIsThatInDualNumbers) {
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    RandomChain chain(seed, false);
+    const auto rows = [&] {
+      return sensitivity(
+          chain,
+          R"({"type": "dynamics", "until": 0.5, "every": 0.06, "method": "rk8", "tolerance": 1e-10, "outputs":
+            ["b0.to.x", "b1.to.y", "b1.omega", "b0.alpha", "J0.fx", "J1.fy", "S.force", "energy.kinetic", "own"],
+            "measures": {"sum": {"integral": "b1.vx"}, "top": {"max": "b1.to.y"}}})",
+          "forward", "");
+    };
+    const TextRun tangents = rows();
+    chain.forces += R"(, {"type": "torque", "i": "b0", "torque": "=0*b0.angle"})";
+    const TextRun dual = rows();
+    ASSERT_EQ(tangents.outcome.exit_code, 0) << tangents.outcome.error_text;
+    ASSERT_EQ(dual.outcome.exit_code, 0) << dual.outcome.error_text;
+    const ResultStorage &a = tangents.sink.rows.front(), &b = dual.sink.rows.front();
+    ASSERT_EQ(a.rows(), b.rows());
+    ASSERT_EQ(a.columns().size(), b.columns().size());
+    for (std::size_t c = 0; c < a.columns().size(); ++c) {
+      double size = 1e-3;
+      for (std::size_t r = 0; r < a.rows(); ++r) size = std::max(size, std::abs(b.at(r, c)));
+      for (std::size_t r = 0; r < a.rows(); ++r)
+        EXPECT_NEAR(a.at(r, c), b.at(r, c), 1e-9 * size) << seed << ", row " << r << ": " << a.columns()[c].name;
+    }
+    for (std::size_t m = 0; m < 2; ++m) {
+      for (std::size_t p = 0; p < tangents.analysis().measures[m].gradient.size(); ++p) {
+        const double expected = dual.analysis().measures[m].gradient[p];
+        EXPECT_NEAR(tangents.analysis().measures[m].gradient[p], expected, 1e-9 * (1 + std::abs(expected))) << seed;
+      }
+    }
+  }
+}
+
 // Columns d() of rows are wanted unless the mode is adjoint: auto carries them forward.
 TEST(AdjointInScenes, AutoGivesColumns) {
   const RandomChain chain(3, false);

@@ -26,8 +26,7 @@
 #include <memory>
 #include <optional>
 
-#include "catena/analysis/motion/equations_of_motion.hpp"
-#include "catena/analysis/motion/tableau.hpp"
+#include "catena/analysis/sensitivity/recomputed_steps.hpp"
 #include "catena/analysis/sensitivity/start_derivatives.hpp"
 #include "catena/analysis/sensitivity/state_derivatives.hpp"
 #include "catena/assembly/design/adjoint_mechanism.hpp"
@@ -71,19 +70,8 @@ class MotionAdjoint : public StateDerivatives {
 
  private:
   using Vector = std::vector<double>;
-  struct Step {
-    double from, to;
-    Vector begin, end;  // y
-  };
-  /// The equations of motion at a stage, with factors, kept until the way back has passed it.
-  struct Stage {
-    Stage(const Evaluator& evaluator, std::size_t size);
-    Evaluator evaluator;
-    EquationsOfMotion equations;
-    double t = 0;
-    Side side = Side::after;
-    Vector y, slope, lambda, back;  // back: Y^
-  };
+  using Step = RecomputedSteps::Step;
+  using Stage = RecomputedSteps::Stage;
   /// What a pulse belongs to.
   struct Look {
     const MotionPulse* pulse;
@@ -97,22 +85,12 @@ class MotionAdjoint : public StateDerivatives {
   };
 
   bool lose(double t, std::string_view what);
-  std::unique_ptr<Stage> make_stage();
-  /// Slope and multipliers at the stage's y.
-  bool evaluate(Stage& stage, double t, Side side);
-  bool recompute(const Step& step, double h);
-  /// The stages of the interpolant, once the step has been recomputed.
-  bool prepare_interpolant(const Step& step);
-  /// How far the recomputed end of a step lies from that of the motion, relative to what it moves by.
-  double misfit(const Step& step) const;
-  /// Recomputes the steps before number `end`, as many as can be taken as one, and joins them; how many.
-  std::size_t join(std::size_t end, double bound, Step& joined);
   /// From y1^ at the end of a step, which has been recomputed, to y0^, which is added to.
   void go_back(const Step& step, Way& way, bool interpolated);
   /// y^ through the projection at the end, which factorize_end() has prepared.
   bool factorize_end(double t, Side side, std::span<const double> values);
   void project_back(double t, Side side, std::span<const double> values, Way& way, Vector& y1);
-  void stage_back(Stage& stage, const Vector& k, Way& way);
+  void stage_back(int number, const Vector& k, Way& way);
   void add_parameters(double t, Side side, const AdjointWeights& weights, std::span<const double> qdd, Way& way);
   /// What pulses at an instant with this state add to y^ there.
   bool add_pulses(std::span<const Look> looks, double t, std::span<const double> values,
@@ -125,15 +103,12 @@ class MotionAdjoint : public StateDerivatives {
   GivenByModel given_start_;
   AdjointMechanism mechanism_;
   std::vector<std::unique_ptr<AdjointMechanism::Reached>> reached_;  // by group
-  std::vector<std::unique_ptr<Stage>> stages_;                       // of the step; of the interpolant once it is used
-  std::unique_ptr<Stage> end_;                                       // for projections and pulses
+  RecomputedSteps again_;
+  std::vector<Vector> back_;    // Y^ by stage
+  std::unique_ptr<Stage> end_;  // for projections and pulses
   std::vector<Step> steps_;
-  std::vector<Way> ways_;     // by measure
-  std::size_t at_once_ = 1;   // steps that were joined last
-  double single_misfit_ = 0;  // of a step by itself
+  std::vector<Way> ways_;  // by measure
   int blocks_ = 0;
-  int waits_ = 0;      // blocks until one more is tried
-  bool joins_ = true;  // whether more may be tried
   Vector w_, mu_, zero_rows_, zero_loads_, masses_, slope_;
 };
 

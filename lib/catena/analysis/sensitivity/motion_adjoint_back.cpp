@@ -12,25 +12,6 @@ namespace {
 // tolerance of the motion.
 constexpr int most_rounds_inside = 4;
 
-/// y(t) = (1 - end) y0 + end y1 + h sum slope_s k_s at the part s of a step; see motion_derivatives.cpp.
-struct InterpolantWeights {
-  double end = 0;
-  std::array<double, 16> slope{};
-};
-InterpolantWeights interpolant_at(double s) {
-  const Tableau& table = dormand_prince_8();
-  const double r = 1 - s, first = s, second = s * r, third = s * s * r;
-  const double higher[] = {third * r, third * r * s, third * r * s * r, third * r * s * r * s};
-  InterpolantWeights weights;
-  weights.end = first - second + 2 * third;
-  weights.slope[0] += second - third;
-  weights.slope[12] -= third;
-  for (std::size_t k = 0; k < table.interpolant.size(); ++k) {
-    for (const StageTerm& term : table.interpolant[k]) weights.slope[at(term.stage)] += higher[k] * term.weight;
-  }
-  return weights;
-}
-
 void add_scaled(std::vector<double>& y, double weight, const std::vector<double>& k) {
   for (std::size_t i = 0; i < y.size(); ++i) y[i] += weight * k[i];
 }
@@ -75,13 +56,15 @@ void MotionAdjoint::project_back(double t, Side side, std::span<const double> va
   }
 }
 
-void MotionAdjoint::stage_back(Stage& stage, const Vector& k, Way& way) {
+void MotionAdjoint::stage_back(int number, const Vector& k, Way& way) {
+  Stage& stage = again_.stage(number);
+  Vector& back = back_[at(number)];
   const std::span<const double> k_q = std::span(k).first(n_), k_qd = std::span(k).subspan(n_);
   stage.equations.solve_motion(k_qd, zero_rows_, w_, mu_);
   const std::span<const double> y(stage.y), qdd = std::span<const double>(stage.slope).subspan(n_);
   mechanism_.set_motion(stage.evaluator, y.subspan(n_), qdd);
-  std::fill(stage.back.begin(), stage.back.end(), 0.0);
-  const std::span<double> back_q = std::span(stage.back).first(n_), back_qd = std::span(stage.back).subspan(n_);
+  std::fill(back.begin(), back.end(), 0.0);
+  const std::span<double> back_q = std::span(back).first(n_), back_qd = std::span(back).subspan(n_);
   std::copy(k_q.begin(), k_q.end(), back_qd.begin());
   const AdjointWeights weights{.w = w_, .lambda = stage.lambda, .bend = mu_};
   mechanism_.add_by_state(stage.evaluator, weights, back_q, back_qd);
@@ -108,14 +91,14 @@ void MotionAdjoint::go_back(const Step& step, Way& way, bool interpolated) {
     }
     for (int j = s + 1; j < stages; ++j) {
       for (const StageTerm& term : table.a[at(j)]) {
-        if (term.stage == s && j != table.stages) add_scaled(slope_, h * term.weight, stages_[at(j)]->back);
+        if (term.stage == s && j != table.stages) add_scaled(slope_, h * term.weight, back_[at(j)]);
       }
     }
-    stage_back(*stages_[at(s)], slope_, way);
-    if (s == table.stages) add_scaled(way.y1, 1, stages_[at(s)]->back);
+    stage_back(s, slope_, way);
+    if (s == table.stages) add_scaled(way.y1, 1, back_[at(s)]);
   }
   for (int s = 0; s < stages; ++s) {
-    if (s != table.stages) add_scaled(way.y0, 1, stages_[at(s)]->back);
+    if (s != table.stages) add_scaled(way.y0, 1, back_[at(s)]);
   }
   add_scaled(way.y0, 1, way.y1);
 }
@@ -132,7 +115,7 @@ bool MotionAdjoint::add_pulses(std::span<const Look> looks, double t, std::span<
     if (pulse.by_qdd.empty() && pulse.by_lambda.empty()) continue;
     if (!evaluated) {
       std::copy(values.begin(), values.end(), end_->y.begin());
-      if (!evaluate(*end_, t, Side::after)) return false;
+      if (!RecomputedSteps::evaluate(*end_, t, Side::after)) return lose(t, "constraints depend on each other");
     }
     evaluated = true;
     const std::span<const double> qdd = std::span<const double>(end_->slope).subspan(n_);
@@ -148,11 +131,11 @@ bool MotionAdjoint::add_pulses(std::span<const Look> looks, double t, std::span<
 
 bool MotionAdjoint::add_inside(const Step& step, std::span<const Look> looks) {
   const double t = looks.front().pulse->t, h = step.to - step.from;
-  const InterpolantWeights weights = interpolant_at((t - step.from) / h);
+  const InterpolantWeights weights = interpolant_weights((t - step.from) / h);
   Vector there(2 * n_);
   for (std::size_t i = 0; i < there.size(); ++i) there[i] = step.begin[i] + weights.end * (step.end[i] - step.begin[i]);
   for (std::size_t s = 0; s < weights.slope.size(); ++s) {
-    if (weights.slope[s] != 0) add_scaled(there, h * weights.slope[s], stages_[s]->slope);
+    if (weights.slope[s] != 0) add_scaled(there, h * weights.slope[s], again_.stage(static_cast<int>(s)).slope);
   }
   if (!factorize_end(t, Side::after, there)) return false;
   end_->equations.project_position(std::span(there).first(n_), most_rounds_inside);
@@ -220,11 +203,8 @@ std::optional<MotionAdjoint::Gradients> MotionAdjoint::gradients(
   }
   const Way still{Vector(2 * n_, 0.0), Vector(2 * n_, 0.0), Vector(at(parameters()), 0.0), {}};
   ways_.assign(measures.size(), still);
-  at_once_ = 1;
-  single_misfit_ = 0;
+  again_.begin_anew();
   blocks_ = 0;
-  waits_ = 1;  // the last step by itself tells what is usual
-  joins_ = true;
   Step joined;
   // The pulses at the last instant of those left, taken away from them.
   const auto take_last = [&] {
@@ -246,13 +226,22 @@ std::optional<MotionAdjoint::Gradients> MotionAdjoint::gradients(
     // No further than to the instant of the next pulse: the step that has one inside by itself.
     const bool inside = !looks.empty() && t_of(looks.back()) > last.from;
     const double bound = inside ? last.from : looks.empty() ? steps_.front().from : t_of(looks.back());
-    const std::size_t count = join(k, bound, joined);
-    if (count == 0) return {};
+    std::size_t given = 1;
+    while (given < std::min(k, RecomputedSteps::most_at_once) && steps_[k - given - 1].from >= bound) ++given;
+    const std::size_t count =
+        again_.join(std::span<const Step>(steps_).subspan(k - given, given), RecomputedSteps::From::back, joined);
+    if (count == 0) {
+      lose(again_.singular_at(), "constraints depend on each other");
+      return {};
+    }
     for (Way& way : ways_) {
       std::fill(way.y0.begin(), way.y0.end(), 0.0);
       if (inside) way.slopes.assign(dormand_prince_8().c.size(), Vector(2 * n_, 0.0));
     }
-    if (inside && !prepare_interpolant(joined)) return {};
+    if (inside && !again_.prepare_interpolant(joined)) {
+      lose(again_.singular_at(), "constraints depend on each other");
+      return {};
+    }
     while (!looks.empty() && t_of(looks.back()) > joined.from) {
       if (!add_inside(joined, take_last())) return {};
     }

@@ -25,6 +25,14 @@ MotionDerivatives::MotionDerivatives(const Evaluator& evaluator, const DesignMod
     track.stage.assign(16, Vector(2 * n_));
     track.interpolant.assign(7, Vector(2 * n_));
   }
+  if (groups().empty() || !AdjointMechanism::why_not(evaluator.model()).empty()) return;
+  again_ = std::make_unique<RecomputedSteps>(this->evaluator());
+  if (!again_->why_not().empty()) return;
+  place_ = again_->make_stage();
+  std::vector<DesignMechanism*> mechanisms;
+  for (Group& group : groups()) mechanisms.push_back(&group.mechanism);
+  tangents_ = std::make_unique<MotionTangents>(this->evaluator(), mechanisms, parameters);
+  for (auto* rows : {&begin_rows_, &end_rows_, &rows_, &slope_rows_}) rows->assign(2 * n_ * tangents_->width(), 0.0);
 }
 
 bool MotionDerivatives::singular(double t) {
@@ -172,16 +180,10 @@ bool MotionDerivatives::make_step(double h) {
 }
 
 // Values are the motion's own: angles may have been moved by whole turns.
-bool MotionDerivatives::take_values(const MotionStretch& stretch, double t, Vector Track::*y) {
-  const std::optional<Snapshot> state = stretch.at(t);
-  if (!state) return not_shown(t);
+void MotionDerivatives::take_values(const RecomputedSteps::Vector& values, Vector Track::*y) {
   for (Track& track : tracks_) {
-    for (std::size_t c = 0; c < n_; ++c) {
-      (track.*y)[c].v = state->q[c];
-      (track.*y)[n_ + c].v = state->qd[c];
-    }
+    for (std::size_t i = 0; i < values.size(); ++i) (track.*y)[i].v = values[i];
   }
-  return true;
 }
 
 bool MotionDerivatives::project_end(double t, Side side) {
@@ -193,27 +195,33 @@ bool MotionDerivatives::project_end(double t, Side side) {
   return true;
 }
 
-// Once derivatives are lost they stay lost: why() says it, and find() fails.
+// Once derivatives are lost they stay lost: why() says it, and find() fails. Steps wait until someone asks, or until
+// there are as many as may be taken as one; not across an instant at which functions of time jump.
 void MotionDerivatives::cover(const MotionStretch& stretch) {
   if (!why().empty()) return;
-  if (!started_) {
-    const std::optional<Snapshot> state = stretch.at(stretch.from);
+  Step step{stretch.from, stretch.to, RecomputedSteps::Vector(2 * n_), RecomputedSteps::Vector(2 * n_)};
+  for (const bool end : {false, true}) {
+    const std::optional<Snapshot> state = stretch.at(end ? stretch.to : stretch.from);
     if (!state) {
-      not_shown(stretch.from);
+      not_shown(end ? stretch.to : stretch.from);
       return;
     }
-    if (!start(stretch.from, state->q, state->qd)) return;
+    RecomputedSteps::Vector& y = end ? step.end : step.begin;
+    std::copy(state->q.begin(), state->q.end(), y.begin());
+    std::copy(state->qd.begin(), state->qd.end(), y.begin() + static_cast<std::ptrdiff_t>(n_));
   }
-  const auto begin = crossed_ == stretch.from ? &Track::after : &Track::end;
-  if (!take_values(stretch, stretch.from, begin)) return;
-  for (Track& track : tracks_) track.begin = track.*begin;
-  from_ = stretch.from;
-  to_ = stretch.to;
-  has_step_ = true;
-  interpolant_ready_ = false;
-  if (!make_step(to_ - from_) || !take_values(stretch, to_, &Track::end) || !project_end(to_, Side::before)) return;
-  const MovingInstant& instant = instant_at(to_);
-  if (instant.order == 1 || instant.moves()) cross();
+  const std::span<const double> y(step.begin);
+  if (!started_ && !start(step.from, y.first(n_), y.subspan(n_))) return;
+  pending_.push_back(std::move(step));
+  const MovingInstant& instant = instant_at(stretch.to);
+  if (instant.order == 1 || instant.moves()) {
+    if (catch_up(stretch.to) && factorize(stretch.to, Side::before, std::span(tracks_.front().end).first(n_)))
+      cross();
+    else if (why().empty())
+      singular(stretch.to);
+  } else if (!tangents_ || pending_.size() >= RecomputedSteps::most_at_once) {
+    take_block(pending_);
+  }
 }
 
 bool MotionDerivatives::cross() {
@@ -318,9 +326,11 @@ void MotionDerivatives::interpolate(const Track& track, double t, Vector& y) con
 
 bool MotionDerivatives::find(const Snapshot& snapshot) {
   if (!started_ && !start(snapshot.t, snapshot.q, snapshot.qd)) return false;
-  if (!why().empty()) return false;
+  if (!why().empty() || !catch_up(snapshot.t)) return false;
   if (snapshot.t < from_ || snapshot.t > to_) return not_shown(snapshot.t);
+  if (tangents_ && find_by_tangents(snapshot)) return true;
   const bool inside = has_step_ && snapshot.t != to_ && snapshot.t != from_;
+  if (inside && by_tangents_ && !retake_in_dual_numbers()) return false;
   if (inside && !interpolant_ready_) {
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
       if (!prepare_interpolant(groups()[k], tracks_[k])) return false;

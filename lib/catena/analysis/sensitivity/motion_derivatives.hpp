@@ -4,11 +4,14 @@
 //   [ M      Phi_q^T ] [ qdd_p    ]   [ (Q - M qdd - Phi_q^T lambda)_p ]
 //   [ Phi_q  0       ] [ lambda_p ] = [ gamma_p - (Phi_q qdd)_p        ]      partials along q_p, qd_p
 //
-// by the method of Dormand and Prince of order 8 over the very steps that the motion took, in dual numbers: every stage
-// is recomputed from the state at the step's start. At the step's end positions and velocities are those of the motion,
-// and their derivatives are projected as these were: Phi_q q_p = -Phi_p, and the same for velocities, changed least in
-// the metric of the masses. What a projection's own bending adds is of the size of the drift that it removes, that is
-// of the tolerance. Between ends of steps derivatives follow from the interpolant of order 7 of their stages.
+// by the method of Dormand and Prince of order 8 over the very steps that the motion took: every stage is recomputed
+// from the state at the step's start, once for all parameters (motion_tangents.hpp), and steps that are shorter than
+// this method needs, between instants that are asked for, several as one (recomputed_steps.hpp). Where constraints
+// depend on each other, and for models with laws of state, ropes over pulleys or massless bodies, step by step in dual
+// numbers. At the step's end positions and velocities are those of the motion, and their derivatives are projected as
+// these were: Phi_q q_p = -Phi_p, and the same for velocities, changed least in the metric of the masses. What a
+// projection's own bending adds is of the size of the drift that it removes, that is of the tolerance. Between ends of
+// steps derivatives follow from the interpolant of order 7 of their stages.
 //
 // At an instant t* at which functions of time jump, and which parameters move, the state's derivatives jump:
 //
@@ -22,9 +25,12 @@
 // Norsett, G. Wanner, Solving Ordinary Differential Equations I, section I.14.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "catena/analysis/motion/tableau.hpp"
+#include "catena/analysis/sensitivity/motion_tangents.hpp"
+#include "catena/analysis/sensitivity/recomputed_steps.hpp"
 #include "catena/analysis/sensitivity/saddle_system.hpp"
 #include "catena/analysis/sensitivity/start_derivatives.hpp"
 #include "catena/analysis/sensitivity/state_derivatives.hpp"
@@ -37,6 +43,8 @@ class MotionDerivatives final : public StateDerivatives {
 
   void cover(const MotionStretch& stretch) override;
   bool find(const Snapshot& snapshot) override;
+  /// As how many steps the motion's were taken so far.
+  int blocks() const { return blocks_; }
 
  protected:
   bool find_before(const Snapshot& snapshot) override;
@@ -44,6 +52,7 @@ class MotionDerivatives final : public StateDerivatives {
 
  private:
   using Vector = std::vector<DesignScalar>;
+  using Step = RecomputedSteps::Step;
   /// Of one group: y = [q, qd] where the present step begins, where it ends, its stages and interpolant; and at the
   /// last instant at which functions of time jump, just before it and after.
   struct Track {
@@ -52,8 +61,21 @@ class MotionDerivatives final : public StateDerivatives {
   };
 
   bool start(double t, std::span<const double> q, std::span<const double> qd);
-  /// Positions and velocities of the motion at t to y of all tracks.
-  bool take_values(const MotionStretch& stretch, double t, Vector Track::*y);
+  /// Positions and velocities of the motion to y of all tracks.
+  void take_values(const RecomputedSteps::Vector& values, Vector Track::*y);
+  /// Carries derivatives over the steps that wait, so that t, within the last of them, can be asked for.
+  bool catch_up(double t);
+  /// Over as many of these steps as can be taken as one; what waits begins with them.
+  bool take_block(std::span<const Step> steps);
+  /// The same by tangents, of the steps joined in step_; false where constraints depend on each other.
+  bool take_by_tangents();
+  bool take_in_dual_numbers();
+  /// The last block, which is one step, once more: where an instant inside of it has no tangents.
+  bool retake_in_dual_numbers();
+  void to_rows(Vector Track::*y, MotionTangents::Rows& rows) const;
+  void from_rows(const MotionTangents::Rows& rows, Vector Track::*y);
+  /// The state at a snapshot from rows of derivatives; nothing where constraints depend on each other.
+  bool find_by_tangents(const Snapshot& snapshot);
   /// Past the jump of functions of time where the step ends.
   bool cross();
   /// From y just before it to y after, with what this leaves of M (qd+ - qd-) + Phi_q^T mu = 0.
@@ -82,6 +104,15 @@ class MotionDerivatives final : public StateDerivatives {
   std::vector<Track> tracks_;
   std::vector<double> values_;
   Vector stage_, y_;
+  // By tangents; nullptr where the model does not have them.
+  std::unique_ptr<RecomputedSteps> again_;
+  std::unique_ptr<MotionTangents> tangents_;
+  std::unique_ptr<RecomputedSteps::Stage> place_;  // where derivatives are projected and looked at
+  std::vector<Step> pending_, block_;              // steps that wait, and those that the last block is made of
+  Step step_;                                      // that block
+  bool by_tangents_ = false;                       // it was carried over by them
+  int blocks_ = 0;
+  MotionTangents::Rows begin_rows_, end_rows_, rows_, slope_rows_;
 };
 
 }  // namespace catena

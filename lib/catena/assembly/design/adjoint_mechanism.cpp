@@ -75,10 +75,13 @@ AdjointMechanism::AdjointMechanism(const Evaluator& evaluator)
   rates_.assign(at(plan_->coordinates()), 0.0);
 }
 
-void AdjointMechanism::set_motion(const Evaluator& evaluator, std::span<const double> qd, std::span<const double> qdd) {
+void AdjointMechanism::set_motion(const Evaluator& evaluator, std::span<const double> qd, std::span<const double> qdd,
+                                  Side side) {
   for (std::size_t k = 0; k < values_.size(); ++k) {
     const TimeRange domain = model_->functions[k].domain();
-    values_[k] = model_->functions[k].evaluate(std::clamp(evaluator.time(), domain.first, domain.last));
+    const double there = std::clamp(evaluator.time(), domain.first, domain.last);
+    values_[k] = side == Side::after ? model_->functions[k].evaluate(there)
+                                     : model_->functions[k].continue_from(there, side, there);
   }
   for (std::size_t c = 0; c < rates_.size(); ++c) rates_[c] = qd.empty() ? 0 : qd[c];
   for (int p = 0; p <= plan_->bodies; ++p) {

@@ -33,7 +33,9 @@ class AdjointMechanism {
   explicit AdjointMechanism(const Evaluator& evaluator);
 
   /// The motion at the evaluator's configuration: sizes coordinates(); may be empty: at rest, without acceleration.
-  void set_motion(const Evaluator& evaluator, std::span<const double> qd, std::span<const double> qdd);
+  /// `side` where functions of time jump.
+  void set_motion(const Evaluator& evaluator, std::span<const double> qd, std::span<const double> qdd,
+                  Side side = Side::after);
 
   /// by_q += w^T R_q - bend^T Phi''_q - rate^T Phi'_q, by_qd += w^T R_qd - bend^T Phi''_qd. Sizes coordinates().
   void add_by_state(const Evaluator& evaluator, const AdjointWeights& weights, std::span<double> by_q,
@@ -47,6 +49,7 @@ class AdjointMechanism {
 
    private:
     friend class AdjointMechanism;
+    friend class MechanismTangents;
     std::vector<std::vector<int>> constraints_, forces_;  // by type: places in the block
     std::vector<int> bodies_;                             // plan bodies with masses that move
     bool gravity_ = false, any_constraint_ = false, any_force_ = false;
@@ -57,17 +60,10 @@ class AdjointMechanism {
   std::array<double, parameters_at_once> by_parameters(const DesignMechanism& mechanism, const Reached& reached,
                                                        const AdjointWeights& weights, std::span<const double> qdd);
 
- private:
+ protected:
   using Series = Taylor<double>;
 
   const Plan& plan() const { return *plan_; }
-  template <class Block>
-  bool add_pin(const Block& block, int e, const Revolute<DesignScalar>& pin, const AdjointWeights& weights,
-               std::array<double, parameters_at_once>& sum) const;
-  void add_constraints_by_q(const AdjointWeights& weights, std::span<double> by_q, std::span<double> by_qd) const;
-  void add_curvature(const AdjointWeights& weights, std::span<double> by_q) const;
-  void add_forces_by_state(const Evaluator& evaluator, std::span<const double> w, std::span<double> by_q,
-                           std::span<double> by_qd) const;
 
   std::shared_ptr<const Plan> plan_;
   const Model* model_;
@@ -76,6 +72,15 @@ class AdjointMechanism {
   std::vector<Frame<Series>> motion_;   // per plan body, relative
   std::vector<Taylor<double>> values_;  // of functions, at the present time
   std::vector<double> rates_;           // qd
+
+ private:
+  template <class Block>
+  bool add_pin(const Block& block, int e, const Revolute<DesignScalar>& pin, const AdjointWeights& weights,
+               std::array<double, parameters_at_once>& sum) const;
+  void add_constraints_by_q(const AdjointWeights& weights, std::span<double> by_q, std::span<double> by_qd) const;
+  void add_curvature(const AdjointWeights& weights, std::span<double> by_q) const;
+  void add_forces_by_state(const Evaluator& evaluator, std::span<const double> w, std::span<double> by_q,
+                           std::span<double> by_qd) const;
 };
 
 }  // namespace catena

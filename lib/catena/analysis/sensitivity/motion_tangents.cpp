@@ -1,0 +1,127 @@
+#include "catena/analysis/sensitivity/motion_tangents.hpp"
+
+#include <algorithm>
+
+#include "catena/base/at.hpp"
+#include "catena/base/design_scalar.hpp"
+
+namespace catena {
+namespace {
+
+void add_rows(std::vector<double>& y, double weight, const std::vector<double>& k) {
+  for (std::size_t i = 0; i < y.size(); ++i) y[i] += weight * k[i];
+}
+
+}  // namespace
+
+MotionTangents::MotionTangents(const Evaluator& evaluator, std::vector<DesignMechanism*> groups, int parameters)
+    : plan_(evaluator.plan()),
+      groups_(std::move(groups)),
+      mechanism_(evaluator),
+      n_(at(plan_.coordinates())),
+      parameters_(at(parameters)),
+      width_(groups_.size() * parameters_at_once) {
+  for (const DesignMechanism* group : groups_) reached_.emplace_back(mechanism_, *group);
+  slopes_.assign(16, Rows(2 * n_ * width_));
+  stage_.resize(2 * n_ * width_);
+  loads_.resize(n_ * width_);
+  rows_.resize(at(plan_.rows) * width_);
+  lambda_ = rows_;
+  for (auto* v : {&masses_, &f_, &x_}) v->assign(n_, 0.0);
+  for (auto* v : {&b_, &mu_}) v->assign(at(plan_.rows), 0.0);
+  for (int c = 0; c < 3 * plan_.moving; ++c) {
+    if (plan_.column[at(c)] >= 0) masses_[at(c)] = groups_.front()->mass(c).v;
+  }
+}
+
+int MotionTangents::reached_elements() const {
+  int sum = 0;
+  for (const AdjointMechanism::Reached& reached : reached_) sum += reached.elements();
+  return sum;
+}
+
+void MotionTangents::add_parameters(double t, Side side, std::span<const double> lambda, std::span<const double> qdd,
+                                    const TangentSums& sums) {
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    groups_[g]->set_time(t, side);
+    mechanism_.add_parameters(*groups_[g], side, reached_[g], lambda, qdd, g * parameters_at_once, width_, sums);
+  }
+}
+
+void MotionTangents::solve(Stage& stage, const Rows& loads, const Rows& rows, double* x) {
+  for (std::size_t p = 0; p < parameters_; ++p) {
+    for (std::size_t c = 0; c < n_; ++c) f_[c] = loads[c * width_ + p];
+    for (std::size_t r = 0; r < b_.size(); ++r) b_[r] = -rows[r * width_ + p];
+    stage.equations.solve_motion(f_, b_, x_, mu_);
+    for (const int c : plan_.coordinate) x[at(c) * width_ + p] = x_[at(c)];
+    for (std::size_t r = 0; r < mu_.size(); ++r) lambda_[r * width_ + p] = mu_[r];
+  }
+}
+
+void MotionTangents::slope(Stage& stage, const Rows& y, Rows& slope) {
+  const std::span<const double> qd = std::span<const double>(stage.y).subspan(n_);
+  const std::span<const double> qdd = std::span<const double>(stage.slope).subspan(n_);
+  mechanism_.set_motion(stage.evaluator, qd, qdd, stage.side);
+  std::fill(loads_.begin(), loads_.end(), 0.0);
+  std::fill(rows_.begin(), rows_.end(), 0.0);
+  const TangentSums sums{.loads = loads_, .bends = rows_};
+  const std::span<const double> all(y);
+  mechanism_.add_along(stage.evaluator, stage.lambda, all.first(n_ * width_), all.subspan(n_ * width_), width_, sums);
+  add_parameters(stage.t, stage.side, stage.lambda, qdd, sums);
+  std::copy(y.begin() + static_cast<std::ptrdiff_t>(n_ * width_), y.end(), slope.begin());
+  solve(stage, loads_, rows_, slope.data() + n_ * width_);
+}
+
+void MotionTangents::step(RecomputedSteps& steps, double h, const Rows& begin, Rows& end) {
+  const Tableau& table = dormand_prince_8();
+  for (int s = 0; s < table.stages; ++s) {
+    stage_ = begin;
+    for (const StageTerm& term : table.a[at(s)]) add_rows(stage_, h * term.weight, slopes_[at(term.stage)]);
+    slope(steps.stage(s), stage_, slopes_[at(s)]);
+  }
+  end = begin;
+  for (const StageTerm& term : table.b) add_rows(end, h * term.weight, slopes_[at(term.stage)]);
+}
+
+void MotionTangents::prepare_interpolant(RecomputedSteps& steps, double h, const Rows& begin, const Rows& end) {
+  const Tableau& table = dormand_prince_8();
+  slope(steps.stage(table.stages), end, slopes_[at(table.stages)]);
+  for (int s = table.stages + 1; s < static_cast<int>(table.c.size()); ++s) {
+    stage_ = begin;
+    for (const StageTerm& term : table.a[at(s)]) add_rows(stage_, h * term.weight, slopes_[at(term.stage)]);
+    slope(steps.stage(s), stage_, slopes_[at(s)]);
+  }
+}
+
+void MotionTangents::interpolate(double part, double h, const Rows& begin, const Rows& end, Rows& y) const {
+  const InterpolantWeights weights = interpolant_weights(part);
+  for (std::size_t i = 0; i < y.size(); ++i) y[i] = begin[i] + weights.end * (end[i] - begin[i]);
+  for (std::size_t s = 0; s < weights.slope.size(); ++s) {
+    if (weights.slope[s] != 0) add_rows(y, h * weights.slope[s], slopes_[s]);
+  }
+}
+
+bool MotionTangents::project(Stage& stage, double t, Side side, Rows& y) {
+  const std::span<const double> values(stage.y);
+  if (plan_.rows == 0) return true;
+  if (!stage.equations.factorize(t, side, values.first(n_)) || stage.equations.is_dependent()) return false;
+  mechanism_.set_motion(stage.evaluator, values.subspan(n_), {}, side);
+  const std::span<const double> all(y);
+  for (const bool velocity : {false, true}) {
+    std::fill(rows_.begin(), rows_.end(), 0.0);
+    TangentSums sums;
+    (velocity ? sums.rates : sums.phi) = rows_;
+    if (velocity) {
+      mechanism_.add_along(stage.evaluator, {}, all.first(n_ * width_), all.subspan(n_ * width_), width_, sums);
+    }
+    add_parameters(t, side, {}, {}, sums);
+    double* part = y.data() + (velocity ? n_ * width_ : 0);
+    for (std::size_t c = 0; c < n_; ++c) {
+      for (std::size_t p = 0; p < width_; ++p) loads_[c * width_ + p] = masses_[c] * part[c * width_ + p];
+    }
+    solve(stage, loads_, rows_, part);
+  }
+  return true;
+}
+
+}  // namespace catena

@@ -1,0 +1,60 @@
+// The variational equations of a motion along recomputed steps, for all parameters at once.
+//
+//   [ M      Phi_q^T ] [ qdd_p    ]   [ R_q q_p + R_qd qd_p + R_p              ]     R = Q - M qdd - Phi_q^T lambda
+//   [ Phi_q  0       ] [ lambda_p ] = [ -(Phi_q)'' q_p - 2 (Phi_q)' qd_p - Phi''_p ]
+//
+// at every stage, with the factors that its accelerations were found with; right-hand sides from matrices of elements
+// that are evaluated once for all parameters (mechanism_tangents.hpp). The equations are those of
+// motion_derivatives.hpp. Derivatives lie in rows of `width()` numbers a coordinate of y = [q, qd]; those of
+// coordinates that are no unknowns are zero here and count among what parameters change by themselves. Not where
+// constraints depend on each other, nor for models that AdjointMechanism refuses.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "catena/analysis/sensitivity/recomputed_steps.hpp"
+#include "catena/assembly/design/mechanism_tangents.hpp"
+
+namespace catena {
+
+class MotionTangents {
+ public:
+  using Rows = std::vector<double>;
+  using Stage = RecomputedSteps::Stage;
+
+  /// `groups`: mechanisms with derivatives by four parameters each; all must outlive this object.
+  MotionTangents(const Evaluator& evaluator, std::vector<DesignMechanism*> groups, int parameters);
+
+  std::size_t width() const { return width_; }
+  /// Derivatives at the end of a recomputed step, before it is projected, from those at its beginning.
+  void step(RecomputedSteps& steps, double h, const Rows& begin, Rows& end);
+  /// The slopes of the interpolant's stages, after step() and with the projected end.
+  void prepare_interpolant(RecomputedSteps& steps, double h, const Rows& begin, const Rows& end);
+  void interpolate(double part, double h, const Rows& begin, const Rows& end, Rows& y) const;
+  /// Projects the derivatives at the state of `stage`, whose factors are made; false where constraints depend on each
+  /// other.
+  bool project(Stage& stage, double t, Side side, Rows& y);
+  /// Derivatives of accelerations and multipliers at a stage that was evaluated: rows n() ... 2 n() of `slope`.
+  void slope(Stage& stage, const Rows& y, Rows& slope);
+  /// Rows of multipliers of the last slope().
+  const Rows& multipliers() const { return lambda_; }
+  int reached_elements() const;
+
+ private:
+  void add_parameters(double t, Side side, std::span<const double> lambda, std::span<const double> qdd,
+                      const TangentSums& sums);
+  /// Solves for all parameters: loads and rows (negative right-hand sides) to x over coordinates, and lambda_.
+  void solve(Stage& stage, const Rows& loads, const Rows& rows, double* x);
+
+  const Plan& plan_;
+  std::vector<DesignMechanism*> groups_;
+  MechanismTangents mechanism_;
+  std::vector<AdjointMechanism::Reached> reached_;  // by group
+  std::size_t n_, parameters_, width_;
+  std::vector<Rows> slopes_;  // by stage
+  Rows stage_, loads_, rows_, lambda_;
+  std::vector<double> masses_, f_, b_, x_, mu_;
+};
+
+}  // namespace catena

@@ -1,0 +1,91 @@
+// Steps of a motion recomputed by the method of Dormand and Prince of order 8, several as one where that is as good.
+//
+//   y1 = y0 + h sum b_s k_s,   k_s = f(t_s, Y_s),   Y_s = y0 + h sum a_sj k_j        y = [q, qd]
+//   y(t) = (1 - e) y0 + e y1 + h sum c_s k_s            the interpolant of order 7, k_12 the slope at y1
+//
+// What derivatives along a motion are made of: states, slopes, multipliers and factors of the stages, in plain numbers,
+// once for all parameters. Steps of another method are shorter than this one needs: they are joined as long as the
+// recomputed end misses that of the motion by no more than single steps do. Singular where constraints depend on each
+// other; not for massless bodies. Source: apps/manual/sensitivity.md; analysis/motion/tableau.hpp.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "catena/analysis/motion/equations_of_motion.hpp"
+#include "catena/analysis/motion/tableau.hpp"
+
+namespace catena {
+
+/// y(t) at a part of a step.
+struct InterpolantWeights {
+  double end = 0;                  ///< e
+  std::array<double, 16> slope{};  ///< c_s
+};
+InterpolantWeights interpolant_weights(double part);
+
+class RecomputedSteps {
+ public:
+  using Vector = std::vector<double>;
+  struct Step {
+    double from = 0, to = 0;
+    Vector begin, end;  // y
+  };
+  /// The equations of motion at a stage, with their factors.
+  struct Stage {
+    Stage(const Evaluator& evaluator, std::size_t size);
+    Evaluator evaluator;
+    EquationsOfMotion equations;
+    double t = 0;
+    Side side = Side::after;
+    Vector y, slope, lambda;
+  };
+  static constexpr std::size_t most_at_once = 16;
+
+  explicit RecomputedSteps(const Evaluator& evaluator);
+
+  /// Why nothing can be recomputed, as a phrase; empty: it can.
+  const std::string& why_not() const { return why_not_; }
+  Stage& stage(int number) { return *stages_[static_cast<std::size_t>(number)]; }
+  /// One more, for what is not of a step.
+  std::unique_ptr<Stage> make_stage();
+  /// Slope and multipliers at the stage's y; false where constraints depend on each other.
+  static bool evaluate(Stage& stage, double t, Side side);
+  /// False where constraints depend on each other, at `t`.
+  bool recompute(const Step& step);
+  /// The stages of the interpolant, once the step has been recomputed.
+  bool prepare_interpolant(const Step& step);
+  double singular_at() const { return singular_at_; }
+
+  /// The first step, or last one, is one by itself and tells what steps usually miss.
+  void begin_anew();
+  enum class From { front, back };
+  /// Recomputes steps at one end of those given, as many as can be taken as one, and joins them; how many, or 0 where
+  /// constraints depend on each other.
+  std::size_t join(std::span<const Step> steps, From from, Step& joined);
+
+ private:
+  /// Of positions and of velocities: how far the recomputed end of a step lies from that of the motion, and what it
+  /// moves by.
+  struct Misfit {
+    std::array<double, 2> off{}, way{};
+  };
+  Misfit misfit(const Step& step) const;
+  /// In parts of what as many single steps miss their ends by.
+  double beside_single_steps(const Misfit& misfit, std::size_t count) const;
+
+  const Evaluator& evaluator_;
+  std::size_t size_;
+  std::string why_not_;
+  std::vector<std::unique_ptr<Stage>> stages_;
+  double singular_at_ = 0;
+  std::size_t at_once_ = 1;         // steps that were joined last
+  std::array<double, 2> single_{};  // largest that steps by themselves missed their ends by
+  int waits_ = 1;                   // blocks until one more is tried
+  int far_ = 0;                     // how often in a row two together were far off
+};
+
+}  // namespace catena

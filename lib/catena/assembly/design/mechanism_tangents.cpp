@@ -1,0 +1,177 @@
+#include "catena/assembly/design/mechanism_tangents.hpp"
+
+#include <type_traits>
+
+#include "catena/assembly/design/element_motion.hpp"
+#include "catena/base/at.hpp"
+
+namespace catena {
+namespace {
+
+template <class E>
+constexpr bool has_tangents = !std::is_same_v<E, CustomConstraint<double>> && !std::is_same_v<E, CustomForce<double>> &&
+                              !Joining<E> && !Sharing<E>;
+
+template <class Entry>
+Taylor<double> prescribed_of([[maybe_unused]] const Entry& entry,
+                             [[maybe_unused]] const std::vector<Taylor<double>>& functions) {
+  if constexpr (Entry::Element::functions > 0) {
+    const auto& value = entry.values[0];
+    return value.function < 0 ? Taylor<double>(value.constant) : functions[at(value.function)];
+  } else {
+    return {};
+  }
+}
+
+/// out += factor x along, over all directions.
+void add_row(double factor, const double* along, std::size_t width, double* out) {
+  for (std::size_t p = 0; p < width; ++p) out[p] += factor * along[p];
+}
+
+}  // namespace
+
+// With the arm a = A s: Phi by the angle is R a, (R a)' = -a omega, (R a)'' = -a alpha - R a omega^2, and the curvature
+// -a. Translations have constant columns.
+template <class Block, class List>
+void MechanismTangents::add_pins(const Block& block, const List& list, std::span<const double> lambda,
+                                 const Directions& along, const TangentSums& sums) const {
+  const std::size_t w = along.width;
+  for (int e = 0; e < block.size(); ++e) {
+    const auto& pin = list[at(block.entry[at(e)])].element;
+    const std::size_t row = at(block.row(e));
+    for (int b = 0; b < 2; ++b) {
+      const int body = b == 0 ? block.body_i[at(e)] : block.body_j[at(e)];
+      if (body >= plan_->moving) continue;
+      const Frame<Taylor<double>>& f = motion_[at(body)];
+      const Vec2<double>& s = b == 0 ? pin.s_i : pin.s_j;
+      const double sign = b == 0 ? -1 : 1, omega = f.phi.d, alpha = f.phi.dd;
+      const Vec2<double> a{sign * (f.c.f * s.x - f.s.f * s.y), sign * (f.s.f * s.x + f.c.f * s.y)};
+      const std::size_t c = at(3 * body + 2);
+      const double *dphi = along.dq.data() + c * w, *domega = along.dqd.data() + c * w;
+      if (!sums.bends.empty()) {
+        double *x = sums.bends.data() + row * w, *y = x + w;
+        const double by_x = -a.x * alpha + a.y * omega * omega, by_y = -a.y * alpha - a.x * omega * omega;
+        for (std::size_t p = 0; p < w; ++p) {
+          x[p] += by_x * dphi[p] - 2 * a.x * omega * domega[p];
+          y[p] += by_y * dphi[p] - 2 * a.y * omega * domega[p];
+        }
+      }
+      if (!sums.rates.empty()) {
+        add_row(-a.x * omega, dphi, w, sums.rates.data() + row * w);
+        add_row(-a.y * omega, dphi, w, sums.rates.data() + (row + 1) * w);
+      }
+      if (!sums.loads.empty()) add_row(lambda[row] * a.x + lambda[row + 1] * a.y, dphi, w, sums.loads.data() + c * w);
+    }
+  }
+}
+
+template <class Block, class List>
+void MechanismTangents::add_constraints(const Block& block, const List& list, std::span<const double> lambda,
+                                        const Directions& along, const TangentSums& sums) const {
+  using E = ElementOf<List>;
+  constexpr int columns = 3 * E::bodies;
+  using Slopes = Dual<Taylor<double>, columns>;
+  using Once = Dual<double, columns>;
+  using Twice = Dual<Once, columns>;
+  const std::size_t w = along.width;
+  for (int e = 0; e < block.size(); ++e) {
+    const auto& entry = list[at(block.entry[at(e)])];
+    const double scale = scale_[at(entry.id)];
+    const Taylor<double> c = prescribed_of(entry, values_);
+    const auto coordinate = [&](int k) { return at(3 * (k < 3 ? block.body_i[at(e)] : block.body_j[at(e)]) + k % 3); };
+    const auto f = detail::design_frames<Taylor<double>>(block, e, plan_->moving, origin_,
+                                                         [&](int body) { return motion_[at(body)]; });
+    if (!sums.bends.empty() || !sums.rates.empty()) {
+      const Frame<Slopes> i = seed<Taylor<double>, columns>(f.i, 0);
+      Frame<Slopes> j;
+      if constexpr (E::bodies == 2) j = seed<Taylor<double>, columns>(f.j, 3);
+      Slopes rows[E::rows];
+      entry.element.phi(Arguments<Slopes>{i, j, Slopes(c), f.ground}, rows);
+      for (int r = 0; r < E::rows; ++r) {
+        const std::size_t row = at(block.row(e) + r) * w;
+        for (int k = 0; k < columns; ++k) {
+          const Taylor<double>& slope = rows[r].d[at(k)];
+          const double *dq = along.dq.data() + coordinate(k) * w, *dqd = along.dqd.data() + coordinate(k) * w;
+          if (!sums.rates.empty()) add_row(scale * slope.d, dq, w, sums.rates.data() + row);
+          if (sums.bends.empty()) continue;
+          add_row(scale * slope.dd, dq, w, sums.bends.data() + row);
+          add_row(2 * scale * slope.d, dqd, w, sums.bends.data() + row);
+        }
+      }
+    }
+    if (sums.loads.empty()) continue;
+    const auto twice = [](const Frame<Taylor<double>>& g, int first) {
+      return seed<Once, columns>(seed<double, columns>(Frame<double>{g.x.f, g.y.f, g.phi.f, g.c.f, g.s.f}, first),
+                                 first);
+    };
+    Frame<Twice> j;
+    if constexpr (E::bodies == 2) j = twice(f.j, 3);
+    Twice rows[E::rows];
+    entry.element.phi(Arguments<Twice>{twice(f.i, 0), j, Twice(Once(c.f)), f.ground}, rows);
+    for (int k = 0; k < columns; ++k) {
+      for (int l = 0; l < columns; ++l) {
+        double bend = 0;
+        for (int r = 0; r < E::rows; ++r) bend += scale * lambda[at(block.row(e) + r)] * rows[r].d[at(k)].d[at(l)];
+        if (bend != 0) add_row(-bend, along.dq.data() + coordinate(l) * w, w, sums.loads.data() + coordinate(k) * w);
+      }
+    }
+  }
+}
+
+template <class Block, class List>
+void MechanismTangents::add_forces(const Evaluator& evaluator, const Block& block, const List& list,
+                                   const Directions& along, std::span<double> loads) const {
+  using E = ElementOf<List>;
+  using D = Dual<double, 12>;  // by the poses of both bodies, then by their rates
+  const std::size_t w = along.width;
+  for (int e = 0; e < block.size(); ++e) {
+    const auto& entry = list[at(block.entry[at(e)])];
+    const int bodies[2] = {block.body_i[at(e)], E::bodies == 2 ? block.body_j[at(e)] : plan_->bodies};
+    const auto f = detail::design_frames<double>(block, e, plan_->moving, origin_,
+                                                 [&](int body) { return evaluator.frames()[at(body)]; });
+    std::array<D, E::functions + 1> values;
+    for (std::size_t n = 0; n < entry.values.size(); ++n) {
+      const auto& value = entry.values[n];
+      values[n] = value.function < 0 ? D(value.constant) : D(values_[at(value.function)].f);
+    }
+    const auto twist = [&](int body, int first) {
+      const double* rate = rates_.data() + 3 * body;
+      return Twist<D>{D::variable(rate[0], first), D::variable(rate[1], first + 1), D::variable(rate[2], first + 2)};
+    };
+    const Twist<D> u = twist(bodies[0], 6), v = twist(bodies[1], 9);
+    Wrench<D> on[2];
+    entry.element.force(
+        ForceArguments<D>{seed<double, 12>(f.i, 0), seed<double, 12>(f.j, 3), u, v, values.data(), f.ground}, on[0],
+        on[1]);
+    for (int b = 0; b < E::bodies; ++b) {
+      const D* parts[3] = {&on[b].fx, &on[b].fy, &on[b].moment};
+      for (int r = 0; r < 3; ++r) {
+        for (int k = 0; k < 3 * E::bodies; ++k) {
+          const std::size_t c = at(3 * bodies[k / 3] + k % 3) * w;
+          double* load = loads.data() + at(3 * bodies[b] + r) * w;
+          add_row(parts[r]->d[at(k)], along.dq.data() + c, w, load);
+          add_row(parts[r]->d[at(6 + k)], along.dqd.data() + c, w, load);
+        }
+      }
+    }
+  }
+}
+
+void MechanismTangents::add_along(const Evaluator& evaluator, std::span<const double> lambda,
+                                  std::span<const double> dq, std::span<const double> dqd, std::size_t width,
+                                  const TangentSums& sums) const {
+  const Directions along{dq, dqd, width};
+  for_each_list(plan_->blocks, model_->constraints, [&](const auto& block, const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    if constexpr (std::is_same_v<E, Revolute<double>>)
+      add_pins(block, list, lambda, along, sums);
+    else if constexpr (has_tangents<E>)
+      add_constraints(block, list, lambda, along, sums);
+  });
+  if (sums.loads.empty()) return;
+  for_each_list(plan_->forces, model_->forces, [&](const auto& block, const auto& list, int) {
+    if constexpr (has_tangents<ElementOf<decltype(list)>>) add_forces(evaluator, block, list, along, sums.loads);
+  });
+}
+
+}  // namespace catena

@@ -1,0 +1,54 @@
+// The derivatives of a motion's equations along any number of directions at once: those of AdjointMechanism not
+// transposed.
+//
+//   R = Q(q, qd) - M qdd - Phi_q^T lambda          loads += R_q dq + R_qd dqd + R_p
+//   Phi'' along the motion (q, qd, qdd)            bends += (Phi_q)'' dq + 2 (Phi_q)' dqd + Phi''_p
+//   Phi'                                           rates += (Phi_q)' dq + Phi'_p               Phi: phi += Phi_p
+//
+// dq, dqd: a row of `width` numbers a coordinate, one a direction. The matrices of an element are evaluated once, those
+// of pins from closed forms, and applied to all directions; by parameters only what they reach is differentiated. For
+// the models of AdjointMechanism. Units as in evaluate.hpp. Source: apps/manual/sensitivity.md.
+#pragma once
+
+#include "catena/assembly/design/adjoint_mechanism.hpp"
+
+namespace catena {
+
+/// Where derivatives go; empty spans: they are not wanted. Sizes: coordinates, or rows, times the width.
+struct TangentSums {
+  std::span<double> loads{}, phi{}, rates{}, bends{};
+};
+
+class MechanismTangents : public AdjointMechanism {
+ public:
+  using AdjointMechanism::AdjointMechanism;
+
+  /// Along directions, at the motion that was set. `lambda` of the solver's rows; without `sums.loads` it may be empty.
+  void add_along(const Evaluator& evaluator, std::span<const double> lambda, std::span<const double> dq,
+                 std::span<const double> dqd, std::size_t width, const TangentSums& sums) const;
+  /// By the parameters of a group, which are the directions from number `first` on; `mechanism` is set to the time, on
+  /// this side of it.
+  void add_parameters(const DesignMechanism& mechanism, Side side, const Reached& reached,
+                      std::span<const double> lambda, std::span<const double> qdd, std::size_t first, std::size_t width,
+                      const TangentSums& sums) const;
+
+ private:
+  struct Directions {
+    std::span<const double> dq, dqd;
+    std::size_t width;
+  };
+  template <class Block>
+  bool add_pin_parameters(const Block& block, int e, const Revolute<DesignScalar>& pin, std::span<const double> lambda,
+                          std::size_t first, std::size_t width, const TangentSums& sums) const;
+  template <class Block, class List>
+  void add_pins(const Block& block, const List& list, std::span<const double> lambda, const Directions& along,
+                const TangentSums& sums) const;
+  template <class Block, class List>
+  void add_constraints(const Block& block, const List& list, std::span<const double> lambda, const Directions& along,
+                       const TangentSums& sums) const;
+  template <class Block, class List>
+  void add_forces(const Evaluator& evaluator, const Block& block, const List& list, const Directions& along,
+                  std::span<double> loads) const;
+};
+
+}  // namespace catena
