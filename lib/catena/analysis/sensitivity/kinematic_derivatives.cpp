@@ -5,10 +5,84 @@
 #include <algorithm>
 #include <limits>
 
+#include "catena/base/at.hpp"
+
 namespace catena {
 
 KinematicDerivatives::KinematicDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters)
-    : StateDerivatives(evaluator, models, parameters), system_(evaluator.shared_plan(), SaddleBlock::none) {}
+    : StateDerivatives(evaluator, models, parameters), system_(evaluator.shared_plan(), SaddleBlock::none) {
+  if (groups().empty() || !AdjointMechanism::why_not(evaluator.model()).empty()) return;
+  tangents_ = std::make_unique<MechanismTangents>(this->evaluator());
+  for (Group& group : groups()) reached_.emplace_back(*tangents_, group.mechanism);
+  width_ = groups().size() * parameters_at_once;
+  for (auto* rows : {&q_, &qd_, &qdd_, &loads_}) rows->assign(at(plan().coordinates()) * width_, 0.0);
+  for (auto* rows : {&phi_, &rates_, &bends_}) rows->assign(at(plan().rows) * width_, 0.0);
+}
+
+bool KinematicDerivatives::solve_rows(const std::vector<double>& rows, std::vector<double>& x) {
+  const std::span<double> f = loads_scratch(), b = rows_scratch();
+  for (std::size_t p = 0; p < at(parameters()); ++p) {
+    std::fill(f.begin(), f.end(), 0.0);
+    for (std::size_t r = 0; r < b.size(); ++r) b[r] = -rows[r * width_ + p];
+    if (!system_.solve(f, b)) return false;
+    for (const int c : plan().coordinate) x[at(c) * width_ + p] = f[at(c)];
+  }
+  return true;
+}
+
+bool KinematicDerivatives::find_by_tangents(const Snapshot& snapshot, Side side) {
+  const bool velocity = !snapshot.qd.empty(), acceleration = velocity && !snapshot.qdd.empty();
+  const bool reacts = acceleration && !snapshot.lambda.empty();
+  tangents_->set_motion(evaluator(), snapshot.qd, snapshot.qdd, side);
+  for (auto* rows : {&phi_, &rates_, &bends_, &loads_}) std::fill(rows->begin(), rows->end(), 0.0);
+  TangentSums own{.phi = phi_};
+  if (velocity) own.rates = rates_;
+  if (acceleration) own.bends = bends_;
+  if (reacts) own.loads = loads_;
+  for (std::size_t g = 0; g < groups().size(); ++g) {
+    tangents_->add_parameters(groups()[g].mechanism, side, reached_[g], snapshot.lambda, snapshot.qdd,
+                              g * parameters_at_once, width_, own);
+  }
+  if (!solve_rows(phi_, q_)) return false;
+  if (velocity) {
+    tangents_->add_along(evaluator(), {}, q_, qd_, width_, {.rates = rates_});
+    if (!solve_rows(rates_, qd_)) return false;
+  }
+  if (acceleration) {
+    TangentSums sums{.bends = bends_};
+    if (reacts) sums.loads = loads_;
+    tangents_->add_along(evaluator(), snapshot.lambda, q_, qd_, width_, sums);
+    if (!solve_rows(bends_, qdd_)) return false;
+  }
+  const std::span<double> f = loads_scratch(), b = rows_scratch();
+  for (std::size_t g = 0, first = 0; g < groups().size(); ++g, first += parameters_at_once) {
+    Group& group = groups()[g];
+    for (const int coordinate : plan().coordinate) {
+      const std::size_t c = at(coordinate), row = c * width_ + first;
+      for (std::size_t p = 0; p < at(group.count); ++p) {
+        group.q[c].d[p] = q_[row + p];
+        if (velocity) group.qd[c].d[p] = qd_[row + p];
+        if (acceleration) group.qdd[c].d[p] = qdd_[row + p];
+      }
+    }
+    if (velocity)
+      group.mechanism.set_state(group.q, group.qd);
+    else
+      group.mechanism.set_state(group.q);
+    for (std::size_t p = 0; reacts && p < at(group.count); ++p) {
+      std::fill(b.begin(), b.end(), 0.0);
+      for (std::size_t c = 0; c < f.size(); ++c) {
+        const bool has_mass = c < at(3 * plan().moving);
+        f[c] = loads_[c * width_ + first + p];
+        if (has_mass) f[c] -= group.mechanism.mass(static_cast<int>(c)).v * qdd_[c * width_ + first + p];
+      }
+      if (!system_.solve(f, b)) return false;
+      for (std::size_t r = 0; r < b.size(); ++r) group.lambda[r].d[p] = b[r];
+    }
+    if (reacts && !system_.dependent_rows().empty()) leave_out_reactions(group);
+  }
+  return true;
+}
 
 bool KinematicDerivatives::solve_level(Group& group, int level, std::vector<DesignScalar>& target) {
   const std::span<double> f = loads_scratch(), b = rows_scratch();
@@ -90,6 +164,13 @@ bool KinematicDerivatives::find_at(const Snapshot& snapshot, Side side) {
                             snapshot.t));
   };
   if (!regular) return singular();
+  if (tangents_ && side == Side::after) {
+    for (Group& group : groups()) {
+      group.mechanism.set_time(snapshot.t, side);
+      lift_state(group, snapshot);
+    }
+    return find_by_tangents(snapshot, side) || singular();
+  }
   const bool velocity = !snapshot.qd.empty(), acceleration = velocity && !snapshot.qdd.empty();
   for (Group& group : groups()) {
     DesignMechanism& mechanism = group.mechanism;

@@ -4,14 +4,18 @@
 //   Phi_q^T lambda_p = Q_p - (M qdd)_p - (Phi_q^T)_p lambda
 //
 // The right-hand sides are minus the derivatives of the rows Phi, Phi', Phi'' and of the balance M qdd + Phi_q^T lambda
-// - Q along what is known of q_p, qd_p, qdd_p, by one evaluation in dual numbers each. One factorization an instant
-// and, for each parameter, one solve a level. Singular at singular configurations; multipliers of rows that depend on
-// others have no derivative: of many, the least are shown, and which these are depends on the parameters. Source:
-// apps/manual/sensitivity.md.
+// - Q along what is known of q_p, qd_p, qdd_p: from matrices of elements for all parameters at once, and what these
+// reach (mechanism_tangents.hpp); where there are none, by one evaluation in dual numbers each. One factorization an
+// instant and, for each parameter, one solve a level. Singular at singular configurations; multipliers of rows that
+// depend on others have no derivative: of many, the least are shown, and which these are depends on the parameters.
+// Source: apps/manual/sensitivity.md.
 #pragma once
+
+#include <memory>
 
 #include "catena/analysis/sensitivity/saddle_system.hpp"
 #include "catena/analysis/sensitivity/state_derivatives.hpp"
+#include "catena/assembly/design/mechanism_tangents.hpp"
 
 namespace catena {
 
@@ -34,7 +38,16 @@ class KinematicDerivatives final : public StateDerivatives {
   bool solve_level(Group& group, int level, std::vector<DesignScalar>& target);
   bool solve_multipliers(Group& group);
 
+  /// All levels for all parameters; the factors are those of the snapshot's configuration.
+  bool find_by_tangents(const Snapshot& snapshot, Side side);
+  /// Solves Phi_q x = -rows for all parameters.
+  bool solve_rows(const std::vector<double>& rows, std::vector<double>& x);
+
   SaddleSystem system_;
+  std::unique_ptr<MechanismTangents> tangents_;  // nullptr: not for this model
+  std::vector<AdjointMechanism::Reached> reached_;
+  std::size_t width_ = 0;
+  std::vector<double> q_, qd_, qdd_, loads_, phi_, rates_, bends_;  // rows of width_, a coordinate or equation each
 };
 
 }  // namespace catena
