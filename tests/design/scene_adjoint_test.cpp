@@ -218,6 +218,28 @@ TEST(ForwardInMotions, ByTangentsIsThatInDualNumbers) {
   }
 }
 
+// x(T) = a1 + 2 a2 + ... of a body that constant forces k a_k push for T = sqrt(2 m) = 2: the nearest point of the
+// plane a1 + 2 a2 + ... + 6 a6 = 9.1 to the origin is a_k = k / 10. Six variables and one measure: by the adjoint.
+TEST(AdjointInScenes, LeadsOptimiseToTheKnownOptimum) {
+  std::string parameters, forces, variables, sum, squares;
+  for (int k = 1; k <= 6; ++k) {
+    const std::string comma = k == 1 ? "" : ", ", a = "a" + std::to_string(k);
+    parameters += comma + "\"" + a + "\": 0.5";
+    forces += comma + R"({"type": "point_force", "i": "b", "force": ["=)" + std::to_string(k) + "*" + a + R"(", 0]})";
+    variables += comma + "\"" + a + R"(": {"min": -2, "max": 2})";
+    squares += (k == 1 ? "=" : "+") + a + "^2";
+  }
+  const TextRun run = run_text(R"({"catena": 1, "parameters": {)" + parameters + R"(},
+    "bodies": {"b": {"mass": 2, "inertia": 1}}, "forces": [)" +
+                               forces + R"(],
+    "analyses": [{"type": "optimise", "variables": {)" +
+                               variables + R"(}, "minimise": ")" + squares +
+                               R"(", "subject_to": ["=way == 9.1"], "of": {"type": "dynamics", "until": 2,
+      "tolerance": 1e-10, "measures": {"way": {"final": "b.x"}}}}]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+  for (int k = 1; k <= 6; ++k) EXPECT_NEAR(run.last("a" + std::to_string(k)), k / 10.0, 1e-6) << k;
+}
+
 // Columns d() of rows are wanted unless the mode is adjoint: auto carries them forward.
 TEST(AdjointInScenes, AutoGivesColumns) {
   const RandomChain chain(3, false);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/sensitivity/joint_jumps.hpp"
 #include "catena/scene/numbers/quantity.hpp"
 #include "catena/scene/running/analysis_run.hpp"
@@ -366,7 +367,10 @@ void AnalysisRows::finish(AnalysisResult& result) {
   if (accuracy_) result.digits = accuracy_->digits(result.report);
   take_rows(result, std::move(info_), rows_);
   for (const std::string& note : columns_.notes()) result.report.warnings.push_back(note);
-  for (MeasureResult& measure : measured()) {
+  const ProcessTimer timer;
+  std::vector<MeasureResult> measures = measured();
+  if (back_) result.report.seconds += timer.seconds();  // the way back comes after the run
+  for (MeasureResult& measure : measures) {
     if (timed_ && rows_alone_ && measure.trouble.empty())
       measure.trouble = "taken from the rows alone: this motion is not looked at between them";
     if (measure.times_second) measure.unit = times_second(measure.unit);
