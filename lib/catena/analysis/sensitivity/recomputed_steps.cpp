@@ -8,12 +8,11 @@
 namespace catena {
 namespace {
 
-// Steps are joined while they miss the end by no more than so many times what as many single steps miss it by:
-// gradients of 40 falling rods then miss the exact ones by 3e-3 of the tolerance at most. Where two miss it by a
-// thousand times what single steps do, so many times in a row, the motion's own steps are as long as the method allows:
-// the first steps of multistep methods, which are tiny, tell little.
-constexpr double more_misfit = 20, far_more_misfit = 1e3;
-constexpr int far_tries = 3;
+// Steps are joined while the end is missed by no more than so many times what they miss it by one after the other.
+// Where two miss it by a thousand times that, the motion's own steps are as long as the method allows, and none are
+// joined any more; so often at the start of a motion, where the first steps of multistep methods are tiny.
+constexpr double more_misfit = 2, far_more_misfit = 1e3;
+constexpr int far_tries_at_start = 3, far_tries = 1;
 // After one step too many, so many blocks pass before the next is tried.
 constexpr int blocks_between_tries = 8;
 // States before and after an instant that differ by less are one: whole turns are 6.
@@ -106,32 +105,22 @@ bool RecomputedSteps::prepare_interpolant(const Step& step) {
   return true;
 }
 
-RecomputedSteps::Misfit RecomputedSteps::misfit(const Step& step) const {
+double RecomputedSteps::misfit(const Step& step) const {
   const double h = step.to - step.from;
-  Misfit misfit;
+  double off[2] = {0, 0}, way[2] = {0, 0};
   for (std::size_t i = 0; i < step.end.size(); ++i) {
     double moved = 0;
     for (const StageTerm& term : dormand_prince_8().b) moved += h * term.weight * stages_[at(term.stage)]->slope[i];
     const std::size_t kind = i >= size_ / 2;
-    misfit.off[kind] = std::max(misfit.off[kind], std::abs(step.begin[i] + moved - step.end[i]));
-    misfit.way[kind] = std::max(misfit.way[kind], std::abs(moved));
+    off[kind] = std::max(off[kind], std::abs(step.begin[i] + moved - step.end[i]));
+    way[kind] = std::max(way[kind], std::abs(moved));
   }
-  return misfit;
-}
-
-double RecomputedSteps::beside_single_steps(const Misfit& misfit, std::size_t count) const {
-  double worst = 0;
-  for (std::size_t kind = 0; kind < 2; ++kind) {
-    if (misfit.way[kind] == 0) continue;
-    const double usual = static_cast<double>(count) * single_[kind] + rounding * misfit.way[kind];
-    worst = std::max(worst, misfit.off[kind] / usual);
-  }
-  return worst;
+  return std::max(way[0] > 0 ? off[0] / way[0] : 0, way[1] > 0 ? off[1] / way[1] : 0);
 }
 
 void RecomputedSteps::begin_anew() {
   at_once_ = 1;
-  single_ = {};
+  single_misfit_ = 0;
   waits_ = 1;
   far_ = 0;
 }
@@ -153,26 +142,23 @@ std::size_t RecomputedSteps::join(std::span<const Step> steps, From from, Step& 
       return std::abs(a - b) <= same_state * std::max({1.0, std::abs(a), std::abs(b)});
     });
   };
-  const std::size_t wanted = far_ < far_tries ? std::min(most_at_once, at_once_ + (waits_ > 0 ? 0 : 1)) : 1;
+  const bool joins = far_ < (from == From::front ? far_tries_at_start : far_tries);
+  const std::size_t wanted = joins ? std::min(most_at_once, at_once_ + (waits_ > 0 ? 0 : 1)) : 1;
   std::size_t count = 1;
   while (count < std::min(wanted, given) && follows(count + 1)) ++count;
   bool is_known = count == wanted;
   waits_ = std::max(waits_ - 1, 0);
   for (; count > 1; count -= std::max<std::size_t>(count / 4, 1)) {
     if (!take(count)) return 0;
-    const double missed = beside_single_steps(misfit(joined), count);
-    if (missed <= more_misfit) {
-      far_ = 0;
-      break;
-    }
+    const double missed = misfit(joined), usual = single_misfit_ + rounding;
+    if (missed <= more_misfit * usual) break;
     waits_ = blocks_between_tries;
     is_known = true;
-    if (count == 2 && missed > far_more_misfit) ++far_;
+    if (count == 2 && missed > far_more_misfit * usual) ++far_;
   }
   if (count == 1) {
     if (!take(1)) return 0;
-    const Misfit single = misfit(joined);
-    for (std::size_t kind = 0; kind < 2; ++kind) single_[kind] = std::max(single_[kind], single.off[kind]);
+    single_misfit_ = std::max(single_misfit_, misfit(joined));
   }
   // Where fewer were given than wanted nothing is learned about how many can be taken.
   if (is_known || count > at_once_) at_once_ = count;

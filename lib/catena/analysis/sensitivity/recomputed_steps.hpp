@@ -68,24 +68,18 @@ class RecomputedSteps {
   std::size_t join(std::span<const Step> steps, From from, Step& joined);
 
  private:
-  /// Of positions and of velocities: how far the recomputed end of a step lies from that of the motion, and what it
-  /// moves by.
-  struct Misfit {
-    std::array<double, 2> off{}, way{};
-  };
-  Misfit misfit(const Step& step) const;
-  /// In parts of what as many single steps miss their ends by.
-  double beside_single_steps(const Misfit& misfit, std::size_t count) const;
+  /// How far the recomputed end of a step lies from that of the motion, relative to what it moves by.
+  double misfit(const Step& step) const;
 
   const Evaluator& evaluator_;
   std::size_t size_;
   std::string why_not_;
   std::vector<std::unique_ptr<Stage>> stages_;
   double singular_at_ = 0;
-  std::size_t at_once_ = 1;         // steps that were joined last
-  std::array<double, 2> single_{};  // largest that steps by themselves missed their ends by
-  int waits_ = 1;                   // blocks until one more is tried
-  int far_ = 0;                     // how often in a row two together were far off
+  std::size_t at_once_ = 1;   // steps that were joined last
+  double single_misfit_ = 0;  // of a step by itself
+  int waits_ = 1;             // blocks until one more is tried
+  int far_ = 0;               // how often two together were far off
 };
 
 }  // namespace catena
