@@ -87,6 +87,7 @@ class DynamicsTask {
   void run_on();
   void run_with_events_or_pauses();
   void differentiate(AnalysisRows& rows, const Evaluator& evaluator);
+  void differentiate(AnalysisRows& rows, Dynamics& analysis) { differentiate(rows, analysis.evaluator()); }
   void differentiate(AnalysisRows& rows, DynamicsWithEvents& analysis);
   /// Whether instants of the motion itself are to be differentiated.
   bool has_phases() const;
@@ -166,9 +167,7 @@ void DynamicsTask::differentiate(AnalysisRows& rows, const Evaluator& evaluator)
   if (!context_.design) return;
   const GivenByModel start{context_.state.q.empty(), context_.state.qd.empty()};
   const auto parameters = static_cast<int>(context_.design->names.size());
-  const std::string_view obstacle = estimates_ ? "an estimate of the error is wanted"
-                                    : touches_ ? "contacts and friction act"
-                                               : "";
+  const std::string_view obstacle = estimates_ ? "an estimate of the error is wanted" : "";
   if (goes_back(context_, obstacle))
     rows.differentiate_back(std::make_unique<MotionMeasures>(evaluator, designs_of(context_), parameters, start));
   else
