@@ -59,6 +59,47 @@ double mean_force_arm(const Model& model) {
   return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
+// Of the points of curves from the centroids of their bodies, of the ground's from their own middle; 0 if none.
+double mean_curve_size(const Model& model) {
+  double sum = 0;
+  std::int64_t count = 0;
+  const auto add = [&](const BodyCurve<double>& curve, bool on_ground) {
+    if (!curve || curve.is_line()) return;
+    const std::vector<double> places = curve.samples();
+    Vec2<double> middle{};
+    if (on_ground) {
+      for (const double s : places) middle += curve.plain(s).p / static_cast<double>(places.size());
+    }
+    for (const double s : places) sum += norm(curve.plain(s).p - middle);
+    count += static_cast<std::int64_t>(places.size());
+  };
+  for_each_list(model.constraints, [&](const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    if constexpr (SearchesCurve<E>) {
+      for (const auto& entry : list) {
+        const auto visit = [&](const auto& field) {
+          if constexpr (std::is_same_v<std::remove_cvref_t<decltype(entry.element.*field.member)>, BodyCurve<double>>)
+            add(entry.element.*field.member, (field.body == 0 ? entry.i : entry.j) < 0);
+        };
+        std::apply([&](const auto&... field) { (visit(field), ...); }, E::fields());
+      }
+    }
+  });
+  return count > 0 ? sum / static_cast<double>(count) : 0;
+}
+
+// Radius of gyration of bodies with mass and inertia; 0 if none: where nothing but free bodies moves.
+double mean_gyration(const Model& model) {
+  double sum = 0;
+  int count = 0;
+  for (const auto& body : model.bodies) {
+    if (body.fixed || !(body.mass > 0) || !(body.inertia > 0)) continue;
+    sum += std::sqrt(body.inertia / body.mass);
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
 void require_same(std::size_t plan, std::size_t model, const char* what) {
   if (plan == model) return;
   throw std::invalid_argument("the model has " + std::to_string(model) + " " + what +
@@ -243,6 +284,8 @@ void Evaluator::load_values() {
   attachment_radii(&length_scale_);
   if (length_scale_ == 0) length_scale_ = extent(*model_);
   if (length_scale_ == 0) length_scale_ = mean_force_arm(*model_);
+  if (length_scale_ == 0) length_scale_ = mean_curve_size(*model_);
+  if (length_scale_ == 0) length_scale_ = mean_gyration(*model_);
   if (length_scale_ == 0) length_scale_ = 1;
   function_.resize(model_->functions.size());
   // Until an analysis sets its time; tables that begin later give their first value.

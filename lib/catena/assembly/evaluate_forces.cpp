@@ -1,10 +1,44 @@
 // Evaluation over bodies and force elements: loads, energies, second derivatives.
 #include <algorithm>
+#include <numeric>
 
 #include "catena/assembly/evaluate.hpp"
 #include "catena/base/at.hpp"
+#include "catena/elements/all.hpp"
 
 namespace catena {
+namespace {
+
+template <std::size_t n>
+constexpr bool has_places(const std::array<HessianEntry, n>& written) {
+  return std::any_of(written.begin(), written.end(), [](const HessianEntry& e) { return e.row % 3 != 2; });
+}
+
+/// Adds the blocks of one type's elements to their slots: `add(convex, slot, out)` adds them as they are, or their
+/// nearest ones without negative eigenvalues. What is nearest depends on what a radian counts beside a metre: one
+/// length scale of the mechanism, whatever the unit.
+template <std::size_t n, class Add>
+void add_second_derivatives(const std::array<HessianEntry, n>& written, bool convex, double length,
+                            const std::vector<int>& slots, Add&& add, std::span<double> values) {
+  if (!convex || !has_places(written)) return add(convex, slots.data(), values.data());
+  std::vector<int> in_order(slots.size());
+  std::iota(in_order.begin(), in_order.end(), 0);
+  std::vector<double> blocks(slots.size(), 0.0);
+  add(false, in_order.data(), blocks.data());
+  int rows = 0;
+  while (static_cast<std::size_t>(rows * (rows + 1) / 2) < n) ++rows;
+  std::array<double, n> unit;
+  for (std::size_t k = 0; k < n; ++k)
+    unit[k] = (written[k].row % 3 == 2 ? length : 1) * (written[k].column % 3 == 2 ? length : 1);
+  for (std::size_t first = 0; first < blocks.size(); first += n) {
+    double* const block = blocks.data() + first;
+    for (std::size_t k = 0; k < n; ++k) block[k] /= unit[k];
+    keep_positive_part(block, rows);
+    for (std::size_t k = 0; k < n; ++k) values[at(slots[first + k])] += unit[k] * block[k];
+  }
+}
+
+}  // namespace
 
 void Evaluator::applied_forces(std::span<const double> qd, std::span<double> Q) {
   ++counters.forces;
@@ -72,14 +106,21 @@ void Evaluator::add_hessians(std::span<const double> lambda, Curvature curvature
   const bool convex = curvature == Curvature::convex;
   for_each_list(plan_->blocks, [&](const auto& block, int type) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
-    ConstraintOperations<E>::add_hessians(block, std::get<ConstraintData<E>>(values_), frames_.data(), lambda.data(),
-                                          convex, slots.constraints[at(type)].data(), values.data());
+    const auto add = [&](bool own, const int* slot, double* out) {
+      ConstraintOperations<E>::add_hessians(block, std::get<ConstraintData<E>>(values_), frames_.data(), lambda.data(),
+                                            own, slot, out);
+    };
+    constexpr auto written = written_hessian<E>();
+    add_second_derivatives(written, convex, length_scale_, slots.constraints[at(type)], add, values);
   });
   for_each_list(plan_->forces, [&](const auto& block, int type) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
     if (slots.forces[at(type)].empty()) return;
-    ForceOperations<E>::add_stiffness(block, std::get<ForceData<E>>(force_values_), frames_.data(), convex,
-                                      slots.forces[at(type)].data(), values.data());
+    const auto add = [&](bool own, const int* slot, double* out) {
+      ForceOperations<E>::add_stiffness(block, std::get<ForceData<E>>(force_values_), frames_.data(), own, slot, out);
+    };
+    constexpr auto written = written_stiffness<E>();
+    add_second_derivatives(written, convex, length_scale_, slots.forces[at(type)], add, values);
   });
 }
 

@@ -60,9 +60,10 @@ void add_stiffness_times_places(StaticSystem& system, std::span<const double> la
 }
 
 // Whether all forces are rounding of what transmits them: constraints pass that of one coordinate on to all that they
-// tie together, so that among those the largest counts.
-bool are_rounding(const Plan& plan, std::span<const double> terms, std::span<const double> floor,
-                  std::span<const double> inverse_arms) {
+// tie together, so that among those the largest counts. Where none of these has an applied force, `applied` by
+// coordinates, multipliers are left over from elimination and balance nothing.
+bool are_rounding(const Plan& plan, std::span<const double> applied, std::span<const double> terms,
+                  std::span<const double> floor, std::span<const double> inverse_arms) {
   std::vector<int> leader(terms.size()), first(at(plan.rows), -1), of_body(at(plan.moving), -1);
   std::iota(leader.begin(), leader.end(), 0);
   const auto find = [&](int c) {
@@ -75,14 +76,15 @@ bool are_rounding(const Plan& plan, std::span<const double> terms, std::span<con
     for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k)
       tie(first[at(plan.jacobian.row_index[at(k)])], c);
   }
-  std::vector<double> force(terms.size(), 0.0), rounding(terms.size(), 0.0);
+  std::vector<double> force(terms.size(), 0.0), rounding(terms.size(), 0.0), acting(terms.size(), 0.0);
   for (int c = 0; c < plan.columns; ++c) {
     const std::size_t group = at(find(c));
     force[group] = std::max(force[group], terms[at(c)] * inverse_arms[at(c)]);
     rounding[group] = std::max(rounding[group], few_roundings * floor[at(c)] * inverse_arms[at(c)]);
+    acting[group] = std::max(acting[group], applied[at(plan.coordinate[at(c)])]);
   }
   for (std::size_t group = 0; group < force.size(); ++group) {
-    if (!(force[group] <= rounding[group])) return false;
+    if (acting[group] > 0 && !(force[group] <= rounding[group])) return false;
   }
   return true;
 }
@@ -123,7 +125,7 @@ StaticAccuracy judge_balance(StaticSystem& system, std::span<const double> lambd
   std::vector<double> floor = terms;
   add_stiffness_times_places(system, lambda, floor);
   // Without loads, with springs at their free lengths, all forces are rounding.
-  const bool nothing = !loaded && are_rounding(plan, terms, floor, inverse_arms);
+  const bool nothing = !loaded && are_rounding(plan, sizes.all, terms, floor, inverse_arms);
   bool rounded = true;
   double worst = -1;
   for (int c = 0; c < plan.columns; ++c) {

@@ -7,6 +7,7 @@
 
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/pose/jacobian_rank.hpp"
+#include "catena/assembly/systems/row_spread.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -160,9 +161,7 @@ class Exchange {
 
 // Whether the pivots of the factors leave no doubt that rows are independent.
 bool are_independent(const EquationsOfMotion& equations) {
-  const std::vector<double> sizes = equations.row_sizes();
-  const auto [least, largest] = std::minmax_element(sizes.begin(), sizes.end());
-  const double spread = *largest / *least;
+  const double spread = row_spread(equations.row_sizes(), equations.plan().row_is_angle);
   return equations.smallest_pivot_ratio() > std::max(independent_ratio, rounding_of_pivots * spread * spread);
 }
 

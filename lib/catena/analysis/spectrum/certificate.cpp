@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -10,12 +9,12 @@
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/analysis/spectrum/motion_groups.hpp"
+#include "catena/analysis/spectrum/tridiagonal.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-constexpr double neutral_part = 1e-10;
 // Modes softer than this part of the stiffest are tested for rounding: far above any rounding.
 constexpr double suspicious_part = 1e-6;
 // Stiffnesses below this count as zero, N/m.
@@ -74,11 +73,11 @@ class InverseLanczos {
 
   // The smallest |k| found, with its sign, and its vector.
   double softest(std::vector<double>& mode) const {
-    const auto solver = spectrum();
+    const TridiagonalSpectrum spectrum = tridiagonal_spectrum(alpha_, beta_);
     Eigen::Index largest = 0;
-    solver.eigenvalues().cwiseAbs().maxCoeff(&largest);
-    combine(solver.eigenvectors().col(largest), mode);
-    return 1 / solver.eigenvalues()[largest];
+    spectrum.theta.cwiseAbs().maxCoeff(&largest);
+    combine(spectrum.vectors.col(largest), mode);
+    return 1 / spectrum.theta[largest];
   }
 
  private:
@@ -107,20 +106,11 @@ class InverseLanczos {
     for (double& x : v) x /= length;
     return true;
   }
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum() const {
-    const auto n = static_cast<Eigen::Index>(alpha_.size());
-    Eigen::VectorXd diagonal(n), beside(std::max<Eigen::Index>(n - 1, 0));
-    for (Eigen::Index i = 0; i < n; ++i) diagonal[i] = alpha_[static_cast<std::size_t>(i)];
-    for (Eigen::Index i = 0; i + 1 < n; ++i) beside[i] = beta_[static_cast<std::size_t>(i)];
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-    solver.computeFromTridiagonal(diagonal, beside);
-    return solver;
-  }
   // Eigenvector of the tridiagonal matrix for the most negative k, else the smallest positive.
   Eigen::VectorXd lowest_ritz(double& k) const {
-    const auto solver = spectrum();
+    const TridiagonalSpectrum spectrum = tridiagonal_spectrum(alpha_, beta_);
     // k = 1 / theta: of negative ones the smallest in size is the lowest of the spectrum that is resolved.
-    const Eigen::VectorXd& theta = solver.eigenvalues();
+    const Eigen::VectorXd& theta = spectrum.theta;
     const double largest = theta.cwiseAbs().maxCoeff();
     Eigen::Index chosen = theta.size() - 1;
     for (Eigen::Index i = chosen; i >= 0; --i) {
@@ -130,7 +120,7 @@ class InverseLanczos {
       }
     }
     k = 1 / theta[chosen];
-    return solver.eigenvectors().col(chosen);
+    return spectrum.vectors.col(chosen);
   }
 
   StaticSystem& system_;

@@ -91,6 +91,7 @@ std::optional<FreeMotions> find_free_motions(StaticSystem& system, std::span<con
   }
   result.count = static_cast<int>(shapes.size());
   result.bodies = names_of_moving(system, lambda, shapes);
+  result.shapes = std::move(shapes);
   return result;
 }
 

@@ -17,16 +17,19 @@
 
 namespace catena {
 
+/// Part of sum |v_i K_ij v_j| below which a stiffness counts as none: the place itself is known no better.
+inline constexpr double neutral_part = 1e-10;
+
 struct FreeMotions {
   int count = 0;                    ///< how many independent ones
   int negative = 0;                 ///< modes of negative stiffness beside them
   std::vector<double> lowest;       ///< shape of the most negative of these, over columns; empty where there is none
   std::vector<std::string> bodies;  ///< names of those that take part in any free motion, in the model's order
+  std::vector<std::vector<double>> shapes;  ///< of the free ones, over columns
 };
 
-/// At the configuration and with the K that the system's matrix holds. `second_order`: part of sum |v_i K_ij v_j| below
-/// which a stiffness counts as none because the place itself is known no better; 0: rounding alone. Nothing where the
-/// mechanism is too large for dense algebra.
+/// At the configuration and with the K that the system's matrix holds. `second_order`: neutral_part, or 0:
+/// rounding alone. Nothing where the mechanism is too large for dense algebra.
 std::optional<FreeMotions> find_free_motions(StaticSystem& system, std::span<const double> lambda, double second_order);
 
 /// The same at a state as it is, balanced or not, with one-sided elements open. Nothing too where forces have no

@@ -1,8 +1,9 @@
 #include "catena/analysis/spectrum/modes_lanczos.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "catena/analysis/spectrum/tridiagonal.hpp"
 
 namespace catena {
 namespace {
@@ -89,16 +90,13 @@ bool Lanczos::clean(std::vector<double>& v) {
 
 bool Lanczos::update_spectrum(const Choice& choose) {
   const auto n = static_cast<Eigen::Index>(alpha_.size());
-  Eigen::VectorXd beside(std::max<Eigen::Index>(n - 1, 0));
-  for (Eigen::Index i = 0; i + 1 < n; ++i) beside[i] = beta_[static_cast<std::size_t>(i)];
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.computeFromTridiagonal(Eigen::Map<const Eigen::VectorXd>(alpha_.data(), n), beside);
-  theta_.assign(solver.eigenvalues().data(), solver.eigenvalues().data() + n);
-  coefficients_.assign(solver.eigenvectors().data(), solver.eigenvectors().data() + n * n);
+  const TridiagonalSpectrum spectrum = tridiagonal_spectrum(alpha_, beta_);
+  theta_.assign(spectrum.theta.data(), spectrum.theta.data() + n);
+  coefficients_.assign(spectrum.vectors.data(), spectrum.vectors.data() + n * n);
   const double largest = std::max(std::abs(theta_.front()), std::abs(theta_.back()));
   const std::vector<int> chosen = choose(theta_);
   for (int k : chosen) {
-    const double residual = std::abs(beta_.back() * solver.eigenvectors()(n - 1, k));
+    const double residual = std::abs(beta_.back() * spectrum.vectors(n - 1, k));
     if (residual > std::max(settled_part * std::abs(theta_[static_cast<std::size_t>(k)]), rounding_part * largest))
       return false;
   }

@@ -1,7 +1,10 @@
 #include "catena/analysis/statics/static_judge.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
+#include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -12,12 +15,24 @@ constexpr double step_rounding = 1e-15;
 // Largest remaining change where forces are known only to rounding of stiff springs, length scales or rad.
 constexpr double rounded_change = 1e-9;
 
-// Takes the part along the mode out of the change. Modes are of length 1 in the metric (1, 1, radius^2).
+// Takes the part along a mode out of the change, in the metric (1, 1, radius^2).
 void take_out(StaticSystem& system, std::span<const double> mode, std::vector<double>& change) {
   const std::span<const double> inverse_arms = system.matrix().inverse_arms();
-  double along = 0;
-  for (std::size_t c = 0; c < change.size(); ++c) along += change[c] * mode[c] / (inverse_arms[c] * inverse_arms[c]);
-  for (std::size_t c = 0; c < change.size(); ++c) change[c] -= along * mode[c];
+  double along = 0, square = 0;
+  for (std::size_t c = 0; c < change.size(); ++c) {
+    const double weighted = mode[c] / (inverse_arms[c] * inverse_arms[c]);
+    along += change[c] * weighted;
+    square += mode[c] * weighted;
+  }
+  for (std::size_t c = 0; c < change.size() && square > 0; ++c) change[c] -= along / square * mode[c];
+}
+
+// The same for motions of any shapes, which they are orthogonalised for.
+void take_out_all(StaticSystem& system, std::vector<std::vector<double>> shapes, std::vector<double>& change) {
+  for (std::size_t k = 0; k < shapes.size(); ++k) {
+    for (std::size_t before = 0; before < k; ++before) take_out(system, shapes[before], shapes[k]);
+    take_out(system, shapes[k], change);
+  }
 }
 
 }  // namespace
@@ -49,6 +64,12 @@ bool StaticJudge::is_accurate(std::span<const double> lambda, const Certificate&
   const StaticStep step = system_.solve(force, gap, step_rounding);
   std::vector<double> change(step.change.begin(), step.change.end());
   if (certificate.neutral && !certificate.mode.empty()) take_out(system_, certificate.mode, change);
+  if (system_.change_norm(change) <= rounded_change || certificate.neutral_modes < 2)
+    return system_.change_norm(change) <= rounded_change;
+  // Of several neutral motions a certificate has one.
+  std::optional<FreeMotions> free = find_free_motions(system_, lambda, neutral_part);
+  if (!free) return false;
+  take_out_all(system_, std::move(free->shapes), change);
   return system_.change_norm(change) <= rounded_change;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "catena/assembly/systems/row_spread.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -12,7 +13,7 @@ namespace {
 constexpr double schur_regularisation = 1e-12;  // part of the diagonal that is added
 constexpr double singular_ratio = 1e-10;        // below this pivot ratio it is ...
 constexpr double clearly_more = 10;             // ... until the ratio is so many times this, and without it as well ...
-constexpr double rounding_of_pivots = 1e-14;    // ... not below this part of the largest diagonal
+constexpr double rounding_of_pivots = 1e-14;    // ... not below this part of the largest diagonal of a row like it
 // Rounds in which a residual that shrinks to a half, at least, comes to rounding.
 constexpr int most_massless_rounds = 52;
 constexpr double massless_rounding = 1e-15;
@@ -171,8 +172,8 @@ bool SchurSystem::factorize(std::span<const double> jacobian, Counters& counters
     // without it, as far as rounding of the large ones allows.
     fill(0);
     if (!factor_values(counters)) return false;
-    const auto [least, largest] = std::minmax_element(diagonal_values_.begin(), diagonal_values_.end());
-    regularised_ = smallest_ratio_ < std::max(singular_ratio, rounding_of_pivots * *largest / *least);
+    const double spread = row_spread(diagonal_values_, plan_->row_is_angle);
+    regularised_ = smallest_ratio_ < std::max(singular_ratio, rounding_of_pivots * spread);
     if (regularised_) {
       fill(schur_regularisation);
       if (!factor_values(counters)) return false;
