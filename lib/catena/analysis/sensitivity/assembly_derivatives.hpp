@@ -19,6 +19,7 @@ class AssemblyDerivatives final : public StateDerivatives {
       lift_state(group, snapshot);
       if (!start.find_places(group.mechanism, group.count, group.q))
         return fail("the assembled configuration has no derivative: " + start.why());
+      if (!start.lack().empty()) lack_derivatives(start.lack());
       group.mechanism.set_state(group.q);
     }
     return true;

@@ -98,6 +98,7 @@ bool KinematicDerivatives::solve_level(Group& group, int level, std::vector<Desi
       const auto c = static_cast<std::size_t>(coordinate);
       target[c].d[p] = f[c];
     }
+    if (const int row = level == 0 ? system_.contradicted_row() : -1; row >= 0) leave_out_parameter(group, p, row);
   }
   return true;
 }

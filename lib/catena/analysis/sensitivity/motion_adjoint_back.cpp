@@ -170,6 +170,7 @@ bool MotionAdjoint::add_start(const Vector& y0, Vector& gradient) {
     for (std::size_t c = 0; c < n_; ++c) qd[c] = first.begin[n_ + c];
     if (!start.find(group.mechanism, group.count, q, qd))
       return fail("the start of the motion has no derivative: " + start.why());
+    if (!start.lack().empty()) lack_derivatives(start.lack());
     for (std::size_t i = 0; i < y.size(); ++i) {
       for (std::size_t p = 0; p < at(group.count); ++p) gradient[p0 + p] += y0[i] * y[i].d[p];
     }

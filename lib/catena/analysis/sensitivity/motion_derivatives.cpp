@@ -146,6 +146,7 @@ bool MotionDerivatives::start(double t, std::span<const double> q, std::span<con
                     std::span(tracks_[k].end).subspan(n_)))
       return fail("the start of the motion has no derivative: " + start.why());
   }
+  if (!start.lack().empty()) lack_derivatives(start.lack());
   const MovingInstant& instant = instant_at(t);
   if (!instant.moves()) return true;
   lack_derivatives(

@@ -1,5 +1,7 @@
 #include "catena/analysis/sensitivity/saddle_system.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,6 +15,9 @@ namespace {
 
 // Pivots further apart than this, in a matrix scaled by rows, are rounding: the matrix is singular.
 constexpr double regular = 1e-15;
+// Of the terms of a row: solutions are good to rounding x condition, and what a parameter asks of one row alone is of
+// the size of its terms.
+constexpr double contradicting = 1e-6;
 
 /// Pairs of moving bodies that an element of the plan ties, each once, the lower number first.
 std::vector<std::pair<int, int>> tied_pairs(const Plan& plan) {
@@ -122,6 +127,16 @@ bool SaddleSystem::make_pattern() {
     jacobian_slot_[at(used[k])] = slotted.slot[first + 2 * k];
     transposed_slot_[at(used[k])] = slotted.slot[first + 2 * k + 1];
   }
+  std::vector<int> place_of_dependent(at(plan_->rows), -1);
+  for (std::size_t k = 0; k < dependent_.size(); ++k) place_of_dependent[at(dependent_[k])] = static_cast<int>(k);
+  dependent_entries_.clear();
+  for (int c = 0; c < columns && !dependent_.empty(); ++c) {
+    for (int k = plan_->jacobian.column_start[at(c)]; k < plan_->jacobian.column_start[at(c) + 1]; ++k) {
+      const int place = place_of_dependent[at(plan_->jacobian.row_index[at(k)])];
+      if (place >= 0) dependent_entries_.push_back({place, c, k, 0});
+    }
+  }
+  asked_.assign(dependent_.size(), 0.0);
   solution_.resize(at(size));
   return factorization_.analyze(pattern_, Kernel::automatic, counters_).ok();
 }
@@ -138,6 +153,7 @@ bool SaddleSystem::begin(std::span<const double> jacobian) {
     values_[at(jacobian_slot_[k])] = jacobian[k];
     values_[at(transposed_slot_[k])] = jacobian[k];
   }
+  for (DependentEntry& entry : dependent_entries_) entry.value = jacobian[at(entry.entry)];
   return true;
 }
 
@@ -176,6 +192,7 @@ bool SaddleSystem::solve(std::span<double> f, std::span<double> b) {
   const std::size_t columns = at(plan_->columns);
   for (std::size_t c = 0; c < columns; ++c) solution_[c] = f[at(plan_->coordinate[c])];
   for (std::size_t k = 0; k < rows_.size(); ++k) solution_[columns + k] = b[at(rows_[k])];
+  for (std::size_t k = 0; k < dependent_.size(); ++k) asked_[k] = b[at(dependent_[k])];
   // A side that is not a number, of a parameter that has no derivatives, has a solution that is none.
   const bool is_number = std::all_of(solution_.begin(), solution_.end(), [](double x) { return !std::isnan(x); });
   if (!is_number)
@@ -186,6 +203,38 @@ bool SaddleSystem::solve(std::span<double> f, std::span<double> b) {
   std::fill(b.begin(), b.end(), 0.0);
   for (std::size_t k = 0; k < rows_.size(); ++k) b[at(rows_[k])] = solution_[columns + k];
   return true;
+}
+
+// Terms are counted with the largest change of all coordinates of their kind, m or rad: what is zero but for rounding
+// contradicts nothing.
+int SaddleSystem::contradicted_row() const {
+  if (dependent_.empty()) return -1;
+  double largest[2] = {};
+  for (int c = 0; c < plan_->columns; ++c) {
+    double& most = largest[plan_->coordinate[at(c)] % 3 == 2 ? 1 : 0];
+    most = std::max(most, std::abs(solution_[at(c)]));
+  }
+  std::vector<double> left = asked_, terms(asked_.size());
+  for (std::size_t k = 0; k < terms.size(); ++k) terms[k] = std::abs(asked_[k]);
+  for (const DependentEntry& entry : dependent_entries_) {
+    left[at(entry.place)] -= entry.value * solution_[at(entry.column)];
+    terms[at(entry.place)] += std::abs(entry.value) * largest[plan_->coordinate[at(entry.column)] % 3 == 2 ? 1 : 0];
+  }
+  int worst = -1;
+  double most = contradicting;
+  for (std::size_t k = 0; k < left.size(); ++k) {
+    if (!(std::abs(left[k]) > most * terms[k])) continue;
+    most = std::abs(left[k]) / terms[k];
+    worst = dependent_[k];
+  }
+  return worst;
+}
+
+std::string describe_contradiction(const Model& model, const Plan& plan, int row) {
+  return fmt::format(
+      "\"{}\" depends on other constraints, and a parameter moves it or these alone: beside the present value no "
+      "configuration meets them all, and there is no derivative by it; let the parameter move all of them",
+      model.element_name(plan.row_element[at(row)]));
 }
 
 }  // namespace catena

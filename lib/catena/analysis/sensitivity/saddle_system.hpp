@@ -6,14 +6,15 @@
 //                                                A = K         equilibrium; W, the metric of a projection
 //
 // over the columns of the plan and a maximal independent set of those rows that hold: multipliers of the other rows are
-// zero, and what they ask of x follows from the rest. Singular where A is, on the null space of Phi_q: the equilibrium
-// is neutral, the mechanism under-driven. Factors of other analyses are regularised or of other matrices; one more
-// factorization an instant is the price for derivatives that are exact to rounding x condition.
-// Source: apps/manual/sensitivity.md.
+// zero, and what they ask of x follows from the rest or contradicts it (contradicted_row). Singular where A is, on the
+// null space of Phi_q: the equilibrium is neutral, the mechanism under-driven. Factors of other analyses are
+// regularised or of other matrices; one more factorization an instant is the price for derivatives that are exact to
+// rounding x condition. Source: apps/manual/sensitivity.md.
 #pragma once
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "catena/assembly/evaluate.hpp"
@@ -44,10 +45,19 @@ class SaddleSystem {
   /// Solves in place: f over coordinates, b over all rows of the plan; x and lambda take their places. Sizes
   /// coordinates() and rows; what is no unknown is left alone in f and zero in lambda. False where that fails.
   bool solve(std::span<double> f, std::span<double> b);
+  /// The dependent row that x of the last solve() does not meet, b of the rows it depends on asking for another change;
+  /// -1 where all agree. The worst one.
+  int contradicted_row() const;
   /// Rows that depend on others: their multipliers are not determined.
   const std::vector<int>& dependent_rows() const { return dependent_; }
 
  private:
+  struct DependentEntry {
+    int place;  // in dependent_
+    int column, entry;
+    double value;
+  };
+
   void choose_rows(std::span<const double> jacobian);
   bool make_pattern();
   int block_of(int body_i, int body_j) const;
@@ -58,6 +68,8 @@ class SaddleSystem {
   bool rows_known_ = false, analyzed_ = false;
   SparsePattern pattern_;
   std::vector<double> values_, solution_;
+  std::vector<DependentEntry> dependent_entries_;     // of Phi_q
+  std::vector<double> asked_;                         // b of dependent rows at the last solve()
   std::vector<int> diagonal_slot_;                    // per column
   std::vector<int> jacobian_slot_, transposed_slot_;  // per entry of Phi_q; -1: the row is not solved with
   std::vector<std::pair<int, int>> pairs_;            // of bodies i <= j that share an element, sorted
@@ -65,5 +77,8 @@ class SaddleSystem {
   Factorization factorization_;
   Counters counters_;
 };
+
+/// Why there is no derivative by a parameter that moves this row alone.
+std::string describe_contradiction(const Model& model, const Plan& plan, int row);
 
 }  // namespace catena

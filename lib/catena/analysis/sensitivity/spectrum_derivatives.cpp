@@ -79,6 +79,7 @@ bool SpectrumDerivatives::find_as_equilibrium(const Snapshot& snapshot) {
       if (!system.solve(f, b)) return false;
       for (const int c : plan().coordinate) group.q[at(c)].d[p] = f[at(c)];
       for (std::size_t r = 0; r < b.size(); ++r) group.lambda[r].d[p] = b[r];
+      if (const int row = system.contradicted_row(); row >= 0) leave_out_parameter(group, p, row);
     }
   }
   return true;
@@ -125,6 +126,7 @@ bool SpectrumDerivatives::find(const Snapshot& snapshot) {
     lift_state(group, snapshot);
     if (!start.find_places(group.mechanism, group.count, group.q))
       return fail("the place has no derivative: " + start.why());
+    if (!start.lack().empty()) lack_derivatives(start.lack());
     if (!find_multipliers(group, snapshot.t)) return false;
   }
   return true;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <tuple>
 
@@ -148,6 +149,10 @@ bool StartDerivatives::find_places(DesignMechanism& mechanism, int count, std::s
     for (std::size_t r = 0; r < b.size(); ++r) b[r] = -rows[r].f.d[p];
     if (!assembly_.solve(f, b)) return singular();
     for (const int c : plan_.coordinate) q[at(c)].d[p] = f[at(c)];
+    if (const int row = assembly_.contradicted_row(); row >= 0) {
+      lack_ = describe_contradiction(evaluator_.model(), plan_, row);
+      for (DesignScalar& place : q) place.d[p] = std::numeric_limits<double>::quiet_NaN();
+    }
   }
   return true;
 }

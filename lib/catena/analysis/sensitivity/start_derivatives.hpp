@@ -35,6 +35,8 @@ class StartDerivatives {
   bool find(DesignMechanism& mechanism, int count, std::span<DesignScalar> q, std::span<DesignScalar> qd);
   /// Why there are none; a sentence without full stop.
   const std::string& why() const { return why_; }
+  /// Why there are none by some parameters, whose derivatives are not numbers; empty where there are by all.
+  const std::string& lack() const { return lack_; }
 
  private:
   bool find_velocities(DesignMechanism& mechanism, int count, std::span<const DesignScalar> q,
@@ -58,7 +60,7 @@ class StartDerivatives {
   SaddleSystem assembly_, velocities_;
   std::vector<double> jacobian_, weight_, wanted_;
   std::vector<char> given_, follows_;  // by coordinate
-  std::string why_;
+  std::string why_, lack_;
 };
 
 }  // namespace catena

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "catena/analysis/sensitivity/saddle_system.hpp"
 #include "catena/columns/state_laws.hpp"
 
 namespace catena {
@@ -57,8 +58,14 @@ void StateDerivatives::lift(std::span<const double> values, std::vector<DesignSc
 }
 
 void StateDerivatives::leave_out_reactions(Group& group) {
-  lack_ = "reactions of constraints that depend on each other are not unique, and have no derivative";
+  if (lack_.empty())
+    lack_ = "reactions of constraints that depend on each other are not unique, and have no derivative";
   for (DesignScalar& multiplier : group.lambda) multiplier.d.fill(std::numeric_limits<double>::quiet_NaN());
+}
+
+void StateDerivatives::leave_out_parameter(Group& group, std::size_t p, int row) {
+  lack_ = describe_contradiction(evaluator_.model(), plan(), row);
+  for (DesignScalar& place : group.q) place.d[p] = std::numeric_limits<double>::quiet_NaN();
 }
 
 void StateDerivatives::lift_state(Group& group, const Snapshot& snapshot) {

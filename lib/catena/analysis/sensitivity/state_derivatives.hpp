@@ -101,6 +101,8 @@ class StateDerivatives {
   }
   /// Multipliers of rows that depend on each other: which of them are shown depends on the parameters.
   void leave_out_reactions(Group& group);
+  /// A parameter that moves this row alone of several that depend on each other: no state has a derivative by it.
+  void leave_out_parameter(Group& group, std::size_t p, int row);
   /// Phi_q at the evaluator's configuration, size entries.
   std::span<const double> jacobian();
   /// Values without derivatives.

@@ -61,6 +61,7 @@ bool StaticDerivatives::factorize(const Snapshot& snapshot, bool transposed) {
   evaluator().set_time(snapshot.t);
   evaluator().set_configuration(snapshot.q);
   if (!leave_open_gaps_out(snapshot)) return false;
+  if (is_neutral_ && is_neutral_()) return neutral();
   if (!system_.begin(jacobian())) return neutral();
   evaluator().visit_stiffness(rest_, [&](int i, int j, ElementMatrix m) {
     for (std::size_t r = 0; transposed && r < 6; ++r) {
@@ -92,6 +93,7 @@ bool StaticDerivatives::find(const Snapshot& snapshot) {
       if (!system_.solve(f, b)) return neutral();
       for (const int c : plan().coordinate) group.q[static_cast<std::size_t>(c)].d[p] = f[static_cast<std::size_t>(c)];
       for (std::size_t r = 0; r < b.size(); ++r) group.lambda[r].d[p] = b[r];
+      if (const int row = system_.contradicted_row(); row >= 0) leave_out_parameter(group, p, row);
     }
     if (!unique) leave_out_reactions(group);
     mechanism.set_state(group.q);

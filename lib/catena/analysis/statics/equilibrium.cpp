@@ -91,6 +91,7 @@ EquilibriumReport Equilibrium::solve() {
     report.counters = evaluator_.counters;
     report.seconds = timer.seconds();
     solved_ = report.ok();
+    neutral_ = report.neutral;
     return report;
   };
   if (Report functions = check_time_functions(*model_, {t_, t_}); !functions.ok()) return end(std::move(functions));

@@ -88,6 +88,8 @@ class Equilibrium {
   /// Whether the last one was found; the equations at it, with the factors that it was certified by.
   bool is_solved() const { return solved_; }
   StaticSystem& system() { return system_; }
+  /// Whether something moves there that nothing resists; while rows are sent, of the equilibrium of the row.
+  bool is_neutral() const { return neutral_; }
   std::span<const double> q() const { return q_; }
   /// Multipliers of the solver's rows: V_q + Phi_q^T lambda = 0; the least ones where constraints are redundant.
   std::span<const double> lambda() const { return lambda_; }
@@ -107,7 +109,7 @@ class Equilibrium {
   EquilibriumOptions options_;
   Evaluator evaluator_;
   StaticSystem system_;
-  bool solved_ = false;
+  bool solved_ = false, neutral_ = false;
   double t_ = 0;
   std::vector<double> q_, lambda_;
 };

@@ -80,11 +80,13 @@ EquilibriumReport Equilibrium::find_several(const Needs& needs, RowObserver& obs
   for (const Candidate& candidate : found) {
     q_ = candidate.q;
     lambda_ = candidate.lambda;
+    neutral_ = candidate.report.neutral;
     system_.move_to(q_);
     if (!send_row(needs, observer, report)) break;
   }
   q_ = found.front().q;
   lambda_ = found.front().lambda;
+  neutral_ = found.front().report.neutral;
   system_.move_to(q_);
   return report;
 }

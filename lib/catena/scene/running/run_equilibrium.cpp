@@ -151,6 +151,7 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
     else
       found = std::make_unique<StaticDerivatives>(analysis.evaluator(), designs_of(context), parameters);
     derivatives = found.get();
+    derivatives->ask_whether_neutral([&analysis] { return analysis.is_neutral(); });
     rows.differentiate(std::move(found));
   }
   EquilibriumAccuracy* accuracy = nullptr;
