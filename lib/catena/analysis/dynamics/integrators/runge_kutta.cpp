@@ -51,7 +51,8 @@ RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options) : motion
   for (std::size_t c = 0; c < direction_.size(); c += 3) weight_ += motion_.equations().masses().mass[c];
   const Vec2<double> gravity = motion_.equations().evaluator().model().gravity;
   weight_ *= std::hypot(gravity.x, gravity.y) * scale_.length;
-  keeps_energy_ = options.fixed_step == 0 && !motion_.equations().state_loads() && !is_driven(motion_.equations());
+  driven_ = is_driven(motion_.equations());
+  keeps_energy_ = options.fixed_step == 0 && !motion_.equations().state_loads() && !driven_;
   singular_ratio_ = std::max(singular_end, std::pow(lost_digits / std::sqrt(options.tolerance), 2.0 / 3));
 }
 
@@ -106,6 +107,11 @@ std::vector<std::string> RungeKutta::remarks() const {
     all.push_back(fmt::format("order 5 took over for {} steps where order 8 failed repeatedly", low_order_steps_));
   if (projected_steps_ > 0)
     all.push_back(fmt::format("{} steps across nearly singular positions were projected", projected_steps_));
+  if (turns_ > 0)
+    all.push_back(
+        fmt::format("{} times the motion turned where branches pass each other, the last time at a distance "
+                    "of {:.2g} rad or length scales: steps there were shortened to it",
+                    turns_, branches_->gap()));
   if (partition_ && partition_->choices() > 1)
     all.push_back(fmt::format("independent coordinates were chosen {} times", partition_->choices()));
   return all;
@@ -139,7 +145,7 @@ bool RungeKutta::take_over(double t, std::span<const double> y, double h, const 
 double RungeKutta::pivot_ratio() const { return motion_.equations().smallest_pivot_ratio() / usual_ratio_; }
 
 bool RungeKutta::dips() const {
-  return smallest_stage_ratio_ < std::min(projection_ratio, ratio_dip * largest_stage_ratio_);
+  return !turning_ && smallest_stage_ratio_ < std::min(projection_ratio, ratio_dip * largest_stage_ratio_);
 }
 
 void RungeKutta::observe_ratio() {

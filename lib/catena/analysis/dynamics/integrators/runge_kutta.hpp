@@ -25,6 +25,7 @@
 #include <span>
 #include <vector>
 
+#include "catena/analysis/dynamics/integrators/branch_keeping.hpp"
 #include "catena/analysis/dynamics/integrators/coordinate_partition.hpp"
 #include "catena/analysis/dynamics/integrators/error_scale.hpp"
 #include "catena/analysis/dynamics/integrators/integrator.hpp"
@@ -108,6 +109,7 @@ class RungeKutta final : public Integrator {
   double rounding_of_velocity(double h) const;
   double rounding_of_crossing(double h) const;
   void repeat_with_projected_stages(double h);
+  bool leaves_branch(double h);
   bool try_crossing(double h, double error, double rounding);
   double compared_with_end(double h, double error);
   void reject(double h);
@@ -124,6 +126,7 @@ class RungeKutta final : public Integrator {
 
   Motion motion_;
   std::unique_ptr<CoordinatePartition> partition_;  // only where it is asked for
+  std::unique_ptr<BranchKeeping> branches_;         // from the first passage on, without drivers
   RungeKuttaOptions options_;
   ErrorScale scale_;
   double t_new_ = 0, h_ = 0, stabilisation_ = 0;
@@ -135,13 +138,14 @@ class RungeKutta final : public Integrator {
   std::vector<double> detour_steps_, stage_ratio_;
   std::vector<double> stage_power_, direction_;  // W; see runge_kutta_energy.cpp
   double roughness_ = 0;                         // of the last stages: sum of |weight| ratio^-1.5
-  bool keeps_energy_ = false;                    // its balance says how fast the mechanism moves
-  double weight_ = 0;                            // of all bodies, times the length scale, J
+  bool driven_ = false;
+  bool keeps_energy_ = false;  // its balance says how fast the mechanism moves
+  double weight_ = 0;          // of all bodies, times the length scale, J
   bool interpolant_ready_ = false, by_ends_ = false, passing_singular_ = false, projecting_stages_ = false,
-       crossing_ = false, long_steps_ = false, best_passes_ = false, taking_best_ = false;
+       crossing_ = false, long_steps_ = false, turning_ = false, best_passes_ = false, taking_best_ = false;
   int acting_rows_ = 0;  // see jacobian_rank.hpp
   int low_order_left_ = 0, rejections_ = 0, detours_ = 0;
-  std::int64_t low_order_steps_ = 0, projected_steps_ = 0;
+  std::int64_t low_order_steps_ = 0, projected_steps_ = 0, turns_ = 0;
   double accepted_error_ = 1, step_error_ = 1, best_error_ = 0, best_step_ = 0;
   double smallest_stage_ratio_ = 1, largest_stage_ratio_ = 1, start_ratio_ = 1, singular_ratio_ = 0,
          usual_ratio_ = 1e-300;

@@ -22,6 +22,11 @@ constexpr double least_aimed = 0.3, largest_aimed = 3;
 constexpr double passed = 0.3;
 // Pivot ratios below which all methods project, and above which they cease to.
 constexpr double nearly_singular = 0.1, regular = 0.2;
+// A passage may lie within a step of which a pivot ratio is this small, compared with those at both ends, or of which
+// one end is, compared with the other.
+constexpr double dip_inside = 0.35, dip_at_end = 0.02;
+// The first step that is tried where one had left its branch.
+constexpr double shortened = 0.125;
 constexpr int rejections_before_low_order = 8, low_order_run = 30;
 constexpr int most_rejections = 100;
 
@@ -88,6 +93,32 @@ bool RungeKutta::try_crossing(double h, double error, double rounding) {
   taking_best_ = true;
   best_step_ = 0;
   return true;
+}
+
+// Whether the step of size h, which passes beside a singular position, has ended on another branch. The passage is
+// where the sines, roots of the pivot ratios, would be zero if they changed in proportion to time.
+bool RungeKutta::leaves_branch(double h) {
+  EquationsOfMotion& equations = motion_.equations();
+  const double end = pivot_ratio(), least = std::min(start_ratio_, end), most = std::max(start_ratio_, end);
+  if (!(std::min(smallest_stage_ratio_, least) < nearly_singular)) return false;
+  if (!(smallest_stage_ratio_ < dip_inside * least) && !(least < dip_at_end * most)) return false;
+  if (driven_) return false;
+  if (!branches_) branches_ = std::make_unique<BranchKeeping>();
+  const double before = std::sqrt(start_ratio_), s = before / (before + std::sqrt(end));
+  const std::span<const double> y(y_), next(y_new_);
+  const std::span<const double> q0 = motion_.q(y), v0 = motion_.qd(y), q1 = motion_.q(next), v1 = motion_.qd(next);
+  y_stage_.assign(y_.size(), 0.0);
+  const std::span<double> middle = motion_.q(std::span(y_stage_));
+  for (std::size_t k = 0; k < middle.size(); ++k) {
+    const double r = 1 - s;
+    middle[k] = r * r * ((1 + 2 * s) * q0[k] + s * h * v0[k]) + s * s * ((3 - 2 * s) * q1[k] - r * h * v1[k]);
+  }
+  Evaluator& evaluator = equations.evaluator();
+  const std::vector<CurvePlace> places = evaluator.curve_places();
+  const bool left = branches_->leaves(equations, q0, q1, middle);
+  evaluator.go_to_curve_places(places);
+  evaluator.set_configuration(q1);
+  return left;
 }
 
 bool RungeKutta::advance(double limit) {
@@ -158,7 +189,7 @@ bool RungeKutta::advance(double limit) {
     }
     const double ratio = pivot_ratio();
     if (ratio > 10 * singular_ratio_) passing_singular_ = false;
-    if (ratio < singular_ratio_ && !passing_singular_ && !lands && !fixed && projects()) {
+    if (ratio < singular_ratio_ && !passing_singular_ && !turning_ && !lands && !fixed && projects()) {
       if (detour(h, error)) continue;
       passing_singular_ = true;
     }
@@ -166,6 +197,12 @@ bool RungeKutta::advance(double limit) {
       culprit_ = -1;
       if (fixed) return false;
       reject(h / 4);
+      continue;
+    }
+    if (projects() && !fixed && leaves_branch(h)) {
+      turns_ += turning_ ? 0 : 1;
+      turning_ = true;
+      reject(shortened * h);
       continue;
     }
     accept(growth, std::max(proposed, h));
@@ -194,6 +231,7 @@ void RungeKutta::accept(double growth, double proposed) {
   motion_.equations().evaluator().curve_places(curve_places_);
   observe_ratio();
   observe_rates();
+  if (start_ratio_ > regular) turning_ = false;
   // A step that was shortened by a limit does not change the usual step.
   h_ = rejections_ > 0 ? h * std::min(growth, 1.0) : std::max(h * growth, h < proposed ? proposed : 0.0);
 }

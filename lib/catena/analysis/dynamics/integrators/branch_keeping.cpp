@@ -1,0 +1,139 @@
+#include "catena/analysis/dynamics/integrators/branch_keeping.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "catena/base/at.hpp"
+
+namespace catena {
+namespace {
+
+// A combination with less than this of a row's length is near to losing it; the next one must have more.
+constexpr double nearly_lost = 0.3;
+constexpr int most_steps = 12;
+// Length of the last step, and of the longest, length scales or rad: beyond it q_s is no neighbour of the passage.
+constexpr double arrival = 1e-9, longest_step = 1;
+// Eigenvalues of H below this part of the largest belong to motions that do not change the combination.
+constexpr double unconcerned = 1e-6;
+// Rounding of residuals, in units of the coordinates: a few sums of products.
+constexpr double few_roundings = 32 * std::numeric_limits<double>::epsilon();
+
+}  // namespace
+
+// One step of Newton's method towards q_s; c, H and Z are those of the place before it.
+bool BranchKeeping::approach(EquationsOfMotion& equations, bool& arrived) {
+  Evaluator& evaluator = equations.evaluator();
+  const Plan& plan = equations.plan();
+  evaluator.set_configuration(q_);
+  evaluator.phi(phi_);
+  evaluator.jacobian(values_);
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(plan.rows, plan.columns);
+  for (int c = 0; c < plan.columns; ++c) {
+    for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k)
+      jacobian(plan.jacobian.row_index[at(k)], c) = values_[at(k)] * unit_[c];
+  }
+  const Eigen::VectorXd scale = jacobian.rowwise().norm().unaryExpr([](double l) { return l > 0 ? 1 / l : 0; });
+  jacobian = scale.asDiagonal() * jacobian;
+  const Eigen::VectorXd phi = scale.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(phi_.data(), plan.rows));
+  // Ascending: those that always depend on others, the one that nearly does, the rest.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> squares(jacobian * jacobian.transpose());
+  const Eigen::Index idle = (scale.array() == 0).count() + equations.left_out().count();
+  const Eigen::Index rest = plan.rows - idle - 1, free = plan.columns - rest;
+  const auto& value = squares.eigenvalues();
+  if (rest < 0 || free < 1 || !(value[idle] < nearly_lost * nearly_lost)) return false;
+  if (rest > 0 && value[idle + 1] < nearly_lost * nearly_lost && value[idle + 1] < 100 * value[idle]) return false;
+  const Eigen::VectorXd w = squares.eigenvectors().col(idle);
+  const Eigen::MatrixXd others = jacobian.transpose() * squares.eigenvectors().rightCols(rest);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> factors(others);
+  basis_ = Eigen::MatrixXd::Zero(plan.columns, free);
+  basis_.bottomRows(free).setIdentity();
+  if (rest > 0) basis_.applyOnTheLeft(factors.householderQ());
+  const Eigen::VectorXd lambda = scale.cwiseProduct(w);
+  Eigen::MatrixXd bend = Eigen::MatrixXd::Zero(plan.columns, plan.columns);
+  evaluator.visit_constraint_hessians(std::span(lambda.data(), at(plan.rows)), [&](int i, int j, const auto& matrix) {
+    const auto column = [&](int k) {
+      const int body = k < 3 ? i : j;
+      return body >= 0 && body < plan.moving ? plan.column[at(3 * body + k % 3)] : -1;
+    };
+    for (int r = 0; r < 6; ++r) {
+      for (int c = 0; c < 6; ++c) {
+        if (column(r) >= 0 && column(c) >= 0)
+          bend(column(r), column(c)) += matrix[at(6 * r + c)] * unit_[column(r)] * unit_[column(c)];
+      }
+    }
+  });
+  hessian_ = basis_.transpose() * bend * basis_;
+  offset_ = w.dot(phi);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> curvature(hessian_);
+  const double least = unconcerned * curvature.eigenvalues().cwiseAbs().maxCoeff();
+  const Eigen::VectorXd slope =
+      curvature.eigenvectors().transpose() * (basis_.transpose() * (jacobian.transpose() * w));
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(free);
+  for (Eigen::Index k = 0; k < free; ++k) {
+    if (std::abs(curvature.eigenvalues()[k]) > least) x[k] = -slope[k] / curvature.eigenvalues()[k];
+  }
+  Eigen::VectorXd step = basis_ * (curvature.eigenvectors() * x);
+  if (rest > 0) {
+    const Eigen::VectorXd missed = squares.eigenvectors().rightCols(rest).transpose() * phi;
+    step -= others * missed.cwiseQuotient(value.tail(rest));
+  }
+  const double length = step.norm();
+  if (!(length < longest_step)) return false;
+  for (int c = 0; c < plan.columns; ++c) q_[at(plan.coordinate[at(c)])] += unit_[c] * step[c];
+  arrived = length < arrival;
+  return true;
+}
+
+double BranchKeeping::along(const Plan& plan, std::span<const double> q) const {
+  double sum = 0;
+  for (int c = 0; c < plan.columns; ++c) {
+    const std::size_t k = at(plan.coordinate[at(c)]);
+    sum += direction_[c] * (q[k] - q_[k]) / unit_[c];
+  }
+  return sum;
+}
+
+bool BranchKeeping::leaves(EquationsOfMotion& equations, std::span<const double> q0, std::span<const double> q1,
+                           std::span<const double> middle) {
+  const Plan& plan = equations.plan();
+  if (plan.rows == 0 || plan.rows > most_rows) return false;
+  const double length = equations.evaluator().length_scale();
+  unit_.resize(plan.columns);
+  double extent = 1;
+  for (int c = 0; c < plan.columns; ++c) {
+    const int coordinate = plan.coordinate[at(c)];
+    unit_[c] = coordinate % 3 == 2 ? 1 : length;
+    extent = std::max(extent, std::abs(q0[at(coordinate)]) / unit_[c]);
+  }
+  q_.assign(middle.begin(), middle.end());
+  phi_.resize(at(plan.rows));
+  values_.resize(at(plan.trash_slot()) + 1);
+  equations.evaluator().start_jacobian(values_);
+  bool arrived = false;
+  for (int k = 0; k < most_steps && !arrived; ++k) {
+    if (!approach(equations, arrived)) return false;
+  }
+  if (!arrived || !(std::abs(offset_) > few_roundings * extent)) return false;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> curvature(hessian_);
+  const Eigen::VectorXd& value = curvature.eigenvalues();
+  const double least = unconcerned * value.cwiseAbs().maxCoeff();
+  Eigen::Index own = -1, of_its_sign = 0, against = 0;
+  for (Eigen::Index k = 0; k < value.size(); ++k) {
+    if (!(std::abs(value[k]) > least)) continue;
+    if ((value[k] > 0) == (offset_ < 0)) {
+      ++of_its_sign;
+      own = k;
+    } else {
+      ++against;
+    }
+  }
+  if (of_its_sign != 1 || against == 0) return false;
+  direction_ = basis_ * curvature.eigenvectors().col(own);
+  gap_ = std::sqrt(2 * std::abs(offset_ / value[own]));
+  return along(plan, q0) * along(plan, q1) < 0;
+}
+
+}  // namespace catena

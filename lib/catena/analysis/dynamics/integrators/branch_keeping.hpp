@@ -1,0 +1,50 @@
+// Whether a step has left its branch where two branches nearly meet.
+//
+// Near a configuration q_s at which one combination of the constraints loses its gradient, w^T Phi_q = 0, what the
+// others allow, q = q_s + Z x, meets that combination where
+//
+//   c + 1/2 x^T H x = 0,   c = w^T Phi(q_s),   H = Z^T (w^T Phi_qq) Z
+//
+// c = 0: branches cross there, and a motion goes straight on. c != 0: branches pass each other at the distance
+// sqrt(2 |c| / |lambda|), and a motion turns from the direction of one asymptote into that of the other. A step that is
+// longer than that may go straight on and end on the branch beyond, which meets the constraints as well; no error of
+// the step tells it. Where H has one eigenvalue lambda of the sign of -c, the two parts are told apart by the sign of x
+// along its eigenvector e: a step between x of different signs has left its branch.
+//
+// q_s is found by Newton's method from the middle of the passage; lengths in length scales, rows of length one. Not
+// judged: c below rounding, several combinations at once, more than `most_rows` rows, drivers. Allocates; it is asked
+// for steps that pass beside a singular position only. Source: apps/manual/dynamics.md#singular-passages.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "catena/analysis/motion/equations_of_motion.hpp"
+
+namespace catena {
+
+class BranchKeeping {
+ public:
+  static constexpr int most_rows = 120;
+
+  /// Whether a step from q0 to q1 (size coordinates()) at the evaluator's time has left its branch; `middle`: about
+  /// where it passes. The evaluator is left elsewhere, the factors of the equations as they are.
+  bool leaves(EquationsOfMotion& equations, std::span<const double> q0, std::span<const double> q1,
+              std::span<const double> middle);
+  /// How far from each other the branches pass that the last step was caught between, rad or length scales.
+  double gap() const { return gap_; }
+
+ private:
+  bool approach(EquationsOfMotion& equations, bool& arrived);
+  double along(const Plan& plan, std::span<const double> q) const;
+
+  std::vector<double> q_, phi_, values_;
+  Eigen::VectorXd unit_;         // of columns, m or rad
+  Eigen::MatrixXd basis_;        // Z, over columns in these units
+  Eigen::MatrixXd hessian_;      // H
+  Eigen::VectorXd direction_;    // e, over columns
+  double offset_ = 0, gap_ = 0;  // c
+};
+
+}  // namespace catena
