@@ -47,7 +47,7 @@ class InverseLanczos {
     if (!normalise(v)) return 0;
     basis_.push_back(v);
     double best = 0, before = 0;
-    Eigen::VectorXd ritz;
+    std::vector<double> ritz;
     for (int step = 0; step < steps; ++step) {
       std::vector<double> w = basis_.back();
       apply(w);
@@ -74,17 +74,20 @@ class InverseLanczos {
   // The smallest |k| found, with its sign, and its vector.
   double softest(std::vector<double>& mode) const {
     const TridiagonalSpectrum spectrum = tridiagonal_spectrum(alpha_, beta_);
-    Eigen::Index largest = 0;
-    spectrum.theta.cwiseAbs().maxCoeff(&largest);
-    combine(spectrum.vectors.col(largest), mode);
+    const std::size_t largest = largest_in_size(spectrum.theta);
+    combine(spectrum.vector(largest), mode);
     return 1 / spectrum.theta[largest];
   }
 
  private:
-  void combine(const Eigen::VectorXd& ritz, std::vector<double>& mode) const {
+  static std::size_t largest_in_size(const std::vector<double>& theta) {
+    const auto smaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
+    return static_cast<std::size_t>(std::max_element(theta.begin(), theta.end(), smaller) - theta.begin());
+  }
+  void combine(std::span<const double> ritz, std::vector<double>& mode) const {
     mode.assign(weights_.size(), 0.0);
-    for (std::size_t b = 0; b < basis_.size() && b < static_cast<std::size_t>(ritz.size()); ++b) {
-      for (std::size_t k = 0; k < mode.size(); ++k) mode[k] += ritz[static_cast<Eigen::Index>(b)] * basis_[b][k];
+    for (std::size_t b = 0; b < basis_.size() && b < ritz.size(); ++b) {
+      for (std::size_t k = 0; k < mode.size(); ++k) mode[k] += ritz[b] * basis_[b][k];
     }
     normalise(mode);
   }
@@ -107,20 +110,21 @@ class InverseLanczos {
     return true;
   }
   // Eigenvector of the tridiagonal matrix for the most negative k, else the smallest positive.
-  Eigen::VectorXd lowest_ritz(double& k) const {
+  std::vector<double> lowest_ritz(double& k) const {
     const TridiagonalSpectrum spectrum = tridiagonal_spectrum(alpha_, beta_);
     // k = 1 / theta: of negative ones the smallest in size is the lowest of the spectrum that is resolved.
-    const Eigen::VectorXd& theta = spectrum.theta;
-    const double largest = theta.cwiseAbs().maxCoeff();
-    Eigen::Index chosen = theta.size() - 1;
-    for (Eigen::Index i = chosen; i >= 0; --i) {
+    const std::vector<double>& theta = spectrum.theta;
+    const double largest = std::abs(theta[largest_in_size(theta)]);
+    std::size_t chosen = theta.size() - 1;
+    for (std::size_t i = theta.size(); i-- > 0;) {
       if (theta[i] < -1e-6 * largest) {
         chosen = i;
         break;
       }
     }
     k = 1 / theta[chosen];
-    return spectrum.vectors.col(chosen);
+    const std::span<const double> vector = spectrum.vector(chosen);
+    return {vector.begin(), vector.end()};
   }
 
   StaticSystem& system_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "catena/analysis/spectrum/tridiagonal.hpp"
 
@@ -89,14 +90,14 @@ bool Lanczos::clean(std::vector<double>& v) {
 }
 
 bool Lanczos::update_spectrum(const Choice& choose) {
-  const auto n = static_cast<Eigen::Index>(alpha_.size());
-  const TridiagonalSpectrum spectrum = tridiagonal_spectrum(alpha_, beta_);
-  theta_.assign(spectrum.theta.data(), spectrum.theta.data() + n);
-  coefficients_.assign(spectrum.vectors.data(), spectrum.vectors.data() + n * n);
+  TridiagonalSpectrum spectrum = tridiagonal_spectrum(alpha_, beta_);
+  theta_ = std::move(spectrum.theta);
+  coefficients_ = std::move(spectrum.vectors);
   const double largest = std::max(std::abs(theta_.front()), std::abs(theta_.back()));
   const std::vector<int> chosen = choose(theta_);
   for (int k : chosen) {
-    const double residual = std::abs(beta_.back() * spectrum.vectors(n - 1, k));
+    const double residual =
+        std::abs(beta_.back() * coefficients_[(static_cast<std::size_t>(k) + 1) * theta_.size() - 1]);
     if (residual > std::max(settled_part * std::abs(theta_[static_cast<std::size_t>(k)]), rounding_part * largest))
       return false;
   }

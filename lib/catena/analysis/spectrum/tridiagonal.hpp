@@ -8,33 +8,21 @@
 // Matrix Computations, section 8.3.
 #pragma once
 
-#include <Eigen/Eigenvalues>
-#include <algorithm>
-#include <cmath>
 #include <span>
+#include <vector>
 
 namespace catena {
 
 struct TridiagonalSpectrum {
-  Eigen::VectorXd theta;
-  Eigen::MatrixXd vectors;  ///< by columns
+  std::vector<double> theta;
+  std::vector<double> vectors;  ///< one after the other, each as long as theta
+
+  std::span<const double> vector(std::size_t k) const {
+    return std::span(vectors).subspan(k * theta.size(), theta.size());
+  }
 };
 
 /// `beta` holds one entry fewer than `alpha`, or more, which do not count.
-inline TridiagonalSpectrum tridiagonal_spectrum(std::span<const double> alpha, std::span<const double> beta) {
-  double largest = 0;
-  for (std::size_t k = 0; k < alpha.size(); ++k) {
-    largest = std::max(largest, std::abs(alpha[k]));
-    if (k + 1 < alpha.size()) largest = std::max(largest, std::abs(beta[k]));
-  }
-  const double unit = largest > 0 && std::isfinite(largest) ? std::ldexp(1.0, std::ilogb(largest)) : 1;
-  const auto n = static_cast<Eigen::Index>(alpha.size());
-  Eigen::VectorXd diagonal(n), beside(std::max<Eigen::Index>(n - 1, 0));
-  for (Eigen::Index k = 0; k < n; ++k) diagonal[k] = alpha[static_cast<std::size_t>(k)] / unit;
-  for (Eigen::Index k = 0; k + 1 < n; ++k) beside[k] = beta[static_cast<std::size_t>(k)] / unit;
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.computeFromTridiagonal(diagonal, beside);
-  return {unit * solver.eigenvalues(), solver.eigenvectors()};
-}
+TridiagonalSpectrum tridiagonal_spectrum(std::span<const double> alpha, std::span<const double> beta);
 
 }  // namespace catena

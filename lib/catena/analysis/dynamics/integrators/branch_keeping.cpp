@@ -1,10 +1,12 @@
 #include "catena/analysis/dynamics/integrators/branch_keeping.hpp"
 
+#include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "catena/base/at.hpp"
 
@@ -21,19 +23,43 @@ constexpr double unconcerned = 1e-6;
 // Rounding of residuals, in units of the coordinates: a few sums of products.
 constexpr double few_roundings = 32 * std::numeric_limits<double>::epsilon();
 
-}  // namespace
+/// The search for q_s, and what is known there.
+class Passage {
+ public:
+  Passage(EquationsOfMotion& of, std::span<const double> start) : equations(of), q(start.begin(), start.end()) {
+    const Plan& plan = of.plan();
+    unit.resize(plan.columns);
+    for (int c = 0; c < plan.columns; ++c)
+      unit[c] = plan.coordinate[at(c)] % 3 == 2 ? 1 : of.evaluator().length_scale();
+    phi_.resize(at(plan.rows));
+    values_.resize(at(plan.trash_slot()) + 1);
+    of.evaluator().start_jacobian(values_);
+  }
+
+  bool approach(bool& arrived);
+  double along(const Eigen::VectorXd& direction, std::span<const double> place) const;
+
+  EquationsOfMotion& equations;
+  std::vector<double> q;
+  Eigen::VectorXd unit;            // of columns, m or rad
+  Eigen::MatrixXd basis, hessian;  // Z over columns in these units, H
+  double offset = 0;               // c
+
+ private:
+  std::vector<double> phi_, values_;
+};
 
 // One step of Newton's method towards q_s; c, H and Z are those of the place before it.
-bool BranchKeeping::approach(EquationsOfMotion& equations, bool& arrived) {
+bool Passage::approach(bool& arrived) {
   Evaluator& evaluator = equations.evaluator();
   const Plan& plan = equations.plan();
-  evaluator.set_configuration(q_);
+  evaluator.set_configuration(q);
   evaluator.phi(phi_);
   evaluator.jacobian(values_);
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(plan.rows, plan.columns);
   for (int c = 0; c < plan.columns; ++c) {
     for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k)
-      jacobian(plan.jacobian.row_index[at(k)], c) = values_[at(k)] * unit_[c];
+      jacobian(plan.jacobian.row_index[at(k)], c) = values_[at(k)] * unit[c];
   }
   const Eigen::VectorXd scale = jacobian.rowwise().norm().unaryExpr([](double l) { return l > 0 ? 1 / l : 0; });
   jacobian = scale.asDiagonal() * jacobian;
@@ -48,9 +74,9 @@ bool BranchKeeping::approach(EquationsOfMotion& equations, bool& arrived) {
   const Eigen::VectorXd w = squares.eigenvectors().col(idle);
   const Eigen::MatrixXd others = jacobian.transpose() * squares.eigenvectors().rightCols(rest);
   const Eigen::HouseholderQR<Eigen::MatrixXd> factors(others);
-  basis_ = Eigen::MatrixXd::Zero(plan.columns, free);
-  basis_.bottomRows(free).setIdentity();
-  if (rest > 0) basis_.applyOnTheLeft(factors.householderQ());
+  basis = Eigen::MatrixXd::Zero(plan.columns, free);
+  basis.bottomRows(free).setIdentity();
+  if (rest > 0) basis.applyOnTheLeft(factors.householderQ());
   const Eigen::VectorXd lambda = scale.cwiseProduct(w);
   Eigen::MatrixXd bend = Eigen::MatrixXd::Zero(plan.columns, plan.columns);
   evaluator.visit_constraint_hessians(std::span(lambda.data(), at(plan.rows)), [&](int i, int j, const auto& matrix) {
@@ -61,69 +87,63 @@ bool BranchKeeping::approach(EquationsOfMotion& equations, bool& arrived) {
     for (int r = 0; r < 6; ++r) {
       for (int c = 0; c < 6; ++c) {
         if (column(r) >= 0 && column(c) >= 0)
-          bend(column(r), column(c)) += matrix[at(6 * r + c)] * unit_[column(r)] * unit_[column(c)];
+          bend(column(r), column(c)) += matrix[at(6 * r + c)] * unit[column(r)] * unit[column(c)];
       }
     }
   });
-  hessian_ = basis_.transpose() * bend * basis_;
-  offset_ = w.dot(phi);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> curvature(hessian_);
+  hessian = basis.transpose() * bend * basis;
+  offset = w.dot(phi);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> curvature(hessian);
   const double least = unconcerned * curvature.eigenvalues().cwiseAbs().maxCoeff();
-  const Eigen::VectorXd slope =
-      curvature.eigenvectors().transpose() * (basis_.transpose() * (jacobian.transpose() * w));
+  const Eigen::VectorXd slope = curvature.eigenvectors().transpose() * (basis.transpose() * (jacobian.transpose() * w));
   Eigen::VectorXd x = Eigen::VectorXd::Zero(free);
   for (Eigen::Index k = 0; k < free; ++k) {
     if (std::abs(curvature.eigenvalues()[k]) > least) x[k] = -slope[k] / curvature.eigenvalues()[k];
   }
-  Eigen::VectorXd step = basis_ * (curvature.eigenvectors() * x);
+  Eigen::VectorXd step = basis * (curvature.eigenvectors() * x);
   if (rest > 0) {
     const Eigen::VectorXd missed = squares.eigenvectors().rightCols(rest).transpose() * phi;
     step -= others * missed.cwiseQuotient(value.tail(rest));
   }
   const double length = step.norm();
   if (!(length < longest_step)) return false;
-  for (int c = 0; c < plan.columns; ++c) q_[at(plan.coordinate[at(c)])] += unit_[c] * step[c];
+  for (int c = 0; c < plan.columns; ++c) q[at(plan.coordinate[at(c)])] += unit[c] * step[c];
   arrived = length < arrival;
   return true;
 }
 
-double BranchKeeping::along(const Plan& plan, std::span<const double> q) const {
+double Passage::along(const Eigen::VectorXd& direction, std::span<const double> place) const {
+  const Plan& plan = equations.plan();
   double sum = 0;
   for (int c = 0; c < plan.columns; ++c) {
     const std::size_t k = at(plan.coordinate[at(c)]);
-    sum += direction_[c] * (q[k] - q_[k]) / unit_[c];
+    sum += direction[c] * (place[k] - q[k]) / unit[c];
   }
   return sum;
 }
+
+}  // namespace
 
 bool BranchKeeping::leaves(EquationsOfMotion& equations, std::span<const double> q0, std::span<const double> q1,
                            std::span<const double> middle) {
   const Plan& plan = equations.plan();
   if (plan.rows == 0 || plan.rows > most_rows) return false;
-  const double length = equations.evaluator().length_scale();
-  unit_.resize(plan.columns);
+  Passage passage(equations, middle);
   double extent = 1;
-  for (int c = 0; c < plan.columns; ++c) {
-    const int coordinate = plan.coordinate[at(c)];
-    unit_[c] = coordinate % 3 == 2 ? 1 : length;
-    extent = std::max(extent, std::abs(q0[at(coordinate)]) / unit_[c]);
-  }
-  q_.assign(middle.begin(), middle.end());
-  phi_.resize(at(plan.rows));
-  values_.resize(at(plan.trash_slot()) + 1);
-  equations.evaluator().start_jacobian(values_);
+  for (int c = 0; c < plan.columns; ++c)
+    extent = std::max(extent, std::abs(q0[at(plan.coordinate[at(c)])]) / passage.unit[c]);
   bool arrived = false;
   for (int k = 0; k < most_steps && !arrived; ++k) {
-    if (!approach(equations, arrived)) return false;
+    if (!passage.approach(arrived)) return false;
   }
-  if (!arrived || !(std::abs(offset_) > few_roundings * extent)) return false;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> curvature(hessian_);
+  if (!arrived || !(std::abs(passage.offset) > few_roundings * extent)) return false;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> curvature(passage.hessian);
   const Eigen::VectorXd& value = curvature.eigenvalues();
   const double least = unconcerned * value.cwiseAbs().maxCoeff();
   Eigen::Index own = -1, of_its_sign = 0, against = 0;
   for (Eigen::Index k = 0; k < value.size(); ++k) {
     if (!(std::abs(value[k]) > least)) continue;
-    if ((value[k] > 0) == (offset_ < 0)) {
+    if ((value[k] > 0) == (passage.offset < 0)) {
       ++of_its_sign;
       own = k;
     } else {
@@ -131,9 +151,9 @@ bool BranchKeeping::leaves(EquationsOfMotion& equations, std::span<const double>
     }
   }
   if (of_its_sign != 1 || against == 0) return false;
-  direction_ = basis_ * curvature.eigenvectors().col(own);
-  gap_ = std::sqrt(2 * std::abs(offset_ / value[own]));
-  return along(plan, q0) * along(plan, q1) < 0;
+  const Eigen::VectorXd direction = passage.basis * curvature.eigenvectors().col(own);
+  gap_ = std::sqrt(2 * std::abs(passage.offset / value[own]));
+  return passage.along(direction, q0) * passage.along(direction, q1) < 0;
 }
 
 }  // namespace catena

@@ -13,12 +13,10 @@
 //
 // q_s is found by Newton's method from the middle of the passage; lengths in length scales, rows of length one. Not
 // judged: c below rounding, several combinations at once, more than `most_rows` rows, drivers. Allocates; it is asked
-// for steps that pass beside a singular position only. Source: apps/manual/dynamics.md#singular-passages.
+// for steps that pass beside a singular position only. Source: apps/manual/numerics.md#singular-passages.
 #pragma once
 
-#include <Eigen/Core>
 #include <span>
-#include <vector>
 
 #include "catena/analysis/motion/equations_of_motion.hpp"
 
@@ -36,15 +34,7 @@ class BranchKeeping {
   double gap() const { return gap_; }
 
  private:
-  bool approach(EquationsOfMotion& equations, bool& arrived);
-  double along(const Plan& plan, std::span<const double> q) const;
-
-  std::vector<double> q_, phi_, values_;
-  Eigen::VectorXd unit_;         // of columns, m or rad
-  Eigen::MatrixXd basis_;        // Z, over columns in these units
-  Eigen::MatrixXd hessian_;      // H
-  Eigen::VectorXd direction_;    // e, over columns
-  double offset_ = 0, gap_ = 0;  // c
+  double gap_ = 0;
 };
 
 }  // namespace catena

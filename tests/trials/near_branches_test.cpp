@@ -1,0 +1,101 @@
+// A slider-crank whose rod is longer than its crank by 1e-4 ... 1e-10 of it, and its derivatives.
+//
+//   sin(theta) = -sin(z) / (1 + d),  x = cos(z) + (1 + d) cos(theta) > 0        dt = sqrt(M(z) / M(z0)) / z'(0) dz
+//
+// Without loads the kinetic energy M z'^2 / 2 stays. At z = pi/2 branches pass at sqrt(2 d) rad: the slider turns back.
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "scene/run_text.hpp"
+
+namespace catena::testing {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double start = 0.5, rate = 4, until = 0.6, inertia = 0.1;
+
+Json slider_crank(double d, double tolerance, const std::string& method) {
+  const double rod = 1 + d, y = std::sin(start), x = std::cos(start), theta = -std::asin(y / rod);
+  const double end = x + rod * std::cos(theta), turning = -rate * x / (rod * std::cos(theta));
+  const auto body = [](double px, double py, double angle, double vx, double vy, double omega) {
+    return Json{{"mass", 1},      {"inertia", inertia},   {"position", {px, py}},
+                {"angle", angle}, {"velocity", {vx, vy}}, {"angular_velocity", omega}};
+  };
+  return {{"catena", 1},
+          {"gravity", {0, 0}},
+          {"bodies",
+           {{"crank", body(x / 2, y / 2, start, -rate * y / 2, rate * x / 2, rate)},
+            {"rod", body((x + end) / 2, y / 2, theta, -rate * y - rod / 2 * std::sin(theta) * turning,
+                         rate * x + rod / 2 * std::cos(theta) * turning, turning)},
+            {"slider", body(end, 0, 0, -rate * y - rod * std::sin(theta) * turning, 0, 0)}}},
+          {"constraints",
+           {{{"type", "revolute"}, {"name", "a"}, {"i", {"ground", {0, 0}}}, {"j", {"crank", {-0.5, 0}}}},
+            {{"type", "revolute"}, {"name", "b"}, {"i", {"crank", {0.5, 0}}}, {"j", {"rod", {-rod / 2, 0}}}},
+            {{"type", "revolute"}, {"name", "c"}, {"i", {"rod", {rod / 2, 0}}}, {"j", {"slider", {0, 0}}}},
+            {{"type", "translational"},
+             {"name", "guide"},
+             {"i", {"ground", {0, 0}}},
+             {"j", {"slider", {0, 0}}},
+             {"axis_i", {1, 0}}}}},
+          {"analyses",
+           {{{"type", "dynamics"}, {"until", until}, {"every", until}, {"method", method}, {"tolerance", tolerance}}}},
+          {"outputs", {"crank.angle", "rod.angle", "slider.x"}}};
+}
+
+/// The time at which the crank is at z, by the midpoint rule with points that crowd at the corner.
+double time_at(double z, double d) {
+  const auto root_of_mass = [&](double at) {
+    const double rod = 1 + d, sine = -std::sin(at) / rod;
+    const double cosine = std::sqrt((rod - std::sin(at)) * (rod + std::sin(at))) / rod;
+    const double turning = -std::cos(at) / (rod * cosine);
+    const double vx = -std::sin(at) - rod / 2 * sine * turning, vy = std::cos(at) + rod / 2 * cosine * turning;
+    const double slider = -std::sin(at) - rod * sine * turning;
+    return std::sqrt(0.25 + inertia + vx * vx + vy * vy + inertia * turning * turning + slider * slider);
+  };
+  constexpr double corner = std::numbers::pi / 2;
+  constexpr int points = 40000;
+  double sum = 0;
+  for (const double side : {start, z}) {
+    // at = corner + (side - corner) u^4
+    for (int n = 0; n < points; ++n) {
+      const double u = (n + 0.5) / points;
+      sum += (side == z ? 1 : -1) * (side - corner) * 4 * u * u * u *
+             root_of_mass(corner + (side - corner) * std::pow(u, 4)) / points;
+    }
+  }
+  return sum / root_of_mass(start) / rate;
+}
+
+using Passage = std::tuple<const char*, double, double>;
+class NearBranches : public ::testing::TestWithParam<Passage> {};
+
+TEST_P(NearBranches, TurnWithTheirOwn) {
+  const auto [method, d, tolerance] = GetParam();
+  const TextRun run = run_text(slider_crank(d, tolerance, method).dump());
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.analysis().report.message;
+  const double z = run.last("crank.angle");
+  ASSERT_GT(z, std::numbers::pi / 2 + 0.2);
+  EXPECT_GT(run.last("slider.x"), 0);
+  EXPECT_NEAR(run.last("rod.angle"), -std::asin(std::sin(z) / (1 + d)), 1e-7);
+  EXPECT_NEAR(time_at(z, d), until, 1e-8 + 100 * tolerance);
+}
+INSTANTIATE_TEST_SUITE_P(
+    All, NearBranches,
+    ::testing::Combine(::testing::Values("auto", "rk8", "rk5", "adams", "baumgarte", "partitioning"),
+                       ::testing::Values(1e-4, 1e-6, 1e-8, 1e-10), ::testing::Values(1e-4, 1e-6, 1e-8)));
+
+// Where the rod is as long as the crank both are flat for an instant, and the motion goes straight on.
+TEST(NearBranches, GoStraightOnWhereTheyCross) {
+  for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
+    const TextRun run = run_text(slider_crank(0, tolerance, "rk8").dump());
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.analysis().report.message;
+    EXPECT_LT(run.last("slider.x"), -0.5);
+    for (const std::string& warning : run.analysis().report.warnings)
+      EXPECT_EQ(warning.find("branches pass"), std::string::npos) << warning;
+  }
+}
+
+}  // namespace
+}  // namespace catena::testing
