@@ -9,8 +9,8 @@
 namespace catena::testing {
 namespace {
 
-// Equilibria that rounding leads to another place of rest, of all that end `ok`: a share measured below.
-constexpr double most_not_compared = 0.1;
+// Equilibria that rounding leads to another place of rest, of all that end `ok`: 3.0 % of 235 and 3.5 % of 226.
+constexpr double most_not_compared = 0.06;
 
 TEST(RandomInvariance, UnitsDoNotMatter) {
   std::map<std::string, int> seen;
