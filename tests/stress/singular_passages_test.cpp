@@ -3,8 +3,9 @@
 //
 // Crank and rod of a slider are of lengths r and r (1 + d), the crank and rocker of a four-bar of r (1 - d) and r: both
 // turn through a position in which, for d = 0, another motion begins, and turn a corner there of a width of sqrt(2 d)
-// rad. What is wrong is printed by distance and tolerance. Asserted is that nothing is from 1e-6 on: closer by, steps
-// go straight on along the other motion, which meets the same constraints, and nothing tells them yet.
+// rad. What is wrong is printed by distance and tolerance. Asserted is that nothing is from 1e-6 on; closer by, where
+// steps are made short enough to turn (integrators/branch_keeping.hpp), trials/near_branches_test.cpp asserts a
+// slider-crank down to 1e-10.
 #include <cstdlib>
 
 #include "oracles/redundant_trials.hpp"
