@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -88,6 +89,9 @@ int write_results(const BenchCommand& command, const bench::Document& document) 
   if (!command.json.empty()) write(command.json, bench::to_json(document));
   if (!command.html.empty()) write(command.html, bench::page_of(document));
   if (!command.svg.empty()) {
+    // A folder that cannot be made shows in the first file.
+    std::error_code trouble;
+    std::filesystem::create_directories(command.svg, trouble);
     for (const bench::Figure& figure : bench::figures_of(document))
       write(command.svg + "/" + figure.name + ".svg", figure.svg);
   }

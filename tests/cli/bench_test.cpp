@@ -166,7 +166,6 @@ double largest_error(const json& row) {
 
 TEST(Bench, BriefRunOfAllSuitesIsRight) {
   const TemporaryFolder folder;
-  std::filesystem::create_directory(folder / "plots");
   const ProgramResult run = run_catena(
       {"bench", "--brief", "--json", folder / "b.json", "--html", folder / "b.html", "--svg", folder / "plots"});
   EXPECT_EQ(run.exit_code, 0) << run.err << run.out;
