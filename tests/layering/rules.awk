@@ -9,7 +9,7 @@
 #
 #   analysis  run <- pose <- motion <- events <- {kinematics, contact <- dynamics};  pose <- balance <- spectrum <- statics/solvers <- statics <- stability
 #             run <- measures;  {motion, contact} <- sensitivity, sensitivity/phases;  {sensitivity, measures} <- adjoint;  minimiser <- {statics, design};  kinematics <- batch
-#             {kinematics, statics} <- accuracy
+#             {kinematics, statics, dynamics} <- accuracy
 #             run, pose <- kinematics/course <- kinematics
 #   scene     json <- numbers <- describing <- reading <- building <- models <- judging <- running <- writing <- designing <- viewing <- loading
 #             <- explaining
@@ -47,7 +47,7 @@ BEGIN {
   after("analysis", "adjoint", "run measures motion sensitivity")
   after("analysis", "design", "minimiser")
   after("analysis", "batch", "run pose motion events kinematics/course kinematics")
-  after("analysis", "accuracy", "run pose motion events kinematics/course kinematics balance spectrum statics statics/solvers")
+  after("analysis", "accuracy", "run pose motion events kinematics/course kinematics balance spectrum statics statics/solvers dynamics dynamics/integrators contact")
   chain("scene", "json numbers describing reading building models judging running writing designing viewing explaining loading")
   chain("drawing", "shapes figures")
   chain("linalg", "patterns kernels")

@@ -35,5 +35,14 @@ TEST(Digits, OfMechanismsInMotionAreThoseClaimed) {
   claims.expect("in motion");
 }
 
+TEST(Digits, OfOneRunAreThoseClaimed) {
+  ClaimedDigits claims;
+  std::map<std::string, int> seen;
+  for (int seed = 1; seed <= stress_cases(10000); ++seed)
+    ++seen[add_moving_digits(static_cast<unsigned>(seed), claims, Runs::one)];
+  print_shares("digits of one run of random mechanisms", seen);
+  claims.expect("in motion, one run");
+}
+
 }  // namespace
 }  // namespace catena::testing

@@ -1,5 +1,5 @@
-// Digits of random mechanisms in motion: what dynamics claims with an estimate of its error beside a dense formulation
-// integrated by extrapolation in long double (dense_mechanism.hpp).
+// Digits of random mechanisms in motion: what dynamics claims, of one run or with an estimate of its error from two,
+// beside a dense formulation integrated by extrapolation in long double (dense_mechanism.hpp).
 #pragma once
 
 #include "oracles/claimed_digits.hpp"
@@ -7,28 +7,44 @@
 
 namespace catena::testing {
 
-/// Adds the columns of one mechanism; how it went, in words.
-inline std::string add_moving_digits(unsigned seed, ClaimedDigits& claims) {
+enum class Runs { one, two };
+
+/// Adds the columns of one mechanism; how it went, in words. Of one run methods and fixed steps vary as well.
+inline std::string add_moving_digits(unsigned seed, ClaimedDigits& claims, Runs runs = Runs::two) {
   RandomScene random(seed, RandomScene::Forces::moving);
   random.set_moving();
   const DenseMechanism& dense = random.dense;
   const Eigen::Index n = dense.size();
-  const double until = random.uniform(0.3, 2) / random.pace, tolerance = std::pow(10.0, -random.pick(5) - 5);
-  random.scene["analyses"] = {{{"type", "dynamics"},
-                               {"until", until},
-                               {"every", until / 4},
-                               {"tolerance", tolerance},
-                               {"estimate_error", true},
-                               {"max_steps", 100000}}};
+  const double until = random.uniform(0.3, 2) / random.pace;
+  Json analysis = {{"type", "dynamics"}, {"until", until}, {"every", until / 4}, {"max_steps", 100000}};
+  if (runs == Runs::two) {
+    analysis["tolerance"] = std::pow(10.0, -random.pick(5) - 5);
+    analysis["estimate_error"] = true;
+  } else {
+    static const char* const methods[] = {"auto", "auto", "auto", "rk8", "rk8", "rk5"};
+    analysis["method"] = methods[random.pick(6)];
+    const double tolerance = std::pow(10.0, -random.pick(7) - 4), step = random.uniform(0.01, 0.1) / random.pace;
+    if (random.pick(6)) {
+      analysis["tolerance"] = tolerance;
+    } else {
+      analysis["step"] = step;
+    }
+  }
+  random.scene["analyses"] = {analysis};
   random.scene["outputs"] = Json::array();
-  static const char* const columns[] = {".x", ".y", ".angle", ".vx", ".vy", ".omega"};
+  static const char* const columns[] = {".x", ".y", ".angle", ".vx", ".vy", ".omega", ".ax", ".ay", ".alpha"};
   for (std::size_t b = 0; b < dense.bodies.size(); ++b) {
-    for (const char* column : columns) random.scene["outputs"].push_back("b" + std::to_string(b) + column);
+    // Of two runs accelerations may have the same rounding.
+    for (const char* column : std::span(columns).first(runs == Runs::one ? 9 : 6))
+      random.scene["outputs"].push_back("b" + std::to_string(b) + column);
   }
   const TextRun run = run_text(random.scene.dump());
   if (run.outcome.exit_code > 1) return "not valid: " + run.outcome.error_text;
   if (!run.analysis().report.ok()) return std::string(to_string(run.analysis().report.status));
   if (run.analysis().digits.empty()) return "no claim";
+  std::string what = "seed " + std::to_string(seed);
+  if (runs == Runs::one) what += analysis.contains("step") ? " fixed " : " " + analysis["tolerance"].dump() + " ";
+  if (runs == Runs::one) what += analysis["method"].get<std::string>();
   const auto kept = dense.independent_rows(0, random.q);
   const auto slope = [&](Real t, const Vector& y) {
     Vector rate(2 * n);
@@ -45,10 +61,13 @@ inline std::string add_moving_digits(unsigned seed, ClaimedDigits& claims) {
   std::map<std::string, std::vector<long double>> exact;
   for (const double t : run.column("t")) {
     if (!motion.go_to(t, 400)) return "not compared";
+    Vector a;
+    if (runs == Runs::one) a = acceleration(dense, kept, t, motion.y().head(n), motion.y().tail(n));
     for (Eigen::Index k = 0; k < n; ++k) {
       const std::string body = "b" + std::to_string(k / 3);
       exact[body + columns[k % 3]].push_back(motion.y()[k]);
       exact[body + columns[3 + k % 3]].push_back(motion.y()[n + k]);
+      if (runs == Runs::one) exact[body + columns[6 + k % 3]].push_back(a[k]);
     }
   }
   // Redundant rows that stay met are no mistake of this formulation; others are.
@@ -60,9 +79,9 @@ inline std::string add_moving_digits(unsigned seed, ClaimedDigits& claims) {
   }
   // The start of both is that of the scene to rounding only.
   for (const auto& [column, values] : exact) {
-    const bool rate = column.find(".v") != std::string::npos || column.find(".omega") != std::string::npos;
-    const double noise = 1e-14 * random.size * (rate ? random.pace : 1);
-    claims.add(run, column, values, "seed " + std::to_string(seed), 0, {}, noise);
+    const auto place = std::find(std::begin(columns), std::end(columns), column.substr(column.find('.')));
+    const double noise = 1e-14 * random.size * std::pow(random.pace, (place - std::begin(columns)) / 3);
+    claims.add(run, column, values, what, 0, {}, noise);
   }
   return "compared";
 }

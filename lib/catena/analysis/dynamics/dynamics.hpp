@@ -16,6 +16,7 @@
 #include "catena/analysis/dynamics/dynamics_options.hpp"
 #include "catena/analysis/dynamics/integrators/integrator.hpp"
 #include "catena/analysis/dynamics/integrators/motion.hpp"
+#include "catena/analysis/dynamics/integrators/step_follower.hpp"
 #include "catena/analysis/events/event_watch.hpp"
 #include "catena/analysis/motion/energy_account.hpp"
 #include "catena/analysis/motion/equations_of_motion.hpp"
@@ -74,6 +75,8 @@ class Dynamics {
   void attach(ContactLoads* contacts);
   /// Looks for events during run(): a row is given at each, and one that acts ends the run there. nullptr: none.
   void watch(EventWatch* events) { events_ = events; }
+  /// Who sees the steps of run(); nullptr: nobody.
+  void follow(StepFollower* follower) { follower_ = follower; }
   /// The event at which the last run ended before the end of its grid, or -1; and the row of the grid that was next.
   int stopped_by() const { return stopped_by_; }
   /// The events of the list that act there, in its order: those that happened at the same instant.
@@ -190,6 +193,7 @@ class Dynamics {
   std::vector<double> y_row_, slope_row_, lambda_row_, loads_row_;
   double row_residual_ = 0, earlier_motion_ = 0;
   EventWatch* events_ = nullptr;
+  StepFollower* follower_ = nullptr;
   ContactLoads* contacts_ = nullptr;
   std::vector<ContactLoad> contact_loads_;  // of the row, by element
   int stopped_by_ = -1;

@@ -129,6 +129,7 @@ Report Dynamics::set_out() {
     integrator_ = make_integrator(*motion_, grid_.last());
     if (!integrator_->start(t_, y_row_)) return stuck();
   }
+  if (follower_) follower_->begin(*integrator_, equations_);
   if (!account_) return {};
   if (resumed_) {
     initial_energy_ = memory_.initial_energy;
@@ -165,6 +166,7 @@ Report Dynamics::step(RowObserver& observer) {
   if (!integrator_->advance(limit)) return stuck();
   const double before = t_;
   t_ = integrator_->time();
+  if (follower_) follower_->step(*integrator_, equations_);
   always_dependent_ = std::exchange(dependent_, equations_.is_singular()) && dependent_;
   redundant_.follow(integrator_->state().first(q_.size()));
   if (!observer.proceed(t_)) return cancelled(t_);
@@ -193,7 +195,10 @@ Report Dynamics::start_anew() {
   if (!equations_.factorize(t_, Side::after, q)) return stuck();
   const double jump = equations_.project_velocity(qd, 0) * evaluator_.length_scale();
   jumping_.clear();
-  if (jump > no_jump * fastest(evaluator_, before)) jumping_ = drivers_that_jump(evaluator_, smooth_since_, t_);
+  if (jump > no_jump * fastest(evaluator_, before)) {
+    jumping_ = drivers_that_jump(evaluator_, smooth_since_, t_);
+    if (follower_) follower_->jump();
+  }
   smooth_since_ = t_;
   if (contacts_ && contacts_->holds() && jump > no_speed * contacts_->speed()) {
     std::copy(before.begin(), before.end(), qd.begin());

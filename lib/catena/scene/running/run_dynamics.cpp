@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 
 #include "catena/analysis/accuracy/compared_rows.hpp"
+#include "catena/analysis/accuracy/motion_accuracy.hpp"
 #include "catena/analysis/contact/rope_grips.hpp"
 #include "catena/analysis/dynamics/dynamics_of_islands.hpp"
 #include "catena/analysis/dynamics/dynamics_with_events.hpp"
@@ -148,8 +150,15 @@ std::string DynamicsTask::conflict() const {
 template <class Analysis>
 void DynamicsTask::run_or_estimate(Analysis& analysis, const PlanOptions& plan) {
   if (!estimates_) {
-    run_over_time(context_, result_, analysis, *grid_, names_, sources,
-                  [&](AnalysisRows& rows) { differentiate(rows, analysis); });
+    run_over_time(context_, result_, analysis, *grid_, names_, sources, [&](AnalysisRows& rows) {
+      differentiate(rows, analysis);
+      // Events and contacts change the mechanism, and the error with it, in ways that are not followed; dependent
+      // coordinates of a partition have a rounding of their own.
+      if constexpr (std::is_same_v<Analysis, Dynamics>) {
+        const bool judged = context_.digits && !context_.design && analysis.method() != IntegrationMethod::partitioning;
+        if (judged) rows.judge(std::make_unique<MotionAccuracy>(analysis, rows.columns()));
+      }
+    });
     return;
   }
   WithErrorEstimate both(analysis, model_, plan, options_);

@@ -33,6 +33,9 @@ class Adams final : public Integrator {
   IntegratorMemory memory() const override;
   void remember(const IntegratorMemory& memory) override;
   bool may_pause() const override { return !crossing_; }
+  void add_error(std::span<double> error) const override;
+  std::span<const double> accelerations() const override { return std::span(slope_).first(motion_.coordinates()); }
+  double rate() const override { return scale_.rate(); }
 
  private:
   static constexpr std::size_t most = 12;  // order of a predictor

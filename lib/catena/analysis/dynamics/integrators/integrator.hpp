@@ -31,6 +31,13 @@ class Integrator {
   virtual void remember(const IntegratorMemory& memory) = 0;
   /// Whether another integrator may continue from here: not across a singular position.
   virtual bool may_pause() const = 0;
+  /// Adds what the last step is estimated to be off by to `error`, [q, qd]; its part across the constraints, which is
+  /// projected away, may be in it. Not numbers where nothing is known of it. Costs a pass over the coordinates.
+  virtual void add_error(std::span<double> error) const = 0;
+  /// qdd at time().
+  virtual std::span<const double> accelerations() const = 0;
+  /// How fast the mechanism moves, 1/s: see ErrorScale.
+  virtual double rate() const = 0;
   /// Whether ends of steps lie on the constraints to rounding.
   virtual bool meets_constraints() const { return true; }
 

@@ -62,6 +62,11 @@ class RungeKutta final : public Integrator {
   /// Continues with steps of size h (s) from the state (t, y) of another method, with its scale of errors and its
   /// largest pivot ratio.
   bool take_over(double t, std::span<const double> y, double h, const ErrorScale& scale, double usual_ratio);
+  void add_error(std::span<double> error) const override;
+  std::span<const double> accelerations() const override {
+    return std::span(slope_).subspan(motion_.coordinates(), motion_.coordinates());
+  }
+  double rate() const override { return scale_.rate(); }
   std::span<const double> slope() const { return slope_; }
   const ErrorScale& scale() const { return scale_; }
   /// Smallest pivot ratio at the last evaluation, compared with the largest so far: very unequal masses make all small.

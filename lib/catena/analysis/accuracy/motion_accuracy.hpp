@@ -1,0 +1,60 @@
+// How many digits of the columns of a motion are right, of one run: from the error that is carried along with it
+// (carried_error.hpp).
+//
+//   e = 2.6 max (|c(y + e + r) - c(y)|, |c(y + e - r) - c(y)|) / s + 4 eps |c|        largest of the rows looked at
+//
+// r: at random, 0.2 of the largest part of e in every coordinate and the rounding of places and rates, as far as the
+// constraints allow it: the error that is carried has a direction that is right by its size only. Accelerations and
+// multipliers are those at y + e + r with the rounding of their equations (kinematic_accuracy.hpp). All is made so
+// small, or large, by s, that its effect is in proportion. Rows: where e has grown by a quarter since the last one, as
+// far as the allowance goes, and the last of all. Nothing is said of work, which is summed up over time, of reactions
+// where equations depend on each other, and where the error is lost.
+#pragma once
+
+#include <vector>
+
+#include "catena/analysis/accuracy/carried_error.hpp"
+#include "catena/analysis/accuracy/row_terms.hpp"
+#include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/run/row_accuracy.hpp"
+#include "catena/columns/column_errors.hpp"
+#include "catena/columns/column_set.hpp"
+
+namespace catena {
+
+class MotionAccuracy final : public RowAccuracy {
+ public:
+  /// Of the rows of analysis.run(), which it follows; both must outlive this object, and it the run.
+  MotionAccuracy(Dynamics& analysis, const ColumnSet& columns);
+  ~MotionAccuracy() override { analysis_.follow(nullptr); }
+  MotionAccuracy(const MotionAccuracy&) = delete;
+  MotionAccuracy& operator=(const MotionAccuracy&) = delete;
+
+  void take(const Snapshot& snapshot, std::span<const double> values) override;
+  std::vector<double> digits(const AnalysisReport& report) override;
+
+ private:
+  struct Row {
+    double t = 0, rate = 0;
+    std::vector<double> q, qd, values, error;
+  };
+  void examine(const Row& row);
+  void disturb(const Row& row, double size);
+  bool values_at(const Row& row, double size);
+  bool solve_accelerations(double t, double size, Snapshot& snapshot);
+
+  Dynamics& analysis_;
+  const ColumnSet& columns_;
+  CarriedError carried_;
+  ColumnErrors errors_;
+  Disturbance random_;
+  Row row_;
+  double examined_ = 0;  // norm of the error in the row that was looked at last
+  bool last_examined_ = false;
+  RowTerms terms_;
+  // Of a disturbed state.
+  std::vector<double> disturbance_, q_, qd_, qdd_, lambda_, jacobian_, loads_, change_, change_lambda_;
+  std::vector<double> other_, largest_, unknown_, moduli_;
+};
+
+}  // namespace catena
