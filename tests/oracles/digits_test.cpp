@@ -1,10 +1,31 @@
 // How many digits of the columns of random mechanisms are right, by their own claim and by a solution in long double:
 // the quick share of stress/digits_test.cpp, which has motions under forces as well.
+#include "catena/analysis/stability/modes.hpp"
+#include "oracles/oscillators.hpp"
 #include "stress/driven_digits.hpp"
+#include "stress/moving_digits.hpp"
 #include "stress/resting_digits.hpp"
 
 namespace catena::testing {
 namespace {
+
+// True over claimed error of the column omega2, both of the largest of its rows; negative: nothing to compare.
+double optimism_of_modes(unsigned seed) {
+  const Oscillator oscillator(seed);
+  Modes modes(oscillator.model, {}, {.count = 1000});
+  const ModesReport report = modes.run();
+  const std::vector<long double> wanted = oscillator.omega2();
+  if (!report.ok() || report.omega2.size() != wanted.size() || wanted.empty()) return -1;
+  long double error = 0, claimed = 0, size = 0;
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    const long double rate = oscillator.rate();
+    error = std::max(error, std::abs(report.omega2[k] - wanted[k] * rate));
+    claimed = std::max<long double>(claimed, report.errors[k]);
+    size = std::max(size, std::abs(wanted[k] * rate));
+  }
+  const long double least = size * std::numeric_limits<double>::epsilon() / 4;
+  return size > 0 ? static_cast<double>(std::max(error, least) / std::max(claimed, 2 * least)) : -1;
+}
 
 template <class Add>
 void expect_claims(const char* title, unsigned seeds, int least, Add&& add) {
@@ -16,6 +37,48 @@ void expect_claims(const char* title, unsigned seeds, int least, Add&& add) {
 }
 
 TEST(ClaimedDigits, HoldInDrivenMotion) { expect_claims("driven", 40, 20, add_driven_digits); }
+TEST(ClaimedDigits, HoldInMotionOfOneRun) {
+  expect_claims("in motion, one run", 40, 20,
+                [](unsigned seed, ClaimedDigits& claims) { return add_moving_digits(seed, claims, Runs::one); });
+}
+
+// The error must grow as those of the motion do: chaotic after a while, and no digit may be claimed then.
+TEST(ClaimedDigits, OfALongChaoticMotionAreNone) {
+  const auto run_until = [](double until) {
+    Json scene = {{"catena", 1},
+                  {"gravity", {0, -9.81}},
+                  {"bodies",
+                   {{"a", {{"mass", 1}, {"inertia", 0.1}, {"position", {0.5, 0}}}},
+                    {"b", {{"mass", 1}, {"inertia", 0.1}, {"position", {1.5, 0}}}}}},
+                  {"constraints",
+                   {{{"type", "revolute"}, {"i", {"ground", {0, 0}}}, {"j", {"a", {-0.5, 0}}}},
+                    {{"type", "revolute"}, {"i", {"a", {0.5, 0}}}, {"j", {"b", {-0.5, 0}}}}}},
+                  {"analyses", {{{"type", "dynamics"}, {"until", until}, {"every", until / 50}}}},
+                  {"outputs", {"a.angle", "b.omega"}}};
+    return run_text(scene.dump());
+  };
+  const TextRun brief = run_until(1), lasting = run_until(200);
+  ASSERT_EQ(brief.analysis().digits.size(), 3u);
+  EXPECT_GT(brief.analysis().digits[1], 6);
+  EXPECT_LT(brief.analysis().digits[1], 13);
+  ASSERT_EQ(lasting.analysis().digits.size(), 3u);
+  for (const std::size_t column : {1u, 2u}) EXPECT_LE(lasting.analysis().digits[column], 0.1);
+}
+
+TEST(ClaimedDigits, HoldOfOscillations) {
+  std::vector<double> optimism;
+  for (unsigned seed = 1; seed <= 300; ++seed) {
+    const double of_one = optimism_of_modes(seed);
+    if (of_one >= 0) optimism.push_back(of_one);
+  }
+  ASSERT_GE(optimism.size(), 200u);
+  std::sort(optimism.begin(), optimism.end());
+  std::printf("modes: true / claimed error %.3g (most), %.3g (median)\n", optimism.back(),
+              optimism[optimism.size() / 2]);
+  EXPECT_LE(optimism.back(), 10);
+  EXPECT_GE(optimism[optimism.size() / 2], 0.01);
+}
+
 TEST(ClaimedDigits, HoldAtRest) { expect_claims("at rest", 40, 5, add_resting_digits); }
 
 }  // namespace

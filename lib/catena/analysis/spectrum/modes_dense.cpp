@@ -59,7 +59,7 @@ std::vector<Mode> DenseModes::lowest(int count, const StiffnessFloor& floor) con
     const Found& found = found_[at(k)];
     if (k >= count && !modes.empty() && modes.back().omega2 > 0) break;
     const MotionGroup& group = groups_.groups()[at(found.group)];
-    Mode mode{0, std::vector<double>(product.size(), 0.0)};
+    Mode mode{.shape = std::vector<double>(product.size(), 0.0)};
     const std::size_t n = group.columns.size();
     for (std::size_t c = 0; c < n; ++c) mode.shape[at(group.columns[c])] = group.basis[at(found.place) * n + c];
     system_.matrix().multiply_stiffness(mode.shape, product);

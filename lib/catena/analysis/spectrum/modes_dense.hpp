@@ -20,6 +20,7 @@ namespace catena {
 struct Mode {
   double omega2 = 0;
   std::vector<double> shape;  ///< over columns, v^T M v = 1
+  double error = 0;           ///< of omega2, by rounding: see ModesReport
 };
 /// A stiffness k g g^T beside K: of compliant contacts, whose bodies K may not tie together. N/m or N m; g over
 /// columns.

@@ -27,6 +27,13 @@ constexpr int default_count = 10;
 // Degrees of freedom up to which all modes are computed at once where a third of them or more are wanted: some ten
 // seconds.
 constexpr int most_complete_freedoms = 1500;
+// Of the floor, a bound of rounding: of all of it 300 random oscillators had 0.0089 at most and 0.0012 at the median.
+constexpr double usual_part = 0.03;
+
+// A mode is zero where its stiffness is within the floor.
+void find_errors(const StiffnessFloor& floor, std::vector<Mode>& modes) {
+  for (Mode& mode : modes) mode.error = mode.omega2 != 0 ? usual_part * floor(mode.shape) : 0;
+}
 
 }  // namespace
 
@@ -74,6 +81,7 @@ Report Modes::find_modes(const MassMatrix& masses, std::span<const double> mass,
           Status::not_converged, "the eigenvalues of the stiffness did not settle: is a number in it infinite?", {}};
     }
     modes = dense.lowest(count, floor);
+    find_errors(floor, modes);
     return {};
   }
   if (!added_.empty()) {
@@ -93,6 +101,7 @@ Report Modes::find_modes(const MassMatrix& masses, std::span<const double> mass,
   ModeSearch search(system_, lambda, {mass.begin(), mass.end()}, floor, go_on);
   Report report = search.find(std::min(count, plan_->columns), modes);
   hidden_unstable_ = search.unstable();
+  find_errors(floor, modes);
   return report;
 }
 
@@ -188,6 +197,7 @@ ModesReport Modes::run(const std::function<bool()>& go_on) {
   for (Mode& mode : modes) {
     report.omega2.push_back(mode.omega2);
     report.omega.push_back(std::sqrt(std::abs(mode.omega2)));
+    report.errors.push_back(mode.error);
     const double sense = std::copysign(1.0, decisive_component(*plan_, mode.shape));
     for (double& x : mode.shape) x *= sense;
     report.shapes.push_back(std::move(mode.shape));

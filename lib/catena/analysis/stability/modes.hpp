@@ -44,8 +44,12 @@ struct ModesOptions {
 };
 
 struct ModesReport : AnalysisReport {
-  std::vector<double> omega2;               ///< rad^2/s^2, ascending
-  std::vector<double> omega;                ///< sqrt(|omega2|), rad/s; a growth rate, 1/s, where omega2 < 0
+  std::vector<double> omega2;  ///< rad^2/s^2, ascending
+  std::vector<double> omega;   ///< sqrt(|omega2|), rad/s; a growth rate, 1/s, where omega2 < 0
+  /// Of omega2, by rounding: a Rayleigh quotient of a shape is off by the rounding of the stiffnesses in it before
+  /// these cancel (StiffnessFloor), and by no more than the square of the shape's own error. 0 where omega2 is an exact
+  /// zero.
+  std::vector<double> errors;
   std::vector<std::vector<double>> shapes;  ///< over columns, v^T M v = 1 kg m^2; the largest angle or, where none
                                             ///< turns, the largest displacement is positive
   int unstable = 0;                         ///< how many omega^2 below zero there are in all, and pairs

@@ -8,6 +8,7 @@
 #include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/sensitivity/spectrum_derivatives.hpp"
 #include "catena/analysis/stability/modes.hpp"
+#include "catena/columns/column_errors.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 #include "catena/scene/running/drawn_shapes.hpp"
 #include "catena/scene/running/shape_columns.hpp"
@@ -68,6 +69,20 @@ void leave_out_derivatives(const AnalysisContext& context, const ModesReport& re
     set_field_gradient(context, result, "omega2", static_cast<int>(k) + 1, none, trouble);
     set_field_gradient(context, result, "omega", static_cast<int>(k) + 1, none, trouble);
   }
+}
+
+/// Of omega2 and omega; shapes claim nothing.
+std::vector<double> digits_of(const ModesReport& report, std::size_t columns) {
+  ColumnErrors errors(columns);
+  for (std::size_t k = 0; k < report.omega2.size(); ++k) {
+    std::vector<double> row(columns, 0.0);
+    row[1] = report.omega2[k];
+    row[2] = report.omega[k];
+    errors.take_row(row);
+    errors.take_error(1, report.errors[k]);
+    errors.take_error(2, report.omega[k] > 0 ? report.errors[k] / (2 * report.omega[k]) : 0);
+  }
+  return errors.digits();
 }
 
 }  // namespace
@@ -154,6 +169,9 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
     result.fields.push_back({"moving_freely", report.free_bodies});
   }
   result.report = report;
+  // Of unsymmetric stiffness errors are not known.
+  const bool judged = context.digits && !context.design && report.ok() && report.errors.size() == report.omega2.size();
+  if (judged && rows > 0) result.digits = digits_of(report, info.size());
   take_rows(result, std::move(info), rows);
   add_field_measures(context, result);
   if (context.design && report.ok() && !analysis.evaluator().conservative()) {
