@@ -43,6 +43,8 @@ class CarriedError final : public StepFollower {
   double rate() const { return rate_; }
   /// Takes the cost of a look at a row off the allowance, in evaluations; false: it has not enough left.
   bool spend(double cost);
+  /// Whether there are equations to look at a row with, or may be.
+  bool can_look() const { return affordable(cost_of_setup()); }
   /// Equations of its own, at whose evaluations nobody else looks, with places as rows have them.
   EquationsOfMotion& equations();
 
@@ -51,6 +53,7 @@ class CarriedError final : public StepFollower {
   void carry(const Integrator& integrator);
   void project(std::span<const double> q, std::span<const double> v, double size);
   void add_rounding(std::span<const double> y, double steps);
+  double cost_of_setup() const;
   bool affordable(double cost) const;
 
   const Evaluator& motion_;

@@ -51,6 +51,7 @@ void MotionAccuracy::take(const Snapshot& snapshot, std::span<const double> valu
 std::vector<double> MotionAccuracy::digits(const AnalysisReport& report) {
   const bool smooth = analysis_.singular_points().empty() && analysis_.jolts().empty();
   if (!report.ok() || !smooth || carried_.lost() || row_.q.empty()) return {};
+  if (!last_examined_ && !carried_.can_look()) return {};
   if (!last_examined_) examine(row_);
   errors_.take_places(columns_.info(), analysis_.evaluator().length_scale());
   std::vector<double> all = errors_.digits();
