@@ -156,7 +156,8 @@ void ContactPhases::add_grip_transitions(std::size_t k, const Dynamics& dynamics
     if (!state.closed || !point.has_friction()) return;
     const auto n = static_cast<std::size_t>(std::find(places.begin(), places.end(), k) - places.begin());
     if (state.direction != 0) {
-      watch([look, n, sign = state.direction](const Snapshot& s) { return sign * look(s).slip(n); }, 1, PhaseEnd::slide);
+      watch([look, n, sign = state.direction](const Snapshot& s) { return sign * look(s).slip(n); }, 1,
+            PhaseEnd::slide);
     } else {
       watch([look, n](const Snapshot& s) { return look(s).margin(n); }, 1, PhaseEnd::slide);
     }

@@ -87,8 +87,9 @@ std::optional<std::vector<double>> PhasedDerivatives::rate_of_place(const Motion
   const ContactState state = equations_->states()[watched.place];
   std::vector<double> by_parameter;
   if (watched.ends == PhaseEnd::shares) {
-    lost_ = fmt::format("at t = {:.9g} s places that hold each other, \"{}\" among them, give way: when has no derivative",
-                        to_, name(watched.place));
+    lost_ =
+        fmt::format("at t = {:.9g} s places that hold each other, \"{}\" among them, give way: when has no derivative",
+                    to_, name(watched.place));
     for (const Group& group : groups()) by_parameter.insert(by_parameter.end(), at(group.count), unknown);
     return by_parameter;
   }
