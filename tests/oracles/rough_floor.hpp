@@ -4,7 +4,7 @@
 //   at an end (r from the centre), N and T from    I phi'' = r_x N - r_y T,   m a = (T, N - m g)
 //   slides: the end's a_y = 0, T = -mu s N         sticks: a_x = 0, too, while |T| <= mu_static N
 //   lands: v+ = v- + D p, D in the metric of the masses, v_y+ = -e v_y- (0 below rest_speed); p_x stops the slip within
-//   mu p_y, else equals that
+//   mu p_y, else equals that; where energy would grow, v_y = 0 first and then p_y once more e times as large
 //
 // Runge-Kutta 4 with steps of 0.2 ms, ends of phases by bisection: errors of 1e-11. It ends where both ends would
 // touch, where friction wedges the rod, where rounding decides, and, as Newton's law leaves that open, where an impact
@@ -55,6 +55,8 @@ class RodOnRoughFloor {
   }
   const std::array<double, 6>& state() const { return y_; }
   int changes() const { return changes_; }
+  /// Impacts by Poisson's law.
+  int other_laws() const { return other_laws_; }
 
  private:
   using State = std::array<double, 6>;
@@ -170,7 +172,38 @@ class RodOnRoughFloor {
     double rebound = -of_.restitution * rise(y_, hit_);
     ended_ = std::abs(rebound - of_.rest_speed) < 0.3 * of_.rest_speed;
     if (rebound < of_.rest_speed) rebound = 0;
-    const double n = rebound - rise(y_, hit_), t = -slip(y_, hit_), determinant = nn * tt - nt * nt;
+    const double before = energy();
+    const State y = y_;
+    press(rebound - rise(y_, hit_), nn, nt, tt);
+    const double by_newton = energy();
+    if (by_newton > before && !ended_) {
+      // Newton's law would make energy grow: Poisson's, compression and release.
+      y_ = y;
+      const double P = rebound > 0 ? of_.restitution * press(-rise(y_, hit_), nn, nt, tt) : 0;
+      const double free = slip(y_, hit_) + nt * P, stop = -free / tt;
+      const double S = std::abs(stop) <= of_.mu * P ? stop : std::copysign(of_.mu * P, stop);
+      ended_ |= std::abs(std::abs(stop) - of_.mu * P) < 1e-6 * P;
+      push(P, S);
+      ended_ |= rise(y_, hit_) < 0;
+      ++other_laws_;
+    }
+    // Between both laws rounding decides.
+    ended_ |= energy() > before * (1 - 1e-9) || std::abs(by_newton - before) < 1e-6 * before;
+    if (rebound > 0 || ended_) return;
+    end_ = hit_;
+    slides_ = slip(y_, end_) > 0 ? 1 : -1;
+    if (std::abs(slip(y_, end_)) < 1e-9) decide_at_rest();
+    if (end_ != 0 && motion(y_).N < 0) end_ = 0;
+  }
+  void push(double P, double S) {
+    const auto [rx, ry] = arm(y_, hit_);
+    y_[3] += S;
+    y_[4] += P;
+    y_[5] += (rx * P - ry * S) / inertia;
+  }
+  /// Gives the end that is hit the change `n` of its rise, friction along; the impulse across.
+  double press(double n, double nn, double nt, double tt) {
+    const double t = -slip(y_, hit_), determinant = nn * tt - nt * nt;
     double P = (n * tt - nt * t) / determinant, S = (nn * t - nt * n) / determinant;
     if (!(P >= 0 && std::abs(S) <= of_.mu * P)) {
       for (const int s : {1, -1}) {
@@ -181,16 +214,8 @@ class RodOnRoughFloor {
         if ((slip(y_, hit_) + nt * P + tt * S) * s >= 0) break;
       }
     }
-    const double before = energy();
-    y_[3] += S;
-    y_[4] += P;
-    y_[5] += (rx * P - ry * S) / inertia;
-    ended_ |= energy() > before * (1 - 1e-6);
-    if (rebound > 0 || ended_) return;
-    end_ = hit_;
-    slides_ = slip(y_, end_) > 0 ? 1 : -1;
-    if (std::abs(slip(y_, end_)) < 1e-9) decide_at_rest();
-    if (end_ != 0 && motion(y_).N < 0) end_ = 0;
+    push(P, S);
+    return P;
   }
   double energy() const { return (y_[3] * y_[3] + y_[4] * y_[4] + inertia * y_[5] * y_[5]) / 2; }
 
@@ -199,7 +224,7 @@ class RodOnRoughFloor {
   double t_ = 0;
   int end_ = 0;     // that touches: 1, -1, or 0
   int slides_ = 0;  // sign of its slip; 0: it sticks
-  int hit_ = 0, changes_ = 0;
+  int hit_ = 0, changes_ = 0, other_laws_ = 0;
   bool ended_ = false;
 };
 

@@ -213,13 +213,13 @@ class RowValues {
   /// Of a spring, cable or rope; that of a rope with friction on pulleys is at its end i.
   S tension(int element) const {
     const S pull = s_.spring_loads(element).tension;
-    const ContactLoad* load = s_.contact(element);
-    return load && load->force != 0 ? pull + S(load->force) : pull;
+    const auto* load = s_.contact(element);
+    return load ? pull + S(load->force) : pull;
   }
   /// Of a rope at its end j.
   S far_pull(const Column& column) {
     const bool elastic = s_.model().elements[static_cast<std::size_t>(column.index)].kind == ElementKind::force;
-    const ContactLoad* load = s_.contact(column.index);
+    const auto* load = s_.contact(column.index);
     if (elastic) return load ? tension(column.index) + S(load->friction) : tension(column.index);
     return load ? S(load->force + load->friction) : S(0.0) - reactions(column).multiplier[0];
   }

@@ -191,6 +191,22 @@ double ContactLoads::tension_of_sizes(std::size_t k) const {
   return tension;
 }
 
+// Of the terms of that sum, for its rounding.
+double ContactLoads::tension_terms(std::size_t k) const {
+  const int head = evaluator_.plan().element_row[at(points_[k].element)];
+  double terms = head < 0 ? 0 : sizes_->lambda_terms[at(head)];
+  for (const std::size_t other : points_[k].rope->grips) {
+    if (other >= k) break;
+    if (slides(other)) {
+      const auto found = std::find(coupled_.begin(), coupled_.end(), other) - coupled_.begin();
+      terms += std::abs(sizes_->f(static_cast<Eigen::Index>(found)));
+    } else if (const int row = row_of_slide(other); row >= 0) {
+      terms += sizes_->lambda_terms[at(row)];
+    }
+  }
+  return terms;
+}
+
 // Residual and slope of the equations for the sizes of friction, at their present values.
 void ContactLoads::linearise(std::span<const double> lambda) {
   Sizes& s = *sizes_;

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 
 #include "catena/analysis/contact/contact_problem.hpp"
 #include "catena/linalg/rank/nonnegative_least_squares.hpp"
@@ -24,6 +25,12 @@ constexpr std::size_t most_searched = 6;
 constexpr double fitting = 1e-9;
 // Of the largest diagonal entry: what dependent rows leave.
 constexpr double dependent = 1e-11;
+
+/// The entries of a vector, or of a matrix column by column.
+template <class M>
+auto entries(M& of) {
+  return std::span(of.data(), static_cast<std::size_t>(of.size()));
+}
 
 }  // namespace
 
@@ -97,7 +104,7 @@ bool ContactProblem::try_states() {
     }
   }
   Eigen::VectorXd sizes(A.cols());
-  if (A.rows() > 0) nonnegative_least_squares(A, right, sizes);
+  if (A.rows() > 0) nonnegative_least_squares(entries(A), entries(right), entries(sizes));
   x = known;
   for (Eigen::Index c = 0; c < A.cols(); ++c) {
     const Edge& of = columns[static_cast<std::size_t>(c)];

@@ -16,9 +16,6 @@ namespace {
 // A gap of this part of the length scale (or rad) is closed: instants of impacts are found to rounding, configurations
 // are given to some ten digits.
 constexpr double closed_gap = 1e-9;
-// Of the kinetic energy before an impact: rounding of work.
-constexpr double energy_rounding = 1e-12;
-
 // Friction of joints and their forces, in turns: each leaves a part of the error, about mu; a thousand rounds reach
 // rounding where that part is up to 0.96.
 constexpr int most_rounds = 1000;
@@ -68,6 +65,7 @@ void ContactSwitch::take_over(const ContactSwitch& earlier) {
   know_speed(earlier.speed_);
   bounced_at_ = earlier.bounced_at_;
   flight_ = earlier.flight_;
+  other_laws_ = earlier.other_laws_;
   left_at_ = earlier.left_at_;
 }
 
@@ -212,13 +210,6 @@ void ContactSwitch::fill(ContactProblem& problem) const {
   }
 }
 
-double ContactSwitch::kinetic_energy(std::span<const double> qd) const {
-  const std::vector<double>& mass = equations_.masses().mass;
-  double twice = 0;
-  for (int c = 0; c < 3 * evaluator_.plan().moving; ++c) twice += mass[at(c)] * qd[at(c)] * qd[at(c)];
-  return twice / 2;
-}
-
 Report ContactSwitch::failure(double t, const std::string& why) const {
   Report report;
   report.status = Status::inconsistent;
@@ -233,66 +224,6 @@ Report ContactSwitch::wedged(double t) const {
                              names_of(*model_, points_, active_)));
 }
 
-// The speed at which place k comes back; 0: it stays.
-double ContactSwitch::rebound(std::size_t k) const {
-  const double speed = -points_[k].restitution * std::min(gap_[k].rate, 0.0);
-  return speed >= rest_speed(k) ? speed : 0;
-}
-
-// Which places have impulses, at the velocities before them.
-void ContactSwitch::take_note(const ContactProblem& problem, double restitution_part) {
-  jump_->restitution_part = restitution_part;
-  jump_->places.clear();
-  for (std::size_t a = 0; a < active_.size(); ++a) {
-    const std::size_t k = active_[a];
-    const bool presses = problem.state[a] != ContactProblem::State::open;
-    if (!problem.place[a].has_normal || (!presses && !hits(k))) continue;
-    ImpactPlace& place = jump_->places.emplace_back();
-    place.place = k;
-    place.was_hit = hits(k);
-    place.presses = presses;
-    place.rebounds = restitution_part * rebound(k) > 0;
-    place.sticks = problem.state[a] == ContactProblem::State::sticks;
-    if (problem.place[a].has_friction && !place.sticks) place.direction = problem.direction[a];
-  }
-}
-
-// Impulses of the touching places that close, with the given part of every restitution, and their work.
-bool ContactSwitch::apply(double restitution_part, std::span<double> qd, double& work) {
-  ContactProblem problem(active_.size());
-  fill(problem);
-  for (std::size_t a = 0; a < active_.size(); ++a) {
-    const std::size_t k = active_[a];
-    ContactProblem::Place& place = problem.place[a];
-    if (!place.has_normal && place.head >= 0) {
-      problem.b[2 * a + 1] = slide_[k].rate;
-      continue;
-    }
-    if (!place.has_normal) {
-      // What is pressed by a force of finite size has no impulse, and no friction of one.
-      place.has_friction = false;
-      place.limit = place.kinetic = 0;
-      continue;
-    }
-    place.mu_static = place.mu;
-    problem.b[2 * a] = gap_[k].rate - restitution_part * rebound(k);
-    problem.b[2 * a + 1] = place.has_friction ? slide_[k].rate : 0;
-  }
-  if (!problem.solve()) return false;
-  take_note(problem, restitution_part);
-  for (std::size_t c = 0; c < problem.x.size(); ++c) {
-    for (std::size_t n = 0; n < qd.size(); ++n) qd[n] += change_[c][n] * problem.x[c];
-    for (std::size_t r = 0; r < p_.size(); ++r) p_[r] += multipliers_[c][r] * problem.x[c];
-  }
-  work = 0;
-  for (std::size_t r = 0; r < problem.x.size(); ++r) {
-    double rate = r % 2 == 0 ? gap_[active_[r / 2]].rate : slide_[active_[r / 2]].rate;
-    for (std::size_t c = 0; c < problem.x.size(); ++c) rate += problem.D(r, c) * problem.x[c] / 2;
-    work += rate * problem.x[r];
-  }
-  return true;
-}
-
 double ContactSwitch::part_of_speed(std::size_t k, double part) const {
   return part * speed_ / (points_[k].turns ? evaluator_.length_scale() : 1);
 }
@@ -300,51 +231,6 @@ double ContactSwitch::part_of_speed(std::size_t k, double part) const {
 double ContactSwitch::rest_speed(std::size_t k) const {
   constexpr double of_the_motion = 1e-4;  // the default
   return points_[k].rest_speed >= 0 ? points_[k].rest_speed : part_of_speed(k, of_the_motion);
-}
-
-// Whether a touching place is hit: its gap closes.
-bool ContactSwitch::hits(std::size_t k) const {
-  return points_[k].kind == ContactKind::rigid && gap_[k].rate < -part_of_speed(k, no_speed);
-}
-
-Report ContactSwitch::collide(double t, std::span<double> qd, std::vector<ContactState>& states) {
-  std::vector<std::size_t> hit;
-  std::copy_if(active_.begin(), active_.end(), std::back_inserter(hit), [&](std::size_t k) { return hits(k); });
-  if (hit.empty()) return {};
-  if (!jump_) jump_.emplace();
-  find_responses();
-  const std::vector<double> before(qd.begin(), qd.end()), p_before(p_);
-  const double energy = kinetic_energy(qd);
-  double part = 1, work = 0;
-  for (int attempt = 0;; ++attempt) {
-    std::copy(before.begin(), before.end(), qd.begin());
-    p_ = p_before;
-    if (!apply(part, qd, work)) return is_jammed(false) ? blocked(t, hit) : wedged(t);
-    if (work <= energy_rounding * energy || part == 0) break;
-    // Halved at first, then none: without restitution impulses never do work.
-    part = attempt < 40 ? part / 2 : 0;
-  }
-  look(qd);
-  if (std::any_of(hit.begin(), hit.end(), [&](std::size_t k) { return hits(k); })) return blocked(t, hit);
-  const double end = end_rocking(t, hit, qd);
-  for (const std::size_t k : hit) {
-    events_.push_back({points_[k].element, "impact", t});
-    const double rebound = gap_[k].rate;
-    if (rebound > part_of_speed(k, no_speed)) {
-      bounced_at_[k] = t;
-      states[k].closed = false;
-      continue;
-    }
-    // It stays. The bounces that were left out would have taken their time.
-    landing_[k] = end;
-    if (points_[k].restitution > 0 && points_[k].restitution < 1 &&
-        bounced_at_[k] > -std::numeric_limits<double>::infinity()) {
-      const double fall = std::max(t - bounced_at_[k], 0.0);
-      landing_[k] = t + fall * points_[k].restitution / (1 - points_[k].restitution);
-    }
-  }
-  note_flights(t, hit);
-  return {};
 }
 
 // Accelerations without rigid places and exact friction; compliant ones press as they do.

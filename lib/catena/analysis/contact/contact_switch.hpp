@@ -91,6 +91,14 @@ class ContactSwitch {
   const std::optional<SingularPoint>& blocked() const { return blocked_; }
   /// Of places that hold each other since they were decided about last.
   const std::vector<SharedForces>& shared() const { return shared_; }
+  /// Impacts in which Newton's restitution would have made energy grow.
+  struct OtherLaws {
+    int poisson = 0;   ///< Poisson's took its place
+    int reduced = 0;   ///< that did not fit either: every restitution was reduced
+    double first = 0;  ///< instant of the first of them, s
+    int element = -1;  ///< that was hit then
+  };
+  const OtherLaws& other_laws() const { return other_laws_; }
   /// What happened since this was called last.
   std::vector<ContactEvent> take_events() { return std::move(events_); }
 
@@ -110,7 +118,12 @@ class ContactSwitch {
   double rest_speed(std::size_t k) const;
   bool hits(std::size_t k) const;
   Report collide(double t, std::span<double> qd, std::vector<ContactState>& states);
-  bool apply(double restitution_part, std::span<double> qd, double& work);
+  // Impacts: contact_impact.cpp.
+  void set_up(ContactProblem& problem, double restitution_part) const;
+  double act(const ContactProblem& problem, std::span<double> qd);
+  bool bounce(double restitution_part, std::span<double> qd, double& work);
+  bool bounce_by_poisson(std::span<double> qd, double& work);
+  bool bounce_without_gain(double t, const std::vector<std::size_t>& hit, std::span<double> qd);
   void take_note(const ContactProblem& problem, double restitution_part);
   double rebound(std::size_t k) const;
   bool find_free_accelerations(double t, std::span<const double> q, std::span<const double> qd, ContactLoads& loads);
@@ -155,6 +168,7 @@ class ContactSwitch {
   std::vector<std::vector<double>> change_, multipliers_;
   std::vector<double> load_, nothing_, qdd_;
   std::vector<SharedForces> shared_;
+  OtherLaws other_laws_;
   std::vector<ContactEvent> events_;
 };
 

@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
 #include "catena/analysis/contact/contact_loads.hpp"
@@ -24,6 +25,12 @@ constexpr double balanced = 1e-11;
 constexpr double closed_place = 1e-6;
 // Friction beyond this is as good as any: the edges of the cone are then along the tangent to this part.
 constexpr double most_friction = 1e8;
+
+/// The entries of a vector, or of a matrix column by column.
+template <class M>
+auto entries_of(M& of) {
+  return std::span(of.data(), static_cast<std::size_t>(of.size()));
+}
 
 /// A contact: its forces form a cone with two edges.
 struct Edge {
@@ -194,8 +201,8 @@ Holding ContactHolding::find(const SystemState& state, std::vector<double>& q) {
         A.col(2 * static_cast<Eigen::Index>(k) + s) = edge / std::max(edge.norm(), 1e-300);
       }
     }
-    Eigen::VectorXd sizes;
-    return nonnegative_least_squares(A, b, sizes) <= balanced * force(loads).norm();
+    Eigen::VectorXd sizes(A.cols());
+    return nonnegative_least_squares(entries_of(A), entries_of(b), entries_of(sizes)) <= balanced * force(loads).norm();
   };
   if (holds(0)) {
     holding.utilisation = 0;

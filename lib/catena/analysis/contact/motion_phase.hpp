@@ -34,6 +34,7 @@ struct VelocityJump {
   std::vector<int> released{};     ///< elements without equations then, contacts aside
   std::vector<ImpactPlace> places{};
   double restitution_part = 1;  ///< of every restitution, see ContactSwitch
+  bool other_law = false;       ///< Poisson's restitution, or a reduced one, took the place of Newton's
   bool settles = false;         ///< what was left of a motion that rocks ever faster was taken away
 };
 

@@ -216,6 +216,22 @@ Report ContactPhases::change(int transition, SystemState& state) {
   return decide(state, cause);
 }
 
+std::string ContactPhases::remark_on_impacts() const {
+  if (!switch_) return {};
+  const ContactSwitch::OtherLaws& laws = switch_->other_laws();
+  if (laws.poisson + laws.reduced == 0) return {};
+  std::string what;
+  if (laws.poisson > 0) what = fmt::format("in {} Poisson's law took its place", laws.poisson);
+  if (laws.reduced > 0)
+    what += fmt::format("{}in {} every restitution was reduced until energy does not grow", what.empty() ? "" : ", ",
+                        laws.reduced);
+  return fmt::format(
+      "impacts in which Newton's restitution would have made the kinetic energy grow ({}); the first at t = {:.9g} s, "
+      "of "
+      "\"{}\"",
+      what, laws.first, contacts_.model->element_name(laws.element));
+}
+
 bool ContactPhases::shares(std::size_t k) const {
   return std::any_of(switch_->shared().begin(), switch_->shared().end(), [k](const SharedForces& forces) {
     return std::find(forces.places().begin(), forces.places().end(), k) != forces.places().end();
@@ -225,7 +241,7 @@ bool ContactPhases::shares(std::size_t k) const {
 void ContactPhases::add_shared_transitions(const Dynamics& dynamics, std::vector<Transition>& transitions,
                                            Needs& needs) {
   for (const SharedForces& forces : switch_->shared()) {
-    const auto margin = [this, &forces, &plan = dynamics.plan()](const Snapshot& s) {
+    const auto margin = [this, forces, &plan = dynamics.plan()](const Snapshot& s) {
       const auto normal = [&](std::size_t k) { return loads_->normal_from(k, s.qd, s.lambda); };
       const auto along = [&](std::size_t k) { return -s.lambda[at(plan.element_row[at(contacts_.points[k].slide)])]; };
       return forces.margin(normal, along);

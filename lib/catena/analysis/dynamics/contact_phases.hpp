@@ -64,6 +64,8 @@ class ContactPhases {
   const std::vector<ContactState>& states() const { return states_; }
   const std::vector<WatchedPlace>& watched() const { return watched_; }
   const std::optional<VelocityJump>& jump() const { return switch_->jump(); }
+  /// What impacts made of restitutions, for the report; empty: what was asked for.
+  std::string remark_on_impacts() const;
   /// How far ropes are wound at a place of the present phase.
   std::vector<RopeTurns> turns(const SystemState& state) const {
     return ropes_ ? ropes_->turns(state) : std::vector<RopeTurns>();

@@ -140,7 +140,7 @@ void ContactPhases::add_grip_transitions(std::size_t k, const Dynamics& dynamics
                                          Needs& needs) {
   const ContactPoint& point = contacts_.points[k];
   const ContactState state = states_[k];
-  const auto watch = [&](std::function<double(const Snapshot&)> value, int side, End ends) {
+  const auto watch = [&](std::function<double(const Snapshot&)> value, int side, PhaseEnd ends) {
     transitions.push_back({std::move(value), side});
     watched_.push_back({k, ends});
   };

@@ -86,6 +86,7 @@ bool DynamicsWithEvents::go_on(std::int64_t rows, RowObserver& observer) {
 AnalysisReport DynamicsWithEvents::end() {
   if (in_phase_) take_report();
   over_ = true;
+  if (std::string remark = contacts_.remark_on_impacts(); !remark.empty()) total_.warnings.push_back(std::move(remark));
   return std::move(total_);
 }
 

@@ -6,9 +6,13 @@
 
 namespace catena {
 
-double nonnegative_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, Eigen::VectorXd& x) {
-  const Eigen::Index n = A.cols();
-  x = Eigen::VectorXd::Zero(n);
+double nonnegative_least_squares(std::span<const double> entries, std::span<const double> right,
+                                 std::span<double> coefficients) {
+  const auto rows = static_cast<Eigen::Index>(right.size()), n = static_cast<Eigen::Index>(coefficients.size());
+  const Eigen::Map<const Eigen::MatrixXd> A(entries.data(), rows, n);
+  const Eigen::Map<const Eigen::VectorXd> b(right.data(), rows);
+  Eigen::Map<Eigen::VectorXd> x(coefficients.data(), n);
+  x.setZero();
   std::vector<char> used(static_cast<std::size_t>(n), 0);
   const auto solve_used = [&](Eigen::VectorXd& s) {
     std::vector<Eigen::Index> columns;

@@ -5,11 +5,11 @@
 // Solving Least Squares Problems (1974), chapter 23.
 #pragma once
 
-#include <Eigen/Core>
+#include <span>
 
 namespace catena {
 
-/// Returns |A x + b|; x has A.cols() entries.
-double nonnegative_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, Eigen::VectorXd& x);
+/// Returns |A x + b|. A: column by column, b.size() rows, x.size() columns.
+double nonnegative_least_squares(std::span<const double> A, std::span<const double> b, std::span<double> x);
 
 }  // namespace catena

@@ -75,8 +75,10 @@ bool PhasedDerivatives::jump(const VelocityJump& jump, const std::vector<double>
     if (!jump_on(first, rate, there, [&](std::size_t) { return Vector(at(plan().rows)); })) return false;
   }
   if (jump.places.empty()) return true;
-  if (jump.settles) {
-    lost_ = fmt::format("at t = {:.9g} s a motion that rocks ever faster comes to rest: that has no derivative", to_);
+  if (jump.other_law || jump.settles) {
+    lost_ = fmt::format("at t = {:.9g} s {}: that has no derivative", to_,
+                        jump.settles ? "a motion that rocks ever faster comes to rest"
+                                     : "another law of impacts takes the place of Newton's, or energy would grow");
     for (std::size_t k = 0; k < tracks_.size(); ++k) std::fill(lose_[k].begin(), lose_[k].end(), true);
   }
   for (std::size_t k = 0; k < tracks_.size(); ++k) check_hits(jump, k, there[k]);
