@@ -45,6 +45,13 @@ class RodOnRoughFloor {
     p.restitution = one_of(0.4, 0.1, 0.9);
     p.rest_speed = 0.05;
     p.until = draw(0.3, 1);
+    if (seed % 5 == 0) {
+      // Slips against its spin, so that friction turns it back: often with energy that Newton's law makes.
+      const double turned = draw(2, 2.4);
+      p.start = {0, std::sin(turned) + 0.01, turned, draw(1.5, 2.2), 0, draw(-5, -4)};
+      p.mu = p.mu_static = draw(0.5, 0.7);
+      p.restitution = draw(0.75, 0.95);
+    }
     return p;
   }
 

@@ -164,7 +164,7 @@ double ContactProblem::rounding() const {
   double largest = 0;
   for (std::size_t r = 0; r < x.size(); ++r) {
     if (!(D(r, r) > 0)) continue;
-    double terms = std::abs(b[r]);
+    double terms = std::max(std::abs(b[r]), b_terms[r]);
     for (std::size_t c = 0; c < x.size(); ++c) terms += std::abs(D(r, c) * x[c]);
     largest = std::max(largest, terms / D(r, r));
   }
@@ -191,14 +191,20 @@ bool ContactProblem::sweep(double& size) {
 bool ContactProblem::solve() {
   double size = 0;
   has_grips_ = std::any_of(place.begin(), place.end(), [](const Place& p) { return p.head >= 0; });
-  if (!ruled_out_state_.empty() || !sweep(size)) return search();
+  if (!preferred_state_.empty()) {
+    state = preferred_state_;
+    direction = preferred_direction_;
+    if (try_states()) return true;
+  }
+  if (!ruled_out_state_.empty() && search()) return true;
+  if (!sweep(size)) return search();
   if (sticks_together() && search()) return true;
   const std::vector<double> swept = x;
   const std::vector<State> states = state;
   // Redundant places first: sweeps leave the later ones of them without a force, though they close as well.
   if (close_redundant(size)) {
     solve_states();
-    if (fits(size)) return true;
+    if (fits(size) || (!has_grips_ && try_states())) return true;
     x = swept;
     state = states;
   }

@@ -42,6 +42,7 @@ class ContactProblem {
   explicit ContactProblem(std::size_t places)
       : place(places),
         b(2 * places, 0.0),
+        b_terms(2 * places, 0.0),
         x(2 * places, 0.0),
         state(places, State::open),
         direction(places, 0),
@@ -52,6 +53,11 @@ class ContactProblem {
 
   /// Finds x and the states. False: there is no solution, or none that the iteration finds.
   bool solve();
+  /// solve() tries `state` and `direction` as they are now first.
+  void prefer_states() {
+    preferred_state_ = state;
+    preferred_direction_ = direction;
+  }
   /// What solve() finds from now on has other states than `state` and `direction` are now.
   void rule_out_states() {
     ruled_out_state_ = state;
@@ -60,9 +66,10 @@ class ContactProblem {
 
   std::vector<Place> place;
   std::vector<double> b;
-  std::vector<double> x;       ///< impulses or forces
-  std::vector<State> state;    ///< `slides` without friction: closed
-  std::vector<int> direction;  ///< of the slip, where it slides with friction
+  std::vector<double> b_terms;  ///< sizes of the sums that b is made of, for its rounding; at least |b| is meant
+  std::vector<double> x;        ///< impulses or forces
+  std::vector<State> state;     ///< `slides` without friction: closed
+  std::vector<int> direction;   ///< of the slip, where it slides with friction
 
  private:
   bool solve_place(std::size_t k);
@@ -92,7 +99,8 @@ class ContactProblem {
   bool try_states();
 
   std::vector<double> d_;
-  std::vector<State> ruled_out_state_;  // empty: none
+  std::vector<State> preferred_state_, ruled_out_state_;  // empty: none
+  std::vector<int> preferred_direction_;
   std::vector<int> ruled_out_direction_;
   bool has_grips_ = false;
   double grip_change_ = 0;  // of x at grips, in a sweep

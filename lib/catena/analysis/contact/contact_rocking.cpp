@@ -59,7 +59,7 @@ double ContactSwitch::end_rocking(double t, const std::vector<std::size_t>& hit,
   look(qd);
   // Two flights of one foot lie two ratios apart.
   const double flight = t - left_at_[hit.front()], ratio = std::sqrt(flight / flight_[hit.front()]);
-  return t + flight * ratio / (1 - ratio);
+  return ratio < 1 ? t + flight * ratio / (1 - ratio) : t;
 }
 
 void ContactSwitch::note_flights(double t, const std::vector<std::size_t>& hit) {

@@ -116,7 +116,7 @@ bool ContactProblem::try_states() {
       const Place& p = place[k];
       if (along == 0 ? !p.has_normal : !p.has_friction || state[k] == State::open) continue;
       const std::size_t row = 2 * k + along;
-      double w = b[row], terms = std::abs(b[row]);
+      double w = b[row], terms = std::max(std::abs(b[row]), b_terms[row]);
       for (std::size_t c = 0; c < x.size(); ++c) {
         w += D(row, c) * x[c];
         terms += std::abs(D(row, c) * x[c]);

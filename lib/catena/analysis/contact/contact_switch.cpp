@@ -42,6 +42,20 @@ double product(const Evaluator::ScalarMotion& of, std::span<const double> x) {
   return sum;
 }
 
+double size_of_product(const Evaluator::ScalarMotion& of, std::span<const double> x) {
+  double sum = 0;
+  const auto add = [&](int body, const double* gradient) {
+    for (int k = 0; k < 3; ++k) sum += std::abs(gradient[k] * x[at(3 * body + k)]);
+  };
+  add(of.body_i, of.gradient);
+  add(of.body_j, of.gradient + 3);
+  for (const Evaluator::ScalarMotion::Part& part : of.parts) {
+    add(part.body_i, part.gradient);
+    add(part.body_j, part.gradient + 3);
+  }
+  return sum;
+}
+
 ContactSwitch::ContactSwitch(std::shared_ptr<const Model> model, const std::vector<ContactPoint>& points,
                              const PlanOptions& plan)
     : model_(std::move(model)),
@@ -289,48 +303,91 @@ Report ContactSwitch::choose(double t, std::span<const double> q, std::span<cons
   ContactLoads loads(evaluator_, points_, forces);
   if (!find_free_accelerations(t, q, qd, loads))
     return failure(t, loads.trouble().empty() ? "accelerations are not finite" : loads.trouble());
-  const auto leaves = [&](std::size_t k) {
-    return points_[k].kind == ContactKind::rigid && !returns(t, k, cause) && gap_[k].rate > part_of_speed(k, no_speed);
-  };
+  forget_shared();
+  let_leave(t, states, cause);
+  for (std::vector<std::size_t>& group : active_by_group()) {
+    active_ = std::move(group);
+    if (Report chosen = choose_among(t, qd, states, cause, loads); !chosen.ok()) return chosen;
+  }
+  return {};
+}
+
+// Places whose gaps open already, or that nothing presses any more.
+void ContactSwitch::let_leave(double t, std::vector<ContactState>& states, const Cause& cause) {
   std::erase_if(active_, [&](std::size_t k) {
-    if (!leaves(k)) return false;
+    const bool opens = cause.opens && static_cast<int>(k) == cause.place;
+    const bool leaves =
+        points_[k].kind == ContactKind::rigid && !returns(t, k, cause) && gap_[k].rate > part_of_speed(k, no_speed);
+    if (!opens && !leaves) return false;
     states[k] = {};
     left_at_[k] = t;
     return true;
   });
-  if (cause.opens) {
-    states[static_cast<std::size_t>(cause.place)] = {};
-    std::erase(active_, static_cast<std::size_t>(cause.place));
-  }
   let_grips_go(states);
-  if (active_.empty()) return {};
-  find_responses();
-  ContactProblem problem(active_.size());
+}
+
+// Forces of one mechanism do not reach another.
+std::vector<std::vector<std::size_t>> ContactSwitch::active_by_group() {
+  if (group_.empty()) find_groups();
+  std::vector<std::vector<std::size_t>> groups;
+  for (const std::size_t k : active_) {
+    const auto same = [&](const std::vector<std::size_t>& group) { return group_[group.front()] == group_[k]; };
+    const auto found = std::find_if(groups.begin(), groups.end(), same);
+    if (found == groups.end())
+      groups.push_back({k});
+    else
+      found->push_back(k);
+  }
+  return groups;
+}
+
+// Accelerations of gaps and slides without forces there.
+void ContactSwitch::set_up(ContactProblem& problem, const Cause& cause) const {
   fill(problem);
+  const auto take = [&](std::size_t row, const Evaluator::ScalarMotion& motion) {
+    problem.b[row] = motion.bend + product(motion, qdd_);
+    problem.b_terms[row] = std::abs(motion.bend) + size_of_product(motion, qdd_);
+  };
   for (std::size_t a = 0; a < active_.size(); ++a) {
     const std::size_t k = active_[a];
     ContactProblem::Place& place = problem.place[a];
-    problem.b[2 * a] = place.has_normal ? gap_[k].bend + product(gap_[k], qdd_) : 0;
-    if (points_[k].has_friction()) {
-      problem.b[2 * a + 1] = slide_[k].bend + product(slide_[k], qdd_);
-      place.slip = sign(slide_[k].rate, part_of_speed(k, no_speed));
-      if (static_cast<int>(k) == cause.place && cause.rests) place.slip = cause.leaves;
-    }
+    if (place.has_normal) take(2 * a, gap_[k]);
+    if (!points_[k].has_friction()) continue;
+    take(2 * a + 1, slide_[k]);
+    place.slip = sign(slide_[k].rate, part_of_speed(k, no_speed));
+    if (static_cast<int>(k) == cause.place && cause.rests) place.slip = cause.leaves;
   }
-  if (cause.shares) {
-    for (std::size_t a = 0; a < active_.size(); ++a) {
-      const ContactState& state = states[active_[a]];
-      const bool sticks = points_[active_[a]].has_friction() && state.direction == 0;
-      problem.state[a] = !state.closed ? ContactProblem::State::open
-                         : sticks      ? ContactProblem::State::sticks
-                                       : ContactProblem::State::slides;
-      problem.direction[a] = state.direction;
-    }
-    problem.rule_out_states();
+}
+
+// Places that hold each other go on as they are but for those that give way; as they all are they cannot.
+void ContactSwitch::prefer_giving_way(ContactProblem& problem, const std::vector<ContactState>& states,
+                                      const Cause& cause) const {
+  using State = ContactProblem::State;
+  for (std::size_t a = 0; a < active_.size(); ++a) {
+    const ContactState& state = states[active_[a]];
+    const bool sticks = points_[active_[a]].has_friction() && state.direction == 0;
+    problem.state[a] = !state.closed ? State::open : sticks ? State::sticks : State::slides;
+    problem.direction[a] = state.direction;
   }
-  if (Report pressed = press_joints(t, qd, loads, problem); !pressed.ok()) {
+  problem.rule_out_states();
+  for (const GivesWay& place : cause.giving_way) {
+    const auto a = static_cast<std::size_t>(std::find(active_.begin(), active_.end(), place.point) - active_.begin());
+    if (a == active_.size()) continue;
+    problem.state[a] = place.direction == 0 ? State::open : State::slides;
+    problem.direction[a] = place.direction;
+  }
+  if (!cause.giving_way.empty()) problem.prefer_states();
+}
+
+// Of the active places, which are of one mechanism.
+Report ContactSwitch::choose_among(double t, std::span<const double> qd, std::vector<ContactState>& states,
+                                   const Cause& cause, const ContactLoads& loads) {
+  find_responses();
+  ContactProblem problem(active_.size());
+  set_up(problem, cause);
+  if (cause.shares) prefer_giving_way(problem, states, cause);
+  if (Report pressed = press_joints(t, qd, loads, problem); !pressed.ok())
     return is_jammed(true) ? blocked(t, active_) : pressed;
-  }
   if (const std::vector<std::size_t> pushed = pushed_through(t, problem, cause); !pushed.empty())
     return blocked(t, pushed);
   for (std::size_t a = 0; a < active_.size(); ++a) {
@@ -341,17 +398,18 @@ Report ContactSwitch::choose(double t, std::span<const double> q, std::span<cons
     states[k].direction = problem.state[a] == ContactProblem::State::slides ? problem.direction[a] : 0;
     states[k].tied = false;
   }
-  find_shared(problem);
+  SharedForces forces(problem, active_);
+  if (!forces.places().empty()) shared_.push_back(std::move(forces));
   tie_grips(problem, states);
   return {};
 }
 
-void ContactSwitch::find_shared(const ContactProblem& problem) {
+// What was known of the places that are decided about now.
+void ContactSwitch::forget_shared() {
+  const auto is_touched = [&](std::size_t k) { return std::find(active_.begin(), active_.end(), k) != active_.end(); };
   std::erase_if(shared_, [&](const SharedForces& forces) {
-    return std::find(active_.begin(), active_.end(), forces.places().front()) != active_.end();
+    return std::any_of(forces.places().begin(), forces.places().end(), is_touched);
   });
-  SharedForces forces(problem, active_);
-  if (!forces.places().empty()) shared_.push_back(std::move(forces));
 }
 
 void ContactSwitch::tell_changes(double t, const std::vector<ContactState>& before,
@@ -407,6 +465,7 @@ Report ContactSwitch::decide(double t, std::span<const double> q, std::span<doub
   if (is_told) impulses_ = impulses_of(equations_, q, qd, p_);
   if (Report chosen = choose(t, q, qd, states, cause); !chosen.ok()) return chosen;
   if (cause.tell) tell_changes(t, before, states);
+  std::fill(landing_.begin(), landing_.end(), std::numeric_limits<double>::quiet_NaN());
   return {};
 }
 

@@ -44,6 +44,8 @@ namespace catena {
 
 /// The gradient of a gap or slide times x, by coordinate.
 double product(const Evaluator::ScalarMotion& of, std::span<const double> x);
+/// The sizes of its terms together, for its rounding.
+double size_of_product(const Evaluator::ScalarMotion& of, std::span<const double> x);
 
 /// A change of a contact.
 struct ContactEvent {
@@ -64,12 +66,13 @@ class ContactSwitch {
 
   /// Why contacts are decided about.
   struct Cause {
-    int place = -1;       ///< the one that changed; -1: something else did
-    bool opens = false;   ///< nothing presses it any more, to rounding
-    bool rests = false;   ///< its slide is at rest, to rounding
-    bool shares = false;  ///< places that hold each other, this one among them, keep no limit any more
-    int leaves = 0;       ///< sign of the slip with which it leaves a state of sticking: friction has reached its limit
-    bool tell = true;     ///< changes of places are events; impacts always are
+    int place = -1;                      ///< the one that changed; -1: something else did
+    bool opens = false;                  ///< nothing presses it any more, to rounding
+    bool rests = false;                  ///< its slide is at rest, to rounding
+    bool shares = false;                 ///< places that hold each other, this one among them, keep no limit any more
+    std::vector<GivesWay> giving_way{};  ///< those of them whose limits these are
+    int leaves = 0;    ///< sign of the slip with which it leaves a state of sticking: friction has reached its limit
+    bool tell = true;  ///< changes of places are events; impacts always are
     const Strike* strike = nullptr;  ///< acts before anything closes
     bool jolts = false;  ///< velocities need not meet the constraints: one was engaged, or a driver's velocity jumps
   };
@@ -129,8 +132,14 @@ class ContactSwitch {
   bool find_free_accelerations(double t, std::span<const double> q, std::span<const double> qd, ContactLoads& loads);
   Report choose(double t, std::span<const double> q, std::span<const double> qd, std::vector<ContactState>& states,
                 const Cause& cause);
+  Report choose_among(double t, std::span<const double> qd, std::vector<ContactState>& states, const Cause& cause,
+                      const ContactLoads& loads);
+  void let_leave(double t, std::vector<ContactState>& states, const Cause& cause);
+  void set_up(ContactProblem& problem, const Cause& cause) const;
+  void prefer_giving_way(ContactProblem& problem, const std::vector<ContactState>& states, const Cause& cause) const;
+  std::vector<std::vector<std::size_t>> active_by_group();
   Report press_joints(double t, std::span<const double> qd, const ContactLoads& loads, ContactProblem& problem);
-  void find_shared(const ContactProblem& problem);
+  void forget_shared();
   void tell_changes(double t, const std::vector<ContactState>& before, const std::vector<ContactState>& after);
   double kinetic_energy(std::span<const double> qd) const;
   Report failure(double t, const std::string& why) const;

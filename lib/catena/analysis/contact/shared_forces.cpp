@@ -33,7 +33,7 @@ SharedForces::SharedForces(const ContactProblem& problem, const std::vector<std:
   for (std::size_t k = 0; k < problem.place.size(); ++k) {
     if (problem.state[k] == State::open) continue;
     const ContactProblem::Place& p = problem.place[k];
-    if (p.head >= 0) return;  // tensions beside grips are no cone: ContactSwitch::tie_grips()
+    if (p.head >= 0) continue;  // tensions beside grips are no cone: ContactSwitch::tie_grips()
     const bool slides = problem.state[k] == State::slides && p.has_friction;
     if (p.has_normal) held.push_back({k, false, slides ? -p.mu * problem.direction[k] : 0});
     if (problem.state[k] == State::sticks) held.push_back({k, true, 0});
@@ -91,8 +91,8 @@ SharedForces::SharedForces(const ContactProblem& problem, const std::vector<std:
   if (places_.size() < 2) places_.clear();
 }
 
-double SharedForces::margin(const std::function<double(std::size_t)>& normal,
-                            const std::function<double(std::size_t)>& along) const {
+SharedForces::Best SharedForces::best(const std::function<double(std::size_t)>& normal,
+                                      const std::function<double(std::size_t)>& along) const {
   const std::size_t count = limits_.size(), meet = std::min(freedom_ + 1, count);
   std::vector<double> given(count);
   for (std::size_t l = 0; l < count; ++l) {
@@ -103,7 +103,7 @@ double SharedForces::margin(const std::function<double(std::size_t)>& normal,
   for (std::size_t k = 0; k < freedom_; ++k) {
     for (const double way : {1.0, -1.0}) {
       if (std::all_of(limits_.begin(), limits_.end(), [&](const Limit& l) { return way * l.slope[k] > 0; }))
-        return std::numeric_limits<double>::max();
+        return {std::numeric_limits<double>::max(), {}};
     }
   }
   const auto columns = static_cast<Eigen::Index>(freedom_);
@@ -113,7 +113,7 @@ double SharedForces::margin(const std::function<double(std::size_t)>& normal,
       least = std::min(least, given[l] + Eigen::Map<const Eigen::VectorXd>(limits_[l].slope.data(), columns).dot(y));
     return least;
   };
-  double best = *std::min_element(given.begin(), given.end());
+  Best best{*std::min_element(given.begin(), given.end()), {}};
   // Every choice of limits that meet, in lexical order.
   std::vector<std::size_t> chosen(meet);
   std::iota(chosen.begin(), chosen.end(), std::size_t{0});
@@ -122,18 +122,47 @@ double SharedForces::margin(const std::function<double(std::size_t)>& normal,
   while (true) {
     for (std::size_t k = 0; k < meet; ++k) {
       const auto r = static_cast<Eigen::Index>(k);
-      for (Eigen::Index c = 0; c < columns; ++c) A(r, c) = limits_[chosen[k]].slope[static_cast<std::size_t>(c)];
+      for (Eigen::Index column = 0; column < columns; ++column)
+        A(r, column) = limits_[chosen[k]].slope[static_cast<std::size_t>(column)];
       A(r, columns) = -1;
       right(r) = -given[chosen[k]];
     }
     const Eigen::VectorXd meeting = A.fullPivLu().solve(right);
-    if (meeting.allFinite()) best = std::max(best, least_at(meeting.head(columns)));
+    const double margin = meeting.allFinite() ? least_at(meeting.head(columns)) : best.margin;
+    if (margin > best.margin || (margin == best.margin && best.limits.empty())) best = {margin, chosen};
     std::size_t k = meet;
     while (k > 0 && chosen[k - 1] == count - meet + k - 1) --k;
     if (k == 0) return best;
     ++chosen[k - 1];
     for (std::size_t next = k; next < meet; ++next) chosen[next] = chosen[next - 1] + 1;
   }
+}
+
+double SharedForces::margin(const std::function<double(std::size_t)>& normal,
+                            const std::function<double(std::size_t)>& along) const {
+  return best(normal, along).margin;
+}
+
+// Weights w >= 0 with sum w slope = 0, sum w = 1 of the limits that meet: those of weight zero only happen to be there.
+std::vector<GivesWay> SharedForces::giving_way(const std::function<double(std::size_t)>& normal,
+                                               const std::function<double(std::size_t)>& along) const {
+  const std::vector<std::size_t> meeting = best(normal, along).limits;
+  std::vector<GivesWay> places;
+  if (meeting.empty()) return places;
+  const auto columns = static_cast<Eigen::Index>(meeting.size()), rows = static_cast<Eigen::Index>(freedom_) + 1;
+  Eigen::MatrixXd A(rows, columns);
+  for (Eigen::Index column = 0; column < columns; ++column) {
+    const Limit& limit = limits_[meeting[static_cast<std::size_t>(column)]];
+    for (Eigen::Index r = 0; r + 1 < rows; ++r) A(r, column) = limit.slope[static_cast<std::size_t>(r)];
+    A(rows - 1, column) = 1;
+  }
+  const Eigen::VectorXd weight = A.fullPivLu().solve(Eigen::VectorXd::Unit(rows, rows - 1));
+  for (Eigen::Index column = 0; column < columns; ++column) {
+    const Limit& limit = limits_[meeting[static_cast<std::size_t>(column)]];
+    // T = -mu N, which the first of both limits of a place is, goes with a slip forwards.
+    if (weight(column) > no_share) places.push_back({limit.point, static_cast<int>(limit.sign)});
+  }
+  return places;
 }
 
 }  // namespace catena

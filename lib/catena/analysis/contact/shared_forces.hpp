@@ -16,6 +16,12 @@
 
 namespace catena {
 
+/// A place that holds no longer: it slides with this sign, or opens (0).
+struct GivesWay {
+  std::size_t point = 0;
+  int direction = 0;
+};
+
 class SharedForces {
  public:
   /// Of a solved problem, whose places are points by `point`. Places that share nothing are not among places().
@@ -26,6 +32,9 @@ class SharedForces {
   /// From forces across and along (for points that do not stick: not asked) of one share.
   double margin(const std::function<double(std::size_t)>& normal,
                 const std::function<double(std::size_t)>& along) const;
+  /// Whose limits meet at that margin: they keep each other from growing, and go together where it is zero.
+  std::vector<GivesWay> giving_way(const std::function<double(std::size_t)>& normal,
+                                   const std::function<double(std::size_t)>& along) const;
 
  private:
   /// A limit: mu N + sign T, or N where it only presses.
@@ -34,6 +43,12 @@ class SharedForces {
     double mu, sign;
     std::vector<double> slope;  // by y
   };
+  struct Best {
+    double margin;
+    std::vector<std::size_t> limits;  // that meet there; none where forces may grow without end
+  };
+  Best best(const std::function<double(std::size_t)>& normal, const std::function<double(std::size_t)>& along) const;
+
   std::vector<std::size_t> places_;
   std::vector<Limit> limits_;
   std::size_t freedom_ = 0;  // columns of Z

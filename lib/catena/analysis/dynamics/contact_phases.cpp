@@ -210,6 +210,13 @@ Report ContactPhases::change(int transition, SystemState& state) {
   ContactSwitch::Cause cause{.place = static_cast<int>(watched.place),
                              .rests = watched.ends == PhaseEnd::slide,
                              .shares = watched.ends == PhaseEnd::shares};
+  if (cause.shares) {
+    const auto normal = [this](std::size_t k) { return loads_->normal(k); };
+    const auto along = [this](std::size_t k) { return loads_->friction(k); };
+    for (const SharedForces& forces : switch_->shared()) {
+      if (forces.places().front() == watched.place) cause.giving_way = forces.giving_way(normal, along);
+    }
+  }
   cause.opens = watched.ends == PhaseEnd::contact && states_[watched.place].closed;
   // What stuck goes the way that friction no longer prevents; by rounding alone the limit might seem not to be reached.
   if (cause.rests && states_[watched.place].direction == 0) cause.leaves = loads_->friction(watched.place) > 0 ? -1 : 1;

@@ -120,6 +120,10 @@ class DynamicsTask {
 };
 
 std::string DynamicsTask::conflict() const {
+  if (const int rope = first_gripped_rope(*model_); context_.design && rope >= 0) {
+    return fmt::format("rope \"{}\" rubs on a pulley (mu): derivatives of its tensions are not built",
+                       model_->element_name(rope));
+  }
   const std::vector<EventRequest>& events = context_.task.events;
   if (estimates_ && std::any_of(events.begin(), events.end(), acts)) {
     return "the error cannot be estimated where events release or engage a constraint or strike a body: they would "
