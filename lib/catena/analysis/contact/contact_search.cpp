@@ -24,7 +24,7 @@ constexpr std::size_t most_searched = 6;
 // Of the terms of a sum: what counts as rounding of it. Choices that do not fit miss by parts of their loads.
 constexpr double fitting = 1e-9;
 // Of the largest diagonal entry: what dependent rows leave.
-constexpr double dependent = 1e-11;
+constexpr double without_rank = 1e-11;
 
 /// The entries of a vector, or of a matrix column by column.
 template <class M>
@@ -57,7 +57,7 @@ bool ContactProblem::sticks_together() const {
     }
   }
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors;
-  factors.setThreshold(dependent);
+  factors.setThreshold(without_rank);
   return factors.compute(held).rank() < size;
 }
 
