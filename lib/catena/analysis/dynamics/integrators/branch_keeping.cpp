@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "catena/base/at.hpp"
 
@@ -26,13 +25,12 @@ constexpr double few_roundings = 32 * std::numeric_limits<double>::epsilon();
 /// The search for q_s, and what is known there.
 class Passage {
  public:
-  Passage(EquationsOfMotion& of, std::span<const double> start) : equations(of), q(start.begin(), start.end()) {
+  Passage(EquationsOfMotion& of, std::span<double> start, std::span<double> phi, std::span<double> values)
+      : equations(of), q(start), phi_(phi), values_(values) {
     const Plan& plan = of.plan();
     unit.resize(plan.columns);
     for (int c = 0; c < plan.columns; ++c)
       unit[c] = plan.coordinate[at(c)] % 3 == 2 ? 1 : of.evaluator().length_scale();
-    phi_.resize(at(plan.rows));
-    values_.resize(at(plan.trash_slot()) + 1);
     of.evaluator().start_jacobian(values_);
   }
 
@@ -40,13 +38,13 @@ class Passage {
   double along(const Eigen::VectorXd& direction, std::span<const double> place) const;
 
   EquationsOfMotion& equations;
-  std::vector<double> q;
+  std::span<double> q;
   Eigen::VectorXd unit;            // of columns, m or rad
   Eigen::MatrixXd basis, hessian;  // Z over columns in these units, H
   double offset = 0;               // c
 
  private:
-  std::vector<double> phi_, values_;
+  std::span<double> phi_, values_;
 };
 
 // One step of Newton's method towards q_s; c, H and Z are those of the place before it.
@@ -124,11 +122,16 @@ double Passage::along(const Eigen::VectorXd& direction, std::span<const double> 
 
 }  // namespace
 
+BranchKeeping::BranchKeeping(const EquationsOfMotion& equations)
+    : q_(at(equations.plan().coordinates())),
+      phi_(at(equations.plan().rows)),
+      values_(at(equations.plan().trash_slot()) + 1) {}
+
 bool BranchKeeping::leaves(EquationsOfMotion& equations, std::span<const double> q0, std::span<const double> q1,
                            std::span<const double> middle) {
   const Plan& plan = equations.plan();
-  if (plan.rows == 0 || plan.rows > most_rows) return false;
-  Passage passage(equations, middle);
+  std::copy(middle.begin(), middle.end(), q_.begin());
+  Passage passage(equations, q_, phi_, values_);
   double extent = 1;
   for (int c = 0; c < plan.columns; ++c)
     extent = std::max(extent, std::abs(q0[at(plan.coordinate[at(c)])]) / passage.unit[c]);

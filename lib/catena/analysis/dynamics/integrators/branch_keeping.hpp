@@ -12,11 +12,13 @@
 // along its eigenvector e: a step between x of different signs has left its branch.
 //
 // q_s is found by Newton's method from the middle of the passage; lengths in length scales, rows of length one. Not
-// judged: c below rounding, several combinations at once, more than `most_rows` rows, drivers. Allocates; it is asked
-// for steps that pass beside a singular position only. Source: apps/manual/numerics.md#singular-passages.
+// judged: c below rounding, several combinations at once, more than `most_rows` rows, drivers. Vectors of coordinates
+// and rows are kept from one passage to the next; small dense matrices are made for each step that passes beside a
+// singular position. Source: apps/manual/numerics.md#singular-passages.
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "catena/analysis/motion/equations_of_motion.hpp"
 
@@ -24,7 +26,12 @@ namespace catena {
 
 class BranchKeeping {
  public:
-  static constexpr int most_rows = 120;
+  /// Whether steps of such a mechanism can be judged at all.
+  static bool judges(const EquationsOfMotion& equations) {
+    const int rows = equations.plan().rows;
+    return rows > 0 && rows <= most_rows;
+  }
+  explicit BranchKeeping(const EquationsOfMotion& equations);
 
   /// Whether a step from q0 to q1 (size coordinates()) at the evaluator's time has left its branch; `middle`: about
   /// where it passes. The evaluator is left elsewhere, the factors of the equations as they are.
@@ -34,7 +41,9 @@ class BranchKeeping {
   double gap() const { return gap_; }
 
  private:
+  static constexpr int most_rows = 120;
   double gap_ = 0;
+  std::vector<double> q_, phi_, values_;  // of the search: its place, rows, entries of Phi_q
 };
 
 }  // namespace catena

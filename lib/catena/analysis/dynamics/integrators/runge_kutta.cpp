@@ -51,8 +51,10 @@ RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options) : motion
   for (std::size_t c = 0; c < direction_.size(); c += 3) weight_ += motion_.equations().masses().mass[c];
   const Vec2<double> gravity = motion_.equations().evaluator().model().gravity;
   weight_ *= std::hypot(gravity.x, gravity.y) * scale_.length;
-  driven_ = is_driven(motion_.equations());
-  keeps_energy_ = options.fixed_step == 0 && !motion_.equations().state_loads() && !driven_;
+  const bool driven = is_driven(motion_.equations());
+  if (!driven && options.fixed_step == 0 && BranchKeeping::judges(motion_.equations()))
+    branches_ = std::make_unique<BranchKeeping>(motion_.equations());
+  keeps_energy_ = options.fixed_step == 0 && !motion_.equations().state_loads() && !driven;
   singular_ratio_ = std::max(singular_end, std::pow(lost_digits / std::sqrt(options.tolerance), 2.0 / 3));
 }
 

@@ -131,7 +131,7 @@ class RungeKutta final : public Integrator {
 
   Motion motion_;
   std::unique_ptr<CoordinatePartition> partition_;  // only where it is asked for
-  std::unique_ptr<BranchKeeping> branches_;         // from the first passage on, without drivers
+  std::unique_ptr<BranchKeeping> branches_;         // only where steps can be judged, without drivers
   RungeKuttaOptions options_;
   ErrorScale scale_;
   double t_new_ = 0, h_ = 0, stabilisation_ = 0;
@@ -143,9 +143,8 @@ class RungeKutta final : public Integrator {
   std::vector<double> detour_steps_, stage_ratio_;
   std::vector<double> stage_power_, direction_;  // W; see runge_kutta_energy.cpp
   double roughness_ = 0;                         // of the last stages: sum of |weight| ratio^-1.5
-  bool driven_ = false;
-  bool keeps_energy_ = false;  // its balance says how fast the mechanism moves
-  double weight_ = 0;          // of all bodies, times the length scale, J
+  bool keeps_energy_ = false;                    // its balance says how fast the mechanism moves
+  double weight_ = 0;                            // of all bodies, times the length scale, J
   bool interpolant_ready_ = false, by_ends_ = false, passing_singular_ = false, projecting_stages_ = false,
        crossing_ = false, long_steps_ = false, turning_ = false, best_passes_ = false, taking_best_ = false;
   int acting_rows_ = 0;  // see jacobian_rank.hpp

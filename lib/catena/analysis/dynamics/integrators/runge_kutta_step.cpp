@@ -102,8 +102,7 @@ bool RungeKutta::leaves_branch(double h) {
   const double end = pivot_ratio(), least = std::min(start_ratio_, end), most = std::max(start_ratio_, end);
   if (!(std::min(smallest_stage_ratio_, least) < nearly_singular)) return false;
   if (!(smallest_stage_ratio_ < dip_inside * least) && !(least < dip_at_end * most)) return false;
-  if (driven_) return false;
-  if (!branches_) branches_ = std::make_unique<BranchKeeping>();
+  if (!branches_) return false;
   const double before = std::sqrt(start_ratio_), s = before / (before + std::sqrt(end));
   const std::span<const double> y(y_), next(y_new_);
   const std::span<const double> q0 = motion_.q(y), v0 = motion_.qd(y), q1 = motion_.q(next), v1 = motion_.qd(next);
