@@ -93,7 +93,7 @@ void EventWatch::watch(std::vector<Transition> transitions, const Needs& needs) 
   side_.resize(events_.size());
   for (const Transition& transition : transitions_) side_.push_back(transition.side);
   largest_.resize(events_.size());
-  largest_.resize(size, 0.0);
+  for (const Transition& transition : transitions_) largest_.push_back(transition.scale);
   found_at_.resize(events_.size());
   found_at_.resize(size, -std::numeric_limits<double>::infinity());
   for (std::vector<double>& g : g_) g.resize(size);

@@ -49,7 +49,8 @@ struct Event {
 /// A change of the mechanism itself: where `value` passes from the side on which it begins to the other one.
 struct Transition {
   std::function<double(const Snapshot&)> value;
-  int side = 1;  ///< on which it begins: -1 or 1
+  int side = 1;      ///< on which it begins: -1 or 1
+  double scale = 0;  ///< of what the value is a difference of, which decides on its rounding; 0: of the value itself
 };
 
 struct FoundEvent {
