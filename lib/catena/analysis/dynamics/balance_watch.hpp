@@ -1,7 +1,7 @@
 // Checks the balance of energy of a motion: detects wrong integrations from the motion itself.
 //
 //   missing = T + V - (T0 + V0) - work of drivers and loads + dissipated
-//   allowed = permitted x tolerance x (largest T + range of V) + rounding of V, |V| and weights x length scale
+//   allowed = permitted x tolerance x (largest T + range of V) + rounding of V, |V|, weights and loads x length scale
 //
 // Where constraints are not kept but drift by the size of the tolerance, weights do the work  tolerance x weights x
 // length scale  on the way: allowed as well, or no mechanism at rest would ever do.
@@ -12,6 +12,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 
 #include "catena/base/status.hpp"
 #include "catena/columns/snapshot.hpp"
@@ -32,12 +33,14 @@ class BalanceWatch {
   double energy() const { return std::max(earlier_, largest_kinetic_ + largest_potential_ - least_potential_); }
   /// Records the energy of a state of the motion, at the configuration of its evaluator.
   void observe(const Snapshot& state);
-  /// not_converged, with figures, where energy was lost or gained at the last state by more than is allowed.
-  Report check(double t) const;
+  /// not_converged, with figures, where energy was lost or gained at the last state by more than is allowed; `loads`:
+  /// generalized forces near there, whose work in the rounding of places none can know.
+  Report check(double t, std::span<const double> loads) const;
 
  private:
   double tolerance_ = 0, initial_ = 0, missing_ = 0, largest_kinetic_ = 0, least_potential_ = 0, largest_potential_ = 0;
   double earlier_ = 0, weight_ = 0;  // of all bodies, times the length scale: V is zero by chance alone
+  double length_ = 1;
   bool work_known_ = false, drifts_ = false;
 };
 

@@ -66,7 +66,7 @@ Report Dynamics::give_row(double t, RowObserver& observer) {
   if (!state) return stuck();
   if (balance_ && t != integrator_->time() && equations_.smallest_pivot_ratio() < nearly_singular) {
     balance_->observe(*state);
-    if (Report balance = balance_->check(t); !balance.ok()) return balance;
+    if (Report balance = balance_->check(t, equations_.applied_forces()); !balance.ok()) return balance;
   }
   return observer.observe(*state) ? Report{} : cancelled(t);
 }
@@ -206,7 +206,7 @@ Report Dynamics::find_events(double from, RowObserver& observer) {
       if (!end) return stuck();
       if (balance_) {
         balance_->observe(*end);
-        if (Report balance = balance_->check(found->t); !balance.ok()) return balance;
+        if (Report balance = balance_->check(found->t, equations_.applied_forces()); !balance.ok()) return balance;
       }
       stopped_by_ = found->event;
       t_ = found->t;

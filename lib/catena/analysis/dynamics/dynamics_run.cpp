@@ -99,7 +99,7 @@ Report Dynamics::start() {
 Report Dynamics::check_balance() {
   if (!balance_ || (evaluator_.counters.steps % steps_between_checks != 0 && t_ < grid_.last())) return {};
   balance_->observe(snapshot(t_, integrator_->state(), {}));
-  return balance_->check(t_);
+  return balance_->check(t_, equations_.applied_forces());
 }
 
 // Puts the integrator where the motion begins, or where it paused.

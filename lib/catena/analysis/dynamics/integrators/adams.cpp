@@ -107,7 +107,7 @@ double Adams::weight(std::size_t c, double h) const {
 // The same of the loads' power: see RungeKutta::error_of_work.
 double Adams::weight_of_work(double h) const {
   const std::size_t work = 2 * motion_.coordinates() + ErrorScale::work_of_loads;
-  return h * scale_.size_of_work(1, y_[work], y_[work] + h * slope_[work]);
+  return h * scale_.size_of_work(1, y_[work], y_[work] + h * slope_[work], h, motion_.equations().applied_forces());
 }
 
 // Errors at orders k, k-1 and k-2, as if steps had one length.

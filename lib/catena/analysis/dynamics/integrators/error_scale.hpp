@@ -70,10 +70,14 @@ class ErrorScale {
   /// Where EnergyAccount has the work of the loads, among its integrals.
   static constexpr std::size_t work_of_loads = 1;
   /// An error of work, J, in a step that begins and ends with these sums, compared with what may be: a part of what the
-  /// balance of energy may miss (balance_watch.hpp), by the kinetic energy and the work so far.
-  double size_of_work(double error, double begin, double end) const {
+  /// balance of energy may miss (balance_watch.hpp), by the kinetic energy and the work so far; at least what loads F
+  /// do in displacements that count as nothing: F L (tolerance^2 + h^2 rounding). `loads`: at the end of the step of
+  /// size h, for at a start where they grow from zero those of the beginning say nothing.
+  double size_of_work(double error, double begin, double end, double h, std::span<const double> loads) const {
     const double energy = root_energy_ * root_energy_ + std::max(std::abs(end), std::abs(end - begin));
-    return energy > 0 ? error / (work_part * step_tolerance * energy) : 0;
+    double allowed = work_part * step_tolerance * energy;
+    if (error > allowed) allowed = std::max(allowed, work_of_nothing(h, loads));
+    return allowed > 0 ? error / allowed : 0;
   }
   /// The shortest step, s, that may be tried at t: below it time does not advance.
   double smallest_step(double t) const {
@@ -100,11 +104,7 @@ class ErrorScale {
     rate_ /= 1 + std::abs(step) * rate_;
     measure(qd, qdd);
     force_ = acceleration_ = 0;
-    for (std::size_t c = 0; c < qd.size(); ++c) {
-      const double force = std::abs(loads[c]) / (c % 3 == 2 ? length : 1);
-      force_ = std::max(force_, force);
-      if (mass_[c] > 0) acceleration_ = std::max(acceleration_, force * inverse_[c]);
-    }
+    measure_loads(loads.first(qd.size()), force_, acceleration_);
     const double condition = 1 / std::max(pivot_ratio, refined_ratio);
     condition_ = rate_ * rate_ <= condition * rounding_of_accelerations * acceleration_ ? condition : 1;
     if (step == 0) {
@@ -120,6 +120,18 @@ class ErrorScale {
  private:
   double rounding(std::size_t c) const {
     return condition_ * rounding_of_accelerations * std::min(acceleration_, force_ * inverse_[c]);
+  }
+  void measure_loads(std::span<const double> loads, double& largest, double& acceleration) const {
+    for (std::size_t c = 0; c < loads.size(); ++c) {
+      const double force = std::abs(loads[c]) / (c % 3 == 2 ? length : 1);
+      largest = std::max(largest, force);
+      if (mass_[c] > 0) acceleration = std::max(acceleration, force * inverse_[c]);
+    }
+  }
+  double work_of_nothing(double h, std::span<const double> loads) const {
+    double force = force_, acceleration = acceleration_;
+    measure_loads(loads.first(mass_.size()), force, acceleration);
+    return force * length * (tolerance_ * tolerance_ + h * h * condition_ * rounding_of_accelerations * acceleration);
   }
   void measure(std::span<const double> qd, std::span<const double> qdd) {
     double fastest = 0, strongest = 0, energy = 0;

@@ -89,7 +89,7 @@ double RungeKutta::error_of_work(double h) const {
     const double low = sum(tableau().error_low);
     error *= error / std::sqrt(error * error + 0.01 * low * low);
   }
-  return scale_.size_of_work(error, y_[load], y_new_[load]);
+  return scale_.size_of_work(error, y_[load], y_new_[load], h, motion_.equations().applied_forces());
 }
 
 // The error without most of the part that the projection at the step's end will remove.
