@@ -234,6 +234,39 @@ TEST(ContactMotion, WheelsRollOrSlipDownSlopes) {
   }
 }
 
+// A fast wheel in any unit of length, on which a torque grows: it rolls until friction no longer suffices, then slips.
+TEST(ContactMotion, FastWheelsBeginToSlip) {
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers random(seed);
+    const double unit = std::pow(10, random(-3, 3)), speed = unit * std::pow(10, random(0, 2.5));
+    const double mass = random(0.5, 20), radius = unit * random(0.1, 0.5), mu = random(0.1, 0.6);
+    const double inertia = random(0.3, 1) * mass * radius * radius, slip = random(0.5, 2), t = slip + random(0.1, 1);
+    // Rolling: m a = F, J a / R = k t - F R.
+    const double resists = mass * radius + inertia / radius, k = mu * g * unit * resists / slip, after = t - slip;
+    const double v = speed + k * slip * slip / (2 * resists), a = mu * g * unit;
+    const double x = speed * slip + k * std::pow(slip, 3) / (6 * resists) + v * after + a * after * after / 2;
+    const double omega = -v / radius + (mass * a * radius * after - k * (t * t - slip * slip) / 2) / inertia;
+    const TextRun run =
+        run_text(R"({"catena":1, "gravity":[0,)" + text_of(-g * unit) + R"(], "bodies": {"wheel": {"mass": )" +
+                 text_of(mass) + R"(, "inertia": )" + text_of(inertia) + R"(, "position": )" + pair_of(0, radius) +
+                 R"(, "velocity": )" + pair_of(speed, 0) + R"(, "angular_velocity": )" + text_of(-speed / radius) +
+                 R"(}}, "forces": [{"type": "contact", "name": "road", "i": "ground", "j": "wheel", "mu": )" +
+                 text_of(mu) + R"(, "radius": )" + text_of(radius) + "," + ground_line(0) +
+                 R"(}, {"type": "torque", "i": "wheel", "torque": {"polynomial": [0, )" + text_of(-k) +
+                 R"(]}}], "outputs": ["wheel.x", "wheel.y", "wheel.vx", "wheel.omega"],)" + dynamics({t}));
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+    const std::vector<Change> changes = changes_of(run);
+    ASSERT_EQ(changes.size(), 1U);
+    EXPECT_EQ(changes[0].kind, "slip");
+    EXPECT_NEAR(changes[0].t, slip, 1e-9);
+    EXPECT_NEAR(run.last("wheel.x"), x, 1e-10 * speed * t);
+    EXPECT_NEAR(run.last("wheel.y"), radius, 1e-12 * radius);
+    EXPECT_NEAR(run.last("wheel.vx"), v + a * after, 1e-10 * v);
+    EXPECT_NEAR(run.last("wheel.omega"), omega, 1e-9 * std::abs(omega));
+  }
+}
+
 // A block on two corners that slides up a slope: it stops, and stays where friction holds it.
 TEST(ContactMotion, BlocksSlideToAStop) {
   for (unsigned seed = 1; seed <= 30; ++seed) {

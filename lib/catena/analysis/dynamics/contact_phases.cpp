@@ -298,6 +298,7 @@ void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std
 }
 
 void ContactPhases::attach(Dynamics& dynamics, EventWatch& watch) {
+  const double speed = loads_ ? loads_->speed() : 0, length = dynamics.evaluator().length_scale();
   loads_ = std::make_unique<ContactLoads>(dynamics.evaluator(), contacts_.points, states_);
   dynamics.attach(loads_.get());
   std::vector<Transition> transitions;
@@ -305,6 +306,12 @@ void ContactPhases::attach(Dynamics& dynamics, EventWatch& watch) {
   Needs needs{.velocity = true};
   for (std::size_t k = 0; k < states_.size(); ++k) add_transitions(k, dynamics, transitions, needs);
   add_shared_transitions(dynamics, transitions, needs);
+  // Slips are differences of speeds of the motion, which may be much larger: so may be their rounding.
+  for (std::size_t n = 0; n < watched_.size(); ++n) {
+    const std::size_t k = watched_[n].place;
+    const bool slides = watched_[n].ends == PhaseEnd::slide && states_[k].direction != 0;
+    if (slides) transitions[n].scale = speed / (contacts_.points[k].turns ? length : 1);
+  }
   if (ropes_) ropes_->add_transitions(transitions);
   watch.watch(std::move(transitions), needs);
 }
