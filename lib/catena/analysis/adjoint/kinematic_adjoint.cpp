@@ -76,6 +76,8 @@ bool KinematicAdjoint::derive(const ColumnSet& columns, const Snapshot& snapshot
   if (columns.needs().work)
     return fail("work and dissipated energy, which are summed up over time, have no derivative");
   if (!find(snapshot)) return false;
+  // Which parameters contradict them is seen by carrying derivatives forward alone.
+  if (!system_.dependent_rows().empty()) return fail("constraints depend on each other");
   if (columns_ != &columns) {
     std::vector<DesignMechanism*> mechanisms;
     for (Group& group : groups()) mechanisms.push_back(&group.mechanism);
@@ -85,10 +87,6 @@ bool KinematicAdjoint::derive(const ColumnSet& columns, const Snapshot& snapshot
   slopes_->look(snapshot);
   const auto all = at(parameters());
   for (std::size_t k = 0; k < columns.size(); ++k) {
-    if (!system_.dependent_rows().empty() && slopes_->reads_multipliers(k)) {
-      lack_derivatives("reactions of constraints that depend on each other are not unique, and have no derivative");
-      continue;
-    }
     StateSlopes by = slopes_->empty();
     slopes_->add(k, 1, by);
     if (!slopes_->reads_multipliers(k)) by.by_lambda.clear();

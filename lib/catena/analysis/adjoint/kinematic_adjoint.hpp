@@ -6,7 +6,7 @@
 //   dc/dp = c_p + w^T R_p - mu2^T Phi''_p - mu1^T Phi'_p - mu0^T Phi_p        R = Q - M qdd - Phi_q^T lambda
 //
 // the equations of kinematic_derivatives.hpp transposed. Singular as there; refused where functions of time jump at an
-// instant that parameters move. Source: apps/manual/sensitivity.md.
+// instant that parameters move, and where rows depend on each other. Source: apps/manual/sensitivity.md.
 #pragma once
 
 #include <memory>

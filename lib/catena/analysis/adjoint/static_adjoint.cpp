@@ -27,6 +27,8 @@ bool StaticAdjoint::derive(const ColumnSet& columns, const Snapshot& snapshot, s
   std::fill(change.begin(), change.end(), 0.0);
   std::fill(out.begin(), out.end(), std::numeric_limits<double>::quiet_NaN());
   if (!find(snapshot) || !factorize(snapshot, true)) return false;
+  // Which parameters contradict them is seen by carrying derivatives forward alone.
+  if (!system().dependent_rows().empty()) return fail("constraints depend on each other");
   std::vector<DesignMechanism*> mechanisms;
   for (Group& group : groups()) mechanisms.push_back(&group.mechanism);
   ColumnSlopes slopes(evaluator().model(), columns, mechanisms, parameters());
@@ -35,10 +37,6 @@ bool StaticAdjoint::derive(const ColumnSet& columns, const Snapshot& snapshot, s
   const std::span<double> w = loads_scratch(), mu = rows_scratch();
   const auto all = at(parameters());
   for (std::size_t k = 0; k < columns.size(); ++k) {
-    if (!system().dependent_rows().empty() && slopes.reads_multipliers(k)) {
-      lack_derivatives("reactions of constraints that depend on each other are not unique, and have no derivative");
-      continue;
-    }
     StateSlopes by = slopes.empty();
     slopes.add(k, 1, by);
     std::copy(by.by_q.begin(), by.by_q.end(), w.begin());

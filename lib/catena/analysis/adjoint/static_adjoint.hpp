@@ -4,7 +4,8 @@
 //   [ Phi_q  0       ] [ mu ] = [ c_lambda ]        dc/dp = c_p + w^T (Q - Phi_q^T lambda)_p - mu^T Phi_p
 //
 // with the equations of static_derivatives.hpp, transposed: forces need no energy. Of elements those that a parameter
-// reaches are differentiated alone. dV/dp = V_p + lambda^T Phi_p needs no solve. Singular, and refused, as there.
+// reaches are differentiated alone. dV/dp = V_p + lambda^T Phi_p needs no solve. Singular, and refused, as there;
+// refused where rows depend on each other as well.
 // Source: apps/manual/sensitivity.md.
 #pragma once
 

@@ -19,13 +19,17 @@ KinematicDerivatives::KinematicDerivatives(const Evaluator& evaluator, const Des
   for (auto* rows : {&phi_, &rates_, &bends_}) rows->assign(at(plan().rows) * width_, 0.0);
 }
 
-bool KinematicDerivatives::solve_rows(const std::vector<double>& rows, std::vector<double>& x) {
+bool KinematicDerivatives::solve_rows(const std::vector<double>& rows, std::vector<double>& x, bool places) {
   const std::span<double> f = loads_scratch(), b = rows_scratch();
   for (std::size_t p = 0; p < at(parameters()); ++p) {
     std::fill(f.begin(), f.end(), 0.0);
     for (std::size_t r = 0; r < b.size(); ++r) b[r] = -rows[r * width_ + p];
     if (!system_.solve(f, b)) return false;
     for (const int c : plan().coordinate) x[at(c) * width_ + p] = f[at(c)];
+    const int row = places ? system_.contradicted_row() : -1;
+    if (row < 0) continue;
+    leave_out_parameter(groups()[p / parameters_at_once], p % parameters_at_once, row);
+    for (const int c : plan().coordinate) x[at(c) * width_ + p] = std::numeric_limits<double>::quiet_NaN();
   }
   return true;
 }
@@ -43,16 +47,16 @@ bool KinematicDerivatives::find_by_tangents(const Snapshot& snapshot, Side side)
     tangents_->add_parameters(groups()[g].mechanism, side, reached_[g], snapshot.lambda, snapshot.qdd,
                               g * parameters_at_once, width_, own);
   }
-  if (!solve_rows(phi_, q_)) return false;
+  if (!solve_rows(phi_, q_, true)) return false;
   if (velocity) {
     tangents_->add_along(evaluator(), {}, q_, qd_, width_, {.rates = rates_});
-    if (!solve_rows(rates_, qd_)) return false;
+    if (!solve_rows(rates_, qd_, false)) return false;
   }
   if (acceleration) {
     TangentSums sums{.bends = bends_};
     if (reacts) sums.loads = loads_;
     tangents_->add_along(evaluator(), snapshot.lambda, q_, qd_, width_, sums);
-    if (!solve_rows(bends_, qdd_)) return false;
+    if (!solve_rows(bends_, qdd_, false)) return false;
   }
   const std::span<double> f = loads_scratch(), b = rows_scratch();
   for (std::size_t g = 0, first = 0; g < groups().size(); ++g, first += parameters_at_once) {

@@ -40,8 +40,8 @@ class KinematicDerivatives final : public StateDerivatives {
 
   /// All levels for all parameters; the factors are those of the snapshot's configuration.
   bool find_by_tangents(const Snapshot& snapshot, Side side);
-  /// Solves Phi_q x = -rows for all parameters.
-  bool solve_rows(const std::vector<double>& rows, std::vector<double>& x);
+  /// Solves Phi_q x = -rows for all parameters; `places`: x is q_p, and parameters that contradict rows are left out.
+  bool solve_rows(const std::vector<double>& rows, std::vector<double>& x, bool places);
 
   SaddleSystem system_;
   std::unique_ptr<MechanismTangents> tangents_;  // nullptr: not for this model
