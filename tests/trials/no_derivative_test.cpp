@@ -115,5 +115,48 @@ TEST(NoDerivative, OfAPlaceThatNothingHolds) {
   EXPECT_NE(warnings_of(run).find("neutral"), std::string::npos) << warnings_of(run);
 }
 
+// The energy of a place of rest is that at fixed multipliers, V_p + lambda^T Phi_p: it has a derivative where the place
+// itself has none, V = k (x - z)^2 / 2 of a spring that is held beside a bar that turns freely.
+TEST(NoDerivative, OfANeutralPlaceButOfItsEnergy) {
+  for (const std::string mode : {"forward", "adjoint", "auto"}) {
+    for (const std::string place : {"", R"(, "turn": {"final": "bar.angle"})"}) {
+      const TextRun run = run_text(fmt::format(
+          R"({{"catena": 1, "gravity": [0, 0], "parameters": {{"k": 10, "x": 2, "z": 0.5}},
+          "bodies": {{"bar": {{"mass": 1, "inertia": 1, "position": [0.3, 0.4], "angle": 0.2}},
+                     "load": {{"mass": 1, "inertia": 1, "position": [2, 0.1]}}}},
+          "constraints": [{{"type": "revolute", "name": "pin", "i": ["ground", [0, 0]], "j": ["bar", [-0.3, -0.4]]}},
+                          {{"type": "absolute_angle", "name": "level", "i": "load", "value": 0}},
+                          {{"type": "absolute_x", "name": "x_held", "i": ["load", [0, 0]], "value": "=x"}},
+                          {{"type": "absolute_y", "name": "y_held", "i": ["load", [0, 0]], "value": 0}}],
+          "forces": [{{"type": "spring_damper", "name": "spring", "i": ["ground", [0, 0]], "j": ["load", [0, 0]],
+                      "k": "=k", "length": "=z"}}],
+          "analyses": [{{"type": "sensitivity", "parameters": ["k", "x", "z"], "mode": "{}",
+            "of": {{"type": "equilibrium", "measures": {{"energy": {{"field": "energy"}}{}}}}}}}]}})",
+          mode, place));
+      EXPECT_NEAR(gradient_of(run, "energy", 0), 1.125, 1e-11) << mode;
+      EXPECT_NEAR(gradient_of(run, "energy", 1), 15, 1e-10) << mode;
+      EXPECT_NEAR(gradient_of(run, "energy", 2), -15, 1e-10) << mode;
+      EXPECT_EQ(warnings_of(run).find("is not built"), std::string::npos) << warnings_of(run);
+      if (place.empty()) continue;
+      EXPECT_TRUE(std::isnan(gradient_of(run, "turn", 0))) << mode;
+      EXPECT_NE(warnings_of(run).find("\"turn\": the equilibrium is neutral"), std::string::npos) << warnings_of(run);
+    }
+  }
+}
+
+TEST(NoDerivative, OfTheEnergyByOneOfTwoEqualRods) {
+  for (const std::string mode : {"forward", "adjoint", "auto"}) {
+    for (const std::string place : {"", R"(, "y": {"final": "bob.y"})"}) {
+      const TextRun run = run_text(rods_measured(
+          mode, "",
+          fmt::format(R"({{"type": "equilibrium", "measures": {{"energy": {{"field": "energy"}}{}}}}})", place)));
+      EXPECT_NEAR(gradient_of(run, "energy", 0), -9.81, 1e-9) << mode;
+      EXPECT_TRUE(std::isnan(gradient_of(run, "energy", 1))) << mode;
+      EXPECT_NE(warnings_of(run).find("\"energy\": \"second\" depends on other constraints"), std::string::npos)
+          << warnings_of(run);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace catena::testing

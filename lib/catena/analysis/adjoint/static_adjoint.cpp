@@ -14,11 +14,7 @@ StaticAdjoint::StaticAdjoint(const Evaluator& evaluator, const DesignModels& mod
 }
 
 bool StaticAdjoint::find(const Snapshot& snapshot) {
-  for (Group& group : groups()) {
-    group.mechanism.freeze_time(snapshot.t);
-    lift_state(group, snapshot);
-    group.mechanism.set_state(group.q);
-  }
+  lift_at_rest(snapshot);
   return true;
 }
 
@@ -54,17 +50,6 @@ bool StaticAdjoint::derive(const ColumnSet& columns, const Snapshot& snapshot, s
     }
   }
   return true;
-}
-
-std::vector<double> StaticAdjoint::energy_gradient() {
-  std::vector<double> gradient;
-  for (Group& group : groups()) {
-    DesignScalar sum = group.mechanism.potential().f;
-    group.mechanism.rows(group.rows);
-    for (std::size_t r = 0; r < group.rows.size(); ++r) sum += DesignScalar(group.lambda[r].v) * group.rows[r].f;
-    for (std::size_t p = 0; p < at(group.count); ++p) gradient.push_back(sum.d[p]);
-  }
-  return gradient;
 }
 
 }  // namespace catena

@@ -4,8 +4,7 @@
 //   [ Phi_q  0       ] [ mu ] = [ c_lambda ]        dc/dp = c_p + w^T (Q - Phi_q^T lambda)_p - mu^T Phi_p
 //
 // with the equations of static_derivatives.hpp, transposed: forces need no energy. Of elements those that a parameter
-// reaches are differentiated alone. dV/dp = V_p + lambda^T Phi_p needs no solve. Singular, and refused, as there;
-// refused where rows depend on each other as well.
+// reaches are differentiated alone. Singular, and refused, as there; refused where rows depend on each other as well.
 // Source: apps/manual/sensitivity.md.
 #pragma once
 
@@ -26,8 +25,6 @@ class StaticAdjoint final : public StaticDerivatives {
   bool find(const Snapshot& snapshot) override;
   bool derive(const ColumnSet& columns, const Snapshot& snapshot, std::span<double> out,
               std::span<double> change = {}) override;
-  /// dV/dp at the state of the last find().
-  std::vector<double> energy_gradient() override;
 
  private:
   AdjointMechanism mechanism_;

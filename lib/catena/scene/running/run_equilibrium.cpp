@@ -1,6 +1,8 @@
 // equilibrium: the configuration at rest, certified.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "catena/analysis/accuracy/equilibrium_accuracy.hpp"
 #include "catena/analysis/adjoint/static_adjoint.hpp"
 #include "catena/analysis/contact/contact_points.hpp"
@@ -88,6 +90,12 @@ std::optional<EquilibriumReport> find_ways_at_rest(AnalysisContext& context, con
         "pulley, or is wound further: give the bodies a place nearer to rest");
   context.model = ways.model();
   return failed;
+}
+
+bool measures_energy(const AnalysisTask& task) {
+  return std::any_of(task.measures.begin(), task.measures.end(), [](const PlacedMeasure& placed) {
+    return placed.request.kind == MeasureKind::field && placed.request.field == "energy";
+  });
 }
 
 }  // namespace
@@ -204,10 +212,12 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   result.report = report;
   rows.finish(result);
   add_field_measures(context, result);
-  if (!derivatives || !report.certified || !report.has_energy || !report.ok()) return;
+  if (!derivatives || !report.certified || !report.has_energy || !report.ok() || !measures_energy(task)) return;
   const Snapshot snapshot{
       .evaluator = analysis.evaluator(), .t = analysis.time(), .q = analysis.q(), .lambda = analysis.lambda()};
-  if (derivatives->find(snapshot)) set_field_gradient(context, result, "energy", 0, derivatives->energy_gradient());
+  std::string why;
+  const std::vector<double> gradient = derivatives->energy_gradient(snapshot, why);
+  set_field_gradient(context, result, "energy", 0, gradient, why);
 }
 
 }  // namespace catena
