@@ -155,6 +155,27 @@ TEST(EquilibriumGradient, RefusesWhatHasNone) {
   EXPECT_THROW(EquilibriumGradient{never}, std::invalid_argument);
 }
 
+// A bar on a pin that nothing turns, in a place where rounding leaves the matrix regular, beside a mass on a spring.
+TEST(EquilibriumGradient, RefusesANeutralPlaceAsItsCertificateJudgesIt) {
+  auto model = std::make_shared<Model>();
+  model->gravity = {0, 0};
+  const int bar = model->add_body("bar", {.mass = 1, .inertia = 1, .position = {0.3, 0.4}, .angle = 0.2});
+  const int load = model->add_body("load", {.mass = 1, .position = {0, -1}, .particle = true});
+  Revolute<> pin;
+  pin.s_j = {-0.3, -0.4};
+  model->add("pin", pin, ground, bar);
+  SpringDamper<> spring;
+  spring.k = 500, spring.length = 0.8;
+  model->add_force("spring", spring, ground, load);
+  Equilibrium rest(model);
+  const EquilibriumReport report = rest.solve();
+  ASSERT_TRUE(report.ok()) << report.message;
+  ASSERT_TRUE(rest.is_neutral()) << report.certified << report.negative_modes;
+  EquilibriumGradient gradient(rest);
+  EXPECT_FALSE(gradient.measure(std::vector<double>{0, 0, 1, 0, 0, 0}, {}));
+  EXPECT_FALSE(gradient.measure_multiplier(0, 0));
+}
+
 /// A scene, its models, and derivatives both ways along its motion.
 class BothWays final : public RowObserver {
  public:

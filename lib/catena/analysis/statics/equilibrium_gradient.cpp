@@ -17,7 +17,7 @@ constexpr double rough = 1e-9;
 }  // namespace
 
 EquilibriumGradient::EquilibriumGradient(Equilibrium& rest)
-    : system_(rest.system()), q_(rest.q()), lambda_(rest.lambda()) {
+    : system_(rest.system()), q_(rest.q()), lambda_(rest.lambda()), neutral_(rest.is_neutral()) {
   if (!rest.is_solved()) throw std::invalid_argument("gradient of an equilibrium: it is not solved");
   if (!system_.evaluator().conservative() || !system_.evaluator().laws().empty())
     throw std::invalid_argument(
@@ -58,6 +58,7 @@ bool EquilibriumGradient::measure_multiplier(int element, int row) {
 }
 
 bool EquilibriumGradient::solve() {
+  if (neutral_) return false;
   if (!refine()) {
     if (!system_.factorize().ok() || !refine()) return false;
   }

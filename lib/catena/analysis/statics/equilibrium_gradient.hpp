@@ -64,6 +64,7 @@ class EquilibriumGradient {
 
   StaticSystem& system_;
   std::span<const double> q_, lambda_;
+  bool neutral_;                                           // by the certificate: rounding may leave the matrix regular
   std::vector<double> right_, x_, residual_, correction_;  // columns, then rows
   std::vector<double> w_;                                  // all coordinates
 };
