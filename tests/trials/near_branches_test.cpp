@@ -3,6 +3,10 @@
 //   sin(theta) = -sin(z) / (1 + d),  x = cos(z) + (1 + d) cos(theta) > 0        dt = sqrt(M(z) / M(z0)) / z'(0) dz
 //
 // Without loads the kinetic energy M z'^2 / 2 stays. At z = pi/2 branches pass at sqrt(2 d) rad: the slider turns back.
+//
+// And cranks that are parallel but for d of their length. From 1e-10 on they turn where they are flat; closer by
+// rounding decides where the branches pass, and they go straight on: parallel, as a pendulum on two cranks,
+// I w^2 / 2 + G sin z = const.
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -94,6 +98,65 @@ TEST(NearBranches, GoStraightOnWhereTheyCross) {
     EXPECT_LT(run.last("slider.x"), -0.5);
     for (const std::string& warning : run.analysis().report.warnings)
       EXPECT_EQ(warning.find("branches pass"), std::string::npos) << warning;
+  }
+}
+
+constexpr double crank_start = 1, crank_rate = 12;
+
+Json four_bar(double d, double tolerance) {
+  constexpr double crank = 1, coupler = 2, ground = 2;
+  const double rocker = crank + d, ax = crank * std::cos(crank_start), ay = crank * std::sin(crank_start);
+  const double dx = ground - ax, dy = -ay, distance = std::hypot(dx, dy);
+  const double along = (coupler * coupler - rocker * rocker + distance * distance) / (2 * distance);
+  const double across = std::sqrt(coupler * coupler - along * along);
+  const double bx = ax + (along * dx - across * dy) / distance, by = ay + (along * dy + across * dx) / distance;
+  const auto body = [](double x, double y, double inertia_of_it, double angle) {
+    return Json{{"mass", 1}, {"inertia", inertia_of_it}, {"position", {x, y}}, {"angle", angle}};
+  };
+  Json scene = {{"catena", 1},
+                {"gravity", {0, -9.81}},
+                {"bodies",
+                 {{"crank", body(ax / 2, ay / 2, 0.1, crank_start)},
+                  {"coupler", body((ax + bx) / 2, (ay + by) / 2, 0.3, std::atan2(by - ay, bx - ax))},
+                  {"rocker", body((ground + bx) / 2, by / 2, 0.1, std::atan2(by, bx - ground))}}},
+                {"constraints",
+                 {{{"type", "revolute"}, {"i", {"ground", {0, 0}}}, {"j", {"crank", {-crank / 2, 0}}}},
+                  {{"type", "revolute"}, {"i", {"crank", {crank / 2, 0}}}, {"j", {"coupler", {-coupler / 2, 0}}}},
+                  {{"type", "revolute"}, {"i", {"coupler", {coupler / 2, 0}}}, {"j", {"rocker", {rocker / 2, 0}}}},
+                  {{"type", "revolute"}, {"i", {"ground", {ground, 0}}}, {"j", {"rocker", {-rocker / 2, 0}}}}}},
+                {"analyses", {{{"type", "dynamics"}, {"until", 1.2}, {"every", 0.05}, {"tolerance", tolerance}}}},
+                {"outputs", {"crank.angle", "rocker.angle", "crank.omega"}}};
+  scene["bodies"]["crank"]["angular_velocity"] = crank_rate;
+  return scene;
+}
+
+// Rounding must not be mistaken for a distance of branches: steps shortened to it never ended.
+TEST(NearBranches, OfNearlyParallelCranksAreNotTakenFromRounding) {
+  for (const double d : {0.0, 1e-14, -2e-14, 3e-13, 1e-12, -1e-12, 1e-11, -1e-11, 3e-11, 6e-11}) {
+    for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
+      const TextRun run = run_text(four_bar(d, tolerance).dump());
+      ASSERT_EQ(run.outcome.exit_code, 0) << d << ", " << tolerance << ": " << run.analysis().report.message;
+      EXPECT_LT(run.analysis().report.counters.steps, 100) << d << ", " << tolerance;
+      const double z = run.last("crank.angle"), rate_at_end = run.last("crank.omega");
+      EXPECT_NEAR(run.last("rocker.angle"), z, 1e-6) << d << ", " << tolerance;
+      constexpr double inertia_of_both = 2 * (0.1 + 0.25) + 1, weight = 9.81 * (0.5 + 0.5 + 1);
+      EXPECT_NEAR(inertia_of_both * (rate_at_end * rate_at_end - crank_rate * crank_rate) / 2,
+                  weight * (std::sin(crank_start) - std::sin(z)), 3e4 * tolerance + 1e-6)
+          << d << ", " << tolerance;
+    }
+  }
+}
+
+// All tolerances agree, with the motion of cranks that are a little less parallel.
+TEST(NearBranches, OfCranksThatAreNotParallelTurnAtEveryTolerance) {
+  for (const double d : {1e-10, 2e-10, 1e-9}) {
+    for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
+      const TextRun run = run_text(four_bar(d, tolerance).dump()), apart = run_text(four_bar(1e-8, 1e-8).dump());
+      ASSERT_EQ(run.outcome.exit_code, 0) << d << ", " << tolerance << ": " << run.analysis().report.message;
+      EXPECT_LT(run.analysis().report.counters.steps, 1500) << d << ", " << tolerance;
+      for (const char* angle : {"crank.angle", "rocker.angle"})
+        EXPECT_NEAR(run.last(angle), apart.last(angle), 2e-3) << d << ", " << tolerance;
+    }
   }
 }
 

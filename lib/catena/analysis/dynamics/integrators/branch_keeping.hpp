@@ -12,9 +12,9 @@
 // along its eigenvector e: a step between x of different signs has left its branch.
 //
 // q_s is found by Newton's method from the middle of the passage; lengths in length scales, rows of length one. Not
-// judged: c below rounding, several combinations at once, more than `most_rows` rows, drivers. Vectors of coordinates
-// and rows are kept from one passage to the next; small dense matrices are made for each step that passes beside a
-// singular position. Source: apps/manual/numerics.md#singular-passages.
+// judged: c that rounding changes by more than 5e-4 of it, several combinations at once, more than `most_rows` rows,
+// drivers. Vectors of coordinates and rows are kept from one passage to the next; small dense matrices are made for
+// each step that passes beside a singular position. Source: apps/manual/numerics.md#singular-passages.
 #pragma once
 
 #include <span>

@@ -114,6 +114,11 @@ std::vector<std::string> RungeKutta::remarks() const {
         fmt::format("{} times the motion turned where branches pass each other, the last time at a distance "
                     "of {:.2g} rad or length scales: steps there were shortened to it",
                     turns_, branches_->gap()));
+  if (turns_given_up_ > 0)
+    all.push_back(
+        fmt::format("{} times the motion went straight on where branches pass each other, the last time at a distance "
+                    "of {:.2g} rad or length scales: rounding does not let steps turn there",
+                    turns_given_up_, branches_->gap()));
   if (partition_ && partition_->choices() > 1)
     all.push_back(fmt::format("independent coordinates were chosen {} times", partition_->choices()));
   return all;

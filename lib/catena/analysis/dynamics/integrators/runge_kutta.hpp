@@ -115,6 +115,8 @@ class RungeKutta final : public Integrator {
   double rounding_of_crossing(double h) const;
   void repeat_with_projected_stages(double h);
   bool leaves_branch(double h);
+  void turn(double h);
+  bool gives_up_turn();
   bool try_crossing(double h, double error, double rounding);
   double compared_with_end(double h, double error);
   void reject(double h);
@@ -146,10 +148,12 @@ class RungeKutta final : public Integrator {
   bool keeps_energy_ = false;                    // its balance says how fast the mechanism moves
   double weight_ = 0;                            // of all bodies, times the length scale, J
   bool interpolant_ready_ = false, by_ends_ = false, passing_singular_ = false, projecting_stages_ = false,
-       crossing_ = false, long_steps_ = false, turning_ = false, best_passes_ = false, taking_best_ = false;
+       crossing_ = false, long_steps_ = false, turning_ = false, crosses_anyway_ = false, best_passes_ = false,
+       taking_best_ = false;
   int acting_rows_ = 0;  // see jacobian_rank.hpp
-  int low_order_left_ = 0, rejections_ = 0, detours_ = 0;
-  std::int64_t low_order_steps_ = 0, projected_steps_ = 0, turns_ = 0;
+  int low_order_left_ = 0, rejections_ = 0, detours_ = 0, tries_of_turn_ = 0;
+  double step_that_left_ = 0;  // s, the first that left its branch in this passage
+  std::int64_t low_order_steps_ = 0, projected_steps_ = 0, turns_ = 0, turns_given_up_ = 0;
   double accepted_error_ = 1, step_error_ = 1, best_error_ = 0, best_step_ = 0;
   double smallest_stage_ratio_ = 1, largest_stage_ratio_ = 1, start_ratio_ = 1, singular_ratio_ = 0,
          usual_ratio_ = 1e-300;

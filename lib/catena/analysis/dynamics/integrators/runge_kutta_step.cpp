@@ -27,6 +27,9 @@ constexpr double nearly_singular = 0.1, regular = 0.2;
 constexpr double dip_inside = 0.35, dip_at_end = 0.02;
 // The first step that is tried where one had left its branch.
 constexpr double shortened = 0.125;
+// Steps, with those that are rejected, in which a motion must have turned into the other direction: twice as many as
+// parallel cranks off by 1e-10 need at a tolerance of 1e-10.
+constexpr int most_tries_of_turn = 500;
 constexpr int rejections_before_low_order = 8, low_order_run = 30;
 constexpr int most_rejections = 100;
 
@@ -120,6 +123,28 @@ bool RungeKutta::leaves_branch(double h) {
   return left;
 }
 
+// Repeats a step of size h that has left its branch with steps that follow the branch round its corner.
+void RungeKutta::turn(double h) {
+  if (!turning_) {
+    ++turns_;
+    tries_of_turn_ = 0;
+    step_that_left_ = h;
+  }
+  turning_ = true;
+  reject(shortened * h);
+}
+
+// Counts a try of a step in a turn. Where a turn takes too many, its corner is one that rounding does not let steps
+// follow: the passage is then crossed as one where branches cross, and judged no more.
+bool RungeKutta::gives_up_turn() {
+  if (!turning_ || ++tries_of_turn_ <= most_tries_of_turn) return false;
+  turning_ = false;
+  crosses_anyway_ = true;
+  --turns_;
+  ++turns_given_up_;
+  return true;
+}
+
 bool RungeKutta::advance(double limit) {
   const bool fixed = options_.fixed_step > 0;
   const double smallest = scale_.smallest_step(t_);
@@ -139,6 +164,10 @@ bool RungeKutta::advance(double limit) {
   h_ = proposed;
   while (true) {
     motion_.equations().evaluator().go_to_curve_places(curve_places_);
+    if (gives_up_turn()) {
+      h_ = proposed = step_that_left_;
+      rejections_ = 0;
+    }
     const double remaining = limit - t_;
     const bool lands = h_ * (fixed ? 1 + 1e-9 : 1.01) >= remaining;
     // Two equal steps instead of a long one and a tiny one.
@@ -198,10 +227,8 @@ bool RungeKutta::advance(double limit) {
       reject(h / 4);
       continue;
     }
-    if (projects() && !fixed && leaves_branch(h)) {
-      turns_ += turning_ ? 0 : 1;
-      turning_ = true;
-      reject(shortened * h);
+    if (projects() && !fixed && !crosses_anyway_ && leaves_branch(h)) {
+      turn(h);
       continue;
     }
     accept(growth, std::max(proposed, h));
@@ -230,7 +257,7 @@ void RungeKutta::accept(double growth, double proposed) {
   motion_.equations().evaluator().curve_places(curve_places_);
   observe_ratio();
   observe_rates();
-  if (start_ratio_ > regular) turning_ = false;
+  if (start_ratio_ > regular) turning_ = crosses_anyway_ = false;
   // A step that was shortened by a limit does not change the usual step.
   h_ = rejections_ > 0 ? h * std::min(growth, 1.0) : std::max(h * growth, h < proposed ? proposed : 0.0);
 }
