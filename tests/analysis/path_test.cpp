@@ -6,9 +6,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "catena/analysis/stability/path_system.hpp"
 #include "catena/elements/constraints/absolute_y.hpp"
 #include "catena/elements/constraints/revolute.hpp"
 #include "catena/elements/forces/point_force.hpp"
+#include "catena/elements/forces/torsion_spring.hpp"
 #include "catena/model/model_add.hpp"
 #include "oracles/static_reference.hpp"
 #include "oracles/static_scenes.hpp"
@@ -42,6 +44,40 @@ Followed follow(const ModelAt& model_at, const PathOptions& options) {
     return true;
   });
   return run;
+}
+
+// A rod on a spring at its pin, pushed along itself: motions that are not found are not those of a stable place.
+TEST(PathSystem, SaysNothingOfStabilityWhereTheSpectrumIsNotFound) {
+  bool has_first = true;
+  const ModelAt model_at = [&](double load) {
+    if (load == 1 && !has_first) return std::shared_ptr<const Model>();
+    auto model = std::make_shared<Model>();
+    const int rod = model->add_body("rod", {.mass = 1, .inertia = 0.1, .position = {0.5, 0}});
+    Revolute<> pin;
+    pin.s_j = {-0.5, 0};
+    model->add("pin", pin, ground, rod);
+    TorsionSpring<> spring;
+    spring.k = 10;
+    model->add_force("spring", spring, ground, rod);
+    PointForce<> push;
+    push.s_i = {0.5, 0};
+    push.in_body_axes = true;
+    model->add_force("push", push, rod, ground, {TimeFunction<double>(-load), TimeFunction<double>(0.0)});
+    return std::shared_ptr<const Model>(model);
+  };
+  const std::shared_ptr<const Model> first = model_at(1);
+  Evaluator evaluator(Plan::make(*first), *first);
+  StaticSystem system(evaluator);
+  PathSystem path(system, model_at, 1, 1);
+  PathPoint x{evaluator.given_configuration(), std::vector<double>(2, 0.0), 1};
+  ASSERT_TRUE(path.is_circulatory());
+  ASSERT_TRUE(path.factorize(x));
+  EXPECT_EQ(path.stability(), PathStability{});
+  PathPoint beside = x;
+  beside.p = 2;
+  ASSERT_TRUE(path.move_to(beside));
+  has_first = false;
+  EXPECT_EQ(path.stability(), std::nullopt);
 }
 
 TEST(Path, GoesThroughTheLimitPointsOfTheTruss) {

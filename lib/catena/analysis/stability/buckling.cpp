@@ -139,7 +139,8 @@ Report Buckling::find_with(double step, int count, std::vector<Load>& loads, dou
   loads.clear();
   KktMatrix other(plan_, system_.radius());
   if (Report outcome = stiffness_at(options_.present + step, other); !outcome.ok()) return outcome;
-  if (!path_.factorize(point_) || path_.stability().negative > 0) return not_stable();
+  if (!path_.factorize(point_)) return not_stable();
+  if (const auto stability = path_.stability(); !stability || stability->negative > 0) return not_stable();
   BucklingOperator op(system_, other);
   Lanczos lanczos(op);
   const auto wanted = [&](std::span<const double> theta) { return largest_ones(theta, count); };

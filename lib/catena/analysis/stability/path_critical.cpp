@@ -36,7 +36,9 @@ class Locator {
     if (!trial.found) return trial;
     trial.singular = !system_.factorize(trial.point);
     if (trial.singular) return trial;
-    trial.modes = system_.stability().negative;
+    const std::optional<PathStability> stability = system_.stability();
+    trial.found = stability.has_value();
+    if (stability) trial.modes = stability->negative;
     return trial;
   }
 

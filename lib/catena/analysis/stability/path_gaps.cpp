@@ -107,7 +107,7 @@ Report Path::March::change_gaps() {
                     x_.p, first, gaps_.closed[changing_.front()] ? "closes" : "opens"),
         {}};
   }
-  modes_ = system_.stability();
+  if (!judge(x_)) return unjudged();
   direction_ = system_.tangent(x_, direction_);
   // To which side each of them holds.
   static_cast<void>(largest_fault(x_));

@@ -44,6 +44,7 @@ Report Path::March::run(PathReport& report) {
                             *value, x_.p),
                 {}};
       }
+      if (unjudged_) return unjudged();
       return {Status::step_too_small,
               fmt::format("the path could not be followed beyond {:.10g}: no solution even {:.1g} further on; likely "
                           "cause: it ends there, at a position that cannot be passed",
@@ -61,6 +62,27 @@ Report Path::March::run(PathReport& report) {
 // Why no row is written any more: an element is not defined, or the user stopped.
 Report Path::March::stopped() const {
   return left_curve_.ok() ? Report{Status::cancelled, "stopped along the path", {}} : left_curve_;
+}
+
+std::optional<PathStability> Path::March::stability_of(const PathPoint& x) {
+  const std::optional<PathStability> found = system_.stability();
+  if (!found) unjudged_ = x.p;
+  return found;
+}
+
+bool Path::March::judge(const PathPoint& x) {
+  const std::optional<PathStability> found = stability_of(x);
+  if (found) modes_ = *found;
+  return found.has_value();
+}
+
+Report Path::March::unjudged() const {
+  return {Status::not_converged,
+          fmt::format("at the value {:.10g} of the parameter the small motions of the mechanism could not be computed, "
+                      "and whether it is stable there is not known: the path ends before it; likely cause: stiffnesses "
+                      "or masses too different in size",
+                      *unjudged_),
+          {}};
 }
 
 bool Path::March::write(const PathPoint& x) {
@@ -157,6 +179,7 @@ bool Path::March::find_next(Trial& trial) {
 // From the present point to the next one.
 Path::March::Progress Path::March::step() {
   system_.forget_refused_value();
+  unjudged_.reset();
   while (length_ > shortest_step) {
     Trial trial;
     if (!find_next(trial)) {
@@ -169,7 +192,12 @@ Path::March::Progress Path::March::step() {
       length_ *= 0.9;
       continue;
     }
-    const PathStability modes = system_.stability();
+    const std::optional<PathStability> found = stability_of(next);
+    if (!found) {
+      length_ *= 0.9;
+      continue;
+    }
+    const PathStability modes = *found;
     PathPoint direction = system_.tangent(next, direction_);
     if (system_.product(direction, direction_) < largest_bend || !is_smooth(next, direction)) {
       length_ *= 0.5;
@@ -240,8 +268,7 @@ bool Path::March::leave(const CriticalPoint& critical) {
   side.p /= length;
   for (double s = options_.arc; s > 1e-4 * options_.arc; s *= 0.5) {
     PathPoint next = system_.advanced(critical.point, side, s);
-    if (system_.correct(next, critical.point, side, s) < 0 || !system_.factorize(next)) continue;
-    modes_ = system_.stability();
+    if (system_.correct(next, critical.point, side, s) < 0 || !system_.factorize(next) || !judge(next)) continue;
     direction_ = system_.tangent(next, side);
     x_ = std::move(next);
     length_ = s;

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "catena/analysis/run/watched_elements.hpp"
 #include "catena/analysis/spectrum/certificate.hpp"
@@ -47,6 +48,12 @@ class Path::March {
   Report start_at_critical_point(const Certificate& certificate);
   // Why no row is written any more: an element has left its curve, or the user stopped.
   Report stopped() const;
+  // Stability of the point x factored last; where it is not found, unjudged_ remembers the value.
+  std::optional<PathStability> stability_of(const PathPoint& x);
+  // Takes it as that of the present point; false where it is not found.
+  bool judge(const PathPoint& x);
+  // Why the path does not go on where stability is not known.
+  Report unjudged() const;
   bool write(const PathPoint& x);
   bool passes_end(double before, double after) const { return (before - to_) * (after - to_) <= 0 && before != to_; }
 
@@ -94,6 +101,7 @@ class Path::March {
   std::vector<double> faults_;
   int changed_here_ = 0;  // how often some did without a step between
   PathStability modes_;
+  std::optional<double> unjudged_;  // value of the parameter where stability was not found
   bool switched_ = false;
 };
 

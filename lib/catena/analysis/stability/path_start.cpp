@@ -27,7 +27,8 @@ std::optional<CriticalStart> step_across(PathSystem& system, const PathPoint& x,
   if (!system.move_to(from)) return {};
   balance_loads(system.statics(), from.lambda);
   if (system.correct(from, x, direction, side * beside) < 0 || !system.factorize(from)) return {};
-  const PathStability modes_there = system.stability();
+  const std::optional<PathStability> modes_there = system.stability();
+  if (!modes_there) return {};
   const PathPoint outwards = system.tangent(from, system.along_parameter(side * direction.p));
   const PathPoint tangent = system.tangent(from, system.along_parameter(-side * direction.p));
   PathPoint way{tangent.q, {}, x.p - from.p};
@@ -35,14 +36,16 @@ std::optional<CriticalStart> step_across(PathSystem& system, const PathPoint& x,
     const auto k = static_cast<std::size_t>(system.statics().plan().coordinate[c]);
     way.q[c] = x.q[k] - from.q[k];
   }
-  PathStep step{.start = from, .tangent = tangent, .s = 2 * system.product(way, tangent), .modes_before = modes_there};
+  PathStep step{.start = from, .tangent = tangent, .s = 2 * system.product(way, tangent), .modes_before = *modes_there};
   PathPoint to = system.advanced(from, step.tangent, step.s);
   if (system.correct(to, from, step.tangent, step.s) < 0 || !system.factorize(to)) return {};
-  step.modes_after = system.stability();
+  const std::optional<PathStability> modes_after = system.stability();
+  if (!modes_after) return {};
+  step.modes_after = *modes_after;
   CriticalStart start;
   start.direction = side < 0 ? system.tangent(to, step.tangent) : outwards;
-  start.modes_before = side < 0 ? modes_there : step.modes_after;
-  start.modes_after = side < 0 ? step.modes_after : modes_there;
+  start.modes_before = side < 0 ? step.modes_before : step.modes_after;
+  start.modes_after = side < 0 ? step.modes_after : step.modes_before;
   bool complete = false;
   std::vector<CriticalPoint> found = find_critical_points(system, step, complete);
   if (!complete || found.size() != 1) return {};
@@ -107,7 +110,7 @@ Report Path::March::find_start() {
     result.certificate.free_bodies = result.free_bodies;
   }
   if (result.certificate.neutral || !system_.factorize(x_)) return start_at_critical_point(result.certificate);
-  modes_ = system_.stability();
+  if (!judge(x_)) return unjudged();
   direction_ = system_.tangent(x_, direction_);
   return write(x_) ? Report{} : stopped();
 }

@@ -105,11 +105,11 @@ double PathSystem::largest_stiffness() const {
   return is_circulatory() ? tangent_->largest_stiffness() : system_.matrix().largest_stiffness();
 }
 
-PathStability PathSystem::stability() {
-  if (!is_circulatory()) return {system_.matrix().negative_modes(), 0};
+std::optional<PathStability> PathSystem::stability() {
+  if (!is_circulatory()) return PathStability{system_.matrix().negative_modes(), 0};
   CirculatoryModes found;
-  if (!spectrum(factored_, found)) return {};
-  return {found.negative, found.pairs};
+  if (!spectrum(factored_, found)) return std::nullopt;
+  return PathStability{found.negative, found.pairs};
 }
 
 void PathSystem::residual(const PathPoint& x, std::vector<double>& out) {

@@ -59,8 +59,8 @@ class PathSystem {
   std::span<const double> q() const { return placed_; }
   /// Factors the exact matrix at x, to which it moves. False where a pivot vanishes or there is no model.
   bool factorize(const PathPoint& x);
-  /// Of the point factored last.
-  PathStability stability();
+  /// Of the point factored last; nothing where its spectrum is not found.
+  std::optional<PathStability> stability();
   /// Whether there are forces without a potential.
   bool is_circulatory() const { return tangent_.has_value(); }
   /// The spectrum at a point, to which the system moves. False where there is none.
