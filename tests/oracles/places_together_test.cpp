@@ -112,6 +112,43 @@ TEST(PlacesTogether, AWheelInACorner) {
   EXPECT_EQ(told(run), fmt::format("floor {0:.6f}, wall {0:.6f}", slips));
 }
 
+// A box that slides on one that stands, whose feet share their friction: reactions are the least ones, and the box's
+// free motion, along which nothing holds it, must leave them what they are. m = 1.5 kg, push F = 12 N through its
+// centroid at 0.2 m above its feet, 0.5 m to each side: N_r - N_l = 0.4 (mu N_l + mu N_r) = 0.4 mu m g.
+TEST(PlacesTogether, ReactionsBesideAFreeMotion) {
+  const auto feet = [](const char* host, const char* box, double height, double friction) {
+    std::string both;
+    for (const char* side : {"l", "r"})
+      both += fmt::format(R"({{"type": "contact", "name": "{1}_{2}", "i": "{0}", "j": "{1}.{2}", "mu": {3},
+ "curve": {{"line": {{"point": [0, {4}], "axis": [1, 0]}}}}}}, )",
+                          host, box, side, friction, height);
+    return both;
+  };
+  const auto body = [](const char* name, double x, double y, double mass) {
+    return fmt::format(R"("{}": {{"mass": {}, "inertia": 0.1, "position": [{}, {}],
+ "points": {{"l": [-0.5, -0.2], "r": [0.5, -0.2]}}}})",
+                       name, mass, x, y);
+  };
+  const TextRun run = run_text(fmt::format(
+      R"({{"catena": 1, "gravity": [0, -9.81], "bodies": {{{}, {}}}, "forces": [{} {}
+ {{"type": "point_force", "i": "upper", "force": [12, 0]}}],
+ "outputs": ["upper.x", "upper_l.force", "upper_r.force", "lower_l.force", "lower_r.force"],
+ "analyses": [{{"type": "dynamics", "until": 0.3, "every": 0.01}}]}})",
+      body("lower", -0.0069247467277, 0.2, 2), body("upper", -0.029733070358, 0.6, 1.5),
+      feet("ground", "lower", 0, 0.6), feet("lower", "upper", 0.2, 0.3)));
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+  const double weight = 1.5 * g, difference = 0.4 * 0.3 * weight, a = (12 - 0.3 * weight) / 1.5;
+  const std::vector<double> t = run.column("t"), x = run.column("upper.x"), left = run.column("upper_l.force"),
+                            right = run.column("upper_r.force"), below_l = run.column("lower_l.force"),
+                            below_r = run.column("lower_r.force");
+  for (std::size_t k = 0; k < t.size(); ++k) {
+    EXPECT_NEAR(x[k] - x[0], a * t[k] * t[k] / 2, 1e-9);
+    EXPECT_NEAR(left[k], (weight - difference) / 2, 1e-9) << t[k];
+    EXPECT_NEAR(right[k], (weight + difference) / 2, 1e-9) << t[k];
+    EXPECT_NEAR(below_l[k] + below_r[k], weight + 2 * g, 1e-9) << t[k];
+  }
+}
+
 // Kane's example in little: a rod hits a rough floor at an angle; Newton's law would give it energy.
 TEST(PlacesTogether, PoissonsLawIsTold) {
   const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -9.81], "bodies": {"rod": {"mass": 1, "inertia": "=1/3",

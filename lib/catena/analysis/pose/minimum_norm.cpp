@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "catena/base/at.hpp"
 #include "catena/model/attachment.hpp"
@@ -126,9 +127,18 @@ bool MinimumNorm::factorize() {
     analyzed_ = true;
   }
   // The factored matrix differs from the true one by its diagonal only; refinement uses the true one, block by block.
-  for (int d : diagonal_) {
-    double& value = values_[at(d)];
-    value = value > 0 ? value * (1 + regularisation) : 1;
+  // A coordinate along a free motion has a diagonal of rounding, of which a part would keep nothing from being
+  // singular.
+  double largest[2] = {};  // of displacements, of angles
+  const Plan& plan = evaluator_.plan();
+  for (std::size_t c = 0; c < diagonal_.size(); ++c) {
+    double& of_its_kind = largest[plan.coordinate[c] % 3 == 2];
+    of_its_kind = std::max(of_its_kind, values_[at(diagonal_[c])]);
+  }
+  for (std::size_t c = 0; c < diagonal_.size(); ++c) {
+    const double of_its_kind = largest[plan.coordinate[c] % 3 == 2];
+    double& value = values_[at(diagonal_[c])];
+    value += of_its_kind > 0 ? regularisation * value + std::numeric_limits<double>::epsilon() * of_its_kind : 1;
   }
   return factorization_.factorize(values_, 0, counters).ok();
 }
