@@ -2,9 +2,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 
 #include "catena/analysis/design/design_problem.hpp"
+#include "catena/scene/designing/design_runs.hpp"
+#include "catena/scene/running/scene_setup.hpp"
 #include "scene/run_text.hpp"
 
 namespace catena::testing {
@@ -444,6 +447,76 @@ TEST(Optimise, MeasuresOfWhatAnotherAnalysisReportsAreErrorsWhereTheyStand) {
     EXPECT_EQ(run.outcome.errors.front().line, mark.line);
     EXPECT_EQ(run.outcome.errors.front().column, mark.column);
     EXPECT_NE(run.outcome.errors.front().message.find(other), std::string::npos) << run.outcome.errors.front().message;
+  }
+}
+
+// A bob at rest on one rod, or on two of one length, which adjoints do not treat: of a search's first design they are
+// asked and the analysis is run twice, of those after it once.
+TEST(Optimise, AsksAdjointsThatLeadToNothingOnceInASearch) {
+  const std::string second =
+      R"(, {"type": "absolute_distance", "name": "second", "i": ["bob", [0, 0]], "ground": [0, 0], "value": "=l"})";
+  for (const bool redundant : {false, true}) {
+    TemporaryFolder folder;
+    const std::string path = folder / "scene.json";
+    std::ofstream(path, std::ios::binary) << fmt::format(
+        R"({{"catena": 1, "gravity": [0, -9.81], "parameters": {{"l": 2, "a": 0, "b": 0, "c": 0, "d": 0}},
+        "bodies": {{"bob": {{"mass": "=1+a+b+c+d", "inertia": 1, "position": [0.1, -1.9]}}}},
+        "constraints": [
+          {{"type": "absolute_angle", "name": "level", "i": "bob"}},
+          {{"type": "absolute_distance", "name": "first", "i": ["bob", [0, 0]], "ground": [0, 0], "value": "=l"}}{}],
+        "analyses": [{{"type": "optimise", "of": {{"type": "equilibrium", "measures": {{"y": {{"final": "bob.y"}}}}}},
+          "variables": {{"l": {{"min": 1, "max": 3}}, {}}}, "minimise": "y"}}]}})",
+        redundant ? second : "",
+        R"("a": {"max": 1, "min": -0.1}, "b": {"max": 1, "min": -0.1}, "c": {"max": 1, "min": -0.1},
+           "d": {"max": 1, "min": -0.1})");
+    const RunOptions options;
+    SceneOutcome outcome;
+    SceneSetup setup(options, outcome);
+    ASSERT_TRUE(setup.read(path)) << outcome.error_text;
+    SystemState state;
+    ResultStorage rows;
+    const AnalysisContext context{.task = setup.tasks().front(),
+                                  .model = setup.model(),
+                                  .state = state,
+                                  .rows = rows,
+                                  .progress = {},
+                                  .models = &setup.models()};
+    DesignRuns runs(context);
+    AdjointRecord record;
+    for (const double length : {2.0, 1.5, 2.5}) {
+      const DesignEvaluation found = runs.evaluate(std::vector<double>{length, 0.1, 0.2, 0.3, 0.4}, true, record);
+      ASSERT_TRUE(found.failure.empty()) << found.failure;
+      EXPECT_NEAR(found.values.objective, -length, 1e-9);
+      ASSERT_EQ(found.values.gradient.size(), 5u);
+      EXPECT_NEAR(found.values.gradient[0], -1, 1e-9);
+      EXPECT_NEAR(found.values.gradient[4], 0, 1e-9);
+    }
+    EXPECT_EQ(record, AdjointRecord{redundant ? -1 : 3});
+  }
+}
+
+// Every search has a memory of its own, so that the number of threads changes nothing.
+TEST(Optimise, BeginsEverySearchWithAnEvaluationOfItsOwn) {
+  for (const int threads : {1, 3}) {
+    std::atomic<int> begun = 0, used = 0;
+    DesignProblem problem = quadratic();
+    problem.begin_search = [&, evaluate = problem.evaluate] {
+      ++begun;
+      return [&, evaluate, first = true](std::span<const double> x, bool gradients) mutable {
+        used += first;
+        first = false;
+        return evaluate(x, gradients);
+      };
+    };
+    problem.evaluate = nullptr;
+    DesignOptions options;
+    options.starts = 4;
+    options.threads = threads;
+    const DesignOutcome outcome = optimise_design(problem, options);
+    EXPECT_EQ(outcome.end, DesignEnd::converged);
+    EXPECT_NEAR(outcome.x.at(0), 0.5, 1e-6);
+    EXPECT_EQ(begun, 4);
+    EXPECT_EQ(used, 4);
   }
 }
 

@@ -34,7 +34,10 @@ struct DesignEvaluation {
 struct DesignProblem {
   std::vector<double> lower, upper, start;  ///< one a variable; lower < upper
   int inequalities = 0, equations = 0;
-  std::function<DesignEvaluation(std::span<const double> x, bool gradients)> evaluate;
+  using Evaluate = std::function<DesignEvaluation(std::span<const double> x, bool gradients)>;
+  Evaluate evaluate;
+  /// In place of it: what one search analyses its designs with, one after the other, so that it may remember.
+  std::function<Evaluate()> begin_search = {};
 };
 
 struct DesignOptions {

@@ -41,6 +41,7 @@ bool has_gradients(const DesignValues& values, std::size_t variables) {
 
 DesignSearch::DesignSearch(const DesignProblem& problem, const DesignOptions& options, DesignOutcome& outcome)
     : problem_(problem),
+      evaluate_(problem.begin_search ? problem.begin_search() : problem.evaluate),
       options_(options),
       outcome_(outcome),
       gradients_(uses_gradients(options.method)),
@@ -65,7 +66,7 @@ bool DesignSearch::go_on() {
 
 bool DesignSearch::analyse(std::span<const double> u, Point& point) {
   ++outcome_.evaluations;
-  DesignEvaluation evaluation = problem_.evaluate(design(u), gradients_);
+  DesignEvaluation evaluation = evaluate_(design(u), gradients_);
   if (evaluation.failure.empty() && !has_values(evaluation.values)) evaluation.failure = "not_finite";
   if (evaluation.failure.empty() && gradients_ && !has_gradients(evaluation.values, u.size()))
     evaluation.failure = "no_derivative";
@@ -135,7 +136,7 @@ void DesignSearch::compare(const Point& point) {
 bool DesignSearch::complete_best() {
   if (gradients_) return true;
   ++outcome_.evaluations;
-  DesignEvaluation evaluation = problem_.evaluate(outcome_.x, true);
+  DesignEvaluation evaluation = evaluate_(outcome_.x, true);
   const bool complete = evaluation.failure.empty() && has_values(evaluation.values) &&
                         has_gradients(evaluation.values, outcome_.x.size());
   if (!complete) return false;

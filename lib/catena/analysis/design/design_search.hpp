@@ -74,6 +74,7 @@ class DesignSearch final : public MinimisationProblem {
   double violation_of(const DesignValues& values) const;
 
   const DesignProblem& problem_;
+  DesignProblem::Evaluate evaluate_;
   const DesignOptions& options_;
   DesignOutcome& outcome_;
   bool gradients_;

@@ -27,7 +27,7 @@ constexpr int most_renewals = 2;
 
 void require_sound(const DesignProblem& problem) {
   const std::size_t n = problem.start.size();
-  if (n == 0 || problem.lower.size() != n || problem.upper.size() != n || !problem.evaluate)
+  if (n == 0 || problem.lower.size() != n || problem.upper.size() != n || !(problem.evaluate || problem.begin_search))
     throw std::invalid_argument(
         "a design problem needs variables, each with bounds and a start, and a way to analyse it");
   for (std::size_t v = 0; v < n; ++v) {

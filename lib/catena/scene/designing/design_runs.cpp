@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/scene/designing/measured_design.hpp"
-
 namespace catena {
 
 DesignRuns::DesignRuns(const AnalysisContext& context) : context_(context), goal_(context.task.goal) {
@@ -50,13 +48,16 @@ std::string DesignRuns::take_measures(const AnalysisTask& inner, const AnalysisR
   return {};
 }
 
-std::string DesignRuns::measure(const ParameterSeeds& seeds, bool gradients, std::vector<Measured>& measures) {
+std::string DesignRuns::measure(const ParameterSeeds& seeds, bool gradients, std::vector<Measured>& measures,
+                                AdjointRecord& record) {
   std::string reason;
-  const std::optional<Status> status = run_design(context_, seeds, gradients ? &request_ : nullptr, nullptr,
-                                                  [&](const AnalysisTask& inner, const AnalysisResult& result) {
-                                                    reason = take_measures(inner, result, gradients, measures);
-                                                    return reason.empty();
-                                                  });
+  const std::optional<Status> status = run_design(
+      context_, seeds, gradients ? &request_ : nullptr, nullptr,
+      [&](const AnalysisTask& inner, const AnalysisResult& result) {
+        reason = take_measures(inner, result, gradients, measures);
+        return reason.empty();
+      },
+      nullptr, &record);
   if (!status) return "invalid";
   return *status == Status::ok ? reason : std::string(to_string(*status));
 }
@@ -82,11 +83,11 @@ std::vector<DesignScalar> DesignRuns::evaluate_formula(const DesignFormula& form
   return values;
 }
 
-DesignEvaluation DesignRuns::evaluate(std::span<const double> x, bool gradients) {
+DesignEvaluation DesignRuns::evaluate(std::span<const double> x, bool gradients, AdjointRecord& record) {
   DesignEvaluation evaluation;
   const ParameterSeeds seeds = seeds_of(x);
   std::vector<Measured> measures;
-  evaluation.failure = measure(seeds, gradients, measures);
+  evaluation.failure = measure(seeds, gradients, measures, record);
   if (!evaluation.failure.empty()) return evaluation;
   const auto parameters = context_.models->dual_values(*context_.task.table, seeds, request_.parameters);
   DesignValues& values = evaluation.values;

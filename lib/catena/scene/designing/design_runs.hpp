@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "catena/analysis/design/design_problem.hpp"
-#include "catena/scene/running/analysis_run.hpp"
+#include "catena/scene/designing/measured_design.hpp"
 
 namespace catena {
 
@@ -15,8 +15,9 @@ class DesignRuns {
   explicit DesignRuns(const AnalysisContext& context);
 
   /// Objective and constraints of a design, the values of the variables in the order of the goal. Several threads may
-  /// ask at once.
-  DesignEvaluation evaluate(std::span<const double> x, bool gradients);
+  /// ask at once, each with a record of its own: what adjoints did in the designs of one search, in their order, is the
+  /// same for any number of threads.
+  DesignEvaluation evaluate(std::span<const double> x, bool gradients, AdjointRecord& record);
   /// The values of all parameters of a design: the context's, with the variables put in.
   ParameterSeeds seeds_of(std::span<const double> x) const;
   /// Measures whose derivatives were missing in some design, each once, with the reason, in the order of their names.
@@ -28,7 +29,8 @@ class DesignRuns {
     std::vector<double> gradient;
   };
   /// Runs all analyses in order; a reason where one fails.
-  std::string measure(const ParameterSeeds& seeds, bool gradients, std::vector<Measured>& measures);
+  std::string measure(const ParameterSeeds& seeds, bool gradients, std::vector<Measured>& measures,
+                      AdjointRecord& record);
   std::string take_measures(const AnalysisTask& inner, const AnalysisResult& result, bool gradients,
                             std::vector<Measured>& measures);
   /// A formula's value with derivatives by the variables of every group.

@@ -84,6 +84,7 @@ bool run_inner(const AnalysisContext& outer, const AnalysisTask& inner, InnerRun
     static_cast<void>(run_once(outer, task, model, again, result));
     run.values_at_end = std::move(again.values_at_end);
     run.went_back = false;
+    run.adjoint_failed = true;
   }
   if (run.design && run.design->mode == GradientMode::adjoint && !forward_because.empty())
     result.report.warnings.push_back("derivatives: carried forward, not by the adjoint: " + forward_because);
@@ -91,13 +92,20 @@ bool run_inner(const AnalysisContext& outer, const AnalysisTask& inner, InnerRun
 }
 
 std::optional<Status> run_design(const AnalysisContext& context, ParameterSeeds seeds, const DesignRequest* design,
-                                 DesignSink* watch, const TakeAnalysis& take, std::string* why) {
+                                 DesignSink* watch, const TakeAnalysis& take, std::string* why, AdjointRecord* record) {
   SystemState state = context.state;
   const ParameterSeeds given = seeds;
   NoRows nobody;
   std::optional<MissingDerivatives> missing;
   if (design) missing.emplace(*context.models, *design);
-  for (const AnalysisTask& inner : context.task.of) {
+  std::optional<DesignRequest> forward;
+  if (record) record->resize(context.task.of.size());
+  for (std::size_t k = 0; k < context.task.of.size(); ++k) {
+    const AnalysisTask& inner = context.task.of[k];
+    if (design && record && (*record)[k] < 0 && !forward) {
+      forward = *design;
+      forward->mode = GradientMode::forward;
+    }
     if (inner.from_initial) {
       state = {};
       seeds = given;
@@ -108,9 +116,10 @@ std::optional<Status> run_design(const AnalysisContext& context, ParameterSeeds 
     InnerRun run{.seeds = seeds,
                  .state = state,
                  .rows = watch ? watch->begin_analysis(inner.type()) : nobody,
-                 .design = design,
+                 .design = design && record && (*record)[k] < 0 ? &*forward : design,
                  .poses = watch ? &watch->poses() : nullptr};
     const bool possible = run_inner(context, inner, run, result);
+    if (record) (*record)[k] += static_cast<int>(run.went_back) - static_cast<int>(run.adjoint_failed);
     if (watch) watch->end_analysis(result);
     if (why && !result.report.ok()) *why = result.report.message;
     if (!possible) return std::nullopt;

@@ -20,7 +20,12 @@ struct InnerRun {
   PoseSink* poses = nullptr;       ///< nullptr: nobody draws
   ParameterSeeds values_at_end{};  ///< what it leaves to the next, as AnalysisContext has it
   bool went_back = false;          ///< gradients were found by adjoints
+  bool adjoint_failed = false;     ///< they were not, and the analysis was run once more
 };
+
+/// By inner analysis, in the order of the task: how often adjoints led to gradients less how often they did not, of the
+/// designs so far. Below zero they are not tried again: derivatives are carried forward at once.
+using AdjointRecord = std::vector<int>;
 
 /// Runs an inner analysis on a model of its own, once more where gradients by adjoints turn out not to exist, to carry
 /// them forward; `refused`, with the message, for one that throws. Its gradients are
@@ -34,10 +39,11 @@ using TakeAnalysis = std::function<bool(const AnalysisTask& analysis, const Anal
 /// Runs the inner analyses of the context's task with other values of parameters, each on a model of its own, until one
 /// fails or `take` is false. `design`: derivatives that are wanted, or nullptr; `watch`: who sees rows and poses, or
 /// nullptr. Returns the status of the last analysis, `refused` for one that throws; nothing where the scene allows no
-/// such model; `why` gets the reason of either. Nothing of the context changes, so that several threads may ask for
-/// designs at once.
+/// such model; `why` gets the reason of either. `record`, if it is given, is used and kept. Nothing of the context
+/// changes, so that several threads may ask for designs at once.
 std::optional<Status> run_design(const AnalysisContext& context, ParameterSeeds seeds, const DesignRequest* design,
-                                 DesignSink* watch, const TakeAnalysis& take, std::string* why = nullptr);
+                                 DesignSink* watch, const TakeAnalysis& take, std::string* why = nullptr,
+                                 AdjointRecord* record = nullptr);
 
 /// The result of a measure of an analysis; nullptr if it has no value.
 const MeasureResult* value_of(const PlacedMeasure& measure, const AnalysisResult& result);

@@ -200,7 +200,11 @@ void run_optimise(AnalysisContext& context, AnalysisResult& result) {
     info.push_back({relation.text, UnitKind::own});
     (relation.equality ? problem.equations : problem.inequalities) += 1;
   }
-  problem.evaluate = [&](std::span<const double> x, bool gradients) { return runs.evaluate(x, gradients); };
+  problem.begin_search = [&runs] {
+    return [&runs, record = AdjointRecord()](std::span<const double> x, bool gradients) mutable {
+      return runs.evaluate(x, gradients, record);
+    };
+  };
   context.rows.begin(info);
   DesignOptions options = options_of(context);
   std::int64_t rows = 0;
