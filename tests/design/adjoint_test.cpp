@@ -155,25 +155,26 @@ TEST(EquilibriumGradient, RefusesWhatHasNone) {
   EXPECT_THROW(EquilibriumGradient{never}, std::invalid_argument);
 }
 
-// A bar on a pin that nothing turns, in a place where rounding leaves the matrix regular, beside a mass on a spring.
+// A hanging balance of 0.1 m x 3 kg against 0.3 m x 1 kg and 1e-12 of it more, which its certificate takes for
+// rounding; its matrix is regular.
 TEST(EquilibriumGradient, RefusesANeutralPlaceAsItsCertificateJudgesIt) {
   auto model = std::make_shared<Model>();
-  model->gravity = {0, 0};
-  const int bar = model->add_body("bar", {.mass = 1, .inertia = 1, .position = {0.3, 0.4}, .angle = 0.2});
-  const int load = model->add_body("load", {.mass = 1, .position = {0, -1}, .particle = true});
+  model->gravity = {0, -9.81};
+  const double down = -std::acos(0.0);
+  const int beam = model->add_body("beam", {.mass = 3, .inertia = 1, .position = {0, 0.1}, .angle = down});
   Revolute<> pin;
-  pin.s_j = {-0.3, -0.4};
-  model->add("pin", pin, ground, bar);
-  SpringDamper<> spring;
-  spring.k = 500, spring.length = 0.8;
-  model->add_force("spring", spring, ground, load);
+  pin.s_j = {0.1, 0};
+  model->add("pin", pin, ground, beam);
+  PointForce<> weight;
+  weight.s_i = {0.1 + 0.3, 0};
+  model->add_force("weight", weight, beam, ground,
+                   {TimeFunction<double>(0.0), TimeFunction<double>(-9.81 * (1 + 1e-12))});
   Equilibrium rest(model);
   const EquilibriumReport report = rest.solve();
   ASSERT_TRUE(report.ok()) << report.message;
-  ASSERT_TRUE(rest.is_neutral()) << report.certified << report.negative_modes;
+  ASSERT_TRUE(rest.is_neutral());
   EquilibriumGradient gradient(rest);
-  EXPECT_FALSE(gradient.measure(std::vector<double>{0, 0, 1, 0, 0, 0}, {}));
-  EXPECT_FALSE(gradient.measure_multiplier(0, 0));
+  EXPECT_FALSE(gradient.measure(std::vector<double>{0, 0, 1}, {}));
 }
 
 /// A scene, its models, and derivatives both ways along its motion.
