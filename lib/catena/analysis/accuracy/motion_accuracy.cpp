@@ -15,7 +15,8 @@ constexpr double least_claimed = 1.5;  // digits: larger errors have no effect i
 constexpr double cost_of_row = 3;      // evaluations of accelerations and factors
 constexpr double grown = 1.25;         // an error since the last row that was looked at, for another one
 constexpr double astray = 0.2;         // part of an error in every direction
-constexpr double moved = 1e-6;         // of places by a disturbance, length scales or rad
+constexpr double moved = 1e-6;         // of places by a disturbance, length scales or rad; of time, radians of the rate
+constexpr double further = 1.25;       // rows until another one is kept, of those so far
 // With a factor of 2 8194 columns of 381 random mechanisms were optimistic by 9.3 at most, pessimistic by 72 at the
 // median.
 constexpr double factor = 2.6, common = 4 * std::numeric_limits<double>::epsilon();
@@ -27,7 +28,9 @@ MotionAccuracy::MotionAccuracy(Dynamics& analysis, const ColumnSet& columns)
       columns_(columns),
       carried_(analysis.evaluator()),
       errors_(columns.size()),
-      terms_(analysis.evaluator()) {
+      terms_(analysis.evaluator()),
+      // Of rows before the last it is not known where curves touched.
+      timed_(!analysis.evaluator().model().functions.empty() && analysis.evaluator().curve_places().empty()) {
   analysis.follow(&carried_);
 }
 
@@ -41,6 +44,7 @@ void MotionAccuracy::take(const Snapshot& snapshot, std::span<const double> valu
   row_.values.assign(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(columns_.size()));
   row_.error.resize(2 * row_.q.size());
   if (!carried_.at_instant(row_.t, row_.error)) return;
+  keep();
   const double size = carried_.norm(row_.error);
   last_examined_ = size > grown * examined_ && carried_.spend(cost_of_row);
   if (!last_examined_) return;
@@ -48,17 +52,46 @@ void MotionAccuracy::take(const Snapshot& snapshot, std::span<const double> valu
   examine(row_);
 }
 
+// What the rounding of time does differs from row to row with the phase of what depends on it: a few late rows are
+// kept.
+void MotionAccuracy::keep() {
+  if (!timed_ || ++rows_ < next_) return;
+  kept_[at(oldest_)] = row_;
+  oldest_ = (oldest_ + 1) % static_cast<int>(kept_.size());
+  next_ = static_cast<std::int64_t>(further * static_cast<double>(rows_)) + 1;
+}
+
 std::vector<double> MotionAccuracy::digits(const AnalysisReport& report) {
   const bool smooth = analysis_.singular_points().empty() && analysis_.jolts().empty();
   if (!report.ok() || !smooth || carried_.lost() || row_.q.empty()) return {};
   if (!last_examined_ && !carried_.can_look()) return {};
   if (!last_examined_) examine(row_);
+  for (const Row& row : kept_) {
+    if (!row.q.empty() && row.t != row_.t && carried_.spend(cost_of_row)) examine(row);
+  }
   errors_.take_places(columns_.info(), analysis_.evaluator().length_scale());
   std::vector<double> all = errors_.digits();
   for (double& digits : all) {
     if (digits < least_claimed) digits = 0;
   }
   return all;
+}
+
+// What forces and gamma change by from t to t (1 + size eps); the evaluator is left there.
+void MotionAccuracy::add_change_with_time(double t, double size, std::span<double> gamma) {
+  Evaluator& evaluator = carried_.equations().evaluator();
+  if (!timed_) return;
+  const std::span<const double> before = carried_.equations().applied_forces();
+  change_.assign(q_.size(), 0.0);
+  gamma_.assign(gamma.size(), 0.0);
+  evaluator.gamma(qd_, gamma_);
+  for (std::size_t r = 0; r < gamma.size(); ++r) gamma[r] -= gamma_[r];
+  evaluator.set_time_along(t * (1 + size * Disturbance::epsilon), t);
+  evaluator.applied_forces(qd_, change_);
+  evaluator.gamma(qd_, gamma_);
+  for (std::size_t r = 0; r < gamma.size(); ++r) gamma[r] += gamma_[r];
+  const Plan& plan = evaluator.plan();
+  for (const int k : plan.coordinate) loads_[at(k)] += change_[at(k)] - before[at(k)];
 }
 
 // Accelerations and multipliers at q_, qd_ with `size` times the rounding of their equations.
@@ -86,6 +119,7 @@ bool MotionAccuracy::solve_accelerations(double t, double size, Snapshot& snapsh
   }
   const std::span<double> gamma = terms_.sum(jacobian_, moduli_, qd_);
   for (double& term : gamma) term *= size * Disturbance::epsilon * random_.next();
+  add_change_with_time(t, size, gamma);
   for (std::size_t c = 0; c < qdd_.size(); ++c) qdd_[c] += size * Disturbance::epsilon * random_.next() * moduli_[c];
   change_.assign(q_.size(), 0.0);
   change_lambda_.assign(lambda_.size(), 0.0);
@@ -107,6 +141,7 @@ bool MotionAccuracy::values_at(const Row& row, double size) {
     if (!solve_accelerations(row.t, size, snapshot)) return false;
   } else {
     evaluator.set_time(row.t);
+    if (timed_) evaluator.set_time_along(row.t * (1 + size * Disturbance::epsilon), row.t);
     evaluator.set_configuration(q_);
   }
   snapshot.residual = snapshot.work = snapshot.dissipated = snapshot.initial_energy = unknown;
@@ -151,11 +186,29 @@ void MotionAccuracy::disturb(const Row& row, double size) {
   add_response(row.qd, dv);
 }
 
+// Adds the way that the motion makes in eps |t|: functions of time are not known better. Returns the radians of its
+// rate in that time.
+double MotionAccuracy::disturb_time(const Row& row) {
+  qdd_.assign(row.q.size(), 0.0);
+  if (!timed_ || !carried_.equations().accelerations(row.t, Side::after, row.q, row.qd, qdd_)) return 0;
+  const double moment = Disturbance::epsilon * row.t;
+  double largest_v = 0, largest_a = 0;
+  for (std::size_t c = 0; c < qdd_.size(); ++c) {
+    disturbance_[c] += moment * row.qd[c];
+    disturbance_[qdd_.size() + c] += moment * qdd_[c];
+    largest_v = std::max(largest_v, std::abs(row.qd[c]));
+    largest_a = std::max(largest_a, std::abs(qdd_[c]));
+  }
+  return std::abs(moment) * std::max(row.rate, largest_v > 0 ? largest_a / largest_v : 0);
+}
+
 void MotionAccuracy::examine(const Row& row) {
   const std::size_t n = row.q.size();
   const double size = carried_.norm(row.error);
   disturb(row, size);
-  const double s = moved / std::max(size, Disturbance::epsilon);
+  const double radians = disturb_time(row);
+  double s = moved / std::max(size, Disturbance::epsilon);
+  if (radians > 0) s = std::min(s, std::max(1.0, moved / radians));
   largest_.assign(columns_.size(), 0.0);
   for (const double sign : {1.0, -1.0}) {
     q_ = row.q;
@@ -164,7 +217,7 @@ void MotionAccuracy::examine(const Row& row) {
       q_[c] += s * (row.error[c] + sign * disturbance_[c]);
       qd_[c] += s * (row.error[n + c] + sign * disturbance_[n + c]);
     }
-    if (!values_at(row, s)) other_.assign(columns_.size(), unknown);
+    if (!values_at(row, sign * s)) other_.assign(columns_.size(), unknown);
     for (std::size_t k = 0; k < largest_.size(); ++k) {
       const double difference = std::abs(other_[k] - row.values[k]) / s;
       if (!(difference <= largest_[k])) largest_[k] = difference;

@@ -4,13 +4,17 @@
 //   e = 2.6 max (|c(y + e + r) - c(y)|, |c(y + e - r) - c(y)|) / s + 4 eps |c|        largest of the rows looked at
 //
 // r: at random, 0.2 of the largest part of e in every coordinate and the rounding of places and rates, as far as the
-// constraints allow it: the error that is carried has a direction that is right by its size only. Accelerations and
-// multipliers are those at y + e + r with the rounding of their equations (kinematic_accuracy.hpp). All is made so
+// constraints allow it: the error that is carried has a direction that is right by its size only. With functions of
+// time also the way of the motion in eps |t|: columns, forces and constraints are those at t (1 +- eps). Accelerations
+// and multipliers are those at y + e + r with the rounding of their equations (kinematic_accuracy.hpp). All is made so
 // small, or large, by s, that its effect is in proportion. Rows: where e has grown by a quarter since the last one, as
-// far as the allowance goes, and the last of all. Nothing is said of work, which is summed up over time, of reactions
-// where equations depend on each other, and where the error is lost.
+// far as the allowance goes, the last of all, and with functions of time four of the later half. Nothing is said of
+// work, which is summed up over time, of reactions where equations depend on each other, and where the error is lost.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "catena/analysis/accuracy/carried_error.hpp"
@@ -38,10 +42,13 @@ class MotionAccuracy final : public RowAccuracy {
     double t = 0, rate = 0;
     std::vector<double> q, qd, values, error;
   };
+  void keep();
   void examine(const Row& row);
+  double disturb_time(const Row& row);
   void disturb(const Row& row, double size);
   bool values_at(const Row& row, double size);
   bool solve_accelerations(double t, double size, Snapshot& snapshot);
+  void add_change_with_time(double t, double size, std::span<double> gamma);
 
   Dynamics& analysis_;
   const ColumnSet& columns_;
@@ -52,8 +59,12 @@ class MotionAccuracy final : public RowAccuracy {
   double examined_ = 0;  // norm of the error in the row that was looked at last
   bool last_examined_ = false;
   RowTerms terms_;
+  bool timed_;  // something depends on time
+  std::array<Row, 4> kept_;
+  int oldest_ = 0;
+  std::int64_t rows_ = 0, next_ = 1;
   // Of a disturbed state.
-  std::vector<double> disturbance_, q_, qd_, qdd_, lambda_, jacobian_, loads_, change_, change_lambda_;
+  std::vector<double> disturbance_, q_, qd_, qdd_, lambda_, jacobian_, loads_, gamma_, change_, change_lambda_;
   std::vector<double> other_, largest_, unknown_, moduli_;
 };
 
