@@ -37,8 +37,34 @@ class SceneRun {
   SceneSetup& setup_;
   const RunOptions& options_;
   SceneOutcome& outcome_;
+  bool claims_digits(const AnalysisTask& task) const;
+  void note_origin_of_state(const AnalysisTask& task);
+
+  bool inexact_ = false;      // the state has errors of an earlier motion, which no later analysis knows
   ParameterSeeds handed_on_;  // values of parameters that paths and optimisations left behind
 };
+
+/// Whether places and rates follow from the model alone, whatever the state before.
+bool makes_own_state(const AnalysisTask& task) {
+  if (task.type() == "equilibrium" || task.type() == "path") return true;
+  const bool driven = task.type() == "kinematics" || task.type() == "inverse_dynamics";
+  return driven && task.word("free") == 0;  // "refuse"; else they depend on where they start
+}
+
+/// Whether the analysis leaves a state that has errors of a motion.
+bool integrates(const AnalysisTask& task) {
+  return task.type() == "dynamics" || std::any_of(task.of.begin(), task.of.end(), integrates);
+}
+
+// Digits are claimed of what an analysis does itself: where it goes on from a motion with errors, it claims none.
+bool SceneRun::claims_digits(const AnalysisTask& task) const { return !inexact_ || makes_own_state(task); }
+
+void SceneRun::note_origin_of_state(const AnalysisTask& task) {
+  if (integrates(task))
+    inexact_ = true;
+  else if (makes_own_state(task))
+    inexact_ = false;
+}
 
 ParameterSeeds SceneRun::handed_on_to(const AnalysisTask& task) const {
   ParameterSeeds seeds;
@@ -105,7 +131,7 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
                           .estimate_error = options_.estimate_error,
                           .checkpoint = setup_.checkpoints().wanted() ? &checkpoint : nullptr,
                           .poses = options_.poses,
-                          .digits = true,
+                          .digits = claims_digits(task),
                           .threads = options_.threads,
                           .sweep = {.record = setup_.record(),
                                     .link = options_.link,
@@ -122,6 +148,7 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
     };
   }
   run_in(context, result);
+  note_origin_of_state(task);
   return result;
 }
 
@@ -160,6 +187,7 @@ void SceneRun::run(ResultSink& sink) {
     if (k > first && outcome_.analyses.back().report.status == Status::cancelled) break;
     if (task.from_initial) {
       state = {};
+      inexact_ = false;
       handed_on_.clear();
     } else if (k > first && !outcome_.analyses.back().report.ok()) {
       break;  // there is no state to go on from
