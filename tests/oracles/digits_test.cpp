@@ -65,6 +65,36 @@ TEST(ClaimedDigits, OfALongChaoticMotionAreNone) {
   for (const std::size_t column : {1u, 2u}) EXPECT_LE(lasting.analysis().digits[column], 0.1);
 }
 
+// An analysis does not know the errors of the motion that it goes on from.
+TEST(ClaimedDigits, AreNoneOfWhatGoesOnFromAMotion) {
+  const auto dynamics = [](double until, double tolerance) {
+    return Json{{"type", "dynamics"}, {"until", until}, {"every", 0.1}, {"tolerance", tolerance}};
+  };
+  Json anew = dynamics(0.5, 1e-10), estimated = dynamics(5.7, 1e-10);
+  anew["from"] = "initial";
+  estimated["estimate_error"] = true;
+  const Json modes = {{"type", "modes"}}, rest = {{"type", "equilibrium"}};
+  const Json scene = {
+      {"catena", 1},
+      {"gravity", {0, -9.81}},
+      {"bodies",
+       {{"a", {{"mass", 1}, {"inertia", 0.1}, {"position", {0.5, 0}}}},
+        {"b", {{"mass", 1}, {"inertia", 0.1}, {"position", {1.5, 0}}}}}},
+      {"constraints",
+       {{{"type", "revolute"}, {"i", {"ground", {0, 0}}}, {"j", {"a", {-0.5, 0}}}},
+        {{"type", "revolute"}, {"i", {"a", {0.5, 0}}}, {"j", {"b", {-0.5, 0}}}}}},
+      {"analyses",
+       {dynamics(5, 1e-3), dynamics(5.5, 1e-12), estimated, modes, anew, modes, rest, modes, dynamics(1, 1e-10)}},
+      {"outputs", {"a.angle", "b.omega"}}};
+  const TextRun run = run_text(scene.dump());
+  const std::vector<bool> claims = {true, false, false, false, true, false, true, true, true};
+  ASSERT_EQ(run.outcome.analyses.size(), claims.size());
+  for (std::size_t k = 0; k < claims.size(); ++k) {
+    ASSERT_TRUE(run.analysis(k).report.ok()) << k << ": " << run.analysis(k).report.message;
+    EXPECT_EQ(!run.analysis(k).digits.empty(), claims[k]) << k;
+  }
+}
+
 TEST(ClaimedDigits, HoldOfOscillations) {
   std::vector<double> optimism;
   for (unsigned seed = 1; seed <= 300; ++seed) {
