@@ -84,7 +84,9 @@ void work_precision(const Document& document, std::vector<Figure>& figures) {
       problems.push_back(of);
   }
   for (const auto& [suite, problem] : problems) {
-    const auto is_of = [&](const Row& row) { return row.suite == suite && row.problem == problem; };
+    const auto is_of = [&suite = suite, &problem = problem](const Row& row) {
+      return row.suite == suite && row.problem == problem;
+    };
     const auto first = std::find_if(document.rows.begin(), document.rows.end(),
                                     [&](const Row& r) { return is_of(r) && !r.error_of.empty(); });
     FigureMaker figure(suite + "_" + file_name(problem),

@@ -52,7 +52,7 @@ void measure(Bench& bench, Row row, const Motion& motion, const std::function<do
   bench.add(std::move(row));
 }
 
-void positions(Bench& bench, const DrivenProblem& problem, double tolerance) {
+void measure_positions(Bench& bench, const DrivenProblem& problem, double tolerance) {
   const int size = bench.brief() ? 3 : 25;
   Row row{.problem = problem.name, .method = "positions", .error_of = problem.error_of};
   // The tolerance is that of residuals: positions are off by it times what the linkage makes of it, below 100 here.
@@ -114,7 +114,7 @@ void rates(Bench& bench) {
 void kinematics_suite(Bench& bench) {
   for (const DrivenProblem& problem : driven_problems()) {
     for (int digits = bench.brief() ? 9 : 3; digits <= 12; digits += 3)
-      positions(bench, problem, std::pow(10, -digits));
+      measure_positions(bench, problem, std::pow(10, -digits));
   }
   rates(bench);
 }
