@@ -30,7 +30,7 @@ inline std::string add_moving_digits(unsigned seed, ClaimedDigits& claims, Runs 
       analysis["step"] = step;
     }
   }
-  random.scene["analyses"] = {analysis};
+  random.scene["analyses"] = Json::array({analysis});
   random.scene["outputs"] = Json::array();
   static const char* const columns[] = {".x", ".y", ".angle", ".vx", ".vy", ".omega", ".ax", ".ay", ".alpha"};
   for (std::size_t b = 0; b < dense.bodies.size(); ++b) {
