@@ -74,7 +74,7 @@ std::string gradient_fault(unsigned seed, std::map<std::string, int>& seen) {
   if (!moves && !field<bool>(run, "stable")) return ++seen["(another place is as good)"], "";
 
   const std::size_t bodies = random.dense.bodies.size();
-  scene["analyses"] = {inner};
+  scene["analyses"] = Json::array({inner});
   const double h = 2e-3;
   const auto at = [&](double part) {
     scene["parameters"]["p"] = p * (1 + part * h);
