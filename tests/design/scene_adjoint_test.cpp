@@ -20,16 +20,17 @@ struct RandomChain {
   double any(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
 
   RandomChain(unsigned seed, bool driven) : random(seed), rods(driven ? 1 : 2 + static_cast<int>(seed % 2)) {
-    parameters =
-        fmt::format("\"g\": {}, \"k\": {}, \"c\": {}, \"x\": {}", any(5, 12), any(20, 60), any(0.5, 2), any(1, 2));
+    // Drawn one by one: compilers evaluate arguments in different orders.
+    const double g = any(5, 12), k = any(20, 60), c = any(0.5, 2), x = any(1, 2);
+    parameters = fmt::format("\"g\": {}, \"k\": {}, \"c\": {}, \"x\": {}", g, k, c, x);
     for (int b = 0; b < rods; ++b) {
       const std::string before = b == 0 ? "[0, 0]" : fmt::format("[\"=x{}\", \"=y{}\"]", b - 1, b - 1);
-      const double angle = any(-1, 0.5);
+      const double angle = any(-1, 0.5), length = any(0.4, 0.8), mass = any(0.5, 2);
       const std::string last = b == 0 ? "" : fmt::format("x{}+", b - 1),
                         last_y = b == 0 ? "" : fmt::format("y{}+", b - 1);
       parameters += fmt::format(
-          ", \"l{0}\": {1}, \"m{0}\": {2}, \"x{0}\": \"={3}l{0}*cos({5})\", \"y{0}\": \"={4}l{0}*sin({5})\"", b,
-          any(0.4, 0.8), any(0.5, 2), last, last_y, angle);
+          ", \"l{0}\": {1}, \"m{0}\": {2}, \"x{0}\": \"={3}l{0}*cos({5})\", \"y{0}\": \"={4}l{0}*sin({5})\"", b, length,
+          mass, last, last_y, angle);
       bodies += fmt::format("{}\"b{}\": {{\"rod\": {{\"from\": {}, \"to\": [\"=x{}\", \"=y{}\"]}}, \"mass\": \"m{}\"}}",
                             b == 0 ? "" : ",", b, before, b, b, b);
       constraints += fmt::format(R"({}{{"type": "revolute", "name": "J{}", "i": "{}", "j": "b{}.from"}})",
@@ -89,7 +90,7 @@ void expect_same(const RandomChain& chain, const std::string& inner, const std::
     for (std::size_t p = 0; p < a.gradient.size(); ++p)
       EXPECT_NEAR(a.gradient[p], b.gradient[p], allowed * size) << seed << " " << a.name << ", parameter " << p;
   }
-  EXPECT_LT(field<double>(back, "deviation"), verified) << seed;
+  EXPECT_LT(field<double>(back, "deviation"), verified) << seed << chain.text(inner, drivers);
 }
 
 // Integrals look inside of steps, extremes at instants of their own; "at" is not an end of a step.
@@ -140,7 +141,9 @@ TEST(AdjointInScenes, OfDrivenMotionsIsTheForwardOne) {
       "end": {"final": "coupler.pen.y"}, "fast": {"max": "rocker.omega"}, "bend": {"at": 0.2222, "of": "coupler.pen.ax"},
       "mean": {"mean": "coupler.pen.vx"}, "path": {"path": ["coupler.pen.x", "coupler.pen.y"], "to": [[0.8, 0.7], [0.9, 0.9]]})" +
                               loads + "}}";
-    expect_same(chain, inner, drive, 1e-9, 1e-5, seed);
+    // Differences of `verify` are of 1e-4 of a parameter: beside a dead point, as for seed 1, they miss by 1.5e-5, and
+    // by a hundredth of that with steps a tenth as long.
+    expect_same(chain, inner, drive, 1e-9, 5e-5, seed);
   }
 }
 

@@ -42,20 +42,25 @@ TEST(ClaimedDigits, HoldInMotionOfOneRun) {
                 [](unsigned seed, ClaimedDigits& claims) { return add_moving_digits(seed, claims, Runs::one); });
 }
 
+/// Two rods under gravity that hang on each other.
+Json double_pendulum(const Json& analyses) {
+  return {{"catena", 1},
+          {"gravity", {0, -9.81}},
+          {"bodies",
+           {{"a", {{"mass", 1}, {"inertia", 0.1}, {"position", {0.5, 0}}}},
+            {"b", {{"mass", 1}, {"inertia", 0.1}, {"position", {1.5, 0}}}}}},
+          {"constraints",
+           {{{"type", "revolute"}, {"i", {"ground", {0, 0}}}, {"j", {"a", {-0.5, 0}}}},
+            {{"type", "revolute"}, {"i", {"a", {0.5, 0}}}, {"j", {"b", {-0.5, 0}}}}}},
+          {"analyses", analyses},
+          {"outputs", {"a.angle", "b.omega"}}};
+}
+
 // The error must grow as those of the motion do: chaotic after a while, and no digit may be claimed then.
 TEST(ClaimedDigits, OfALongChaoticMotionAreNone) {
   const auto run_until = [](double until) {
-    Json scene = {{"catena", 1},
-                  {"gravity", {0, -9.81}},
-                  {"bodies",
-                   {{"a", {{"mass", 1}, {"inertia", 0.1}, {"position", {0.5, 0}}}},
-                    {"b", {{"mass", 1}, {"inertia", 0.1}, {"position", {1.5, 0}}}}}},
-                  {"constraints",
-                   {{{"type", "revolute"}, {"i", {"ground", {0, 0}}}, {"j", {"a", {-0.5, 0}}}},
-                    {{"type", "revolute"}, {"i", {"a", {0.5, 0}}}, {"j", {"b", {-0.5, 0}}}}}},
-                  {"analyses", {{{"type", "dynamics"}, {"until", until}, {"every", until / 50}}}},
-                  {"outputs", {"a.angle", "b.omega"}}};
-    return run_text(scene.dump());
+    const Json analysis = {{"type", "dynamics"}, {"until", until}, {"every", until / 50}};
+    return run_text(double_pendulum(Json::array({analysis})).dump());
   };
   const TextRun brief = run_until(1), lasting = run_until(200);
   ASSERT_EQ(brief.analysis().digits.size(), 3u);
@@ -74,19 +79,9 @@ TEST(ClaimedDigits, AreNoneOfWhatGoesOnFromAMotion) {
   anew["from"] = "initial";
   estimated["estimate_error"] = true;
   const Json modes = {{"type", "modes"}}, rest = {{"type", "equilibrium"}};
-  const Json scene = {
-      {"catena", 1},
-      {"gravity", {0, -9.81}},
-      {"bodies",
-       {{"a", {{"mass", 1}, {"inertia", 0.1}, {"position", {0.5, 0}}}},
-        {"b", {{"mass", 1}, {"inertia", 0.1}, {"position", {1.5, 0}}}}}},
-      {"constraints",
-       {{{"type", "revolute"}, {"i", {"ground", {0, 0}}}, {"j", {"a", {-0.5, 0}}}},
-        {{"type", "revolute"}, {"i", {"a", {0.5, 0}}}, {"j", {"b", {-0.5, 0}}}}}},
-      {"analyses",
-       {dynamics(5, 1e-3), dynamics(5.5, 1e-12), estimated, modes, anew, modes, rest, modes, dynamics(1, 1e-10)}},
-      {"outputs", {"a.angle", "b.omega"}}};
-  const TextRun run = run_text(scene.dump());
+  const Json analyses = {dynamics(5, 1e-3), dynamics(5.5, 1e-12), estimated, modes, anew, modes, rest, modes,
+                         dynamics(1, 1e-10)};
+  const TextRun run = run_text(double_pendulum(analyses).dump());
   const std::vector<bool> claims = {true, false, false, false, true, false, true, true, true};
   ASSERT_EQ(run.outcome.analyses.size(), claims.size());
   for (std::size_t k = 0; k < claims.size(); ++k) {

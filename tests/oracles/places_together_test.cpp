@@ -67,10 +67,10 @@ TEST(PlacesTogether, BothFeetOfTheUppermostBoxSlipAtOnce) {
       EXPECT_EQ(told(run), fmt::format("l{0} {1:.6f}, r{0} {1:.6f}", boxes - 1, mu * g / 3));
       EXPECT_LT(run.analysis().report.counters.steps, 300) << "what rests takes no small steps";
       // From then on 3 t - mu g = x''.
-      const double since = 1.5 - mu * g / 3;
-      EXPECT_NEAR(run.column("b" + std::to_string(boxes - 1) + ".x").back() - Turned(tilt).c * 0 +
-                      Turned(tilt).s * (0.2 + 0.4 * (boxes - 1)),
-                  Turned(tilt).c * since * since * since / 2, 1e-7);
+      const Turned frame(tilt);
+      const double since = 1.5 - mu * g / 3, start = -frame.s * (0.2 + 0.4 * (boxes - 1));
+      const double x = run.column("b" + std::to_string(boxes - 1) + ".x").back();
+      EXPECT_NEAR(x, start + frame.c * since * since * since / 2, 1e-7);
     }
   }
 }

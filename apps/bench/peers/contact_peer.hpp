@@ -13,19 +13,15 @@
 #pragma once
 
 #include <cstdio>
-#include <ctime>
 #include <limits>
 #include <string>
 
 #include "suites/contact_problems.hpp"
+#include "timing.hpp"
 
 namespace contact_peer {
 
-inline double processor_time() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
+using bench::processor_time;
 
 inline constexpr double step_sizes[] = {1e-2, 1e-3, 1e-4, 1e-5};
 inline constexpr int most_repeats = 5;

@@ -25,13 +25,7 @@ bool KinematicAdjoint::find(const Snapshot& snapshot) {
                             snapshot.t));
   evaluator().set_time(snapshot.t);
   evaluator().set_configuration(snapshot.q);
-  const std::span<const double> phi_q = jacobian();
-  bool regular = system_.begin(phi_q) && system_.factorize();
-  if (!regular) {
-    system_.forget_rows();
-    regular = system_.begin(phi_q) && system_.factorize();
-  }
-  if (!regular)
+  if (!system_.factorize(jacobian(), [] {}))
     return fail(fmt::format("at t = {:.9g} s the mechanism is in a singular configuration, which has no derivative",
                             snapshot.t));
   for (Group& group : groups()) group.mechanism.set_time(snapshot.t);

@@ -23,8 +23,8 @@ namespace {
 constexpr std::size_t most_searched = 6;
 // Of the terms of a sum: what counts as rounding of it. Choices that do not fit miss by parts of their loads.
 constexpr double fitting = 1e-9;
-// Of the largest diagonal entry: what dependent rows leave.
-constexpr double without_rank = 1e-11;
+// Of the largest diagonal entry, rows scaled to one: what dependent rows leave.
+constexpr double rank_of_held = 1e-11;
 
 /// The entries of a vector, or of a matrix column by column.
 template <class M>
@@ -57,7 +57,7 @@ bool ContactProblem::sticks_together() const {
     }
   }
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors;
-  factors.setThreshold(without_rank);
+  factors.setThreshold(rank_of_held);
   return factors.compute(held).rank() < size;
 }
 

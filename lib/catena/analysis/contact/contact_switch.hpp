@@ -83,6 +83,7 @@ class ContactSwitch {
   void take_over(const ContactSwitch& earlier);
   /// Takes note of a speed of the motion, see fastest().
   void know_speed(double speed) { speed_ = std::max(speed_, speed); }
+  double speed() const { return speed_; }
   /// The work of the last strike, J.
   double work_of_strike() const { return work_of_strike_; }
   /// What constraints exerted at the last decision, where it was about a strike or a jolt: collisions that followed at

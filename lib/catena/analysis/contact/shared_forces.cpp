@@ -5,7 +5,6 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace catena {
@@ -15,8 +14,8 @@ namespace {
 constexpr double no_response = 1e-11;
 // Of the length of a null vector: entries that rounding leaves.
 constexpr double no_share = 1e-9;
-// Limits that meet in one point: 12 of 4 columns have 792 such points. More are left to the single places.
-constexpr std::size_t most_freedom = 4;
+// Columns of Z: 16 limits of eight feet and 4 columns have 4368 choices of five. More are left to the single places.
+constexpr Eigen::Index most_freedom = 4;
 
 std::vector<double> numbers(const Eigen::VectorXd& of) { return {of.begin(), of.end()}; }
 
@@ -64,8 +63,7 @@ SharedForces::SharedForces(const ContactProblem& problem, const std::vector<std:
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(response, Eigen::ComputeFullV);
   const Eigen::VectorXd& values = svd.singularValues();
   const Eigen::Index rank = (values.array() > no_response * values(0)).count();
-  freedom_ = static_cast<std::size_t>(size - rank);
-  if (freedom_ < 1 || freedom_ > most_freedom) return;
+  if (rank == size || size - rank > most_freedom) return;
   const Eigen::MatrixXd free = unit.asDiagonal() * svd.matrixV().rightCols(size - rank);
   const double share = no_share * free.rowwise().norm().maxCoeff();
   const auto row = [&](std::size_t place, bool along) -> Eigen::VectorXd {
@@ -75,6 +73,7 @@ SharedForces::SharedForces(const ContactProblem& problem, const std::vector<std:
     }
     return Eigen::VectorXd::Zero(size - rank);
   };
+  std::vector<std::vector<double>> slope;  // by y, of limits_
   for (std::size_t k = 0; k < problem.place.size(); ++k) {
     const ContactProblem::Place& p = problem.place[k];
     const Eigen::VectorXd normal = row(k, false), along = row(k, true);
@@ -82,87 +81,66 @@ SharedForces::SharedForces(const ContactProblem& problem, const std::vector<std:
     if (!p.has_normal || normal.norm() + along.norm() <= share) continue;
     places_.push_back(point[k]);
     if (problem.state[k] == State::sticks) {
-      for (const double sign : {1.0, -1.0})
-        limits_.push_back({point[k], p.mu_static, sign, numbers(p.mu_static * normal + sign * along)});
+      for (const double sign : {1.0, -1.0}) {
+        limits_.push_back({point[k], p.mu_static, sign});
+        slope.push_back(numbers(p.mu_static * normal + sign * along));
+      }
     } else {
-      limits_.push_back({point[k], 1, 0, numbers(normal)});
+      limits_.push_back({point[k], 1, 0});
+      slope.push_back(numbers(normal));
     }
   }
-  if (places_.size() < 2) places_.clear();
+  if (places_.size() < 2)
+    places_.clear();
+  else
+    find_corners(slope);
 }
 
-SharedForces::Best SharedForces::best(const std::function<double(std::size_t)>& normal,
-                                      const std::function<double(std::size_t)>& along) const {
-  const std::size_t count = limits_.size(), meet = std::min(freedom_ + 1, count);
-  std::vector<double> given(count);
-  for (std::size_t l = 0; l < count; ++l) {
-    const Limit& limit = limits_[l];
-    given[l] = limit.mu * normal(limit.point) + (limit.sign != 0 ? limit.sign * along(limit.point) : 0);
+// Corners are solutions of as many columns as [c; 1] has independent rows.
+void SharedForces::find_corners(const std::vector<std::vector<double>>& slope) {
+  const auto count = static_cast<Eigen::Index>(limits_.size()),
+             freedom = static_cast<Eigen::Index>(slope.front().size());
+  Eigen::MatrixXd A(freedom + 1, count);
+  for (Eigen::Index l = 0; l < count; ++l) {
+    for (Eigen::Index r = 0; r < freedom; ++r)
+      A(r, l) = slope[static_cast<std::size_t>(l)][static_cast<std::size_t>(r)];
+    A(freedom, l) = 1;
   }
-  // Forces that may grow without end keep every limit far out.
-  for (std::size_t k = 0; k < freedom_; ++k) {
-    for (const double way : {1.0, -1.0}) {
-      if (std::all_of(limits_.begin(), limits_.end(), [&](const Limit& l) { return way * l.slope[k] > 0; }))
-        return {std::numeric_limits<double>::max(), {}};
-    }
-  }
-  const auto columns = static_cast<Eigen::Index>(freedom_);
-  const auto least_at = [&](const Eigen::VectorXd& y) {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t l = 0; l < count; ++l)
-      least = std::min(least, given[l] + Eigen::Map<const Eigen::VectorXd>(limits_[l].slope.data(), columns).dot(y));
-    return least;
-  };
-  Best best{*std::min_element(given.begin(), given.end()), {}};
-  // Every choice of limits that meet, in lexical order.
+  // A direction of y that no limit depends on asks for nothing.
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors;
+  factors.setThreshold(no_share);
+  const Eigen::Index rank = factors.compute(A).rank();
+  const Eigen::MatrixXd turned = factors.householderQ().transpose() * A;
+  const Eigen::VectorXd right = factors.householderQ().transpose() * Eigen::VectorXd::Unit(freedom + 1, freedom);
+  if (right.tail(freedom + 1 - rank).norm() > no_share) return;
+  // Every choice of columns, in lexical order.
+  const auto meet = static_cast<std::size_t>(rank), all = static_cast<std::size_t>(count);
   std::vector<std::size_t> chosen(meet);
   std::iota(chosen.begin(), chosen.end(), std::size_t{0});
-  Eigen::MatrixXd A(static_cast<Eigen::Index>(meet), columns + 1);
-  Eigen::VectorXd right(A.rows());
+  Eigen::MatrixXd square(rank, rank);
   while (true) {
-    for (std::size_t k = 0; k < meet; ++k) {
-      const auto r = static_cast<Eigen::Index>(k);
-      for (Eigen::Index column = 0; column < columns; ++column)
-        A(r, column) = limits_[chosen[k]].slope[static_cast<std::size_t>(column)];
-      A(r, columns) = -1;
-      right(r) = -given[chosen[k]];
+    for (Eigen::Index c = 0; c < rank; ++c)
+      square.col(c) = turned.col(static_cast<Eigen::Index>(chosen[static_cast<std::size_t>(c)])).head(rank);
+    Eigen::FullPivLU<Eigen::MatrixXd> solver;
+    solver.setThreshold(no_share);
+    if (solver.compute(square).isInvertible()) {
+      const Eigen::VectorXd weight = solver.solve(right.head(rank));
+      Corner corner;
+      for (Eigen::Index c = 0; c < rank; ++c) {
+        if (weight(c) > no_share) corner.emplace_back(chosen[static_cast<std::size_t>(c)], weight(c));
+      }
+      const bool is_new = std::none_of(corners_.begin(), corners_.end(), [&](const Corner& other) {
+        return std::equal(corner.begin(), corner.end(), other.begin(), other.end(),
+                          [](const auto& a, const auto& b) { return a.first == b.first; });
+      });
+      if (weight.minCoeff() > -no_share && is_new) corners_.push_back(std::move(corner));
     }
-    const Eigen::VectorXd meeting = A.fullPivLu().solve(right);
-    const double margin = meeting.allFinite() ? least_at(meeting.head(columns)) : best.margin;
-    if (margin > best.margin || (margin == best.margin && best.limits.empty())) best = {margin, chosen};
     std::size_t k = meet;
-    while (k > 0 && chosen[k - 1] == count - meet + k - 1) --k;
-    if (k == 0) return best;
+    while (k > 0 && chosen[k - 1] == all - meet + k - 1) --k;
+    if (k == 0) return;
     ++chosen[k - 1];
     for (std::size_t next = k; next < meet; ++next) chosen[next] = chosen[next - 1] + 1;
   }
-}
-
-double SharedForces::margin(const std::function<double(std::size_t)>& normal,
-                            const std::function<double(std::size_t)>& along) const {
-  return best(normal, along).margin;
-}
-
-// Weights w >= 0 with sum w slope = 0, sum w = 1 of the limits that meet: those of weight zero only happen to be there.
-std::vector<GivesWay> SharedForces::giving_way(const std::function<double(std::size_t)>& normal,
-                                               const std::function<double(std::size_t)>& along) const {
-  const std::vector<std::size_t> meeting = best(normal, along).limits;
-  std::vector<GivesWay> places;
-  if (meeting.empty()) return places;
-  const auto columns = static_cast<Eigen::Index>(meeting.size()), rows = static_cast<Eigen::Index>(freedom_) + 1;
-  Eigen::MatrixXd A(rows, columns);
-  for (Eigen::Index column = 0; column < columns; ++column) {
-    const Limit& limit = limits_[meeting[static_cast<std::size_t>(column)]];
-    for (Eigen::Index r = 0; r + 1 < rows; ++r) A(r, column) = limit.slope[static_cast<std::size_t>(r)];
-    A(rows - 1, column) = 1;
-  }
-  const Eigen::VectorXd weight = A.fullPivLu().solve(Eigen::VectorXd::Unit(rows, rows - 1));
-  for (Eigen::Index column = 0; column < columns; ++column) {
-    const Limit& limit = limits_[meeting[static_cast<std::size_t>(column)]];
-    // T = -mu N, which the first of both limits of a place is, goes with a slip forwards.
-    if (weight(column) > no_share) places.push_back({limit.point, static_cast<int>(limit.sign)});
-  }
-  return places;
 }
 
 }  // namespace catena

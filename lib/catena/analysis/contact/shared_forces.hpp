@@ -2,14 +2,17 @@
 // them follow from the motion; the rest may be anything that friction allows.
 //
 //   forces (N, T) + Z y, any y      Z: null space of D = J M^-1 J^T on closed gaps and stuck slides
-//   margin = max over y of the least of    mu_static N_k - |T_k|  (sticks),   N_k  (presses)
+//   margin = max over y of the least of    limits a_l + c_l y:    mu_static N_k -+ T_k  (sticks),   N_k  (presses)
+//          = min over w of sum w_l a_l     w >= 0, sum w_l = 1, sum w_l c_l = 0    (duality of linear programs)
 //
-// The places hold as long as the margin is not negative: then some share keeps all limits. It is the largest value of a
-// concave function with flat facets, which lies where as many of them meet as Z has columns, and one more. The largest
-// double where forces may grow without end (a wedge that locks itself). N.
+// The places hold as long as the margin is not negative: then some share keeps all limits. The corners w of the second
+// form depend on Z alone; they are found once a phase, and each margin is the least of so many sums. The limits of the
+// corner that is the least keep each other from growing: they give way together. Without a corner forces may grow
+// without end (a wedge that locks itself): the margin is then the largest double. N.
 #pragma once
 
-#include <functional>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "catena/analysis/contact/contact_problem.hpp"
@@ -29,29 +32,49 @@ class SharedForces {
 
   /// Points whose forces are not unique; empty: none.
   const std::vector<std::size_t>& places() const { return places_; }
-  /// From forces across and along (for points that do not stick: not asked) of one share.
-  double margin(const std::function<double(std::size_t)>& normal,
-                const std::function<double(std::size_t)>& along) const;
-  /// Whose limits meet at that margin: they keep each other from growing, and go together where it is zero.
-  std::vector<GivesWay> giving_way(const std::function<double(std::size_t)>& normal,
-                                   const std::function<double(std::size_t)>& along) const;
+  /// From forces of one share: what presses point k, normal(k), and along it where it sticks, along(k).
+  template <class Normal, class Along>
+  double margin(Normal&& normal, Along&& along) const {
+    return least(normal, along).first;
+  }
+  /// Those whose limits meet at that margin.
+  template <class Normal, class Along>
+  std::vector<GivesWay> giving_way(Normal&& normal, Along&& along) const {
+    std::vector<GivesWay> places;
+    if (const Corner* corner = least(normal, along).second) {
+      // T = -mu N, the limit of sign 1, goes with a slip forwards.
+      for (const auto& [limit, weight] : *corner)
+        places.push_back({limits_[limit].point, static_cast<int>(limits_[limit].sign)});
+    }
+    return places;
+  }
 
  private:
-  /// A limit: mu N + sign T, or N where it only presses.
+  /// mu N + sign T, or N where it only presses.
   struct Limit {
     std::size_t point;
     double mu, sign;
-    std::vector<double> slope;  // by y
   };
-  struct Best {
-    double margin;
-    std::vector<std::size_t> limits;  // that meet there; none where forces may grow without end
-  };
-  Best best(const std::function<double(std::size_t)>& normal, const std::function<double(std::size_t)>& along) const;
+  using Corner = std::vector<std::pair<std::size_t, double>>;  // limits and their weights w > 0
+
+  void find_corners(const std::vector<std::vector<double>>& slope);
+  template <class Normal, class Along>
+  std::pair<double, const Corner*> least(Normal&& normal, Along&& along) const {
+    std::pair<double, const Corner*> found(std::numeric_limits<double>::max(), nullptr);
+    for (const Corner& corner : corners_) {
+      double sum = 0;
+      for (const auto& [number, weight] : corner) {
+        const Limit& limit = limits_[number];
+        sum += weight * (limit.mu * normal(limit.point) + (limit.sign != 0 ? limit.sign * along(limit.point) : 0));
+      }
+      if (sum < found.first) found = {sum, &corner};
+    }
+    return found;
+  }
 
   std::vector<std::size_t> places_;
   std::vector<Limit> limits_;
-  std::size_t freedom_ = 0;  // columns of Z
+  std::vector<Corner> corners_;
 };
 
 }  // namespace catena

@@ -233,10 +233,10 @@ std::string ContactPhases::remark_on_impacts() const {
     what += fmt::format("{}in {} every restitution was reduced until energy does not grow", what.empty() ? "" : ", ",
                         laws.reduced);
   return fmt::format(
-      "impacts in which Newton's restitution would have made the kinetic energy grow ({}); the first at t = {:.9g} s, "
-      "of "
-      "\"{}\"",
-      what, laws.first, contacts_.model->element_name(laws.element));
+      "impacts in which Newton's restitution would have made the kinetic energy grow ({}); the first, of \"{}\", at t "
+      "= "
+      "{:.9g} s",
+      what, contacts_.model->element_name(laws.element), laws.first);
 }
 
 bool ContactPhases::shares(std::size_t k) const {
@@ -298,7 +298,8 @@ void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std
 }
 
 void ContactPhases::attach(Dynamics& dynamics, EventWatch& watch) {
-  const double speed = loads_ ? loads_->speed() : 0, length = dynamics.evaluator().length_scale();
+  if (loads_) switch_->know_speed(loads_->speed());
+  const double speed = switch_->speed(), length = dynamics.evaluator().length_scale();
   loads_ = std::make_unique<ContactLoads>(dynamics.evaluator(), contacts_.points, states_);
   dynamics.attach(loads_.get());
   std::vector<Transition> transitions;

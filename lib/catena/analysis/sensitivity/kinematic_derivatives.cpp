@@ -158,12 +158,7 @@ bool KinematicDerivatives::solve_values(Group& group, const Snapshot& snapshot) 
 bool KinematicDerivatives::find_at(const Snapshot& snapshot, Side side) {
   evaluator().set_time(snapshot.t, side);
   evaluator().set_configuration(snapshot.q);
-  const std::span<const double> phi_q = jacobian();
-  bool regular = system_.begin(phi_q) && system_.factorize();
-  if (!regular) {
-    system_.forget_rows();
-    regular = system_.begin(phi_q) && system_.factorize();
-  }
+  const bool regular = system_.factorize(jacobian(), [] {});
   const auto singular = [&] {
     return fail(fmt::format("at t = {:.9g} s the mechanism is in a singular configuration, which has no derivative",
                             snapshot.t));

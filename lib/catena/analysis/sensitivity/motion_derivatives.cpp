@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/sensitivity/design_steps.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -23,7 +24,6 @@ MotionDerivatives::MotionDerivatives(const Evaluator& evaluator, const DesignMod
     Track& track = tracks_.emplace_back();
     for (Vector* y : {&track.begin, &track.end, &track.before, &track.after}) y->resize(2 * n_);
     track.stage.assign(16, Vector(2 * n_));
-    track.interpolant.assign(7, Vector(2 * n_));
   }
   if (groups().empty() || !AdjointMechanism::why_not(evaluator.model()).empty()) return;
   again_ = std::make_unique<RecomputedSteps>(this->evaluator());
@@ -51,14 +51,9 @@ bool MotionDerivatives::factorize(double t, Side side, std::span<const DesignSca
   for (std::size_t c = 0; c < n_; ++c) values_[c] = q[c].v;
   evaluator().set_time(t, side);
   evaluator().set_configuration(values_);
-  const std::span<const double> phi_q = jacobian();
-  for (int attempt = 0; attempt < 2; ++attempt) {
-    if (!system_.begin(phi_q)) return false;
+  return system_.factorize(jacobian(), [this] {
     for (int c = 0; c < 3 * plan().moving; ++c) system_.add_diagonal(c, groups().front().mechanism.mass(c).v);
-    if (system_.factorize()) return true;
-    system_.forget_rows();
-  }
-  return false;
+  });
 }
 
 // Accelerations and multipliers with their derivatives at y; the factors belong to its values.
@@ -91,16 +86,6 @@ bool MotionDerivatives::derivative(Group& group, double t, Side side, const Vect
   std::copy(qd.begin(), qd.end(), slope.begin());
   std::copy(group.qdd.begin(), group.qdd.end(), slope.begin() + static_cast<std::ptrdiff_t>(n_));
   return true;
-}
-
-void MotionDerivatives::combine(const StageSum& sum, double h, const Vector& from, const std::vector<Vector>& stages,
-                                Vector& out) const {
-  out = from;
-  for (const StageTerm& term : sum) {
-    const DesignScalar weight(h * term.weight);
-    const Vector& k = stages[at(term.stage)];
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] += weight * k[i];
-  }
 }
 
 bool MotionDerivatives::project(Group& group, double t, Side side, Vector& y) {
@@ -168,7 +153,7 @@ bool MotionDerivatives::make_step(double h) {
     // Values of the stage are the same in all groups: one factorization serves them all.
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
       Track& track = tracks_[k];
-      combine(table.a[at(s)], h, track.begin, track.stage, stage_);
+      combine_stages(table.a[at(s)], h, track.begin, track.stage, stage_);
       const bool at_end = table.c[at(s)] == 1;
       const double t = at_end ? to_ : from_ + table.c[at(s)] * h;
       const Side side = at_end ? Side::before : Side::after;
@@ -176,7 +161,7 @@ bool MotionDerivatives::make_step(double h) {
       if (!derivative(groups()[k], t, side, stage_, track.stage[at(s)])) return singular(t);
     }
   }
-  for (Track& track : tracks_) combine(table.b, h, track.begin, track.stage, track.end);
+  for (Track& track : tracks_) combine_stages(table.b, h, track.begin, track.stage, track.end);
   return true;
 }
 
@@ -289,7 +274,7 @@ bool MotionDerivatives::cross(Group& group, Track& track, std::span<const double
   return true;
 }
 
-// See runge_kutta_interpolant.cpp.
+// The stages that its interpolant has beyond those of the step.
 bool MotionDerivatives::prepare_interpolant(Group& group, Track& track) {
   const Tableau& table = dormand_prince_8();
   const double h = to_ - from_;
@@ -297,32 +282,11 @@ bool MotionDerivatives::prepare_interpolant(Group& group, Track& track) {
   if (!derivative(group, to_, Side::before, track.end, track.stage[12])) return singular(to_);
   for (std::size_t s = 13; s < 16; ++s) {
     const double t = from_ + table.c[s] * h;
-    combine(table.a[s], h, track.begin, track.stage, stage_);
+    combine_stages(table.a[s], h, track.begin, track.stage, stage_);
     if (!factorize(t, Side::after, std::span(stage_).first(n_))) return singular(t);
     if (!derivative(group, t, Side::after, stage_, track.stage[s])) return singular(t);
   }
-  const DesignScalar length(h);
-  for (std::size_t i = 0; i < 2 * n_; ++i) {
-    const DesignScalar difference = track.end[i] - track.begin[i], bend = length * track.stage[0][i] - difference;
-    track.interpolant[0][i] = difference;
-    track.interpolant[1][i] = bend;
-    track.interpolant[2][i] = difference - length * track.stage[12][i] - bend;
-  }
-  const Vector zero(2 * n_);
-  for (std::size_t k = 0; k < 4; ++k) combine(table.interpolant[k], h, zero, track.stage, track.interpolant[3 + k]);
   return true;
-}
-
-void MotionDerivatives::interpolate(const Track& track, double t, Vector& y) const {
-  const double s = (t - from_) / (to_ - from_), r = 1 - s;
-  const auto& c = track.interpolant;
-  for (std::size_t i = 0; i < y.size(); ++i) {
-    for (std::size_t p = 0; p < static_cast<std::size_t>(parameters_at_once); ++p) {
-      const auto d = [&](std::size_t k) { return c[k][i].d[p]; };
-      y[i].d[p] =
-          track.begin[i].d[p] + s * (d(0) + r * (d(1) + s * (d(2) + r * (d(3) + s * (d(4) + r * (d(5) + s * d(6)))))));
-    }
-  }
 }
 
 bool MotionDerivatives::find(const Snapshot& snapshot) {
@@ -342,7 +306,10 @@ bool MotionDerivatives::find(const Snapshot& snapshot) {
   const bool jumps = crossed_ == snapshot.t;
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
     y_ = jumps ? tracks_[k].after : has_step_ && snapshot.t == from_ ? tracks_[k].begin : tracks_[k].end;
-    if (inside) interpolate(tracks_[k], snapshot.t, y_);
+    if (inside) {
+      const double h = to_ - from_;
+      interpolate_derivatives((snapshot.t - from_) / h, h, tracks_[k].begin, tracks_[k].end, tracks_[k].stage, y_);
+    }
     for (std::size_t c = 0; c < n_; ++c) {
       y_[c].v = snapshot.q[c];
       if (!jumps) y_[n_ + c].v = snapshot.qd[c];

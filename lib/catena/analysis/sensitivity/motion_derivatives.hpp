@@ -53,11 +53,11 @@ class MotionDerivatives final : public StateDerivatives {
  private:
   using Vector = std::vector<DesignScalar>;
   using Step = RecomputedSteps::Step;
-  /// Of one group: y = [q, qd] where the present step begins, where it ends, its stages and interpolant; and at the
-  /// last instant at which functions of time jump, just before it and after.
+  /// Of one group: y = [q, qd] where the present step begins, where it ends, its stages and those of the
+  /// interpolant; and at the last instant at which functions of time jump, just before it and after.
   struct Track {
     Vector begin, end, before, after;
-    std::vector<Vector> stage, interpolant;
+    std::vector<Vector> stage;
   };
 
   bool start(double t, std::span<const double> q, std::span<const double> qd);
@@ -84,9 +84,7 @@ class MotionDerivatives final : public StateDerivatives {
   bool make_step(double h);
   /// y' at stage (or end) `y` of a group.
   bool derivative(Group& group, double t, Side side, const Vector& y, Vector& slope);
-  void combine(const StageSum& sum, double h, const Vector& from, const std::vector<Vector>& stages, Vector& out) const;
   bool prepare_interpolant(Group& group, Track& track);
-  void interpolate(const Track& track, double t, Vector& y) const;
   /// Projects the derivatives in y onto the constraints at its values.
   bool project(Group& group, double t, Side side, Vector& y);
   bool factorize(double t, Side side, std::span<const DesignScalar> q);

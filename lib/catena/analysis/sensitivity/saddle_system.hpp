@@ -31,8 +31,6 @@ class SaddleSystem {
 
   /// Rows that do not hold, ascending; the next begin() chooses independent ones anew if they are others.
   void leave_out(std::vector<int> rows);
-  /// Independent rows are chosen anew by the next begin().
-  void forget_rows() { rows_known_ = false; }
   /// Takes these values of Phi_q (size entries), and A = 0; false where no pattern of this kind can be solved.
   bool begin(std::span<const double> jacobian);
   /// Adds `value` to the diagonal at a coordinate.
@@ -41,6 +39,18 @@ class SaddleSystem {
   void add_element(int body_i, int body_j, const ElementMatrix& matrix);
   /// Factors what was filled in; false where the matrix is singular or not finite.
   bool factorize();
+  /// begin(), what `fill` adds, and factorize(): where that fails once more, with independent rows chosen anew.
+  template <class Fill>
+  bool factorize(std::span<const double> jacobian, Fill&& fill) {
+    for (int attempt = 0; attempt < 2; ++attempt) {
+      if (begin(jacobian)) {
+        fill();
+        if (factorize()) return true;
+      }
+      rows_known_ = false;
+    }
+    return false;
+  }
 
   /// Solves in place: f over coordinates, b over all rows of the plan; x and lambda take their places. Sizes
   /// coordinates() and rows; what is no unknown is left alone in f and zero in lambda. False where that fails.

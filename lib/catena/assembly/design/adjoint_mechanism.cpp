@@ -23,18 +23,6 @@ Vec2<double> arm_of(const Block& block, const Revolute<double>& pin, int e, int 
   return {f.c.f * s.x - f.s.f * s.y, f.s.f * s.x + f.c.f * s.y};
 }
 
-/// c(t) of an element's entry as a series.
-template <class Entry>
-Taylor<double> value_of_entry([[maybe_unused]] const Entry& entry,
-                              [[maybe_unused]] const std::vector<Taylor<double>>& functions) {
-  if constexpr (Entry::Element::functions > 0) {
-    const auto& value = entry.values[0];
-    return value.function < 0 ? Taylor<double>(value.constant) : functions[at(value.function)];
-  } else {
-    return {};
-  }
-}
-
 }  // namespace
 
 std::string AdjointMechanism::why_not(const Model& model) {
@@ -136,7 +124,7 @@ void AdjointMechanism::add_constraints_by_q(const AdjointWeights& weights, std::
         Frame<D> j;
         if constexpr (E::bodies == 2) j = seed<Series, columns>(f.j, 3);
         D rows[E::rows];
-        entry.element.phi(Arguments<D>{i, j, D(value_of_entry(entry, values_)), f.ground}, rows);
+        entry.element.phi(Arguments<D>{i, j, D(detail::value_of_entry(entry, values_)), f.ground}, rows);
         for (int r = 0; r < E::rows; ++r) {
           const std::size_t row = at(block.row(e) + r);
           const double bend = weights.bend.empty() ? 0 : scale_[at(entry.id)] * weights.bend[row];
@@ -233,7 +221,7 @@ void AdjointMechanism::add_curvature(const AdjointWeights& weights, std::span<do
         Frame<D> j;
         if constexpr (E::bodies == 2) j = seed<Along, columns>(f.j, 3);
         D rows[E::rows];
-        entry.element.phi(Arguments<D>{i, j, D(Along(value_of_entry(entry, values_).f)), f.ground}, rows);
+        entry.element.phi(Arguments<D>{i, j, D(Along(detail::value_of_entry(entry, values_).f)), f.ground}, rows);
         for (int r = 0; r < E::rows; ++r) {
           const double lambda = scale_[at(entry.id)] * weights.lambda[at(block.row(e) + r)];
           for (int k = 0; k < columns; ++k) {

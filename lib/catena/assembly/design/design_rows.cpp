@@ -6,18 +6,7 @@ namespace catena {
 namespace {
 
 using detail::DesignSeries;
-
-/// c(t) of an element's entry.
-template <class Entry>
-DesignSeries value_of_entry([[maybe_unused]] const Entry& entry,
-                            [[maybe_unused]] const std::vector<DesignSeries>& functions) {
-  if constexpr (Entry::Element::functions > 0) {
-    const auto& value = entry.values[0];
-    return value.function < 0 ? DesignSeries(value.constant) : functions[at(value.function)];
-  } else {
-    return {};
-  }
-}
+using detail::value_of_entry;
 
 /// Phi_q of an element with derivatives, as published, row-major with six columns.
 template <class E>

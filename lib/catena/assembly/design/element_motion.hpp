@@ -9,6 +9,18 @@ namespace catena::detail {
 
 using DesignSeries = Taylor<DesignScalar>;
 
+/// c(t) of an element's entry, a series of T; `functions`: those of the model.
+template <class T, class Entry>
+Taylor<T> value_of_entry([[maybe_unused]] const Entry& entry,
+                         [[maybe_unused]] const std::vector<Taylor<T>>& functions) {
+  if constexpr (Entry::Element::functions > 0) {
+    const auto& value = entry.values[0];
+    return value.function < 0 ? Taylor<T>(T(value.constant)) : functions[static_cast<std::size_t>(value.function)];
+  } else {
+    return {};
+  }
+}
+
 /// f relative to another origin.
 template <class T>
 Frame<T> moved_by(Frame<T> f, const Vec2<double>& by) {

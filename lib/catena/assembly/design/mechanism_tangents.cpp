@@ -12,17 +12,6 @@ template <class E>
 constexpr bool has_tangents = !std::is_same_v<E, CustomConstraint<double>> && !std::is_same_v<E, CustomForce<double>> &&
                               !Joining<E> && !Sharing<E>;
 
-template <class Entry>
-Taylor<double> prescribed_of([[maybe_unused]] const Entry& entry,
-                             [[maybe_unused]] const std::vector<Taylor<double>>& functions) {
-  if constexpr (Entry::Element::functions > 0) {
-    const auto& value = entry.values[0];
-    return value.function < 0 ? Taylor<double>(value.constant) : functions[at(value.function)];
-  } else {
-    return {};
-  }
-}
-
 /// out += factor x along, over all directions.
 void add_row(double factor, const double* along, std::size_t width, double* out) {
   for (std::size_t p = 0; p < width; ++p) out[p] += factor * along[p];
@@ -77,7 +66,7 @@ void MechanismTangents::add_constraints(const Block& block, const List& list, st
   for (int e = 0; e < block.size(); ++e) {
     const auto& entry = list[at(block.entry[at(e)])];
     const double scale = scale_[at(entry.id)];
-    const Taylor<double> c = prescribed_of(entry, values_);
+    const Taylor<double> c = detail::value_of_entry(entry, values_);
     const auto coordinate = [&](int k) { return at(3 * (k < 3 ? block.body_i[at(e)] : block.body_j[at(e)]) + k % 3); };
     const auto f = detail::design_frames<Taylor<double>>(block, e, plan_->moving, origin_,
                                                          [&](int body) { return motion_[at(body)]; });

@@ -77,13 +77,9 @@ bool PhaseEquations::factorize(double t, Side side, std::span<const DesignScalar
   evaluator_.set_configuration(values_);
   evaluator_.jacobian(jacobian_);
   const auto phi_q = std::span<const double>(jacobian_).first(at(plan().trash_slot()));
-  for (int attempt = 0; attempt < 2; ++attempt) {
-    if (!system_->begin(phi_q)) return false;
+  return system_->factorize(phi_q, [&] {
     for (int c = 0; c < 3 * plan().moving; ++c) system_->add_diagonal(c, masses.mass(c).v);
-    if (system_->factorize()) return true;
-    system_->forget_rows();
-  }
-  return false;
+  });
 }
 
 // k d^n + c d'.

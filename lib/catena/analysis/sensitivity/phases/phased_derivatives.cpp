@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/sensitivity/design_steps.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -38,7 +39,6 @@ PhasedDerivatives::PhasedDerivatives(PhasedDesign design, GivenByModel start, st
     for (Vector* y : {&track.begin, &track.end, &track.before}) y->resize(2 * n_);
     track.anchor.resize(at(plan().rows));
     track.stage.assign(16, Vector(2 * n_));
-    track.interpolant.assign(7, Vector(2 * n_));
     places_.push_back(design_places(group.mechanism.model(), contacts_.points));
     if (std::string trouble = trouble_with_places(group.mechanism.model()); !trouble.empty()) fail(std::move(trouble));
   }
@@ -77,16 +77,6 @@ bool PhasedDerivatives::slope(std::size_t k, double t, Side side, const Vector& 
   std::copy(qd.begin(), qd.end(), out.begin());
   std::copy(group.qdd.begin(), group.qdd.end(), out.begin() + static_cast<std::ptrdiff_t>(n_));
   return true;
-}
-
-void PhasedDerivatives::combine(const StageSum& sum, double h, const Vector& from, const std::vector<Vector>& stages,
-                                Vector& out) const {
-  out = from;
-  for (const StageTerm& term : sum) {
-    const DesignScalar weight(h * term.weight);
-    const Vector& k = stages[at(term.stage)];
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] += weight * k[i];
-  }
 }
 
 // A parameter has no derivatives from here on.
@@ -192,7 +182,7 @@ bool PhasedDerivatives::make_step(double h) {
     // Values of the stage are the same in all groups: one factorization serves them all.
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
       Track& track = tracks_[k];
-      combine(table.a[at(s)], h, track.begin, track.stage, stage_);
+      combine_stages(table.a[at(s)], h, track.begin, track.stage, stage_);
       const bool at_end = table.c[at(s)] == 1;
       const double t = at_end ? to_ : from_ + table.c[at(s)] * h;
       const Side side = at_end ? Side::before : Side::after;
@@ -200,7 +190,7 @@ bool PhasedDerivatives::make_step(double h) {
       if (!slope(k, t, side, stage_, track.stage[at(s)])) return singular(t);
     }
   }
-  for (Track& track : tracks_) combine(table.b, h, track.begin, track.stage, track.end);
+  for (Track& track : tracks_) combine_stages(table.b, h, track.begin, track.stage, track.end);
   return true;
 }
 
@@ -257,44 +247,27 @@ void PhasedDerivatives::cover(const MotionStretch& stretch) {
   if (instant.order == 1 || instant.moves()) cross_functions();
 }
 
-// See runge_kutta_interpolant.cpp.
+const PhasedDerivatives::Vector& PhasedDerivatives::end_of_step(const Track& track) const {
+  return crossed_ == to_ ? track.before : track.end;
+}
+
+// The stages that its interpolant has beyond those of the step.
 bool PhasedDerivatives::prepare_interpolant() {
   const Tableau& table = dormand_prince_8();
   const double h = to_ - from_;
-  const DesignScalar length(h);
-  const Vector zero(2 * n_);
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
     Track& track = tracks_[k];
-    const Vector& end = crossed_ == to_ ? track.before : track.end;
+    const Vector& end = end_of_step(track);
     if (!factorize(to_, Side::before, end)) return singular(to_);
     if (!slope(k, to_, Side::before, end, track.stage[12])) return singular(to_);
     for (std::size_t s = 13; s < 16; ++s) {
       const double t = from_ + table.c[s] * h;
-      combine(table.a[s], h, track.begin, track.stage, stage_);
+      combine_stages(table.a[s], h, track.begin, track.stage, stage_);
       if (!factorize(t, Side::after, stage_)) return singular(t);
       if (!slope(k, t, Side::after, stage_, track.stage[s])) return singular(t);
     }
-    for (std::size_t i = 0; i < 2 * n_; ++i) {
-      const DesignScalar difference = end[i] - track.begin[i], bend = length * track.stage[0][i] - difference;
-      track.interpolant[0][i] = difference;
-      track.interpolant[1][i] = bend;
-      track.interpolant[2][i] = difference - length * track.stage[12][i] - bend;
-    }
-    for (std::size_t j = 0; j < 4; ++j) combine(table.interpolant[j], h, zero, track.stage, track.interpolant[3 + j]);
   }
   return true;
-}
-
-void PhasedDerivatives::interpolate(const Track& track, double t, Vector& y) const {
-  const double s = (t - from_) / (to_ - from_), r = 1 - s;
-  const auto& c = track.interpolant;
-  for (std::size_t i = 0; i < y.size(); ++i) {
-    for (std::size_t p = 0; p < static_cast<std::size_t>(parameters_at_once); ++p) {
-      const auto d = [&](std::size_t k) { return c[k][i].d[p]; };
-      y[i].d[p] =
-          track.begin[i].d[p] + s * (d(0) + r * (d(1) + s * (d(2) + r * (d(3) + s * (d(4) + r * (d(5) + s * d(6)))))));
-    }
-  }
 }
 
 bool PhasedDerivatives::find(const Snapshot& snapshot) {
@@ -319,7 +292,10 @@ bool PhasedDerivatives::find(const Snapshot& snapshot) {
     Track& track = tracks_[k];
     group.mechanism.go_to_curve_places(places);
     y_ = has_step_ && snapshot.t == from_ ? track.begin : track.end;
-    if (inside) interpolate(track, snapshot.t, y_);
+    if (inside) {
+      const double h = to_ - from_;
+      interpolate_derivatives((snapshot.t - from_) / h, h, track.begin, end_of_step(track), track.stage, y_);
+    }
     for (std::size_t c = 0; c < n_; ++c) {
       y_[c].v = snapshot.q[c];
       if (!jumps) y_[n_ + c].v = snapshot.qd[c];

@@ -72,10 +72,10 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
  private:
   using Vector = std::vector<DesignScalar>;
   /// Of one group: y = [q, qd] where the present step begins, where it ends, just before the last crossing; its stages
-  /// and interpolant; and what its rows keep, see PhaseEquations::project().
+  /// and those of the interpolant; and what its rows keep, see PhaseEquations::project().
   struct Track {
     Vector begin, end, before, anchor;
-    std::vector<Vector> stage, interpolant;
+    std::vector<Vector> stage;
   };
   PhaseEquations::Design design(std::size_t group);
   std::span<DesignScalar> q(Vector& y) const { return std::span(y).first(n_); }
@@ -88,10 +88,10 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   bool factorize(double t, Side side, const Vector& y);
   bool slope(std::size_t group, double t, Side side, const Vector& y, Vector& out);
   bool make_step(double h);
-  void combine(const StageSum& sum, double h, const Vector& from, const std::vector<Vector>& stages, Vector& out) const;
   bool project(double t, Side side, Vector Track::*y);
   bool prepare_interpolant();
-  void interpolate(const Track& track, double t, Vector& y) const;
+  /// Before the crossing there, if the step ends with one.
+  const Vector& end_of_step(const Track& track) const;
   bool take_state(std::size_t group, const Snapshot& snapshot, Side side, const Vector& y);
   bool singular(double t);
   bool not_shown(double t);
