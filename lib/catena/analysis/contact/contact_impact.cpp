@@ -45,8 +45,7 @@ double ContactSwitch::rebound(std::size_t k) const {
 }
 
 // Which places have impulses, at the velocities before them.
-void ContactSwitch::take_note(const ContactProblem& problem, double restitution_part) {
-  jump_->restitution_part = restitution_part;
+void ContactSwitch::take_note(const ContactProblem& problem) {
   jump_->places.clear();
   for (std::size_t a = 0; a < active_.size(); ++a) {
     const std::size_t k = active_[a];
@@ -56,7 +55,7 @@ void ContactSwitch::take_note(const ContactProblem& problem, double restitution_
     place.place = k;
     place.was_hit = hits(k);
     place.presses = presses;
-    place.rebounds = restitution_part * rebound(k) > 0;
+    place.rebounds = rebound(k) > 0;
     place.sticks = problem.state[a] == ContactProblem::State::sticks;
     if (problem.place[a].has_friction && !place.sticks) place.direction = problem.direction[a];
   }
@@ -103,7 +102,7 @@ bool ContactSwitch::bounce(double restitution_part, std::span<double> qd, double
   ContactProblem problem(active_.size());
   set_up(problem, restitution_part);
   if (!problem.solve()) return false;
-  take_note(problem, restitution_part);
+  take_note(problem);
   work = act(problem, qd);
   return true;
 }
@@ -145,7 +144,7 @@ bool ContactSwitch::bounce_by_poisson(std::span<double> qd, double& work) {
     for (std::size_t c = 0; c < both.x.size(); ++c) rate += both.D(2 * a, c) * both.x[c];
     if (rate < -part_of_speed(active_[a], no_speed)) return false;
   }
-  take_note(both, 1);
+  take_note(both);
   jump_->other_law = true;
   work = act(both, qd);
   return true;

@@ -197,6 +197,8 @@ bool ContactProblem::solve() {
     if (try_states()) return true;
   }
   if (!ruled_out_state_.empty() && search()) return true;
+  // What cannot be searched is left to sweeps, which may come back to what was ruled out: the motion then ends, as
+  // contacts that change without end.
   if (!sweep(size)) return search();
   if (sticks_together() && search()) return true;
   const std::vector<double> swept = x;

@@ -97,6 +97,7 @@ class ContactProblem {
   bool sticks_together() const;
   bool search();
   bool try_states();
+  bool keeps_states() const;
 
   std::vector<double> d_;
   std::vector<State> preferred_state_, ruled_out_state_;  // empty: none

@@ -111,6 +111,12 @@ bool ContactProblem::try_states() {
     x[2 * of.place] += of.normal * sizes(c);
     x[2 * of.place + 1] += of.along * sizes(c);
   }
+  return keeps_states();
+}
+
+// Whether x goes with the present states: closed gaps stay closed, stuck slides at rest, others go as they are meant
+// to.
+bool ContactProblem::keeps_states() const {
   for (std::size_t k = 0; k < place.size(); ++k) {
     for (const std::size_t along : {0, 1}) {
       const Place& p = place[k];

@@ -128,7 +128,7 @@ class ContactSwitch {
   bool bounce(double restitution_part, std::span<double> qd, double& work);
   bool bounce_by_poisson(std::span<double> qd, double& work);
   bool bounce_without_gain(double t, const std::vector<std::size_t>& hit, std::span<double> qd);
-  void take_note(const ContactProblem& problem, double restitution_part);
+  void take_note(const ContactProblem& problem);
   double rebound(std::size_t k) const;
   bool find_free_accelerations(double t, std::span<const double> q, std::span<const double> qd, ContactLoads& loads);
   Report choose(double t, std::span<const double> q, std::span<const double> qd, std::vector<ContactState>& states,

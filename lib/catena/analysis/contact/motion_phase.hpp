@@ -33,9 +33,8 @@ struct VelocityJump {
   bool meets_constraints = false;  ///< velocities are moved onto the constraints before anything is hit
   std::vector<int> released{};     ///< elements without equations then, contacts aside
   std::vector<ImpactPlace> places{};
-  double restitution_part = 1;  ///< of every restitution, see ContactSwitch
-  bool other_law = false;       ///< Poisson's restitution, or a reduced one, took the place of Newton's
-  bool settles = false;         ///< what was left of a motion that rocks ever faster was taken away
+  bool other_law = false;  ///< Poisson's restitution, or a reduced one, took the place of Newton's
+  bool settles = false;    ///< what was left of a motion that rocks ever faster was taken away
 };
 
 /// What ends a phase of a place: a gap or a reaction, the force of a compliant place, a slide that comes to rest or

@@ -17,61 +17,70 @@ constexpr double no_share = 1e-9;
 // Columns of Z: 16 limits of eight feet and 4 columns have 4368 choices of five. More are left to the single places.
 constexpr Eigen::Index most_freedom = 4;
 
-std::vector<double> numbers(const Eigen::VectorXd& of) { return {of.begin(), of.end()}; }
+using State = ContactProblem::State;
 
-}  // namespace
+/// A row that holds: across a place, or along it.
+struct Held {
+  std::size_t place;
+  bool along;
+  double friction;  // of x along that one unit of x across makes, where it slides
 
-SharedForces::SharedForces(const ContactProblem& problem, const std::vector<std::size_t>& point) {
-  using State = ContactProblem::State;
-  struct Held {
-    std::size_t place;
-    bool along;
-    double friction;  // of x along that one unit of x across makes, where it slides
-  };
+  std::size_t row() const { return 2 * place + (along ? 1 : 0); }
+};
+
+std::vector<Held> held_rows(const ContactProblem& problem) {
   std::vector<Held> held;
   for (std::size_t k = 0; k < problem.place.size(); ++k) {
-    if (problem.state[k] == State::open) continue;
     const ContactProblem::Place& p = problem.place[k];
-    if (p.head >= 0) continue;  // tensions beside grips are no cone: ContactSwitch::tie_grips()
+    // Tensions beside grips are no cone: ContactSwitch::tie_grips().
+    if (problem.state[k] == State::open || p.head >= 0) continue;
     const bool slides = problem.state[k] == State::slides && p.has_friction;
     if (p.has_normal) held.push_back({k, false, slides ? -p.mu * problem.direction[k] : 0});
     if (problem.state[k] == State::sticks) held.push_back({k, true, 0});
   }
+  return held;
+}
+
+/// Z, a row for each that holds; no columns where forces are unique.
+Eigen::MatrixXd free_forces(const ContactProblem& problem, const std::vector<Held>& held) {
   const auto size = static_cast<Eigen::Index>(held.size());
-  if (size < 2) return;
-  const auto row_of = [&](Eigen::Index r) {
-    const Held& h = held[static_cast<std::size_t>(r)];
-    return 2 * h.place + (h.along ? 1 : 0);
-  };
+  const auto at = [&](Eigen::Index r) -> const Held& { return held[static_cast<std::size_t>(r)]; };
   Eigen::VectorXd unit(size);
   for (Eigen::Index r = 0; r < size; ++r) {
-    const double own = problem.D(row_of(r), row_of(r));
+    const double own = problem.D(at(r).row(), at(r).row());
     unit(r) = own > 0 ? 1 / std::sqrt(own) : 0;
   }
   Eigen::MatrixXd response(size, size);
   for (Eigen::Index r = 0; r < size; ++r) {
     for (Eigen::Index c = 0; c < size; ++c) {
-      const Held& h = held[static_cast<std::size_t>(c)];
-      response(r, c) =
-          unit(r) * unit(c) * (problem.D(row_of(r), row_of(c)) + h.friction * problem.D(row_of(r), 2 * h.place + 1));
+      const Held& h = at(c);
+      const double along = h.friction * problem.D(at(r).row(), 2 * h.place + 1);
+      response(r, c) = unit(r) * unit(c) * (problem.D(at(r).row(), h.row()) + along);
     }
   }
   // Nearly always there is nothing to share, which this tells soonest.
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors;
   factors.setThreshold(no_response);
-  if (factors.compute(response).rank() == size) return;
+  if (size < 2 || factors.compute(response).rank() == size) return Eigen::MatrixXd(size, 0);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(response, Eigen::ComputeFullV);
   const Eigen::VectorXd& values = svd.singularValues();
   const Eigen::Index rank = (values.array() > no_response * values(0)).count();
-  if (rank == size || size - rank > most_freedom) return;
-  const Eigen::MatrixXd free = unit.asDiagonal() * svd.matrixV().rightCols(size - rank);
+  return unit.asDiagonal() * svd.matrixV().rightCols(size - rank);
+}
+
+std::vector<double> numbers(const Eigen::VectorXd& of) { return {of.begin(), of.end()}; }
+
+}  // namespace
+
+SharedForces::SharedForces(const ContactProblem& problem, const std::vector<std::size_t>& point) {
+  const std::vector<Held> held = held_rows(problem);
+  const Eigen::MatrixXd free = free_forces(problem, held);
+  if (free.cols() < 1 || free.cols() > most_freedom) return;
   const double share = no_share * free.rowwise().norm().maxCoeff();
   const auto row = [&](std::size_t place, bool along) -> Eigen::VectorXd {
-    for (Eigen::Index r = 0; r < size; ++r) {
-      const Held& h = held[static_cast<std::size_t>(r)];
-      if (h.place == place && h.along == along) return free.row(r);
-    }
-    return Eigen::VectorXd::Zero(size - rank);
+    const auto found =
+        std::find_if(held.begin(), held.end(), [&](const Held& h) { return h.place == place && h.along == along; });
+    return found == held.end() ? Eigen::VectorXd::Zero(free.cols()) : Eigen::VectorXd(free.row(found - held.begin()));
   };
   std::vector<std::vector<double>> slope;  // by y, of limits_
   for (std::size_t k = 0; k < problem.place.size(); ++k) {

@@ -98,7 +98,7 @@ bool PhasedDerivatives::jump(const VelocityJump& jump, const std::vector<double>
     for (const ImpactPlace& place : impact.places) {
       if (!place.rebounds) continue;
       const std::size_t row = at(equations_->gap_row(place.place));
-      target[row] = -(places_[k][place.place].restitution * DesignScalar(impact.restitution_part) * group.rows[row].d);
+      target[row] = -(places_[k][place.place].restitution * group.rows[row].d);
     }
     return target;
   });
