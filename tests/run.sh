@@ -54,8 +54,11 @@ run_ctest() {
   ctest --test-dir "build/$preset" --parallel "$jobs" --timeout 600 --no-tests=error "$@"
 }
 
-# File by file, as users build it: every header and every warning counts.
-release_build() { build release -DCATENA_BATCH=OFF -DCATENA_BUILD_TESTS=ON -DCATENA_BUILD_BENCH=ON -DCATENA_WITH_PYTHON=ON; }
+# The library and the programs file by file, as users build them: every header and every warning counts.
+release_build() {
+  build release -DCATENA_BATCH=OFF -DCATENA_BATCH_TESTS=ON -DCATENA_BUILD_TESTS=ON -DCATENA_BUILD_BENCH=ON \
+    -DCATENA_WITH_PYTHON=ON
+}
 release_tests() { run_ctest release --label-exclude '^(stress|fuzz|bench|browser)$'; }
 long_tests() { run_ctest release --label-regex '^(stress|fuzz|bench|browser)$'; }
 sanitized_build() { build sanitize; }

@@ -156,7 +156,11 @@ class RandomMechanism {
     const double part = uniform(0.2, 0.8);
     add_wheel(Kind::gear, part, 1 - part, false);
   }
-  void add_belted() { add_wheel(Kind::belt, uniform(0.1, 0.45), uniform(0.1, 0.45), pick(2) == 1); }
+  void add_belted() {
+    const bool crossed = pick(2) == 1;
+    const double part_j = uniform(0.1, 0.45), part_i = uniform(0.1, 0.45);
+    add_wheel(Kind::belt, part_i, part_j, crossed);
+  }
   // A pinion that is turned, and a rack that does not turn against the pinion's carrier.
   void add_rack() {
     const int i = any_body();

@@ -24,7 +24,10 @@ TEST(DependentNumbers, FollowTheDesignsOfASweep) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
     RandomNumbers random(seed);
-    const auto both = [&](double low, double high) { return pair_of(random(low, high), random(low, high)); };
+    const auto both = [&](double low, double high) {
+      const double y = random(low, high), x = random(low, high);
+      return pair_of(x, y);
+    };
     const TextRun run =
         run_text(turning(R"({"type": "sweep", "design": "grid", "over": {"T": )" + both(0.5, 3) + R"(, "w": )" +
                          both(-2, 2) + R"(, "a": )" + both(0.1, 0.9) +

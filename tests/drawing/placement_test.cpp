@@ -21,7 +21,10 @@ class Placements : public ::testing::Test {
   /// Two random bodies.
   std::vector<Frame<double>> random_frames() {
     std::vector<Frame<double>> frames;
-    for (int k = 0; k < 2; ++k) frames.push_back(make_frame(uniform(-5, 5), uniform(-5, 5), uniform(-9, 9)));
+    for (int k = 0; k < 2; ++k) {
+      const double phi = uniform(-9, 9), y = uniform(-5, 5), x = uniform(-5, 5);
+      frames.push_back(make_frame(x, y, phi));
+    }
     return frames;
   }
   static Complex place_of(std::span<const Frame<double>> frames, int body, const Vec2<double>& local) {

@@ -72,9 +72,10 @@ Piece falling_rod(const std::string& k, RandomNumbers& random) {
   std::string contact =
       random(0, 1) < 0.3 ? R"("k": 2e4, "c": 20)" : R"("rest_speed": 1e-3, "restitution": )" + text_of(random(0, 0.6));
   if (random(0, 1) < 0.4) contact += R"(, "mu": )" + text_of(random(0.1, 0.5));
+  const double mass = random(0.2, 3), vy = random(-1, 1), vx = random(-1, 1), omega = random(-2, 2);
   Piece piece{R"("rod)" + k + R"(": {"rod": {"from": )" + pair_of(x - c, height - s) + R"(, "to": )" +
-                  pair_of(x + c, height + s) + R"(}, "mass": )" + text_of(random(0.2, 3)) + R"(, "velocity": )" +
-                  pair_of(random(-1, 1), random(-1, 1)) + R"(, "angular_velocity": )" + text_of(random(-2, 2)) + "}",
+                  pair_of(x + c, height + s) + R"(}, "mass": )" + text_of(mass) + R"(, "velocity": )" +
+                  pair_of(vx, vy) + R"(, "angular_velocity": )" + text_of(omega) + "}",
               "", "", R"("rod)" + k + R"(")"};
   for (const char* end : {"from", "to"}) {
     piece.forces += (piece.forces.empty() ? "" : ", ") + (R"({"type": "contact", "name": ")" + std::string(end)) + k +

@@ -61,7 +61,8 @@ inline void welded_pairs(RandomMechanism& m) {
   for (int k = 0; k < m.motion.freedoms; ++k) {
     const int a = 2 * k, b = a + 1;
     const Vec joint = joint_of(m, l, k);
-    m.pin_at(k == 0 ? ground : m.pick(2), a + m.pick(2), joint);
+    const int held = a + m.pick(2), holder = k == 0 ? ground : m.pick(2);
+    m.pin_at(holder, held, joint);
     const Vec place = joint + m.size * Vec{m.uniform(-1, 1), m.uniform(-1, 1)};
     m.motion.model->add("", Weld<>{m.local_place(a, place), m.local_place(b, place)}, a, b);
     for (int n = 1 + m.pick(3); n > 0; --n) {

@@ -439,8 +439,8 @@ std::string random_balance(unsigned seed, int& unsolved) {
         component[c] += " - (" + text_of(k(i, j)) + " + p*" + text_of(by_p(i, j)) + ")*" + name(j);
     }
     const std::string comma = body > 0 ? "," : "", who = "p" + std::to_string(body);
-    bodies += comma + "\"" + who + R"--(": {"particle": true, "mass": 1, "position": )--" +
-              pair_of(random(-1, 1), random(-1, 1)) + "}";
+    const double y = random(-1, 1), x = random(-1, 1);
+    bodies += comma + "\"" + who + R"--(": {"particle": true, "mass": 1, "position": )--" + pair_of(x, y) + "}";
     forces += comma + R"--({"type": "point_force", "i": ")--" + who + R"--(", "force": [")--" + component[0] +
               R"--(", ")--" + component[1] + R"--("]})--";
     outputs += comma + "\"" + who + R"--(.x", ")--" + who + R"--(.y")--";

@@ -45,11 +45,17 @@ class RandomScene {
       add_body();
       if (pick(12)) add_joint(pick(b + 1) - 1, b);
     }
-    for (int k = pick(3); k > 0 && bodies > 1; --k) add_joint(pick(bodies) - 1, pick(bodies));
+    for (int k = pick(3); k > 0 && bodies > 1; --k) {
+      const int j = pick(bodies), i = pick(bodies) - 1;  // one after the other: compilers order arguments as they like
+      add_joint(i, j);
+    }
     if (pick(3) == 0 && bodies > 2) add_gears();
     if (pick(3) == 0) double_a_joint();
     if (forces != Forces::none) {
-      for (int k = pick(4); k > 0; --k) add_force(pick(bodies + 1) - 1, pick(bodies));
+      for (int k = pick(4); k > 0; --k) {
+        const int j = pick(bodies), i = pick(bodies + 1) - 1;
+        add_force(i, j);
+      }
     }
     q = Vector(dense.size());
     for (std::size_t b = 0; b < poses_.size(); ++b)
