@@ -17,20 +17,27 @@
 // count; a step across such a position is made with all its stages projected; none ends where a pivot of the Schur
 // complement keeps less than 1e-7 of itself, or than a limit that follows from the tolerance; where order 8 fails
 // repeatedly, order 5 takes over for a while; and the speed behind a step near such a position is the one that its
-// balance of energy gives (runge_kutta_energy.cpp). One object an integration; nothing allocates after construction.
+// balance of energy gives (step_energy.hpp). One object an integration; nothing allocates after construction.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "catena/analysis/dynamics/integrators/branch_keeping.hpp"
+#include "catena/analysis/dynamics/integrators/branch_turn.hpp"
 #include "catena/analysis/dynamics/integrators/coordinate_partition.hpp"
+#include "catena/analysis/dynamics/integrators/crossing_trials.hpp"
+#include "catena/analysis/dynamics/integrators/dense_output.hpp"
 #include "catena/analysis/dynamics/integrators/error_scale.hpp"
 #include "catena/analysis/dynamics/integrators/integrator.hpp"
 #include "catena/analysis/dynamics/integrators/motion.hpp"
-#include "catena/analysis/motion/tableau.hpp"
+#include "catena/analysis/dynamics/integrators/stage_ratios.hpp"
+#include "catena/analysis/dynamics/integrators/stages.hpp"
+#include "catena/analysis/dynamics/integrators/step_energy.hpp"
+#include "catena/analysis/dynamics/integrators/step_order.hpp"
 
 namespace catena {
 
@@ -58,7 +65,7 @@ class RungeKutta final : public Integrator {
   std::vector<std::string> remarks() const override;
   IntegratorMemory memory() const override;
   void remember(const IntegratorMemory& memory) override;
-  bool may_pause() const override { return !crossing_ && !passing_singular_; }
+  bool may_pause() const override { return !crossing_ && !trials_.is_ending_near(); }
   /// Continues with steps of size h (s) from the state (t, y) of another method, with its scale of errors and its
   /// largest pivot ratio.
   bool take_over(double t, std::span<const double> y, double h, const ErrorScale& scale, double usual_ratio);
@@ -77,9 +84,19 @@ class RungeKutta final : public Integrator {
   bool meets_constraints() const override { return options_.keeping != ConstraintKeeping::stabilisation; }
 
  private:
-  const Tableau& tableau() const {
-    return (options_.order == 5 && !long_steps_) || low_order_left_ > 0 ? dormand_prince_5() : dormand_prince_8();
-  }
+  enum class Trial { made, again, failed };
+  /// Of a step that is tried; whether it ends at the limit.
+  struct Length {
+    double h = 0;
+    bool lands = false;
+  };
+  /// What the error of a step says; whether the equations were factored at its end meanwhile.
+  struct Judgement {
+    double error = 0, rounding = 0, growth = 1;
+    bool accurate = false, factored = false;
+  };
+  const Tableau& tableau() const { return order_.tableau(); }
+  bool is_fixed() const { return options_.fixed_step > 0; }
   bool projects() const { return crossing_ || options_.keeping == ConstraintKeeping::projection; }
   bool derivative(double t, Side side, std::span<const double> y, std::span<double> k) const {
     return motion_.derivative(t, side, y, k, stabilisation_);
@@ -87,10 +104,7 @@ class RungeKutta final : public Integrator {
   bool partitions() const { return partition_ && !crossing_; }
   bool follow_motion();
   bool begin_projection();
-  /// out = from + h sum weight stage; `from` may be nullptr.
-  void combine(const StageSum& sum, double h, const double* from, std::span<double> out) const;
   bool evaluate_stages(double h);
-  void find_roughness();
   bool project_stage(double t, Side side);
   bool solve_dependent(double t, Side side, std::span<double> y) {
     return partition_->solve(t, side, motion_.q(y), motion_.qd(y));
@@ -99,36 +113,30 @@ class RungeKutta final : public Integrator {
   double error_size(double h);
   double error_of_work(double h) const;
   double filtered_error(double h, double raw);
-  bool finish_step();
-  bool watches_energy() const;
-  void note_power(std::size_t stage, std::span<const double> y);
-  struct Energy {
-    double kinetic = 0, potential = 0;
-  };
-  Energy energy_of(double t, Side side, std::span<const double> y);
-  void find_direction();
-  double explained_by_errors(double h) const;
-  bool restore_energy(double h);
-  bool detour(double h, double error);
-  bool passes() const;
+  double compared_with_end(double h, double error);
   double rounding_of_velocity(double h) const;
   double rounding_of_crossing(double h) const;
-  void repeat_with_projected_stages(double h);
+  bool finish_step();
+  bool watches_energy() const;
+  bool restore_energy(double h);
+  bool begin_step();
+  Length next_length(double limit) const;
+  Trial try_step(double limit, double& usual);
+  Judgement judge(double h);
+  Trial cut_short(double h);
+  bool try_crossing(double h, const Judgement& judged);
   bool leaves_branch(double h);
-  void turn(double h);
-  bool gives_up_turn();
-  bool try_crossing(double h, double error, double rounding);
-  double compared_with_end(double h, double error);
   void reject(double h);
   void accept(double growth, double proposed);
   void observe_ratio();
   void observe_rates();
+  StepRatios ratios() const { return {ratios_.at_start(), ratios_.smallest(), pivot_ratio()}; }
   bool prepare_interpolant();
   bool integrate_to(double t, std::span<double> y);
   bool finish_cut();
   void get_interpolant_ready();
   void evaluate_interpolant(double t, std::span<double> y);
-  void move_by_ends(double s, std::span<double> y) const;
+  StepEnds ends() const { return {t_ - t_before_, y_before_, y_, stage_[0], slope_}; }
   void work_by_ends(double s, std::span<double> y);
 
   Motion motion_;
@@ -138,25 +146,17 @@ class RungeKutta final : public Integrator {
   ErrorScale scale_;
   double t_new_ = 0, h_ = 0, stabilisation_ = 0;
   std::vector<double> y_before_, y_new_, y_stage_, slope_, slope_new_;
-  std::vector<std::vector<double>> stage_;
-  std::vector<std::vector<double>> interpolant_;
+  Stages stage_;
+  DenseOutput dense_;
   std::vector<double> error_, error_low_;  // [q, qd]
-  static constexpr std::size_t most_detours = 8;
-  std::vector<double> detour_steps_, stage_ratio_;
-  std::vector<double> stage_power_, direction_;  // W; see runge_kutta_energy.cpp
-  double roughness_ = 0;                         // of the last stages: sum of |weight| ratio^-1.5
-  bool keeps_energy_ = false;                    // its balance says how fast the mechanism moves
-  double weight_ = 0;                            // of all bodies, times the length scale, J
-  bool interpolant_ready_ = false, by_ends_ = false, passing_singular_ = false, projecting_stages_ = false,
-       crossing_ = false, long_steps_ = false, turning_ = false, crosses_anyway_ = false, best_passes_ = false,
-       taking_best_ = false;
-  int acting_rows_ = 0;  // see jacobian_rank.hpp
-  int low_order_left_ = 0, rejections_ = 0, detours_ = 0, tries_of_turn_ = 0;
-  double step_that_left_ = 0;  // s, the first that left its branch in this passage
-  std::int64_t low_order_steps_ = 0, projected_steps_ = 0, turns_ = 0, turns_given_up_ = 0;
-  double accepted_error_ = 1, step_error_ = 1, best_error_ = 0, best_step_ = 0;
-  double smallest_stage_ratio_ = 1, largest_stage_ratio_ = 1, start_ratio_ = 1, singular_ratio_ = 0,
-         usual_ratio_ = 1e-300;
+  StepOrder order_;
+  StageRatios ratios_;
+  CrossingTrials trials_;
+  BranchTurn turn_;
+  std::unique_ptr<StepEnergy> energy_;
+  bool crossing_ = false;  // steps are projected that are not elsewhere
+  std::int64_t projected_steps_ = 0;
+  double step_error_ = 1;  // of the step that is accepted, in tolerances, at least 1
 };
 
 }  // namespace catena

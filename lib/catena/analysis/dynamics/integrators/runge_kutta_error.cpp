@@ -47,7 +47,7 @@ double RungeKutta::error_size(double h) {
 void RungeKutta::add_error(std::span<double> error) const {
   const std::size_t moving = motion_.moving(), offset = motion_.coordinates();
   const double h = t_ - t_before_, turn = scale_.length;
-  const Tableau& table = by_ends_ ? dormand_prince_5() : dormand_prince_8();  // of the last step
+  const Tableau& table = dense_.by_ends() ? dormand_prince_5() : dormand_prince_8();  // of the last step
   double factor = 1;
   if (table.order == 8) {
     double high = 0, low = 0;
@@ -79,11 +79,7 @@ void RungeKutta::add_error(std::span<double> error) const {
 // nothing, no other error says so. Of drivers nothing is asked: their loads have no bound near singular positions.
 double RungeKutta::error_of_work(double h) const {
   const std::size_t load = 2 * motion_.coordinates() + ErrorScale::work_of_loads;
-  const auto sum = [&](const StageSum& weights) {
-    double all = 0;
-    for (const StageTerm& term : weights) all += term.weight * stage_[static_cast<std::size_t>(term.stage)][load];
-    return std::abs(h * all);
-  };
+  const auto sum = [&](const StageSum& weights) { return std::abs(h * stage_.sum(weights, load)); };
   double error = sum(tableau().error);
   if (tableau().order == 8 && error > 0) {
     const double low = sum(tableau().error_low);
@@ -102,7 +98,8 @@ double RungeKutta::filtered_error(double h, double raw) {
     equations.remove_forbidden(std::span(*error).subspan(offset, moving));
   }
   // With projected stages the errors across the constraints enter only squared.
-  const double spoilt = projecting_stages_ ? forbidden_square * raw * raw * scale_.tolerance() : forbidden_part * raw;
+  const double spoilt =
+      trials_.project_stages() ? forbidden_square * raw * raw * scale_.tolerance() : forbidden_part * raw;
   return std::min(raw, std::max(error_size(h), spoilt));
 }
 
@@ -114,19 +111,11 @@ double RungeKutta::compared_with_end(double h, double error) {
                                  [&] { return error_size(h); });
 }
 
-void RungeKutta::find_roughness() {
-  roughness_ = 0;
-  stage_ratio_[0] = start_ratio_;
-  for (const StageTerm& term : tableau().b) {
-    const double sine = std::sqrt(stage_ratio_[static_cast<std::size_t>(term.stage)]);
-    roughness_ += std::abs(term.weight) / (sine * sine * sine);
-  }
-}
-
 // What rounding of places makes of the accelerations of stages beside a singular position, as the error of velocities:
 // at a sine d, of which the pivot ratio is the square, eps / d^3 of an acceleration. The largest is rate^2 x length.
 double RungeKutta::rounding_of_velocity(double h) const {
-  return std::numeric_limits<double>::epsilon() * roughness_ * std::abs(h) * scale_.rate() / scale_.tolerance();
+  return std::numeric_limits<double>::epsilon() * ratios_.roughness() * std::abs(h) * scale_.rate() /
+         scale_.tolerance();
 }
 
 // The same as the error of the step: where velocities are mended by the balance of energy, that of places, which have

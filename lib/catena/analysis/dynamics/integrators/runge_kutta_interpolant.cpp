@@ -19,31 +19,24 @@ constexpr double largest_rounding = 1;
 
 }  // namespace
 
-// Order 8: the interpolant of order 7 of DOP853, three more evaluations.
-//   y(t0 + s h) = y0 + s (r1 + (1-s) (r2 + s (r3 + (1-s) (r4 + s (r5 + (1-s) (r6 + s r7))))))
-// False: a stage cannot be evaluated.
+// Evaluates the three stages that the interpolant of order 8 needs besides those of the step. False: a stage cannot be
+// evaluated.
 bool RungeKutta::prepare_interpolant() {
   const Tableau& table = dormand_prince_8();
   const double h = t_ - t_before_;
   stage_[12] = slope_;
   for (std::size_t s = 13; s < 16; ++s) {
-    combine(table.a[s], h, y_before_.data(), y_stage_);
+    stage_.combine(table.a[s], h, y_before_.data(), y_stage_);
     const double t = t_before_ + table.c[s] * h;
     const auto evaluate = [&](bool projected) {
       return (!projected || project_stage(t, Side::after)) && motion_.derivative(t, Side::after, y_stage_, stage_[s]);
     };
-    if (!evaluate(projecting_stages_)) return false;
+    if (!evaluate(trials_.project_stages())) return false;
     // The step's own stages may have kept clear of a singular position that lies near this one.
-    smallest_stage_ratio_ = std::min(smallest_stage_ratio_, pivot_ratio());
-    if (!projecting_stages_ && meets_constraints() && dips() && !evaluate(true)) return false;
+    ratios_.note_between(motion_.equations().smallest_pivot_ratio());
+    if (!trials_.project_stages() && meets_constraints() && dips() && !evaluate(true)) return false;
   }
-  for (std::size_t i = 0; i < y_.size(); ++i) {
-    const double difference = y_[i] - y_before_[i], bend = h * stage_[0][i] - difference;
-    interpolant_[0][i] = difference;
-    interpolant_[1][i] = bend;
-    interpolant_[2][i] = difference - h * slope_[i] - bend;
-  }
-  for (std::size_t k = 0; k < 4; ++k) combine(table.interpolant[k], h, nullptr, interpolant_[3 + k]);
+  dense_.set(ends(), stage_);
   return true;
 }
 
@@ -63,11 +56,11 @@ bool RungeKutta::integrate_to(double t, std::span<double> y) {
   double least = std::numeric_limits<double>::infinity();
   const auto try_from_present_end = [&] {
     t_new_ = t;
-    if (!evaluate_stages(t - t_) || !(roughness_ < least)) return;
+    if (!evaluate_stages(t - t_) || !(ratios_.roughness() < least)) return;
     if (!watches_energy() && rounding_of_crossing(t - t_) > largest_rounding) return;
     if (!finish_cut()) return;
     found = true;
-    least = roughness_;
+    least = ratios_.roughness();
     std::copy(y_new_.begin(), y_new_.end(), y.begin());
   };
   const auto exchange_ends = [&] {
@@ -86,10 +79,10 @@ bool RungeKutta::integrate_to(double t, std::span<double> y) {
 void RungeKutta::interpolate(double t, std::span<double> y) {
   const bool fine = scale_.step_tolerance < fine_tolerance;
   // Cut steps overwrite the step's own stages.
-  if (projecting_stages_) get_interpolant_ready();
-  if (projecting_stages_ && fine && integrate_to(t, y)) return;
+  if (trials_.project_stages()) get_interpolant_ready();
+  if (trials_.project_stages() && fine && integrate_to(t, y)) return;
   evaluate_interpolant(t, y);
-  if (!projecting_stages_ || fine) return;
+  if (!trials_.project_stages() || fine) return;
   EquationsOfMotion& equations = motion_.equations();
   equations.evaluator().set_time(t);
   if (!(equations.position_residual(motion_.q(std::span<const double>(y))) <
@@ -99,40 +92,15 @@ void RungeKutta::interpolate(double t, std::span<double> y) {
 }
 
 void RungeKutta::get_interpolant_ready() {
-  if (by_ends_ || interpolant_ready_) return;
-  interpolant_ready_ = prepare_interpolant();
-  by_ends_ = !interpolant_ready_;
+  if (dense_.needs_stages() && !prepare_interpolant()) dense_.use_ends(true);
 }
 
 void RungeKutta::evaluate_interpolant(double t, std::span<double> y) {
-  const double s = (t - t_before_) / (t_ - t_before_), r = 1 - s;
+  const double s = (t - t_before_) / (t_ - t_before_);
   get_interpolant_ready();
-  if (!by_ends_) {
-    const auto& c = interpolant_;
-    for (std::size_t i = 0; i < y.size(); ++i) {
-      y[i] =
-          y_before_[i] +
-          s * (c[0][i] + r * (c[1][i] + s * (c[2][i] + r * (c[3][i] + s * (c[4][i] + r * (c[5][i] + s * c[6][i]))))));
-    }
-    return;
-  }
-  move_by_ends(s, y);
+  if (!dense_.by_ends()) return dense_.evaluate(y_before_, s, y);
+  move_by_ends(ends(), motion_.coordinates(), s, y);
   if (motion_.works() > 0) work_by_ends(s, y);
-}
-
-// Order 5, or stages that cannot be evaluated: positions by the quintic through positions, velocities and accelerations
-// at both ends, velocities by its derivative.
-void RungeKutta::move_by_ends(double s, std::span<double> y) const {
-  const std::size_t n = motion_.coordinates();
-  const double h = t_ - t_before_;
-  for (std::size_t p = 0; p < n; ++p) {
-    const double y0 = y_before_[p], y1 = y_[p], d0 = h * stage_[0][p], d1 = h * slope_[p];
-    const double a0 = h * h * stage_[0][p + n], a1 = h * h * slope_[p + n];
-    const double c2 = a0 / 2, A = y1 - y0 - d0 - c2, B = d1 - d0 - a0, C = a1 - a0;
-    const double c3 = 10 * A - 4 * B + C / 2, c4 = -15 * A + 7 * B - C, c5 = 6 * A - 3 * B + C / 2;
-    y[p] = y0 + s * (d0 + s * (c2 + s * (c3 + s * (c4 + s * c5))));
-    y[n + p] = (d0 + s * (2 * c2 + s * (3 * c3 + s * (4 * c4 + s * 5 * c5)))) / h;
-  }
 }
 
 // The integrals by Gauss's rule of three points (order 6) along that motion: powers have no derivatives from which a
@@ -147,7 +115,7 @@ void RungeKutta::work_by_ends(double s, std::span<double> y) {
   bool known = true;
   for (std::size_t i = first; i < y.size(); ++i) y[i] = y_before_[i];
   for (std::size_t k = 0; k < std::size(places) && known; ++k) {
-    move_by_ends(places[k] * s, y_stage_);
+    move_by_ends(ends(), motion_.coordinates(), places[k] * s, y_stage_);
     known = derivative(t_before_ + places[k] * s * h, Side::after, y_stage_, power);
     for (std::size_t i = first; i < y.size(); ++i) y[i] += weights[k] * s * h * power[i];
   }

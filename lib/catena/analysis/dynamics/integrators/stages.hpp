@@ -1,0 +1,45 @@
+// Slopes k_i at the stages of a step (tableau.hpp), and weighted sums of them.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "catena/analysis/motion/tableau.hpp"
+
+namespace catena {
+
+class Stages {
+ public:
+  /// Room for the stages of every method, with those of its interpolant.
+  explicit Stages(std::size_t size) : slope_(16, std::vector<double>(size, 0.0)) {}
+
+  std::size_t size() const { return slope_.size(); }
+  std::vector<double>& operator[](std::size_t stage) { return slope_[stage]; }
+  const std::vector<double>& operator[](std::size_t stage) const { return slope_[stage]; }
+
+  /// out = from + h sum weight k; `from` may be nullptr.
+  void combine(const StageSum& sum, double h, const double* from, std::span<double> out) const {
+    constexpr std::size_t block = 256;  // stays in the first cache while all stages are added
+    for (std::size_t begin = 0; begin < out.size(); begin += block) {
+      const std::size_t end = std::min(begin + block, out.size());
+      for (std::size_t i = begin; i < end; ++i) out[i] = from ? from[i] : 0;
+      for (const StageTerm& term : sum) {
+        const double weight = h * term.weight;
+        const double* k = slope_[static_cast<std::size_t>(term.stage)].data();
+        for (std::size_t i = begin; i < end; ++i) out[i] += weight * k[i];
+      }
+    }
+  }
+  /// The same of one entry, without h.
+  double sum(const StageSum& weights, std::size_t entry) const {
+    double all = 0;
+    for (const StageTerm& term : weights) all += term.weight * slope_[static_cast<std::size_t>(term.stage)][entry];
+    return all;
+  }
+
+ private:
+  std::vector<std::vector<double>> slope_;
+};
+
+}  // namespace catena

@@ -1,0 +1,60 @@
+// How fast the mechanism moves behind a step near a singular position, by the balance of energy of the step:
+//
+//   T1 = T0 + V0 - V1 + W          W = h sum b_s P_s,   P: loads without a potential, less what dampers take
+//   v1 += a u,   a = (T1 - T(v1)) / (v1^T M u)
+//
+// At a sine d from the position, rounding of places makes accelerations wrong by eps / d^3, across the constraints.
+// Projection removes that at the step's end, but the direction across has turned since by about h / radius, so that
+// some h of it stays along the motion: after every passage the mechanism is a little too fast or too slow. Places are
+// wrong by eps / d only, velocities by eps / d^2 and across, which changes energies by its square: the balance knows
+// the speed better than the integral does, by d / h or more.
+//
+// u: what may be wrong. With one degree of freedom the velocity itself; else the error estimate of the step, which is
+// that of the same stages, without the part across the constraints. Where u says nothing about the energy (v1^T M u
+// near zero), or hardly anything moves, the velocity stays as it is. A step that is wrong by much more energy than its
+// errors explain has lost its way and is not made. Symbols: T kinetic, V potential energy in J, M masses, v velocities,
+// h the step in s, b_s weights of its stages. Source: apps/manual/numerics.md#singular-passages.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "catena/analysis/dynamics/integrators/error_scale.hpp"
+#include "catena/analysis/dynamics/integrators/motion.hpp"
+#include "catena/analysis/motion/tableau.hpp"
+
+namespace catena {
+
+/// A step of size h (s) that ends at t; positions and velocities there are on the constraints.
+struct BalancedStep {
+  double t = 0, h = 0;
+  std::span<const double> y_before;
+  std::span<double> y;
+  std::span<const double> error;  ///< the estimate, [q, qd]
+  double errors = 0;              ///< of the step and of its rounding, in units of `scale`
+  const ErrorScale& scale;
+  const StageSum& weights;
+};
+
+class StepEnergy {
+ public:
+  /// `stages`: most that a step has. `may`: the balance says how fast this mechanism moves.
+  StepEnergy(const Motion& motion, std::size_t stages, double length, bool may);
+
+  /// Whether steps from a place of this pivot ratio are balanced, if they are projected.
+  bool watches(double ratio, bool crossing) const;
+  /// Power P at a stage, at the evaluator's place, that of y.
+  void note_power(const Motion& motion, std::size_t stage, std::span<const double> y);
+  /// Balances a step. False: more energy is missing than the error of the step and its rounding explain.
+  bool restore(const Motion& motion, const BalancedStep& step);
+
+ private:
+  void find_direction(const Motion& motion, const BalancedStep& step);
+
+  std::vector<double> power_, direction_;  // of the stages, W; u
+  double weight_ = 0;                      // of all bodies, times the length scale, J
+  int acting_rows_ = 0;                    // see jacobian_rank.hpp
+  bool may_ = false;
+};
+
+}  // namespace catena
