@@ -18,7 +18,8 @@ Dynamics::Dynamics(std::shared_ptr<const Model> model, const PlanOptions& plan_o
       evaluator_(plan_, *model_),
       equations_(evaluator_),
       redundant_(equations_),
-      watched_(evaluator_) {
+      watched_(evaluator_),
+      singular_(equations_) {
   q_ = evaluator_.given_configuration();
   qd_.assign(q_.size(), 0.0);
   choose_method();
@@ -26,37 +27,40 @@ Dynamics::Dynamics(std::shared_ptr<const Model> model, const PlanOptions& plan_o
 
 void Dynamics::start_from(const SystemState& state) {
   t_ = state.t;
-  prepared_ = false;
+  origin_.prepared = false;
   take_over_places(evaluator_, state, q_);
-  given_qd_ = velocities_of(evaluator_, state);
+  origin_.given_qd = velocities_of(evaluator_, state);
 }
 
 void Dynamics::attach(ContactLoads* contacts) {
-  contacts_ = contacts;
+  attached_.contacts = contacts;
   equations_.attach(contacts);
-  contact_loads_.assign(contacts ? model_->elements.size() : 0, {});
+  row_.contact_loads.assign(contacts ? model_->elements.size() : 0, {});
 }
 
 SystemState Dynamics::state() const { return state_of(evaluator_, t_, q_, qd_); }
 
-Report Dynamics::prepare(std::vector<std::string>& warnings) {
-  Report masses = equations_.use_masses();
-  if (!masses.ok()) return masses;
+Report Dynamics::check_options() const {
+  Report report;
   constexpr double least_tolerance = DynamicsOptions::least_tolerance;
   if (!(options_.tolerance >= least_tolerance) || !(options_.tolerance < 1)) {
-    masses.status = Status::refused;
-    masses.message =
+    report.status = Status::refused;
+    report.message =
         fmt::format("tolerance {:.3g} cannot be met: double precision holds about {:.0e}; give {:.0e} ... 1",
                     options_.tolerance, least_tolerance, least_tolerance);
-    return masses;
-  }
-  if (!(options_.step >= 0) || !std::isfinite(options_.step) || options_.max_steps < 1) {
-    masses.status = Status::refused;
-    masses.message = fmt::format(
+  } else if (!(options_.step >= 0) || !std::isfinite(options_.step) || options_.max_steps < 1) {
+    report.status = Status::refused;
+    report.message = fmt::format(
         "a fixed step of {:.3g} s, or max_steps = {}, advances nothing: give numbers above zero, or leave them out",
         options_.step, options_.max_steps);
-    return masses;
   }
+  return report;
+}
+
+// Places and velocities that meet the constraints.
+Report Dynamics::prepare(std::vector<std::string>& warnings) {
+  if (Report masses = equations_.use_masses(); !masses.ok()) return masses;
+  if (Report options = check_options(); !options.ok()) return options;
   evaluator_.set_time(t_);
   Assembler assembler(evaluator_);
   AssemblyOutcome assembled = assembler.assemble(q_);
@@ -68,40 +72,43 @@ Report Dynamics::prepare(std::vector<std::string>& warnings) {
         assembled.shifted, assembled.turned));
   }
   equations_.weigh_massless(q_);
-  start_ = singular_start();
+  origin_.singular = singular_start();
+  const SingularStart* start = origin_.singular ? &*origin_.singular : nullptr;
   std::optional<RedundantRows::GenericPlace> elsewhere;
-  if (start_) {
-    singular_points_.push_back(start_->point);
-    if (!start_->report.ok()) return start_->report;
-    elsewhere = place_along(*start_);
+  if (start) {
+    run_.singular_points.push_back(start->point);
+    if (!start->report.ok()) return start->report;
+    elsewhere = place_along(*start);
   }
   redundant_.find(q_, elsewhere ? &*elsewhere : nullptr);
   if (Report massless = equations_.check_massless(q_); !massless.ok()) return massless;
-  const VelocityOutcome velocities = find_initial_velocities(equations_, q_, given_qd_, qd_);
-  if (velocities.dead_point) singular_points_.push_back(*velocities.dead_point);
+  const VelocityOutcome velocities = find_initial_velocities(equations_, q_, origin_.given_qd, qd_);
+  if (velocities.dead_point) run_.singular_points.push_back(*velocities.dead_point);
   if (!velocities.ok()) return velocities;
   if (velocities.changed > 1e-9) {
-    warnings.push_back(fmt::format(
-        "{} did not meet the constraints: changed by up to {:.3g} {} (body \"{}\")",
-        given_qd_.empty() ? std::string("the given velocities") : fmt::format("the velocities at t = {:.12g} s", t_),
-        velocities.changed, velocities.changed_turn ? "rad/s" : "m/s", model_->body_name(velocities.changed_body)));
+    warnings.push_back(fmt::format("{} did not meet the constraints: changed by up to {:.3g} {} (body \"{}\")",
+                                   origin_.given_qd.empty() ? std::string("the given velocities")
+                                                            : fmt::format("the velocities at t = {:.12g} s", t_),
+                                   velocities.changed, velocities.changed_turn ? "rad/s" : "m/s",
+                                   model_->body_name(velocities.changed_body)));
   }
-  if (start_) {
+  if (start) {
     // Of all velocities that the constraints allow there the motion has this one.
-    const std::vector<double>& tangent = start_->point.tangents[static_cast<std::size_t>(start_->branch - 1)];
-    const double speed = start_->point.kind == SingularPoint::Kind::rest ? 0 : 1;
+    const std::vector<double>& tangent = start->point.tangents[static_cast<std::size_t>(start->branch - 1)];
+    const double speed = start->point.kind == SingularPoint::Kind::rest ? 0 : 1;
     for (std::size_t k = 0; k < qd_.size(); ++k) qd_[k] = speed * tangent[k];
   }
   take_note_of_start();
-  prepared_ = true;
+  origin_.prepared = true;
   return {};
 }
 
 // Where an event engaged constraints, velocities that these change are a blow to the mechanism.
 void Dynamics::take_note_of_start() {
-  const std::string event = std::exchange(jolting_event_, {});
-  if (event.empty() || given_qd_.size() != qd_.size() || !equations_.factorize(t_, Side::after, q_)) return;
-  jolts_.push_back({t_, event, {}, impulses_of(equations_, q_, qd_, impulse_of_change(equations_, given_qd_, qd_))});
+  const std::string event = std::exchange(origin_.jolting_event, {});
+  if (event.empty() || origin_.given_qd.size() != qd_.size() || !equations_.factorize(t_, Side::after, q_)) return;
+  run_.jolts.push_back(
+      {t_, event, {}, impulses_of(equations_, q_, qd_, impulse_of_change(equations_, origin_.given_qd, qd_))});
 }
 
 double Dynamics::next_breakpoint(double t) const {

@@ -12,27 +12,19 @@
 #include <optional>
 
 #include "catena/analysis/contact/contact_loads.hpp"
-#include "catena/analysis/dynamics/balance_watch.hpp"
 #include "catena/analysis/dynamics/dynamics_options.hpp"
+#include "catena/analysis/dynamics/dynamics_state.hpp"
 #include "catena/analysis/dynamics/integrators/integrator.hpp"
 #include "catena/analysis/dynamics/integrators/motion.hpp"
 #include "catena/analysis/dynamics/integrators/step_follower.hpp"
+#include "catena/analysis/dynamics/singular_rows.hpp"
 #include "catena/analysis/events/event_watch.hpp"
-#include "catena/analysis/motion/energy_account.hpp"
 #include "catena/analysis/motion/equations_of_motion.hpp"
-#include "catena/analysis/motion/impulses.hpp"
-#include "catena/analysis/motion/motion_memory.hpp"
 #include "catena/analysis/motion/redundant_rows.hpp"
-#include "catena/analysis/motion/singular_instant.hpp"
 #include "catena/analysis/pose/assemble.hpp"
-#include "catena/analysis/pose/minimum_norm.hpp"
-#include "catena/analysis/pose/singular_start.hpp"
-#include "catena/analysis/run/analysis_report.hpp"
-#include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/row_observer.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/run/system_state.hpp"
-#include "catena/analysis/run/time_grid.hpp"
 #include "catena/analysis/run/watched_elements.hpp"
 
 namespace catena {
@@ -62,10 +54,10 @@ class Dynamics {
   /// run() ends, and paused() says so, with the first step that reaches t (s) and does not lie across a singular
   /// position, after its rows.
   void pause_after(double t) { pause_after_ = t; }
-  bool paused() const { return paused_; }
+  bool paused() const { return run_.paused; }
   /// run() also ends, and jumped() says so, where the velocity of a driver jumps while contacts hold: what they do then
   /// is not for this class to decide.
-  bool jumped() const { return jumped_; }
+  bool jumped() const { return run_.jumped; }
   /// The state of the motion where the last run paused.
   const MotionMemory& memory() const { return memory_; }
   /// Takes up a motion of the same model and options that paused: the next run() begins there, on the rest of its grid.
@@ -74,30 +66,30 @@ class Dynamics {
   /// Forces of contacts from now on, made for evaluator(); nullptr: none.
   void attach(ContactLoads* contacts);
   /// Looks for events during run(): a row is given at each, and one that acts ends the run there. nullptr: none.
-  void watch(EventWatch* events) { events_ = events; }
-  /// Who sees the steps of run(); nullptr: nobody.
-  void follow(StepFollower* follower) { follower_ = follower; }
+  void watch(EventWatch* events) { attached_.events = events; }
+  /// The follower is told of every step of run(); nullptr: none.
+  void follow(StepFollower* follower) { attached_.follower = follower; }
   /// The event at which the last run ended before the end of its grid, or -1; and the row of the grid that was next.
-  int stopped_by() const { return stopped_by_; }
+  int stopped_by() const { return run_.stopped_by; }
   /// The events of the list that act there, in its order: those that happened at the same instant.
-  const std::vector<int>& acting() const { return acting_; }
-  std::int64_t next_row() const { return next_row_; }
+  const std::vector<int>& acting() const { return run_.acting; }
+  std::int64_t next_row() const { return run_.next_row; }
   WorkSoFar work_so_far() const;
   /// What moved in the last run, J, and in those before it of the same motion: errors are compared with the whole.
-  double energy_in_motion() const { return balance_ ? balance_->energy() : earlier_motion_; }
-  void know_energy(double energy) { earlier_motion_ = energy; }
+  double energy_in_motion() const { return work_.balance ? work_.balance->energy() : work_.earlier_motion; }
+  void know_energy(double energy) { work_.earlier_motion = energy; }
   /// Counts work from an earlier start; energy that is missing against then counts as dissipated (an impact).
-  void carry_on(WorkSoFar work) { earlier_ = std::move(work); }
+  void carry_on(WorkSoFar work) { work_.earlier = std::move(work); }
 
   /// The velocities of the next start are those before `event` acts, and may have to jump.
-  void expect_jolt(std::string event) { jolting_event_ = std::move(event); }
+  void expect_jolt(std::string event) { origin_.jolting_event = std::move(event); }
   /// Where velocities jumped in the last run, its start included if that was expected.
-  const std::vector<Jolt>& jolts() const { return jolts_; }
+  const std::vector<Jolt>& jolts() const { return run_.jolts; }
   /// Where jumped(): the drivers concerned.
-  const std::vector<int>& jumping_drivers() const { return jumping_; }
+  const std::vector<int>& jumping_drivers() const { return run_.jumping; }
 
   /// Where the drivers asked for a motion that cannot be made: at the start, or where the run ended.
-  const std::vector<SingularPoint>& singular_points() const { return singular_points_; }
+  const std::vector<SingularPoint>& singular_points() const { return run_.singular_points; }
 
   double time() const { return t_; }
   std::span<const double> q() const { return q_; }
@@ -110,6 +102,7 @@ class Dynamics {
 
  private:
   void choose_method();
+  Report check_options() const;
   Report prepare(std::vector<std::string>& warnings);
   std::unique_ptr<Integrator> make_integrator(const Motion& motion, double horizon) const;
   void look_for_singularity(double t);
@@ -121,7 +114,6 @@ class Dynamics {
   std::optional<SingularStart> singular_start();
   int branch_of_given_velocities(const SingularPoint& point);
   std::optional<RedundantRows::GenericPlace> place_along(const SingularStart& start);
-  void remark_on_singularities(std::vector<std::string>& warnings) const;
   Report check_order() const;
   int freedoms() const;
   Report check_freedoms() const;
@@ -156,54 +148,27 @@ class Dynamics {
   Evaluator evaluator_;
   EquationsOfMotion equations_;
   RedundantRows redundant_;
-  std::optional<EnergyAccount> account_;
-  std::optional<BalanceWatch> balance_;  // where the energy of the motion can be told, and a tolerance was asked for
-  std::unique_ptr<Integrator> integrator_;
-  std::optional<MinimumNorm> minimum_norm_;            // made when multipliers turn out not to be unique
-  std::string ambiguity_;                              // whose reactions are not, when that was found
-  std::optional<SingularInstant> singular_;            // made where constraints come to depend on each other
-  bool at_singularity_ = false;                        // at the last state_at()
-  bool dependent_ = false, always_dependent_ = false;  // constraints: where the last step ended, and where it began too
-  double singular_t_ = 0, formal_t_ = 0;               // of the first such rows; how many, what is said of them
-  std::int64_t singular_rows_ = 0, formal_rows_ = 0;
-  bool unbounded_ = false;
-  std::string singular_names_;
-  std::vector<SingularPoint> singular_points_;
-  std::optional<SingularStart> start_;  // in a singular position, driven
-  bool locked_ = false;                 // the row at the dead point was given
-  bool prepared_ = false, resumed_ = false;
-  // Of the run under way.
-  TimeGrid grid_ = TimeGrid::list({});
-  Needs needs_;
-  std::optional<Evaluator::TimeLimit> time_limit_;  // while it lasts
   WatchedElements watched_;
-  std::optional<Motion> motion_;
-  ProcessTimer timer_;
-  AnalysisReport report_;
-  Report outcome_;
-  // A function of time jumps at t_, and the integrator does not know yet; the run ended at its pause, or at such a
-  // jump.
-  bool at_jump_ = false, paused_ = false, jumped_ = false;
-  double pause_after_ = std::numeric_limits<double>::infinity();
+  struct {
+    EventWatch* events = nullptr;
+    StepFollower* follower = nullptr;
+    ContactLoads* contacts = nullptr;
+  } attached_;
+  double t_ = 0;
+  std::vector<double> q_, qd_;
+  MotionOrigin origin_;
   MotionMemory memory_;
-  double t_ = 0, initial_energy_ = 0;
-  std::int64_t first_step_ = 0, pace_step_ = 0;  // counts of steps: at the run's start, and when time was ...
-  double pace_time_ = 0;                         // ... this, s
-  std::vector<double> q_, qd_, given_qd_, driver_work_;
-  std::vector<double> y_row_, slope_row_, lambda_row_, loads_row_;
-  double row_residual_ = 0, earlier_motion_ = 0;
-  EventWatch* events_ = nullptr;
-  StepFollower* follower_ = nullptr;
-  ContactLoads* contacts_ = nullptr;
-  std::vector<ContactLoad> contact_loads_;  // of the row, by element
-  int stopped_by_ = -1;
-  std::vector<int> acting_;
-  std::string jolting_event_;
-  std::vector<Jolt> jolts_;
-  std::vector<int> jumping_;  // drivers whose velocity jumps at the breakpoint that was met last
-  double smooth_since_ = 0;   // the breakpoint before, s
-  std::int64_t next_row_ = 0;
-  WorkSoFar earlier_;
+  double pause_after_ = std::numeric_limits<double>::infinity();
+  // Of the run under way.
+  DynamicsRun run_;
+  std::optional<Evaluator::TimeLimit> time_limit_;  // while it lasts
+  std::optional<Motion> motion_;
+  std::unique_ptr<Integrator> integrator_;
+  StepPace pace_;
+  MotionWork work_;
+  PresentRow row_;
+  SingularRows singular_;
+  LeastMultipliers reactions_;
 };
 
 }  // namespace catena

@@ -27,13 +27,13 @@ Report Dynamics::check_ends_at(std::span<const double> y) const {
 Report Dynamics::check_curve_ends(double from, RowObserver& observer) {
   const auto left_at = [&](double t) {
     if (t == integrator_->time()) {
-      std::copy(integrator_->state().begin(), integrator_->state().end(), y_row_.begin());
+      std::copy(integrator_->state().begin(), integrator_->state().end(), row_.y.begin());
     } else {
-      integrator_->interpolate(t, y_row_);
+      integrator_->interpolate(t, row_.y);
     }
     evaluator_.set_time(t);
-    evaluator_.set_configuration(std::span<const double>(y_row_).first(q_.size()));
-    return !check_ends_at(y_row_).ok();
+    evaluator_.set_configuration(std::span<const double>(row_.y).first(q_.size()));
+    return !check_ends_at(row_.y).ok();
   };
   int places = samples;
   const std::span<const double> qd = integrator_->state().subspan(q_.size(), q_.size());
@@ -51,14 +51,14 @@ Report Dynamics::check_curve_ends(double from, RowObserver& observer) {
     (left_at(middle) ? outside : inside) = middle;
   }
   t_ = inside;
-  if (events_) {
-    if (const Report found = find_events(from, observer); !found.ok() || stopped_by_ >= 0) return found;
+  if (attached_.events) {
+    if (const Report found = find_events(from, observer); !found.ok() || run_.stopped_by >= 0) return found;
   }
-  while (next_row_ < grid_.size() && grid_[next_row_] <= inside) {
-    if (const Report given = give_row(grid_[next_row_++], observer); !given.ok()) return given;
+  while (run_.next_row < run_.grid.size() && run_.grid[run_.next_row] <= inside) {
+    if (const Report given = give_row(run_.grid[run_.next_row++], observer); !given.ok()) return given;
   }
   left_at(outside);
-  return check_ends_at(y_row_);
+  return check_ends_at(row_.y);
 }
 
 }  // namespace catena

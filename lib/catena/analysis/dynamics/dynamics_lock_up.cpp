@@ -48,9 +48,9 @@ std::optional<SingularPoint> Dynamics::dead_point_ahead() {
   if (plan_->rows == 0) return {};
   if (const double step = std::exchange(options_.step, 0); step > 0) {
     // A step of fixed size fails far from the place: shorter ones lead on, no further than it was to go.
-    std::unique_ptr<Integrator> shorter = make_integrator(*motion_, grid_.last());
+    std::unique_ptr<Integrator> shorter = make_integrator(*motion_, run_.grid.last());
     options_.step = step;
-    const double end = std::min({integrator_->time() + step, next_breakpoint(integrator_->time()), grid_.last()});
+    const double end = std::min({integrator_->time() + step, next_breakpoint(integrator_->time()), run_.grid.last()});
     if (!shorter->start(integrator_->time(), integrator_->state())) return {};
     while (shorter->time() < end && shorter->advance(end)) continue;
     if (!(shorter->time() < end)) return {};
@@ -78,7 +78,7 @@ std::optional<SingularPoint> Dynamics::dead_point_ahead() {
 // rows that vanishes there.
 double Dynamics::time_to_dead_point(std::span<const double> w, std::vector<double>& q) {
   const std::size_t n = q.size();
-  const double t = integrator_->time(), longest = grid_.last() - t;
+  const double t = integrator_->time(), longest = run_.grid.last() - t;
   const std::span<const double> y = integrator_->state(), qd = y.subspan(n, n);
   std::vector<double> slope(y.size(), 0.0);
   if (!equations_.accelerations(t, Side::after, y.first(n), qd, std::span(slope).subspan(n, n))) return 0;
@@ -118,24 +118,24 @@ double Dynamics::time_to_dead_point(std::span<const double> w, std::vector<doubl
 
 // The mechanism where it locks: places and times are known, rates and loads grow without bound.
 void Dynamics::give_row_at_lock_up(RowObserver& observer) {
-  const SingularPoint& point = singular_points_.back();
+  const SingularPoint& point = run_.singular_points.back();
   const std::size_t n = q_.size();
   const double none = std::numeric_limits<double>::quiet_NaN();
-  y_row_.resize(std::max(y_row_.size(), 2 * n));
-  slope_row_.assign(y_row_.size(), none);
-  std::fill(y_row_.begin(), y_row_.end(), none);
-  std::copy_n(point.q.begin(), n, y_row_.begin());
-  lambda_row_.assign(static_cast<std::size_t>(plan_->rows), none);
-  std::fill(contact_loads_.begin(), contact_loads_.end(), ContactLoad{none, none, none});
+  row_.y.resize(std::max(row_.y.size(), 2 * n));
+  row_.slope.assign(row_.y.size(), none);
+  std::fill(row_.y.begin(), row_.y.end(), none);
+  std::copy_n(point.q.begin(), n, row_.y.begin());
+  row_.lambda.assign(static_cast<std::size_t>(plan_->rows), none);
+  std::fill(row_.contact_loads.begin(), row_.contact_loads.end(), ContactLoad{none, none, none});
   evaluator_.set_time(point.t);
   evaluator_.set_configuration(point.q);
-  row_residual_ = equations_.position_residual(point.q);
-  evaluator_.add_turns(std::span(y_row_).first(n));
-  Snapshot row = snapshot(point.t, y_row_, needs_);
-  if (needs_.work) {
+  row_.residual = equations_.position_residual(point.q);
+  evaluator_.add_turns(std::span(row_.y).first(n));
+  Snapshot row = snapshot(point.t, row_.y, run_.needs);
+  if (run_.needs.work) {
     row.work = row.dissipated = none;
-    driver_work_.assign(model_->elements.size(), none);
-    row.driver_work = driver_work_;
+    row_.driver_work.assign(model_->elements.size(), none);
+    row.driver_work = row_.driver_work;
   }
   observer.observe(row);
 }

@@ -49,10 +49,10 @@ bool has_closed_loops(const Plan& plan) {
 // A motion is integrated forwards: rows in another order, or before its start, cannot be had.
 Report Dynamics::check_order() const {
   Report report;
-  double before = resumed_ ? grid_[0] : t_;
-  for (std::int64_t k = 0; k < grid_.size(); ++k) {
-    if (grid_[k] >= before) {
-      before = grid_[k];
+  double before = origin_.resumed ? run_.grid[0] : t_;
+  for (std::int64_t k = 0; k < run_.grid.size(); ++k) {
+    if (run_.grid[k] >= before) {
+      before = run_.grid[k];
       continue;
     }
     report.status = Status::refused;
@@ -60,11 +60,11 @@ Report Dynamics::check_order() const {
                          ? fmt::format(
                                "a row is asked for at t = {:.12g} s, but the motion starts at {:.12g} s and is not "
                                "integrated backwards",
-                               grid_[0], t_)
+                               run_.grid[0], t_)
                          : fmt::format(
                                "\"at\" must list its instants in the order of time, since a motion is not integrated "
                                "backwards: {:.12g} s comes after {:.12g} s",
-                               grid_[k], before);
+                               run_.grid[k], before);
     return report;
   }
   return report;
@@ -130,18 +130,18 @@ Report Dynamics::check_pace(double last) {
   Report report;
   if (options_.step > 0) return report;
   const std::int64_t steps = evaluator_.counters.steps + evaluator_.counters.rejected;
-  const bool used_up = steps - first_step_ >= options_.max_steps && t_ < last;
+  const bool used_up = steps - pace_.first_step >= options_.max_steps && t_ < last;
   bool hopeless = false;
-  if (steps - pace_step_ >= steps_of_a_pace) {
-    const double pace = (t_ - pace_time_) / static_cast<double>(steps - pace_step_);
+  if (steps - pace_.step >= steps_of_a_pace) {
+    const double pace = (t_ - pace_.t) / static_cast<double>(steps - pace_.step);
     hopeless = last - t_ > 10 * pace * static_cast<double>(options_.max_steps);
-    pace_step_ = steps;
-    pace_time_ = t_;
+    pace_.step = steps;
+    pace_.t = t_;
   }
   if (!used_up && !hopeless) return report;
   if (std::optional<SingularPoint> point = dead_point_ahead()) {
-    singular_points_.push_back(std::move(*point));
-    return singular_points_.back().report_lock_up(*model_);
+    run_.singular_points.push_back(std::move(*point));
+    return run_.singular_points.back().report_lock_up(*model_);
   }
   // At a hopeless pace the steps are too small; otherwise the bound was reached.
   report.status = hopeless ? Status::step_too_small : Status::not_converged;
@@ -154,7 +154,7 @@ Report Dynamics::check_pace(double last) {
       "{} steps led to t = {:.12g} s, {} than max_steps = {} are needed at this pace;{} likely cause: masses, "
       "stiffnesses or damping of very different sizes, or a tolerance near rounding; give a larger tolerance or "
       "max_steps",
-      steps - first_step_, t_, hopeless ? "many more" : "more", options_.max_steps, culprit);
+      steps - pace_.first_step, t_, hopeless ? "many more" : "more", options_.max_steps, culprit);
   return report;
 }
 

@@ -44,19 +44,19 @@ Report Dynamics::cancelled(double t) {
 Snapshot Dynamics::snapshot(double t, std::span<const double> y, const Needs& needs) const {
   const std::size_t n = q_.size();
   Snapshot s{.evaluator = evaluator_, .t = t, .q = y.first(n), .qd = y.subspan(n, n)};
-  if (needs.acceleration || needs.multipliers) s.qdd = std::span<const double>(slope_row_).subspan(n, n);
-  if (needs.multipliers) s.lambda = lambda_row_;
-  s.residual = row_residual_ * evaluator_.length_scale();
-  if (contacts_) {
-    s.contacts = contact_loads_;
-    s.contact_energy = contacts_->energy();
+  if (needs.acceleration || needs.multipliers) s.qdd = std::span<const double>(row_.slope).subspan(n, n);
+  if (needs.multipliers) s.lambda = row_.lambda;
+  s.residual = row_.residual * evaluator_.length_scale();
+  if (attached_.contacts) {
+    s.contacts = row_.contact_loads;
+    s.contact_energy = attached_.contacts->energy();
   }
-  if (account_) {
+  if (work_.account) {
     const std::span<const double> work = y.subspan(2 * n);
-    s.work = earlier_.supplied + EnergyAccount::supplied(work);
-    s.dissipated = earlier_.dissipated + EnergyAccount::dissipated(work);
-    s.driver_work = driver_work_;
-    s.initial_energy = initial_energy_;
+    s.work = work_.earlier.supplied + EnergyAccount::supplied(work);
+    s.dissipated = work_.earlier.dissipated + EnergyAccount::dissipated(work);
+    s.driver_work = row_.driver_work;
+    s.initial_energy = work_.initial_energy;
   }
   return s;
 }
@@ -64,9 +64,9 @@ Snapshot Dynamics::snapshot(double t, std::span<const double> y, const Needs& ne
 Report Dynamics::give_row(double t, RowObserver& observer) {
   const std::optional<Snapshot> state = state_at(t);
   if (!state) return stuck();
-  if (balance_ && t != integrator_->time() && equations_.smallest_pivot_ratio() < nearly_singular) {
-    balance_->observe(*state);
-    if (Report balance = balance_->check(t, equations_.applied_forces()); !balance.ok()) return balance;
+  if (work_.balance && t != integrator_->time() && equations_.smallest_pivot_ratio() < nearly_singular) {
+    work_.balance->observe(*state);
+    if (Report balance = work_.balance->check(t, equations_.applied_forces()); !balance.ok()) return balance;
   }
   return observer.observe(*state) ? Report{} : cancelled(t);
 }
@@ -75,57 +75,57 @@ Report Dynamics::give_row(double t, RowObserver& observer) {
 // cannot be had.
 std::optional<Snapshot> Dynamics::state_at(double t) {
   const std::size_t n = q_.size();
-  const std::span<double> y(y_row_);
+  const std::span<double> y(row_.y);
   if (t == integrator_->time()) {
     std::copy(integrator_->state().begin(), integrator_->state().end(), y.begin());
-    row_residual_ = integrator_->position_residual();
+    row_.residual = integrator_->position_residual();
   } else {
     integrator_->interpolate(t, y);
     if (integrator_->meets_constraints()) {
       if (!equations_.factorize(t, Side::after, y.first(n))) return {};
-      row_residual_ = equations_.project_position(y.first(n), 4);
+      row_.residual = equations_.project_position(y.first(n), 4);
       equations_.project_velocity(y.subspan(n, n), 0);
     } else {
       evaluator_.set_time(t);
-      row_residual_ = equations_.position_residual(y.first(n));
+      row_.residual = equations_.position_residual(y.first(n));
     }
   }
-  if (needs_.acceleration || needs_.multipliers) {
-    const std::span<double> slope(slope_row_);
+  if (run_.needs.acceleration || run_.needs.multipliers) {
+    const std::span<double> slope(row_.slope);
     if (!equations_.accelerations(t, Side::after, y.first(n), y.subspan(n, n), slope.subspan(n, n))) return {};
     look_for_singularity(t);
-    if (contacts_) contacts_->scatter(contact_loads_);
-    if (needs_.multipliers) find_multipliers();
+    if (attached_.contacts) attached_.contacts->scatter(row_.contact_loads);
+    if (run_.needs.multipliers) find_multipliers();
   } else {
     evaluator_.set_time(t);
     evaluator_.set_configuration(y.first(n));
   }
-  if (account_) {
+  if (work_.account) {
     // Released drivers do no work in the present run, but their earlier work is kept.
-    std::fill(driver_work_.begin(), driver_work_.end(), 0.0);
-    account_->driver_work(y.subspan(2 * n), driver_work_);
-    for (std::size_t e = 0; e < earlier_.by_driver.size(); ++e) driver_work_[e] += earlier_.by_driver[e];
+    std::fill(row_.driver_work.begin(), row_.driver_work.end(), 0.0);
+    work_.account->driver_work(y.subspan(2 * n), row_.driver_work);
+    for (std::size_t e = 0; e < work_.earlier.by_driver.size(); ++e) row_.driver_work[e] += work_.earlier.by_driver[e];
   }
   evaluator_.add_turns(y.first(n));
-  return snapshot(t, y, needs_);
+  return snapshot(t, y, run_.needs);
 }
 
 // Multipliers of the row: those of the accelerations, or the least ones where they are not unique.
 void Dynamics::find_multipliers() {
-  lambda_row_.assign(equations_.multipliers().begin(), equations_.multipliers().end());
-  if (!equations_.is_dependent() && !at_singularity_) return;
-  if (!minimum_norm_) minimum_norm_.emplace(evaluator_);
-  if (!minimum_norm_->factorize()) return;
-  if (at_singularity_) {
-    minimum_norm_->solve(singular_->loads(), lambda_row_);
+  row_.lambda.assign(equations_.multipliers().begin(), equations_.multipliers().end());
+  if (!equations_.is_dependent() && !singular_.is_here()) return;
+  MinimumNorm* least = reactions_.factorize(evaluator_);
+  if (!least) return;
+  if (singular_.is_here()) {
+    least->solve(singular_.loads(), row_.lambda);
     return;
   }
-  const std::span<const double> Q = equations_.applied_forces(), qdd = std::span(slope_row_).subspan(q_.size());
+  const std::span<const double> Q = equations_.applied_forces(), qdd = std::span(row_.slope).subspan(q_.size());
   const std::vector<double>& mass = equations_.masses().mass;
-  loads_row_.resize(mass.size());
-  for (std::size_t c = 0; c < mass.size(); ++c) loads_row_[c] = Q[c] - mass[c] * qdd[c];
-  minimum_norm_->solve(loads_row_, lambda_row_);
-  ambiguity_ = minimum_norm_->ambiguity();
+  row_.loads.resize(mass.size());
+  for (std::size_t c = 0; c < mass.size(); ++c) row_.loads[c] = Q[c] - mass[c] * qdd[c];
+  least->solve(row_.loads, row_.lambda);
+  reactions_.ambiguity = least->ambiguity();
 }
 
 // Degrees of freedom: by count where rows are independent, else by rank.
@@ -136,7 +136,7 @@ void Dynamics::describe_mobility(AnalysisReport& report) {
     report.mobility = plan_->mobility();
     return;
   }
-  const MobilityReport mobility = analyse_mobility(evaluator_, std::span<const double>(y_row_).first(q_.size()));
+  const MobilityReport mobility = analyse_mobility(evaluator_, std::span<const double>(row_.y).first(q_.size()));
   report.rank = mobility.rank;
   report.dof = mobility.dof();
   report.mobility = mobility.mobility();
@@ -148,8 +148,8 @@ Report Dynamics::stuck() {
   // Steps that end beyond the place where a law ceases to have a value fail, however short they are.
   const int lost = evaluator_.law_without_value();
   if (std::optional<SingularPoint> point = dead_point_ahead()) {
-    singular_points_.push_back(std::move(*point));
-    return singular_points_.back().report_lock_up(*model_);
+    run_.singular_points.push_back(std::move(*point));
+    return run_.singular_points.back().report_lock_up(*model_);
   }
   // An element that is undefined in kinematics is undefined here as well.
   evaluator_.set_time(integrator_->time());
@@ -189,36 +189,36 @@ Report Dynamics::show(double from, double to, RowObserver& observer, int ended_b
   if (!observer.wants_stretches() || !(to > from)) return {};
   MotionStretch stretch{from, to, [this](double t) { return state_at(t); }};
   stretch.ended_by = ended_by;
-  stretch.ends_phase = ended_by >= 0 && events_->acts(ended_by);
+  stretch.ends_phase = ended_by >= 0 && attached_.events->acts(ended_by);
   return observer.cover(stretch) ? Report{} : cancelled(to);
 }
 
 // Events within the last step, in order: rows before each, then its own.
 Report Dynamics::find_events(double from, RowObserver& observer) {
   const auto state = [&](double t) { return state_at(t); };
-  while (const std::optional<FoundEvent> found = events_->find(from, t_, state)) {
+  while (const std::optional<FoundEvent> found = attached_.events->find(from, t_, state)) {
     if (const Report shown = show(from, found->t, observer, found->event); !shown.ok()) return shown;
-    while (next_row_ < grid_.size() && grid_[next_row_] < found->t) {
-      if (const Report given = give_row(grid_[next_row_++], observer); !given.ok()) return given;
+    while (run_.next_row < run_.grid.size() && run_.grid[run_.next_row] < found->t) {
+      if (const Report given = give_row(run_.grid[run_.next_row++], observer); !given.ok()) return given;
     }
-    if (events_->is_transition(*found)) {
+    if (attached_.events->is_transition(*found)) {
       const std::optional<Snapshot> end = state_at(found->t);
       if (!end) return stuck();
-      if (balance_) {
-        balance_->observe(*end);
-        if (Report balance = balance_->check(found->t, equations_.applied_forces()); !balance.ok()) return balance;
+      if (work_.balance) {
+        work_.balance->observe(*end);
+        if (Report balance = work_.balance->check(found->t, equations_.applied_forces()); !balance.ok()) return balance;
       }
-      stopped_by_ = found->event;
+      run_.stopped_by = found->event;
       t_ = found->t;
       return {};
     }
-    if (next_row_ < grid_.size() && grid_[next_row_] == found->t) ++next_row_;
+    if (run_.next_row < run_.grid.size() && run_.grid[run_.next_row] == found->t) ++run_.next_row;
     if (const Report given = give_row(found->t, observer); !given.ok()) return given;
     from = found->t;
-    if (events_->take(*found)) acting_.push_back(found->event);
+    if (attached_.events->take(*found)) run_.acting.push_back(found->event);
     // All that happen at the same instant have their rows before one of them acts.
-    if (acting_.empty() || events_->has_simultaneous()) continue;
-    stopped_by_ = acting_.front();
+    if (run_.acting.empty() || attached_.events->has_simultaneous()) continue;
+    run_.stopped_by = run_.acting.front();
     t_ = found->t;
     return {};
   }
@@ -226,9 +226,9 @@ Report Dynamics::find_events(double from, RowObserver& observer) {
 }
 
 WorkSoFar Dynamics::work_so_far() const {
-  if (!account_) return {};
-  const Snapshot now = snapshot(t_, y_row_, {});
-  return {now.work, now.dissipated, initial_energy_, total_energy(now), driver_work_};
+  if (!work_.account) return {};
+  const Snapshot now = snapshot(t_, row_.y, {});
+  return {now.work, now.dissipated, work_.initial_energy, total_energy(now), row_.driver_work};
 }
 
 }  // namespace catena

@@ -10,58 +10,36 @@
 namespace catena {
 namespace {
 
-// A smallest pivot ratio below this one: accelerations are rounding errors, or formal.
-constexpr double near_singular = 1e-8;
 // For so many of the moments over which derivatives are taken the slope at a start may stand for those after it.
 constexpr double known_moments = 10;
 
 // Projection meets constraints to 1e-15, and what follows from them to that divided by a sine; in length scales or rad.
 constexpr double contradiction = 1e-9;
 
-std::string rows_at(double t, std::int64_t rows) {
-  return fmt::format("at t = {:.12g} s{}", t, rows > 1 ? fmt::format(" and in {} more rows", rows - 1) : "");
-}
-
 }  // namespace
 
 // Accelerations of the row at t by the limit of the motion, where the equations of motion do not have them.
 void Dynamics::look_for_singularity(double t) {
-  at_singularity_ = false;
-  if (always_dependent_ || !(equations_.smallest_pivot_ratio() < near_singular)) return;
-  if (!singular_) singular_.emplace(equations_);
   const std::size_t n = q_.size();
-  const std::span<double> y(y_row_), slope(slope_row_);
-  const auto outcome = singular_->solve(t, y.first(n), y.subspan(n, n), slope.subspan(n, n));
-  at_singularity_ = outcome == SingularInstant::Outcome::found;
-  if (outcome == SingularInstant::Outcome::always_dependent) dependent_ = true;
-  if (outcome == SingularInstant::Outcome::not_found && formal_rows_++ == 0) formal_t_ = t;
-  if (!at_singularity_) return;
-  if (singular_rows_++ == 0) singular_t_ = t;
-  unbounded_ |= singular_->unbounded();
-  if (!singular_names_.empty() || !needs_.multipliers) return;
-  if (!minimum_norm_) minimum_norm_.emplace(evaluator_);
-  if (minimum_norm_->factorize()) singular_names_ = minimum_norm_->name_ambiguous();
+  const std::span<double> y(row_.y), slope(row_.slope);
+  if (!singular_.look(t, y.first(n), y.subspan(n, n), slope.subspan(n, n))) return;
+  if (singular_.has_names() || !run_.needs.multipliers) return;
+  if (MinimumNorm* least = reactions_.factorize(evaluator_)) singular_.name(least->name_ambiguous());
 }
 
 // Whether the motion starts at such an instant; it then knows its first slope. The integrator was started, and the
 // factors are those of the start.
 bool Dynamics::know_singular_start() {
-  dependent_ = equations_.is_singular();
-  if (!(equations_.smallest_pivot_ratio() < near_singular)) return false;
   const std::size_t n = q_.size();
-  const std::span<double> y(y_row_), slope(slope_row_);
-  if (!singular_) singular_.emplace(equations_);
-  const auto outcome = singular_->solve(t_, y.first(n), y.subspan(n, n), slope.subspan(n, n));
-  if (outcome != SingularInstant::Outcome::found) return false;
-  dependent_ = false;
-  if (account_) {
-    lambda_row_.assign(static_cast<std::size_t>(plan_->rows), 0.0);
-    if (!minimum_norm_) minimum_norm_.emplace(evaluator_);
-    if (minimum_norm_->factorize()) minimum_norm_->solve(singular_->loads(), lambda_row_);
-    account_->powers(y.subspan(n, n), lambda_row_, slope.subspan(2 * n));
+  const std::span<double> y(row_.y), slope(row_.slope);
+  if (!singular_.look_at_start(t_, y.first(n), y.subspan(n, n), slope.subspan(n, n))) return false;
+  if (work_.account) {
+    row_.lambda.assign(static_cast<std::size_t>(plan_->rows), 0.0);
+    if (MinimumNorm* least = reactions_.factorize(evaluator_)) least->solve(singular_.loads(), row_.lambda);
+    work_.account->powers(y.subspan(n, n), row_.lambda, slope.subspan(2 * n));
     motion_->add_losses(slope.subspan(2 * n));
   }
-  motion_->know(t_, known_moments * singular_->moment(), slope.subspan(n));
+  motion_->know(t_, known_moments * singular_.moment(), slope.subspan(n));
   return true;
 }
 
@@ -87,25 +65,6 @@ Report Dynamics::check_redundant_rows() {
       t_, model_->element_type(element), model_->element_name(element), left * (plan_->row_is_angle[row] ? 1 : length),
       plan_->row_is_angle[row] ? "rad" : "m");
   return report;
-}
-
-void Dynamics::remark_on_singularities(std::vector<std::string>& warnings) const {
-  if (singular_rows_ > 0) {
-    std::string remark = fmt::format(
-        "{} the mechanism is in a singular position: accelerations and loads there are the limit of the motion",
-        rows_at(singular_t_, singular_rows_));
-    if (!singular_names_.empty()) {
-      remark += fmt::format("; reactions of {} {}: the least that carry the rest are given", singular_names_,
-                            unbounded_ ? "grow without bound" : "are not determined");
-    }
-    warnings.push_back(std::move(remark));
-  }
-  if (formal_rows_ > 0) {
-    warnings.push_back(
-        fmt::format("{} constraints depend on each other and do not determine the accelerations: accelerations and "
-                    "loads there solve the equations, but need not be the limit of the motion",
-                    rows_at(formal_t_, formal_rows_)));
-  }
 }
 
 }  // namespace catena

@@ -34,12 +34,12 @@ std::optional<SingularStart> Dynamics::singular_start() {
 
 // The branch that velocities of the model, or of an earlier analysis, mean, from 1; 0: none clearly.
 int Dynamics::branch_of_given_velocities(const SingularPoint& point) {
-  const bool given = !given_qd_.empty() ||
+  const bool given = !origin_.given_qd.empty() ||
                      std::any_of(model_->bodies.begin(), model_->bodies.end(),
                                  [](const auto& body) { return body.velocity_given || body.angular_velocity_given; });
   if (!given || point.tangents.size() < 2) return 0;
   std::vector<double> qd(q_.size());
-  if (!find_initial_velocities(equations_, q_, given_qd_, qd).ok()) return 0;
+  if (!find_initial_velocities(equations_, q_, origin_.given_qd, qd).ok()) return 0;
   std::vector<double> apart;
   for (const std::vector<double>& tangent : point.tangents) {
     std::vector<double> difference(qd);
@@ -74,8 +74,9 @@ std::optional<RedundantRows::GenericPlace> Dynamics::place_along(const SingularS
 // step with the one that leads,  q'' = s'' z.  Multipliers have no bound there, but what they do together has: the
 // drivers do  (M q'' - Q) . q',  which counts as the leading one's.
 bool Dynamics::know_start_from_rest() {
-  if (!start_ || start_->point.kind != SingularPoint::Kind::rest) return false;
-  const std::vector<double>& z = start_->point.tangents[static_cast<std::size_t>(start_->branch - 1)];
+  if (!origin_.singular || origin_.singular->point.kind != SingularPoint::Kind::rest) return false;
+  const std::vector<double>& z =
+      origin_.singular->point.tangents[static_cast<std::size_t>(origin_.singular->branch - 1)];
   const double later = t_ + time_to_depart(evaluator_, t_, 1, first_way / rate_of(evaluator_, z));
   if (!std::isfinite(later)) return false;
   const auto departure = std::make_shared<const Departure>(evaluator_, t_, 1);
@@ -83,13 +84,13 @@ bool Dynamics::know_start_from_rest() {
   const auto slope = [this, z, departure, later, leader, qd = z](double t, std::span<double> out) mutable {
     const Taylor<double> s = departure->rates(t, later);
     for (std::size_t k = 0; k < z.size(); ++k) out[k] = s.dd * z[k];
-    if (!account_) return;
+    if (!work_.account) return;
     for (std::size_t k = 0; k < z.size(); ++k) qd[k] = s.d * z[k];
     const std::span<const double> loads = equations_.applied_forces();
     const std::vector<double>& mass = equations_.masses().mass;
     double power = 0;
     for (std::size_t k = 0; k < mass.size(); ++k) power += (mass[k] * out[k] - loads[k]) * qd[k];
-    account_->powers_of_one(qd, leader, power, out.subspan(z.size()));
+    work_.account->powers_of_one(qd, leader, power, out.subspan(z.size()));
     motion_->add_losses(out.subspan(z.size()));
   };
   motion_->depart(later, slope);
