@@ -94,135 +94,209 @@ bool restore_constraints(StaticSystem& system, std::span<double> q) {
   return false;
 }
 
-StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::span<double> lambda,
-                               const StaticDescentOptions& options) {
-  StaticOutcome outcome;
-  const Plan& plan = system.plan();
-  const std::size_t columns = at(plan.columns);
-  std::vector<double> residual(columns), gradient(columns), change(columns), product(columns), trial(q.size()),
-      next_lambda(at(plan.rows));
-  const std::vector<double> start(q.begin(), q.end());
-  std::vector<CurvePlace> curve_places;
-  system.move_to(q);
-  std::fill(lambda.begin(), lambda.end(), 0.0);
+namespace {
+
+class Descent {
+ public:
+  Descent(StaticSystem& system, std::span<double> q, std::span<double> lambda, const StaticDescentOptions& options)
+      : system_(system),
+        q_(q),
+        lambda_(lambda),
+        options_(options),
+        start_(q.begin(), q.end()),
+        residual_(at(system.plan().columns)),
+        gradient_(residual_.size()),
+        change_(residual_.size()),
+        product_(residual_.size()),
+        trial_(q.size()),
+        next_lambda_(at(system.plan().rows)) {}
+
+  StaticOutcome run();
+
+ private:
+  enum class Trial { accepted, rejected, ended };
+  bool begin();
+  void measure();
+  void tell() const;
+  bool step();
+  Trial go(double shift);
+  void finish();
+  bool is_neutral(double shift, double slope);
+  bool search_along(double shift, double slope);
+
+  StaticSystem& system_;
+  std::span<double> q_, lambda_;
+  const StaticDescentOptions& options_;
+  StaticOutcome outcome_;
+  const std::vector<double> start_;
+  std::vector<double> residual_, gradient_, change_, product_, trial_, next_lambda_;
+  std::vector<CurvePlace> curve_places_;
+  bool balanced_ = false;  // where the step begins
+  double extent_ = 0, load_ = 0;
+  double reach_ = 1;       // the limit on steps, in those of the first
+  double last_shift_ = 0;  // of K, in the step before
+  double energy_ = 0, energy_size_ = 0;
+};
+
+// Onto the constraints, with multipliers. False: that cannot be done.
+bool Descent::begin() {
+  system_.move_to(q_);
+  std::fill(lambda_.begin(), lambda_.end(), 0.0);
   // Where constraints have no second derivatives the first step needs no multipliers.
-  const bool prepare = !system.has_linear_constraints() || system.phi_norm() > restored;
-  if (prepare && (!first_multipliers(system, lambda, true) || !restore_constraints(system, q))) {
-    outcome.end = StaticEnd::singular;
-    return outcome;
-  }
-  const double extent = system.extent(), load = system.force_norm(system.gradient());
-  const auto measure = [&] {
-    system.residual(lambda, residual);
-    outcome.residual = system.force_norm(residual);
-  };
+  const bool prepare = !system_.has_linear_constraints() || system_.phi_norm() > restored;
+  if (prepare && (!first_multipliers(system_, lambda_, true) || !restore_constraints(system_, q_))) return false;
+  extent_ = system_.extent();
+  load_ = system_.force_norm(system_.gradient());
   measure();
-  double reach = 1, last_shift = 0;
-  double energy = system.energy(), energy_size = std::abs(energy);
-  const auto tell = [&] {
-    if (const IterationTrace* trace = system.evaluator().trace)
-      (*trace)("downhill", outcome.iterations, outcome.residual, outcome.step);
-  };
-  for (outcome.iterations = 1; outcome.iterations <= options.max_iterations; ++outcome.iterations) {
-    ++system.evaluator().counters.iterations;
-    if (system.is_cancelled()) {
-      outcome.end = StaticEnd::cancelled;
-      return outcome;
+  energy_ = system_.energy();
+  energy_size_ = std::abs(energy_);
+  return true;
+}
+
+void Descent::measure() {
+  system_.residual(lambda_, residual_);
+  outcome_.residual = system_.force_norm(residual_);
+}
+
+void Descent::tell() const {
+  if (const IterationTrace* trace = system_.evaluator().trace)
+    (*trace)("downhill", outcome_.iterations, outcome_.residual, outcome_.step);
+}
+
+StaticOutcome Descent::run() {
+  if (!begin()) {
+    outcome_.end = StaticEnd::singular;
+    return outcome_;
+  }
+  for (outcome_.iterations = 1; outcome_.iterations <= options_.max_iterations; ++outcome_.iterations) {
+    ++system_.evaluator().counters.iterations;
+    if (system_.is_cancelled()) {
+      outcome_.end = StaticEnd::cancelled;
+      return outcome_;
     }
-    const bool balanced = outcome.residual <= options.tolerance * system.force_scale(lambda);
-    // The exact K, stiffened until its inertia is that of a minimum and a step can be made.
-    bool accepted = false;
-    double stiffest = 0, loads = 0;
-    for (double shift = 0; !accepted && std::isfinite(shift) && shift <= largest_shift * std::max(stiffest, loads);) {
-      system.fill(lambda, Curvature::exact, shift);
-      const bool minimum = system.factorize().ok() && system.matrix().negative_modes() == 0;
-      outcome.exact = minimum && shift == 0;
-      const double used = shift;
-      if (shift == 0) {
-        stiffest = system.matrix().largest_stiffness();
-        loads = system.force_size() / extent;
-        shift = std::max({first_of_rounding * stiffest, first_of_force * loads, last_shift / 16});
-      } else {
-        shift *= minimum ? shortening : stiffening;
-      }
-      if (!minimum) continue;
-      const StaticStep step = system.newton_step(1e-12);
-      outcome.step = system.change_norm(step.change);
-      if (!std::isfinite(outcome.step)) continue;
-      std::copy(step.change.begin(), step.change.end(), change.begin());
-      std::copy(step.lambda.begin(), step.lambda.end(), next_lambda.begin());
-      if (outcome.step <= polishing_change) {
-        system.advance(q, change, 1, 1);
-        std::copy(next_lambda.begin(), next_lambda.end(), lambda.begin());
-        system.move_to(q);
-        polish(system, q, lambda, outcome);
-        tell();
-        const double force = std::max(system.force_scale(lambda), load);
-        outcome.end = outcome.exact                                 ? StaticEnd::minimum
-                      : outcome.residual <= stationary_part * force ? StaticEnd::stationary
-                                                                    : StaticEnd::slow;
-        return outcome;
-      }
-      std::copy(system.gradient().begin(), system.gradient().end(), gradient.begin());
-      const double slope = dot(gradient, change);
-      // On the constraints the slope is minus the curvature along the step. Where both are rounding the motion is
-      // neutral and the step has no meaning: if forces balance the point is kept, else the shift limits the motion.
-      bool neutral = used == 0 && -slope <= neutral_part * system.matrix().absolute_quadratic(change);
-      if (used == 0 && balanced && !neutral) {
-        // Terms that cancel within K, as those of a counterweight, do not appear there, and a balanced slope is itself
-        // rounding.
-        system.matrix().multiply_stiffness(change, product);
-        neutral = dot(change, product) <= StiffnessFloor(system, lambda, 0)(change);
-      }
-      if (neutral) {
-        if (!balanced) continue;
-        outcome.end = StaticEnd::stationary;
-        return outcome;
-      }
-      const Travel travel = travel_of(plan, change);
-      double factor = std::min({1.0, reach * largest_turn / travel.turn, reach * extent / travel.length});
-      const bool clipped = factor < 1;
-      // The energy is a sum of large terms: a smaller change is rounding.
-      const double noise = 1e-14 * (energy_size + system.force_size() * extent);
-      system.evaluator().curve_places(curve_places);
-      for (; factor > smallest_factor; factor /= 2) {
-        std::copy(q.begin(), q.end(), trial.begin());
-        system.advance(trial, change, factor, std::numeric_limits<double>::infinity());
-        if (!restore_constraints(system, trial)) {
-          system.evaluator().go_to_curve_places(curve_places);
-          continue;
-        }
-        const double then = system.energy();
-        if (then <= energy + sufficient_decrease * factor * std::min(slope, 0.0) + noise) {
-          energy = then;
-          energy_size = std::max(energy_size, std::abs(then));
-          accepted = true;
-          last_shift = used;
-          // Steps that reach the limit double it: an energy without a minimum is then recognised after few steps.
-          if (clipped) reach *= 2;
-          break;
-        }
-        reach = std::max(reach / 2, 1.0);
-        // The trial that was rejected may have found contacts far from here.
-        system.evaluator().go_to_curve_places(curve_places);
-      }
-      system.move_to(accepted ? std::span<const double>(trial) : std::span<const double>(q));
-    }
-    if (!accepted) {
-      outcome.end = StaticEnd::slow;
-      return outcome;
-    }
-    std::copy(trial.begin(), trial.end(), q.begin());
-    std::copy(next_lambda.begin(), next_lambda.end(), lambda.begin());
+    if (!step()) return outcome_;
+    std::copy(trial_.begin(), trial_.end(), q_.begin());
+    std::copy(next_lambda_.begin(), next_lambda_.end(), lambda_.begin());
     measure();
     tell();
-    if (is_lost(q, start, extent)) {
-      outcome.end = StaticEnd::unbounded;
-      return outcome;
+    if (is_lost(q_, start_, extent_)) {
+      outcome_.end = StaticEnd::unbounded;
+      return outcome_;
     }
   }
-  outcome.end = StaticEnd::slow;
-  return outcome;
+  outcome_.end = StaticEnd::slow;
+  return outcome_;
+}
+
+// One step downhill, to trial_: with the exact K, stiffened until its inertia is that of a minimum and a step can be
+// made. False: the search ends.
+bool Descent::step() {
+  balanced_ = outcome_.residual <= options_.tolerance * system_.force_scale(lambda_);
+  double stiffest = 0, loads = 0;
+  for (double shift = 0; std::isfinite(shift) && shift <= largest_shift * std::max(stiffest, loads);) {
+    system_.fill(lambda_, Curvature::exact, shift);
+    const bool minimum = system_.factorize().ok() && system_.matrix().negative_modes() == 0;
+    outcome_.exact = minimum && shift == 0;
+    const double used = shift;
+    if (shift == 0) {
+      stiffest = system_.matrix().largest_stiffness();
+      loads = system_.force_size() / extent_;
+      shift = std::max({first_of_rounding * stiffest, first_of_force * loads, last_shift_ / 16});
+    } else {
+      shift *= minimum ? shortening : stiffening;
+    }
+    if (!minimum) continue;
+    const Trial trial = go(used);
+    if (trial != Trial::rejected) return trial == Trial::accepted;
+  }
+  outcome_.end = StaticEnd::slow;
+  return false;
+}
+
+// A step with the factors of K and this shift.
+Descent::Trial Descent::go(double shift) {
+  const StaticStep step = system_.newton_step(1e-12);
+  outcome_.step = system_.change_norm(step.change);
+  if (!std::isfinite(outcome_.step)) return Trial::rejected;
+  std::copy(step.change.begin(), step.change.end(), change_.begin());
+  std::copy(step.lambda.begin(), step.lambda.end(), next_lambda_.begin());
+  if (outcome_.step <= polishing_change) {
+    finish();
+    return Trial::ended;
+  }
+  std::copy(system_.gradient().begin(), system_.gradient().end(), gradient_.begin());
+  const double slope = dot(gradient_, change_);
+  if (is_neutral(shift, slope)) {
+    if (!balanced_) return Trial::rejected;
+    outcome_.end = StaticEnd::stationary;
+    return Trial::ended;
+  }
+  const bool accepted = search_along(shift, slope);
+  system_.move_to(accepted ? std::span<const double>(trial_) : std::span<const double>(q_));
+  return accepted ? Trial::accepted : Trial::rejected;
+}
+
+// The last step, a short one.
+void Descent::finish() {
+  system_.advance(q_, change_, 1, 1);
+  std::copy(next_lambda_.begin(), next_lambda_.end(), lambda_.begin());
+  system_.move_to(q_);
+  polish(system_, q_, lambda_, outcome_);
+  tell();
+  const double force = std::max(system_.force_scale(lambda_), load_);
+  outcome_.end = outcome_.exact                                 ? StaticEnd::minimum
+                 : outcome_.residual <= stationary_part * force ? StaticEnd::stationary
+                                                                : StaticEnd::slow;
+}
+
+// On the constraints the slope is minus the curvature along the step. Where both are rounding the motion is neutral and
+// the step has no meaning: if forces balance the point is kept, else the shift limits the motion.
+bool Descent::is_neutral(double shift, double slope) {
+  if (shift != 0) return false;
+  if (-slope <= neutral_part * system_.matrix().absolute_quadratic(change_)) return true;
+  if (!balanced_) return false;
+  // Terms that cancel within K, as those of a counterweight, do not appear there, and a balanced slope is itself
+  // rounding.
+  system_.matrix().multiply_stiffness(change_, product_);
+  return dot(change_, product_) <= StiffnessFloor(system_, lambda_, 0)(change_);
+}
+
+// Halves the step until the energy decreases; trial_ is where it ends.
+bool Descent::search_along(double shift, double slope) {
+  const Travel travel = travel_of(system_.plan(), change_);
+  double factor = std::min({1.0, reach_ * largest_turn / travel.turn, reach_ * extent_ / travel.length});
+  const bool clipped = factor < 1;
+  // The energy is a sum of large terms: a smaller change is rounding.
+  const double noise = 1e-14 * (energy_size_ + system_.force_size() * extent_);
+  system_.evaluator().curve_places(curve_places_);
+  for (; factor > smallest_factor; factor /= 2) {
+    std::copy(q_.begin(), q_.end(), trial_.begin());
+    system_.advance(trial_, change_, factor, std::numeric_limits<double>::infinity());
+    if (!restore_constraints(system_, trial_)) {
+      system_.evaluator().go_to_curve_places(curve_places_);
+      continue;
+    }
+    const double then = system_.energy();
+    if (then <= energy_ + sufficient_decrease * factor * std::min(slope, 0.0) + noise) {
+      energy_ = then;
+      energy_size_ = std::max(energy_size_, std::abs(then));
+      last_shift_ = shift;
+      // Steps that reach the limit double it: an energy without a minimum is then recognised after few steps.
+      if (clipped) reach_ *= 2;
+      return true;
+    }
+    reach_ = std::max(reach_ / 2, 1.0);
+    // The trial that was rejected may have found contacts far from here.
+    system_.evaluator().go_to_curve_places(curve_places_);
+  }
+  return false;
+}
+
+}  // namespace
+
+StaticOutcome solve_by_descent(StaticSystem& system, std::span<double> q, std::span<double> lambda,
+                               const StaticDescentOptions& options) {
+  return Descent(system, q, lambda, options).run();
 }
 
 }  // namespace catena

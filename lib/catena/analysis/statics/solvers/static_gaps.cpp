@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "catena/analysis/statics/solvers/static_active_set.hpp"
 #include "catena/base/at.hpp"
@@ -100,102 +101,154 @@ bool factorize(StaticSystem& system, std::span<const double> lambda, bool may_be
   return false;
 }
 
-// One search.
-StaticOutcome follow_smoothing(StaticSystem& system, std::span<double> q, std::span<double> lambda, ActiveSet& set,
-                               double first_smoothing, const StaticGapOptions& options) {
-  StaticOutcome outcome;
-  const Plan& plan = system.plan();
-  const std::vector<double> start(q.begin(), q.end());
-  std::vector<double> force(at(plan.columns)), gap(at(plan.rows)), compliance(at(plan.rows), 0.0), bent(at(plan.rows));
-  // Multipliers of the equations from the mechanism without its gaps, forces of gaps from where they are.
-  set.closed.assign(plan.gap_rows.size(), 0);
-  system.close_gaps(set.closed);
-  system.move_to(q);
-  std::fill(lambda.begin(), lambda.end(), 0.0);
-  if (!(system.has_springs() ? first_tensions(system, lambda) : first_multipliers(system, lambda))) {
-    outcome.end = StaticEnd::singular;
-    return outcome;
-  }
-  system.use_gaps();
-  system.move_to(q);
-  const double size = size_of(system);
-  const SmoothedGaps gaps(system, {size, typical_force(system)});
-  double t = first_smoothing;
-  for (int r : plan.gap_rows) lambda[at(r)] = gaps.fitting(r, t);
+/// One search: the smoothed equations for t that decreases.
+class SmoothingSearch {
+ public:
+  SmoothingSearch(StaticSystem& system, std::span<double> q, std::span<double> lambda, ActiveSet& set,
+                  const StaticGapOptions& options)
+      : system_(system),
+        q_(q),
+        lambda_(lambda),
+        set_(set),
+        options_(options),
+        force_(at(system.plan().columns)),
+        gap_(at(system.plan().rows)),
+        compliance_(at(system.plan().rows), 0.0) {}
+
+  StaticOutcome run(double first_smoothing);
+
+ private:
+  enum class Point { sought, solved, too_far };
+  bool begin(double first_smoothing);
+  bool linearise();
+  double step();
+  Point judge(double factor) const;
+  bool next_smoothing(Point point);
+
+  StaticSystem& system_;
+  std::span<double> q_, lambda_;
+  ActiveSet& set_;
+  const StaticGapOptions& options_;
+  StaticOutcome outcome_;
+  std::vector<double> force_, gap_, compliance_, bent_;
+  std::optional<SmoothedGaps> gaps_;
+  double size_ = 1;  // of the mechanism, m
+  double t_ = 0;
   // The last point that was solved, and the factor of t from there.
-  std::vector<double> q_before(q.begin(), q.end()), lambda_before(lambda.begin(), lambda.end());
-  double t_before = t, cooling = first_cooling;
-  bool near = false;
-  int steps = 0;
-  for (outcome.iterations = 1; outcome.iterations <= options.max_iterations; ++outcome.iterations) {
-    ++system.evaluator().counters.iterations;
-    if (system.is_cancelled()) {
-      outcome.end = StaticEnd::cancelled;
-      return outcome;
-    }
-    for (std::size_t r = 0; r < gap.size(); ++r) gap[r] = -system.phi()[r];
-    gaps.linearise(lambda, t, compliance, gap);
-    system.matrix().set_compliance(compliance);
-    // A force below the one that fits its gap, or a pull, is temporary and must not enter K.
-    bent.assign(lambda.begin(), lambda.end());
-    for (int r : plan.gap_rows) bent[at(r)] = std::min(bent[at(r)], gaps.fitting(r, t));
-    if (!factorize(system, bent, near, outcome.exact)) {
-      outcome.end = StaticEnd::singular;
-      return outcome;
-    }
-    for (std::size_t c = 0; c < force.size(); ++c) force[c] = -system.gradient()[c];
-    const StaticStep step = system.solve(force, gap, near ? 1e-13 : 1e-9);
-    const double change = system.change_norm(step.change);
-    // Where almost nothing resists only the direction of a step is useful.
-    const double factor =
-        std::isfinite(change) ? std::min(1.0, largest_stride * size / (system.length() * change)) : 0.0;
-    if (factor > 0) {
-      system.foresee(step.change, factor, gap_turn);
-      system.advance(q, step.change, factor, gap_turn);
-      for (std::size_t r = 0; r < lambda.size(); ++r) lambda[r] += factor * (step.lambda[r] - lambda[r]);
-      system.move_to(q);
-    }
-    outcome.step = change;
-    if (const IterationTrace* trace = system.evaluator().trace)
-      (*trace)("gaps", outcome.iterations, gaps.left_over(lambda, t), change);
-    near = change <= followed_change;
-    ++steps;
-    if (farthest(q, start) > lost_sizes * size) {
-      outcome.end = StaticEnd::unbounded;
-      return outcome;
-    }
-    const bool first = t_before == t;
-    if (change <= arrived_change && gaps.left_over(lambda, t) <= arrived_part * t) {
-      if (t <= last_smoothing) {
-        const int smoothed = outcome.iterations;
-        system.forget_lengths();
-        outcome = finish_with_gaps(system, q, lambda, set, options);
-        outcome.iterations += smoothed;
-        return outcome;
-      }
-      if (!first && steps <= quick_steps) cooling *= cooling;
-      q_before.assign(q.begin(), q.end());
-      lambda_before.assign(lambda.begin(), lambda.end());
-      t_before = t;
-    } else if (factor > 0 && steps < (first ? options.first_steps : most_steps)) {
-      continue;
-    } else {
-      // The step was too long.
-      cooling = std::sqrt(cooling);
-      if (first || cooling > least_cooling) break;
-      std::copy(q_before.begin(), q_before.end(), q.begin());
-      std::copy(lambda_before.begin(), lambda_before.end(), lambda.begin());
-      system.move_to(q);
-      system.forget_lengths();
-    }
-    t = std::max(t_before * cooling, 0.5 * last_smoothing);
-    steps = 0;
+  std::vector<double> q_before_, lambda_before_;
+  double t_before_ = 0, cooling_ = first_cooling;
+  bool near_ = false;
+  int steps_ = 0;  // for the present t
+};
+
+// Multipliers of the equations from the mechanism without its gaps, forces of gaps from where they are.
+bool SmoothingSearch::begin(double first_smoothing) {
+  const Plan& plan = system_.plan();
+  set_.closed.assign(plan.gap_rows.size(), 0);
+  system_.close_gaps(set_.closed);
+  system_.move_to(q_);
+  std::fill(lambda_.begin(), lambda_.end(), 0.0);
+  if (!(system_.has_springs() ? first_tensions(system_, lambda_) : first_multipliers(system_, lambda_))) return false;
+  system_.use_gaps();
+  system_.move_to(q_);
+  size_ = size_of(system_);
+  gaps_.emplace(system_, GapUnits{size_, typical_force(system_)});
+  t_ = t_before_ = first_smoothing;
+  for (int r : plan.gap_rows) lambda_[at(r)] = gaps_->fitting(r, t_);
+  q_before_.assign(q_.begin(), q_.end());
+  lambda_before_.assign(lambda_.begin(), lambda_.end());
+  return true;
+}
+
+// The matrix and right-hand sides of a step. False: it cannot be factored.
+bool SmoothingSearch::linearise() {
+  for (std::size_t r = 0; r < gap_.size(); ++r) gap_[r] = -system_.phi()[r];
+  gaps_->linearise(lambda_, t_, compliance_, gap_);
+  system_.matrix().set_compliance(compliance_);
+  // A force below the one that fits its gap, or a pull, is temporary and must not enter K.
+  bent_.assign(lambda_.begin(), lambda_.end());
+  for (int r : system_.plan().gap_rows) bent_[at(r)] = std::min(bent_[at(r)], gaps_->fitting(r, t_));
+  if (!factorize(system_, bent_, near_, outcome_.exact)) return false;
+  for (std::size_t c = 0; c < force_.size(); ++c) force_[c] = -system_.gradient()[c];
+  return true;
+}
+
+// Moves by a step; the part of it that was made.
+double SmoothingSearch::step() {
+  const StaticStep step = system_.solve(force_, gap_, near_ ? 1e-13 : 1e-9);
+  const double change = system_.change_norm(step.change);
+  // Where almost nothing resists only the direction of a step is useful.
+  const double factor =
+      std::isfinite(change) ? std::min(1.0, largest_stride * size_ / (system_.length() * change)) : 0.0;
+  if (factor > 0) {
+    system_.foresee(step.change, factor, gap_turn);
+    system_.advance(q_, step.change, factor, gap_turn);
+    for (std::size_t r = 0; r < lambda_.size(); ++r) lambda_[r] += factor * (step.lambda[r] - lambda_[r]);
+    system_.move_to(q_);
   }
-  outcome.end = StaticEnd::slow;
-  std::vector<double> residual(at(plan.columns));
-  system.residual(lambda, residual);
-  outcome.residual = system.force_norm(residual);
-  return outcome;
+  outcome_.step = change;
+  if (const IterationTrace* trace = system_.evaluator().trace)
+    (*trace)("gaps", outcome_.iterations, gaps_->left_over(lambda_, t_), change);
+  near_ = change <= followed_change;
+  ++steps_;
+  return factor;
+}
+
+SmoothingSearch::Point SmoothingSearch::judge(double factor) const {
+  if (outcome_.step <= arrived_change && gaps_->left_over(lambda_, t_) <= arrived_part * t_) return Point::solved;
+  const bool first = t_before_ == t_;
+  return factor > 0 && steps_ < (first ? options_.first_steps : most_steps) ? Point::sought : Point::too_far;
+}
+
+// The next t, from the present point or from the last one that was solved. False: shorter steps of t do not help.
+bool SmoothingSearch::next_smoothing(Point point) {
+  const bool first = t_before_ == t_;
+  if (point == Point::solved) {
+    if (!first && steps_ <= quick_steps) cooling_ *= cooling_;
+    q_before_.assign(q_.begin(), q_.end());
+    lambda_before_.assign(lambda_.begin(), lambda_.end());
+    t_before_ = t_;
+  } else {
+    cooling_ = std::sqrt(cooling_);
+    if (first || cooling_ > least_cooling) return false;
+    std::copy(q_before_.begin(), q_before_.end(), q_.begin());
+    std::copy(lambda_before_.begin(), lambda_before_.end(), lambda_.begin());
+    system_.move_to(q_);
+    system_.forget_lengths();
+  }
+  t_ = std::max(t_before_ * cooling_, 0.5 * last_smoothing);
+  steps_ = 0;
+  return true;
+}
+
+StaticOutcome SmoothingSearch::run(double first_smoothing) {
+  const auto ended = [&](StaticEnd end) {
+    outcome_.end = end;
+    return outcome_;
+  };
+  const std::vector<double> start(q_.begin(), q_.end());
+  if (!begin(first_smoothing)) return ended(StaticEnd::singular);
+  for (outcome_.iterations = 1; outcome_.iterations <= options_.max_iterations; ++outcome_.iterations) {
+    ++system_.evaluator().counters.iterations;
+    if (system_.is_cancelled()) return ended(StaticEnd::cancelled);
+    if (!linearise()) return ended(StaticEnd::singular);
+    const double factor = step();
+    if (farthest(q_, start) > lost_sizes * size_) return ended(StaticEnd::unbounded);
+    const Point point = judge(factor);
+    if (point == Point::sought) continue;
+    if (point == Point::solved && t_ <= last_smoothing) {
+      const int smoothed = outcome_.iterations;
+      system_.forget_lengths();
+      outcome_ = finish_with_gaps(system_, q_, lambda_, set_, options_);
+      outcome_.iterations += smoothed;
+      return outcome_;
+    }
+    if (!next_smoothing(point)) break;
+  }
+  std::vector<double> residual(force_.size());
+  system_.residual(lambda_, residual);
+  outcome_.residual = system_.force_norm(residual);
+  return ended(StaticEnd::slow);
 }
 
 }  // namespace
@@ -207,7 +260,7 @@ StaticOutcome solve_with_gaps(StaticSystem& system, std::span<double> q, std::sp
   int iterations = 0;
   for (const double t : first_smoothings) {
     std::copy(start.begin(), start.end(), q.begin());
-    outcome = follow_smoothing(system, q, lambda, set, t, options);
+    outcome = SmoothingSearch(system, q, lambda, set, options).run(t);
     system.forget_lengths();
     iterations += outcome.iterations;
     if (outcome.converged() || outcome.end == StaticEnd::unbounded || outcome.end == StaticEnd::cancelled) break;

@@ -106,119 +106,177 @@ void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda,
   }
 }
 
-StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::span<double> lambda,
-                              const StaticNewtonOptions& options) {
-  struct PresentLengths {
-    StaticSystem& system;
-    ~PresentLengths() { system.forget_lengths(); }
-  };
-  const PresentLengths at_the_end{system};
-  StaticOutcome outcome;
-  const Plan& plan = system.plan();
-  std::vector<double> residual(at(plan.columns)), q_before(q.size()), lambda_before(lambda.size());
-  std::vector<CurvePlace> places_before;
-  system.move_to(q);
-  const bool linear = system.has_linear_constraints();
-  if (!options.warm) {
-    std::fill(lambda.begin(), lambda.end(), 0.0);
+namespace {
+
+class NewtonSearch {
+ public:
+  NewtonSearch(StaticSystem& system, std::span<double> q, std::span<double> lambda, const StaticNewtonOptions& options)
+      : system_(system), q_(q), lambda_(lambda), options_(options), residual_(at(system.plan().columns)) {}
+  ~NewtonSearch() { system_.forget_lengths(); }
+  NewtonSearch(const NewtonSearch&) = delete;
+  NewtonSearch& operator=(const NewtonSearch&) = delete;
+
+  StaticOutcome run();
+
+ private:
+  bool begin();
+  void measure();
+  bool is_balanced(double rounding) const;
+  bool factorize();
+  bool step();
+  double move(const StaticStep& step);
+  bool returns_from_rounding(double change, double residual_before);
+  bool is_solved(double change);
+
+  StaticSystem& system_;
+  std::span<double> q_, lambda_;
+  const StaticNewtonOptions& options_;
+  StaticOutcome outcome_;
+  std::vector<double> residual_, q_before_, lambda_before_;
+  std::vector<CurvePlace> places_before_;
+  double force_ = 0;
+  bool linear_ = false, near_ = false, balanced_ = false;
+  bool minimum_ = false;  // by the inertia of the last exact K
+};
+
+bool NewtonSearch::begin() {
+  system_.move_to(q_);
+  linear_ = system_.has_linear_constraints();
+  if (!options_.warm) {
+    std::fill(lambda_.begin(), lambda_.end(), 0.0);
     // Without second derivatives of constraints the first step gives the multipliers as well.
     const bool found =
-        system.has_springs() ? first_tensions(system, lambda) : linear || first_multipliers(system, lambda);
-    if (!found) {
-      outcome.end = StaticEnd::singular;
-      return outcome;
-    }
+        system_.has_springs() ? first_tensions(system_, lambda_) : linear_ || first_multipliers(system_, lambda_);
+    if (!found) return false;
   }
-  bool near = options.warm || linear;
-  outcome.step = largest_change;
-  double force = 0;
-  const auto measure = [&] {
-    system.residual(lambda, residual);
-    outcome.residual = system.force_norm(residual);
-    force = system.force_scale(lambda);
-  };
-  const auto is_balanced = [&](double rounding) {
-    return outcome.residual <= options.tolerance * force + rounding &&
-           system.phi_norm() <= std::max(options.tolerance, 10 * system.rounding_change());
-  };
+  near_ = options_.warm || linear_;
+  outcome_.step = largest_change;
   measure();
-  bool balanced = is_balanced(0);
-  for (outcome.iterations = 1; outcome.iterations <= options.max_iterations; ++outcome.iterations) {
-    ++system.evaluator().counters.iterations;
-    if (system.is_cancelled()) {
-      outcome.end = StaticEnd::cancelled;
-      return outcome;
-    }
-    bool minimum = false, factored = false;
-    outcome.exact = false;
-    if (near) {
-      system.fill(lambda, Curvature::exact, 0);
-      factored = system.factorize().ok();
-      minimum = factored && system.matrix().negative_modes() == 0;
-      outcome.exact = factored && (minimum || options.stationary);
-    }
-    if (!outcome.exact) {
-      system.fill(lambda, Curvature::convex, 0);
-      factored = system.factorize().ok();
-      for (double shift = 1e-9; !factored && shift < 1; shift *= 1e3) {
-        system.fill(lambda, Curvature::convex, shift * system.matrix().largest_stiffness());
-        factored = system.factorize().ok();
-      }
-    }
-    if (!factored) {
-      outcome.end = balanced ? StaticEnd::stationary : StaticEnd::singular;
-      return outcome;
-    }
-    const StaticStep step = system.newton_step(near ? step_tolerance : first_tolerance);
-    const double change = system.change_norm(step.change);
-    if (!(change < largest_change)) {
-      outcome.end = balanced ? StaticEnd::stationary : StaticEnd::diverged;
-      return outcome;
-    }
-    const double residual_before = outcome.residual;
-    if (balanced) {
-      std::copy(q.begin(), q.end(), q_before.begin());
-      std::copy(lambda.begin(), lambda.end(), lambda_before.begin());
-      system.evaluator().curve_places(places_before);
-    }
-    system.foresee(step.change, 1, newton_turn);
-    system.advance(q, step.change, 1, newton_turn);
-    std::copy(step.lambda.begin(), step.lambda.end(), lambda.begin());
-    system.move_to(q);
-    measure();
-    // Along motions that nothing resists a step consists of rounding.
-    if (balanced && change > polished_change && !(outcome.residual <= no_gain * residual_before)) {
-      std::copy(q_before.begin(), q_before.end(), q.begin());
-      std::copy(lambda_before.begin(), lambda_before.end(), lambda.begin());
-      system.evaluator().go_to_curve_places(places_before);
-      system.move_to(q);
-      outcome.residual = residual_before;
-      outcome.end = StaticEnd::stationary;
-      return outcome;
-    }
-    outcome.step = change;
-    if (const IterationTrace* trace = system.evaluator().trace)
-      (*trace)("newton", outcome.iterations, outcome.residual, change);
-    near = change <= exact_change;
-    if (!(force <= std::max(largest_multiplier * system.load_size(), largest_of_sum * system.total_load()))) {
-      outcome.end = StaticEnd::diverged;
-      return outcome;
-    }
-    // A residual that looks like rounding of the stiffest spring may be the whole force of a soft one: the step shows
-    // it.
-    const auto is_small = [&] { return is_balanced(outcome.step <= last_change ? system.rounding_force() : 0); };
-    balanced = is_balanced(0);
-    // One step ends a linear problem, whatever its length.
-    if (change > polished_change && !(linear && outcome.exact && is_small())) continue;
-    polish(system, q, lambda, outcome);
-    force = system.force_scale(lambda);
-    if (is_small() || change <= last_change) {
-      outcome.end = outcome.exact && minimum ? StaticEnd::minimum : StaticEnd::stationary;
-      return outcome;
-    }
+  balanced_ = is_balanced(0);
+  return true;
+}
+
+void NewtonSearch::measure() {
+  system_.residual(lambda_, residual_);
+  outcome_.residual = system_.force_norm(residual_);
+  force_ = system_.force_scale(lambda_);
+}
+
+bool NewtonSearch::is_balanced(double rounding) const {
+  return outcome_.residual <= options_.tolerance * force_ + rounding &&
+         system_.phi_norm() <= std::max(options_.tolerance, 10 * system_.rounding_change());
+}
+
+// The exact K where the search is near and that is a minimum, or any place of rest is wanted; else the convex one.
+bool NewtonSearch::factorize() {
+  minimum_ = outcome_.exact = false;
+  if (near_) {
+    system_.fill(lambda_, Curvature::exact, 0);
+    const bool factored = system_.factorize().ok();
+    minimum_ = factored && system_.matrix().negative_modes() == 0;
+    outcome_.exact = factored && (minimum_ || options_.stationary);
   }
-  outcome.end = StaticEnd::slow;
-  return outcome;
+  if (outcome_.exact) return true;
+  system_.fill(lambda_, Curvature::convex, 0);
+  bool factored = system_.factorize().ok();
+  for (double shift = 1e-9; !factored && shift < 1; shift *= 1e3) {
+    system_.fill(lambda_, Curvature::convex, shift * system_.matrix().largest_stiffness());
+    factored = system_.factorize().ok();
+  }
+  return factored;
+}
+
+// Moves by a step; the residual from before.
+double NewtonSearch::move(const StaticStep& step) {
+  const double residual_before = outcome_.residual;
+  if (balanced_) {
+    q_before_.assign(q_.begin(), q_.end());
+    lambda_before_.assign(lambda_.begin(), lambda_.end());
+    system_.evaluator().curve_places(places_before_);
+  }
+  system_.foresee(step.change, 1, newton_turn);
+  system_.advance(q_, step.change, 1, newton_turn);
+  std::copy(step.lambda.begin(), step.lambda.end(), lambda_.begin());
+  system_.move_to(q_);
+  measure();
+  return residual_before;
+}
+
+// Along motions that nothing resists a step from a balanced place consists of rounding: it is taken back.
+bool NewtonSearch::returns_from_rounding(double change, double residual_before) {
+  if (!balanced_ || !(change > polished_change) || outcome_.residual <= no_gain * residual_before) return false;
+  std::copy(q_before_.begin(), q_before_.end(), q_.begin());
+  std::copy(lambda_before_.begin(), lambda_before_.end(), lambda_.begin());
+  system_.evaluator().go_to_curve_places(places_before_);
+  system_.move_to(q_);
+  outcome_.residual = residual_before;
+  return true;
+}
+
+// Whether the place is a solution, which is then polished.
+bool NewtonSearch::is_solved(double change) {
+  // A residual that looks like rounding of the stiffest spring may be the whole force of a soft one: the step shows it.
+  const auto is_small = [&] { return is_balanced(outcome_.step <= last_change ? system_.rounding_force() : 0); };
+  balanced_ = is_balanced(0);
+  // One step ends a linear problem, whatever its length.
+  if (change > polished_change && !(linear_ && outcome_.exact && is_small())) return false;
+  polish(system_, q_, lambda_, outcome_);
+  force_ = system_.force_scale(lambda_);
+  return is_small() || change <= last_change;
+}
+
+// False: the search ends.
+bool NewtonSearch::step() {
+  if (!factorize()) {
+    outcome_.end = balanced_ ? StaticEnd::stationary : StaticEnd::singular;
+    return false;
+  }
+  const StaticStep step = system_.newton_step(near_ ? step_tolerance : first_tolerance);
+  const double change = system_.change_norm(step.change);
+  if (!(change < largest_change)) {
+    outcome_.end = balanced_ ? StaticEnd::stationary : StaticEnd::diverged;
+    return false;
+  }
+  const double residual_before = move(step);
+  if (returns_from_rounding(change, residual_before)) {
+    outcome_.end = StaticEnd::stationary;
+    return false;
+  }
+  outcome_.step = change;
+  if (const IterationTrace* trace = system_.evaluator().trace)
+    (*trace)("newton", outcome_.iterations, outcome_.residual, change);
+  near_ = change <= exact_change;
+  if (!(force_ <= std::max(largest_multiplier * system_.load_size(), largest_of_sum * system_.total_load()))) {
+    outcome_.end = StaticEnd::diverged;
+    return false;
+  }
+  if (!is_solved(change)) return true;
+  outcome_.end = outcome_.exact && minimum_ ? StaticEnd::minimum : StaticEnd::stationary;
+  return false;
+}
+
+StaticOutcome NewtonSearch::run() {
+  if (!begin()) {
+    outcome_.end = StaticEnd::singular;
+    return outcome_;
+  }
+  for (outcome_.iterations = 1; outcome_.iterations <= options_.max_iterations; ++outcome_.iterations) {
+    ++system_.evaluator().counters.iterations;
+    if (system_.is_cancelled()) {
+      outcome_.end = StaticEnd::cancelled;
+      return outcome_;
+    }
+    if (!step()) return outcome_;
+  }
+  outcome_.end = StaticEnd::slow;
+  return outcome_;
+}
+
+}  // namespace
+
+StaticOutcome solve_by_newton(StaticSystem& system, std::span<double> q, std::span<double> lambda,
+                              const StaticNewtonOptions& options) {
+  return NewtonSearch(system, q, lambda, options).run();
 }
 
 }  // namespace catena

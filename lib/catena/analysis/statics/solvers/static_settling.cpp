@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "catena/analysis/balance/static_tangent.hpp"
 #include "catena/base/at.hpp"
@@ -21,95 +22,158 @@ constexpr double settling_lost_extents = 1e5;
 // Without damping no further gain is possible below this, length scales or rad.
 constexpr double settling_last_change = 1e-10;
 
+class Settling {
+ public:
+  Settling(StaticSystem& system, std::span<double> q, std::span<double> lambda, const StaticSettlingOptions& options)
+      : system_(system),
+        q_(q),
+        lambda_(lambda),
+        options_(options),
+        start_(q.begin(), q.end()),
+        x_(at(system.plan().columns) + at(system.plan().rows)),
+        residual_(at(system.plan().columns)) {}
+
+  StaticOutcome run();
+
+ private:
+  bool begin();
+  double size();
+  bool solve();
+  bool stiffen();
+  double move();
+  bool is_lost() const;
+  bool is_balanced();
+  bool step();
+
+  StaticSystem& system_;
+  std::span<double> q_, lambda_;
+  const StaticSettlingOptions& options_;
+  std::optional<StaticTangent> tangent_;
+  StaticOutcome outcome_;
+  const std::vector<double> start_;
+  std::vector<double> x_, residual_, q_before_, lambda_before_;  // x: changes of q and lambda
+  double extent_ = 1, force_ = 1, stiffness_ = 1;
+  double damping_ = 0, size_ = 0;  // E times the stiffness; of the residual where the step begins
+  double factor_ = 1;              // part of the step that was made
+};
+
+bool Settling::begin() {
+  system_.move_to(q_);
+  if (!first_multipliers(system_, lambda_)) return false;
+  tangent_.emplace(system_);
+  extent_ = system_.extent();
+  force_ = std::max(system_.force_scale(lambda_), 1e-200);
+  stiffness_ = force_ / system_.length();
+  damping_ = stiffness_;
+  size_ = size();
+  return true;
+}
+
+double Settling::size() {
+  system_.residual(lambda_, residual_);
+  outcome_.residual = system_.force_norm(residual_);
+  return outcome_.residual / force_ + system_.phi_norm();
+}
+
+bool Settling::solve() {
+  const std::size_t columns = residual_.size();
+  for (std::size_t c = 0; c < columns; ++c) x_[c] = -residual_[c];
+  for (std::size_t r = columns; r < x_.size(); ++r) x_[r] = -system_.phi()[r - columns];
+  return tangent_->solve(x_);
+}
+
+// More damping after a step that failed. False: no more helps.
+bool Settling::stiffen() {
+  damping_ = std::max(settling_stiffening * damping_, 1e-6 * stiffness_);
+  return damping_ <= largest_damping * stiffness_;
+}
+
+// Moves by the step in x_, shortened; the size of the residual there. What cannot be a step moves nothing.
+double Settling::move() {
+  const Plan& plan = system_.plan();
+  const std::span<const double> change(x_.data(), residual_.size());
+  double turn = 0, travel = 0;
+  for (int c = 0; c < plan.columns; ++c) {
+    double& largest = plan.coordinate[at(c)] % 3 == 2 ? turn : travel;
+    largest = std::max(largest, std::abs(change[at(c)]));
+  }
+  factor_ = std::min({1.0, settling_turn / turn, largest_travel * extent_ / travel});
+  if (!std::isfinite(turn + travel)) return size_;
+  system_.advance(q_, change, factor_, settling_turn);
+  for (std::size_t r = 0; r < lambda_.size(); ++r) lambda_[r] += factor_ * x_[change.size() + r];
+  system_.move_to(q_);
+  outcome_.step = system_.change_norm(change);
+  const double then = size();
+  if (const IterationTrace* trace = system_.evaluator().trace)
+    (*trace)("settling", outcome_.iterations, outcome_.residual, outcome_.step);
+  return then;
+}
+
+bool Settling::is_lost() const {
+  for (std::size_t k = 0; k < q_.size(); ++k) {
+    if (k % 3 != 2 && std::abs(q_[k] - start_[k]) > settling_lost_extents * extent_) return true;
+  }
+  return false;
+}
+
+// Rounding of the stiffest spring may be the whole force of a soft one: then the step decides.
+bool Settling::is_balanced() {
+  const double scale = std::max(system_.force_scale(lambda_), force_);
+  const double rounding = damping_ == 0 && outcome_.step <= settling_last_change ? system_.rounding_force() : 0;
+  return outcome_.residual <= options_.tolerance * scale + rounding &&
+         system_.phi_norm() <= std::max(options_.tolerance, 10 * system_.rounding_change());
+}
+
+// False: the search ends.
+bool Settling::step() {
+  outcome_.end = StaticEnd::slow;
+  tangent_->fill(lambda_, damping_, regularisation / stiffness_);
+  if (!tangent_->factorize()) return stiffen();
+  const bool solved = solve();
+  q_before_.assign(q_.begin(), q_.end());
+  lambda_before_.assign(lambda_.begin(), lambda_.end());
+  const double then = solved ? move() : size_;
+  if (!solved || !(then <= tolerated_growth * size_ + options_.tolerance)) {
+    std::copy(q_before_.begin(), q_before_.end(), q_.begin());
+    std::copy(lambda_before_.begin(), lambda_before_.end(), lambda_.begin());
+    system_.move_to(q_);
+    size_ = size();
+    return stiffen();
+  }
+  const double ratio = then / std::max(size_, 1e-300);
+  damping_ *= factor_ < 1 ? 2 : std::clamp(ratio, fastest_fading, settling_stiffening);
+  if (damping_ < least_damping * stiffness_) damping_ = 0;
+  size_ = then;
+  if (is_lost()) {
+    outcome_.end = StaticEnd::unbounded;
+    return false;
+  }
+  if (!is_balanced()) return true;
+  outcome_.end = StaticEnd::stationary;
+  return false;
+}
+
+StaticOutcome Settling::run() {
+  if (!begin()) {
+    outcome_.end = StaticEnd::singular;
+    return outcome_;
+  }
+  for (outcome_.iterations = 1; outcome_.iterations <= options_.max_iterations; ++outcome_.iterations) {
+    ++system_.evaluator().counters.iterations;
+    if (system_.is_cancelled()) {
+      outcome_.end = StaticEnd::cancelled;
+      return outcome_;
+    }
+    if (!step()) return outcome_;
+  }
+  return outcome_;
+}
+
 }  // namespace
 
 StaticOutcome solve_by_settling(StaticSystem& system, std::span<double> q, std::span<double> lambda,
                                 const StaticSettlingOptions& options) {
-  StaticOutcome outcome;
-  const Plan& plan = system.plan();
-  const std::size_t columns = at(plan.columns);
-  system.move_to(q);
-  if (!first_multipliers(system, lambda)) {
-    outcome.end = StaticEnd::singular;
-    return outcome;
-  }
-  StaticTangent tangent(system);
-  std::vector<double> x(columns + at(plan.rows)), residual(columns);
-  std::vector<double> q_before, lambda_before;
-  const std::vector<double> start(q.begin(), q.end());
-  const double extent = system.extent();
-  const double force = std::max(system.force_scale(lambda), 1e-200), stiffness = force / system.length();
-  const auto size = [&] {
-    system.residual(lambda, residual);
-    outcome.residual = system.force_norm(residual);
-    return outcome.residual / force + system.phi_norm();
-  };
-  double damping = stiffness, now = size();
-  for (outcome.iterations = 1; outcome.iterations <= options.max_iterations; ++outcome.iterations) {
-    ++system.evaluator().counters.iterations;
-    if (system.is_cancelled()) {
-      outcome.end = StaticEnd::cancelled;
-      return outcome;
-    }
-    tangent.fill(lambda, damping, regularisation / stiffness);
-    if (!tangent.factorize()) {
-      damping = std::max(settling_stiffening * damping, 1e-6 * stiffness);
-      if (damping > largest_damping * stiffness) break;
-      continue;
-    }
-    for (std::size_t c = 0; c < columns; ++c) x[c] = -residual[c];
-    for (int r = 0; r < plan.rows; ++r) x[columns + at(r)] = -system.phi()[at(r)];
-    const bool solved = tangent.solve(x);
-    const std::span<const double> change(x.data(), columns);
-    double turn = 0, travel = 0;
-    for (int c = 0; c < plan.columns; ++c) {
-      double& largest = plan.coordinate[at(c)] % 3 == 2 ? turn : travel;
-      largest = std::max(largest, std::abs(change[at(c)]));
-    }
-    const double factor = std::min({1.0, settling_turn / turn, largest_travel * extent / travel});
-    q_before.assign(q.begin(), q.end());
-    lambda_before.assign(lambda.begin(), lambda.end());
-    double then = now;
-    if (solved && std::isfinite(turn + travel)) {
-      system.advance(q, change, factor, settling_turn);
-      for (std::size_t r = 0; r < lambda.size(); ++r) lambda[r] += factor * x[columns + r];
-      system.move_to(q);
-      outcome.step = system.change_norm(change);
-      then = size();
-      if (const IterationTrace* trace = system.evaluator().trace)
-        (*trace)("settling", outcome.iterations, outcome.residual, outcome.step);
-    }
-    const bool kept = solved && then <= tolerated_growth * now + options.tolerance;
-    if (!kept) {
-      std::copy(q_before.begin(), q_before.end(), q.begin());
-      std::copy(lambda_before.begin(), lambda_before.end(), lambda.begin());
-      system.move_to(q);
-      now = size();
-      damping = std::max(settling_stiffening * damping, 1e-6 * stiffness);
-      if (damping > largest_damping * stiffness) break;
-      continue;
-    }
-    const double ratio = then / std::max(now, 1e-300);
-    damping *= factor < 1 ? 2 : std::clamp(ratio, fastest_fading, settling_stiffening);
-    if (damping < least_damping * stiffness) damping = 0;
-    now = then;
-    for (std::size_t k = 0; k < q.size(); ++k) {
-      if (k % 3 != 2 && std::abs(q[k] - start[k]) > settling_lost_extents * extent) {
-        outcome.end = StaticEnd::unbounded;
-        return outcome;
-      }
-    }
-    // Rounding of the stiffest spring may be the whole force of a soft one: then the step decides.
-    const double scale = std::max(system.force_scale(lambda), force);
-    const double rounding = damping == 0 && outcome.step <= settling_last_change ? system.rounding_force() : 0;
-    if (outcome.residual <= options.tolerance * scale + rounding &&
-        system.phi_norm() <= std::max(options.tolerance, 10 * system.rounding_change())) {
-      outcome.end = StaticEnd::stationary;
-      return outcome;
-    }
-  }
-  outcome.end = StaticEnd::slow;
-  return outcome;
+  return Settling(system, q, lambda, options).run();
 }
 
 }  // namespace catena
