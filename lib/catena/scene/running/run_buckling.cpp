@@ -74,23 +74,11 @@ void leave_out_derivatives(const AnalysisContext& context, const BucklingReport&
     set_field_gradient(context, result, "flutter", static_cast<int>(k) + 1, none, trouble);
 }
 
-}  // namespace
-
-void run_buckling(AnalysisContext& context, AnalysisResult& result) {
+/// One row a load, with its shape if outputs are named; the columns, and how many rows were given.
+std::int64_t give_rows(AnalysisContext& context, Buckling& analysis, BucklingReport& report,
+                       std::vector<ColumnInfo>& info) {
   const AnalysisTask& task = context.task;
-  const int parameter = task.word("parameter");
-  BucklingOptions options;
-  options.present = task.parameters.at(static_cast<std::size_t>(parameter));
-  options.count = static_cast<int>(task.number("count", 1));
-  SystemState start = context.state;
-  start.t = frozen_time(context);
-  if (const std::string why = trouble_with_one_sided(context, start); !why.empty()) return refuse(result, why);
-  Buckling analysis(
-      context.model, [&](double value) { return model_at(context, parameter, value); }, options);
-  analysis.start_from(start);
-  BucklingReport report = analysis.run([&] { return !(context.cancel && context.cancel->load()); });
-
-  std::vector<ColumnInfo> info{{std::string(context.parameter_name), UnitKind::own}};
+  info = {{std::string(context.parameter_name), UnitKind::own}};
   // Forces without a potential: the frequency tells divergence, 0, from flutter.
   const bool circulatory = !analysis.evaluator().conservative();
   if (circulatory) info.push_back({"omega", UnitKind::angular_velocity});
@@ -111,6 +99,26 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result) {
       shapes->evaluate(analysis.evaluator(), analysis.q(), report.shapes[k], std::span<double>(row).subspan(values));
     if (!context.rows.row(row)) break;
   }
+  return rows;
+}
+
+}  // namespace
+
+void run_buckling(AnalysisContext& context, AnalysisResult& result) {
+  const AnalysisTask& task = context.task;
+  const int parameter = task.word("parameter");
+  BucklingOptions options;
+  options.present = task.parameters.at(static_cast<std::size_t>(parameter));
+  options.count = static_cast<int>(task.number("count", 1));
+  SystemState start = context.state;
+  start.t = frozen_time(context);
+  if (const std::string why = trouble_with_one_sided(context, start); !why.empty()) return refuse(result, why);
+  Buckling analysis(
+      context.model, [&](double value) { return model_at(context, parameter, value); }, options);
+  analysis.start_from(start);
+  BucklingReport report = analysis.run([&] { return !(context.cancel && context.cancel->load()); });
+  std::vector<ColumnInfo> info;
+  const std::int64_t rows = give_rows(context, analysis, report, info);
   draw_shapes(context, analysis.evaluator(), start.t, analysis.q(), report.shapes);
   // Places alone change hands: velocities and time stay those of the motion so far.
   if (report.ok()) {
@@ -132,11 +140,12 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result) {
   result.report = report;
   take_rows(result, std::move(info), rows);
   add_field_measures(context, result);
-  if (context.design && report.ok() && circulatory) {
+  if (!context.design || !report.ok()) return;
+  if (analysis.evaluator().conservative()) {
+    differentiate(context, analysis, report, result);
+  } else {
     leave_out_derivatives(context, report, result);
-    return;
   }
-  if (context.design && report.ok()) differentiate(context, analysis, report, result);
 }
 
 }  // namespace catena

@@ -98,6 +98,126 @@ bool measures_energy(const AnalysisTask& task) {
   });
 }
 
+EquilibriumOptions equilibrium_options_of(const AnalysisContext& context) {
+  const AnalysisTask& task = context.task;
+  // In the order of the keys' words.
+  constexpr StaticSolver solvers[] = {StaticSolver::automatic, StaticSolver::newton, StaticSolver::ipopt,
+                                      StaticSolver::nlopt};
+  EquilibriumOptions options;
+  options.solver = solvers[task.word("solver")];
+  options.verbose = context.verbose;
+  options.find = static_cast<int>(task.number("find", 1));
+  options.tolerance = task.number("tolerance", options.tolerance);
+  options.accept = task.word("accept") == 0 ? Accept::stable : Accept::stationary;
+  return options;
+}
+
+/// Why these options cannot be met; empty: they can.
+std::string trouble_with(const EquilibriumOptions& options, const Model& model) {
+  const bool ipopt = options.solver == StaticSolver::ipopt, nlopt = options.solver == StaticSolver::nlopt;
+  if ((ipopt && !ipopt_is_built_in()) || (nlopt && !nlopt_is_built_in())) {
+    return fmt::format(
+        "this catena was built without {} (CATENA_WITH_{}=OFF); leave \"solver\" out, or "
+        "take \"newton\"",
+        ipopt ? "Ipopt" : "NLopt", ipopt ? "IPOPT" : "NLOPT");
+  }
+  if (options.find > 1 && !rope_routes(model).empty()) {
+    return "\"find\" looks for places of rest with ropes that lie in one way, but a rope over a pulley may "
+           "lie otherwise in each: leave \"find\" out and start near the place that is meant";
+  }
+  return {};
+}
+
+/// Why the solver cannot serve this mechanism; empty: it can.
+std::string trouble_with_solver(StaticSolver solver, Equilibrium& analysis, const Model& model) {
+  const bool ipopt = solver == StaticSolver::ipopt, nlopt = solver == StaticSolver::nlopt;
+  if ((ipopt || nlopt) && !analysis.evaluator().conservative()) {
+    return fmt::format("the solver {} minimises an energy, but {}; leave \"solver\" out", ipopt ? "ipopt" : "nlopt",
+                       forces_without_energy(model));
+  }
+  if (nlopt && analysis.plan().columns > StaticNloptOptions::most_columns) {
+    return fmt::format("the solver nlopt is dense and made for at most {} coordinates; this scene has {}",
+                       StaticNloptOptions::most_columns, analysis.plan().columns);
+  }
+  return {};
+}
+
+/// What is found out beside the rows: derivatives and digits, where they are asked for.
+struct RowCompanions {
+  StaticDerivatives* derivatives = nullptr;
+  EquilibriumAccuracy* accuracy = nullptr;
+};
+
+RowCompanions accompany(AnalysisContext& context, Equilibrium& analysis, const ColumnSet& columns, AnalysisRows& rows) {
+  RowCompanions companions;
+  if (context.design) {
+    const auto parameters = static_cast<int>(context.design->names.size());
+    std::unique_ptr<StaticDerivatives> found;
+    if (goes_back(context))
+      found = std::make_unique<StaticAdjoint>(analysis.evaluator(), designs_of(context), parameters);
+    else
+      found = std::make_unique<StaticDerivatives>(analysis.evaluator(), designs_of(context), parameters);
+    companions.derivatives = found.get();
+    found->ask_whether_neutral([&analysis] { return analysis.is_neutral(); });
+    rows.differentiate(std::move(found));
+  } else if (context.digits) {
+    auto judge = std::make_unique<EquilibriumAccuracy>(analysis, columns);
+    companions.accuracy = judge.get();
+    rows.judge(std::move(judge));
+  }
+  return companions;
+}
+
+std::vector<NamedField> fields_of(const EquilibriumReport& report, bool one_sided) {
+  std::vector<NamedField> fields;
+  if (report.certified) {
+    if (report.has_energy) fields.push_back({"energy", report.energy});
+    fields.push_back({"stable", report.stable});
+    fields.push_back({"neutral", report.neutral});
+    fields.push_back({"negative_modes", static_cast<std::int64_t>(report.negative_modes)});
+    if (report.flutter > 0) fields.push_back({"flutter", static_cast<std::int64_t>(report.flutter)});
+    if (report.free_motions > 0) {
+      fields.push_back({"free_motions", static_cast<std::int64_t>(report.free_motions)});
+      fields.push_back({"moving_freely", report.free_bodies});
+    }
+  }
+  if (report.certified || report.ok()) {
+    fields.push_back({"residual", report.residual});
+    fields.push_back({"solver", report.solver});
+    fields.push_back({"iterations", static_cast<std::int64_t>(report.iterations)});
+  }
+  if (one_sided && report.ok()) fields.push_back({"active", report.active});
+  if (report.found.empty()) return fields;
+  std::vector<FieldRecord> list;
+  for (const FoundEquilibrium& f : report.found) {
+    list.push_back({{"row", static_cast<std::int64_t>(list.size())},
+                    {"energy", f.energy},
+                    {"stable", f.stable},
+                    {"negative_modes", static_cast<std::int64_t>(f.negative_modes)}});
+  }
+  fields.push_back({"equilibria", std::move(list)});
+  return fields;
+}
+
+void warn_of_friction(const Model& model, EquilibriumReport& report) {
+  const int friction = first_friction(model);
+  if (friction < 0) return;
+  report.warnings.push_back(fmt::format(
+      "dry friction (\"{}\") is left out: the position is that without any; \"friction\": \"hold\" asks whether it "
+      "holds the given one",
+      model.element_name(friction)));
+}
+
+/// Of the measures of the energy.
+void differentiate_energy(AnalysisContext& context, Equilibrium& analysis, StaticDerivatives& derivatives,
+                          AnalysisResult& result) {
+  const Snapshot snapshot{
+      .evaluator = analysis.evaluator(), .t = analysis.time(), .q = analysis.q(), .lambda = analysis.lambda()};
+  std::string why;
+  const std::vector<double> gradient = derivatives.energy_gradient(snapshot, why);
+  set_field_gradient(context, result, "energy", 0, gradient, why);
+}
+
 }  // namespace
 
 void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
@@ -106,68 +226,22 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
     if (context.design) return refuse(result, "what friction can hold has no derivatives yet");
     return run_holding(context, result);
   }
-  // In the order of the keys' words.
-  constexpr StaticSolver solvers[] = {StaticSolver::automatic, StaticSolver::newton, StaticSolver::ipopt,
-                                      StaticSolver::nlopt};
-  EquilibriumOptions options;
-  options.solver = solvers[task.word("solver")];
-  const bool built_in = options.solver == StaticSolver::ipopt   ? ipopt_is_built_in()
-                        : options.solver == StaticSolver::nlopt ? nlopt_is_built_in()
-                                                                : true;
-  if (!built_in) {
-    const std::string name = options.solver == StaticSolver::ipopt ? "Ipopt" : "NLopt";
-    return refuse(result, fmt::format("this catena was built without {} (CATENA_WITH_{}=OFF); leave \"solver\" out, or "
-                                      "take \"newton\"",
-                                      name, name == "Ipopt" ? "IPOPT" : "NLOPT"));
-  }
-  options.verbose = context.verbose;
-  options.find = static_cast<int>(task.number("find", 1));
-  options.tolerance = task.number("tolerance", options.tolerance);
-  options.accept = task.word("accept") == 0 ? Accept::stable : Accept::stationary;
-  const std::vector<std::string> names = task.output_names();
+  const EquilibriumOptions options = equilibrium_options_of(context);
+  if (std::string trouble = trouble_with(options, *context.model); !trouble.empty())
+    return refuse(result, std::move(trouble));
   SystemState start = context.state;
   start.t = frozen_time(context);
-  if (options.find > 1 && !rope_routes(*context.model).empty())
-    return refuse(result,
-                  "\"find\" looks for places of rest with ropes that lie in one way, but a rope over a pulley may "
-                  "lie otherwise in each: leave \"find\" out and start near the place that is meant");
   RopeWaysAt ways(context.model);
   const std::optional<EquilibriumReport> failed = find_ways_at_rest(context, options, ways, start);
   Equilibrium analysis(context.model, plan_options(*context.model, task.column_names()), options);
-  const bool conservative = analysis.evaluator().conservative();
-  if (!conservative && (options.solver == StaticSolver::ipopt || options.solver == StaticSolver::nlopt)) {
-    return refuse(result, fmt::format("the solver {} minimises an energy, but {}; leave \"solver\" out",
-                                      options.solver == StaticSolver::ipopt ? "ipopt" : "nlopt",
-                                      forces_without_energy(*context.model)));
-  }
-  if (options.solver == StaticSolver::nlopt && analysis.plan().columns > StaticNloptOptions::most_columns) {
-    return refuse(result,
-                  fmt::format("the solver nlopt is dense and made for at most {} coordinates; this scene has {}",
-                              StaticNloptOptions::most_columns, analysis.plan().columns));
-  }
+  if (std::string trouble = trouble_with_solver(options.solver, analysis, *context.model); !trouble.empty())
+    return refuse(result, std::move(trouble));
   const ColumnSources sources{.analysis = task.type(), .multipliers = true};
-  const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), names, sources);
+  const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), task.output_names(), sources);
   analysis.start_from(start);
   if (context.trace) analysis.evaluator().trace = &context.trace;
   AnalysisRows rows(columns, context, *context.model, analysis.plan(), sources, {start.t, start.t});
-  StaticDerivatives* derivatives = nullptr;
-  if (context.design) {
-    const auto parameters = static_cast<int>(context.design->names.size());
-    std::unique_ptr<StaticDerivatives> found;
-    if (goes_back(context))
-      found = std::make_unique<StaticAdjoint>(analysis.evaluator(), designs_of(context), parameters);
-    else
-      found = std::make_unique<StaticDerivatives>(analysis.evaluator(), designs_of(context), parameters);
-    derivatives = found.get();
-    derivatives->ask_whether_neutral([&analysis] { return analysis.is_neutral(); });
-    rows.differentiate(std::move(found));
-  }
-  EquilibriumAccuracy* accuracy = nullptr;
-  if (context.digits && !context.design) {
-    auto judge = std::make_unique<EquilibriumAccuracy>(analysis, columns);
-    accuracy = judge.get();
-    rows.judge(std::move(judge));
-  }
+  const auto [derivatives, accuracy] = accompany(context, analysis, columns, rows);
   rows.begin();
   Needs needs = rows.needs();
   needs.multipliers = needs.multipliers || derivatives;
@@ -175,49 +249,15 @@ void run_equilibrium(AnalysisContext& context, AnalysisResult& result) {
   if (accuracy && (report.neutral || report.free_motions > 0)) accuracy->withhold();
   context.state = analysis.state();
   if (report.ok()) context.state.ropes = ways.turns(context.state);
-  if (const int friction = first_friction(*context.model); friction >= 0) {
-    report.warnings.push_back(fmt::format(
-        "dry friction (\"{}\") is left out: the position is that without any; \"friction\": \"hold\" asks whether it "
-        "holds the given one",
-        context.model->element_name(friction)));
-  }
-  if (report.certified) {
-    if (report.has_energy) result.fields.push_back({"energy", report.energy});
-    result.fields.push_back({"stable", report.stable});
-    result.fields.push_back({"neutral", report.neutral});
-    result.fields.push_back({"negative_modes", static_cast<std::int64_t>(report.negative_modes)});
-    if (report.flutter > 0) result.fields.push_back({"flutter", static_cast<std::int64_t>(report.flutter)});
-    if (report.free_motions > 0) {
-      result.fields.push_back({"free_motions", static_cast<std::int64_t>(report.free_motions)});
-      result.fields.push_back({"moving_freely", report.free_bodies});
-    }
-  }
-  if (report.certified || report.ok()) {
-    result.fields.push_back({"residual", report.residual});
-    result.fields.push_back({"solver", report.solver});
-    result.fields.push_back({"iterations", static_cast<std::int64_t>(report.iterations)});
-  }
-  if (!analysis.plan().gap_rows.empty() && report.ok()) result.fields.push_back({"active", report.active});
-  if (!report.found.empty()) {
-    std::vector<FieldRecord> list;
-    for (const FoundEquilibrium& f : report.found) {
-      list.push_back({{"row", static_cast<std::int64_t>(list.size())},
-                      {"energy", f.energy},
-                      {"stable", f.stable},
-                      {"negative_modes", static_cast<std::int64_t>(f.negative_modes)}});
-    }
-    result.fields.push_back({"equilibria", std::move(list)});
-  }
+  warn_of_friction(*context.model, report);
+  for (NamedField& field : fields_of(report, !analysis.plan().gap_rows.empty()))
+    result.fields.push_back(std::move(field));
   if (report.ok()) draw_softest_mode(context);
   result.report = report;
   rows.finish(result);
   add_field_measures(context, result);
-  if (!derivatives || !report.certified || !report.has_energy || !report.ok() || !measures_energy(task)) return;
-  const Snapshot snapshot{
-      .evaluator = analysis.evaluator(), .t = analysis.time(), .q = analysis.q(), .lambda = analysis.lambda()};
-  std::string why;
-  const std::vector<double> gradient = derivatives->energy_gradient(snapshot, why);
-  set_field_gradient(context, result, "energy", 0, gradient, why);
+  if (derivatives && report.certified && report.has_energy && report.ok() && measures_energy(task))
+    differentiate_energy(context, analysis, *derivatives, result);
 }
 
 }  // namespace catena

@@ -85,41 +85,31 @@ std::vector<double> digits_of(const ModesReport& report, std::size_t columns) {
   return errors.digits();
 }
 
-}  // namespace
-
-void run_modes(AnalysisContext& context, AnalysisResult& result) {
-  RopeWaysAt ways(context.model);
-  const AnalysisTask& task = context.task;
-  ModesOptions options;
-  options.count = static_cast<int>(task.number("count", 0));
-  SystemState start = context.state;
-  const bool from_model = start.q.empty();
-  if (context.design && !context.model->gaps().empty())
-    return refuse(result, "modes with one-sided elements have no derivatives: they jump where one opens or closes");
-  start.t = frozen_time(context);
-  if (!from_model && ways.begin(start)) context.model = ways.model();
-  std::optional<Modes> made(std::in_place, context.model, PlanOptions{}, options);
-  made->start_from(start);
+/// Ropes lie as they can at the place that was assembled: with those ways the modes are found again. False: derivatives
+/// are asked for, and the ways are not those that were given.
+bool find_with_ways(AnalysisContext& context, RopeWaysAt& ways, const SystemState& start, const ModesOptions& options,
+                    std::optional<Modes>& analysis, ModesReport& report) {
   const auto go_on = [&] { return !(context.cancel && context.cancel->load()); };
-  ModesReport report = made->run(go_on);
-  // Ropes lie as they can at the place that was assembled.
-  if (ways.any() && report.ok()) {
-    made->evaluator().set_configuration(made->q());
-    if (ways.find(made->evaluator())) {
-      context.model = ways.model();
-      made.emplace(context.model, PlanOptions{}, options);
-      made->start_from(start);
-      report = made->run(go_on);
-    }
-    if (context.design && !ways.lie_as_given())
-      return refuse(result,
-                    "derivatives are those of ropes that lie as in the given configuration; here one has met or "
-                    "left a pulley, or is wound further: give the bodies a place nearer to rest");
+  const auto find = [&] {
+    analysis.emplace(context.model, PlanOptions{}, options);
+    analysis->start_from(start);
+    report = analysis->run(go_on);
+  };
+  find();
+  if (!ways.any() || !report.ok()) return true;
+  analysis->evaluator().set_configuration(analysis->q());
+  if (ways.find(analysis->evaluator())) {
+    context.model = ways.model();
+    find();
   }
-  Modes& analysis = *made;
+  return !context.design || ways.lie_as_given();
+}
 
-  std::vector<ColumnInfo> info{
-      {"mode", UnitKind::none}, {"omega2", UnitKind::squared_frequency}, {"omega", UnitKind::angular_velocity}};
+/// One row a mode, with its shape if `shapes` asks for it; the columns, and how many rows were given.
+std::int64_t give_rows(AnalysisContext& context, Modes& analysis, ModesReport& report, double t,
+                       std::vector<ColumnInfo>& info) {
+  const AnalysisTask& task = context.task;
+  info = {{"mode", UnitKind::none}, {"omega2", UnitKind::squared_frequency}, {"omega", UnitKind::angular_velocity}};
   const bool complex = report.flutter > 0;
   if (complex) {
     info.push_back({"omega2_imaginary", UnitKind::squared_frequency});
@@ -148,7 +138,47 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
       shapes->evaluate(analysis.evaluator(), analysis.q(), report.shapes[k], std::span<double>(row).subspan(values));
     if (!context.rows.row(row)) break;
   }
-  draw_shapes(context, analysis.evaluator(), start.t, analysis.q(), report.shapes);
+  draw_shapes(context, analysis.evaluator(), t, analysis.q(), report.shapes);
+  return rows;
+}
+
+std::vector<NamedField> fields_of(const ModesReport& report, bool one_sided) {
+  std::vector<NamedField> fields{
+      {"omega2", report.omega2}, {"omega", report.omega}, {"unstable", static_cast<std::int64_t>(report.unstable)}};
+  if (report.flutter > 0) {
+    fields.push_back({"flutter", static_cast<std::int64_t>(report.flutter)});
+    fields.push_back({"omega2_imaginary", report.imaginary});
+    fields.push_back({"growth", report.growth});
+  }
+  if (one_sided) fields.push_back({"active", report.active});
+  if (report.free_motions > 0) {
+    fields.push_back({"free_motions", static_cast<std::int64_t>(report.free_motions)});
+    fields.push_back({"moving_freely", report.free_bodies});
+  }
+  return fields;
+}
+
+}  // namespace
+
+void run_modes(AnalysisContext& context, AnalysisResult& result) {
+  RopeWaysAt ways(context.model);
+  ModesOptions options;
+  options.count = static_cast<int>(context.task.number("count", 0));
+  SystemState start = context.state;
+  const bool from_model = start.q.empty();
+  if (context.design && !context.model->gaps().empty())
+    return refuse(result, "modes with one-sided elements have no derivatives: they jump where one opens or closes");
+  start.t = frozen_time(context);
+  if (!from_model && ways.begin(start)) context.model = ways.model();
+  std::optional<Modes> made;
+  ModesReport report;
+  if (!find_with_ways(context, ways, start, options, made, report))
+    return refuse(result,
+                  "derivatives are those of ropes that lie as in the given configuration; here one has met or "
+                  "left a pulley, or is wound further: give the bodies a place nearer to rest");
+  Modes& analysis = *made;
+  std::vector<ColumnInfo> info;
+  const std::int64_t rows = give_rows(context, analysis, report, start.t, info);
   // Places alone change hands, if they had to be assembled: velocities and time stay those of the motion so far.
   if (report.ok()) {
     SystemState found = analysis.state();
@@ -156,29 +186,19 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
     context.state.curves = std::move(found.curves);
     context.state.ropes = ways.turns(context.state);
   }
-  result.fields = {
-      {"omega2", report.omega2}, {"omega", report.omega}, {"unstable", static_cast<std::int64_t>(report.unstable)}};
-  if (complex) {
-    result.fields.push_back({"flutter", static_cast<std::int64_t>(report.flutter)});
-    result.fields.push_back({"omega2_imaginary", report.imaginary});
-    result.fields.push_back({"growth", report.growth});
-  }
-  if (analysis.plan().gap_rows.size() > 0) result.fields.push_back({"active", report.active});
-  if (report.free_motions > 0) {
-    result.fields.push_back({"free_motions", static_cast<std::int64_t>(report.free_motions)});
-    result.fields.push_back({"moving_freely", report.free_bodies});
-  }
+  result.fields = fields_of(report, !analysis.plan().gap_rows.empty());
   result.report = report;
   // Of unsymmetric stiffness errors are not known.
   const bool judged = context.digits && !context.design && report.ok() && report.errors.size() == report.omega2.size();
   if (judged && rows > 0) result.digits = digits_of(report, info.size());
   take_rows(result, std::move(info), rows);
   add_field_measures(context, result);
-  if (context.design && report.ok() && !analysis.evaluator().conservative()) {
+  if (!context.design || !report.ok()) return;
+  if (analysis.evaluator().conservative()) {
+    differentiate(context, analysis, report, from_model, result);
+  } else {
     leave_out_derivatives(context, report, result);
-    return;
   }
-  if (context.design && report.ok()) differentiate(context, analysis, report, from_model, result);
 }
 
 }  // namespace catena

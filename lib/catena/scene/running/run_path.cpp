@@ -54,21 +54,71 @@ void add_column_measures(const AnalysisContext& context, const MeasureSet& measu
   }
 }
 
+PathOptions path_options_of(const AnalysisTask& task) {
+  PathOptions options;
+  options.from = task.parameters.at(static_cast<std::size_t>(task.word("parameter")));
+  options.to = task.number("to", 0);
+  options.max_steps = static_cast<int>(task.number("max_steps", options.max_steps));
+  options.arc = task.number("arc", options.arc);
+  options.branch = static_cast<int>(task.number("branch", 0));
+  return options;
+}
+
+std::vector<NamedField> fields_of(const PathReport& report, const Model& model, bool one_sided) {
+  std::vector<FieldRecord> critical;
+  for (const PathCritical& point : report.critical) {
+    critical.push_back({{"kind", std::string(point.flutter  ? "flutter"
+                                             : point.branch ? "branch"
+                                                            : "limit")},
+                        {"value", point.value},
+                        {"row", static_cast<std::int64_t>(point.row)},
+                        {"mode", point.mode},
+                        {"modes", static_cast<std::int64_t>(point.modes)}});
+    if (point.flutter) critical.back().push_back({"omega", point.omega});
+  }
+  std::vector<NamedField> fields{{"critical", std::move(critical)},
+                                 {"negative_modes", report.negative_modes},
+                                 {"steps", static_cast<std::int64_t>(report.steps)}};
+  if (!report.flutter.empty()) fields.push_back({"flutter", report.flutter});
+  if (!one_sided) return fields;
+  std::vector<FieldRecord> changes;
+  for (const PathChange& change : report.changes) {
+    changes.push_back({{"element", model.element_name(change.element)},
+                       {"kind", std::string(change.closes ? "closes" : "opens")},
+                       {"value", change.value},
+                       {"row", static_cast<std::int64_t>(change.row)}});
+  }
+  fields.push_back({"active", report.active});
+  fields.push_back({"changes", std::move(changes)});
+  return fields;
+}
+
+/// Of the parameter's values at the critical points.
+void differentiate(const AnalysisContext& context, Path& analysis, const PathReport& report,
+                   const std::vector<PathPlace>& places, double t, AnalysisResult& result) {
+  const bool conservative = analysis.evaluator().conservative();
+  for (std::size_t k = 0; k < report.critical.size(); ++k) {
+    std::string trouble;
+    std::vector<double> gradient(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
+    if (conservative) {
+      gradient = critical_gradient(context, analysis.evaluator().shared_plan(),
+                                   places[static_cast<std::size_t>(report.critical[k].row)], t, trouble);
+    } else {
+      trouble = forces_without_energy(*context.model) + ": derivatives of critical values are not built";
+    }
+    set_field_gradient(context, result, "critical", static_cast<int>(k) + 1, gradient, trouble);
+  }
+}
+
 }  // namespace
 
 void run_path(AnalysisContext& context, AnalysisResult& result) {
   const AnalysisTask& task = context.task;
   const int parameter = task.word("parameter");
-  PathOptions options;
-  options.from = task.parameters.at(static_cast<std::size_t>(parameter));
-  options.to = task.number("to", 0);
-  options.max_steps = static_cast<int>(task.number("max_steps", options.max_steps));
-  options.arc = task.number("arc", options.arc);
-  options.branch = static_cast<int>(task.number("branch", 0));
+  const PathOptions options = path_options_of(task);
   if (options.branch > 3) {
     return refuse(result, "\"branch\" of a path is 1 (straight on), 2 or 3 (to either side at the first branch point)");
   }
-  const std::vector<std::string> names = task.output_names();
   SystemState start = context.state;
   start.t = frozen_time(context);
   if (const std::string why = trouble_with_one_sided(context, start); !why.empty()) return refuse(result, why);
@@ -76,7 +126,7 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
       context.model, [&](double value) { return model_at(context, parameter, value); }, options,
       plan_options(*context.model, task.column_names()));
   const ColumnSources sources{.analysis = task.type(), .multipliers = true};
-  const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), names, sources);
+  const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), task.output_names(), sources);
   analysis.start_from(start);
 
   std::vector<ColumnInfo> info{{std::string(context.parameter_name), UnitKind::own}};
@@ -99,50 +149,13 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
   context.state = analysis.state();
   if (report.ok()) context.state.ropes = RopeWaysAt(context.model).turns(context.state);
   if (report.ok() && rows > 0) context.values_at_end = {{parameter, row[0]}};
-  std::vector<FieldRecord> critical;
-  for (const PathCritical& point : report.critical) {
-    critical.push_back({{"kind", std::string(point.flutter  ? "flutter"
-                                             : point.branch ? "branch"
-                                                            : "limit")},
-                        {"value", point.value},
-                        {"row", static_cast<std::int64_t>(point.row)},
-                        {"mode", point.mode},
-                        {"modes", static_cast<std::int64_t>(point.modes)}});
-    if (point.flutter) critical.back().push_back({"omega", point.omega});
-  }
-  std::vector<FieldRecord> changes;
-  for (const PathChange& change : report.changes) {
-    changes.push_back({{"element", context.model->element_name(change.element)},
-                       {"kind", std::string(change.closes ? "closes" : "opens")},
-                       {"value", change.value},
-                       {"row", static_cast<std::int64_t>(change.row)}});
-  }
-  result.fields = {{"critical", std::move(critical)},
-                   {"negative_modes", report.negative_modes},
-                   {"steps", static_cast<std::int64_t>(report.steps)}};
-  if (!report.flutter.empty()) result.fields.push_back({"flutter", report.flutter});
-  if (!analysis.plan().gap_rows.empty()) {
-    result.fields.push_back({"active", report.active});
-    result.fields.push_back({"changes", std::move(changes)});
-  }
+  result.fields = fields_of(report, *context.model, !analysis.plan().gap_rows.empty());
   result.report = report;
   for (const std::string& note : columns.notes()) result.report.warnings.push_back(note);
   take_rows(result, std::move(info), rows);
   add_column_measures(context, measures, result);
   add_field_measures(context, result);
-  for (std::size_t k = 0; context.design && k < report.critical.size(); ++k) {
-    std::string trouble;
-    if (!analysis.evaluator().conservative()) {
-      trouble = forces_without_energy(*context.model) + ": derivatives of critical values are not built";
-      const std::vector<double> none(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
-      set_field_gradient(context, result, "critical", static_cast<int>(k) + 1, none, trouble);
-      continue;
-    }
-    const std::vector<double> gradient =
-        critical_gradient(context, analysis.evaluator().shared_plan(),
-                          places[static_cast<std::size_t>(report.critical[k].row)], start.t, trouble);
-    set_field_gradient(context, result, "critical", static_cast<int>(k) + 1, gradient, trouble);
-  }
+  if (context.design) differentiate(context, analysis, report, places, start.t, result);
 }
 
 }  // namespace catena
