@@ -9,6 +9,16 @@
 
 namespace catena {
 
+namespace {
+
+/// What goes on "mu" of a pulley on which no rope can rub.
+std::string why_no_friction(bool rolls) {
+  return rolls ? " above zero: a rope does not slide over a pulley that rolls; leave \"mu\" out, or let the rope slide"
+               : " above zero: friction needs a \"radius\" above zero, round which the rope bends";
+}
+
+}  // namespace
+
 template <class S>
 void ModelBuilder<S>::append_rope(const ElementTemplate& source, const ElementEntry<Rope<S>, S>& entry) {
   const ElementDescription& type = element_descriptions()[static_cast<std::size_t>(source.type)];
@@ -40,11 +50,7 @@ void ModelBuilder<S>::append_rope(const ElementTemplate& source, const ElementEn
     if (!fits(mu, Domain::not_negative)) {
       wrong(pulley.mu.offset(), "\"mu\" of " + name + " " + out_of_domain(mu, Domain::not_negative));
     } else if (mu > 0 && (pulley.rolls || radius == 0)) {
-      wrong(pulley.mu.offset(),
-            "\"mu\" of " + name +
-                (pulley.rolls ? " above zero: a rope does not slide over a pulley that rolls; leave \"mu\" out, or let "
-                                "the rope slide"
-                              : " above zero: friction needs a \"radius\" above zero, round which the rope bends"));
+      wrong(pulley.mu.offset(), "\"mu\" of " + name + why_no_friction(pulley.rolls));
     }
     made.mu = mu;
     if (pulley.rolls && radius == 0) wrong(pulley.offset, name + " rolls: it needs a \"radius\" above zero");

@@ -1,0 +1,79 @@
+// Measures of what an analysis reports beside its rows: an energy, a critical load, an optimum.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "catena/scene/running/analysis_run.hpp"
+
+namespace catena {
+namespace {
+
+/// The number that a measure of the kind `field` names, if the result has it.
+std::optional<double> reported(const AnalysisResult& result, const MeasureRequest& request) {
+  for (const NamedField& field : result.fields) {
+    if (field.name != request.field) continue;
+    const auto place = static_cast<std::size_t>(request.number) - 1;
+    if (const auto* number = std::get_if<double>(&field.value); number && request.number == 0) return *number;
+    if (const auto* count = std::get_if<std::int64_t>(&field.value); count && request.number == 0)
+      return static_cast<double>(*count);
+    if (const auto* list = std::get_if<std::vector<double>>(&field.value); list && place < list->size())
+      return (*list)[place];
+    if (const auto* records = std::get_if<std::vector<FieldRecord>>(&field.value); records && place < records->size()) {
+      for (const auto& [name, value] : (*records)[place]) {
+        if (name != request.part) continue;
+        if (const auto* number = std::get_if<double>(&value)) return *number;
+        if (const auto* count = std::get_if<std::int64_t>(&value)) return static_cast<double>(*count);
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_field_measures(const AnalysisContext& context, AnalysisResult& result) {
+  for (const PlacedMeasure& placed : context.task.measures) {
+    const MeasureRequest& request = placed.request;
+    if (request.kind != MeasureKind::field) continue;
+    MeasureResult measure;
+    measure.name = request.name;
+    measure.value = reported(result, request);
+    if (measure.value && !std::isfinite(*measure.value)) measure.value.reset();
+    if (context.design) {
+      measure.gradient.assign(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
+      result.gradient_parameters = context.design->names;
+    }
+    if (!measure.value) {
+      std::string names;
+      for (const NamedField& field : result.fields) names += (names.empty() ? "" : ", ") + field.name;
+      measure.trouble = fmt::format("{} reports no number {}{}{} (it has {})", context.task.type(), request.field,
+                                    request.number > 0 ? fmt::format("[{}]", request.number) : "",
+                                    request.part.empty() ? "" : "." + request.part, names.empty() ? "none" : names);
+      result.report.warnings.push_back(fmt::format("measure \"{}\": {}", request.name, measure.trouble));
+    }
+    measure.unit = request.field == "energy"   ? "J"
+                   : request.field == "omega"  ? "rad/s"
+                   : request.field == "omega2" ? "rad^2/s^2"
+                                               : "";
+    result.measures.push_back(std::move(measure));
+  }
+}
+
+void set_field_gradient(const AnalysisContext& context, AnalysisResult& result, std::string_view field, int number,
+                        const std::vector<double>& gradient, const std::string& trouble, std::string_view part) {
+  for (const PlacedMeasure& placed : context.task.measures) {
+    const MeasureRequest& request = placed.request;
+    const bool meant = request.kind == MeasureKind::field && request.field == field && request.number == number;
+    if (!meant || (number > 0 && !request.part.empty() && request.part != part)) continue;
+    for (MeasureResult& measure : result.measures) {
+      if (measure.name != request.name || !measure.value) continue;
+      measure.gradient = gradient;
+      measure.trouble = trouble;
+      if (!trouble.empty()) result.report.warnings.push_back(fmt::format("measure \"{}\": {}", measure.name, trouble));
+    }
+  }
+}
+
+}  // namespace catena
