@@ -5,8 +5,10 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 #include "catena/analysis/contact/contact_loads.hpp"
 #include "catena/analysis/pose/assemble.hpp"
@@ -61,6 +63,156 @@ struct RopeEdges {
 // The edges of a rope double with every pulley.
 constexpr std::size_t most_held_grips = 8;
 
+/// Forces as columns of the plan, moments divided by the length scale so that they compare.
+class ForceColumns {
+ public:
+  explicit ForceColumns(Evaluator& evaluator)
+      : evaluator_(evaluator), length_(evaluator.length_scale()), rest_(at(evaluator.plan().coordinates()), 0.0) {}
+
+  Eigen::VectorXd of(std::span<const double> loads) const {
+    const Plan& plan = evaluator_.plan();
+    Eigen::VectorXd f(plan.columns);
+    for (int c = 0; c < plan.columns; ++c) {
+      const int coordinate = plan.coordinate[at(c)];
+      f(c) = loads[at(coordinate)] / (coordinate % 3 == 2 ? length_ : 1);
+    }
+    return f;
+  }
+  /// Of what is applied, at rest.
+  Eigen::VectorXd applied() {
+    std::vector<double> loads(rest_.size(), 0.0);
+    evaluator_.applied_forces(rest_, loads);
+    return of(loads);
+  }
+  Evaluator::ScalarMotion motion(int element) { return evaluator_.scalar_motion(element, rest_); }
+  /// Of a force of one along the motion of an element's value.
+  Eigen::VectorXd along(const Evaluator::ScalarMotion& motion) {
+    std::vector<double> by(rest_.size(), 0.0);
+    scatter_gradient(motion, 1, by);
+    return of(by);
+  }
+  Eigen::VectorXd along(int element) { return along(motion(element)); }
+
+  /// The rows span what constraints cannot balance: forces along the null space of Phi_q are left.
+  Eigen::MatrixXd free_of_constraints() {
+    const Plan& plan = evaluator_.plan();
+    if (plan.rows == 0) return Eigen::MatrixXd::Identity(plan.columns, plan.columns);
+    std::vector<double> jacobian(at(plan.trash_slot()) + 1);
+    evaluator_.start_jacobian(jacobian);
+    evaluator_.jacobian(jacobian);
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(plan.columns, plan.rows);
+    for (int c = 0; c < plan.columns; ++c) {
+      const double unit = plan.coordinate[at(c)] % 3 == 2 ? length_ : 1;
+      for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k)
+        rows(c, plan.jacobian.row_index[at(k)]) = jacobian[at(k)] / unit;
+    }
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(rows);
+    const Eigen::MatrixXd q_full = factors.householderQ();
+    return q_full.rightCols(plan.columns - factors.rank()).transpose();
+  }
+
+ private:
+  Evaluator& evaluator_;
+  double length_;
+  std::vector<double> rest_;
+};
+
+/// What the contacts and ropes of a place can do.
+struct ContactCones {
+  std::vector<Edge> edges;
+  std::vector<RopeEdges> ropes;
+};
+
+/// At the evaluator's configuration. A report where a rope has too many pulleys with friction.
+Report find_cones(const ContactModel& contacts, Evaluator& evaluator, ForceColumns& columns, ContactCones& cones) {
+  for (std::size_t k = 0; k < contacts.points.size(); ++k) {
+    const ContactPoint& point = contacts.points[k];
+    if (point.kind == ContactKind::grip) continue;  // with its rope
+    const Evaluator::ScalarMotion gap = columns.motion(point.element);
+    if (gap.value > closed_place * evaluator.length_scale()) continue;
+    RopeEdges rope{columns.along(gap), {}, {}};
+    for (const ContactPoint& grip : contacts.points) {
+      if (grip.kind != ContactKind::grip || grip.rope->head != static_cast<int>(k) || !grip.has_friction()) continue;
+      rope.along.push_back(columns.along(grip.slide));
+      rope.exponent.push_back(std::max(grip.lines->exponent(evaluator, {}).f, 0.0));
+    }
+    if (rope.along.size() > most_held_grips) {
+      Report report;
+      report.status = Status::refused;
+      report.message =
+          fmt::format("whether friction holds is asked of ropes with friction on at most {} pulleys; \"{}\" has {}",
+                      most_held_grips, contacts.model->element_name(point.element), rope.along.size());
+      return report;
+    }
+    if (!rope.along.empty()) {
+      cones.ropes.push_back(std::move(rope));
+      continue;
+    }
+    Edge edge{rope.gap, Eigen::VectorXd::Zero(evaluator.plan().columns), point.mu_static};
+    if (point.has_friction()) edge.along = columns.along(point.slide);
+    cones.edges.push_back(std::move(edge));
+  }
+  return {};
+}
+
+/// Whether the cones balance loads with a part u of their friction.
+class HoldingTest {
+ public:
+  HoldingTest(ContactCones cones, ForceColumns& columns)
+      : cones_(std::move(cones)), free_(columns.free_of_constraints()) {
+    const Eigen::VectorXd loads = columns.applied();
+    b_ = free_ * loads;
+    enough_ = balanced * loads.norm();
+    columns_ = 2 * cones_.edges.size();
+    for (const RopeEdges& rope : cones_.ropes) columns_ += std::size_t{1} << rope.along.size();
+  }
+
+  bool operator()(double u) const {
+    const std::vector<Edge>& edges = cones_.edges;
+    Eigen::MatrixXd A(free_.rows(), static_cast<Eigen::Index>(columns_));
+    Eigen::Index c = 2 * static_cast<Eigen::Index>(edges.size());
+    for (const RopeEdges& rope : cones_.ropes) {
+      for (std::size_t signs = 0; signs < std::size_t{1} << rope.along.size(); ++signs) {
+        const Eigen::VectorXd edge = free_ * rope.edge(u, signs);
+        A.col(c++) = edge / std::max(edge.norm(), 1e-300);
+      }
+    }
+    for (std::size_t k = 0; k < edges.size(); ++k) {
+      for (int s = 0; s < 2; ++s) {
+        const double slope = (s == 0 ? u : -u) * edges[k].friction;
+        const Eigen::VectorXd edge = free_ * (edges[k].normal + slope * edges[k].along);
+        A.col(2 * static_cast<Eigen::Index>(k) + s) = edge / std::max(edge.norm(), 1e-300);
+      }
+    }
+    Eigen::VectorXd sizes(A.cols());
+    return nonnegative_least_squares(entries_of(A), entries_of(b_), entries_of(sizes)) <= enough_;
+  }
+
+ private:
+  ContactCones cones_;
+  Eigen::MatrixXd free_;
+  Eigen::VectorXd b_;
+  double enough_ = 0;
+  std::size_t columns_ = 0;
+};
+
+/// The smallest part of friction that holds; nothing: none does, however large.
+std::optional<double> least_utilisation(const HoldingTest& holds) {
+  if (holds(0)) return 0;
+  double low = 0, high = 1;
+  while (!holds(high)) {
+    low = high;
+    high *= 4;
+    if (high > most_friction) return {};
+  }
+  while (high - low > 1e-14 * high) {
+    const double middle = low + (high - low) / 2;
+    if (middle == low || middle == high) break;
+    (holds(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
 }  // namespace
 
 ContactHolding::ContactHolding(std::shared_ptr<const Model> model) : contacts_(contact_points(std::move(model))) {
@@ -104,11 +256,11 @@ void ContactHolding::lay_grips(const SystemState& state) {
 
 Holding ContactHolding::find(const SystemState& state, std::vector<double>& q) {
   Holding holding;
-  const Plan& plan = evaluator_->plan();
-  if (plan.columns > most_held_coordinates) {
+  const int columns = evaluator_->plan().columns;
+  if (columns > most_held_coordinates) {
     holding.status = Status::refused;
     holding.message = fmt::format("whether friction holds is asked of at most {} coordinates; this scene has {}",
-                                  most_held_coordinates, plan.columns);
+                                  most_held_coordinates, columns);
     return holding;
   }
   q = configuration_of(*evaluator_, state);
@@ -120,106 +272,10 @@ Holding ContactHolding::find(const SystemState& state, std::vector<double>& q) {
   evaluator_->set_configuration(q);
   lay_grips(state);
   evaluator_->set_configuration(q);
-  const double length = evaluator_->length_scale();
-  const std::vector<double> rest(q.size(), 0.0);
-  // Forces in columns, moments divided by the length scale so that they compare.
-  const auto force = [&](std::span<const double> loads) {
-    Eigen::VectorXd f(plan.columns);
-    for (int c = 0; c < plan.columns; ++c) {
-      const int coordinate = plan.coordinate[at(c)];
-      f(c) = loads[at(coordinate)] / (coordinate % 3 == 2 ? length : 1);
-    }
-    return f;
-  };
-  std::vector<double> loads(q.size(), 0.0), jacobian(at(plan.trash_slot()) + 1);
-  evaluator_->applied_forces(rest, loads);
-  const auto unit_force = [&](const Evaluator::ScalarMotion& of) {
-    std::vector<double> by(q.size(), 0.0);
-    scatter_gradient(of, 1, by);
-    return force(by);
-  };
-  std::vector<Edge> edges;
-  std::vector<RopeEdges> ropes;
-  for (std::size_t k = 0; k < contacts_.points.size(); ++k) {
-    const ContactPoint& point = contacts_.points[k];
-    if (point.kind == ContactKind::grip) continue;  // with its rope
-    const Evaluator::ScalarMotion gap = evaluator_->scalar_motion(point.element, rest);
-    if (gap.value > closed_place * length) continue;
-    RopeEdges rope{unit_force(gap), {}, {}};
-    for (const ContactPoint& grip : contacts_.points) {
-      if (grip.kind != ContactKind::grip || grip.rope->head != static_cast<int>(k) || !grip.has_friction()) continue;
-      rope.along.push_back(unit_force(evaluator_->scalar_motion(grip.slide, rest)));
-      rope.exponent.push_back(std::max(grip.lines->exponent(*evaluator_, {}).f, 0.0));
-    }
-    if (rope.along.size() > most_held_grips) {
-      holding.status = Status::refused;
-      holding.message =
-          fmt::format("whether friction holds is asked of ropes with friction on at most {} pulleys; \"{}\" has {}",
-                      most_held_grips, contacts_.model->element_name(point.element), rope.along.size());
-      return holding;
-    }
-    if (!rope.along.empty()) {
-      ropes.push_back(std::move(rope));
-      continue;
-    }
-    Edge edge{rope.gap, Eigen::VectorXd::Zero(plan.columns), point.mu_static};
-    if (point.has_friction()) edge.along = unit_force(evaluator_->scalar_motion(point.slide, rest));
-    edges.push_back(std::move(edge));
-  }
-  // What constraints can balance does not count: forces along their null space are left.
-  Eigen::MatrixXd free = Eigen::MatrixXd::Identity(plan.columns, plan.columns);
-  if (plan.rows > 0) {
-    evaluator_->start_jacobian(jacobian);
-    evaluator_->jacobian(jacobian);
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(plan.columns, plan.rows);
-    for (int c = 0; c < plan.columns; ++c) {
-      const double unit = plan.coordinate[at(c)] % 3 == 2 ? length : 1;
-      for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k)
-        rows(c, plan.jacobian.row_index[at(k)]) = jacobian[at(k)] / unit;
-    }
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(rows);
-    const Eigen::MatrixXd q_full = factors.householderQ();
-    free = q_full.rightCols(plan.columns - factors.rank()).transpose();
-  }
-  const Eigen::VectorXd b = free * force(loads);
-  std::size_t rope_edges = 0;
-  for (const RopeEdges& rope : ropes) rope_edges += std::size_t{1} << rope.along.size();
-  const auto holds = [&](double u) {
-    const auto columns = static_cast<Eigen::Index>(2 * edges.size() + rope_edges);
-    Eigen::MatrixXd A(free.rows(), columns);
-    Eigen::Index c = 2 * static_cast<Eigen::Index>(edges.size());
-    for (const RopeEdges& rope : ropes) {
-      for (std::size_t signs = 0; signs < std::size_t{1} << rope.along.size(); ++signs) {
-        const Eigen::VectorXd edge = free * rope.edge(u, signs);
-        A.col(c++) = edge / std::max(edge.norm(), 1e-300);
-      }
-    }
-    for (std::size_t k = 0; k < edges.size(); ++k) {
-      for (int s = 0; s < 2; ++s) {
-        const double slope = (s == 0 ? u : -u) * edges[k].friction;
-        const Eigen::VectorXd edge = free * (edges[k].normal + slope * edges[k].along);
-        A.col(2 * static_cast<Eigen::Index>(k) + s) = edge / std::max(edge.norm(), 1e-300);
-      }
-    }
-    Eigen::VectorXd sizes(A.cols());
-    return nonnegative_least_squares(entries_of(A), entries_of(b), entries_of(sizes)) <= balanced * force(loads).norm();
-  };
-  if (holds(0)) {
-    holding.utilisation = 0;
-    return holding;
-  }
-  double low = 0, high = 1;
-  while (!holds(high)) {
-    low = high;
-    high *= 4;
-    if (high > most_friction) return holding;
-  }
-  while (high - low > 1e-14 * high) {
-    const double middle = low + (high - low) / 2;
-    if (middle == low || middle == high) break;
-    (holds(middle) ? high : low) = middle;
-  }
-  holding.utilisation = high;
+  ForceColumns forces(*evaluator_);
+  ContactCones cones;
+  static_cast<Report&>(holding) = find_cones(contacts_, *evaluator_, forces, cones);
+  if (holding.ok()) holding.utilisation = least_utilisation(HoldingTest(std::move(cones), forces));
   return holding;
 }
 

@@ -229,12 +229,20 @@ FoundEvent EventWatch::first_found(const StateAt& state_at) {
   return first;
 }
 
+namespace {
+
+FoundEvent take_last(std::vector<FoundEvent>& events) {
+  const FoundEvent last = events.back();
+  events.pop_back();
+  return last;
+}
+
+bool is_later(const FoundEvent& a, const FoundEvent& b) { return a.t != b.t ? a.t > b.t : a.event > b.event; }
+
+}  // namespace
+
 std::optional<FoundEvent> EventWatch::find(double from, double to, const StateAt& state_at) {
-  if (!simultaneous_.empty()) {
-    const FoundEvent next = simultaneous_.back();
-    simultaneous_.pop_back();
-    return next;
-  }
+  if (!simultaneous_.empty()) return take_last(simultaneous_);
   if (!(from < to)) return {};
   // Found with the last one, in a motion that went on unchanged.
   if (!found_.empty() && found_.back().t == from && times_[2] <= to) {
@@ -283,8 +291,7 @@ std::optional<FoundEvent> EventWatch::find(double from, double to, const StateAt
       dips = dips || *beyond != times_[2];
     }
     if (found_.empty()) continue;
-    std::sort(found_.begin(), found_.end(),
-              [](const FoundEvent& a, const FoundEvent& b) { return a.t != b.t ? a.t > b.t : a.event > b.event; });
+    std::sort(found_.begin(), found_.end(), is_later);
     const FoundEvent first = first_found(state_at);
     // A column that comes back before the next sample may pass its value again before the others.
     if (dips) found_.clear();

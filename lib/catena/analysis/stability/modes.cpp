@@ -35,6 +35,54 @@ void find_errors(const StiffnessFloor& floor, std::vector<Mode>& modes) {
   for (Mode& mode : modes) mode.error = mode.omega2 != 0 ? usual_part * floor(mode.shape) : 0;
 }
 
+// What these modes leave out.
+void warn_of_motion(Evaluator& evaluator, bool moving, ModesReport& report) {
+  if (is_damped(evaluator)) {
+    report.warnings.emplace_back(evaluator.conservative()
+                                     ? "damping is left out: these are the undamped modes"
+                                     : "damping is left out: these are the undamped modes; under forces without "
+                                       "an energy a little damping may bring flutter on earlier");
+  }
+  if (moving) report.warnings.emplace_back("velocities are left out: these are the modes of the mechanism at rest");
+}
+
+// The lowest modes, no more than `wanted`, to the report; what is free or unstable counts all.
+void list_modes(std::vector<Mode>& modes, int wanted, const Plan& plan, ModesReport& report) {
+  for (const Mode& mode : modes) {
+    report.unstable += mode.omega2 < 0;
+    report.free_motions += mode.omega2 == 0;
+  }
+  modes.resize(std::min(modes.size(), at(wanted)));
+  for (Mode& mode : modes) {
+    report.omega2.push_back(mode.omega2);
+    report.omega.push_back(std::sqrt(std::abs(mode.omega2)));
+    report.errors.push_back(mode.error);
+    const double sense = std::copysign(1.0, decisive_component(plan, mode.shape));
+    for (double& x : mode.shape) x *= sense;
+    report.shapes.push_back(std::move(mode.shape));
+  }
+}
+
+void remark_on_modes(const Report& outcome, int asked, const Evaluator& evaluator, std::span<const double> radius,
+                     ModesReport& report) {
+  const int found = static_cast<int>(report.omega2.size());
+  if (outcome.ok() && found == 0) {
+    report.warnings.emplace_back("nothing can move: there are no modes");
+  } else if (outcome.ok() && found < asked) {
+    report.warnings.push_back(fmt::format("{} degree{} of freedom: {} mode{} instead of {}", found,
+                                          found > 1 ? "s" : "", found, found > 1 ? "s" : "", asked));
+  }
+  if (report.free_motions > 0) {
+    report.warnings.push_back(fmt::format("free to second order, with omega2 = 0: {}",
+                                          describe_free_motions(report.free_motions, report.free_bodies)));
+  }
+  if (report.unstable > 0) {
+    report.warnings.push_back(fmt::format("unstable: {} mode{} with a negative omega2, the lowest: {}", report.unstable,
+                                          report.unstable > 1 ? "s" : "",
+                                          describe_mode(evaluator, report.shapes.front(), radius)));
+  }
+}
+
 }  // namespace
 
 Modes::Modes(std::shared_ptr<const Model> model, const PlanOptions& plan_options, const ModesOptions& options)
@@ -164,14 +212,7 @@ ModesReport Modes::run(const std::function<bool()>& go_on) {
   MassMatrix masses;
   if (Report missing = masses.load(evaluator_); !missing.ok()) return end(std::move(missing));
   for (int c = 0; c < plan_->columns; ++c) mass[at(c)] = masses.mass[at(plan_->coordinate[at(c)])];
-  if (is_damped(evaluator_)) {
-    report.warnings.emplace_back(circulatory
-                                     ? "damping is left out: these are the undamped modes; under forces without "
-                                       "an energy a little damping may bring flutter on earlier"
-                                     : "damping is left out: these are the undamped modes");
-  }
-  if (moving_) report.warnings.emplace_back("velocities are left out: these are the modes of the mechanism at rest");
-
+  warn_of_motion(evaluator_, moving_, report);
   const int wanted = options_.count > 0 ? options_.count : default_count;
   std::vector<Mode> modes;
   const double residual = left.negligible() ? left.force : 0;
@@ -184,39 +225,15 @@ ModesReport Modes::run(const std::function<bool()>& go_on) {
         "this one finds the place about which it oscillates",
         left.force, model_->body_name(body)));
   }
-  if (circulatory) return end(std::move(outcome));
-  std::vector<std::vector<double>> free;
-  for (const Mode& mode : modes) {
-    report.unstable += mode.omega2 < 0;
-    if (mode.omega2 == 0) free.push_back(mode.shape);
-  }
-  report.free_motions = static_cast<int>(free.size());
-  report.free_bodies = names_of_moving(system_, lambda, free);
-  report.unstable = std::max(report.unstable, hidden_unstable_);
-  modes.resize(std::min(modes.size(), at(wanted)));
-  for (Mode& mode : modes) {
-    report.omega2.push_back(mode.omega2);
-    report.omega.push_back(std::sqrt(std::abs(mode.omega2)));
-    report.errors.push_back(mode.error);
-    const double sense = std::copysign(1.0, decisive_component(*plan_, mode.shape));
-    for (double& x : mode.shape) x *= sense;
-    report.shapes.push_back(std::move(mode.shape));
-  }
-  const int found = static_cast<int>(modes.size());
-  if (outcome.ok() && found == 0) {
-    report.warnings.emplace_back("nothing can move: there are no modes");
-  } else if (outcome.ok() && found < options_.count) {
-    report.warnings.push_back(fmt::format("{} degree{} of freedom: {} mode{} instead of {}", found,
-                                          found > 1 ? "s" : "", found, found > 1 ? "s" : "", options_.count));
-  }
-  if (report.free_motions > 0) {
-    report.warnings.push_back(fmt::format("free to second order, with omega2 = 0: {}",
-                                          describe_free_motions(report.free_motions, report.free_bodies)));
-  }
-  if (report.unstable > 0) {
-    report.warnings.push_back(fmt::format("unstable: {} mode{} with a negative omega2, the lowest: {}", report.unstable,
-                                          report.unstable > 1 ? "s" : "",
-                                          describe_mode(evaluator_, report.shapes.front(), system_.radius())));
+  if (!circulatory) {
+    std::vector<std::vector<double>> free;
+    for (const Mode& mode : modes) {
+      if (mode.omega2 == 0) free.push_back(mode.shape);
+    }
+    report.free_bodies = names_of_moving(system_, lambda, free);
+    list_modes(modes, wanted, *plan_, report);
+    report.unstable = std::max(report.unstable, hidden_unstable_);
+    remark_on_modes(outcome, options_.count, evaluator_, system_.radius(), report);
   }
   return end(std::move(outcome));
 }

@@ -21,6 +21,64 @@ namespace {
 // Reactions balance the loads if no more than this part of them is left.
 constexpr double balanced = 1e-9;
 
+// What the search says of the stability.
+void tell_stability(const StaticResult& result, EquilibriumReport& report) {
+  const Certificate& c = result.certificate;
+  report.has_energy = result.has_energy;
+  report.certified = c.valid && result.has_energy && result.report.status != Status::not_converged;
+  report.stable = report.certified && c.stable;
+  report.neutral = report.certified && c.neutral;
+  report.negative_modes = report.certified ? c.negative_modes : 0;
+  report.free_motions = report.certified ? c.neutral_modes : 0;
+  if (report.certified) report.free_bodies = c.free_bodies;
+  if (result.stability && result.stability->judged) {
+    const CirculatoryModes& motions = result.stability->motions;
+    report.certified = true;
+    report.stable = result.stability->stable;
+    report.neutral = motions.neutral > 0;
+    report.negative_modes = motions.negative;
+    report.flutter = result.stability->in_masses ? motions.pairs : 0;
+    report.free_motions = motions.neutral;
+    report.free_bodies = result.free_bodies;
+  }
+  report.softest_stiffness = c.softest_stiffness;
+}
+
+void tell_softest_mode(const Evaluator& evaluator, std::span<const double> radius, const Certificate& certificate,
+                       EquilibriumReport& report) {
+  const Plan& plan = evaluator.plan();
+  if (certificate.mode.empty()) return;
+  report.softest_mode = describe_mode(evaluator, certificate.mode, radius);
+  report.softest_shape.assign(3 * evaluator.model().bodies.size(), 0.0);
+  for (int k = 0; k < plan.columns; ++k) {
+    const int coordinate = plan.coordinate[at(k)];
+    report.softest_shape[3 * at(plan.model_body[at(coordinate / 3)]) + at(coordinate % 3)] = certificate.mode[at(k)];
+  }
+}
+
+// Refuses a place beyond an end of what an element is defined on.
+Report check_ends(Evaluator& evaluator, std::span<const double> q) {
+  const WatchedElements watched(evaluator);
+  evaluator.set_configuration(q);
+  Report left = watched.check_ends();
+  if (left.ok()) left = watched.check_laws({});
+  if (left.ok()) left = watched.check_ropes();
+  return left;
+}
+
+// Gaps that are closed, rank and degrees of freedom with them.
+void tell_rank(const Evaluator& evaluator, const StaticResult& result, EquilibriumReport& report) {
+  const Plan& plan = evaluator.plan();
+  const auto& closed = result.gaps.closed;
+  int open = 0;
+  for (std::size_t k = 0; k < closed.size(); ++k) {
+    if (closed[k]) report.active.push_back(evaluator.model().element_name(plan.row_element[at(plan.gap_rows[k])]));
+    open += !closed[k] || result.gaps.weak[k];
+  }
+  report.rank = plan.rows - static_cast<int>(result.dependent_rows.size()) - open;
+  report.dof = plan.columns - *report.rank;
+}
+
 }  // namespace
 
 Equilibrium::Equilibrium(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
@@ -108,53 +166,17 @@ EquilibriumReport Equilibrium::solve() {
   report.iterations = result.iterations;
   report.residual = result.residual;
   report.energy = system_.energy();
-  const Certificate& c = result.certificate;
-  report.has_energy = result.has_energy;
-  report.certified = c.valid && result.has_energy && result.report.status != Status::not_converged;
-  report.stable = report.certified && c.stable;
-  report.neutral = report.certified && c.neutral;
-  report.negative_modes = report.certified ? c.negative_modes : 0;
-  report.free_motions = report.certified ? c.neutral_modes : 0;
-  if (report.certified) report.free_bodies = c.free_bodies;
-  if (result.stability && result.stability->judged) {
-    const CirculatoryModes& motions = result.stability->motions;
-    report.certified = true;
-    report.stable = result.stability->stable;
-    report.neutral = motions.neutral > 0;
-    report.negative_modes = motions.negative;
-    report.flutter = result.stability->in_masses ? motions.pairs : 0;
-    report.free_motions = motions.neutral;
-    report.free_bodies = result.free_bodies;
-  }
-  report.softest_stiffness = c.softest_stiffness;
-  if (!c.mode.empty()) {
-    report.softest_mode = describe_mode(evaluator_, c.mode, system_.radius());
-    report.softest_shape.assign(3 * model_->bodies.size(), 0.0);
-    for (int k = 0; k < plan_->columns; ++k) {
-      const int coordinate = plan_->coordinate[at(k)];
-      report.softest_shape[3 * at(plan_->model_body[at(coordinate / 3)]) + at(coordinate % 3)] = c.mode[at(k)];
-    }
-  }
+  tell_stability(result, report);
+  tell_softest_mode(evaluator_, system_.radius(), result.certificate, report);
   for (int r : result.dependent_rows) {
     const std::string name = model_->element_name(plan_->row_element[at(r)]);
     if (report.redundant.empty() || report.redundant.back() != name) report.redundant.push_back(name);
   }
-  if (const WatchedElements watched(evaluator_); result.report.ok()) {
-    evaluator_.set_configuration(q_);
-    Report left = watched.check_ends();
-    if (left.ok()) left = watched.check_laws({});
-    if (left.ok()) left = watched.check_ropes();
-    if (!left.ok()) result.report = std::move(left);
+  if (result.report.ok()) {
+    if (Report left = check_ends(evaluator_, q_); !left.ok()) result.report = std::move(left);
   }
   if (result.report.ok()) {
-    const auto& closed = result.gaps.closed;
-    int open = 0;
-    for (std::size_t k = 0; k < closed.size(); ++k) {
-      if (closed[k]) report.active.push_back(model_->element_name(plan_->row_element[at(plan_->gap_rows[k])]));
-      open += !closed[k] || result.gaps.weak[k];
-    }
-    report.rank = plan_->rows - static_cast<int>(result.dependent_rows.size()) - open;
-    report.dof = plan_->columns - *report.rank;
+    tell_rank(evaluator_, result, report);
     if (!result.dependent_rows.empty()) choose_least_reactions(result.report);
   }
   return end(std::move(result.report));
