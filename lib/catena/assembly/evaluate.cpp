@@ -7,7 +7,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "catena/assembly/attachment_points.hpp"
+#include "catena/assembly/length_scale.hpp"
+#include "catena/assembly/same_structure.hpp"
 #include "catena/base/at.hpp"
 #include "catena/base/sincos.hpp"
 #include "catena/elements/all.hpp"
@@ -30,114 +31,6 @@ void for_each_present_block(Blocks& blocks, Values& values, Lists& lists, F&& f)
   for_each_block(blocks, values, lists, [&](auto& block, auto& data, auto& list) {
     if (block.size() > 0) f(block, data, list);
   });
-}
-
-double extent(const Model& model) {
-  if (model.bodies.empty()) return 0;
-  Vec2<double> low = model.bodies.front().position, high = low;
-  for (const auto& body : model.bodies) {
-    low = {std::min(low.x, body.position.x), std::min(low.y, body.position.y)};
-    high = {std::max(high.x, body.position.x), std::max(high.y, body.position.y)};
-  }
-  return std::max(high.x - low.x, high.y - low.y);
-}
-
-// Of the points of force elements from the centroids of their bodies, of the ground's from the other body; 0 if none.
-double mean_force_arm(const Model& model) {
-  double sum = 0;
-  std::int64_t count = 0;
-  for_each_list(model.forces, [&](const auto& list, int) {
-    for (const auto& entry : list) {
-      const int other = entry.i >= 0 ? entry.i : entry.j;
-      visit_points(entry, [&](const Vec2<double>& local, int body) {
-        if (body < 0 && other < 0) return;
-        sum += norm(body >= 0 ? local : local - model.bodies[at(other)].position);
-        ++count;
-      });
-    }
-  });
-  return count > 0 ? sum / static_cast<double>(count) : 0;
-}
-
-// Of the points of curves from the centroids of their bodies, of the ground's from their own middle; 0 if none.
-double mean_curve_size(const Model& model) {
-  double sum = 0;
-  std::int64_t count = 0;
-  const auto add = [&](const BodyCurve<double>& curve, bool on_ground) {
-    if (!curve || curve.is_line()) return;
-    const std::vector<double> places = curve.samples();
-    Vec2<double> middle{};
-    if (on_ground) {
-      for (const double s : places) middle += curve.plain(s).p / static_cast<double>(places.size());
-    }
-    for (const double s : places) sum += norm(curve.plain(s).p - middle);
-    count += static_cast<std::int64_t>(places.size());
-  };
-  for_each_list(model.constraints, [&](const auto& list, int) {
-    using E = ElementOf<decltype(list)>;
-    if constexpr (SearchesCurve<E>) {
-      for (const auto& entry : list) {
-        const auto visit = [&](const auto& field) {
-          if constexpr (std::is_same_v<std::remove_cvref_t<decltype(entry.element.*field.member)>, BodyCurve<double>>)
-            add(entry.element.*field.member, (field.body == 0 ? entry.i : entry.j) < 0);
-        };
-        std::apply([&](const auto&... field) { (visit(field), ...); }, E::fields());
-      }
-    }
-  });
-  return count > 0 ? sum / static_cast<double>(count) : 0;
-}
-
-// Radius of gyration of bodies with mass and inertia; 0 if none: where nothing but free bodies moves.
-double mean_gyration(const Model& model) {
-  double sum = 0;
-  int count = 0;
-  for (const auto& body : model.bodies) {
-    if (body.fixed || !(body.mass > 0) || !(body.inertia > 0)) continue;
-    sum += std::sqrt(body.inertia / body.mass);
-    ++count;
-  }
-  return count > 0 ? sum / count : 0;
-}
-
-void require_same(std::size_t plan, std::size_t model, const char* what) {
-  if (plan == model) return;
-  throw std::invalid_argument("the model has " + std::to_string(model) + " " + what +
-                              ", but the analysis was made for a model with " + std::to_string(plan));
-}
-
-/// Throws where the elements of `model` differ in type or bodies from those of `known`.
-/// Elements that do not hold for the time being may change their bodies, as ropes do that meet or leave a pulley.
-void require_same_structure(const Model& known, const Model& model, const Plan& plan) {
-  require_same(known.bodies.size(), model.bodies.size(), "bodies");
-  require_same(known.elements.size(), model.elements.size(), "elements");
-  const auto differs = [&](const std::string& who) {
-    throw std::invalid_argument(
-        "\"" + who + "\" differs from the element of this number in the model that the analysis was made for");
-  };
-  for (std::size_t b = 0; b < known.bodies.size(); ++b) {
-    const auto &was = known.bodies[b], &is = model.bodies[b];
-    if (was.fixed != is.fixed || was.particle != is.particle)
-      differs(std::string(model.body_name(static_cast<int>(b))));
-  }
-  for (std::size_t e = 0; e < known.elements.size(); ++e) {
-    const ElementRecord &was = known.elements[e], &is = model.elements[e];
-    const bool same_list = (was.kind == ElementKind::force) == (is.kind == ElementKind::force);
-    if (!same_list || was.type != is.type || was.index != is.index) {
-      differs(model.element_name(static_cast<int>(e)));
-    }
-  }
-  const auto compare = [&](const auto& all) {
-    for_each_list(all(known), all(model), [&](const auto& list, const auto& other, int) {
-      for (std::size_t k = 0; k < list.size(); ++k) {
-        const bool same = list[k].i == other[k].i && list[k].j == other[k].j;
-        if (!same && !plan.is_released(other[k].id)) differs(model.element_name(other[k].id));
-      }
-    });
-  };
-  compare([](const Model& m) -> const auto& { return m.constraints; });
-  compare([](const Model& m) -> const auto& { return m.forces; });
-  require_same(known.laws.size(), model.laws.size(), "laws of state");
 }
 
 // Per weld: whether it joins two bodies that stay apart, since it has equations or is released.
@@ -229,8 +122,8 @@ Evaluator::~Evaluator() = default;
 
 Evaluator::Evaluator(std::shared_ptr<const Plan> plan, const Model& model) : plan_(std::move(plan)), model_(&model) {
   if (!plan_) throw std::invalid_argument("an evaluator needs a plan, and was given a null pointer");
-  require_same(plan_->plan_body.size(), model.bodies.size(), "bodies");
-  require_same(plan_->element_row.size(), model.elements.size(), "elements");
+  require_same_count(plan_->plan_body.size(), model.bodies.size(), "bodies");
+  require_same_count(plan_->element_row.size(), model.elements.size(), "elements");
   place_.assign(model.elements.size(), -1);
   for_each_block(plan_->blocks, values_, model.constraints, [&](const auto& block, auto&, const auto& list) {
     for (int e = 0; e < block.size(); ++e) place_[at(list[at(block.entry[at(e)])].id)] = e;
@@ -282,11 +175,7 @@ void Evaluator::load_values() {
   });
   laws_ = compile_laws<double>(*model_, model_->laws, *plan_);
   attachment_radii(&length_scale_);
-  if (length_scale_ == 0) length_scale_ = extent(*model_);
-  if (length_scale_ == 0) length_scale_ = mean_force_arm(*model_);
-  if (length_scale_ == 0) length_scale_ = mean_curve_size(*model_);
-  if (length_scale_ == 0) length_scale_ = mean_gyration(*model_);
-  if (length_scale_ == 0) length_scale_ = 1;
+  if (length_scale_ == 0) length_scale_ = length_without_joints(*model_);
   function_.resize(model_->functions.size());
   // Until an analysis sets its time; tables that begin later give their first value.
   for (std::size_t k = 0; k < function_.size(); ++k) {

@@ -1,0 +1,11 @@
+// The length that places, errors and rates of a scene are compared with where no joint tells one: the extent of the
+// given bodies, else the mean arm of forces, the mean size of curves, the mean radius of gyration, else 1. Units: m.
+#pragma once
+
+#include "catena/model/model.hpp"
+
+namespace catena {
+
+double length_without_joints(const Model& model);
+
+}  // namespace catena
