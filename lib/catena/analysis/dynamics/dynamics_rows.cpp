@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/motion/dependence.hpp"
 #include "catena/analysis/pose/mobility.hpp"
 #include "catena/base/at.hpp"
 #include "catena/columns/energy.hpp"
@@ -11,11 +12,6 @@
 
 namespace catena {
 namespace {
-
-// Rows whose smallest pivot ratio is above this need no rank analysis.
-constexpr double independent_ratio = 1e-8;
-// Below this one, a sine of 0.1, what is interpolated may be much worse than the steps, and is checked by itself.
-constexpr double nearly_singular = 1e-2;
 
 // Of the length scale: how far before the circle of a pulley steps end that would go into it. A stretch of length l
 // there turns by D / l, and l is the square root of the distance.
@@ -64,7 +60,7 @@ Snapshot Dynamics::snapshot(double t, std::span<const double> y, const Needs& ne
 Report Dynamics::give_row(double t, RowObserver& observer) {
   const std::optional<Snapshot> state = state_at(t);
   if (!state) return stuck();
-  if (work_.balance && t != integrator_->time() && equations_.smallest_pivot_ratio() < nearly_singular) {
+  if (work_.balance && t != integrator_->time() && equations_.smallest_pivot_ratio() < dependence::singular_passage) {
     work_.balance->observe(*state);
     if (Report balance = work_.balance->check(t, equations_.applied_forces()); !balance.ok()) return balance;
   }
@@ -130,7 +126,7 @@ void Dynamics::find_multipliers() {
 
 // Degrees of freedom: by count where rows are independent, else by rank.
 void Dynamics::describe_mobility(AnalysisReport& report) {
-  if (equations_.smallest_pivot_ratio() > independent_ratio && !equations_.is_dependent()) {
+  if (equations_.smallest_pivot_ratio() > dependence::independent && !equations_.is_dependent()) {
     report.rank = plan_->rows;
     report.dof = plan_->columns - plan_->rows;
     report.mobility = plan_->mobility();
@@ -174,7 +170,7 @@ Report Dynamics::stuck() {
   }
   std::string cause = "forces that grow without bound, or a motion that jumps";
   if (const std::string undetermined = equations_.undetermined(); !undetermined.empty()) cause = undetermined;
-  if (plan_->rows > 0 && equations_.smallest_pivot_ratio() < 1e-6 && row >= 0) {
+  if (plan_->rows > 0 && equations_.smallest_pivot_ratio() < dependence::likely_cause && row >= 0) {
     const int element = plan_->row_element[at(row)];
     cause = fmt::format("a singular configuration: {} \"{}\" depends on other constraints there",
                         model_->element_type(element), model_->element_name(element));
@@ -184,7 +180,7 @@ Report Dynamics::stuck() {
   return report;
 }
 
-// A part of the last step to whoever wants to look between rows.
+// Gives a part of the last step to observers that look between rows.
 Report Dynamics::show(double from, double to, RowObserver& observer, int ended_by) {
   if (!observer.wants_stretches() || !(to > from)) return {};
   MotionStretch stretch{from, to, [this](double t) { return state_at(t); }};

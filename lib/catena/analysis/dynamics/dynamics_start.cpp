@@ -3,14 +3,13 @@
 #include <cmath>
 
 #include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/motion/dependence.hpp"
 #include "catena/analysis/motion/initial_velocities.hpp"
 #include "catena/analysis/pose/departure.hpp"
 
 namespace catena {
 namespace {
 
-// Rows whose smallest pivot ratio is above this need no rank analysis.
-constexpr double independent_part = 1e-8;
 // A branch is the one that given velocities mean if they are nearer to it than by this part of the way to the next.
 constexpr double clearly_nearer = 0.3;
 // How far along the branch the rank is taken, rad or length scales: as far as elsewhere (redundant_rows.hpp).
@@ -25,7 +24,8 @@ constexpr double first_way = 1e-4;
 std::optional<SingularStart> Dynamics::singular_start() {
   if (plan_->rows == 0 || plan_->rows < plan_->columns) return {};
   equations_.leave_out({});
-  if (!equations_.factorize(t_, Side::after, q_) || equations_.smallest_pivot_ratio() > independent_part) return {};
+  if (!equations_.factorize(t_, Side::after, q_) || equations_.smallest_pivot_ratio() > dependence::independent)
+    return {};
   SingularPoint point = find_branches(evaluator_, q_, {}, start_dependence);
   if (point.nullity == 0 || !point.held_to_second_order) return {};
   const int branch = branch_of_given_velocities(point);

@@ -4,14 +4,9 @@
 
 #include <utility>
 
+#include "catena/analysis/motion/dependence.hpp"
+
 namespace catena {
-namespace {
-
-// A smallest pivot ratio below this one: accelerations are rounding errors, or formal.
-constexpr double near_singular = 1e-8;
-
-}  // namespace
-
 void SingularRows::begin_run() {
   dependent_ = always_dependent_ = unbounded_ = false;
   limits_ = formal_ = {};
@@ -23,7 +18,7 @@ void SingularRows::follow_step() {
 
 bool SingularRows::look(double t, std::span<const double> q, std::span<const double> qd, std::span<double> qdd) {
   here_ = false;
-  if (always_dependent_ || !(equations_.smallest_pivot_ratio() < near_singular)) return false;
+  if (always_dependent_ || !(equations_.smallest_pivot_ratio() < dependence::independent)) return false;
   if (!instant_) instant_.emplace(equations_);
   const SingularInstant::Outcome outcome = instant_->solve(t, q, qd, qdd);
   here_ = outcome == SingularInstant::Outcome::found;
@@ -38,7 +33,7 @@ bool SingularRows::look(double t, std::span<const double> q, std::span<const dou
 bool SingularRows::look_at_start(double t, std::span<const double> q, std::span<const double> qd,
                                  std::span<double> qdd) {
   dependent_ = equations_.is_singular();
-  if (!(equations_.smallest_pivot_ratio() < near_singular)) return false;
+  if (!(equations_.smallest_pivot_ratio() < dependence::independent)) return false;
   if (!instant_) instant_.emplace(equations_);
   if (instant_->solve(t, q, qd, qdd) != SingularInstant::Outcome::found) return false;
   dependent_ = false;

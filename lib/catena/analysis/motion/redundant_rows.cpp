@@ -5,6 +5,7 @@
 #include <random>
 #include <utility>
 
+#include "catena/analysis/motion/dependence.hpp"
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/pose/jacobian_rank.hpp"
 #include "catena/assembly/systems/row_spread.hpp"
@@ -13,10 +14,8 @@
 namespace catena {
 namespace {
 
-// Rows whose smallest pivot ratio is above this need no rank analysis: rounding leaves ratios of 1e-16, and assembled
-// places that miss the constraints by 1e-12 ones of 1e-24 ...
-constexpr double independent_ratio = 1e-8;
-// ... but where masses are very unequal rounding is that of the largest diagonal: so many times the ratio of diagonals.
+// Where masses are very unequal rounding of pivots is that of the largest diagonal: so many times the ratio of
+// diagonals.
 constexpr double rounding_of_pivots = 1e-14;
 // Length of the probe, rad or length scales: far enough that a rank found there is not that of a singular position
 // nearby (sine 0.1), near enough to be assembled.
@@ -162,7 +161,7 @@ class Exchange {
 // Whether the pivots of the factors leave no doubt that rows are independent.
 bool are_independent(const EquationsOfMotion& equations) {
   const double spread = row_spread(equations.row_sizes(), equations.plan().row_is_angle);
-  return equations.smallest_pivot_ratio() > std::max(independent_ratio, rounding_of_pivots * spread * spread);
+  return equations.smallest_pivot_ratio() > std::max(dependence::independent, rounding_of_pivots * spread * spread);
 }
 
 }  // namespace

@@ -3,14 +3,13 @@
 #include <cmath>
 
 #include "catena/analysis/dynamics/integrators/adams.hpp"
+#include "catena/analysis/motion/dependence.hpp"
 
 namespace catena {
 namespace {
 
-constexpr double goal = 0.5;            // error a step is chosen for, compared with what is allowed
-constexpr double regular_ratio = 2e-2;  // of pivots, from which on a singular position lies behind
-constexpr double near_ratio = 0.2;      // below which steps that fail are left to Runge-Kutta
-constexpr double longer = 4;            // steps of Runge-Kutta, compared with those of an Adams method
+constexpr double goal = 0.5;  // error a step is chosen for, compared with what is allowed
+constexpr double longer = 4;  // steps of Runge-Kutta, compared with those of an Adams method
 constexpr int most_failures = 100;
 constexpr std::size_t fixed_order = 8;
 
@@ -108,7 +107,8 @@ void Adams::fail(double h, double error, bool lower) {
   }
   h_ = cut * h;
   // Differences of many points magnify the rounding of accelerations near a singular position.
-  if (failures_ >= 3 && motion_.equations().smallest_pivot_ratio() < near_ratio * usual_ratio_) crossing_ = true;
+  if (failures_ >= 3 && motion_.equations().smallest_pivot_ratio() < dependence::clear_of_passage * usual_ratio_)
+    crossing_ = true;
 }
 
 // Order and size of the next step. `above`: the error at order k + 1, negative where it is not known.
@@ -165,7 +165,7 @@ bool Adams::advance_by_runge_kutta(double limit) {
     return true;
   }
   ++crossing_steps_;
-  if (runge_kutta_.pivot_ratio() > regular_ratio && !runge_kutta_.dips()) {
+  if (runge_kutta_.pivot_ratio() > dependence::behind_passage && !runge_kutta_.dips()) {
     forget();
     h_ = fixed ? options_.fixed_step : std::min(h_, h);
   }

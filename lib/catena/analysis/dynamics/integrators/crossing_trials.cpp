@@ -4,12 +4,12 @@
 #include <iterator>
 #include <limits>
 
+#include "catena/analysis/motion/dependence.hpp"
+
 namespace catena {
 namespace {
 
-// Steps must not end at positions where a pivot ratio is below this; accelerations lose ratio^1.5 there.
-constexpr double singular_end = 1e-7, lost_digits = 2e-11;
-// From this many times that limit on the position is passed.
+// From this many times the least ratio at which a step may end, the position is passed.
 constexpr double clear_of_end = 10;
 // Where no step across a singular position is good enough, the best is taken if its error is below this.
 constexpr double largest_crossing_error = 300;
@@ -23,7 +23,8 @@ constexpr double least_aimed = 0.3, largest_aimed = 3;
 }  // namespace
 
 CrossingTrials::CrossingTrials(double tolerance)
-    : least_end_ratio_(std::max(singular_end, std::pow(lost_digits / std::sqrt(tolerance), 2.0 / 3))) {}
+    : least_end_ratio_(
+          std::max(dependence::end_of_step, std::pow(dependence::lost_digits / std::sqrt(tolerance), 2.0 / 3))) {}
 
 void CrossingTrials::begin() {
   detours_ = 0;

@@ -193,7 +193,7 @@ bool RungeKutta::project_stage(double t, Side side) {
 // Factors at the new point, before it is projected. Order 5 had its last stage there, order 8 beside it: far from
 // singular positions those factors serve.
 bool RungeKutta::factorize_new_point() {
-  return !projects() || tableau().order == 5 || pivot_ratio() > StageRatios::projection_ratio ||
+  return !projects() || tableau().order == 5 || pivot_ratio() > dependence::singular_passage ||
          motion_.equations().factorize(t_new_, Side::before, motion_.q(std::span<const double>(y_new_)));
 }
 

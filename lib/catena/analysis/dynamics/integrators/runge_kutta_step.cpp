@@ -4,14 +4,13 @@
 #include <optional>
 
 #include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
+#include "catena/analysis/motion/dependence.hpp"
 
 namespace catena {
 namespace {
 
 constexpr double safety = 0.9;
 constexpr double largest_growth = 2.5, largest_cut = 0.2;
-// Pivot ratios below which all methods project, and above which they cease to.
-constexpr double nearly_singular = 0.1, regular = 0.2;
 // A passage may lie within a step of which a pivot ratio is this small, compared with those at both ends, or of which
 // one end is, compared with the other.
 constexpr double dip_inside = 0.35, dip_at_end = 0.02;
@@ -54,7 +53,7 @@ bool RungeKutta::try_crossing(double h, const Judgement& judged) {
 bool RungeKutta::leaves_branch(double h) {
   EquationsOfMotion& equations = motion_.equations();
   const double end = pivot_ratio(), least = std::min(ratios_.at_start(), end), most = std::max(ratios_.at_start(), end);
-  if (!(std::min(ratios_.smallest(), least) < nearly_singular)) return false;
+  if (!(std::min(ratios_.smallest(), least) < dependence::near_passage)) return false;
   if (!(ratios_.smallest() < dip_inside * least) && !(least < dip_at_end * most)) return false;
   if (!branches_) return false;
   const double before = std::sqrt(ratios_.at_start()), s = before / (before + std::sqrt(end));
@@ -84,7 +83,7 @@ bool RungeKutta::advance(double limit) {
 }
 
 bool RungeKutta::begin_step() {
-  const bool nears = ratios_.at_start() < nearly_singular;
+  const bool nears = ratios_.at_start() < dependence::near_passage;
   trials_.begin();
   order_.begin(nears && !is_fixed());
   // A choice of coordinates made at a singular position serves nowhere.
@@ -119,7 +118,8 @@ RungeKutta::Trial RungeKutta::try_step(double limit, double& usual) {
   if ((h < scale_.smallest_step(t_) && !lands) || order_.gives_up()) return Trial::failed;
   t_new_ = lands ? limit : t_ + h;
   if (!evaluate_stages(h)) return cut_short(h);
-  if (!projects() && ratios_.smallest() < nearly_singular) return begin_projection() ? Trial::again : Trial::failed;
+  if (!projects() && ratios_.smallest() < dependence::near_passage)
+    return begin_projection() ? Trial::again : Trial::failed;
   const Judgement judged = judge(h);
   // Errors of stages across the constraints affect each other in a dip, and the estimate does not contain all of it.
   const bool doubtful = !is_fixed() && !trials_.project_stages();
@@ -174,7 +174,7 @@ void RungeKutta::accept(double growth, double proposed) {
   order_.accept();
   if (crossing_) {
     ++projected_steps_;
-    crossing_ = pivot_ratio() < regular;
+    crossing_ = pivot_ratio() < dependence::clear_of_passage;
     if (partitions()) partition_->forget();
   }
   t_before_ = t_;
@@ -185,7 +185,7 @@ void RungeKutta::accept(double growth, double proposed) {
   motion_.equations().evaluator().curve_places(curve_places_);
   observe_ratio();
   observe_rates();
-  if (ratios_.at_start() > regular) turn_.end();
+  if (ratios_.at_start() > dependence::clear_of_passage) turn_.end();
   // A step that was shortened by a limit does not change the usual step.
   h_ = order_.was_rejected() ? h * std::min(growth, 1.0) : std::max(h * growth, h < proposed ? proposed : 0.0);
 }

@@ -11,6 +11,7 @@
 #include <limits>
 #include <vector>
 
+#include "catena/analysis/motion/dependence.hpp"
 #include "catena/analysis/motion/tableau.hpp"
 
 namespace catena {
@@ -45,7 +46,7 @@ class StageRatios {
   double smallest() const { return smallest_; }
 
   /// Whether a singular position lies within the step. Light parts make all ratios small without any.
-  bool dip() const { return smallest_ < std::min(projection_ratio, ratio_dip * largest_); }
+  bool dip() const { return smallest_ < std::min(dependence::singular_passage, ratio_dip * largest_); }
 
   void find_roughness(const StageSum& weights) {
     roughness_ = 0;
@@ -57,11 +58,8 @@ class StageRatios {
   }
   double roughness() const { return roughness_; }
 
-  /// A step with a stage whose ratio is below this is repeated with all stages projected ...
-  static constexpr double projection_ratio = 1e-2;
-
  private:
-  /// ... if the ratio of other stages is this much larger.
+  /// A stage counts whose ratio is this much smaller than that of others.
   static constexpr double ratio_dip = 0.3;
 
   std::vector<double> of_stage_;

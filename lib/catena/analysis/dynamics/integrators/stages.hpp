@@ -1,7 +1,6 @@
 // Slopes k_i at the stages of a step (tableau.hpp), and weighted sums of them.
 #pragma once
 
-#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -19,18 +18,7 @@ class Stages {
   const std::vector<double>& operator[](std::size_t stage) const { return slope_[stage]; }
 
   /// out = from + h sum weight k; `from` may be nullptr.
-  void combine(const StageSum& sum, double h, const double* from, std::span<double> out) const {
-    constexpr std::size_t block = 256;  // stays in the first cache while all stages are added
-    for (std::size_t begin = 0; begin < out.size(); begin += block) {
-      const std::size_t end = std::min(begin + block, out.size());
-      for (std::size_t i = begin; i < end; ++i) out[i] = from ? from[i] : 0;
-      for (const StageTerm& term : sum) {
-        const double weight = h * term.weight;
-        const double* k = slope_[static_cast<std::size_t>(term.stage)].data();
-        for (std::size_t i = begin; i < end; ++i) out[i] += weight * k[i];
-      }
-    }
-  }
+  void combine(const StageSum& sum, double h, const double* from, std::span<double> out) const;
   /// The same of one entry, without h.
   double sum(const StageSum& weights, std::size_t entry) const {
     double all = 0;

@@ -4,13 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/motion/dependence.hpp"
 #include "catena/analysis/pose/jacobian_rank.hpp"
 
 namespace catena {
 namespace {
 
-// Pivot ratio below which steps are balanced, a sine of 0.1: there rounding is a thousand times that elsewhere.
-constexpr double balanced_ratio = 1e-2;
 // Rounding of energies, in their largest terms: potentials of weights may cancel.
 constexpr double rounding_of_energy = 4 * std::numeric_limits<double>::epsilon();
 // Times the energy that errors explain: in 60,000 steps the median was 0.1 and the largest 60; steps that lost their
@@ -60,7 +59,9 @@ StepEnergy::StepEnergy(const Motion& motion, std::size_t stages, double length, 
   weight_ *= std::hypot(gravity.x, gravity.y) * length;
 }
 
-bool StepEnergy::watches(double ratio, bool crossing) const { return may_ && (crossing || ratio < balanced_ratio); }
+bool StepEnergy::watches(double ratio, bool crossing) const {
+  return may_ && (crossing || ratio < dependence::singular_passage);
+}
 
 void StepEnergy::note_power(const Motion& motion, std::size_t stage, std::span<const double> y) {
   Evaluator& evaluator = motion.equations().evaluator();
