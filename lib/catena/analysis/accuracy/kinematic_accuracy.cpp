@@ -73,7 +73,7 @@ std::vector<double> KinematicAccuracy::digits(const AnalysisReport& report) {
   left_of_multipliers_ = analysis_.solver().left_of_multipliers();
   last_.q.assign(analysis_.q().begin(), analysis_.q().end());
   analysis_.evaluator().curve_places(last_.curves);
-  unknown_.assign(analysis_.evaluator().model().elements.size(), not_known);
+  kept_.unknown.assign(analysis_.evaluator().model().elements.size(), not_known);
   std::vector<double> examined;
   for (const Row* row : {&fastest_, &worst_, &middle_, &last_}) {
     if (row->q.empty() || std::find(examined.begin(), examined.end(), row->t) != examined.end()) continue;
@@ -93,7 +93,7 @@ std::vector<double>& KinematicAccuracy::values_at(const Row& row, const State& s
   snapshot.lambda = state.lambda;
   // What is summed up over time is not known here, and shows as such in the columns that are made of it.
   snapshot.residual = snapshot.work = snapshot.dissipated = snapshot.initial_energy = not_known;
-  snapshot.driver_work = unknown_;
+  snapshot.driver_work = kept_.unknown;
   values.resize(columns_.size());
   columns_.evaluate(snapshot, values);
   return values;
@@ -107,23 +107,23 @@ bool KinematicAccuracy::examine(const Row& row) {
   if (!(solver.factor_at(row.q) > 0)) return false;
   State exact;
   exact.q = row.q;
-  change_.resize(exact.q.size());
-  if (!solver.respond(solver.phi(), change_)) return false;
-  for (std::size_t k = 0; k < change_.size(); ++k) exact.q[k] -= change_[k];
+  kept_.change.resize(exact.q.size());
+  if (!solver.respond(solver.phi(), kept_.change)) return false;
+  for (std::size_t k = 0; k < kept_.change.size(); ++k) exact.q[k] -= kept_.change[k];
   // A row that is further off was not solved to the equations that hold here.
   if (!(solver.distance(exact.q, row.q, nullptr) <= largest_change)) return false;
   solver.residual_at(exact.q);
   if (!solve_rates(exact, nullptr, 0)) return false;
-  values_at(row, exact, first_);
-  square_.assign(columns_.size(), 0.0);
+  values_at(row, exact, kept_.first);
+  kept_.square.assign(columns_.size(), 0.0);
   for (int k = 0; k < Disturbance::disturbed_values; ++k) {
     if (!disturb(row, exact)) return false;
   }
-  for (std::size_t k = 0; k < square_.size(); ++k) {
+  for (std::size_t k = 0; k < kept_.square.size(); ++k) {
     // Columns that are not defined here, alike in both, are judged in other rows.
     if (std::isnan(row.values[k])) continue;
-    errors_.take_error(k, std::abs(row.values[k] - first_[k]) +
-                              Disturbance::deviations * std::sqrt(square_[k] / Disturbance::disturbed_values));
+    errors_.take_error(k, std::abs(row.values[k] - kept_.first[k]) +
+                              Disturbance::deviations * std::sqrt(kept_.square[k] / Disturbance::disturbed_values));
   }
   return true;
 }
@@ -140,10 +140,10 @@ bool KinematicAccuracy::disturb(const Row& row, const State& exact) {
     const double changed = change(exact, state);
     if (!std::isfinite(changed)) return false;
     if (changed <= largest_change) {
-      values_at(row, state, other_);
-      for (std::size_t k = 0; k < square_.size(); ++k) {
-        const double difference = (other_[k] - first_[k]) / size;
-        square_[k] += difference * difference;
+      values_at(row, state, kept_.other);
+      for (std::size_t k = 0; k < kept_.square.size(); ++k) {
+        const double difference = (kept_.other[k] - kept_.first[k]) / size;
+        kept_.square[k] += difference * difference;
       }
       return true;
     }
@@ -174,16 +174,16 @@ bool KinematicAccuracy::disturb_by(double size, const Row& row, const State& exa
   evaluator.set_time_along(row.t * (1 + size * Disturbance::epsilon * random_.next()), row.t);
   solver.residual_at(exact.q);
   // Of the equations off by this, and by the time.
-  place_moduli(evaluator, exact.q, moduli_);
-  const std::span<double> rows = terms_.sum(solver.jacobian(), moduli_);
+  place_moduli(evaluator, exact.q, kept_.moduli);
+  const std::span<double> rows = terms_.sum(solver.jacobian(), kept_.moduli);
   for (int r = 0; r < plan_.rows; ++r) {
     const double unit = plan_.row_is_angle[at(r)] ? 1 / evaluator.length_scale() : 1;
     rows[at(r)] = size * random_.next() * (Disturbance::epsilon * rows[at(r)] + residual_ * unit) - solver.phi()[at(r)];
   }
-  if (!solver.respond(rows, change_)) return false;
+  if (!solver.respond(rows, kept_.change)) return false;
   state.q = exact.q;
   for (const int k : plan_.coordinate)
-    state.q[at(k)] += change_[at(k)] + size * Disturbance::epsilon / 2 * random_.next() * moduli_[at(k)];
+    state.q[at(k)] += kept_.change[at(k)] + size * Disturbance::epsilon / 2 * random_.next() * kept_.moduli[at(k)];
   solver.residual_at(state.q);
   return solve_rates(state, &exact, size);
 }
@@ -210,14 +210,14 @@ bool KinematicAccuracy::solve_loads(State& state, double size) {
   if (plan_.rows > plan_.columns) return true;
   std::vector<double> applied(state.q.size());
   evaluator.applied_forces(state.qd, applied);
-  loads_.resize(at(plan_.columns));
+  kept_.loads.resize(at(plan_.columns));
   const auto inertia_force = [&](int c) {
     const int coordinate = plan_.coordinate[at(c)];
     const auto& body = evaluator.model().bodies[at(plan_.model_body[at(coordinate / 3)])];
     return (coordinate % 3 == 2 ? body.inertia : body.mass) * state.qdd[at(coordinate)];
   };
-  for (int c = 0; c < plan_.columns; ++c) loads_[at(c)] = applied[at(plan_.coordinate[at(c)])] - inertia_force(c);
-  if (!solver.solve_multipliers(loads_, state.lambda)) return false;
+  for (int c = 0; c < plan_.columns; ++c) kept_.loads[at(c)] = applied[at(plan_.coordinate[at(c)])] - inertia_force(c);
+  if (!solver.solve_multipliers(kept_.loads, state.lambda)) return false;
   if (size == 0) return true;
   const std::vector<double> sizes = force_sizes(evaluator).all;
   const std::span<const double> jacobian = solver.jacobian();
@@ -225,9 +225,9 @@ bool KinematicAccuracy::solve_loads(State& state, double size) {
     double terms = sizes[at(plan_.coordinate[at(c)])] + std::abs(inertia_force(c));
     for (int k = plan_.jacobian.column_start[at(c)]; k < plan_.jacobian.column_start[at(c) + 1]; ++k)
       terms += std::abs(jacobian[at(k)] * state.lambda[at(plan_.jacobian.row_index[at(k)])]);
-    loads_[at(c)] += size * Disturbance::epsilon * random_.next() * terms;
+    kept_.loads[at(c)] += size * Disturbance::epsilon * random_.next() * terms;
   }
-  if (!solver.solve_multipliers(loads_, state.lambda)) return false;
+  if (!solver.solve_multipliers(kept_.loads, state.lambda)) return false;
   double largest = 0;
   for (const double lambda : state.lambda) largest = std::max(largest, std::abs(lambda));
   for (double& lambda : state.lambda)
@@ -240,11 +240,12 @@ bool KinematicAccuracy::add_response(std::span<double> x, double size, std::span
   DrivenSolver& solver = analysis_.solver();
   const std::span<double> rows = terms_.sum(solver.jacobian(), moduli, rates);
   for (double& term : rows) term *= size * Disturbance::epsilon * random_.next();
-  if (!solver.respond(rows, change_)) return false;
+  if (!solver.respond(rows, kept_.change)) return false;
   const double left = size * left_of_rates_ * solver.rate_norm(x), length = analysis_.evaluator().length_scale();
   for (const int k : plan_.coordinate) {
     const double rounding = Disturbance::epsilon / 2 * std::abs(moduli[at(k)]);
-    x[at(k)] += change_[at(k)] + size * random_.next() * rounding + left * random_.next() * (k % 3 == 2 ? 1 : length);
+    x[at(k)] +=
+        kept_.change[at(k)] + size * random_.next() * rounding + left * random_.next() * (k % 3 == 2 ? 1 : length);
   }
   return true;
 }

@@ -72,9 +72,12 @@ class KinematicAccuracy final : public RowAccuracy {
   double left_of_rates_ = 0, left_of_multipliers_ = 0;  // by refinement, as parts of the largest
   std::int64_t count_ = 0, next_ = 1;
   RowTerms terms_;
-  std::vector<double> change_, moduli_, loads_;  // of a solve, kept for their memory
-  std::vector<double> first_, other_, square_;   // of columns
-  std::vector<double> unknown_;                  // works of drivers
+  /// For their memory.
+  struct {
+    std::vector<double> change, moduli, loads;  // of a solve
+    std::vector<double> first, other, square;   // of columns
+    std::vector<double> unknown;                // works of drivers
+  } kept_;
 };
 
 }  // namespace catena

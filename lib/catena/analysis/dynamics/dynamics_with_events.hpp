@@ -48,7 +48,7 @@ class DynamicsWithEvents {
   const Plan& plan() const { return dynamics_->plan(); }
   IntegrationMethod method() const { return dynamics_->method(); }
   Evaluator& evaluator() { return dynamics_->evaluator(); }
-  /// Told of every phase of the motion; nullptr: nobody is.
+  /// Told of every phase of the motion; nullptr: none.
   void witness(PhaseWitness* witness) { witness_ = witness; }
   void pause(Pauses pauses) { pauses_ = std::move(pauses); }
   /// Nothing in a motion that is taken up.
@@ -132,12 +132,14 @@ class DynamicsWithEvents {
   bool resumed_ = false;
   Report taken_up_;                               // whether ropes could be
   std::int64_t first_row_ = 0, rows_before_ = 0;  // of the grid; rows given before the motion was taken up
-  // Of the run under way.
-  TimeGrid grid_ = TimeGrid::list({});
-  Needs needs_;
-  AnalysisReport total_;
-  std::int64_t rows_ = 0, next_row_ = 0;  // given, those at events as well; of the grid, where the phase begins
-  bool in_phase_ = false, over_ = false;
+  /// The run under way.
+  struct {
+    TimeGrid grid = TimeGrid::list({});
+    Needs needs;
+    AnalysisReport total;
+    std::int64_t rows = 0, next_row = 0;  // given, those at events as well; of the grid, where the phase begins
+    bool in_phase = false, over = false;
+  } run_;
   PhaseWitness* witness_ = nullptr;
   double last_action_ = -1;  // s; and how often events acted then
   int at_once_ = 0;

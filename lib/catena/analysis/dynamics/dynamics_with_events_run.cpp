@@ -40,25 +40,25 @@ AnalysisReport DynamicsWithEvents::run(const TimeGrid& grid, const Needs& needs,
 }
 
 void DynamicsWithEvents::begin(const TimeGrid& grid, const Needs& needs) {
-  grid_ = grid;
-  needs_ = needs;
-  rows_ = rows_before_;
-  watch_->rows_given = [this] { return rows_; };
-  total_ = {};
-  total_.warnings = inactive_;
+  run_.grid = grid;
+  run_.needs = needs;
+  run_.rows = rows_before_;
+  watch_->rows_given = [this] { return run_.rows; };
+  run_.total = {};
+  run_.total.warnings = inactive_;
   singular_points_.clear();
   end_.reset();
   if (!resumed_) jolts_.clear();
-  next_row_ = first_row_;
+  run_.next_row = first_row_;
   last_action_ = -1;
   at_once_ = 0;
-  in_phase_ = over_ = false;
+  run_.in_phase = run_.over = false;
   if (!contacts_.any()) {
     tell({.t = dynamics_->time()});
     return;
   }
   if (const Report started = resumed_ ? taken_up_ : start_contacts(); !started.ok()) {
-    over_ = true;
+    run_.over = true;
     give_up(started);
     if (started.status == Status::lock_up && contacts_.started() && contacts_.blocked())
       singular_points_.push_back(*contacts_.blocked());
@@ -66,53 +66,54 @@ void DynamicsWithEvents::begin(const TimeGrid& grid, const Needs& needs) {
 }
 
 void DynamicsWithEvents::begin_phase() {
-  in_phase_ = true;
+  run_.in_phase = true;
   if (!watch_->events().empty() || contacts_.any()) dynamics_->watch(watch_.get());
   // The next multiple that lies clearly ahead.
   dynamics_->pause_after((std::floor(dynamics_->time() / pauses_.every * (1 + 1e-12)) + 1) * pauses_.every);
-  dynamics_->begin(grid_.from_row(next_row_), needs_);
+  dynamics_->begin(run_.grid.from_row(run_.next_row), run_.needs);
 }
 
 bool DynamicsWithEvents::go_on(std::int64_t rows, RowObserver& observer) {
-  CountingObserver counted(observer, rows_);
-  while (!over_) {
-    if (!in_phase_) begin_phase();
-    if (dynamics_->go_on(rows - next_row_, counted) && rows < grid_.size()) return true;
-    over_ = !end_phase(counted);
+  CountingObserver counted(observer, run_.rows);
+  while (!run_.over) {
+    if (!run_.in_phase) begin_phase();
+    if (dynamics_->go_on(rows - run_.next_row, counted) && rows < run_.grid.size()) return true;
+    run_.over = !end_phase(counted);
   }
-  return total_.ok() && next_row_ >= rows;
+  return run_.total.ok() && run_.next_row >= rows;
 }
 
 AnalysisReport DynamicsWithEvents::end() {
-  if (in_phase_) take_report();
-  over_ = true;
-  if (std::string remark = contacts_.remark_on_impacts(); !remark.empty()) total_.warnings.push_back(std::move(remark));
-  return std::move(total_);
+  if (run_.in_phase) take_report();
+  run_.over = true;
+  if (std::string remark = contacts_.remark_on_impacts(); !remark.empty())
+    run_.total.warnings.push_back(std::move(remark));
+  return std::move(run_.total);
 }
 
 // What the phase that ends has to say.
 void DynamicsWithEvents::take_report() {
-  in_phase_ = false;
-  add_part(total_, dynamics_->end());
+  run_.in_phase = false;
+  add_part(run_.total, dynamics_->end());
   const std::vector<SingularPoint>& points = dynamics_->singular_points();
   singular_points_.insert(singular_points_.end(), points.begin(), points.end());
   jolts_.insert(jolts_.end(), dynamics_->jolts().begin(), dynamics_->jolts().end());
-  next_row_ += dynamics_->next_row();
-  if (!total_.ok() && !contacts_.trouble().empty()) {
-    total_.status = Status::inconsistent;
-    total_.message = fmt::format("at t = {:.12g} s: {}", dynamics_->time(), contacts_.trouble());
+  run_.next_row += dynamics_->next_row();
+  if (!run_.total.ok() && !contacts_.trouble().empty()) {
+    run_.total.status = Status::inconsistent;
+    run_.total.message = fmt::format("at t = {:.12g} s: {}", dynamics_->time(), contacts_.trouble());
   }
 }
 
 // The run ends with what a report says. False, always.
 bool DynamicsWithEvents::give_up(const Report& report) {
-  total_.status = report.status;
-  total_.message = report.message;
+  run_.total.status = report.status;
+  run_.total.message = report.message;
   return false;
 }
 
 Report DynamicsWithEvents::change(bool acts, const Event*& stop) {
-  const bool sum_up_work = needs_.work || watch_->needs().work;
+  const bool sum_up_work = run_.needs.work || watch_->needs().work;
   if (dynamics_->jumped()) return meet_jump(sum_up_work);
   if (acts) return act(sum_up_work, stop);
   return change_contacts(watch_->transition(dynamics_->stopped_by()), sum_up_work);
@@ -121,12 +122,12 @@ Report DynamicsWithEvents::change(bool acts, const Event*& stop) {
 bool DynamicsWithEvents::end_phase(RowObserver& rows) {
   take_report();
   const int stopped_by = dynamics_->stopped_by();
-  if (total_.ok() && dynamics_->paused()) {
-    save_and_resume(rows_, next_row_);
+  if (run_.total.ok() && dynamics_->paused()) {
+    save_and_resume(run_.rows, run_.next_row);
     return taken_up_.ok() || give_up(taken_up_);
   }
   const bool jumped = dynamics_->jumped();
-  if (!total_.ok() || (stopped_by < 0 && !jumped)) return false;
+  if (!run_.total.ok() || (stopped_by < 0 && !jumped)) return false;
   const bool acts = !jumped && !watch_->is_transition({stopped_by, 0});
   at_once_ = dynamics_->time() > last_action_ ? 1 : at_once_ + 1;
   last_action_ = dynamics_->time();
@@ -134,8 +135,8 @@ bool DynamicsWithEvents::end_phase(RowObserver& rows) {
   const Event* stop = nullptr;
   Report next = change(acts, stop);
   if (next.ok() && stop) {
-    if (next_row_ < grid_.size())
-      total_.message = fmt::format("event \"{}\" ended it at t = {:.12g} s", stop->name, end_->t);
+    if (run_.next_row < run_.grid.size())
+      run_.total.message = fmt::format("event \"{}\" ended it at t = {:.12g} s", stop->name, end_->t);
     return false;
   }
   if (next.ok() && at_once_ > most_at_once + 2 * static_cast<int>(contacts_.places())) {
@@ -146,10 +147,10 @@ bool DynamicsWithEvents::end_phase(RowObserver& rows) {
   }
   if (!next.ok()) {
     give_up(next);
-    if (next.status == Status::lock_up) end_in_lock_up(needs_, rows);
+    if (next.status == Status::lock_up) end_in_lock_up(run_.needs, rows);
     return false;
   }
-  return next_row_ < grid_.size();
+  return run_.next_row < run_.grid.size();
 }
 
 }  // namespace catena
