@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 
 #include "catena/analysis/batch/batch.hpp"
 #include "catena/elements/all.hpp"
@@ -272,6 +273,17 @@ void write_design(const FourBar& bar, Model& model) {
   model.bodies[2].angle = rocker;
 }
 
+/// Its crank turns at `speed`, rad/s; lengths are written by write_design().
+std::shared_ptr<Model> driven_four_bar(double speed) {
+  auto model = std::make_shared<Model>();
+  for (const char* name : {"crank", "coupler", "rocker"}) model->add_body(name, {});
+  const int ends[4][2] = {{ground, 0}, {0, 1}, {1, 2}, {ground, 2}};
+  for (const auto& [i, j] : ends) model->add("", Revolute<double>{}, i, j);
+  const std::vector<double> turning{0, speed};
+  model->add_driver("drive", AbsoluteAngle<double>{}, 0, ground, TimeFunction<double>::polynomial(turning));
+  return model;
+}
+
 void lanes(Bench& bench) {
   const std::int64_t designs = bench.brief() ? 16 : 2000;
   constexpr int positions = 100;
@@ -281,12 +293,8 @@ void lanes(Bench& bench) {
   row.reference = "two triangles and the closed loop";
   row.allowed = 1e-11;
   if (!bench.wants(row)) return;
-  auto model = std::make_shared<Model>();
-  for (const char* name : {"crank", "coupler", "rocker"}) model->add_body(name, {});
-  const int ends[4][2] = {{ground, 0}, {0, 1}, {1, 2}, {ground, 2}};
-  for (const auto& [i, j] : ends) model->add("", Revolute<double>{}, i, j);
-  const std::vector<double> turning{0, 2 * std::acos(-1.0)};
-  model->add_driver("drive", AbsoluteAngle<double>{}, 0, ground, TimeFunction<double>::polynomial(turning));
+  constexpr double speed = 2 * std::numbers::pi;
+  const std::shared_ptr<Model> model = driven_four_bar(speed);
   write_design(design_number(0), *model);
   BatchOptions options;
   options.same_functions = true;
@@ -302,10 +310,10 @@ void lanes(Bench& bench) {
     for (int lane = 0; lane < rows.designs; ++lane) {
       const FourBar bar = design_number(rows.first + lane);
       for (int k = 0; k < rows.rows; ++k) {
-        const std::array<double, 3> exact = bar.rocker(turning[1] * grid[k]);
+        const std::array<double, 3> exact = bar.rocker(speed * grid[k]);
         error = std::max({error, std::abs(rows.positions(k, 2, 2)[lane] - exact[0]),
-                          std::abs(rows.velocities(k, 2, 2)[lane] - exact[1]) / turning[1],
-                          std::abs(rows.accelerations(k, 2, 2)[lane] - exact[2]) / (turning[1] * turning[1])});
+                          std::abs(rows.velocities(k, 2, 2)[lane] - exact[1]) / speed,
+                          std::abs(rows.accelerations(k, 2, 2)[lane] - exact[2]) / (speed * speed)});
       }
     }
   });
@@ -325,7 +333,7 @@ void lanes(Bench& bench) {
       [&] {
         for (std::int64_t k = 0; k < designs; ++k) {
           const FourBar bar = design_number(k);
-          for (int n = 0; n < positions; ++n) largest = std::max(largest, bar.rocker(turning[1] * 0.01 * n)[2]);
+          for (int n = 0; n < positions; ++n) largest = std::max(largest, bar.rocker(speed * 0.01 * n)[2]);
         }
       },
       parts);

@@ -63,6 +63,17 @@ double tip_error(int rods, double ax, double ay) {
   return static_cast<double>(norm(chain.tip_acceleration() - catena::Vec2<long double>{ax, ay}));
 }
 
+/// The row of one evaluation of a chain.
+bool read_kernel(const Fields& f, Row& row) {
+  row.suite = "kernels", row.problem = "chain of rods", row.bodies = std::atoi(f[3].c_str());
+  row.seconds = 1e-6 * number(f, 5);
+  if (row.bodies < 1) return false;
+  row.error = tip_error(row.bodies, number(f, 6), number(f, 7));
+  row.error_of = "acceleration of the tip, m/s^2";
+  row.reference = "Newton-Euler in 64 bits";
+  return true;
+}
+
 /// The row of a record; false for lines that are none, for catena's own, and for tables that no suite has.
 bool read_record(const Fields& f, Row& row) {
   if (f.size() < 3 || f[1] == "catena" || f[1] == "reference") return false;
@@ -70,15 +81,7 @@ bool read_record(const Fields& f, Row& row) {
   row.method = f[2];
   row.repeats = 1;
   row.reference = "that of the program that runs the engine";
-  if (f[0] == "S1a" && f.size() >= 8) {
-    row.suite = "kernels", row.problem = "chain of rods", row.bodies = std::atoi(f[3].c_str());
-    row.seconds = 1e-6 * number(f, 5);
-    if (row.bodies < 1) return false;
-    row.error = tip_error(row.bodies, number(f, 6), number(f, 7));
-    row.error_of = "acceleration of the tip, m/s^2";
-    row.reference = "Newton-Euler in 64 bits";
-    return true;
-  }
+  if (f[0] == "S1a" && f.size() >= 8) return read_kernel(f, row);
   row.suite = "dynamics";
   if (f.size() > 3) row.setting = f[3];
   const auto steps = [&] {
