@@ -33,7 +33,7 @@ class Bench {
 
   const Options& options() const { return options_; }
   bool brief() const { return options_.brief; }
-  /// Whether this row is among those asked for, and nobody has ended the run.
+  /// Whether this row is among those asked for, and the run was not cancelled.
   bool wants(const Row& row) const {
     return (!options_.cancelled || !options_.cancelled()) &&
            (options_.only.empty() || row.key().find(options_.only) != std::string::npos);

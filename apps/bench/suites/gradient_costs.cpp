@@ -127,7 +127,7 @@ DesignModels designs_of(int rods, std::span<const int> parameters) {
   return models;
 }
 
-/// Shows its steps to one who differentiates, if there is one, and keeps where it ended.
+/// Passes steps on to the one that differentiates, if there is one, and keeps where the motion ended.
 class Watcher final : public RowObserver {
  public:
   explicit Watcher(StateDerivatives* derivatives) : derivatives_(derivatives) {}

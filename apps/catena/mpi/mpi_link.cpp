@@ -1,5 +1,5 @@
-// The processes of an MPI job, as a module that `catena` loads where it was started by mpirun, so that nobody else
-// waits for MPI's libraries. MPI without its old C++ classes.
+// The processes of an MPI job, as a module that `catena` loads where it was started by mpirun, so that no other
+// program waits for MPI's libraries. MPI without its old C++ classes.
 #define OMPI_SKIP_MPICXX 1
 #include <mpi.h>
 

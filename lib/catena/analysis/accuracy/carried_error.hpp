@@ -45,7 +45,7 @@ class CarriedError final : public StepFollower {
   bool spend(double cost);
   /// Whether there are equations to look at a row with, or may be.
   bool can_look() const { return affordable(cost_of_setup()); }
-  /// Equations of its own, at whose evaluations nobody else looks, with places as rows have them.
+  /// Equations of its own, evaluated for this estimate alone, with places as rows have them.
   EquationsOfMotion& equations();
 
  private:

@@ -26,7 +26,7 @@ class LaneMotion {
   /// `program` must outlive this object.
   explicit LaneMotion(const LaneProgram& program);
 
-  /// Puts a design into a lane, at its given configuration. The model must outlive the motion. Lanes that nobody uses
+  /// Puts a design into a lane, at its given configuration. The model must outlive the motion. Lanes that are not used
   /// hold the first design once more. False where a number of it is not finite.
   bool set_design(int lane, const Model& model, double length_scale);
   LaneSolver& solver() { return solver_; }

@@ -205,7 +205,7 @@ DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions&
   else if (converged || (feasible && outcome.optimality && *outcome.optimality <= stationary))
     outcome.end = feasible ? DesignEnd::converged : DesignEnd::infeasible;
   else
-    // Stopped, though nobody cancelled it: it ran out of designs.
+    // Stopped without being cancelled: it ran out of designs.
     outcome.end = end == MinimiserEnd::slow || end == MinimiserEnd::stopped ? DesignEnd::slow : DesignEnd::broken_off;
   return outcome;
 }

@@ -16,7 +16,7 @@ class ProcessLink {
   virtual bool receive(int& from, std::string& message) = 0;
   /// Some process does not answer any more: nothing may wait for it.
   virtual void told_of_loss() = 0;
-  /// Whether nobody was told of a loss: then the link may be ended, which waits for all processes.
+  /// Whether no loss was told: then the link may be ended, which waits for all processes.
   virtual bool is_whole() const = 0;
 };
 

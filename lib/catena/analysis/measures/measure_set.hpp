@@ -76,8 +76,7 @@ class MeasureSet {
   /// at every instant that may have one.
   void give_pulses();
 
-  /// Columns come from who has them without snapshots: of stretches, and of
-  /// rows that are given by their instants.
+  /// Columns of stretches, and of rows that are given by their instants, are computed by `values`, without snapshots.
   void use_values(MotionSamples::Values values);
   /// The same measures of another design: with other numbers, of a model of the
   /// same structure.

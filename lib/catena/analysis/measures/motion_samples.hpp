@@ -75,9 +75,8 @@ class MotionSamples {
     always_ = always;
   }
 
-  /// Columns at an instant of the run, from who has them without a snapshot;
-  /// false where it has not. Where derivatives are wanted snapshots are looked
-  /// at as before.
+  /// Columns at an instant of the run, without a snapshot; false where they cannot be computed so. Where derivatives
+  /// are wanted, columns come from snapshots.
   using Values = std::function<bool(double t, std::span<double> out)>;
   void use_values(Values values) { values_ = std::move(values); }
   /// The columns at an instant by use_values().

@@ -35,7 +35,7 @@ BodyShape shape_of(PartTemplate::Shape kind, const std::vector<double>& n) {
   return shape;
 }
 
-/// Nothing, or why nobody could see the shape. Numbers that could not be read were reported, and are none.
+/// Nothing, or why the shape is invisible. Numbers that could not be read were reported, and are none.
 const char* unseen(PartTemplate::Shape kind, const std::vector<double>& n) {
   if (kind == PartTemplate::Shape::disc && n.size() == 3 && n[2] <= 0) return "is a disc without area";
   if (kind == PartTemplate::Shape::rectangle && n.size() == 5 && (n[2] <= 0 || n[3] <= 0))

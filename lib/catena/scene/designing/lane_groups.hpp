@@ -1,5 +1,5 @@
 // Designs in lanes for processes that are handed single ones: those that would stand side by side in one process are
-// computed together by the first that asks for one of them, so that the numbers of a design depend on nobody else.
+// computed together by the first that asks for one of them, so that the numbers of a design depend on no other process.
 //
 //   group of design k = floor(k / lane_count)
 //

@@ -8,7 +8,7 @@
 namespace catena {
 namespace {
 
-/// Rows of analyses inside of an optimisation or a sweep: nobody wants them.
+/// Rows of analyses inside of an optimisation or a sweep, which are not kept.
 class NoRows final : public RowSink {
  public:
   void begin(std::span<const ColumnInfo>) override {}

@@ -16,11 +16,11 @@ struct InnerRun {
   SystemState& state;           ///< where it starts; it leaves behind where it ended
   RowSink& rows;
   const DesignRequest* design = nullptr;  ///< derivatives that are wanted, or nullptr
-  bool is_shown = false;           ///< its progress and iterations are told to whom the outer analysis tells its own
-  PoseSink* poses = nullptr;       ///< nullptr: nobody draws
-  ParameterSeeds values_at_end{};  ///< what it leaves to the next, as AnalysisContext has it
-  bool went_back = false;          ///< gradients were found by adjoints
-  bool adjoint_failed = false;     ///< they were not, and the analysis was run once more
+  bool is_shown = false;                  ///< its progress and iterations are reported like those of the outer analysis
+  PoseSink* poses = nullptr;              ///< nullptr: nothing is drawn
+  ParameterSeeds values_at_end{};         ///< what it leaves to the next, as AnalysisContext has it
+  bool went_back = false;                 ///< gradients were found by adjoints
+  bool adjoint_failed = false;            ///< they were not, and the analysis was run once more
 };
 
 /// By inner analysis, in the order of the task: how often adjoints led to gradients less how often they did not, of the
@@ -37,7 +37,7 @@ bool run_inner(const AnalysisContext& outer, const AnalysisTask& inner, InnerRun
 using TakeAnalysis = std::function<bool(const AnalysisTask& analysis, const AnalysisResult& result)>;
 
 /// Runs the inner analyses of the context's task with other values of parameters, each on a model of its own, until one
-/// fails or `take` is false. `design`: derivatives that are wanted, or nullptr; `watch`: who sees rows and poses, or
+/// fails or `take` is false. `design`: derivatives that are wanted, or nullptr; `watch`: gets rows and poses, or
 /// nullptr. Returns the status of the last analysis, `refused` for one that throws; nothing where the scene allows no
 /// such model; `why` gets the reason of either. `record`, if it is given, is used and kept. Nothing of the context
 /// changes, so that several threads may ask for designs at once.
@@ -54,7 +54,7 @@ const MeasureResult* value_of(const PlacedMeasure& measure, const AnalysisResult
 Status measure_design(const AnalysisContext& context, const ParameterSeeds& seeds, DesignSink* watch,
                       std::vector<double>& measures, std::string& why);
 
-/// Shows a design whose parameters have these values: runs its analyses once more for who draws.
+/// Shows a design whose parameters have these values: runs its analyses once more for the drawing.
 void show_design(const AnalysisContext& context, const ParameterSeeds& seeds, DesignLabel label,
                  std::unique_ptr<DesignSink> watch);
 

@@ -33,26 +33,26 @@ class AnalysisRows final : public RowObserver {
   /// made at the first row, from its snapshot.
   using Look = std::function<std::optional<Snapshot>(double)>;
   void look_by(std::function<Look(const Snapshot&)> make) { make_look_ = std::move(make); }
-  /// Where those who draw look, if the analysis computes nothing for them; before begin(). What it gives is valid until
-  /// the next call; where it gives nothing they see the row as it is.
+  /// The snapshots that are drawn, if they differ from those of the rows; before begin(). What it gives is valid until
+  /// the next call; where it gives nothing the row is drawn as it is.
   using Drawn = std::function<std::optional<Snapshot>(const Snapshot&)>;
   void draw_by(Drawn drawn) { drawn_ = std::move(drawn); }
-  /// Nobody can look between rows: measures are those of the rows, and say so.
+  /// There are no snapshots between rows: measures are those of the rows, and say so.
   void take_rows_alone() { rows_alone_ = true; }
   /// One-sided elements do not take part in the analysis: the rows tell which of them are violated.
   void watch_gaps(const Model& model) { gaps_.emplace(model); }
-  /// How many digits of the columns are right is wanted, and this is how it is found.
+  /// Finds how many digits of the columns are right.
   void judge(std::unique_ptr<RowAccuracy> accuracy) { accuracy_ = std::move(accuracy); }
   /// Announces the columns to the sink.
   void begin();
 
-  /// Of the columns, of what measures look at, and of those who draw, unless they look elsewhere.
+  /// Of the columns, of what measures look at, and of drawings, unless these have snapshots of their own.
   Needs needs() const;
   /// Of what measures look at alone.
   Needs measured_needs() const { return measures_.empty() ? Needs{} : measures_.needs(); }
   /// Of the columns and of what measures look at.
   Needs asked_needs() const;
-  /// What those who draw want of what this analysis can give.
+  /// What drawings need of what this analysis can give.
   Needs drawn_needs() const;
   bool observe(const Snapshot& snapshot) override;
   bool proceed(double t) override;

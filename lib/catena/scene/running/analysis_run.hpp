@@ -68,7 +68,7 @@ struct AnalysisContext {
   ParameterSeeds values_at_end{};
   bool estimate_error = false;              ///< of dynamics
   CheckpointRequest* checkpoint = nullptr;  ///< nullptr: no analysis has to pause
-  PoseSink* poses = nullptr;                ///< nullptr: nobody draws
+  PoseSink* poses = nullptr;                ///< nullptr: nothing is drawn
   bool digits = false;                      ///< whether to tell how many digits of the columns are right
   int threads = 1;                          ///< that a sweep, or the starts of an optimisation, may use
   SweepHelp sweep{};

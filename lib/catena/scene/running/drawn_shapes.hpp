@@ -9,7 +9,7 @@
 
 namespace catena {
 
-/// Nothing where nobody draws. The evaluator is set to q; `shapes` are over the plan's columns.
+/// Nothing where no drawing is wanted. The evaluator is set to q; `shapes` are over the plan's columns.
 void draw_shapes(const AnalysisContext& context, Evaluator& evaluator, double t, std::span<const double> q,
                  const std::vector<std::vector<double>>& shapes);
 
