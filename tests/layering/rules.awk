@@ -54,6 +54,7 @@ BEGIN {
   after("linalg", "factorization", "patterns kernels")
   after("linalg", "block", "patterns kernels")
   after("linalg", "rank", "patterns kernels factorization")
+  after("linalg", "pivoting", "rank")
   after("results", "terminal", ".")
   after("assembly", "systems", ".")
   after("assembly", "design", ".")

@@ -147,28 +147,65 @@ void ContactProblem::solve_unknowns(const std::vector<Unknown>& unknowns, const 
 // Whether x keeps the inequalities of its states, to a part of its size.
 bool ContactProblem::fits(double size) const {
   for (std::size_t k = 0; k < place.size(); ++k) {
+    const std::size_t n = 2 * k, t = n + 1;
+    if (!std::isfinite(x[n]) || !std::isfinite(x[t])) return false;
+    const bool sticks = state[k] == State::sticks;
     if (place[k].head >= 0) {
-      if (!std::isfinite(x[2 * k + 1]) || (state[k] == State::sticks && misfit(k) > tolerated * size)) return false;
+      if (sticks && size_of(t, misfit(k)) > tolerated * size) return false;
       continue;
     }
-    const double normal = place[k].has_normal ? x[2 * k] : 0, friction = std::abs(x[2 * k + 1]);
-    if (normal < -tolerated * size || !std::isfinite(normal + friction)) return false;
-    const double limit = place[k].has_normal ? place[k].mu_static * normal : place[k].limit;
-    if (state[k] == State::sticks && friction > limit + tolerated * size) return false;
+    if (place[k].has_normal && size_of(n, x[n]) < -tolerated * size) return false;
+    const double limit = place[k].has_normal ? place[k].mu_static * x[n] : place[k].limit;
+    if (sticks && size_of(t, std::abs(x[t]) - limit) > tolerated * size) return false;
   }
   return true;
 }
 
-// Of x: of the sums that it is the solution of.
+double ContactProblem::unit(std::size_t row) const {
+  const Place& p = place[row / 2];
+  const std::size_t of = p.head >= 0 ? 2 * static_cast<std::size_t>(p.head) : row;
+  return D(of, of) > 0 ? 1 / std::sqrt(D(of, of)) : 0;
+}
+
+double ContactProblem::size_of(std::size_t row, double change) const {
+  const double one = unit(row);
+  return one > 0 ? change / one : 0;
+}
+
+double ContactProblem::size() const {
+  double largest = 0;
+  for (std::size_t r = 0; r < x.size(); ++r) largest = std::max(largest, size_of(r, std::abs(x[r])));
+  return largest;
+}
+
+ContactProblem::Sum ContactProblem::sum(std::size_t row) const {
+  Sum w{b[row], std::max(std::abs(b[row]), b_terms[row])};
+  for (std::size_t c = 0; c < x.size(); ++c) {
+    const double part = D(row, c) * x[c];
+    w.value += part;
+    w.terms += std::abs(part);
+  }
+  return w;
+}
+
+// Of x, without a unit: of the sums that it is the solution of.
 double ContactProblem::rounding() const {
   double largest = 0;
   for (std::size_t r = 0; r < x.size(); ++r) {
-    if (!(D(r, r) > 0)) continue;
-    double terms = std::max(std::abs(b[r]), b_terms[r]);
-    for (std::size_t c = 0; c < x.size(); ++c) terms += std::abs(D(r, c) * x[c]);
-    largest = std::max(largest, terms / D(r, r));
+    if (D(r, r) > 0) largest = std::max(largest, size_of(r, sum(r).terms / D(r, r)));
   }
   return std::numeric_limits<double>::epsilon() * static_cast<double>(x.size() + 2) * largest;
+}
+
+// Whether a slip that is there already wedges a place: nothing fits, or a free and a pressed place fit alike.
+bool ContactProblem::is_wedged() const {
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    const Place& p = place[k];
+    const double across = D(2 * k, 2 * k);
+    if (!p.has_normal || !p.has_friction || p.slip == 0 || !(across > 0)) continue;
+    if (!(across - p.mu * p.slip * D(2 * k, 2 * k + 1) > 0)) return true;
+  }
+  return false;
 }
 
 // Over all places until nothing changes. False: friction wedges a place, or sweeps do not settle.
@@ -177,13 +214,17 @@ bool ContactProblem::sweep(double& size) {
     double change = 0;
     size = grip_change_ = 0;
     for (std::size_t k = 0; k < place.size(); ++k) {
-      const double n = x[2 * k], t = x[2 * k + 1];
+      const double before[2] = {x[2 * k], x[2 * k + 1]};
       if (!solve_place(k)) return false;
-      change = std::max({change, std::abs(x[2 * k] - n), std::abs(x[2 * k + 1] - t)});
-      size = std::max({size, std::abs(x[2 * k]), std::abs(x[2 * k + 1])});
+      for (const std::size_t along : {0, 1}) {
+        const std::size_t row = 2 * k + along;
+        change = std::max(change, size_of(row, std::abs(x[row] - before[along])));
+        size = std::max(size, size_of(row, std::abs(x[row])));
+      }
     }
     if (!std::isfinite(size)) return false;
-    if (std::max(change, grip_change_) <= tolerated * size && std::max(change, grip_change_) <= rounding()) return true;
+    change = std::max(change, grip_change_);
+    if (change <= tolerated * size && change <= rounding()) return true;
   }
   return false;
 }
@@ -191,14 +232,18 @@ bool ContactProblem::sweep(double& size) {
 bool ContactProblem::solve() {
   double size = 0;
   has_grips_ = std::any_of(place.begin(), place.end(), [](const Place& p) { return p.head >= 0; });
-  if (!preferred_state_.empty()) {
+  if (!preferred_state_.empty() && !is_many()) {
     state = preferred_state_;
     direction = preferred_direction_;
     if (try_states()) return true;
   }
+  if (is_many()) {
+    if (is_wedged()) return false;
+    if (pivot()) return true;
+  }
   if (!ruled_out_state_.empty() && search()) return true;
-  // What cannot be searched is left to sweeps, which may come back to what was ruled out: the motion then ends, as
-  // contacts that change without end.
+  // What is left to sweeps may come back to what was ruled out: the motion then ends, as contacts that change without
+  // end.
   if (!sweep(size)) return search();
   if (sticks_together() && search()) return true;
   const std::vector<double> swept = x;
@@ -221,9 +266,9 @@ bool ContactProblem::close_redundant(double size) {
   for (std::size_t k = 0; k < place.size(); ++k) {
     const std::size_t n = 2 * k, t = n + 1;
     if (state[k] != State::open || !place[k].has_normal || !(D(n, n) > 0)) continue;
-    if (std::abs(without_own(k, 0)) > tolerated * D(n, n) * size) continue;
+    if (std::abs(without_own(k, 0)) > tolerated * D(n, n) * unit(n) * size) continue;
     const double w_t = place[k].has_friction ? without_own(k, 1) : 0;
-    const bool rests = place[k].slip == 0 && std::abs(w_t) <= tolerated * D(t, t) * size;
+    const bool rests = place[k].slip == 0 && std::abs(w_t) <= tolerated * D(t, t) * unit(t) * size;
     state[k] = place[k].has_friction && rests ? State::sticks : State::slides;
     if (place[k].has_friction && !rests) direction[k] = place[k].slip != 0 ? place[k].slip : w_t > 0 ? 1 : -1;
     for (const std::size_t grip : grips_of(k)) {

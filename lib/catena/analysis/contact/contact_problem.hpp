@@ -14,8 +14,10 @@
 // D = J M^-1 J^T on the constraints is symmetric and positive semidefinite. Places are solved one after the other, over
 // and over, until nothing changes (nonlinear Gauss-Seidel); the states found are then solved for at once, so that the
 // answer is exact to rounding however slow that was. Sweeps need not settle where places share a body, and cannot tell
-// what several that stick hold together: up to six places are then searched for states that fit (contact_search.cpp).
-// Several places of one body may be redundant: the least x is taken.
+// what several that stick hold together: up to six places are then searched for states that fit (contact_search.cpp),
+// more are found by pivots (contact_pivots.cpp), which need no sweeps before. Several places of one body may be
+// redundant: the least x is taken. Forces of different units are compared as x_r sqrt(D_rr), in which energy has one
+// unit.
 // Not solvable where friction wedges a place (D_nn <= mu |D_tn|): solve() is then false.
 // Source: Stewart (2000), see contact_loads.hpp; Jean and Moreau, Unilaterality and dry friction (1992).
 #pragma once
@@ -88,7 +90,18 @@ class ContactProblem {
   void solve_along(std::size_t k, double w_t);
   /// w at place k, across (0) or along (1), but for the part of its own x.
   double without_own(std::size_t k, std::size_t along) const;
+  struct Sum {
+    double value = 0, terms = 0;
+  };
+  /// w in a row, with the sizes of its terms together.
+  Sum sum(std::size_t row) const;
+  /// Of x in a row, at which it counts as one: 1 / sqrt(D_rr), of a grip that of its rope; 0 where nothing gives way.
+  double unit(std::size_t row) const;
+  /// Of x, and of a change of x, without a unit.
+  double size() const;
+  double size_of(std::size_t row, double change) const;
   double rounding() const;
+  bool is_wedged() const;
   void solve_states();
   bool sweep(double& size);
   bool close_redundant(double size);
@@ -98,13 +111,27 @@ class ContactProblem {
   bool search();
   bool try_states();
   bool keeps_states() const;
+  // contact_pivots.cpp
+  class Pivots;
+  /// Of a place: the slip that it has or is meant to have, whether it slipped where it could have stuck, whether it is
+  /// meant to be open.
+  struct Choice {
+    int slip = 0;
+    bool slipped = false, left_out = false;
+  };
+  bool is_many() const;
+  bool pivot();
+  bool pivot(std::vector<Choice> choices);
+  void read_states(const std::vector<Choice>& choices);
+  void refine();
+  bool is_ruled_out() const;
 
   std::vector<double> d_;
   std::vector<State> preferred_state_, ruled_out_state_;  // empty: none
   std::vector<int> preferred_direction_;
   std::vector<int> ruled_out_direction_;
   bool has_grips_ = false;
-  double grip_change_ = 0;  // of x at grips, in a sweep
+  double grip_change_ = 0;  // of x at grips, in a sweep, without a unit
 };
 
 }  // namespace catena

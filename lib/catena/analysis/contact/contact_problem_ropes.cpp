@@ -74,7 +74,7 @@ bool ContactProblem::solve_rope(std::size_t head) {
     if (wrong == grips.end()) {
       if (!(x[n] >= 0)) return false;
       for (const std::size_t k : grips)
-        grip_change_ = std::max(grip_change_, std::abs(x[2 * k + 1] - before[2 * k + 1]));
+        grip_change_ = std::max(grip_change_, size_of(2 * k + 1, std::abs(x[2 * k + 1] - before[2 * k + 1])));
       return true;
     }
     const bool stuck = state[*wrong] == State::sticks;

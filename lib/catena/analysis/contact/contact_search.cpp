@@ -61,6 +61,9 @@ bool ContactProblem::sticks_together() const {
   return factors.compute(held).rank() < size;
 }
 
+// Whether the places are more than can be searched; those of ropes are found by sweeps alone.
+bool ContactProblem::is_many() const { return place.size() > most_searched && !has_grips_; }
+
 // Whether the present states fit; x is then what goes with them.
 bool ContactProblem::try_states() {
   struct Edge {
@@ -121,12 +124,7 @@ bool ContactProblem::keeps_states() const {
     for (const std::size_t along : {0, 1}) {
       const Place& p = place[k];
       if (along == 0 ? !p.has_normal : !p.has_friction || state[k] == State::open) continue;
-      const std::size_t row = 2 * k + along;
-      double w = b[row], terms = std::max(std::abs(b[row]), b_terms[row]);
-      for (std::size_t c = 0; c < x.size(); ++c) {
-        w += D(row, c) * x[c];
-        terms += std::abs(D(row, c) * x[c]);
-      }
+      const auto [w, terms] = sum(2 * k + along);
       const double rounding = fitting * terms;
       if (!std::isfinite(w)) return false;
       if (along == 0 && (state[k] == State::open ? w < -rounding : std::abs(w) > rounding)) return false;
@@ -141,20 +139,16 @@ bool ContactProblem::keeps_states() const {
 }
 
 bool ContactProblem::search() {
-  if (place.size() > most_searched || has_grips_) return false;
-  struct Choice {
+  if (place.size() > most_searched || has_grips_ || is_wedged()) return false;
+  struct Trial {
     State state;
     int direction;
   };
-  std::vector<std::vector<Choice>> choices(place.size());
+  std::vector<std::vector<Trial>> choices(place.size());
   std::size_t count = 1;
   for (std::size_t k = 0; k < place.size(); ++k) {
     const Place& p = place[k];
-    const double across = D(2 * k, 2 * k);
-    const bool presses = !p.has_normal || across > 0;
-    if (p.has_friction && p.has_normal && p.slip != 0 && across > 0 &&
-        !(across - p.mu * p.slip * D(2 * k, 2 * k + 1) > 0))
-      return false;
+    const bool presses = !p.has_normal || D(2 * k, 2 * k) > 0;
     if (presses && p.has_friction) {
       if (p.slip == 0) choices[k].push_back({State::sticks, 0});
       for (const int s : {1, -1}) {
@@ -172,7 +166,7 @@ bool ContactProblem::search() {
   const auto take = [&](std::size_t number) {
     int moving = 0;
     for (std::size_t k = 0; k < place.size(); ++k) {
-      const Choice& choice = choices[k][number % choices[k].size()];
+      const Trial& choice = choices[k][number % choices[k].size()];
       number /= choices[k].size();
       state[k] = choice.state;
       direction[k] = choice.direction;

@@ -2,10 +2,8 @@
 
 #include <Eigen/LU>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace catena {
 namespace {
@@ -14,8 +12,6 @@ namespace {
 constexpr double no_response = 1e-11;
 // Of the length of a null vector: entries that rounding leaves.
 constexpr double no_share = 1e-9;
-// Columns of Z: 16 limits of eight feet and 4 columns have 4368 choices of five. More are left to the single places.
-constexpr Eigen::Index most_freedom = 4;
 
 using State = ContactProblem::State;
 
@@ -41,6 +37,17 @@ std::vector<Held> held_rows(const ContactProblem& problem) {
   return held;
 }
 
+/// Of a matrix with R = [R_1, R_2]: the columns of [-R_1^-1 R_2; 1], made orthonormal.
+Eigen::MatrixXd null_space(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& factors, Eigen::Index rank) {
+  const Eigen::Index size = factors.cols(), freedom = size - rank;
+  Eigen::MatrixXd space(size, freedom);
+  space.topRows(rank) = -factors.matrixR().topRightCorner(rank, freedom);
+  factors.matrixR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>().solveInPlace(space.topRows(rank));
+  space.bottomRows(freedom).setIdentity();
+  const Eigen::MatrixXd turned = factors.colsPermutation() * space;
+  return turned.householderQr().householderQ() * Eigen::MatrixXd::Identity(size, freedom);
+}
+
 /// Z, a row for each that holds; no columns where forces are unique.
 Eigen::MatrixXd free_forces(const ContactProblem& problem, const std::vector<Held>& held) {
   const auto size = static_cast<Eigen::Index>(held.size());
@@ -58,31 +65,31 @@ Eigen::MatrixXd free_forces(const ContactProblem& problem, const std::vector<Hel
       response(r, c) = unit(r) * unit(c) * (problem.D(at(r).row(), h.row()) + along);
     }
   }
-  // Nearly always there is nothing to share, which this tells soonest.
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors;
   factors.setThreshold(no_response);
-  if (size < 2 || factors.compute(response).rank() == size) return Eigen::MatrixXd(size, 0);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(response, Eigen::ComputeFullV);
-  const Eigen::VectorXd& values = svd.singularValues();
-  const Eigen::Index rank = (values.array() > no_response * values(0)).count();
-  return unit.asDiagonal() * svd.matrixV().rightCols(size - rank);
+  const Eigen::Index rank = size < 2 ? size : factors.compute(response).rank();
+  if (rank == size) return Eigen::MatrixXd(size, 0);
+  return unit.asDiagonal() * null_space(factors, rank);
 }
-
-std::vector<double> numbers(const Eigen::VectorXd& of) { return {of.begin(), of.end()}; }
 
 }  // namespace
 
 SharedForces::SharedForces(const ContactProblem& problem, const std::vector<std::size_t>& point) {
   const std::vector<Held> held = held_rows(problem);
   const Eigen::MatrixXd free = free_forces(problem, held);
-  if (free.cols() < 1 || free.cols() > most_freedom) return;
+  if (free.cols() < 1) return;
   const double share = no_share * free.rowwise().norm().maxCoeff();
   const auto row = [&](std::size_t place, bool along) -> Eigen::VectorXd {
     const auto found =
         std::find_if(held.begin(), held.end(), [&](const Held& h) { return h.place == place && h.along == along; });
     return found == held.end() ? Eigen::VectorXd::Zero(free.cols()) : Eigen::VectorXd(free.row(found - held.begin()));
   };
-  std::vector<std::vector<double>> slope;  // by y, of limits_
+  std::vector<double> columns;  // [c_l; 1] by limits
+  const auto add = [&](const Limit& limit, const Eigen::VectorXd& slope) {
+    limits_.push_back(limit);
+    columns.insert(columns.end(), slope.begin(), slope.end());
+    columns.push_back(1);
+  };
   for (std::size_t k = 0; k < problem.place.size(); ++k) {
     const ContactProblem::Place& p = problem.place[k];
     const Eigen::VectorXd normal = row(k, false), along = row(k, true);
@@ -90,66 +97,17 @@ SharedForces::SharedForces(const ContactProblem& problem, const std::vector<std:
     if (!p.has_normal || normal.norm() + along.norm() <= share) continue;
     places_.push_back(point[k]);
     if (problem.state[k] == State::sticks) {
-      for (const double sign : {1.0, -1.0}) {
-        limits_.push_back({point[k], p.mu_static, sign});
-        slope.push_back(numbers(p.mu_static * normal + sign * along));
-      }
+      for (const double sign : {1.0, -1.0}) add({point[k], p.mu_static, sign}, p.mu_static * normal + sign * along);
     } else {
-      limits_.push_back({point[k], 1, 0});
-      slope.push_back(numbers(normal));
+      add({point[k], 1, 0}, normal);
     }
   }
-  if (places_.size() < 2)
+  if (places_.size() < 2) {
     places_.clear();
-  else
-    find_corners(slope);
-}
-
-// Corners are solutions of as many columns as [c; 1] has independent rows.
-void SharedForces::find_corners(const std::vector<std::vector<double>>& slope) {
-  const auto count = static_cast<Eigen::Index>(limits_.size()),
-             freedom = static_cast<Eigen::Index>(slope.front().size());
-  Eigen::MatrixXd A(freedom + 1, count);
-  for (Eigen::Index l = 0; l < count; ++l) {
-    for (Eigen::Index r = 0; r < freedom; ++r)
-      A(r, l) = slope[static_cast<std::size_t>(l)][static_cast<std::size_t>(r)];
-    A(freedom, l) = 1;
+    return;
   }
-  // A direction of y that no limit depends on asks for nothing.
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors;
-  factors.setThreshold(no_share);
-  const Eigen::Index rank = factors.compute(A).rank();
-  const Eigen::MatrixXd turned = factors.householderQ().transpose() * A;
-  const Eigen::VectorXd right = factors.householderQ().transpose() * Eigen::VectorXd::Unit(freedom + 1, freedom);
-  if (right.tail(freedom + 1 - rank).norm() > no_share) return;
-  // Every choice of columns, in lexical order.
-  const auto meet = static_cast<std::size_t>(rank), all = static_cast<std::size_t>(count);
-  std::vector<std::size_t> chosen(meet);
-  std::iota(chosen.begin(), chosen.end(), std::size_t{0});
-  Eigen::MatrixXd square(rank, rank);
-  while (true) {
-    for (Eigen::Index c = 0; c < rank; ++c)
-      square.col(c) = turned.col(static_cast<Eigen::Index>(chosen[static_cast<std::size_t>(c)])).head(rank);
-    Eigen::FullPivLU<Eigen::MatrixXd> solver;
-    solver.setThreshold(no_share);
-    if (solver.compute(square).isInvertible()) {
-      const Eigen::VectorXd weight = solver.solve(right.head(rank));
-      Corner corner;
-      for (Eigen::Index c = 0; c < rank; ++c) {
-        if (weight(c) > no_share) corner.emplace_back(chosen[static_cast<std::size_t>(c)], weight(c));
-      }
-      const bool is_new = std::none_of(corners_.begin(), corners_.end(), [&](const Corner& other) {
-        return std::equal(corner.begin(), corner.end(), other.begin(), other.end(),
-                          [](const auto& a, const auto& b) { return a.first == b.first; });
-      });
-      if (weight.minCoeff() > -no_share && is_new) corners_.push_back(std::move(corner));
-    }
-    std::size_t k = meet;
-    while (k > 0 && chosen[k - 1] == all - meet + k - 1) --k;
-    if (k == 0) return;
-    ++chosen[k - 1];
-    for (std::size_t next = k; next < meet; ++next) chosen[next] = chosen[next - 1] + 1;
-  }
+  const Eigen::VectorXd right = Eigen::VectorXd::Unit(free.cols() + 1, free.cols());
+  shares_ = VertexMinimum(columns, {right.data(), static_cast<std::size_t>(right.size())});
 }
 
 }  // namespace catena

@@ -5,17 +5,18 @@
 //   margin = max over y of the least of    limits a_l + c_l y:    mu_static N_k -+ T_k  (sticks),   N_k  (presses)
 //          = min over w of sum w_l a_l     w >= 0, sum w_l = 1, sum w_l c_l = 0    (duality of linear programs)
 //
-// The places hold as long as the margin is not negative: then some share keeps all limits. The corners w of the second
-// form depend on Z alone; they are found once a phase, and each margin is the least of so many sums. The limits of the
-// corner that is the least keep each other from growing: they give way together. Without a corner forces may grow
-// without end (a wedge that locks itself): the margin is then the largest double. N.
+// The places hold as long as the margin is not negative: then some share keeps all limits. The polytope of w depends on
+// Z alone; it is found once a phase, and each margin is looked for from the corner of the one before
+// (vertex_minimum.hpp). The limits of the corner that is the least keep each other from growing: they give way
+// together. Without a corner forces may grow without end (a wedge that locks itself): the margin is then the largest
+// double. N.
 #pragma once
 
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "catena/analysis/contact/contact_problem.hpp"
+#include "catena/linalg/pivoting/vertex_minimum.hpp"
 
 namespace catena {
 
@@ -35,17 +36,22 @@ class SharedForces {
   /// From forces of one share: what presses point k, normal(k), and along it where it sticks, along(k).
   template <class Normal, class Along>
   double margin(Normal&& normal, Along&& along) const {
-    return least(normal, along).first;
+    if (shares_.empty()) return std::numeric_limits<double>::max();
+    std::vector<double> left;
+    left.reserve(limits_.size());
+    for (const Limit& limit : limits_)
+      left.push_back(limit.mu * normal(limit.point) + (limit.sign != 0 ? limit.sign * along(limit.point) : 0));
+    return shares_.least(left);
   }
   /// Those whose limits meet at that margin.
   template <class Normal, class Along>
   std::vector<GivesWay> giving_way(Normal&& normal, Along&& along) const {
     std::vector<GivesWay> places;
-    if (const Corner* corner = least(normal, along).second) {
-      // T = -mu N, the limit of sign 1, goes with a slip forwards.
-      for (const auto& [limit, weight] : *corner)
-        places.push_back({limits_[limit].point, static_cast<int>(limits_[limit].sign)});
-    }
+    if (shares_.empty()) return places;
+    margin(normal, along);
+    // T = -mu N, the limit of sign 1, goes with a slip forwards.
+    for (const std::size_t limit : shares_.support())
+      places.push_back({limits_[limit].point, static_cast<int>(limits_[limit].sign)});
     return places;
   }
 
@@ -55,26 +61,10 @@ class SharedForces {
     std::size_t point;
     double mu, sign;
   };
-  using Corner = std::vector<std::pair<std::size_t, double>>;  // limits and their weights w > 0
-
-  void find_corners(const std::vector<std::vector<double>>& slope);
-  template <class Normal, class Along>
-  std::pair<double, const Corner*> least(Normal&& normal, Along&& along) const {
-    std::pair<double, const Corner*> found(std::numeric_limits<double>::max(), nullptr);
-    for (const Corner& corner : corners_) {
-      double sum = 0;
-      for (const auto& [number, weight] : corner) {
-        const Limit& limit = limits_[number];
-        sum += weight * (limit.mu * normal(limit.point) + (limit.sign != 0 ? limit.sign * along(limit.point) : 0));
-      }
-      if (sum < found.first) found = {sum, &corner};
-    }
-    return found;
-  }
 
   std::vector<std::size_t> places_;
   std::vector<Limit> limits_;
-  std::vector<Corner> corners_;
+  VertexMinimum shares_;  // of w
 };
 
 }  // namespace catena
