@@ -21,6 +21,7 @@ struct Family {
   std::vector<std::array<double, 2>> ranges;
   std::string analysis = "kinematics";
   double size = 1;  // of what is measured, or of what it is made of
+  bool some_fail = true;
 };
 
 inline const std::string four_bar = R"json( "bodies": {
@@ -89,7 +90,7 @@ inline void expect_same_as_alone(const Family& family) {
     }
   }
   EXPECT_GT(good, designs / 4);
-  EXPECT_LT(good, designs);
+  EXPECT_EQ(good < designs, family.some_fail);
   // Those that move stay in their lanes, but for a few that come near to where they lock.
   const auto in_lanes = field<std::int64_t>(sweep, "in_lanes");
   EXPECT_LE(in_lanes, good);

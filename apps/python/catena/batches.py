@@ -11,7 +11,7 @@
 array([[0.5403, 0.8415],
        [0.1415, 1.995 ]])
 
-Driven scenes, with their loads, are computed in SIMD lanes, eight designs side by side; others one by one. The interpreter is free
+Driven scenes, with their loads, are computed in SIMD lanes, sixteen designs side by side; others one by one. The interpreter is free
 meanwhile.
 """
 

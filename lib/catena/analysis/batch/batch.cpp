@@ -154,6 +154,7 @@ class Batch::Worker {
       if (!(lanes & ~near & 1U << lane)) continue;
       evaluator_.set_model(models_[at(lane)]);
       evaluator_.set_time(0);
+      evaluator_.go_to_given_curve_places();
       std::vector<double> q = evaluator_.given_configuration();
       AssemblyOutcome outcome = Assembler(evaluator_).assemble(q, batch_.options_.tolerance);
       if (!outcome.ok()) {
@@ -164,12 +165,14 @@ class Batch::Worker {
         q[at(3 * b)] += evaluator_.origin(b).x;
         q[at(3 * b + 1)] += evaluator_.origin(b).y;
       }
-      motion_.set_start(lane, q);
+      motion_.set_start(lane, q, evaluator_.curve_places());
       placed |= 1U << lane;
     }
     near = motion_.assemble({});
     for (int lane = 0; lane < lane_count; ++lane) {
-      if (lanes & placed & ~near & 1U << lane) rows_.left_[at(lane)] = "it is assembled near to a singular position";
+      if (!(lanes & placed & ~near & 1U << lane)) continue;
+      const char* const trouble = motion_.solver().trouble(lane);
+      rows_.left_[at(lane)] = trouble ? trouble : "it is assembled near to a singular position";
     }
     return lanes & placed & near;
   }

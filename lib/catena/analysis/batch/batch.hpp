@@ -4,10 +4,10 @@
 //   catena::Batch batch(model);
 //   batch.run(1'000'000, grid,
 //             [](std::int64_t k, catena::Model& model) { ... },           // writes the numbers of design k
-//             [](const catena::BatchRows& rows) { ... });                 // takes what came of eight designs
+//             [](const catena::BatchRows& rows) { ... });                 // takes what came of sixteen designs
 //
 // Designs have the structure of the model and other numbers: given poses, local points, constants, functions of time.
-// They are followed in lanes, eight side by side, and several threads share them out (lane_motion.hpp). A design that
+// They are followed in lanes, sixteen side by side, and several threads share them out (lane_motion.hpp). A design that
 // leaves its lane is followed by Kinematics instead, and ends as that says, with its message: the others do not notice.
 // The results are those of Kinematics to rounding, the same for any number of threads.
 // What cannot be computed in lanes at all is refused, with the reason (lane_program.hpp). Designs do not change flags

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "catena/analysis/batch/lane_code.hpp"
+#include "catena/analysis/batch/kernels/lane_code.hpp"
 #include "catena/assembly/plan.hpp"
 
 namespace catena {

@@ -65,6 +65,8 @@ void LaneLook::foretell(int lane, double t) {
   for (int n = 0; n < lane_count * solver_.coordinates(); n += lane_count)
     q[n] = (a0 * q0[n] + a1 * q1[n]) + (b0 * v0[n] + b1 * v1[n]) + (c0 * w0[n] + c1 * w1[n]);
   seen_.t[catena::at(lane)] = t;
+  const LaneNumbers& places = motion_->places(u < 0.5 ? k : next);
+  for (int n = 0; n < 2 * solver_.program().searched().count(); ++n) seen_.places[n][lane] = places[n][motion_lane_];
 }
 
 bool LaneLook::is_sound(int lane) const {
@@ -142,6 +144,7 @@ bool LaneLook::values(double t, std::span<double> out) {
 
 Snapshot LaneLook::show(double t, double residual) {
   evaluator_.set_time(t);
+  evaluator_.go_to_curve_places(places_);
   evaluator_.set_configuration(q_);
   Snapshot snapshot{.evaluator = evaluator_, .t = t, .q = q_, .qd = qd_, .qdd = qdd_};
   snapshot.lambda = lambda_;
@@ -166,6 +169,7 @@ std::optional<Snapshot> LaneLook::at(double t) {
   }
   const double* const lambda = is_row ? motion_->lambda(place->row) : seen_.lambda.data();
   for (std::size_t r = 0; r < lambda_.size(); ++r) lambda_[r] = lambda[lane_count * static_cast<int>(r) + lane];
+  solver_.searches().show_places(is_row ? motion_->places(place->row) : seen_.places, lane, places_);
   return show(t, is_row ? 0 : solver_.residual(lane));
 }
 

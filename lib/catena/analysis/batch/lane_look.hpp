@@ -64,6 +64,7 @@ class LaneLook {
   int next_lane_ = 0,
       next_row_ = 0;                           // where instants are looked for first: they come in order
   std::vector<double> q_, qd_, qdd_, lambda_;  // of a snapshot, in plan order
+  std::vector<CurvePlace> places_;             // of a snapshot
   std::vector<Vec2<double>> shift_;            // from the origins of the evaluator's
                                                // coordinates to that of the frames
   bool lost_ = false;

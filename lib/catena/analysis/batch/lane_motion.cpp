@@ -62,16 +62,19 @@ bool LaneMotion::set_design(int lane, const Model& model, double length_scale) {
     now_->q[3 * b + 2][lane] = pose.phi;
     finite = finite && std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.phi);
   }
+  solver_.searches().keep_places(lane, now_->places);
   return finite;
 }
 
-void LaneMotion::set_start(int lane, std::span<const double> q) {
+void LaneMotion::set_start(int lane, std::span<const double> q, std::span<const CurvePlace> places) {
   for (int k = 0; k < coordinates_; ++k) now_->q[k][lane] = q[at(k)];
+  solver_.searches().take_places(places, lane, now_->places);
 }
 
 unsigned LaneMotion::assemble(const std::array<double, lane_count>& t) {
   now_->t = next_->t = t;
   next_->q.copy(now_->q);
+  next_->places.copy(now_->places);
   solver_.solve(*next_);
   unsigned near = 0;
   for (int lane = 0; lane < lane_count; ++lane) {
@@ -122,7 +125,13 @@ void LaneMotion::advance(unsigned lanes, const std::array<double, lane_count>& t
   watch_margins();
   const unsigned left = lanes & ~made & alive_;
   if (left == 0) return;
-  if (depth == most_halvings) return leave(left, "no step can be made any more");
+  if (depth == most_halvings) {
+    for (int lane = 0; lane < lane_count; ++lane) {
+      const char* const trouble = solver_.trouble(lane);
+      if (left & 1U << lane) leave(1U << lane, trouble ? trouble : "no step can be made any more");
+    }
+    return;
+  }
   std::array<double, lane_count> half = now_->t;
   for (int lane = 0; lane < lane_count; ++lane) half[at(lane)] += (t[at(lane)] - half[at(lane)]) / 2;
   advance(left, half, depth + 1);
@@ -142,6 +151,7 @@ unsigned LaneMotion::attempt(unsigned lanes, const std::array<double, lane_count
     for (int k = 0; k < coordinates_; ++k)
       next_->q[k][lane] = now_->q[k][lane] + s * (now_->qd[k][lane] + s / 2 * now_->qdd[k][lane]);
   }
+  next_->places.copy(now_->places);
   solver_.solve(*next_);
   return hopeful & solver_.judge(*now_, *next_, rules);
 }

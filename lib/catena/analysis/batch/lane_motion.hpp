@@ -31,8 +31,9 @@ class LaneMotion {
   bool set_design(int lane, const Model& model, double length_scale);
   LaneSolver& solver() { return solver_; }
   const LaneSolver& solver() const { return solver_; }
-  /// Another configuration to start from: x, y, phi of the moving bodies in the ground frame.
-  void set_start(int lane, std::span<const double> q);
+  /// Another configuration to start from: x, y, phi of the moving bodies in the ground frame; where the model's
+  /// contacts on curves were found there.
+  void set_start(int lane, std::span<const double> q, std::span<const CurvePlace> places);
 
   /// Solves for positions at t, one instant a lane, from the start in every lane. Returns the lanes in which the start
   /// was so near that the assembled configuration is the nearest one, as Kinematics judges it.
@@ -71,6 +72,7 @@ class LaneMotion {
   /// Multipliers of the solver's rows, where the program has loads.
   const double* lambda(int row) const { return row_of(row).lambda.data(); }
   const double* margin(int row) const { return row_of(row).margin.data(); }
+  const LaneNumbers& places(int row) const { return row_of(row).places; }
 
  private:
   void begin(unsigned lanes, int rows);

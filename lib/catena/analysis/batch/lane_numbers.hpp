@@ -6,7 +6,7 @@
 #include <memory>
 #include <new>
 
-#include "catena/analysis/batch/lane_code.hpp"
+#include "catena/analysis/batch/kernels/lane_code.hpp"
 
 namespace catena {
 

@@ -1,18 +1,18 @@
 // The plan of a mechanism as the kernels of a batch read it (lane_code.hpp), and the numbers of designs put into it.
 //
 // Not every mechanism can be computed in lanes: make() says why not. It must be driven by as many independent equations
-// as it has coordinates, all of types that lanes know, without particles, laws of state and ropes over pulleys, whose
-// way or value is looked at along the motion, and no loop of it may hang together with so many others that a block's
-// tail exceeds largest_tail. Where loads are wanted its forces, too, must be of types that lanes know.
+// as it has coordinates, all of types that lanes know, without particles and without curves that end, which are watched
+// between rows; and no loop of it may hang together with so many others that a block's tail exceeds largest_tail.
 #pragma once
 
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "catena/analysis/batch/lane_code.hpp"
+#include "catena/analysis/batch/kernels/lane_code.hpp"
 #include "catena/analysis/batch/lane_elimination.hpp"
 #include "catena/analysis/batch/lane_numbers.hpp"
+#include "catena/analysis/batch/lane_searches.hpp"
 #include "catena/assembly/plan.hpp"
 #include "catena/base/taylor.hpp"
 
@@ -33,6 +33,12 @@ class LaneProgram {
   int slots() const { return code_.slots; }
   /// Of every slot: the constants of Phi_q, else zero.
   const std::vector<double>& initial() const { return elimination_.initial; }
+  /// Constraints that are evaluated lane by lane.
+  const LaneSearchedTypes& searched() const { return searched_; }
+  const std::shared_ptr<const Plan>& shared_plan() const { return plan_; }
+  /// Whether designs are looked at by evaluators (lane_evaluators.hpp), and whether these give the applied forces.
+  bool is_watched() const { return is_watched_; }
+  bool takes_forces() const { return takes_forces_; }
 
   /// Puts the parameters of a design into a lane: of a model of the same structure. `length_scale` in m. False where a
   /// point, an axis or a constant is not finite.
@@ -60,20 +66,24 @@ class LaneProgram {
   };
   LaneProgram() = default;
   bool list_elements(const Model& model, std::string& why_not);
-  bool list_forces(const Model& model, std::string& why_not);
+  void list_searched(const Model& model);
+  void list_forces(const Model& model);
+  void list_masses();
   bool list_steps(const Model& model, std::string& why_not);
   void close();
   bool put_forces(const Model& model, int lane, LaneNumbers& field, LaneNumbers& function) const;
+  void put_masses(const Model& model, int lane, LaneNumbers& field) const;
 
   std::shared_ptr<const Plan> plan_;
   LaneCode code_{};
   int fields_ = 0, functions_ = 0;
-  bool has_immobile_ = false, has_loads_ = false;
+  bool has_immobile_ = false, has_loads_ = false, is_watched_ = false, takes_forces_ = false;
   std::vector<LaneElement> element_;
   std::vector<LaneElements> of_type_;
   std::vector<LaneForce> force_;
   std::vector<LaneForces> of_force_type_;
-  std::vector<int> slot_, constant_slot_, place_;
+  LaneSearchedTypes searched_;
+  std::vector<int> slot_, constant_slot_, place_, searched_row_;
   std::vector<double> constant_;
   LaneElimination elimination_;
   std::vector<Timed> timed_;

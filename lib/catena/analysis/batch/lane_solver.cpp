@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "catena/analysis/batch/lane_kernels.hpp"
+#include "catena/analysis/batch/kernels/lane_kernels.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -19,6 +19,8 @@ LaneSolver::LaneSolver(const LaneProgram& program)
       tail_(largest_tail * largest_tail * program.code().tails),
       exchange_(largest_tail * largest_tail * program.code().tails),
       load_(program.has_loads() ? coordinates_ : 0),
+      searches_(program.searched(), program.code().moving),
+      applied_(program.has_loads() ? coordinates_ : 0),
       converged_(1),
       first_size_(1),
       first_turn_(1),
@@ -34,7 +36,12 @@ LaneSolver::LaneSolver(const LaneProgram& program)
   job_.right = right_.data();
   job_.tail = tail_.data();
   job_.exchange = exchange_.data();
+  if (program.is_watched() || program.takes_forces())
+    evaluators_ = std::make_unique<LaneEvaluators>(program.shared_plan(), program.code().moving);
+  job_.applied = applied_.data();
   job_.load = load_.data();
+  job_.search = LaneSearches::search;
+  job_.searches = &searches_;
   job_.converged = converged_.data();
   job_.first_size = first_size_.data();
   job_.first_turn = first_turn_.data();
@@ -47,12 +54,16 @@ LaneSolver::LaneSolver(const LaneProgram& program)
 bool LaneSolver::set_design(int lane, const Model& model, double length_scale) {
   model_[at(lane)] = &model;
   unit_[0][lane] = 1 / length_scale;
+  searches_.set_design(lane, model);
+  if (evaluators_) evaluators_->set_design(lane, model);
   return program_.put(model, length_scale, lane, field_, function_, frame_);
 }
 
 bool LaneSolver::set_designs(const Model& model, double length_scale) {
   const bool finite = set_design(0, model, length_scale);
   model_.fill(&model);
+  if (evaluators_) evaluators_->set_designs(model);
+  for (int lane = 1; lane < lane_count && !searches_.empty(); ++lane) searches_.set_design(lane, model);
   for (LaneNumbers* numbers : {&field_, &function_, &frame_, &unit_}) numbers->spread(0);
   return finite;
 }
@@ -74,8 +85,25 @@ void LaneSolver::solve(LaneState& state, int lanes) {
   job_.margin = state.margin.data();
   job_.lambda = state.lambda.data();
   job_.turned = state.turned.data();
+  if (!searches_.empty()) searches_.go_to(state.places);
   lane_kernels().solve(job_);
+  if (evaluators_ || !searches_.empty()) refuse_trouble(state, lanes);
+  if (!searches_.empty()) searches_.keep_places(state.places);
   if (program_.has_loads()) lane_kernels().find_loads(job_);
+}
+
+void LaneSolver::refuse_trouble(const LaneState& state, int lanes) {
+  for (int lane = 0; lane < lanes; ++lane) {
+    const char*& trouble = trouble_[at(lane)];
+    trouble = nullptr;
+    if (!converged(lane)) continue;
+    trouble = searches_.trouble(frame_.data(), state.places, lane);
+    if (!trouble && evaluators_) trouble = evaluators_->go_to(lane, state.t[at(lane)], state.q, state.qd);
+    if (trouble)
+      converged_[0][lane] = 0;
+    else if (program_.takes_forces())
+      evaluators_->find(lane, applied_);
+  }
 }
 
 unsigned LaneSolver::flagged() const {

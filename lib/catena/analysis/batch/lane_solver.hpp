@@ -7,6 +7,7 @@
 #include <array>
 #include <span>
 
+#include "catena/analysis/batch/lane_evaluators.hpp"
 #include "catena/analysis/batch/lane_program.hpp"
 
 namespace catena {
@@ -19,7 +20,8 @@ struct LaneState {
         qdd(3 * program.code().moving),
         turned(2 * program.code().moving),
         margin(program.code().tails),
-        lambda(program.has_loads() ? program.code().rows : 0) {}
+        lambda(program.has_loads() ? program.code().rows : 0),
+        places(2 * program.searched().count()) {}
 
   /// Takes over another group's state, or that of one lane; of the same program.
   void copy(const LaneState& from) {
@@ -39,12 +41,13 @@ struct LaneState {
   LaneNumbers turned;  ///< cosine and sine of the angle of every moving body, where it was solved for
   LaneNumbers margin;  ///< determinants of the blocks' tails
   LaneNumbers lambda;  ///< multipliers of the solver's rows
+  LaneNumbers places;  ///< on curves, where contacts were found, and are searched for from
 
  private:
   template <class F>
   void each(const LaneState& from, F&& f) {
-    for (LaneNumbers LaneState::*numbers :
-         {&LaneState::q, &LaneState::qd, &LaneState::qdd, &LaneState::turned, &LaneState::margin, &LaneState::lambda})
+    for (LaneNumbers LaneState::*numbers : {&LaneState::q, &LaneState::qd, &LaneState::qdd, &LaneState::turned,
+                                            &LaneState::margin, &LaneState::lambda, &LaneState::places})
       f(this->*numbers, from.*numbers);
   }
 };
@@ -64,7 +67,8 @@ class LaneSolver {
   /// Functions of time, and the instants, are the same in all lanes: they are evaluated once.
   void share_functions(bool shared) { shared_ = shared; }
 
-  /// q, from where it is, and all rates, at the instants of the state, in the first lanes.
+  const LaneSearches& searches() const { return searches_; }
+  /// q and places, from where they are, and all rates, at the instants of the state, in the first lanes.
   void solve(LaneState& state, int lanes = lane_count);
   /// q at the instants of `state` by the quintic through two states; in lanes where both are at one instant the later
   /// state's own. Returns the lanes in which a determinant, going on as it went, would keep less than `remaining_part`.
@@ -79,6 +83,8 @@ class LaneSolver {
   unsigned watch(const LaneState& state, double least_part, LaneNumbers& largest);
 
   // Of the last solve:
+  /// Nothing, or what is wrong with a lane that has not converged.
+  const char* trouble(int lane) const { return trouble_[static_cast<std::size_t>(lane)]; }
   bool converged(int lane) const { return converged_[0][lane] == 1; }
   double first_size(int lane) const { return first_size_[0][lane]; }    ///< of the first correction
   double first_turn(int lane) const { return first_turn_[0][lane]; }    ///< its largest angle, rad
@@ -91,12 +97,18 @@ class LaneSolver {
   double tolerance = 1e-12;  ///< of residuals, relative to the length scale
 
  private:
+  /// Lanes in which an element or a force means nothing have not converged.
+  void refuse_trouble(const LaneState& state, int lanes);
   /// The lanes that have 1 in flag_.
   unsigned flagged() const;
 
   const LaneProgram& program_;
   int coordinates_;
   LaneNumbers field_, function_, frame_, unit_, matrix_, right_, tail_, exchange_, load_;
+  LaneSearches searches_;
+  std::unique_ptr<LaneEvaluators> evaluators_;  // where kernels have no formulas
+  LaneNumbers applied_;
+  std::array<const char*, lane_count> trouble_{};
   LaneNumbers converged_, first_size_, first_turn_, contraction_, residual_, flag_;
   LaneJob job_{};
   std::array<const Model*, lane_count> model_{};

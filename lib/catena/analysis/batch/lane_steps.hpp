@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <vector>
 
-#include "catena/analysis/batch/lane_code.hpp"
+#include "catena/analysis/batch/kernels/lane_code.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {

@@ -7,7 +7,6 @@
 #include <functional>
 
 #include "catena/analysis/pose/assemble.hpp"
-#include "catena/analysis/run/watched_elements.hpp"
 #include "catena/base/at.hpp"
 #include "catena/columns/energy.hpp"
 
@@ -77,11 +76,6 @@ std::unique_ptr<LaneDesigns> LaneDesigns::make(const AnalysisContext& context, s
     std::shared_ptr<const Plan> plan = Plan::make(*model, options_of(inner, *model));
     std::unique_ptr<const LaneProgram> program = LaneProgram::make(*model, plan, finds_loads(inner), why_not);
     if (!program) return nullptr;
-    const Evaluator watched(plan, *model);
-    if (WatchedElements(watched).may_end()) {
-      why_not = "it has curves or tables that end, which are watched along the motion";
-      return nullptr;
-    }
     // Throws for columns that such an analysis does not give.
     auto measures =
         std::make_unique<MeasureSet>(inner.measure_requests(), *model, *plan, sources_of(inner), TimeRange{});
@@ -146,6 +140,7 @@ std::string LaneDesigns::prepare(Lane& lane, const ParameterSeeds& seeds) {
 void LaneDesigns::take_model(const Model& model) {
   evaluator_.set_time(0);
   evaluator_.set_model(model);
+  evaluator_.go_to_given_curve_places();
 }
 
 unsigned LaneDesigns::assemble(unsigned lanes, std::span<Outcome> outcomes) {
@@ -169,12 +164,13 @@ unsigned LaneDesigns::assemble(unsigned lanes, std::span<Outcome> outcomes) {
       q[at(3 * b)] += evaluator_.origin(b).x;
       q[at(3 * b + 1)] += evaluator_.origin(b).y;
     }
-    motion_.set_start(lane, q);
+    motion_.set_start(lane, q, evaluator_.curve_places());
   }
   near = motion_.assemble({});
   for (int lane = 0; lane < lane_count; ++lane) {
-    if (lanes & ~near & 1U << lane)
-      outcomes[at(lane)].why_not = "its assembled configuration is near to a singular one";
+    if (!(lanes & ~near & 1U << lane)) continue;
+    const char* const trouble = motion_.solver().trouble(lane);
+    outcomes[at(lane)].why_not = trouble ? trouble : "its assembled configuration is near to a singular one";
   }
   return lanes & near;
 }

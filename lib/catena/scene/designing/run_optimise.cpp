@@ -184,7 +184,7 @@ void run_optimise(AnalysisContext& context, AnalysisResult& result) {
                     ipopt ? "Ipopt" : "NLopt", ipopt ? "IPOPT" : "NLOPT", names[static_cast<std::size_t>(method)],
                     ipopt ? "leave \"solver\" out, or take \"slsqp\" or \"mma\"" : "\"ipopt\" may be built in"));
   }
-  DesignRuns runs(context);
+  DesignRuns runs(context, !uses_gradients(methods[task.word("solver")]));
   std::vector<std::string> variables;
   std::vector<ColumnInfo> info;
   DesignProblem problem;

@@ -5,7 +5,7 @@
 #include <limits>
 #include <set>
 
-#include "catena/analysis/batch/lane_kernels.hpp"
+#include "catena/analysis/batch/kernels/lane_kernels.hpp"
 #include "catena/scene/designing/design_ranges.hpp"
 #include "catena/scene/designing/measured_design.hpp"
 #include "catena/scene/designing/sweep.hpp"

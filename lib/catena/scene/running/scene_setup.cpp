@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/batch/lane_kernels.hpp"
+#include "catena/analysis/batch/kernels/lane_kernels.hpp"
 #include "catena/analysis/design/process_link.hpp"
 #include "catena/scene/building/build_model.hpp"
 #include "catena/scene/judging/scene_checks.hpp"

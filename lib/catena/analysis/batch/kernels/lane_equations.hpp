@@ -4,13 +4,14 @@
 //   gamma = -d2Phi/dt2 along q + qd t      nu = -dPhi/dt at rest      both from
 //   the Taylor series of phi, as the derived operations of
 //   assembly/constraint_operations.hpp; Phi_q from dual numbers. Pins, gears
-//   and belts have their closed forms (revolute.hpp, rolling_pair.hpp).
+//   and belts have their closed forms (revolute.hpp, rolling_pair.hpp). Contacts of curves are evaluated outside of the
+//   kernels, lane by lane (lane_searches.hpp).
 #pragma once
 
 #include <numbers>
 
-#include "catena/analysis/batch/lane_code.hpp"
-#include "catena/analysis/batch/lane_pack.hpp"
+#include "catena/analysis/batch/kernels/lane_code.hpp"
+#include "catena/analysis/batch/kernels/lane_pack.hpp"
 #include "catena/elements/constraints/absolute_angle.hpp"
 #include "catena/elements/constraints/absolute_distance.hpp"
 #include "catena/elements/constraints/absolute_x.hpp"
@@ -38,10 +39,11 @@ class LaneEquations {
   using P = Pack<V>;
   using Mask = typename P::Mask;
 
-  LaneEquations(const LaneJob& job, int lane) : job_(job), code_(*job.code), unit_(P::load(job.unit + lane)) {
+  LaneEquations(const LaneJob& job, int lane)
+      : job_(job), code_(*job.code), unit_(P::load(job.unit + lane)), group_(job), lane_(lane) {
     // One by one: an object whose members have their addresses taken would be kept in memory.
     job_.field += lane, job_.function += lane, job_.frame += lane;
-    job_.q += lane, job_.qd += lane, job_.qdd += lane, job_.load += lane, job_.lambda += lane;
+    job_.q += lane, job_.qd += lane, job_.qdd += lane, job_.applied += lane, job_.load += lane, job_.lambda += lane;
     job_.turned += lane;
     job_.matrix += lane, job_.right += lane, job_.tail += lane, job_.exchange += lane;
     job_.converged += lane, job_.first_size += lane, job_.first_turn += lane, job_.contraction += lane;
@@ -82,6 +84,12 @@ class LaneEquations {
   P unit_;
 
  private:
+  const LaneJob& group_;  // of all lanes, this pack's from lane_ on
+  int lane_;
+
+  void search(LaneSearch what) const {
+    if (code_.searched_rows > 0) group_.search(group_, what, lane_, P::size);
+  }
   template <class E, class Field>
   void load(E& element, const Field& field, int choice, int& k) const {
     if constexpr (requires { field.member; }) {
@@ -301,6 +309,9 @@ typename LaneEquations<V>::P LaneEquations<V>::equations() {
     }
     put_residual<E>(e, rows, largest);
   });
+  search(with_jacobian ? LaneSearch::jacobian : LaneSearch::residual);
+  for (int k = 0; k < code_.searched_rows; ++k)
+    largest = larger(largest, abs(at(job_.right, code_.searched[k])) * unit_);
   return largest;
 }
 
@@ -350,6 +361,7 @@ void LaneEquations<V>::gamma() {
       for (int r = 0; r < E::rows; ++r) put(job_.right, e.row + r, -(scale(e) * rows[r].dd));
     }
   });
+  search(LaneSearch::gamma);
 }
 
 }  // namespace catena

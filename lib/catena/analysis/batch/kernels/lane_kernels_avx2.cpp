@@ -1,5 +1,5 @@
-#include "catena/analysis/batch/lane_kernel.hpp"
-#include "catena/analysis/batch/lane_kernels.hpp"
+#include "catena/analysis/batch/kernels/lane_kernel.hpp"
+#include "catena/analysis/batch/kernels/lane_kernels.hpp"
 
 namespace catena {
 

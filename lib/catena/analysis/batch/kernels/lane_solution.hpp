@@ -2,7 +2,7 @@
 // are exchanged lane by lane; and Phi_q^T x = right from the same factors. Part of the kernels (lane_kernel.hpp).
 #pragma once
 
-#include "catena/analysis/batch/lane_equations.hpp"
+#include "catena/analysis/batch/kernels/lane_equations.hpp"
 
 namespace catena {
 

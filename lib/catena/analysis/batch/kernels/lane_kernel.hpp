@@ -9,7 +9,8 @@
 
 #include <limits>
 
-#include "catena/analysis/batch/lane_loads.hpp"
+#include "catena/analysis/batch/kernels/lane_loads.hpp"
+#include "catena/analysis/batch/kernels/lane_twin.hpp"
 
 namespace catena {
 
@@ -18,17 +19,13 @@ class LaneKernel : LaneLoads<V> {
  public:
   // Everything in one function: what is stored in packs might be any memory for all that the compiler knows, but not
   // the members of an object that never leaves its function.
-  [[gnu::flatten]] static void solve(LaneJob& job) {
-    for (int lane = 0; lane < job.lanes; lane += P::size) {
-      LaneKernel kernel(job, lane);
-      kernel.solve();
-    }
+  [[gnu::flatten]] static void solve(const LaneJob& job, int lane) {
+    LaneKernel kernel(job, lane);
+    kernel.solve();
   }
-  [[gnu::flatten]] static void find_loads(LaneJob& job) {
-    for (int lane = 0; lane < job.lanes; lane += P::size) {
-      LaneKernel kernel(job, lane);
-      kernel.Base::find_loads();
-    }
+  [[gnu::flatten]] static void find_loads(const LaneJob& job, int lane) {
+    LaneKernel kernel(job, lane);
+    kernel.Base::find_loads();
   }
   [[gnu::flatten]] static bool foretell(const LaneForetelling& f);
   [[gnu::flatten]] static bool judge(const LaneJudgement& j);
@@ -83,7 +80,7 @@ void LaneKernel<V>::solve() {
   bool factored = false, near = false;
   for (int iteration = 0;; ++iteration) {
     near ? this->turn_frames() : this->set_frames();
-    const bool is_last = iteration == most_iterations || !xsimd::any(active);
+    const bool is_last = iteration == most_iterations || !any(active);
     if (factored && !is_last) {
       this->template equations<false>();
     } else {
@@ -103,12 +100,12 @@ void LaneKernel<V>::solve() {
       const P ratio = select(active && size > P(rounding_floor), size / last, P(0));
       contraction = select(ratio <= contraction, contraction, ratio);
     }
-    near = xsimd::all(turn <= P(Base::small_turn));
+    near = all(turn <= P(Base::small_turn));
     gap = gap + size;
     last = size;
     // What is left after it; a lane that is not a number never comes to an end.
     active = active && !(gap * size <= P(negligible) || size <= P(negligible));
-    factored = !xsimd::any(active && (gap > P(keep_distance) || contraction > P(poor_contraction)));
+    factored = !any(active && (gap > P(keep_distance) || contraction > P(poor_contraction)));
   }
   Mask good = !active && residual <= P(job_.tolerance);
   P lengths(0);  // not a number where one of them is not
@@ -134,7 +131,7 @@ void LaneKernel<V>::solve() {
 
 template <class V>
 bool LaneKernel<V>::foretell(const LaneForetelling& f) {
-  bool any = false;
+  bool is_any = false;
   for (int lane = 0; lane < lane_count; lane += P::size) {
     const auto at = [&](const double* base, int k) { return P::load(base + lane_count * k + lane); };
     const P distance = at(f.t1, 0) - at(f.t0, 0);
@@ -156,14 +153,14 @@ bool LaneKernel<V>::foretell(const LaneForetelling& f) {
       falls = falls || here - v * (here - before) < P(f.remaining_part) * here;
     }
     select(falls, P(1), P(0)).store(f.falls + lane);
-    any = any || xsimd::any(falls);
+    is_any = is_any || any(falls);
   }
-  return any;
+  return is_any;
 }
 
 template <class V>
 bool LaneKernel<V>::judge(const LaneJudgement& j) {
-  bool all = true;
+  bool are_all = true;
   for (int lane = 0; lane < lane_count; lane += P::size) {
     const auto at = [&](const double* base, int k) { return P::load(base + lane_count * k + lane); };
     Mask sound = at(j.converged, 0) > P(0.5) && at(j.first_turn, 0) <= P(j.largest_turn) &&
@@ -174,14 +171,14 @@ bool LaneKernel<V>::judge(const LaneJudgement& j) {
       sound = sound && here * there > P(0) && abs(there) >= P(j.sudden_part) * abs(here);
     }
     select(sound, P(1), P(0)).store(j.sound + lane);
-    all = all && xsimd::all(sound);
+    are_all = are_all && all(sound);
   }
-  return all;
+  return are_all;
 }
 
 template <class V>
 bool LaneKernel<V>::watch(const LaneWatch& w) {
-  bool any = false;
+  bool is_any = false;
   for (int lane = 0; lane < lane_count; lane += P::size) {
     Mask near = P(0) > P(1);
     for (int k = 0; k < w.tails; ++k) {
@@ -192,17 +189,26 @@ bool LaneKernel<V>::watch(const LaneWatch& w) {
       near = near || !(margin > P(w.least_part) * select(largest < P(1), largest, P(1)));
     }
     select(near, P(1), P(0)).store(w.near + lane);
-    any = any || xsimd::any(near);
+    is_any = is_any || any(near);
   }
-  return any;
+  return is_any;
+}
+
+/// Calls f(kernels, lane) for the packs in use: twins, and a single one where that holds the lanes that are left.
+template <class V, class F>
+void for_each_pack(const LaneJob& job, F&& f) {
+  int lane = 0;
+  for (; job.lanes - lane > static_cast<int>(V::size); lane += static_cast<int>(Twin<V>::size))
+    f.template operator()<LaneKernel<Twin<V>>>(lane);
+  if (lane < job.lanes) f.template operator()<LaneKernel<V>>(lane);
 }
 
 /// The kernels in packs V: of the instruction set that the including file is compiled for.
 template <class V>
 constexpr LaneKernels make_lane_kernels(const char* name) {
   return {name,
-          LaneKernel<V>::solve,
-          LaneKernel<V>::find_loads,
+          [](LaneJob& job) { for_each_pack<V>(job, [&]<class K>(int lane) { K::solve(job, lane); }); },
+          [](LaneJob& job) { for_each_pack<V>(job, [&]<class K>(int lane) { K::find_loads(job, lane); }); },
           LaneKernel<V>::foretell,
           LaneKernel<V>::judge,
           LaneKernel<V>::watch};

@@ -4,10 +4,11 @@
 //   Phi_q^T lambda = Q - M qdd
 //
 // Forces are those of the elements themselves, but for springs and cables, which lose their direction where their ends
-// meet: a spring is then k h, as spring_damper.hpp has it. Units: N, N m, kg, kg m^2.
+// meet: a spring is then k h, as spring_damper.hpp has it. Where a mechanism has others besides, all of them are given
+// by evaluators (lane_evaluators.hpp). Units: N, N m, kg, kg m^2.
 #pragma once
 
-#include "catena/analysis/batch/lane_solution.hpp"
+#include "catena/analysis/batch/kernels/lane_solution.hpp"
 #include "catena/elements/forces/bushing.hpp"
 #include "catena/elements/forces/joint_damper.hpp"
 #include "catena/elements/forces/point_force.hpp"
@@ -76,15 +77,15 @@ void LaneLoads<V>::pull(const LaneForce& f, const Ends& ends, const Vec2<P>& for
   add(f.body_j, on_j);
 }
 
-// Weight and inertia.
+// Weight, inertia and what is given.
 template <class V>
 void LaneLoads<V>::begin() {
   const P gx = at(job_.field, code_.gravity), gy = at(job_.field, code_.gravity + 1);
   for (int b = 0; b < code_.moving; ++b) {
     const P mass = at(job_.field, code_.masses + 2 * b), inertia = at(job_.field, code_.masses + 2 * b + 1);
-    put(job_.load, 3 * b, mass * (gx - at(job_.qdd, 3 * b)));
-    put(job_.load, 3 * b + 1, mass * (gy - at(job_.qdd, 3 * b + 1)));
-    put(job_.load, 3 * b + 2, -(inertia * at(job_.qdd, 3 * b + 2)));
+    put(job_.load, 3 * b, at(job_.applied, 3 * b) + mass * (gx - at(job_.qdd, 3 * b)));
+    put(job_.load, 3 * b + 1, at(job_.applied, 3 * b + 1) + mass * (gy - at(job_.qdd, 3 * b + 1)));
+    put(job_.load, 3 * b + 2, at(job_.applied, 3 * b + 2) - inertia * at(job_.qdd, 3 * b + 2));
   }
 }
 

@@ -28,17 +28,17 @@ struct Pack {
   Pack& operator+=(const Pack& a) { return *this = *this + a; }
   Pack& operator-=(const Pack& a) { return *this = *this - a; }
   friend Pack operator/(const Pack& a, const Pack& b) { return Pack(a.v / b.v); }
-  friend Pack sqrt(const Pack& a) { return Pack(xsimd::sqrt(a.v)); }
-  friend Pack atan2(const Pack& y, const Pack& x) { return Pack(xsimd::atan2(y.v, x.v)); }
-  friend Pack round(const Pack& a) { return Pack(xsimd::round(a.v)); }
-  friend Pack abs(const Pack& a) { return Pack(xsimd::abs(a.v)); }
+  friend Pack sqrt(const Pack& a) { return Pack(sqrt(a.v)); }
+  friend Pack atan2(const Pack& y, const Pack& x) { return Pack(atan2(y.v, x.v)); }
+  friend Pack round(const Pack& a) { return Pack(round(a.v)); }
+  friend Pack abs(const Pack& a) { return Pack(abs(a.v)); }
   friend Mask operator<(const Pack& a, const Pack& b) { return a.v < b.v; }
   friend Mask operator>(const Pack& a, const Pack& b) { return a.v > b.v; }
   friend Mask operator<=(const Pack& a, const Pack& b) { return a.v <= b.v; }
   friend Mask operator>=(const Pack& a, const Pack& b) { return a.v >= b.v; }
-  friend Pack select(const Mask& which, const Pack& a, const Pack& b) { return Pack(xsimd::select(which, a.v, b.v)); }
+  friend Pack select(const Mask& which, const Pack& a, const Pack& b) { return Pack(select(which, a.v, b.v)); }
   /// The larger one; which of them where one is not a number differs between processors.
-  friend Pack larger(const Pack& a, const Pack& b) { return Pack(xsimd::max(a.v, b.v)); }
+  friend Pack larger(const Pack& a, const Pack& b) { return Pack(max(a.v, b.v)); }
 };
 
 /// Cosine and sine as in base/sincos.hpp, of angles up to 1e5 rad: those beyond are not reduced.

@@ -1,4 +1,4 @@
-#include "catena/analysis/batch/lane_kernels.hpp"
+#include "catena/analysis/batch/kernels/lane_kernels.hpp"
 
 #include <atomic>
 

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "catena/analysis/batch/lane_code.hpp"
+#include "catena/analysis/batch/kernels/lane_code.hpp"
 
 namespace catena {
 

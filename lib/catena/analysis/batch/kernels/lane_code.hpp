@@ -13,8 +13,9 @@
 
 namespace catena {
 
-/// Designs of a group; every number of a group is stored as so many values side by side.
-inline constexpr int lane_count = 8;
+/// Designs of a group; every number of a group is stored as so many values side by side: two packs of the widest
+/// instruction set.
+inline constexpr int lane_count = 16;
 
 /// Constraint types that are evaluated in lanes: those whose equations are formulas without a search or a case.
 #define CATENA_LANE_ELEMENTS(X) \
@@ -39,6 +40,10 @@ inline constexpr int lane_count = 8;
 #define CATENA_LANE_NAME(Type) Type##_in_lanes,
 enum LaneType { CATENA_LANE_ELEMENTS(CATENA_LANE_NAME) lane_types };
 #undef CATENA_LANE_NAME
+
+class LaneSearches;
+/// What is asked of constraints that are evaluated lane by lane (lane_searches.hpp).
+enum class LaneSearch { residual, jacobian, gamma };
 
 /// Force types that are evaluated in lanes; springs without a curve.
 #define CATENA_LANE_FORCES(X) \
@@ -136,6 +141,8 @@ struct LaneCode {
   const LaneTail* tail;
   const LaneUnknown* unknown;  ///< lengths, then angles
   int lengths;
+  const int* searched;  ///< rows that are evaluated lane by lane, lengths all of them
+  int searched_rows;
   // Of loads; where none are wanted there are none.
   const LaneForce* force;  ///< type after type
   const LaneForces* of_force_type;
@@ -151,11 +158,15 @@ struct LaneJob {
   const double* unit;      ///< one over the length scale
   double* frame;           ///< x, y, phi, cos, sin of every frame; those after the moving ones are given
   double *q, *qd, *qdd;    ///< of the moving bodies; q: the start of Newton's iteration
+  const double* applied;   ///< forces that no kernel computes, of the moving bodies
   double* load;            ///< Q - M qdd of the moving bodies
   double* lambda;          ///< rows
   double* turned;          ///< cosine and sine of the moving bodies at the configuration
   double *matrix, *right;  ///< slots, those of constants filled; scratch: rows
   double *tail, *exchange;
+  /// Evaluates searched rows into `right`, and their entries into `matrix`, in so many lanes from the first on.
+  void (*search)(const LaneJob& job, LaneSearch what, int first, int count);
+  const LaneSearches* searches;
   int lanes;  ///< in use; packs beyond them are left out
   bool velocity, acceleration;
   double tolerance;  ///< of residuals, relative to the length scale
