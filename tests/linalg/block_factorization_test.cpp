@@ -128,6 +128,33 @@ TEST(BlockFactorization, TakesValuesWhereTheyAreFactored) {
   }
 }
 
+TEST(BlockFactorization, RoundsLanesAsNumbers) {
+  Random random(75);
+  std::vector<Lanes> work;
+  for (int trial = 0; trial < 100; ++trial) {
+    const int nodes = 1 + random.below(30), widest = 1 + random.below(9);
+    const NodalMatrix m = nodal_matrix(nodes, widest, random.uniform(0, 6), random);
+    Counters counters;
+    BlockFactorization factors;
+    factors.analyze(m.entries, m.order, m.node_start, counters);
+    ASSERT_TRUE(factors.factorize(m.lower.values, counters).ok());
+    std::vector<std::vector<double>> own(Lanes::count, std::vector<double>(m.order.size()));
+    std::vector<Lanes> together(m.order.size());
+    for (int lane = 0; lane < Lanes::count; ++lane) {
+      for (std::size_t k = 0; k < together.size(); ++k) {
+        own[lane][k] = random.uniform(-1, 1);
+        together[k].set(lane, own[lane][k]);
+      }
+    }
+    factors.solve(together, work, counters);
+    EXPECT_EQ(counters.solves, Lanes::count);
+    for (int lane = 0; lane < Lanes::count; ++lane) {
+      factors.solve(own[lane], counters);
+      for (std::size_t k = 0; k < together.size(); ++k) EXPECT_EQ(together[k][lane], own[lane][k]) << trial;
+    }
+  }
+}
+
 TEST(BlockFactorization, NamesTheRowOfAVanishingPivot) {
   // Nodes {2, 0}, {1}: row 1 is left with 4 - 2 * 2 = 0.
   const Matrix lower = assemble(3, 3, {{0, 0, 1}, {1, 1, 4}, {2, 2, 3}, {1, 0, 2}, {2, 2, 0}});

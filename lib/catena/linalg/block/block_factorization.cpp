@@ -171,9 +171,20 @@ double BlockFactorization::pivot(int row) const {
 }
 
 void BlockFactorization::solve(std::span<double> x, Counters& counters) {
-  if (!factorized_) throw std::logic_error("BlockFactorization: no valid factors to solve with");
   ++counters.solves;
-  double* const y = work_.data();
+  solve_in(x, work_);
+}
+
+void BlockFactorization::solve(std::span<Lanes> x, std::vector<Lanes>& work, Counters& counters) {
+  counters.solves += Lanes::count;
+  work.resize(work_.size());
+  solve_in(x, work);
+}
+
+template <class V>
+void BlockFactorization::solve_in(std::span<V> x, std::vector<V>& work) {
+  if (!factorized_) throw std::logic_error("BlockFactorization: no valid factors to solve with");
+  V* const y = work.data();
   const int* const order = structure_.order.data();
   for (int k = 0; k < size(); ++k) y[k] = x[order[k]];
   const double* panel = panels_.data();

@@ -21,6 +21,7 @@
 #include "catena/base/counters.hpp"
 #include "catena/linalg/block/block_structure.hpp"
 #include "catena/linalg/kernels/factor_result.hpp"
+#include "catena/linalg/kernels/lanes.hpp"
 #include "catena/linalg/patterns/sparse_pattern.hpp"
 
 namespace catena {
@@ -44,6 +45,8 @@ class BlockFactorization {
 
   /// A x = b in place. Throws std::logic_error without a valid factorization.
   void solve(std::span<double> x, Counters& counters);
+  /// The same for four right-hand sides at once, rounded as one by one. `work` is given its size.
+  void solve(std::span<Lanes> x, std::vector<Lanes>& work, Counters& counters);
 
   int size() const { return structure_.size(); }
   bool is_analyzed() const { return structure_.count() >= 0; }
@@ -76,6 +79,8 @@ class BlockFactorization {
   };
 
   void place_updates();
+  template <class V>
+  void solve_in(std::span<V> x, std::vector<V>& work);
   void eliminate_large(const Step& step, double* panel, const Segment* segments, int* done);
 
   BlockStructure structure_;

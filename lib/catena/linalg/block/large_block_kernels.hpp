@@ -107,12 +107,13 @@ inline void add_update(const double* panel, int height, int columns, const doubl
 }
 
 /// y := L^-1 y of the block's columns, `own` being their part of y; the contributions to the rows below, whose places
-/// in y are `rows`, are subtracted there.
-inline void solve_forward(const double* panel, int height, int columns, const int* rows, double* own, double* y) {
+/// in y are `rows`, are subtracted there. V: numbers, or several in lanes.
+template <class V>
+void solve_forward(const double* panel, int height, int columns, const int* rows, V* own, V* y) {
   for (int first = 0; first < columns;) {
     first += with_group(columns - first, [&](auto c) {
       const double* const l = panel + static_cast<std::size_t>(first) * static_cast<std::size_t>(height);
-      double value[c];
+      V value[c];
       for (int k = 0; k < c; ++k) {
         value[k] = own[first + k];
         for (int j = 0; j < k; ++j)
@@ -120,7 +121,7 @@ inline void solve_forward(const double* panel, int height, int columns, const in
         own[first + k] = value[k];
       }
       const auto sum_of_row = [&](int i) {
-        double sum = 0;
+        V sum{};
         for (int k = 0; k < c; ++k)
           sum += l[static_cast<std::size_t>(k) * static_cast<std::size_t>(height) + i] * value[k];
         return sum;
@@ -133,8 +134,8 @@ inline void solve_forward(const double* panel, int height, int columns, const in
 }
 
 /// y := L^-T D^-1 y of the block's columns, the rows below being solved already.
-inline void solve_backward(const double* panel, int height, int columns, const int* rows, double* own,
-                           const double* y) {
+template <class V>
+void solve_backward(const double* panel, int height, int columns, const int* rows, V* own, const V* y) {
   for (int left = columns; left > 0;) {
     left -= with_group(left, [&](auto c) {
       const int first = left - c;
@@ -142,10 +143,10 @@ inline void solve_backward(const double* panel, int height, int columns, const i
       const auto entry = [&](int i, int k) {
         return l[static_cast<std::size_t>(k) * static_cast<std::size_t>(height) + i];
       };
-      double value[c];
+      V value[c];
       for (int k = 0; k < c; ++k) value[k] = own[first + k] / entry(first + k, k);
       for (int i = columns; i < height; ++i) {
-        const double known = y[rows[i - columns]];
+        const V known = y[rows[i - columns]];
         for (int k = 0; k < c; ++k) value[k] -= entry(i, k) * known;
       }
       for (int i = left; i < columns; ++i) {

@@ -45,31 +45,31 @@ inline int eliminate(double* panel, double* pivots, double* rest, const int* slo
   return c;
 }
 
-/// y := L^-1 y: `own` is the block's part of y, `rows` the places of the rows below.
-template <int c, int r>
-inline void forward(const double* panel, const int* rows, double* own, double* y) {
+/// y := L^-1 y: `own` is the block's part of y, `rows` the places of the rows below. V: numbers, or several in lanes.
+template <int c, int r, class V>
+inline void forward(const double* panel, const int* rows, V* own, V* y) {
   constexpr int h = c + r;
-  double value[c];
+  V value[c];
   for (int k = 0; k < c; ++k) {
     value[k] = own[k];
     for (int j = 0; j < k; ++j) value[k] -= panel[j * h + k] * value[j];
     own[k] = value[k];
   }
   for (int i = 0; i < r; ++i) {
-    double sum = 0;
+    V sum{};
     for (int k = 0; k < c; ++k) sum += panel[k * h + c + i] * value[k];
     y[rows[i]] -= sum;
   }
 }
 
 /// y := L^-T D^-1 y, the rows below being solved already.
-template <int c, int r>
-inline void backward(const double* panel, const int* rows, double* own, const double* y) {
+template <int c, int r, class V>
+inline void backward(const double* panel, const int* rows, V* own, const V* y) {
   constexpr int h = c + r;
-  double value[c];
+  V value[c];
   for (int k = 0; k < c; ++k) value[k] = own[k] / panel[k * h + k];
   for (int i = 0; i < r; ++i) {
-    const double known = y[rows[i]];
+    const V known = y[rows[i]];
     for (int k = 0; k < c; ++k) value[k] -= panel[k * h + c + i] * known;
   }
   for (int k = c - 1; k >= 0; --k) {
