@@ -40,6 +40,21 @@ EquationsOfMotion::EquationsOfMotion(Evaluator& evaluator)
   change_.resize(at(3 * plan_.moving));
 }
 
+EquationsOfMotion::EquationsOfMotion(Evaluator& evaluator, const EquationsOfMotion& like)
+    : evaluator_(evaluator),
+      plan_(evaluator.plan()),
+      masses_(like.masses_),
+      scaling_(like.scaling_),
+      system_(like.system_),
+      weighed_(like.weighed_),
+      jacobian_(like.jacobian_),
+      gamma_(like.gamma_),
+      lambda_(like.lambda_),
+      loads_(like.loads_),
+      residual_(like.residual_),
+      multipliers_(like.multipliers_),
+      change_(like.change_) {}
+
 Report EquationsOfMotion::use_masses() {
   const Report report = masses_.load(evaluator_);
   if (report.ok()) system_.set_masses(masses_.mass, masses_.substitute);

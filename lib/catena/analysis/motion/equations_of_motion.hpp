@@ -26,6 +26,8 @@ namespace catena {
 class EquationsOfMotion {
  public:
   explicit EquationsOfMotion(Evaluator& evaluator);
+  /// With the masses of others of the same model, and with what they know of the structure of its equations.
+  EquationsOfMotion(Evaluator& evaluator, const EquationsOfMotion& like);
 
   /// Takes over the masses; a report naming the body if a mass or inertia is missing.
   Report use_masses();
@@ -49,6 +51,11 @@ class EquationsOfMotion {
   void solve_motion(std::span<const double> loads, std::span<const double> gamma, std::span<double> qdd,
                     std::span<double> lambda) {
     system_.solve_motion(loads, gamma, qdd, lambda, evaluator_.counters);
+  }
+  /// The same for four right-hand sides at once.
+  void solve_motion(std::span<const Lanes> loads, std::span<const Lanes> gamma, std::span<Lanes> qdd,
+                    std::span<Lanes> lambda, SchurLanes& scratch) {
+    system_.solve_motion(loads, gamma, qdd, lambda, scratch, evaluator_.counters);
   }
   /// Multipliers of the solver's rows at the last accelerations().
   std::span<const double> multipliers() const { return lambda_; }

@@ -27,9 +27,9 @@ SchurSystem::SchurSystem(std::shared_ptr<const Plan> plan) : plan_(std::move(pla
   const SparsePattern& a = plan_->jacobian;
   const std::size_t coordinates = at(3 * plan_->moving);
   inverse_masses_.assign(coordinates, 1.0);
-  change_.resize(coordinates);
-  right_hand_side_.resize(at(plan_->rows));
-  correction_.resize(at(plan_->rows));
+  scratch_.change.resize(coordinates);
+  scratch_.right_hand_side.resize(at(plan_->rows));
+  scratch_.correction.resize(at(plan_->rows));
   column_start_.assign(coordinates + 1, 0);
   for (std::size_t k = 0, c = 0; k < coordinates; ++k) {
     if (plan_->column[k] >= 0) c = at(plan_->column[k]) + 1;
@@ -74,19 +74,20 @@ void SchurSystem::leave_out(SparseVectors directions) {
   place_left_out();
 }
 
-void SchurSystem::add_left_out(double factor, std::span<const double> lambda, std::span<double> out) const {
+template <class V>
+void SchurSystem::add_left_out(std::span<const V> lambda, std::span<V> out) const {
   for (int k = 0; k < left_out_.count(); ++k) {
     const std::span<const int> rows = left_out_.indices(k);
     const std::span<const double> c = left_out_.values(k);
-    double sum = 0;
+    V sum{};
     for (std::size_t a = 0; a < c.size(); ++a) sum += c[a] * lambda[at(rows[a])];
-    for (std::size_t a = 0; a < c.size(); ++a) out[at(rows[a])] += factor * sum * c[a];
+    for (std::size_t a = 0; a < c.size(); ++a) out[at(rows[a])] += c[a] * sum;
   }
 }
 
 void SchurSystem::solve_rows(std::span<double> x, Counters& counters) {
-  std::copy(x.begin(), x.end(), right_hand_side_.begin());
-  solve_refined(x, right_hand_side_, counters);
+  std::copy(x.begin(), x.end(), scratch_.right_hand_side.begin());
+  solve_refined<double>(x, scratch_.right_hand_side, scratch_, counters);
 }
 
 std::vector<double> SchurSystem::row_sizes() const {
@@ -188,58 +189,89 @@ bool SchurSystem::factorize(std::span<const double> jacobian, Counters& counters
   return true;
 }
 
-void SchurSystem::multiply_add(std::span<const double> x, std::span<double> out) const {
+template <class V>
+void SchurSystem::add_product(std::span<const V> x, std::span<V> out) const {
   const double* jacobian = jacobian_.data();
   const int* row = plan_->jacobian.row_index.data();
   for (std::size_t c = 0; c + 1 < column_start_.size(); ++c) {
-    const double factor = x[c];
+    const V factor = x[c];
     for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) out[at(row[k])] += jacobian[k] * factor;
   }
 }
 
-void SchurSystem::spread(std::span<const double> lambda, std::span<double> x) const {
+void SchurSystem::multiply_add(std::span<const double> x, std::span<double> out) const { add_product(x, out); }
+
+template <class V>
+void SchurSystem::spread(std::span<const V> lambda, std::span<V> x) const {
   const double* jacobian = jacobian_.data();
   const int* row = plan_->jacobian.row_index.data();
   for (std::size_t c = 0; c + 1 < column_start_.size(); ++c) {
-    double sum = 0;
+    V sum{};
     for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) sum += jacobian[k] * lambda[at(row[k])];
     x[c] = inverse_masses_[c] * sum;
   }
 }
 
-void SchurSystem::solve(std::span<double> x, Counters& counters) { factors_.solve(x, counters); }
-
-void SchurSystem::solve_refined(std::span<double> lambda, std::span<const double> b, Counters& counters) {
-  solve(lambda, counters);
+template <class V, class S>
+void SchurSystem::solve_refined(std::span<V> lambda, std::span<const V> b, S& scratch, Counters& counters) {
+  eliminate(lambda, scratch, counters);
   if (smallest_ratio_ >= refinement_ratio) return;
-  spread(lambda, change_);
-  std::fill(correction_.begin(), correction_.end(), 0.0);
-  multiply_add(change_, correction_);
-  add_left_out(1, lambda, correction_);
-  for (std::size_t k = 0; k < correction_.size(); ++k) correction_[k] = b[k] - correction_[k];
-  solve(correction_, counters);
-  for (std::size_t k = 0; k < correction_.size(); ++k) lambda[k] += correction_[k];
+  const std::span<V> change = scratch.change, correction = scratch.correction;
+  spread<V>(lambda, change);
+  std::fill(correction.begin(), correction.end(), V{});
+  add_product<V>(change, correction);
+  add_left_out<V>(lambda, correction);
+  for (std::size_t k = 0; k < correction.size(); ++k) correction[k] = b[k] - correction[k];
+  eliminate(correction, scratch, counters);
+  for (std::size_t k = 0; k < correction.size(); ++k) lambda[k] += correction[k];
 }
 
 void SchurSystem::solve_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
                                std::span<double> lambda, Counters& counters) {
-  solve_with_masses(Q, gamma, qdd, lambda, counters);
+  solve_with_masses(Q, gamma, qdd, lambda, scratch_, counters);
   if (!massless_.empty() || unequal_) refine_motion(Q, gamma, qdd, lambda, counters);
 }
 
-void SchurSystem::solve_with_masses(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
-                                    std::span<double> lambda, Counters& counters) {
+void SchurSystem::solve_motion(std::span<const Lanes> Q, std::span<const Lanes> gamma, std::span<Lanes> qdd,
+                               std::span<Lanes> lambda, SchurLanes& scratch, Counters& counters) {
+  if (massless_.empty() && !unequal_) {
+    scratch.right_hand_side.resize(scratch_.right_hand_side.size());
+    scratch.correction.resize(scratch_.correction.size());
+    scratch.change.resize(scratch_.change.size());
+    return solve_with_masses(Q, gamma, qdd, lambda, scratch, counters);
+  }
+  // How often a solution is refined depends on it: one after the other.
+  std::vector<double> own_Q(Q.size()), own_gamma(gamma.size()), own_qdd(qdd.size()), own_lambda(lambda.size());
+  const auto take = [](std::span<const Lanes> all, int lane, std::vector<double>& own) {
+    for (std::size_t k = 0; k < own.size(); ++k) own[k] = all[k][lane];
+  };
+  const auto give = [](const std::vector<double>& own, int lane, std::span<Lanes> all) {
+    for (std::size_t k = 0; k < own.size(); ++k) all[k].set(lane, own[k]);
+  };
+  for (int lane = 0; lane < Lanes::count; ++lane) {
+    take(Q, lane, own_Q);
+    take(gamma, lane, own_gamma);
+    solve_motion(own_Q, own_gamma, own_qdd, own_lambda, counters);
+    give(own_qdd, lane, qdd);
+    give(own_lambda, lane, lambda);
+  }
+}
+
+template <class V, class S>
+void SchurSystem::solve_with_masses(std::span<const V> Q, std::span<const V> gamma, std::span<V> qdd,
+                                    std::span<V> lambda, S& scratch, Counters& counters) {
   const std::size_t coordinates = inverse_masses_.size();
   for (std::size_t c = 0; c < coordinates; ++c) qdd[c] = inverse_masses_[c] * Q[c];
   if (plan_->rows == 0) return;
-  for (std::size_t k = 0; k < right_hand_side_.size(); ++k) right_hand_side_[k] = -gamma[k];
-  multiply_add(qdd, right_hand_side_);
-  std::copy(right_hand_side_.begin(), right_hand_side_.end(), lambda.begin());
-  solve_refined(lambda, right_hand_side_, counters);
+  const std::span<V> right_hand_side = scratch.right_hand_side;
+  for (std::size_t k = 0; k < right_hand_side.size(); ++k) right_hand_side[k] = -gamma[k];
+  add_product<V>(qdd, right_hand_side);
+  std::copy(right_hand_side.begin(), right_hand_side.end(), lambda.begin());
+  solve_refined<V>(lambda, right_hand_side, scratch, counters);
   const double* jacobian = jacobian_.data();
   const int* row = plan_->jacobian.row_index.data();
   for (std::size_t c = 0; c < coordinates; ++c) {
-    double sum = 0;
+    V sum{};
     for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) sum += jacobian[k] * lambda[at(row[k])];
     qdd[c] -= inverse_masses_[c] * sum;
   }
@@ -293,8 +325,8 @@ void SchurSystem::refine_motion(std::span<const double> Q, std::span<const doubl
     }
     std::copy(gamma.begin(), gamma.end(), rest_gamma_.begin());
     multiply_add(extra_qdd_, rest_gamma_);
-    add_left_out(1, lambda, rest_gamma_);
-    solve_with_masses(rest_Q_, rest_gamma_, extra_qdd_, extra_lambda_, counters);
+    add_left_out<double>(lambda, rest_gamma_);
+    solve_with_masses<double>(rest_Q_, rest_gamma_, extra_qdd_, extra_lambda_, scratch_, counters);
     double change = 0, whole = 0;
     for (std::size_t c = 0; c < rest_Q_.size(); ++c) {
       change = std::max(change, std::abs(extra_qdd_[c]));
@@ -314,7 +346,7 @@ std::vector<double> SchurSystem::massless_shares(Counters& counters) {
   std::mt19937 random(1);
   for (int probe = 0; probe < most_probes; ++probe) {
     for (int c : massless_) loads[at(c)] = (random() & 1 ? 1 : -1) / std::sqrt(inverse_masses_[at(c)]);
-    solve_with_masses(loads, gamma, qdd, lambda, counters);
+    solve_with_masses<double>(loads, gamma, qdd, lambda, scratch_, counters);
     for (std::size_t k = 0; k < shares.size(); ++k) {
       const std::size_t c = at(massless_[k]);
       shares[k] = std::max(shares[k], std::abs(qdd[c]) / std::sqrt(inverse_masses_[c]));
@@ -326,16 +358,16 @@ std::vector<double> SchurSystem::massless_shares(Counters& counters) {
 void SchurSystem::least_change(std::span<const double> b, std::span<double> x, std::span<double> lambda,
                                Counters& counters) {
   std::copy(b.begin(), b.end(), lambda.begin());
-  std::copy(b.begin(), b.end(), right_hand_side_.begin());
-  solve_refined(lambda, right_hand_side_, counters);
-  spread(lambda, x);
+  std::copy(b.begin(), b.end(), scratch_.right_hand_side.begin());
+  solve_refined<double>(lambda, scratch_.right_hand_side, scratch_, counters);
+  spread<double>(lambda, x);
 }
 
 void SchurSystem::least_change_rough(std::span<const double> b, std::span<double> x, std::span<double> lambda,
                                      Counters& counters) {
   std::copy(b.begin(), b.end(), lambda.begin());
-  solve(lambda, counters);
-  spread(lambda, x);
+  factors_.solve(lambda, counters);
+  spread<double>(lambda, x);
 }
 
 }  // namespace catena

@@ -44,6 +44,15 @@
 
 namespace catena {
 
+/// What solutions are found in; V: numbers, or several in lanes.
+template <class V>
+struct SchurScratch {
+  std::vector<V> right_hand_side, correction, change;  // over rows, rows, coordinates
+};
+struct SchurLanes : SchurScratch<Lanes> {
+  std::vector<Lanes> work;
+};
+
 class SchurSystem {
  public:
   explicit SchurSystem(std::shared_ptr<const Plan> plan);
@@ -68,6 +77,9 @@ class SchurSystem {
   /// qdd and lambda from Q and gamma. Sizes: coordinates (Q, qdd), rows (gamma, lambda). `lambda` may be `gamma`.
   void solve_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
                     std::span<double> lambda, Counters& counters);
+  /// The same for four right-hand sides at once, rounded as one by one.
+  void solve_motion(std::span<const Lanes> Q, std::span<const Lanes> gamma, std::span<Lanes> qdd,
+                    std::span<Lanes> lambda, SchurLanes& scratch, Counters& counters);
   /// Part of M qdd - Q + Phi_q^T lambda that the last solve_motion() left at massless coordinates, relative to the
   /// forces in it; 0 without such coordinates. Near 1: nothing that has mass determines their motion.
   double massless_residual() const { return massless_residual_; }
@@ -106,15 +118,25 @@ class SchurSystem {
   void place_left_out();
   /// S + C, its diagonal increased by a part of itself, to where it is factored.
   void fill(double regularised_part);
-  /// out += factor C lambda.
-  void add_left_out(double factor, std::span<const double> lambda, std::span<double> out) const;
   bool factor_values(Counters& counters);
-  void solve(std::span<double> x, Counters& counters);
+  // V: numbers, or several in lanes.
+  void eliminate(std::span<double> x, SchurScratch<double>&, Counters& counters) { factors_.solve(x, counters); }
+  void eliminate(std::span<Lanes> x, SchurLanes& scratch, Counters& counters) {
+    factors_.solve(x, scratch.work, counters);
+  }
+  template <class V>
+  void add_product(std::span<const V> x, std::span<V> out) const;
+  /// out += C lambda.
+  template <class V>
+  void add_left_out(std::span<const V> lambda, std::span<V> out) const;
   /// x = M^-1 Phi_q^T lambda.
-  void spread(std::span<const double> lambda, std::span<double> x) const;
-  void solve_refined(std::span<double> lambda, std::span<const double> b, Counters& counters);
-  void solve_with_masses(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
-                         std::span<double> lambda, Counters& counters);
+  template <class V>
+  void spread(std::span<const V> lambda, std::span<V> x) const;
+  template <class V, class S>
+  void solve_refined(std::span<V> lambda, std::span<const V> b, S& scratch, Counters& counters);
+  template <class V, class S>
+  void solve_with_masses(std::span<const V> Q, std::span<const V> gamma, std::span<V> qdd, std::span<V> lambda,
+                         S& scratch, Counters& counters);
   double find_massless_residual(std::span<const double> Q, std::span<const double> lambda);
   void refine_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
                      std::span<double> lambda, Counters& counters);
@@ -131,7 +153,7 @@ class SchurSystem {
   SparseVectors left_out_;
   std::vector<int> left_out_slot_;  // of the products of each direction
   std::vector<double> constant_values_, diagonal_values_;
-  std::vector<double> right_hand_side_, correction_, change_;
+  SchurScratch<double> scratch_;
   std::vector<double> rest_Q_, rest_gamma_, extra_qdd_, extra_lambda_;  // for massless coordinates and unequal masses
   BlockFactorization factors_;
   bool analyzed_ = false, constants_known_ = false, regularised_ = false, unequal_ = false;
