@@ -100,51 +100,65 @@ bool StartDerivatives::find(DesignMechanism& mechanism, int count, std::span<Des
   return find_places(mechanism, count, q) && find_velocities(mechanism, count, q, qd);
 }
 
+bool StartDerivatives::prepare_places(const DesignMechanism& mechanism, std::span<const double> q) {
+  if (!prepared_q_.empty() && std::equal(q.begin(), q.end(), prepared_q_.begin(), prepared_q_.end())) return true;
+  prepared_q_.clear();
+  prepared_qd_.clear();
+  evaluator_.set_configuration(q);
+  evaluator_.jacobian(jacobian_);
+  radius_ = evaluator_.attachment_radii();
+  const auto phi_q = std::span<const double>(jacobian_).first(at(plan_.trash_slot()));
+  apart_.assign(q.size(), 0.0);
+  place_weight_.assign(q.size(), 0.0);
+  place_multipliers_.assign(at(plan_.rows), 0.0);
+  std::vector<double> f(q.size());
+  for (int c = 0; c < 3 * plan_.moving; ++c) {
+    const auto& body = evaluator_.model().bodies[at(plan_.model_body[at(c / 3)])];
+    const double radius = radius_[at(c / 3)];
+    place_weight_[at(c)] = (c % 3 == 2 ? radius * radius : 1) * (is_held(body, c % 3) ? held_weight : 1);
+    if (!by_model_.places) continue;
+    // Positions are relative to the given ones; whole turns were taken over before assembly.
+    apart_[at(c)] =
+        c % 3 == 2 ? std::remainder(q[at(c)] - given_place(mechanism, c).v, 2 * std::numbers::pi) : q[at(c)];
+  }
+  const auto weigh = [&] {
+    for (int c = 0; c < 3 * plan_.moving; ++c) assembly_.add_diagonal(c, place_weight_[at(c)]);
+  };
+  // The multipliers of assembly: W (q - e) + Phi_q^T mu = 0, here the least squares solution.
+  if (!assembly_.begin(phi_q)) return false;
+  weigh();
+  for (std::size_t c = 0; c < f.size(); ++c) f[c] = -place_weight_[c] * apart_[c];
+  if (!assembly_.factorize() || !assembly_.solve(f, place_multipliers_)) return false;
+  assembly_.begin(phi_q);
+  weigh();
+  evaluator_.visit_constraint_hessians(
+      place_multipliers_, [&](int i, int j, const ElementMatrix& matrix) { assembly_.add_element(i, j, matrix); });
+  if (!assembly_.factorize()) return false;
+  prepared_q_.assign(q.begin(), q.end());
+  return true;
+}
+
 bool StartDerivatives::find_places(DesignMechanism& mechanism, int count, std::span<DesignScalar> q) {
   std::vector<double> values(q.size());
   for (std::size_t c = 0; c < q.size(); ++c) values[c] = q[c].v;
-  evaluator_.set_configuration(values);
-  evaluator_.jacobian(jacobian_);
-  mechanism.set_time(evaluator_.time());
   const auto singular = [&] { return fail("constraints are singular where it was assembled"); };
-  const std::vector<double> radius = evaluator_.attachment_radii();
-  const auto phi_q = std::span<const double>(jacobian_).first(at(plan_.trash_slot()));
-  const std::vector<DesignScalar> square = squared_radii(mechanism.model(), plan_, radius);
-  std::vector<double> apart(q.size(), 0.0), weight(q.size(), 0.0), f(q.size()), b(at(plan_.rows), 0.0);
-  std::vector<DesignScalar> estimate(q.size());
-  for (int c = 0; c < 3 * plan_.moving; ++c) {
-    const auto& body = evaluator_.model().bodies[at(plan_.model_body[at(c / 3)])];
-    const auto& design = mechanism.model().bodies[at(plan_.model_body[at(c / 3)])];
-    const int k = c % 3;
-    weight[at(c)] = (k == 2 ? radius[at(c / 3)] * radius[at(c / 3)] : 1) * (is_held(body, k) ? held_weight : 1);
-    if (!by_model_.places) continue;
-    estimate[at(c)] = k == 0 ? design.position.x : k == 1 ? design.position.y : design.angle;
-    const double turn = 2 * std::numbers::pi;
-    // Positions are relative to the given ones; whole turns were taken over before assembly.
-    apart[at(c)] = k == 2 ? std::remainder(q[at(c)].v - estimate[at(c)].v, turn) : q[at(c)].v;
-  }
-  // The multipliers of assembly: W (q - e) + Phi_q^T mu = 0, here the least squares solution.
-  if (!assembly_.begin(phi_q)) return singular();
-  for (int c = 0; c < 3 * plan_.moving; ++c) assembly_.add_diagonal(c, weight[at(c)]);
-  if (!assembly_.factorize()) return singular();
-  for (std::size_t c = 0; c < f.size(); ++c) f[c] = -weight[c] * apart[c];
-  if (!assembly_.solve(f, b)) return singular();
-  std::vector<DesignScalar> mu(b.begin(), b.end()), loads(q.size());
-  assembly_.begin(phi_q);
-  for (int c = 0; c < 3 * plan_.moving; ++c) assembly_.add_diagonal(c, weight[at(c)]);
-  evaluator_.visit_constraint_hessians(
-      b, [&](int i, int j, const ElementMatrix& matrix) { assembly_.add_element(i, j, matrix); });
-  if (!assembly_.factorize()) return singular();
+  mechanism.set_time(evaluator_.time());
+  if (!prepare_places(mechanism, values)) return singular();
+  const std::vector<DesignScalar> square = squared_radii(mechanism.model(), plan_, radius_);
+  std::vector<double> f(q.size()), b(at(plan_.rows), 0.0);
+  const std::vector<DesignScalar> mu(place_multipliers_.begin(), place_multipliers_.end());
+  std::vector<DesignScalar> loads(q.size()), estimate(q.size());
+  for (int c = 0; c < 3 * plan_.moving && by_model_.places; ++c) estimate[at(c)] = given_place(mechanism, c);
   std::vector<Taylor<DesignScalar>> rows(b.size());
   mechanism.set_state(q);
   mechanism.rows(rows);
   mechanism.add_constraint_loads(mu, loads);
   for (std::size_t p = 0; p < at(count); ++p) {
     for (std::size_t c = 0; c < f.size(); ++c) {
-      f[c] = weight[c] * estimate[c].d[p] - loads[c].d[p];
+      f[c] = place_weight_[c] * estimate[c].d[p] - loads[c].d[p];
       // Angles weigh more or less where attachments move.
-      if (c % 3 == 2 && c / 3 < square.size() && weight[c] > 0)
-        f[c] -= weight[c] / square[c / 3].v * square[c / 3].d[p] * apart[c];
+      if (c % 3 == 2 && c / 3 < square.size() && place_weight_[c] > 0)
+        f[c] -= place_weight_[c] / square[c / 3].v * square[c / 3].d[p] * apart_[c];
     }
     for (std::size_t r = 0; r < b.size(); ++r) b[r] = -rows[r].f.d[p];
     if (!assembly_.solve(f, b)) return singular();
@@ -172,6 +186,11 @@ bool StartDerivatives::weigh(std::span<const double> q, std::span<const double> 
     follows_[coordinate] = wanted.follows[at(c)];
   }
   return true;
+}
+
+DesignScalar StartDerivatives::given_place(const DesignMechanism& mechanism, int coordinate) const {
+  const auto& body = mechanism.model().bodies[at(plan_.model_body[at(coordinate / 3)])];
+  return coordinate % 3 == 0 ? body.position.x : coordinate % 3 == 1 ? body.position.y : body.angle;
 }
 
 DesignScalar StartDerivatives::given_velocity(const DesignMechanism& mechanism, int coordinate) const {
@@ -215,24 +234,23 @@ bool StartDerivatives::solve_keeping(std::span<const double> goal, std::span<con
                   rounds_of_velocities, change / size));
 }
 
-bool StartDerivatives::find_velocities(DesignMechanism& mechanism, int count, std::span<const DesignScalar> q,
-                                       std::span<DesignScalar> qd) {
-  std::vector<double> places(q.size()), goal(qd.size()), load(qd.size(), 0.0), v(qd.size());
-  for (std::size_t c = 0; c < q.size(); ++c) {
-    places[c] = q[c].v;
-    goal[c] = qd[c].v;
-  }
-  if (!weigh(places, goal)) return false;
-  if (!velocities_.begin(std::span<const double>(jacobian_).first(at(plan_.trash_slot()))))
-    return fail("the equations of its velocities are singular");
+bool StartDerivatives::prepare_velocities(DesignMechanism& mechanism, std::span<const DesignScalar> q,
+                                          std::span<const double> qd) {
+  if (!prepared_qd_.empty() && std::equal(qd.begin(), qd.end(), prepared_qd_.begin(), prepared_qd_.end())) return true;
+  prepared_qd_.clear();
+  if (!weigh(prepared_q_, qd)) return false;
+  const auto singular = [&] { return fail("the equations of its velocities are singular"); };
+  if (!velocities_.begin(std::span<const double>(jacobian_).first(at(plan_.trash_slot())))) return singular();
   for (const int coordinate : plan_.coordinate) velocities_.add_diagonal(coordinate, weight_[at(coordinate)]);
-  if (!velocities_.factorize()) return fail("the equations of its velocities are singular");
-  std::vector<double> b(at(plan_.rows)), multipliers(b);
+  if (!velocities_.factorize()) return singular();
+  std::vector<double> b(at(plan_.rows)), v(qd.size());
+  const std::vector<double> load(qd.size(), 0.0);
+  rate_multipliers_.assign(b.size(), 0.0);
   std::vector<Taylor<DesignScalar>> rows(b.size());
   mechanism.set_state(q);
   mechanism.rows(rows);
   for (std::size_t r = 0; r < b.size(); ++r) b[r] = -rows[r].d.v;  // nu
-  if (!solve_keeping(wanted_, load, b, v, multipliers)) return false;
+  if (!solve_keeping(wanted_, load, b, v, rate_multipliers_)) return false;
   double largest = 0, off = 0;
   for (const int coordinate : plan_.coordinate) {
     const std::size_t c = at(coordinate);
@@ -243,10 +261,25 @@ bool StartDerivatives::find_velocities(DesignMechanism& mechanism, int count, st
     return fail(fmt::format(
         "the given velocities do not meet the constraints, which change them by {:.3g}: give such as meet them", off));
   }
-  std::vector<DesignScalar> mu(multipliers.begin(), multipliers.end()), loads(qd.size());
+  prepared_qd_.assign(qd.begin(), qd.end());
+  return true;
+}
+
+bool StartDerivatives::find_velocities(DesignMechanism& mechanism, int count, std::span<const DesignScalar> q,
+                                       std::span<DesignScalar> qd) {
+  std::vector<double> goal(qd.size()), load(qd.size(), 0.0), v(qd.size()), b(at(plan_.rows)), multipliers(b);
+  for (std::size_t c = 0; c < qd.size(); ++c) goal[c] = qd[c].v;
+  if (!prepare_velocities(mechanism, q, goal)) return false;
+  std::fill(goal.begin(), goal.end(), 0.0);
+  const std::vector<DesignScalar> mu(rate_multipliers_.begin(), rate_multipliers_.end());
+  std::vector<DesignScalar> loads(qd.size());
+  std::vector<Taylor<DesignScalar>> rows(b.size());
   mechanism.set_state(q, qd);
   mechanism.rows(rows);
   mechanism.add_constraint_loads(mu, loads);
+  const auto is_zero = [](const std::vector<double>& side) {
+    return std::all_of(side.begin(), side.end(), [](double x) { return x == 0; });
+  };
   for (std::size_t p = 0; p < at(count); ++p) {
     for (const int coordinate : plan_.coordinate) {
       const std::size_t c = at(coordinate);
@@ -254,8 +287,10 @@ bool StartDerivatives::find_velocities(DesignMechanism& mechanism, int count, st
       load[c] = -mechanism.mass(coordinate).d[p] * qd[c].v - loads[c].d[p];
     }
     for (std::size_t r = 0; r < b.size(); ++r) b[r] = -rows[r].d.d[p];
-    if (!solve_keeping(goal, load, b, v, multipliers)) return false;
-    for (const int c : plan_.coordinate) qd[at(c)].d[p] = v[at(c)];
+    // From rest no parameter moves them.
+    const bool moves = !is_zero(goal) || !is_zero(load) || !is_zero(b);
+    if (moves && !solve_keeping(goal, load, b, v, multipliers)) return false;
+    for (const int c : plan_.coordinate) qd[at(c)].d[p] = moves ? v[at(c)] : 0;
   }
   return true;
 }

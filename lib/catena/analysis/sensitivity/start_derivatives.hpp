@@ -41,8 +41,13 @@ class StartDerivatives {
  private:
   bool find_velocities(DesignMechanism& mechanism, int count, std::span<const DesignScalar> q,
                        std::span<DesignScalar> qd);
+  /// What all groups of parameters share at one start: factors, and the multipliers of assembly; of velocities the
+  /// same, and whether they are what is given. Nothing is done again for the start of the last call.
+  bool prepare_places(const DesignMechanism& mechanism, std::span<const double> q);
+  bool prepare_velocities(DesignMechanism& mechanism, std::span<const DesignScalar> q, std::span<const double> qd);
   /// What is asked of all velocities and how much it weighs, at their values; false without masses.
   bool weigh(std::span<const double> q, std::span<const double> qd);
+  DesignScalar given_place(const DesignMechanism& mechanism, int coordinate) const;
   /// What is asked of the given velocity of a coordinate.
   DesignScalar given_velocity(const DesignMechanism& mechanism, int coordinate) const;
   /// Solves for velocities with what is missing of given ones added until nothing is, and small masses taken back;
@@ -59,7 +64,9 @@ class StartDerivatives {
   GivenByModel by_model_;
   SaddleSystem assembly_, velocities_;
   std::vector<double> jacobian_, weight_, wanted_;
-  std::vector<char> given_, follows_;  // by coordinate
+  std::vector<double> radius_, place_weight_, apart_, place_multipliers_, rate_multipliers_;
+  std::vector<double> prepared_q_, prepared_qd_;  // the start that was prepared; empty: none
+  std::vector<char> given_, follows_;             // by coordinate
   std::string why_, lack_;
 };
 

@@ -46,12 +46,30 @@ class AdjointMechanism {
    public:
     Reached(const AdjointMechanism& adjoint, const DesignMechanism& mechanism);
     int elements() const { return elements_; }
+    /// Whether derivatives ask the mechanism itself: its functions and its bodies that do not move.
+    bool asks_mechanism() const { return any_constraint_ || any_force_ || gravity_; }
 
    private:
     friend class AdjointMechanism;
     friend class MechanismTangents;
+    using Derivatives = std::array<double, parameters_at_once>;
+    /// An end of a pin in a body: what its equations move by with the parameters, in the body's axes.
+    struct PinEnd {
+      int row, body;
+      Derivatives x, y;
+    };
+    /// A coordinate whose mass moves, and what gravity pulls it with.
+    struct Mass {
+      int coordinate;
+      double pull;
+      Derivatives by;
+    };
+    bool take_pin(const AdjointMechanism& adjoint, int row, const std::array<int, 2>& bodies,
+                  const Revolute<DesignScalar>& pin);
+    void take_masses(const Plan& plan, const DesignMechanism& mechanism);
     std::vector<std::vector<int>> constraints_, forces_;  // by type: places in the block
-    std::vector<int> bodies_;                             // plan bodies with masses that move
+    std::vector<PinEnd> pins_;                            // of pins, which are not among the constraints
+    std::vector<Mass> masses_;
     bool gravity_ = false, any_constraint_ = false, any_force_ = false;
     int elements_ = 0;
   };
@@ -74,9 +92,8 @@ class AdjointMechanism {
   std::vector<double> rates_;           // qd
 
  private:
-  template <class Block>
-  bool add_pin(const Block& block, int e, const Revolute<DesignScalar>& pin, const AdjointWeights& weights,
-               std::array<double, parameters_at_once>& sum) const;
+  void add_pins(const Reached& reached, const AdjointWeights& weights,
+                std::array<double, parameters_at_once>& sum) const;
   void add_constraints_by_q(const AdjointWeights& weights, std::span<double> by_q, std::span<double> by_qd) const;
   void add_curvature(const AdjointWeights& weights, std::span<double> by_q) const;
   void add_forces_by_state(const Evaluator& evaluator, std::span<const double> w, std::span<double> by_q,

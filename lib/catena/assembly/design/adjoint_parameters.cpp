@@ -98,32 +98,51 @@ Frame<DesignSeries> lifted(const Frame<Taylor<double>>& f) {
 }  // namespace
 
 // With the arms a = A s: h_p = A s_p, h'_p = R A s_p omega, h''_p = R A s_p alpha - A s_p omega^2, (h_q w)_p = R A s_p
-// w_phi. False where a body that does not move is moved by parameters itself.
-template <class Block>
-bool AdjointMechanism::add_pin(const Block& block, int e, const Revolute<DesignScalar>& pin,
-                               const AdjointWeights& weights, std::array<double, parameters_at_once>& sum) const {
-  const int bodies[2] = {block.body_i[at(e)], block.body_j[at(e)]};
-  for (const int body : bodies) {
-    const bool immobile = body >= plan_->moving && body < plan_->bodies;
-    if (immobile || (body < plan_->moving && plan_->column[at(3 * body + 2)] < 0)) return false;
-  }
-  const std::size_t row = at(block.row(e));
-  const auto weight = [&](std::span<const double> w) {
-    return w.empty() ? Vec2<double>{} : Vec2<double>{w[row], w[row + 1]};
-  };
+// w_phi.
+void AdjointMechanism::add_pins(const Reached& reached, const AdjointWeights& weights,
+                                std::array<double, parameters_at_once>& sum) const {
   const auto turned_back = [](const Vec2<double>& v) { return Vec2<double>{v.y, -v.x}; };  // R^T v
-  const Vec2<double> phi = weight(weights.phi), rate = weight(weights.rate), bend = weight(weights.bend),
-                     lambda = weight(weights.lambda);
-  for (int b = 0; b < 2; ++b) {
-    const Frame<Series>& f = motion_[at(bodies[b])];
-    const double omega = f.phi.d, w = weights.w.empty() ? 0 : weights.w[at(3 * bodies[b] + 2)];
-    const Vec2<double> all = phi - (omega * omega) * bend + turned_back(omega * rate + f.phi.dd * bend + w * lambda);
-    const double sign = b == 0 ? 1 : -1;
-    const Vec2<double> local{sign * (f.c.f * all.x + f.s.f * all.y), sign * (f.c.f * all.y - f.s.f * all.x)};
-    const Vec2<DesignScalar>& s = b == 0 ? pin.s_i : pin.s_j;
-    for (std::size_t p = 0; p < sum.size(); ++p) sum[p] += local.x * s.x.d[p] + local.y * s.y.d[p];
+  for (const Reached::PinEnd& end : reached.pins_) {
+    const auto weight = [row = at(end.row)](std::span<const double> w) {
+      return w.empty() ? Vec2<double>{} : Vec2<double>{w[row], w[row + 1]};
+    };
+    const Frame<Series>& f = motion_[at(end.body)];
+    const double omega = f.phi.d, w = weights.w.empty() ? 0 : weights.w[at(3 * end.body + 2)];
+    const Vec2<double> bend = weight(weights.bend);
+    const Vec2<double> all = weight(weights.phi) - (omega * omega) * bend +
+                             turned_back(omega * weight(weights.rate) + f.phi.dd * bend + w * weight(weights.lambda));
+    const double x = f.c.f * all.x + f.s.f * all.y, y = f.c.f * all.y - f.s.f * all.x;
+    for (std::size_t p = 0; p < sum.size(); ++p) sum[p] -= x * end.x[p] + y * end.y[p];
+  }
+}
+
+// False where a body that does not move, or an angle that is no unknown, may be moved by parameters itself.
+bool AdjointMechanism::Reached::take_pin(const AdjointMechanism& adjoint, int row, const std::array<int, 2>& bodies,
+                                         const Revolute<DesignScalar>& pin) {
+  const Plan& plan = adjoint.plan();
+  for (const int body : bodies) {
+    const bool immobile = body >= plan.moving && body < plan.bodies;
+    if (immobile || (body < plan.moving && plan.column[at(3 * body + 2)] < 0)) return false;
+  }
+  for (const bool second : {false, true}) {
+    const Vec2<DesignScalar>& s = second ? pin.s_j : pin.s_i;
+    if (!moves(s)) continue;
+    PinEnd end{row, bodies[second ? 1 : 0], s.x.d, s.y.d};
+    for (std::size_t p = 0; p < end.x.size() && !second; ++p) {
+      end.x[p] = -end.x[p];
+      end.y[p] = -end.y[p];
+    }
+    pins_.push_back(end);
   }
   return true;
+}
+
+void AdjointMechanism::Reached::take_masses(const Plan& plan, const DesignMechanism& mechanism) {
+  const Vec2<DesignScalar>& gravity = mechanism.model().gravity;
+  for (int c = 0; c < 3 * plan.moving; ++c) {
+    if (!moves(mechanism.mass(c))) continue;
+    masses_.push_back(Mass{c, c % 3 == 0 ? gravity.x.v : c % 3 == 1 ? gravity.y.v : 0, mechanism.mass(c).d});
+  }
 }
 
 AdjointMechanism::Reached::Reached(const AdjointMechanism& adjoint, const DesignMechanism& mechanism) {
@@ -140,9 +159,13 @@ AdjointMechanism::Reached::Reached(const AdjointMechanism& adjoint, const Design
     for (int e = 0; e < block.size(); ++e) {
       const auto& entry = list[at(block.entry[at(e)])];
       const bool by_body = body_moves(block.body_i[at(e)]) || (E::bodies == 2 && body_moves(block.body_j[at(e)]));
-      if (by_body || entry_moves(entry) || fields_move(entry.element) || own(entry.element)) reached.push_back(e);
+      if (!(by_body || entry_moves(entry) || fields_move(entry.element) || own(entry.element))) continue;
+      ++elements_;
+      if constexpr (std::is_same_v<E, Revolute<DesignScalar>>) {
+        if (take_pin(adjoint, block.row(e), {block.body_i[at(e)], block.body_j[at(e)]}, entry.element)) continue;
+      }
+      reached.push_back(e);
     }
-    elements_ += static_cast<int>(reached.size());
   };
   for_each_list(plan.blocks, model.constraints, [&](const auto& block, const auto& list, int) {
     using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
@@ -163,9 +186,7 @@ AdjointMechanism::Reached::Reached(const AdjointMechanism& adjoint, const Design
   };
   any_constraint_ = any(constraints_);
   any_force_ = any(forces_);
-  for (int b = 0; b < plan.moving; ++b) {
-    if (moves(mechanism.mass(3 * b)) || moves(mechanism.mass(3 * b + 2))) bodies_.push_back(b);
-  }
+  take_masses(plan, mechanism);
   gravity_ = moves(model.gravity);
 }
 
@@ -175,6 +196,15 @@ std::array<double, parameters_at_once> AdjointMechanism::by_parameters(const Des
                                                                        std::span<const double> qdd) {
   const DesignModel& model = mechanism.model();
   DesignScalar sum;
+  add_pins(reached, weights, sum.d);
+  if (!weights.w.empty()) {
+    for (const Reached::Mass& mass : reached.masses_) {
+      const std::size_t c = at(mass.coordinate);
+      const double force = weights.w[c] * (mass.pull - (qdd.empty() ? 0 : qdd[c]));
+      for (std::size_t p = 0; p < sum.d.size(); ++p) sum.d[p] += force * mass.by[p];
+    }
+  }
+  if (!reached.asks_mechanism()) return sum.d;
   const auto immobile = [&](int body) { return body >= plan_->moving && body < plan_->bodies; };
   // A particle's angle is no unknown: it carries the model's derivatives.
   const auto turned = [&](auto frame, int body) {
@@ -218,9 +248,6 @@ std::array<double, parameters_at_once> AdjointMechanism::by_parameters(const Des
       if constexpr (is_asked<Plain>) {
         for (const int e : places) {
           const auto& entry = list[at(block.entry[at(e)])];
-          if constexpr (std::is_same_v<Plain, Revolute<double>>) {
-            if (add_pin(block, e, entry.element, weights, sum.d)) continue;
-          }
           const DesignSeries c = value(entry);
           const double scale = scale_[at(entry.id)];
           DesignSeries rows[E::rows];
@@ -280,19 +307,10 @@ std::array<double, parameters_at_once> AdjointMechanism::by_parameters(const Des
         }
       }
     });
-  const auto weigh = [&](int b) {
-    for (int k = 0; k < 3; ++k) {
-      const std::size_t c = at(3 * b + k);
-      const DesignScalar& m = mechanism.mass(3 * b + k);
-      const DesignScalar field = k == 0 ? model.gravity.x : k == 1 ? model.gravity.y : DesignScalar();
-      const double pull = field.v - (qdd.empty() ? 0 : qdd[c]);
-      for (std::size_t p = 0; p < sum.d.size(); ++p) sum.d[p] += weights.w[c] * (pull * m.d[p] + m.v * field.d[p]);
-    }
-  };
-  if (reached.gravity_) {
-    for (int b = 0; b < plan_->moving; ++b) weigh(b);
-  } else {
-    for (const int b : reached.bodies_) weigh(b);
+  for (int c = 0; c < 3 * plan_->moving && reached.gravity_; ++c) {
+    if (c % 3 == 2) continue;
+    const DesignScalar& field = c % 3 == 0 ? model.gravity.x : model.gravity.y;
+    for (std::size_t p = 0; p < sum.d.size(); ++p) sum.d[p] += weights.w[at(c)] * mechanism.mass(c).v * field.d[p];
   }
   return sum.d;
 }

@@ -4,6 +4,7 @@
 
 #include "catena/assembly/design/element_motion.hpp"
 #include "catena/base/at.hpp"
+#include "catena/linalg/kernels/lanes.hpp"
 
 namespace catena {
 namespace {
@@ -14,7 +15,8 @@ constexpr bool has_tangents = !std::is_same_v<E, CustomConstraint<double>> && !s
 
 /// out += factor x along, over all directions.
 void add_row(double factor, const double* along, std::size_t width, double* out) {
-  for (std::size_t p = 0; p < width; ++p) out[p] += factor * along[p];
+  for (std::size_t p = 0; p < width; p += Lanes::count)
+    (Lanes::load(out + p) + factor * Lanes::load(along + p)).store(out + p);
 }
 
 }  // namespace
@@ -40,9 +42,11 @@ void MechanismTangents::add_pins(const Block& block, const List& list, std::span
       if (!sums.bends.empty()) {
         double *x = sums.bends.data() + row * w, *y = x + w;
         const double by_x = -a.x * alpha + a.y * omega * omega, by_y = -a.y * alpha - a.x * omega * omega;
-        for (std::size_t p = 0; p < w; ++p) {
-          x[p] += by_x * dphi[p] - 2 * a.x * omega * domega[p];
-          y[p] += by_y * dphi[p] - 2 * a.y * omega * domega[p];
+        const double rate_x = -2 * a.x * omega, rate_y = -2 * a.y * omega;
+        for (std::size_t p = 0; p < w; p += Lanes::count) {
+          const Lanes turn = Lanes::load(dphi + p), rate = Lanes::load(domega + p);
+          (Lanes::load(x + p) + (by_x * turn + rate_x * rate)).store(x + p);
+          (Lanes::load(y + p) + (by_y * turn + rate_y * rate)).store(y + p);
         }
       }
       if (!sums.rates.empty()) {

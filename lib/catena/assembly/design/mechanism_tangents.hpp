@@ -5,9 +5,9 @@
 //   Phi'' along the motion (q, qd, qdd)            bends += (Phi_q)'' dq + 2 (Phi_q)' dqd + Phi''_p
 //   Phi'                                           rates += (Phi_q)' dq + Phi'_p               Phi: phi += Phi_p
 //
-// dq, dqd: a row of `width` numbers a coordinate, one a direction. The matrices of an element are evaluated once, those
-// of pins from closed forms, and applied to all directions; by parameters only what they reach is differentiated. For
-// the models of AdjointMechanism. Units as in evaluate.hpp. Source: apps/manual/sensitivity.md.
+// dq, dqd: a row of `width` numbers a coordinate, one a direction, in groups of four. The matrices of an element are
+// evaluated once, those of pins from closed forms, and applied to all directions; by parameters only what they reach is
+// differentiated. For the models of AdjointMechanism. Units as in evaluate.hpp. Source: apps/manual/sensitivity.md.
 #pragma once
 
 #include "catena/assembly/design/adjoint_mechanism.hpp"
@@ -37,9 +37,8 @@ class MechanismTangents : public AdjointMechanism {
     std::span<const double> dq, dqd;
     std::size_t width;
   };
-  template <class Block>
-  bool add_pin_parameters(const Block& block, int e, const Revolute<DesignScalar>& pin, std::span<const double> lambda,
-                          std::size_t first, std::size_t width, const TangentSums& sums) const;
+  void add_pin_parameters(const Reached& reached, std::span<const double> lambda, std::size_t first, std::size_t width,
+                          const TangentSums& sums) const;
   template <class Block, class List>
   void add_pins(const Block& block, const List& list, std::span<const double> lambda, const Directions& along,
                 const TangentSums& sums) const;

@@ -5,6 +5,7 @@
 #include "catena/assembly/design/element_motion.hpp"
 #include "catena/assembly/design/mechanism_tangents.hpp"
 #include "catena/base/at.hpp"
+#include "catena/linalg/kernels/lanes.hpp"
 
 namespace catena {
 namespace {
@@ -32,48 +33,50 @@ void add_derivatives(double factor, const DesignScalar& x, double* out) {
 }  // namespace
 
 // With the arm a = A s and its derivative A s_p: h_p = A s_p, h'_p = R A s_p omega, h''_p = R A s_p alpha - A s_p
-// omega^2, and of the load's moment lambda . R A s_p. False where a body's own place moves with the parameters.
-template <class Block>
-bool MechanismTangents::add_pin_parameters(const Block& block, int e, const Revolute<DesignScalar>& pin,
-                                           std::span<const double> lambda, std::size_t first, std::size_t width,
-                                           const TangentSums& sums) const {
-  const int bodies[2] = {block.body_i[at(e)], block.body_j[at(e)]};
-  for (const int body : bodies) {
-    const bool immobile = body >= plan_->moving && body < plan_->bodies;
-    if (immobile || (body < plan_->moving && plan_->column[at(3 * body + 2)] < 0)) return false;
-  }
-  const std::size_t row = at(block.row(e));
-  const auto target = [&](std::span<double> all, std::size_t r) { return all.data() + r * width + first; };
-  for (int b = 0; b < 2; ++b) {
-    const Frame<Series>& f = motion_[at(bodies[b])];
-    const Vec2<DesignScalar>& s = b == 0 ? pin.s_i : pin.s_j;
-    const double sign = b == 0 ? -1 : 1, omega = f.phi.d, alpha = f.phi.dd;
-    for (std::size_t p = 0; p < s.x.d.size(); ++p) {
-      const Vec2<double> a{sign * (f.c.f * s.x.d[p] - f.s.f * s.y.d[p]), sign * (f.s.f * s.x.d[p] + f.c.f * s.y.d[p])};
-      if (!sums.phi.empty()) {
-        target(sums.phi, row)[p] += a.x;
-        target(sums.phi, row + 1)[p] += a.y;
-      }
-      if (!sums.rates.empty()) {
-        target(sums.rates, row)[p] -= omega * a.y;
-        target(sums.rates, row + 1)[p] += omega * a.x;
-      }
-      if (!sums.bends.empty()) {
-        target(sums.bends, row)[p] -= alpha * a.y + omega * omega * a.x;
-        target(sums.bends, row + 1)[p] += alpha * a.x - omega * omega * a.y;
-      }
-      if (!sums.loads.empty() && bodies[b] < plan_->moving)
-        target(sums.loads, at(3 * bodies[b] + 2))[p] -= lambda[row + 1] * a.x - lambda[row] * a.y;
+// omega^2, and of the load's moment lambda . R A s_p.
+void MechanismTangents::add_pin_parameters(const Reached& reached, std::span<const double> lambda, std::size_t first,
+                                           std::size_t width, const TangentSums& sums) const {
+  const auto add = [&](std::span<double> all, int row, double by_x, const Lanes& x, double by_y, const Lanes& y) {
+    double* const out = all.data() + at(row) * width + first;
+    (Lanes::load(out) + by_x * x + by_y * y).store(out);
+  };
+  for (const Reached::PinEnd& end : reached.pins_) {
+    const Frame<Series>& f = motion_[at(end.body)];
+    const double omega = f.phi.d, alpha = f.phi.dd, square = omega * omega;
+    const Lanes s_x = Lanes::load(end.x.data()), s_y = Lanes::load(end.y.data());
+    const Lanes x = f.c.f * s_x - f.s.f * s_y, y = f.s.f * s_x + f.c.f * s_y;
+    if (!sums.phi.empty()) {
+      add(sums.phi, end.row, 1, x, 0, y);
+      add(sums.phi, end.row + 1, 0, x, 1, y);
     }
+    if (!sums.rates.empty()) {
+      add(sums.rates, end.row, 0, x, -omega, y);
+      add(sums.rates, end.row + 1, omega, x, 0, y);
+    }
+    if (!sums.bends.empty()) {
+      add(sums.bends, end.row, -square, x, -alpha, y);
+      add(sums.bends, end.row + 1, alpha, x, -square, y);
+    }
+    if (!sums.loads.empty() && end.body < plan_->moving)
+      add(sums.loads, 3 * end.body + 2, -lambda[at(end.row + 1)], x, lambda[at(end.row)], y);
   }
-  return true;
 }
 
 void MechanismTangents::add_parameters(const DesignMechanism& mechanism, Side side, const Reached& reached,
                                        std::span<const double> lambda, std::span<const double> qdd, std::size_t first,
                                        std::size_t width, const TangentSums& sums) const {
+  add_pin_parameters(reached, lambda, first, width, sums);
   const DesignModel& model = mechanism.model();
   const auto target = [&](std::span<double> all, std::size_t row) { return all.data() + row * width + first; };
+  if (!sums.loads.empty()) {
+    for (const Reached::Mass& mass : reached.masses_) {
+      const std::size_t c = at(mass.coordinate);
+      const double pull = mass.pull - (qdd.empty() ? 0 : qdd[c]);
+      double* const load = target(sums.loads, c);
+      for (std::size_t p = 0; p < mass.by.size(); ++p) load[p] += pull * mass.by[p];
+    }
+  }
+  if (!reached.asks_mechanism()) return;
   // Immobile bodies move with the parameters; so do the angles of particles, which are no unknowns.
   const auto frame = [&](int body) {
     if (body >= plan_->moving && body < plan_->bodies) return mechanism.motion(body);
@@ -98,9 +101,6 @@ void MechanismTangents::add_parameters(const DesignMechanism& mechanism, Side si
       if constexpr (is_differentiated<Plain>) {
         for (const int e : places) {
           const auto& entry = list[at(block.entry[at(e)])];
-          if constexpr (std::is_same_v<Plain, Revolute<double>>) {
-            if (add_pin_parameters(block, e, entry.element, lambda, first, width, sums)) continue;
-          }
           const double scale = scale_[at(entry.id)];
           DesignSeries c;
           if constexpr (E::functions > 0) c = mechanism.element_value(entry.id);
@@ -166,19 +166,9 @@ void MechanismTangents::add_parameters(const DesignMechanism& mechanism, Side si
         }
       }
     });
-  const auto weigh = [&](int b) {
-    for (int k = 0; k < 3; ++k) {
-      const std::size_t c = at(3 * b + k);
-      const DesignScalar& m = mechanism.mass(3 * b + k);
-      const DesignScalar field = k == 0 ? model.gravity.x : k == 1 ? model.gravity.y : DesignScalar();
-      add_derivatives(field.v - (qdd.empty() ? 0 : qdd[c]), m, target(sums.loads, c));
-      add_derivatives(m.v, field, target(sums.loads, c));
-    }
-  };
-  if (reached.gravity_) {
-    for (int b = 0; b < plan_->moving; ++b) weigh(b);
-  } else {
-    for (const int b : reached.bodies_) weigh(b);
+  for (int c = 0; c < 3 * plan_->moving && reached.gravity_; ++c) {
+    if (c % 3 < 2)
+      add_derivatives(mechanism.mass(c).v, c % 3 == 0 ? model.gravity.x : model.gravity.y, target(sums.loads, at(c)));
   }
 }
 
