@@ -17,9 +17,20 @@ KinematicDerivatives::KinematicDerivatives(const Evaluator& evaluator, const Des
   width_ = groups().size() * parameters_at_once;
   for (auto* rows : {&q_, &qd_, &qdd_, &loads_}) rows->assign(at(plan().coordinates()) * width_, 0.0);
   for (auto* rows : {&phi_, &rates_, &bends_}) rows->assign(at(plan().rows) * width_, 0.0);
+  side_.resize(at(plan().rows));
+  place_.resize(at(plan().coordinates()));
 }
 
 bool KinematicDerivatives::solve_rows(const std::vector<double>& rows, std::vector<double>& x, bool places) {
+  if (system_.solves_in_lanes()) {
+    static_assert(parameters_at_once == Lanes::count);
+    for (std::size_t first = 0; first < width_; first += parameters_at_once) {
+      for (std::size_t r = 0; r < side_.size(); ++r) side_[r] = -Lanes::load(rows.data() + r * width_ + first);
+      system_.solve_places(side_, place_);
+      for (const int c : plan().coordinate) place_[at(c)].store(x.data() + at(c) * width_ + first);
+    }
+    return true;
+  }
   const std::span<double> f = loads_scratch(), b = rows_scratch();
   for (std::size_t p = 0; p < at(parameters()); ++p) {
     std::fill(f.begin(), f.end(), 0.0);
@@ -69,10 +80,6 @@ bool KinematicDerivatives::find_by_tangents(const Snapshot& snapshot, Side side)
         if (acceleration) group.qdd[c].d[p] = qdd_[row + p];
       }
     }
-    if (velocity)
-      group.mechanism.set_state(group.q, group.qd);
-    else
-      group.mechanism.set_state(group.q);
     for (std::size_t p = 0; reacts && p < at(group.count); ++p) {
       std::fill(b.begin(), b.end(), 0.0);
       for (std::size_t c = 0; c < f.size(); ++c) {
@@ -85,7 +92,22 @@ bool KinematicDerivatives::find_by_tangents(const Snapshot& snapshot, Side side)
     }
     if (reacts && !system_.dependent_rows().empty()) leave_out_reactions(group);
   }
+  has_rates_ = velocity;
+  found_t_ = snapshot.t;
+  is_complete_ = false;
   return true;
+}
+
+void KinematicDerivatives::complete_state() {
+  if (is_complete_) return;
+  is_complete_ = true;
+  for (Group& group : groups()) {
+    group.mechanism.set_time(found_t_);
+    if (has_rates_)
+      group.mechanism.set_state(group.q, group.qd);
+    else
+      group.mechanism.set_state(group.q);
+  }
 }
 
 bool KinematicDerivatives::solve_level(Group& group, int level, std::vector<DesignScalar>& target) {
@@ -164,10 +186,11 @@ bool KinematicDerivatives::find_at(const Snapshot& snapshot, Side side) {
                             snapshot.t));
   };
   if (!regular) return singular();
+  is_complete_ = true;
   if (tangents_ && side == Side::after) {
-    for (Group& group : groups()) {
-      group.mechanism.set_time(snapshot.t, side);
-      lift_state(group, snapshot);
+    for (std::size_t g = 0; g < groups().size(); ++g) {
+      if (reached_[g].asks_mechanism()) groups()[g].mechanism.set_time(snapshot.t, side);
+      lift_state(groups()[g], snapshot);
     }
     return find_by_tangents(snapshot, side) || singular();
   }

@@ -28,6 +28,7 @@ class KinematicDerivatives final : public StateDerivatives {
  protected:
   bool find_before(const Snapshot& snapshot) override { return find_at(snapshot, Side::before); }
   int seen_order() const override { return 3; }
+  void complete_state() override;
 
  private:
   bool find_at(const Snapshot& snapshot, Side side);
@@ -47,6 +48,9 @@ class KinematicDerivatives final : public StateDerivatives {
   std::unique_ptr<MechanismTangents> tangents_;  // nullptr: not for this model
   std::vector<AdjointMechanism::Reached> reached_;
   std::size_t width_ = 0;
+  bool has_rates_ = false, is_complete_ = true;  // of the last find_by_tangents()
+  double found_t_ = 0;
+  std::vector<Lanes> side_, place_;
   std::vector<double> q_, qd_, qdd_, loads_, phi_, rates_, bends_;  // rows of width_, a coordinate or equation each
 };
 

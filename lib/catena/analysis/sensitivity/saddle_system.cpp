@@ -15,6 +15,9 @@ namespace {
 
 // Pivots further apart than this, in a matrix scaled by rows, are rounding: the matrix is singular.
 constexpr double regular = 1e-15;
+// Up to so many unknowns a matrix that is stored in full costs less than the sparse one of twice as many rows and its
+// checks: at 9, five times less; elimination grows with the third power.
+constexpr int most_dense = 24;
 // Of the terms of a row: solutions are good to rounding x condition, and what a parameter asks of one row alone is of
 // the size of its terms.
 constexpr double contradicting = 1e-6;
@@ -86,6 +89,7 @@ int SaddleSystem::block_of(int body_i, int body_j) const {
 
 bool SaddleSystem::make_pattern() {
   const int columns = plan_->columns, size = columns + static_cast<int>(rows_.size());
+  dense_ = block_ == SaddleBlock::none && 2 * columns == size && columns > 0 && columns <= most_dense;
   std::vector<MatrixEntry> entries;
   if (block_ == SaddleBlock::diagonal) {
     for (int c = 0; c < columns; ++c) entries.push_back({c, c});
@@ -138,6 +142,19 @@ bool SaddleSystem::make_pattern() {
   }
   asked_.assign(dependent_.size(), 0.0);
   solution_.resize(at(size));
+  if (dense_) {
+    dense_slot_.assign(at(plan_->jacobian.entries()), -1);
+    for (int c = 0; c < columns; ++c) {
+      for (int k = plan_->jacobian.column_start[at(c)]; k < plan_->jacobian.column_start[at(c) + 1]; ++k) {
+        const int row = place_of_row_[at(plan_->jacobian.row_index[at(k)])];
+        if (row >= 0) dense_slot_[at(k)] = row * columns + c;
+      }
+    }
+    dense_solution_.resize(at(size));
+    dense_side_.resize(at(columns));
+    dense_places_.resize(at(columns));
+    return true;
+  }
   return factorization_.analyze(pattern_, Kernel::automatic, counters_).ok();
 }
 
@@ -147,13 +164,20 @@ bool SaddleSystem::begin(std::span<const double> jacobian) {
     if (!make_pattern()) return false;
     analyzed_ = true;
   }
+  for (DependentEntry& entry : dependent_entries_) entry.value = jacobian[at(entry.entry)];
+  if (dense_) {
+    const std::span<double> entries = dense_factors_.begin(plan_->columns);
+    for (std::size_t k = 0; k < dense_slot_.size(); ++k) {
+      if (dense_slot_[k] >= 0) entries[at(dense_slot_[k])] = jacobian[k];
+    }
+    return true;
+  }
   values_.assign(pattern_.row_index.size(), 0.0);
   for (std::size_t k = 0; k < jacobian_slot_.size(); ++k) {
     if (jacobian_slot_[k] < 0) continue;
     values_[at(jacobian_slot_[k])] = jacobian[k];
     values_[at(transposed_slot_[k])] = jacobian[k];
   }
-  for (DependentEntry& entry : dependent_entries_) entry.value = jacobian[at(entry.entry)];
   return true;
 }
 
@@ -185,7 +209,26 @@ void SaddleSystem::add_element(int body_i, int body_j, const ElementMatrix& matr
 }
 
 bool SaddleSystem::factorize() {
+  if (dense_) {
+    ++counters_.factorizations;
+    return dense_factors_.factorize() && dense_factors_.rcond() > regular;
+  }
   return factorization_.factorize(values_, counters_).ok() && factorization_.rcond() > regular;
+}
+
+// solution_, [f; b] in, [x; lambda] out: x follows from b, lambda from f.
+void SaddleSystem::solve_dense() {
+  const std::size_t columns = at(plan_->columns);
+  const std::span<double> sides(solution_), found(dense_solution_);
+  dense_factors_.solve<double>(sides.subspan(columns), found.first(columns));
+  dense_factors_.solve_transposed<double>(sides.first(columns), found.subspan(columns));
+  std::swap(solution_, dense_solution_);
+}
+
+void SaddleSystem::solve_places(std::span<const Lanes> b, std::span<Lanes> x) {
+  for (std::size_t k = 0; k < rows_.size(); ++k) dense_side_[k] = b[at(rows_[k])];
+  dense_factors_.solve<Lanes>(dense_side_, dense_places_);
+  for (std::size_t c = 0; c < dense_places_.size(); ++c) x[at(plan_->coordinate[c])] = dense_places_[c];
 }
 
 bool SaddleSystem::solve(std::span<double> f, std::span<double> b) {
@@ -197,6 +240,8 @@ bool SaddleSystem::solve(std::span<double> f, std::span<double> b) {
   const bool is_number = std::all_of(solution_.begin(), solution_.end(), [](double x) { return !std::isnan(x); });
   if (!is_number)
     std::fill(solution_.begin(), solution_.end(), std::numeric_limits<double>::quiet_NaN());
+  else if (dense_)
+    solve_dense();
   else if (!factorization_.solve_checked(values_, solution_, counters_).ok())
     return false;
   for (std::size_t c = 0; c < columns; ++c) f[at(plan_->coordinate[c])] = solution_[c];

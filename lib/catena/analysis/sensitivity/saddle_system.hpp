@@ -19,6 +19,8 @@
 
 #include "catena/assembly/evaluate.hpp"
 #include "catena/linalg/factorization/factorization.hpp"
+#include "catena/linalg/kernels/dense_factors.hpp"
+#include "catena/linalg/kernels/lanes.hpp"
 
 namespace catena {
 
@@ -55,6 +57,10 @@ class SaddleSystem {
   /// Solves in place: f over coordinates, b over all rows of the plan; x and lambda take their places. Sizes
   /// coordinates() and rows; what is no unknown is left alone in f and zero in lambda. False where that fails.
   bool solve(std::span<double> f, std::span<double> b);
+  /// Whether solve_places() can be used: A = 0 and Phi_q is square, regular and small.
+  bool solves_in_lanes() const { return dense_ && dependent_.empty(); }
+  /// Phi_q x = b for four right-hand sides; sizes as in solve(), what is no unknown is left alone in x.
+  void solve_places(std::span<const Lanes> b, std::span<Lanes> x);
   /// The dependent row that x of the last solve() does not meet, b of the rows it depends on asking for another change;
   /// -1 where all agree. The worst one.
   int contradicted_row() const;
@@ -70,12 +76,14 @@ class SaddleSystem {
 
   void choose_rows(std::span<const double> jacobian);
   bool make_pattern();
+  void solve_dense();
   int block_of(int body_i, int body_j) const;
 
   std::shared_ptr<const Plan> plan_;
   SaddleBlock block_;
   std::vector<int> left_out_, rows_, dependent_, place_of_row_;
   bool rows_known_ = false, analyzed_ = false;
+  bool dense_ = false;  // Phi_q is factored in full, and by itself
   SparsePattern pattern_;
   std::vector<double> values_, solution_;
   std::vector<DependentEntry> dependent_entries_;     // of Phi_q
@@ -84,6 +92,10 @@ class SaddleSystem {
   std::vector<int> jacobian_slot_, transposed_slot_;  // per entry of Phi_q; -1: the row is not solved with
   std::vector<std::pair<int, int>> pairs_;            // of bodies i <= j that share an element, sorted
   std::vector<int> pair_slot_;                        // 9 a pair, and 9 for its transpose
+  std::vector<int> dense_slot_;                       // per entry of Phi_q; -1: the row is not solved with
+  DenseFactors dense_factors_;
+  std::vector<double> dense_solution_;
+  std::vector<Lanes> dense_side_, dense_places_;
   Factorization factorization_;
   Counters counters_;
 };

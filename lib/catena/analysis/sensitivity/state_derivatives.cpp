@@ -80,6 +80,7 @@ void StateDerivatives::lift_state(Group& group, const Snapshot& snapshot) {
 
 void StateDerivatives::differentiate(const ColumnSet& columns, const Snapshot& snapshot, std::span<double> out,
                                      std::span<double> values) {
+  complete_state();
   values_.resize(columns.size());
   const auto parameters = static_cast<std::size_t>(parameters_);
   std::size_t first = 0;

@@ -79,6 +79,8 @@ class StateDerivatives {
   /// Up to which derivative of a function of time its jumps are seen: functions that stand still have values alone,
   /// whose derivatives by parameters jump where their rates do.
   virtual int seen_order() const { return 1; }
+  /// Brings the mechanisms of the groups to the state of the last find(), where that was left until columns ask.
+  virtual void complete_state() {}
   /// Where a motion begins at an instant that moves: no derivatives by these parameters.
   void lack_derivatives(std::string why) { lack_ = std::move(why); }
 
