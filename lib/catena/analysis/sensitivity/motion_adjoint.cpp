@@ -40,6 +40,7 @@ MotionAdjoint::MotionAdjoint(const Evaluator& of, const DesignModels& models, in
   zero_rows_ = mu_;
   zero_loads_ = w_;
   slope_.assign(2 * n_, 0.0);
+  zero_state_ = slope_;
   masses_.assign(n_, 0.0);
   for (int c = 0; c < 3 * plan().moving; ++c) {
     if (plan().column[at(c)] >= 0) masses_[at(c)] = groups().front().mechanism.mass(c).v;
@@ -60,16 +61,11 @@ bool MotionAdjoint::find(const Snapshot&) { return false; }
 
 void MotionAdjoint::cover(const MotionStretch& stretch) {
   if (!why().empty()) return;
-  Step step{stretch.from, stretch.to, Vector(2 * n_), Vector(2 * n_)};
-  for (const bool end : {false, true}) {
-    const std::optional<Snapshot> state = stretch.at(end ? stretch.to : stretch.from);
-    if (!state) {
-      lose(end ? stretch.to : stretch.from, "the motion could not be looked at");
-      return;
-    }
-    Vector& y = end ? step.end : step.begin;
-    std::copy(state->q.begin(), state->q.end(), y.begin());
-    std::copy(state->qd.begin(), state->qd.end(), y.begin() + static_cast<std::ptrdiff_t>(n_));
+  double looked_at = 0;
+  std::optional<Step> step = RecomputedSteps::step_of(stretch, goes_on_ ? &steps_.back().end : nullptr, looked_at);
+  if (!step) {
+    lose(looked_at, "the motion could not be looked at");
+    return;
   }
   if (steps_.empty() && instant_at(stretch.from).moves()) {
     lose(stretch.from, "the motion begins at a jump of a function of time that moves");
@@ -78,7 +74,7 @@ void MotionAdjoint::cover(const MotionStretch& stretch) {
   if (!steps_.empty()) {
     const Vector& before = steps_.back().end;
     for (std::size_t c = n_; c < 2 * n_; ++c) {
-      if (std::abs(step.begin[c] - before[c]) <= same_velocity * std::max(1.0, std::abs(before[c]))) continue;
+      if (std::abs(step->begin[c] - before[c]) <= same_velocity * std::max(1.0, std::abs(before[c]))) continue;
       lose(stretch.from, "velocities jump");
       return;
     }
@@ -88,7 +84,8 @@ void MotionAdjoint::cover(const MotionStretch& stretch) {
     lose(stretch.to, "a function of time jumps");
     return;
   }
-  steps_.push_back(std::move(step));
+  goes_on_ = instant.order == 0 && stretch.ended_by < 0;
+  steps_.push_back(*std::move(step));
 }
 
 }  // namespace catena

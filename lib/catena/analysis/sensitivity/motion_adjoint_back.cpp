@@ -1,7 +1,10 @@
 // MotionAdjoint: the way back.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
+#include "catena/analysis/motion/stage_sums.hpp"
 #include "catena/analysis/sensitivity/motion_adjoint.hpp"
 #include "catena/base/at.hpp"
 
@@ -16,6 +19,22 @@ void add_scaled(std::vector<double>& y, double weight, const std::vector<double>
   for (std::size_t i = 0; i < y.size(); ++i) y[i] += weight * k[i];
 }
 
+/// In place of a stage: the end of the step.
+constexpr int step_end = 16;
+
+/// What the slopes of every stage weigh in stages after it and in the end, h taken out; the interpolant's stages are
+/// among them or not. The slope at the end itself is reached through the projection there.
+std::array<std::vector<StageTerm>, 16> terms_back(bool interpolated) {
+  const Tableau& table = dormand_prince_8();
+  std::array<std::vector<StageTerm>, 16> back;
+  for (const StageTerm& term : table.b) back[at(term.stage)].push_back({step_end, term.weight});
+  for (int j = 0; j < (interpolated ? step_end : table.stages); ++j) {
+    if (j == table.stages) continue;
+    for (const StageTerm& term : table.a[at(j)]) back[at(term.stage)].push_back({j, term.weight});
+  }
+  return back;
+}
+
 bool any(const std::vector<double>& y) {
   return std::any_of(y.begin(), y.end(), [](double x) { return x != 0; });
 }
@@ -27,7 +46,7 @@ void MotionAdjoint::add_parameters(double t, Side side, const AdjointWeights& we
   std::size_t first = 0;
   for (std::size_t g = 0; g < groups().size(); ++g) {
     Group& group = groups()[g];
-    group.mechanism.set_time(t, side);
+    if (reached_[g]->asks_mechanism()) group.mechanism.set_time(t, side);
     const auto part = mechanism_.by_parameters(group.mechanism, *reached_[g], weights, qdd);
     for (std::size_t p = 0; p < at(group.count); ++p) way.gradient[first + p] += part[p];
     first += at(group.count);
@@ -36,7 +55,12 @@ void MotionAdjoint::add_parameters(double t, Side side, const AdjointWeights& we
 
 bool MotionAdjoint::factorize_end(double t, Side side, std::span<const double> values) {
   if (plan().rows == 0) return true;
+  // The first stage of the block before, which lies after this one, may be at the same state.
+  if (end_->t == t && std::equal(values.begin(), values.end(), end_->y.begin())) return true;
+  end_->t = t;
+  std::copy(values.begin(), values.end(), end_->y.begin());
   if (end_->equations.factorize(t, side, values.first(n_)) && !end_->equations.is_dependent()) return true;
+  end_->t = std::numeric_limits<double>::quiet_NaN();
   return lose(t, "constraints depend on each other");
 }
 
@@ -78,22 +102,14 @@ void MotionAdjoint::stage_back(int number, const Vector& k, Way& way) {
 void MotionAdjoint::go_back(const Step& step, Way& way, bool interpolated) {
   const Tableau& table = dormand_prince_8();
   const double h = step.to - step.from;
+  static const auto of_step = terms_back(false), of_interpolant = terms_back(true);
+  const auto& terms = interpolated ? of_interpolant : of_step;
   const int stages = interpolated ? static_cast<int>(table.c.size()) : table.stages;
   for (int s = stages; s-- > 0;) {
     // Stage 12 is the step's end: all before it are reached through the projection there.
     if (s == table.stages - 1) project_back(step.to, Side::before, step.end, way, way.y1);
-    if (interpolated)
-      slope_ = way.slopes[at(s)];
-    else
-      std::fill(slope_.begin(), slope_.end(), 0.0);
-    for (const StageTerm& term : table.b) {
-      if (term.stage == s) add_scaled(slope_, h * term.weight, way.y1);
-    }
-    for (int j = s + 1; j < stages; ++j) {
-      for (const StageTerm& term : table.a[at(j)]) {
-        if (term.stage == s && j != table.stages) add_scaled(slope_, h * term.weight, back_[at(j)]);
-      }
-    }
+    const auto vector_of = [&](int j) { return (j == step_end ? way.y1 : back_[at(j)]).data(); };
+    add_stages(interpolated ? way.slopes[at(s)] : zero_state_, h, terms[at(s)], vector_of, slope_);
     stage_back(s, slope_, way);
     if (s == table.stages) add_scaled(way.y1, 1, back_[at(s)]);
   }
@@ -140,6 +156,7 @@ bool MotionAdjoint::add_inside(const Step& step, std::span<const Look> looks) {
   if (!factorize_end(t, Side::after, there)) return false;
   end_->equations.project_position(std::span(there).first(n_), most_rounds_inside);
   end_->equations.project_velocity(std::span(there).subspan(n_), 1 / h);
+  end_->t = std::numeric_limits<double>::quiet_NaN();  // it was moved away from its factors
   std::vector<Vector> back(ways_.size());
   const bool added = add_pulses(looks, t, there, [&](std::size_t measure) -> Vector& {
     back[measure].resize(2 * n_, 0.0);
@@ -205,6 +222,7 @@ std::optional<MotionAdjoint::Gradients> MotionAdjoint::gradients(
   const Way still{Vector(2 * n_, 0.0), Vector(2 * n_, 0.0), Vector(at(parameters()), 0.0), {}};
   ways_.assign(measures.size(), still);
   again_.begin_anew();
+  end_->t = std::numeric_limits<double>::quiet_NaN();
   blocks_ = 0;
   Step joined;
   // The pulses at the last instant of those left, taken away from them.
@@ -252,6 +270,7 @@ std::optional<MotionAdjoint::Gradients> MotionAdjoint::gradients(
       go_back(joined, way, inside);
       std::swap(way.y0, way.y1);
     }
+    again_.exchange_first(end_);
     ++blocks_;
     k -= count;
   }

@@ -31,7 +31,7 @@ MotionDerivatives::MotionDerivatives(const Evaluator& evaluator, const DesignMod
   place_ = again_->make_stage();
   std::vector<DesignMechanism*> mechanisms;
   for (Group& group : groups()) mechanisms.push_back(&group.mechanism);
-  tangents_ = std::make_unique<MotionTangents>(this->evaluator(), mechanisms, parameters);
+  tangents_ = std::make_unique<MotionTangents>(this->evaluator(), mechanisms);
   for (auto* rows : {&begin_rows_, &end_rows_, &rows_, &slope_rows_}) rows->assign(2 * n_ * tangents_->width(), 0.0);
 }
 
@@ -185,21 +185,18 @@ bool MotionDerivatives::project_end(double t, Side side) {
 // there are as many as may be taken as one; not across an instant at which functions of time jump.
 void MotionDerivatives::cover(const MotionStretch& stretch) {
   if (!why().empty()) return;
-  Step step{stretch.from, stretch.to, RecomputedSteps::Vector(2 * n_), RecomputedSteps::Vector(2 * n_)};
-  for (const bool end : {false, true}) {
-    const std::optional<Snapshot> state = stretch.at(end ? stretch.to : stretch.from);
-    if (!state) {
-      not_shown(end ? stretch.to : stretch.from);
-      return;
-    }
-    RecomputedSteps::Vector& y = end ? step.end : step.begin;
-    std::copy(state->q.begin(), state->q.end(), y.begin());
-    std::copy(state->qd.begin(), state->qd.end(), y.begin() + static_cast<std::ptrdiff_t>(n_));
+  double looked_at = 0;
+  std::optional<Step> step = RecomputedSteps::step_of(stretch, goes_on_ ? &last_end_ : nullptr, looked_at);
+  if (!step) {
+    not_shown(looked_at);
+    return;
   }
-  const std::span<const double> y(step.begin);
-  if (!started_ && !start(step.from, y.first(n_), y.subspan(n_))) return;
-  pending_.push_back(std::move(step));
+  last_end_ = step->end;
+  const std::span<const double> y(step->begin);
+  if (!started_ && !start(step->from, y.first(n_), y.subspan(n_))) return;
+  pending_.push_back(*std::move(step));
   const MovingInstant& instant = instant_at(stretch.to);
+  goes_on_ = instant.order == 0 && stretch.ended_by < 0;
   if (instant.order == 1 || instant.moves()) {
     if (catch_up(stretch.to) && factorize(stretch.to, Side::before, std::span(tracks_.front().end).first(n_)))
       cross();

@@ -110,6 +110,8 @@ class MotionDerivatives final : public StateDerivatives {
   Step step_;                                      // that block
   bool by_tangents_ = false;                       // it was carried over by them
   int blocks_ = 0;
+  bool goes_on_ = false;              // the motion goes on from where the last step ended ...
+  RecomputedSteps::Vector last_end_;  // ... here
   MotionTangents::Rows begin_rows_, end_rows_, rows_, slope_rows_;
 };
 

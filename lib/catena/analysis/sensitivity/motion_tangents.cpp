@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "catena/analysis/motion/stage_sums.hpp"
 #include "catena/base/at.hpp"
 #include "catena/base/design_scalar.hpp"
 
@@ -14,12 +15,11 @@ void add_rows(std::vector<double>& y, double weight, const std::vector<double>& 
 
 }  // namespace
 
-MotionTangents::MotionTangents(const Evaluator& evaluator, std::vector<DesignMechanism*> groups, int parameters)
+MotionTangents::MotionTangents(const Evaluator& evaluator, std::vector<DesignMechanism*> groups)
     : plan_(evaluator.plan()),
       groups_(std::move(groups)),
       mechanism_(evaluator),
       n_(at(plan_.coordinates())),
-      parameters_(at(parameters)),
       width_(groups_.size() * parameters_at_once) {
   for (const DesignMechanism* group : groups_) reached_.emplace_back(mechanism_, *group);
   slopes_.assign(16, Rows(2 * n_ * width_));
@@ -27,8 +27,9 @@ MotionTangents::MotionTangents(const Evaluator& evaluator, std::vector<DesignMec
   loads_.resize(n_ * width_);
   rows_.resize(at(plan_.rows) * width_);
   lambda_ = rows_;
-  for (auto* v : {&masses_, &f_, &x_}) v->assign(n_, 0.0);
-  for (auto* v : {&b_, &mu_}) v->assign(at(plan_.rows), 0.0);
+  masses_.assign(n_, 0.0);
+  for (auto* v : {&f_, &x_}) v->resize(n_);
+  for (auto* v : {&b_, &mu_}) v->resize(at(plan_.rows));
   for (int c = 0; c < 3 * plan_.moving; ++c) {
     if (plan_.column[at(c)] >= 0) masses_[at(c)] = groups_.front()->mass(c).v;
   }
@@ -43,18 +44,19 @@ int MotionTangents::reached_elements() const {
 void MotionTangents::add_parameters(double t, Side side, std::span<const double> lambda, std::span<const double> qdd,
                                     const TangentSums& sums) {
   for (std::size_t g = 0; g < groups_.size(); ++g) {
-    groups_[g]->set_time(t, side);
+    if (reached_[g].asks_mechanism()) groups_[g]->set_time(t, side);
     mechanism_.add_parameters(*groups_[g], side, reached_[g], lambda, qdd, g * parameters_at_once, width_, sums);
   }
 }
 
 void MotionTangents::solve(Stage& stage, const Rows& loads, const Rows& rows, double* x) {
-  for (std::size_t p = 0; p < parameters_; ++p) {
-    for (std::size_t c = 0; c < n_; ++c) f_[c] = loads[c * width_ + p];
-    for (std::size_t r = 0; r < b_.size(); ++r) b_[r] = -rows[r * width_ + p];
-    stage.equations.solve_motion(f_, b_, x_, mu_);
-    for (const int c : plan_.coordinate) x[at(c) * width_ + p] = x_[at(c)];
-    for (std::size_t r = 0; r < mu_.size(); ++r) lambda_[r * width_ + p] = mu_[r];
+  static_assert(parameters_at_once == Lanes::count);
+  for (std::size_t first = 0; first < width_; first += parameters_at_once) {
+    for (std::size_t c = 0; c < n_; ++c) f_[c] = Lanes::load(loads.data() + c * width_ + first);
+    for (std::size_t r = 0; r < b_.size(); ++r) b_[r] = -Lanes::load(rows.data() + r * width_ + first);
+    stage.equations.solve_motion(f_, b_, x_, mu_, scratch_);
+    for (const int c : plan_.coordinate) x_[at(c)].store(x + at(c) * width_ + first);
+    for (std::size_t r = 0; r < mu_.size(); ++r) mu_[r].store(lambda_.data() + r * width_ + first);
   }
 }
 
@@ -75,20 +77,20 @@ void MotionTangents::slope(Stage& stage, const Rows& y, Rows& slope) {
 void MotionTangents::step(RecomputedSteps& steps, double h, const Rows& begin, Rows& end) {
   const Tableau& table = dormand_prince_8();
   for (int s = 0; s < table.stages; ++s) {
-    stage_ = begin;
-    for (const StageTerm& term : table.a[at(s)]) add_rows(stage_, h * term.weight, slopes_[at(term.stage)]);
+    add_stages(
+        begin, h, table.a[at(s)], [this](int stage) { return slopes_[at(stage)].data(); }, stage_);
     slope(steps.stage(s), stage_, slopes_[at(s)]);
   }
-  end = begin;
-  for (const StageTerm& term : table.b) add_rows(end, h * term.weight, slopes_[at(term.stage)]);
+  add_stages(
+      begin, h, table.b, [this](int stage) { return slopes_[at(stage)].data(); }, end);
 }
 
 void MotionTangents::prepare_interpolant(RecomputedSteps& steps, double h, const Rows& begin, const Rows& end) {
   const Tableau& table = dormand_prince_8();
   slope(steps.stage(table.stages), end, slopes_[at(table.stages)]);
   for (int s = table.stages + 1; s < static_cast<int>(table.c.size()); ++s) {
-    stage_ = begin;
-    for (const StageTerm& term : table.a[at(s)]) add_rows(stage_, h * term.weight, slopes_[at(term.stage)]);
+    add_stages(
+        begin, h, table.a[at(s)], [this](int stage) { return slopes_[at(stage)].data(); }, stage_);
     slope(steps.stage(s), stage_, slopes_[at(s)]);
   }
 }

@@ -24,7 +24,7 @@ class MotionTangents {
   using Stage = RecomputedSteps::Stage;
 
   /// `groups`: mechanisms with derivatives by four parameters each; all must outlive this object.
-  MotionTangents(const Evaluator& evaluator, std::vector<DesignMechanism*> groups, int parameters);
+  MotionTangents(const Evaluator& evaluator, std::vector<DesignMechanism*> groups);
 
   std::size_t width() const { return width_; }
   /// Derivatives at the end of a recomputed step, before it is projected, from those at its beginning.
@@ -51,10 +51,12 @@ class MotionTangents {
   std::vector<DesignMechanism*> groups_;
   MechanismTangents mechanism_;
   std::vector<AdjointMechanism::Reached> reached_;  // by group
-  std::size_t n_, parameters_, width_;
+  std::size_t n_, width_;
   std::vector<Rows> slopes_;  // by stage
   Rows stage_, loads_, rows_, lambda_;
-  std::vector<double> masses_, f_, b_, x_, mu_;
+  std::vector<double> masses_;
+  std::vector<Lanes> f_, b_, x_, mu_;
+  SchurLanes scratch_;
 };
 
 }  // namespace catena

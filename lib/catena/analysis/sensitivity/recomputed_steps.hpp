@@ -11,12 +11,14 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "catena/analysis/motion/equations_of_motion.hpp"
 #include "catena/analysis/motion/tableau.hpp"
+#include "catena/analysis/run/row_observer.hpp"
 
 namespace catena {
 
@@ -37,6 +39,8 @@ class RecomputedSteps {
   /// The equations of motion at a stage, with their factors.
   struct Stage {
     Stage(const Evaluator& evaluator, std::size_t size);
+    /// Of the same model: the structure of its equations need not be found again.
+    Stage(const Evaluator& evaluator, const Stage& like);
     Evaluator evaluator;
     EquationsOfMotion equations;
     double t = 0;
@@ -50,10 +54,15 @@ class RecomputedSteps {
   /// Why nothing can be recomputed, as a phrase; empty: it can.
   const std::string& why_not() const { return why_not_; }
   Stage& stage(int number) { return *stages_[static_cast<std::size_t>(number)]; }
+  /// Takes this stage as its first one, and gives that away with its state and factors.
+  void exchange_first(std::unique_ptr<Stage>& stage) { std::swap(stages_.front(), stage); }
   /// One more, for what is not of a step.
   std::unique_ptr<Stage> make_stage();
   /// Slope and multipliers at the stage's y; false where constraints depend on each other.
   static bool evaluate(Stage& stage, double t, Side side);
+  /// The step that a stretch of the motion is. `before`: the end of the last one, from which the motion goes on; it is
+  /// not looked at again. Nothing where the motion could not be looked at: `at` is the instant.
+  static std::optional<Step> step_of(const MotionStretch& stretch, const Vector* before, double& at);
   /// False where constraints depend on each other, at `t`.
   bool recompute(const Step& step);
   /// The stages of the interpolant, once the step has been recomputed.
@@ -76,9 +85,9 @@ class RecomputedSteps {
   std::string why_not_;
   std::vector<std::unique_ptr<Stage>> stages_;
   double singular_at_ = 0;
-  std::size_t at_once_ = 1;   // steps that were joined last
+  double reach_ = 0;          // how long steps that are joined may be together, s
   double single_misfit_ = 0;  // of a step by itself
-  int waits_ = 1;             // blocks until one more is tried
+  int waits_ = 1;             // blocks until longer ones are tried
   int far_ = 0;               // how often two together were far off
 };
 
