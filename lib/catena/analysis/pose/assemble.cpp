@@ -14,12 +14,6 @@ namespace catena {
 namespace {
 
 constexpr int max_iterations = 200;
-constexpr int max_approach_iterations = 60;
-// Iterations for a return to the constraints from nearby: if more are needed, the step was too long.
-constexpr int max_return_iterations = 12;
-// A body may turn at most this far in one step: beyond it the linearisation is useless, and linkages change their
-// assembly mode.
-constexpr double largest_turn = 0.5;
 // Steps that turn bodies by more than this multiple are long along nearly dependent combinations of equations. Scaling
 // the whole step would leave the other equations unmet, so damping shortens only these parts.
 constexpr double far_too_long = 4;
@@ -133,11 +127,11 @@ bool Assembler::restore(std::span<double> q, double tolerance, int most_iteratio
       step_[at(c)] = -step_[at(c)];
       if (plan_.coordinate[at(c)] % 3 == 2) turn = std::max(turn, std::abs(step_[at(c)]));
     }
-    if (turn > far_too_long * largest_turn && damping < 1) {
+    if (turn > far_too_long * largest_turn_of_a_step && damping < 1) {
       damping = std::max(10 * damping, 1e-8);
       continue;
     }
-    double factor = turn > largest_turn ? largest_turn / turn : 1;
+    double factor = turn > largest_turn_of_a_step ? largest_turn_of_a_step / turn : 1;
     double then = 0;
     evaluator_.curve_places(curve_places_);
     for (; factor >= smallest_factor; factor /= 2) {
@@ -163,45 +157,6 @@ bool Assembler::restore(std::span<double> q, double tolerance, int most_iteratio
                           factor * scaling_.column_norm(step_));
   }
   return outcome.residual <= rounding_of_places(evaluator_);
-}
-
-void Assembler::approach_estimate(std::span<double> q, std::span<const double> estimate, double tolerance,
-                                  AssemblyOutcome& outcome) {
-  std::vector<double> candidate(q.begin(), q.end()), pull(step_.size()), out(phi_.size());
-  double distance = weighted_distance(q, estimate);
-  for (int k = 0; k < max_approach_iterations && distance > 0; ++k) {
-    evaluator_.set_configuration(q);
-    evaluator_.jacobian(values_);
-    if (!projector_->factorize(values_, evaluator_.counters).ok()) return;
-    for (int c = 0; c < plan_.columns; ++c) {
-      const int i = plan_.coordinate[at(c)];
-      pull[at(c)] = estimate[at(i)] - q[at(i)];
-    }
-    // The part of the pull that the constraints allow.
-    std::fill(out.begin(), out.end(), 0.0);
-    multiply_add(plan_.jacobian, std::span<const double>(values_).first(at(plan_.trash_slot())), pull, out);
-    projector_->solve(out, step_, lambda_, evaluator_.counters);
-    double size = 0, turn = 0;
-    for (int c = 0; c < plan_.columns; ++c) {
-      step_[at(c)] = pull[at(c)] - step_[at(c)];
-      size += weights_[at(c)] * step_[at(c)] * step_[at(c)];
-      if (plan_.coordinate[at(c)] % 3 == 2) turn = std::max(turn, std::abs(step_[at(c)]));
-    }
-    if (std::sqrt(size) <= 1e-10 * distance) return;
-    const std::vector<double> direction = step_;
-    bool closer = false;
-    for (double factor = turn > largest_turn ? largest_turn / turn : 1; factor > 1e-3 && !closer; factor /= 2) {
-      step_ = direction;
-      advance(q, factor, candidate);
-      AssemblyOutcome trial;
-      closer = restore(candidate, tolerance, max_return_iterations, trial) &&
-               weighted_distance(candidate, estimate) < distance * (1 - 1e-12);
-      outcome.iterations += trial.iterations;
-    }
-    if (!closer) return;
-    std::copy(candidate.begin(), candidate.end(), q.begin());
-    distance = weighted_distance(q, estimate);
-  }
 }
 
 // The misfit of a sketch drawn in one line, or as its own mirror image, has no slope across that symmetry: steps stay

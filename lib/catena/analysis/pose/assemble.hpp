@@ -4,10 +4,10 @@
 //   min sum_b |dr_b|^2 + rho_b^2 dphi_b^2   subject to   Phi(q, t) = 0        rho: RMS attachment distance of the body
 //
 // Whole turns are moved first; then damped Gauss-Newton steps of least weighted size, none of which may enlarge the
-// residual; then, where freedom is left, sliding along the constraints towards the estimate. Sketches from which steps
-// lead to a saddle of the misfit, as links drawn in one line, are displaced a little from it. Never returns a worse
-// configuration than the given one and never reports success above the tolerance, or the rounding of the coordinates.
-// Where constraints cannot be met the conflicting ones are named (misfits.hpp).
+// residual; then, where freedom is left, Newton steps along the constraints to the nearest place. Sketches from which
+// steps lead to a saddle of the misfit, as links drawn in one line, are displaced a little from it. Never returns a
+// worse configuration than the given one and never reports success above the tolerance, or the rounding of the
+// coordinates. Where constraints cannot be met the conflicting ones are named (misfits.hpp).
 #pragma once
 
 #include <optional>
@@ -40,11 +40,20 @@ class Assembler {
   AssemblyOutcome assemble(std::span<double> q, double tolerance = 1e-12);
 
  private:
+  /// A body may turn at most this far in one step: beyond it the linearisation is useless, and linkages change their
+  /// assembly mode.
+  static constexpr double largest_turn_of_a_step = 0.5;
+
   bool restore(std::span<double> q, double tolerance, int most_iterations, AssemblyOutcome& outcome);
   bool restore_from_beside(std::span<double> q, std::span<const double> estimate, double tolerance,
                            AssemblyOutcome& outcome);
   void approach_estimate(std::span<double> q, std::span<const double> estimate, double tolerance,
                          AssemblyOutcome& outcome);
+  /// z: W^-1 r less what the constraints do not allow, at the place that was factored; r becomes W z, without what they
+  /// take up, beside which z may be small; multipliers go to lambda_.
+  void project(std::span<double> r, std::span<double> z);
+  /// Into step_: the step along the constraints to where the distance is least, and how far that slope alone leads.
+  double find_approach(std::span<const double> q, std::span<const double> estimate);
   /// An element whose residual at q overflows when it is squared, or -1.
   int element_out_of_range(std::span<const double> q);
   double merit(std::span<const double> q);

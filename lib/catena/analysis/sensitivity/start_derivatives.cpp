@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <tuple>
 
 #include "catena/analysis/motion/initial_velocities.hpp"
+#include "catena/analysis/pose/whole_turns.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 
@@ -20,8 +20,9 @@ constexpr double settled = 1e-9;
 // Given velocities that are missed by more than this part of the largest one: what derivatives lack is of that size,
 // below which "verify" does not see it.
 constexpr double missed = 1e-6;
-// Coordinates that assembly may not change: in weights of the others.
-constexpr double held_weight = 1e8;
+// Coordinates that assembly may not change: in weights of the others, so many that what is left of a change is
+// rounding.
+constexpr double held_weight = 1e16;
 
 /// The points at which one body is attached: by constraints, or by forces where these have none.
 struct AttachedPoints {
@@ -100,7 +101,7 @@ bool StartDerivatives::find(DesignMechanism& mechanism, int count, std::span<Des
   return find_places(mechanism, count, q) && find_velocities(mechanism, count, q, qd);
 }
 
-bool StartDerivatives::prepare_places(const DesignMechanism& mechanism, std::span<const double> q) {
+bool StartDerivatives::prepare_places(std::span<const double> q) {
   if (!prepared_q_.empty() && std::equal(q.begin(), q.end(), prepared_q_.begin(), prepared_q_.end())) return true;
   prepared_q_.clear();
   prepared_qd_.clear();
@@ -111,15 +112,14 @@ bool StartDerivatives::prepare_places(const DesignMechanism& mechanism, std::spa
   apart_.assign(q.size(), 0.0);
   place_weight_.assign(q.size(), 0.0);
   place_multipliers_.assign(at(plan_.rows), 0.0);
-  std::vector<double> f(q.size());
+  std::vector<double> f(q.size()), given = evaluator_.given_configuration();
+  move_whole_turns(evaluator_, given);
   for (int c = 0; c < 3 * plan_.moving; ++c) {
     const auto& body = evaluator_.model().bodies[at(plan_.model_body[at(c / 3)])];
     const double radius = radius_[at(c / 3)];
     place_weight_[at(c)] = (c % 3 == 2 ? radius * radius : 1) * (is_held(body, c % 3) ? held_weight : 1);
     if (!by_model_.places) continue;
-    // Positions are relative to the given ones; whole turns were taken over before assembly.
-    apart_[at(c)] =
-        c % 3 == 2 ? std::remainder(q[at(c)] - given_place(mechanism, c).v, 2 * std::numbers::pi) : q[at(c)];
+    apart_[at(c)] = q[at(c)] - given[at(c)];
   }
   const auto weigh = [&] {
     for (int c = 0; c < 3 * plan_.moving; ++c) assembly_.add_diagonal(c, place_weight_[at(c)]);
@@ -143,7 +143,7 @@ bool StartDerivatives::find_places(DesignMechanism& mechanism, int count, std::s
   for (std::size_t c = 0; c < q.size(); ++c) values[c] = q[c].v;
   const auto singular = [&] { return fail("constraints are singular where it was assembled"); };
   mechanism.set_time(evaluator_.time());
-  if (!prepare_places(mechanism, values)) return singular();
+  if (!prepare_places(values)) return singular();
   const std::vector<DesignScalar> square = squared_radii(mechanism.model(), plan_, radius_);
   std::vector<double> f(q.size()), b(at(plan_.rows), 0.0);
   const std::vector<DesignScalar> mu(place_multipliers_.begin(), place_multipliers_.end());

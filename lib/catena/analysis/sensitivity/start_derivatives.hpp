@@ -43,7 +43,7 @@ class StartDerivatives {
                        std::span<DesignScalar> qd);
   /// What all groups of parameters share at one start: factors, and the multipliers of assembly; of velocities the
   /// same, and whether they are what is given. Nothing is done again for the start of the last call.
-  bool prepare_places(const DesignMechanism& mechanism, std::span<const double> q);
+  bool prepare_places(std::span<const double> q);
   bool prepare_velocities(DesignMechanism& mechanism, std::span<const DesignScalar> q, std::span<const double> qd);
   /// What is asked of all velocities and how much it weighs, at their values; false without masses.
   bool weigh(std::span<const double> q, std::span<const double> qd);

@@ -76,9 +76,10 @@ bool PhasedDerivatives::jump(const VelocityJump& jump, const std::vector<double>
   }
   if (jump.places.empty()) return true;
   if (jump.other_law || jump.settles) {
-    lost_ = fmt::format("at t = {:.9g} s {}: that has no derivative", to_,
-                        jump.settles ? "a motion that rocks ever faster comes to rest"
-                                     : "another law of impacts takes the place of Newton's, or energy would grow");
+    lost_ =
+        fmt::format("at t = {:.9g} s {}: derivatives are not carried through that", to_,
+                    jump.settles ? "a motion that rocks ever faster comes to rest"
+                                 : "another law of impacts takes the place of Newton's, by which energy would grow");
     for (std::size_t k = 0; k < tracks_.size(); ++k) std::fill(lose_[k].begin(), lose_[k].end(), true);
   }
   for (std::size_t k = 0; k < tracks_.size(); ++k) check_hits(jump, k, there[k]);

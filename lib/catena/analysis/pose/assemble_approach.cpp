@@ -1,0 +1,163 @@
+// From a place that meets the constraints to the nearest one to the estimate e:
+//
+//   W (q - e) + Phi_q^T mu = 0          Newton:  (W + sum mu Phi_qq) x = W (e - q) - Phi_q^T mu   along Phi_q x = 0
+//
+// x by conjugate gradients along the constraints, preconditioned by W: the first direction is the part of e - q that
+// the constraints allow, each one costs a solve with the factors at hand, and negative curvature ends them. Derivatives
+// of starts (sensitivity/start_derivatives.hpp) are those of this place: steps along the first direction alone come
+// near it by a part of the way only, and by a small one where e is as far as the constraints curve. Source: Gould,
+// Hribar, Nocedal, SIAM J. Sci. Comput. 23 (2001), for the projected conjugate gradients.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "catena/analysis/pose/assemble.hpp"
+#include "catena/base/at.hpp"
+
+namespace catena {
+namespace {
+
+constexpr int max_approach_iterations = 60;
+// Iterations for a return to the constraints from nearby: if more are needed, the step was too long.
+constexpr int max_return_iterations = 12;
+// Of a distance, below which a difference of two distances is rounding.
+constexpr double seen_in_distance = 1e-12;
+// A slope of this part of the distance changes it by half its square, which is seen; of smaller ones only slopes tell
+// what a step is worth.
+constexpr double unseen_slope = 1e-5;
+// Of the distance: what Newton's last step leaves is far below, and what is left where no freedom is, rounding times
+// condition, need not be stepped along.
+constexpr double settled_slope = 1e-13;
+// A direction is found to this part of its slope, and to the square of what is left of the first slope: as many digits
+// as Newton's step has.
+constexpr double direction_digits = 0.1;
+// And to no more than this, which is rounding of what the constraints allow beside what they do not.
+constexpr double most_direction_digits = 1e-6;
+constexpr int max_directions = 50;
+
+double dot(std::span<const double> a, std::span<const double> b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+/// sum mu Phi_qq at a place, element by element.
+class ConstraintCurvature {
+ public:
+  ConstraintCurvature(const Evaluator& evaluator, std::span<const double> mu) : plan_(evaluator.plan()) {
+    evaluator.visit_constraint_hessians(mu, [&](int i, int j, const ElementMatrix& matrix) {
+      parts_.push_back({i, j, matrix});
+    });
+  }
+
+  /// y += sum mu Phi_qq x over the plan's columns.
+  void multiply_add(std::span<const double> x, std::span<double> y) const {
+    for (const Part& part : parts_) {
+      int column[6];
+      for (int k = 0; k < 6; ++k) {
+        const int body = k < 3 ? part.i : part.j;
+        column[k] = body >= 0 && body < plan_.moving ? plan_.column[at(3 * body + k % 3)] : -1;
+      }
+      for (int row = 0; row < 6; ++row) {
+        if (column[row] < 0) continue;
+        double sum = 0;
+        for (int c = 0; c < 6; ++c) {
+          if (column[c] >= 0) sum += part.matrix[at(6 * row + c)] * x[at(column[c])];
+        }
+        y[at(column[row])] += sum;
+      }
+    }
+  }
+
+ private:
+  struct Part {
+    int i, j;
+    ElementMatrix matrix;
+  };
+  const Plan& plan_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace
+
+void Assembler::project(std::span<double> r, std::span<double> z) {
+  std::vector<double> allowed(r.size()), out(phi_.size(), 0.0);
+  for (std::size_t c = 0; c < r.size(); ++c) allowed[c] = inverse_weights_[c] * r[c];
+  multiply_add(plan_.jacobian, std::span<const double>(values_).first(at(plan_.trash_slot())), allowed, out);
+  projector_->solve(out, z, lambda_, evaluator_.counters);
+  for (std::size_t c = 0; c < r.size(); ++c) {
+    z[c] = allowed[c] - z[c];
+    r[c] = weights_[c] * z[c];
+  }
+}
+
+double Assembler::find_approach(std::span<const double> q, std::span<const double> estimate) {
+  const std::size_t columns = step_.size();
+  std::vector<double> r(columns), z(columns), along(columns), curved(columns);
+  for (std::size_t c = 0; c < columns; ++c) {
+    const std::size_t i = at(plan_.coordinate[c]);
+    r[c] = weights_[c] * (estimate[i] - q[i]);
+  }
+  project(r, z);
+  const double first = dot(r, z);
+  std::copy(z.begin(), z.end(), step_.begin());
+  if (!(first > 0)) return 0;
+  const double distance = weighted_distance(q, estimate);
+  const double enough =
+      first * std::pow(std::clamp(std::sqrt(first) / distance, most_direction_digits, direction_digits), 2);
+  const ConstraintCurvature curvature(evaluator_, lambda_);
+  along = z;
+  double now = first;
+  for (int k = 0; k < max_directions && now > enough; ++k) {
+    for (std::size_t c = 0; c < columns; ++c) curved[c] = weights_[c] * along[c];
+    curvature.multiply_add(along, curved);
+    const double bend = dot(along, curved);
+    if (!(bend > 0)) break;
+    if (k == 0) std::fill(step_.begin(), step_.end(), 0.0);
+    for (std::size_t c = 0; c < columns; ++c) {
+      step_[c] += now / bend * along[c];
+      r[c] -= now / bend * curved[c];
+    }
+    project(r, z);
+    const double then = dot(r, z);
+    for (std::size_t c = 0; c < columns; ++c) along[c] = z[c] + then / now * along[c];
+    now = then;
+  }
+  return std::sqrt(first);
+}
+
+void Assembler::approach_estimate(std::span<double> q, std::span<const double> estimate, double tolerance,
+                                  AssemblyOutcome& outcome) {
+  std::vector<double> candidate(q.begin(), q.end());
+  double distance = weighted_distance(q, estimate), last_slope = 0;
+  for (int k = 0; k < max_approach_iterations && distance > 0; ++k) {
+    evaluator_.set_configuration(q);
+    evaluator_.jacobian(values_);
+    if (!projector_->factorize(values_, evaluator_.counters).ok()) return;
+    const double slope = find_approach(q, estimate);
+    if (slope <= settled_slope * distance) return;
+    const bool unseen = slope <= unseen_slope * distance;
+    // Rounding holds it.
+    if (unseen && k > 0 && slope > last_slope / 2) return;
+    last_slope = slope;
+    double turn = 0;
+    for (int c = 0; c < plan_.columns; ++c) {
+      if (plan_.coordinate[at(c)] % 3 == 2) turn = std::max(turn, std::abs(step_[at(c)]));
+    }
+    const std::vector<double> direction = step_;
+    const double closer = distance * (1 + (unseen ? seen_in_distance : -seen_in_distance));
+    bool found = false;
+    for (double factor = turn > largest_turn_of_a_step ? largest_turn_of_a_step / turn : 1; factor > 1e-3 && !found;
+         factor /= 2) {
+      step_ = direction;
+      advance(q, factor, candidate);
+      AssemblyOutcome trial;
+      found = restore(candidate, tolerance, max_return_iterations, trial) &&
+              weighted_distance(candidate, estimate) < closer;
+      outcome.iterations += trial.iterations;
+    }
+    if (!found) return;
+    std::copy(candidate.begin(), candidate.end(), q.begin());
+    distance = weighted_distance(q, estimate);
+  }
+}
+
+}  // namespace catena
