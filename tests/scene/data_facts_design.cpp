@@ -67,6 +67,52 @@ SceneFacts design_facts() {
          EXPECT_NEAR(variable(run, "rocker"), 0.9, 1e-5);
          EXPECT_NEAR(variable(run, "ground"), 1.2, 1e-5);
        }},
+      {"rigid_body_generation.json",
+       [](const TextRun& run) {
+         EXPECT_NEAR(variable(run, "crank"), 0.4, 1e-6);
+         EXPECT_NEAR(variable(run, "coupler"), 1.1, 1e-6);
+         EXPECT_NEAR(variable(run, "rocker"), 0.9, 1e-6);
+         EXPECT_NEAR(variable(run, "ground"), 1.2, 1e-6);
+       }},
+      {"function_generation.json",
+       [](const TextRun& run) {
+         // Freudenstein: cos(psi)/a - cos(phi)/c + k = cos(phi - psi) of three pairs, (a^2 - b^2 + c^2 + 1) = 2 a c k.
+         const auto rad = [](double angle) { return angle * std::numbers::pi / 180; };
+         const double phi[] = {rad(60), rad(90), rad(120)}, psi[] = {rad(67.5), rad(85.8), rad(104.8)};
+         double m[2][3];  // less the first pair: without k
+         for (int n = 0; n < 2; ++n) {
+           m[n][0] = std::cos(psi[n + 1]) - std::cos(psi[0]);
+           m[n][1] = -std::cos(phi[n + 1]) + std::cos(phi[0]);
+           m[n][2] = std::cos(phi[n + 1] - psi[n + 1]) - std::cos(phi[0] - psi[0]);
+         }
+         const double determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+         const double a = determinant / (m[0][2] * m[1][1] - m[0][1] * m[1][2]),
+                      c = determinant / (m[0][0] * m[1][2] - m[0][2] * m[1][0]);
+         const double k = std::cos(phi[0] - psi[0]) - std::cos(psi[0]) / a + std::cos(phi[0]) / c;
+         EXPECT_NEAR(variable(run, "crank"), a, 1e-6);
+         EXPECT_NEAR(variable(run, "rocker"), c, 1e-6);
+         EXPECT_NEAR(variable(run, "coupler"), std::sqrt(a * a + c * c + 1 - 2 * a * c * k), 1e-6);
+       }},
+      {"straight_line_search.json",
+       [](const TextRun& run) {
+         EXPECT_NEAR(variable(run, "coupler"), 0.3, 1e-6);
+         EXPECT_NEAR(variable(run, "beyond"), 0.3, 1e-6);
+         for (const double x : run.column("coupler.pen.x", 1)) EXPECT_NEAR(x, 0, 1e-6);
+       }},
+      {"spring_balanced_arm.json",
+       [](const TextRun& run) {
+         // W cos(theta) less the straight line that is nearest to it from 0 to pi/2: its slope is that of the chord.
+         const double weight = 3 * 9.81 * 0.5, slope = 2 / std::numbers::pi, touches = std::asin(slope);
+         const double off = (std::cos(touches) + slope * touches - 1) / 2;
+         EXPECT_NEAR(variable(run, "peak"), weight * off, 1e-6 * weight * off);
+         EXPECT_NEAR(variable(run, "rate"), weight * slope, 1e-6 * weight);
+         EXPECT_NEAR(variable(run, "rest"), (1 + off) / slope, 1e-6);
+       }},
+      {"suspension.json",
+       [](const TextRun& run) {
+         const double omega = 2 * std::numbers::pi * 1.3, rate = 350 * std::pow(0.4 * omega / 0.25, 2);
+         EXPECT_NEAR(variable(run, "rate"), rate, 1e-6 * rate);
+       }},
       {"four_bar_gradients.json",
        [](const TextRun& run) {
          // The rocker's angle there is pi less that of the triangle (rocker, ground, coupler -+ crank) at its pivot.
