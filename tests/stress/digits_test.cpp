@@ -12,8 +12,7 @@ namespace {
 TEST(Digits, OfDrivenMechanismsAreThoseClaimed) {
   ClaimedDigits claims;
   std::map<std::string, int> seen;
-  for (int seed = 1; seed <= stress_cases(10000); ++seed)
-    ++seen[add_driven_digits(static_cast<unsigned>(seed), claims)];
+  for (unsigned seed = first_case(); seed <= last_case(10000); ++seed) ++seen[add_driven_digits(seed, claims)];
   print_shares("digits of random driven mechanisms", seen);
   claims.expect("driven");
 }
@@ -21,8 +20,7 @@ TEST(Digits, OfDrivenMechanismsAreThoseClaimed) {
 TEST(Digits, OfMechanismsAtRestAreThoseClaimed) {
   ClaimedDigits claims;
   std::map<std::string, int> seen;
-  for (int seed = 1; seed <= stress_cases(10000); ++seed)
-    ++seen[add_resting_digits(static_cast<unsigned>(seed), claims)];
+  for (unsigned seed = first_case(); seed <= last_case(10000); ++seed) ++seen[add_resting_digits(seed, claims)];
   print_shares("digits of random mechanisms at rest", seen);
   claims.expect("at rest");
 }
@@ -30,7 +28,7 @@ TEST(Digits, OfMechanismsAtRestAreThoseClaimed) {
 TEST(Digits, OfMechanismsInMotionAreThoseClaimed) {
   ClaimedDigits claims;
   std::map<std::string, int> seen;
-  for (int seed = 1; seed <= stress_cases(2000); ++seed) ++seen[add_moving_digits(static_cast<unsigned>(seed), claims)];
+  for (unsigned seed = first_case(); seed <= last_case(2000); ++seed) ++seen[add_moving_digits(seed, claims)];
   print_shares("digits of random mechanisms in motion", seen);
   claims.expect("in motion");
 }
@@ -38,8 +36,8 @@ TEST(Digits, OfMechanismsInMotionAreThoseClaimed) {
 TEST(Digits, OfOneRunAreThoseClaimed) {
   ClaimedDigits claims;
   std::map<std::string, int> seen;
-  for (int seed = 1; seed <= stress_cases(10000); ++seed)
-    ++seen[add_moving_digits(static_cast<unsigned>(seed), claims, Runs::one)];
+  for (unsigned seed = first_case(); seed <= last_case(10000); ++seed)
+    ++seen[add_moving_digits(seed, claims, Runs::one)];
   print_shares("digits of one run of random mechanisms", seen);
   claims.expect("in motion, one run");
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "oracles/claimed_digits.hpp"
+#include "stress/cases.hpp"
 #include "stress/random_scene.hpp"
 
 namespace catena::testing {
@@ -21,8 +22,8 @@ inline std::string add_moving_digits(unsigned seed, ClaimedDigits& claims, Runs 
     analysis["tolerance"] = std::pow(10.0, -random.pick(5) - 5);
     analysis["estimate_error"] = true;
   } else {
-    static const char* const methods[] = {"auto", "auto", "auto", "rk8", "rk8", "rk5"};
-    analysis["method"] = methods[random.pick(6)];
+    static const char* const methods[] = {"auto", "auto", "auto", "rk8", "rk8", "rk5", "partitioning"};
+    analysis["method"] = methods[random.pick(7)];
     const double tolerance = std::pow(10.0, -random.pick(7) - 4), step = random.uniform(0.01, 0.1) / random.pace;
     if (random.pick(6)) {
       analysis["tolerance"] = tolerance;
@@ -30,6 +31,9 @@ inline std::string add_moving_digits(unsigned seed, ClaimedDigits& claims, Runs 
       analysis["step"] = step;
     }
   }
+  // Events that only look, here and there: their rows are compared at the instants that they have.
+  const bool looks = runs == Runs::one && random.pick(4) == 0;
+  if (looks) analysis["events"] = Json::array({{{"name", "turns back"}, {"when", "b0.vx"}}});
   random.scene["analyses"] = Json::array({analysis});
   random.scene["outputs"] = Json::array();
   static const char* const columns[] = {".x", ".y", ".angle", ".vx", ".vy", ".omega", ".ax", ".ay", ".alpha"};
@@ -38,6 +42,7 @@ inline std::string add_moving_digits(unsigned seed, ClaimedDigits& claims, Runs 
     for (const char* column : std::span(columns).first(runs == Runs::one ? 9 : 6))
       random.scene["outputs"].push_back("b" + std::to_string(b) + column);
   }
+  keep_scene(runs == Runs::one ? "moving" : "moving_twice", seed, random.scene.dump(1));
   const TextRun run = run_text(random.scene.dump());
   if (run.outcome.exit_code > 1) return "not valid: " + run.outcome.error_text;
   if (!run.analysis().report.ok()) return std::string(to_string(run.analysis().report.status));

@@ -39,12 +39,17 @@ class ColumnErrors {
       if (columns[k].unit == UnitKind::length && error_[k] >= 0) take_error(k, 2 * rounding * length);
     }
   }
+  /// Largest estimate; not a number where none was made or it is not known.
+  double error(std::size_t column) const {
+    const double error = error_[column];
+    return std::isfinite(error) && error >= 0 ? error : std::numeric_limits<double>::quiet_NaN();
+  }
   /// Of every column; NaN where it is not known.
   std::vector<double> digits() const {
     std::vector<double> all(size_.size());
     for (std::size_t k = 0; k < all.size(); ++k) {
       const double error = std::max(error_[k], size_[k] * rounding);
-      const bool known = std::isfinite(error_[k]) && error_[k] >= 0;
+      const bool known = !std::isnan(this->error(k));
       all[k] = !known ? std::numeric_limits<double>::quiet_NaN() : error > 0 ? digits_of(size_[k], error) : most;
     }
     return all;

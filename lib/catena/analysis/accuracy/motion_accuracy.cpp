@@ -23,15 +23,30 @@ constexpr double factor = 2.6, common = 4 * std::numeric_limits<double>::epsilon
 
 }  // namespace
 
-MotionAccuracy::MotionAccuracy(Dynamics& analysis, const ColumnSet& columns)
-    : analysis_(analysis),
-      columns_(columns),
-      carried_(analysis.evaluator()),
+MotionAccuracy::MotionAccuracy(const Evaluator& evaluator, const ColumnSet& columns)
+    : columns_(columns),
+      carried_(evaluator),
       errors_(columns.size()),
-      terms_(analysis.evaluator()),
+      terms_(evaluator),
       // Of rows before the last it is not known where curves touched.
-      timed_(!analysis.evaluator().model().functions.empty() && analysis.evaluator().curve_places().empty()) {
+      timed_(!evaluator.model().functions.empty() && evaluator.curve_places().empty()) {}
+
+MotionAccuracy::MotionAccuracy(Dynamics& analysis, const ColumnSet& columns)
+    : MotionAccuracy(analysis.evaluator(), columns) {
+  follow(analysis);
+}
+
+MotionAccuracy::MotionAccuracy(DynamicsWithEvents& analysis, const ColumnSet& columns)
+    : MotionAccuracy(analysis.evaluator(), columns) {
+  finds_instants_ = analysis.watches_events();
+  follow(analysis);
+}
+
+template <class Analysis>
+void MotionAccuracy::follow(Analysis& analysis) {
   analysis.follow(&carried_);
+  follow_ = [&analysis](StepFollower* follower) { analysis.follow(follower); };
+  smooth_ = [&analysis] { return analysis.singular_points().empty() && analysis.jolts().empty(); };
 }
 
 void MotionAccuracy::take(const Snapshot& snapshot, std::span<const double> values) {
@@ -45,6 +60,7 @@ void MotionAccuracy::take(const Snapshot& snapshot, std::span<const double> valu
   row_.error.resize(2 * row_.q.size());
   if (!carried_.at_instant(row_.t, row_.error)) return;
   keep();
+  keep_sharpest(snapshot.qdd);
   const double size = carried_.norm(row_.error);
   last_examined_ = size > grown * examined_ && carried_.spend(cost_of_row);
   if (!last_examined_) return;
@@ -57,24 +73,45 @@ void MotionAccuracy::take(const Snapshot& snapshot, std::span<const double> valu
 void MotionAccuracy::keep() {
   if (!timed_ || ++rows_ < next_) return;
   kept_[at(oldest_)] = row_;
-  oldest_ = (oldest_ + 1) % static_cast<int>(kept_.size());
+  oldest_ = (oldest_ + 1) % late_rows;
   next_ = static_cast<std::int64_t>(further * static_cast<double>(rows_)) + 1;
 }
 
+// Where accelerations have a peak, a small error of places makes a large one of theirs.
+void MotionAccuracy::keep_sharpest(std::span<const double> qdd) {
+  double largest = 0;
+  for (std::size_t c = 0; c < qdd.size(); ++c)
+    largest = std::max(largest, std::abs(qdd[c]) / (c % 3 == 2 ? 1 : carried_.length()));
+  if (!(largest > sharpest_)) return;
+  sharpest_ = largest;
+  kept_[at(late_rows)] = row_;
+}
+
 std::vector<double> MotionAccuracy::digits(const AnalysisReport& report) {
-  const bool smooth = analysis_.singular_points().empty() && analysis_.jolts().empty();
-  if (!report.ok() || !smooth || carried_.lost() || row_.q.empty()) return {};
-  if (!last_examined_ && !carried_.can_look()) return {};
-  if (!last_examined_) examine(row_);
-  for (const Row& row : kept_) {
-    if (!row.q.empty() && row.t != row_.t && carried_.spend(cost_of_row)) examine(row);
-  }
-  errors_.take_places(columns_.info(), analysis_.evaluator().length_scale());
-  std::vector<double> all = errors_.digits();
+  const ColumnErrors* known = errors(report);
+  return known ? claimed(*known) : std::vector<double>{};
+}
+
+std::vector<double> MotionAccuracy::claimed(const ColumnErrors& errors) {
+  std::vector<double> all = errors.digits();
   for (double& digits : all) {
     if (digits < least_claimed) digits = 0;
   }
   return all;
+}
+
+const ColumnErrors* MotionAccuracy::errors(const AnalysisReport& report) {
+  if (!report.ok() || !smooth_() || carried_.lost() || row_.q.empty()) return nullptr;
+  if (!last_examined_ && !carried_.can_look()) return nullptr;
+  if (!last_examined_) examine(row_);
+  for (const Row& row : kept_) {
+    if (!row.q.empty() && row.t != row_.t && carried_.spend(cost_of_row)) examine(row);
+  }
+  errors_.take_places(columns_.info(), carried_.length());
+  for (std::size_t k = 0; finds_instants_ && k < columns_.size(); ++k) {
+    if (columns_.info()[k].name == "t") errors_.take_error(k, unknown);
+  }
+  return &errors_;
 }
 
 // What forces and gamma change by from t to t (1 + size eps); the evaluator is left there.
@@ -183,7 +220,9 @@ void MotionAccuracy::disturb(const Row& row, double size) {
     for (std::size_t c = 0; c < moving; ++c) to[c] += change_[c];
   };
   add_response(moduli_, dq);
-  add_response(row.qd, dv);
+  // Bodies that are held move by rounding of what they would move by.
+  for (std::size_t c = 0; c < n; ++c) moduli_[c] = std::abs(row.qd[c]) + row.rate * (c % 3 == 2 ? 1 : length);
+  add_response(moduli_, dv);
 }
 
 // Adds the way that the motion makes in eps |t|: functions of time are not known better. Returns the radians of its

@@ -8,18 +8,20 @@
 // time also the way of the motion in eps |t|: columns, forces and constraints are those at t (1 +- eps). Accelerations
 // and multipliers are those at y + e + r with the rounding of their equations (kinematic_accuracy.hpp). All is made so
 // small, or large, by s, that its effect is in proportion. Rows: where e has grown by a quarter since the last one, as
-// far as the allowance goes, the last of all, and with functions of time four of the later half. Nothing is said of
+// far as the allowance goes, the last of all, that of the largest accelerations, and with functions of time four of the
+// later half. Nothing is said of
 // work, which is summed up over time, of reactions where equations depend on each other, and where the error is lost.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "catena/analysis/accuracy/carried_error.hpp"
 #include "catena/analysis/accuracy/row_terms.hpp"
-#include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/dynamics/dynamics_with_events.hpp"
 #include "catena/analysis/run/row_accuracy.hpp"
 #include "catena/columns/column_errors.hpp"
 #include "catena/columns/column_set.hpp"
@@ -30,12 +32,18 @@ class MotionAccuracy final : public RowAccuracy {
  public:
   /// Of the rows of analysis.run(), which it follows; both must outlive this object, and it the run.
   MotionAccuracy(Dynamics& analysis, const ColumnSet& columns);
-  ~MotionAccuracy() override { analysis_.follow(nullptr); }
+  /// The same as long as no event acts; the instants at which others happen are not judged. Without contacts.
+  MotionAccuracy(DynamicsWithEvents& analysis, const ColumnSet& columns);
+  ~MotionAccuracy() override { follow_(nullptr); }
   MotionAccuracy(const MotionAccuracy&) = delete;
   MotionAccuracy& operator=(const MotionAccuracy&) = delete;
 
   void take(const Snapshot& snapshot, std::span<const double> values) override;
   std::vector<double> digits(const AnalysisReport& report) override;
+  /// Of the columns of a run that ended so; nullptr: nothing is known.
+  const ColumnErrors* errors(const AnalysisReport& report);
+  /// Digits as they are claimed: none where errors have no effect in proportion any more.
+  static std::vector<double> claimed(const ColumnErrors& errors);
 
  private:
   struct Row {
@@ -43,6 +51,7 @@ class MotionAccuracy final : public RowAccuracy {
     std::vector<double> q, qd, values, error;
   };
   void keep();
+  void keep_sharpest(std::span<const double> qdd);
   void examine(const Row& row);
   double disturb_time(const Row& row);
   void disturb(const Row& row, double size);
@@ -50,7 +59,12 @@ class MotionAccuracy final : public RowAccuracy {
   bool solve_accelerations(double t, double size, Snapshot& snapshot);
   void add_change_with_time(double t, double size, std::span<double> gamma);
 
-  Dynamics& analysis_;
+  MotionAccuracy(const Evaluator& evaluator, const ColumnSet& columns);
+  template <class Analysis>
+  void follow(Analysis& analysis);
+
+  std::function<void(StepFollower*)> follow_ = [](StepFollower*) {};
+  std::function<bool()> smooth_;  // whether the motion passed neither jumps nor singular positions
   const ColumnSet& columns_;
   CarriedError carried_;
   ColumnErrors errors_;
@@ -59,9 +73,12 @@ class MotionAccuracy final : public RowAccuracy {
   double examined_ = 0;  // norm of the error in the row that was looked at last
   bool last_examined_ = false;
   RowTerms terms_;
-  bool timed_;  // something depends on time
-  std::array<Row, 4> kept_;
+  bool timed_;                   // something depends on time
+  bool finds_instants_ = false;  // some rows lie at instants that the motion decides on
+  static constexpr int late_rows = 4;
+  std::array<Row, late_rows + 1> kept_;  // late ones, and the one of the largest accelerations
   int oldest_ = 0;
+  double sharpest_ = 0;  // 1/s^2
   std::int64_t rows_ = 0, next_ = 1;
   // Of a disturbed state.
   std::vector<double> disturbance_, q_, qd_, qdd_, lambda_, jacobian_, loads_, gamma_, change_, change_lambda_;

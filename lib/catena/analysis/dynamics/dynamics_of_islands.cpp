@@ -70,6 +70,7 @@ class DynamicsOfIslands::Part final : public RowObserver {
   }
 
   DynamicsWithEvents& dynamics() { return dynamics_; }
+  void watch_rows(RowObserver* observer) { own_rows_ = observer; }
 
   void start_from(const SystemState& state) {
     SystemState own{state.t, {}, {}};
@@ -148,6 +149,7 @@ class DynamicsOfIslands::Part final : public RowObserver {
   }
 
   bool observe(const Snapshot& s) override {
+    if (own_rows_) own_rows_->observe(s);
     Row& row = ahead_.emplace_back(std::exchange(spare_, {}));
     const auto take = [&](std::vector<double>& values, std::span<const double> of) {
       values.clear();
@@ -236,7 +238,7 @@ class DynamicsOfIslands::Part final : public RowObserver {
   std::deque<Row> ahead_;  // given by the part, and not by all of them yet
   Row spare_;              // its memory serves the next row
   double from_ = 0, to_ = 0;
-  RowObserver* watcher_ = nullptr;
+  RowObserver *watcher_ = nullptr, *own_rows_ = nullptr;
 };
 
 DynamicsOfIslands::DynamicsOfIslands(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
@@ -254,6 +256,9 @@ DynamicsOfIslands::DynamicsOfIslands(std::shared_ptr<const Model> model, const P
 }
 
 DynamicsOfIslands::~DynamicsOfIslands() = default;
+
+DynamicsWithEvents& DynamicsOfIslands::motion_of(std::size_t part) { return parts_[part]->dynamics(); }
+void DynamicsOfIslands::watch_rows_of(std::size_t part, RowObserver* observer) { parts_[part]->watch_rows(observer); }
 
 void DynamicsOfIslands::start_from(const SystemState& state) {
   t_ = state.t;

@@ -27,6 +27,9 @@ class DynamicsOfIslands {
   ~DynamicsOfIslands();
 
   std::size_t classes() const { return parts_.size(); }
+  /// The motion of a class, by numbers of its own, for those who follow it; and who sees its rows beside those of all.
+  DynamicsWithEvents& motion_of(std::size_t part);
+  void watch_rows_of(std::size_t part, RowObserver* observer);
   const Plan& plan() const { return *plan_; }
   Evaluator& evaluator() { return evaluator_; }
   SystemState state() const;

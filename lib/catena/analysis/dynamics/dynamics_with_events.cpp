@@ -75,6 +75,7 @@ bool DynamicsWithEvents::take_up_kept(const std::vector<int>& released) {
 }
 
 void DynamicsWithEvents::make_dynamics() {
+  if (dynamics_ && follower_) follower_->jump();
   if (dynamics_) keep_dynamics();
   model_ = given_model_;
   PlanOptions plan = plan_options_;

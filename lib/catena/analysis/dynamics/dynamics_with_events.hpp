@@ -50,6 +50,12 @@ class DynamicsWithEvents {
   Evaluator& evaluator() { return dynamics_->evaluator(); }
   /// Told of every phase of the motion; nullptr: none.
   void witness(PhaseWitness* witness) { witness_ = witness; }
+  /// Who sees the steps of run() until another phase of the motion begins, which is a jump; nullptr: nobody. Before
+  /// run(), where no contacts are.
+  void follow(StepFollower* follower) {
+    follower_ = follower;
+    dynamics_->follow(follower);
+  }
   void pause(Pauses pauses) { pauses_ = std::move(pauses); }
   /// Nothing in a motion that is taken up.
   void start_from(const SystemState& state);
@@ -72,6 +78,7 @@ class DynamicsWithEvents {
   /// Changes of contacts, in order of their instants but for accumulated bounces.
   const std::vector<ContactEvent>& contact_events() const { return contacts_.events(); }
   bool has_contacts() const { return contacts_.any(); }
+  bool watches_events() const { return !watch_->events().empty(); }
 
  private:
   using WorkByDriver = std::vector<std::pair<int, double>>;
@@ -141,6 +148,7 @@ class DynamicsWithEvents {
     bool in_phase = false, over = false;
   } run_;
   PhaseWitness* witness_ = nullptr;
+  StepFollower* follower_ = nullptr;
   double last_action_ = -1;  // s; and how often events acted then
   int at_once_ = 0;
 };

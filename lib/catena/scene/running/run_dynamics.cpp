@@ -5,6 +5,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "catena/analysis/accuracy/accuracy_of_islands.hpp"
 #include "catena/analysis/accuracy/compared_rows.hpp"
 #include "catena/analysis/accuracy/motion_accuracy.hpp"
 #include "catena/analysis/contact/rope_grips.hpp"
@@ -156,12 +157,9 @@ void DynamicsTask::run_or_estimate(Analysis& analysis, const PlanOptions& plan) 
   if (!estimates_) {
     run_over_time(context_, result_, analysis, *grid_, names_, sources, [&](AnalysisRows& rows) {
       differentiate(rows, analysis);
-      // Events and contacts change the mechanism, and the error with it, in ways that are not followed; dependent
-      // coordinates of a partition have a rounding of their own.
-      if constexpr (std::is_same_v<Analysis, Dynamics>) {
-        const bool judged = context_.digits && !context_.design && analysis.method() != IntegrationMethod::partitioning;
-        if (judged) rows.judge(std::make_unique<MotionAccuracy>(analysis, rows.columns()));
-      }
+      // Contacts and ropes change the mechanism, and the error with it, in ways that are not followed.
+      const bool judged = context_.digits && !context_.design && !context_.checkpoint && !touches_ && routes_.empty();
+      if (judged) rows.judge(std::make_unique<MotionAccuracy>(analysis, rows.columns()));
     });
     return;
   }
@@ -259,7 +257,9 @@ void DynamicsTask::run_with_events_or_pauses() {
 /// Mechanisms that have nothing to do with each other, and differ in pace.
 void DynamicsTask::run_apart(const std::vector<std::vector<int>>& classes) {
   DynamicsOfIslands analysis(model_, plan_options(*model_, names_), used_options_, classes);
-  run_over_time(context_, result_, analysis, *grid_, names_, sources, [](AnalysisRows&) {});
+  run_over_time(context_, result_, analysis, *grid_, names_, sources, [&](AnalysisRows& rows) {
+    if (context_.digits) rows.judge(std::make_unique<AccuracyOfIslands>(analysis, rows.columns(), sources));
+  });
   add_singular_points(result_, analysis.singular_points(), *model_);
   std::string methods;
   for (const IntegrationMethod method : analysis.methods()) {
