@@ -2,11 +2,12 @@
 //
 //   g_k(t) = column_k - value_k changes its sign, in the direction that is watched
 //
-// Within a step of the integrator g is sampled on the dense output, at eight instants or more: a quarter of a radian of
-// the fastest body's turn apart at most. A change of sign, or a dip towards zero that a parabola through three samples
-// takes beyond it, is enclosed and the root found to rounding in t on states that meet the constraints, hence as exact
-// as the rows of the run. A column that starts at its value has no event there. A column that crosses its value twice
-// between two samples without a visible dip is missed.
+// Within a step of the integrator g is sampled on the dense output, at eight instants or more: some quarter of a radian
+// of the fastest body's turn apart, and where the samples of a column do not foretell each other (event_samples.hpp) in
+// halves. A change of sign, or a dip towards zero that a parabola through three samples takes beyond it, is enclosed and
+// the root found to rounding in t on states that meet the constraints, hence as exact as the rows of the run. A column
+// that starts at its value has no event there. A column that crosses its value twice between two samples without a
+// visible dip is missed; so may be one that no halving foretells.
 //
 // Events of the list are simultaneous if the later ones' columns are at their values, to rounding, when the first one
 // happens: they then have its instant, and come in the order of the list. Units: those of the columns, s.
@@ -106,13 +107,18 @@ class EventWatch {
 
  private:
   FoundEvent first_found(const StateAt& state_at);
-  int samples(double from, double to, const StateAt& state_at);
+  int stretches(double from, double to, const StateAt& state_at);
+  struct Look;
+  std::optional<FoundEvent> look_within(double from, double to, int halvings, Look& look);
+  bool may_hide_a_passage() const;
+  std::optional<FoundEvent> first_in_samples(double from, double to, int count, const StateAt& state_at);
   void sample(const Snapshot& state, std::span<double> g);
   double watched(std::size_t k, double t, const StateAt& state_at);
   std::optional<double> passage(std::size_t k, bool three, const StateAt& state_at);
   double locate(std::size_t k, double before, double after, const StateAt& state_at);
   int side(std::size_t k, double g) const;
   bool counts(std::size_t k) const;
+  double tiny(std::size_t k) const;
   double target(std::size_t k) const { return k < events_.size() ? events_[k].value : 0; }
   double value_of(std::size_t k, const Snapshot& state) const;
 
