@@ -1,9 +1,11 @@
 // Whether friction can hold a position, against closed forms: blocks on slopes, ladders at walls, brakes of levers.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "oracles/scene_text.hpp"
 #include "scene/run_text.hpp"
@@ -92,6 +94,79 @@ TEST(Holding, BrakesOfLevers) {
                   R"(}, {"type": "torque", "i": "wheel", "torque": )" + text_of(torque) + "}"));
     expect_utilisation(run, std::abs(torque) / (mu * radius * force * a / b));
   }
+}
+
+// A body on two to four places anywhere, with a force: of forces along the edges of the cones three at a time balance
+// the load where any do (Caratheodory). Bodies that are wedged are among them, whose forces grow without bound at the
+// least friction that holds.
+struct Placed {
+  double x, y, angle, mu;
+};
+
+bool holds(const std::vector<Placed>& places, double fx, double fy, double moment, double u) {
+  std::vector<std::array<double, 3>> edges;
+  for (const Placed& p : places) {
+    for (const double slope : {u * p.mu, -u * p.mu}) {
+      const double ex = -std::sin(p.angle) + slope * std::cos(p.angle),
+                   ey = std::cos(p.angle) + slope * std::sin(p.angle);
+      edges.push_back({ex, ey, p.x * ey - p.y * ex});
+    }
+  }
+  const auto det = [](const std::array<double, 3>& a, const std::array<double, 3>& b, const std::array<double, 3>& c) {
+    return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+  };
+  const std::array<double, 3> load{-fx, -fy, -moment};
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      for (std::size_t k = 0; k < j; ++k) {
+        const double d = det(edges[i], edges[j], edges[k]);
+        if (d == 0) continue;
+        if (det(load, edges[j], edges[k]) / d >= 0 && det(edges[i], load, edges[k]) / d >= 0 &&
+            det(edges[i], edges[j], load) / d >= 0)
+          return true;
+      }
+    }
+  }
+  return false;
+}
+
+TEST(Holding, PlacesAnywhereAgainstThreeForces) {
+  int held = 0, wanted = 0;
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers random(seed);
+    const auto count = static_cast<int>(random(2, 4.999));
+    const double most = random(0, 1) < 0.5 ? 0.6 : std::numbers::pi, mass = random(1, 5);
+    std::vector<Placed> places;
+    std::string points, forces;
+    for (int k = 0; k < count; ++k) {
+      Placed p{};
+      p.x = random(-0.5, 0.5);
+      p.y = random(-0.5, 0.5);
+      p.angle = random(-most, most);
+      p.mu = random(0.05, 1);
+      places.push_back(p);
+      const std::string n = std::to_string(k);
+      points += (k ? ", \"p" : "\"p") + n + "\": " + pair_of(p.x, p.y);
+      forces += R"({"type": "contact", "name": "c)" + n + R"(", "i": "ground", "j": "b.p)" + n + R"(", "mu": )" +
+                text_of(p.mu) + R"(, "curve": {"line": {"point": )" + pair_of(p.x, p.y) + R"(, "axis": )" +
+                pair_of(std::cos(p.angle), std::sin(p.angle)) + "}}},";
+    }
+    const double fx = random(-10, 10), fy = random(-10, 10), x = random(-0.5, 0.5), y = random(-0.5, 0.5);
+    forces += R"({"type": "point_force", "i": ["b", )" + pair_of(x, y) + R"(], "force": )" + pair_of(fx, fy) + "}";
+    const auto can = [&](double u) { return holds(places, fx, fy - 9.81 * mass, x * fy - y * fx, u); };
+    const TextRun run = run_text(
+        scene(R"("b": {"mass": )" + text_of(mass) + R"(, "inertia": 1, "points": {)" + points + "}}", "", forces));
+    if (!can(1e4)) continue;
+    ++wanted;
+    double low = 0, high = 1e4;
+    for (int k = 0; k < 200; ++k) (can(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+    EXPECT_NEAR(field<double>(run, "utilisation"), high, 1e-8 * high + 1e-12);
+    held += high <= 1;
+  }
+  EXPECT_GT(wanted, 20);
+  EXPECT_GT(held, 2);
 }
 
 // The friction of a joint is no cone of forces: it is refused, by name.

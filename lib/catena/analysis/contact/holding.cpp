@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -21,8 +22,9 @@
 namespace catena {
 namespace {
 
-// Of the loads: what is left unbalanced by rounding.
-constexpr double balanced = 1e-11;
+// Of the loads, and of the forces that balance them: what is left unbalanced by rounding. Where places wedge a body the
+// forces grow without bound as friction falls to the least that holds.
+constexpr double balanced = 1e-11, balanced_of_forces = 64 * std::numeric_limits<double>::epsilon();
 // A place within this part of the length scale is closed.
 constexpr double closed_place = 1e-6;
 // Friction beyond this is as good as any: the edges of the cone are then along the tangent to this part.
@@ -185,7 +187,8 @@ class HoldingTest {
       }
     }
     Eigen::VectorXd sizes(A.cols());
-    return nonnegative_least_squares(entries_of(A), entries_of(b_), entries_of(sizes)) <= enough_;
+    const double left = nonnegative_least_squares(entries_of(A), entries_of(b_), entries_of(sizes));
+    return left <= enough_ + balanced_of_forces * sizes.norm();
   }
 
  private:

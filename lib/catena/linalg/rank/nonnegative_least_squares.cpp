@@ -2,9 +2,16 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace catena {
+namespace {
+
+// |A x + b| <= c eps |A| |x| of a stable solution of some dozen equations (Golub, Van Loan, Matrix Computations, 5.3).
+constexpr double rounding_of_solution = 16 * std::numeric_limits<double>::epsilon();
+
+}  // namespace
 
 double nonnegative_least_squares(std::span<const double> entries, std::span<const double> right,
                                  std::span<double> coefficients) {
@@ -24,8 +31,10 @@ double nonnegative_least_squares(std::span<const double> entries, std::span<cons
     s.setZero(n);
     for (std::size_t k = 0; k < columns.size(); ++k) s(columns[k]) = solution(static_cast<Eigen::Index>(k));
   };
-  const double rounding = 1e-13 * A.norm() * b.norm();
+  const double size = A.norm(), of_right = 1e-13 * size * b.norm();
   for (Eigen::Index outer = 0; outer < 3 * n; ++outer) {
+    // Of large coefficients, as columns have that nearly depend on each other, the residual is known less exactly.
+    const double rounding = of_right + rounding_of_solution * size * size * x.norm();
     const Eigen::VectorXd slope = -(A.transpose() * (A * x + b));
     Eigen::Index enters = -1;
     for (Eigen::Index c = 0; c < n; ++c) {
