@@ -66,6 +66,27 @@ TEST(RunPath, LeavesItsParameterToTheNextAnalyses) {
   EXPECT_NEAR(run.first("apex.y", 4), 0.3, 1e-10);
 }
 
+// Where next to nothing moves, a step is a given part of the parameter's range: the end is met after a whole number of
+// them.
+TEST(RunPath, EndsAfterAWholeNumberOfSteps) {
+  for (const char* arc : {"0.05", "0.04", "0.1", "0.025", "0.2"}) {
+    SCOPED_TRACE(arc);
+    const TextRun run = run_text(R"({"catena": 1, "parameters": {"w": 10},
+      "bodies": {"b": {"mass": 1, "particle": true, "position": [0, -1]}},
+      "constraints": [{"type": "absolute_x", "i": "b", "value": 0}],
+      "forces": [{"type": "spring_damper", "i": "ground", "j": "b", "k": 100, "length": 1},
+                 {"type": "point_force", "i": "b", "force": [0, "=-w*1e-6"]}],
+      "outputs": ["b.y"], "analyses": [{"type": "path", "parameter": "w", "to": 12, "arc": )" +
+                                 std::string(arc) + "}]}");
+    ASSERT_EQ(run.analysis().report.status, Status::ok) << run.analysis().report.message;
+    const std::vector<double> w = run.column("w");
+    ASSERT_GE(w.size(), 2U);
+    EXPECT_EQ(w.back(), 12);
+    EXPECT_LE(w[w.size() - 2], 12 - 1e-3);
+    EXPECT_NEAR(run.last("b.y"), -1 - 12e-8, 1e-14);
+  }
+}
+
 TEST(RunPath, StopsAtTheLimitOfAParameter) {
   EXPECT_EQ(run_text(truss(R"({"type": "path", "parameter": "Q", "to": 5})")).outcome.exit_code, 0);
   const TextRun run = run_text(truss(R"({"type": "path", "parameter": "Q", "to": 7})"));

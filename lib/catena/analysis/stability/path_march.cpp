@@ -22,6 +22,9 @@ constexpr double unseen_turn = 1e-3;
 constexpr int most_end_trials = 60;
 // How far the end may be from where the tangent meets it, in parts of the way.
 constexpr double largest_miss = 0.3;
+// A step that would leave less than this part of itself to the end goes to the end: a whole number of equal steps
+// misses it by rounding, and no step is as short as what is left then.
+constexpr double nearly_there = 1e-3;
 
 }  // namespace
 
@@ -164,7 +167,8 @@ bool Path::March::find_end(PathPoint& next, double& s) {
 
 bool Path::March::find_next(Trial& trial) {
   trial = {system_.advanced(x_, direction_, length_), length_, false, 0};
-  trial.last = passes_end(x_.p, trial.point.p) && step_to_end(trial.point, trial.s);
+  trial.last =
+      passes_end(x_.p, x_.p + (1 + nearly_there) * (trial.point.p - x_.p)) && step_to_end(trial.point, trial.s);
   if (!trial.last) {
     trial.iterations = system_.correct(trial.point, x_, direction_, length_);
     if (trial.iterations < 0) return false;
