@@ -72,17 +72,18 @@ TEST(Ropes, AtwoodsMachineWithAMassivePulley) {
     const double m1 = random(0.5, 5), m2 = random(0.5, 5), r = random(0.05, 0.4), inertia = random(0.001, 0.5);
     const double y1 = -random(2, 3), y2 = -random(2, 3), t = 0.5;
     const std::string wheel = R"("wheel": {"mass": 1, "inertia": )" + text_of(inertia) + "}";
-    const TextRun run =
-        good_run(scene(particle("a", m1, -r, y1) + "," + particle("b", m2, r, y2) + "," + wheel,
-                       R"({"type": "revolute", "i": "ground", "j": "wheel"})",
-                       rope("\"a\"", pulley("\"wheel\"", r, R"(, "pulley": "rolls")"), "\"b\""),
-                       R"("a.y", "b.y", "wheel.angle", "rope.force", "rope:2.force", "energy.balance")", dynamics(t)));
+    const TextRun run = good_run(scene(
+        particle("a", m1, -r, y1) + "," + particle("b", m2, r, y2) + "," + wheel,
+        R"({"type": "revolute", "i": "ground", "j": "wheel"})",
+        rope("\"a\"", pulley("\"wheel\"", r, R"(, "pulley": "rolls")"), "\"b\""),
+        R"("a.y", "b.y", "wheel.angle", "rope.force", "rope:2.force", "rope.force_j", "energy.balance")", dynamics(t)));
     const double a = (m2 - m1) * g / (m1 + m2 + inertia / (r * r));
     EXPECT_NEAR(run.last("b.y"), y2 - a * t * t / 2, 1e-10);
     EXPECT_NEAR(run.last("a.y"), y1 + a * t * t / 2, 1e-10);
     EXPECT_NEAR(run.last("wheel.angle"), -a * t * t / 2 / r, 1e-9);
     EXPECT_NEAR(run.last("rope.force"), m1 * (g + a), 1e-9);
     EXPECT_NEAR(run.last("rope:2.force"), m2 * (g - a), 1e-9);
+    EXPECT_EQ(run.last("rope.force_j"), run.last("rope:2.force"));
     EXPECT_NEAR(run.last("energy.balance"), 0, 1e-9);
   }
 }

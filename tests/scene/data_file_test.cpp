@@ -50,6 +50,42 @@ TEST(DataFiles, GiveListsOfNumbersAndPairs) {
       R"({"spline": {"points": {"file": "lift.csv", "columns": ["time", "lift"], "unit": ["ms", "mm"]}}})",
       "lift,time\n0,0\n20,500\n10,1000\n");
   expect_as_written_out(R"({"spline": {"points": {"file": "lift.csv"}}})", "  0   0\n0.5\t0.02\n1 0.01\n");
+  // In place of both lists, beside what else a table has; one text for one column.
+  expect_as_written_out(R"({"spline": {"file": "lift.csv", "unit": ["s", "mm"], "end": "natural", "beyond": "hold"}})",
+                        "0,0\n0.5,20\n1,10\n");
+  expect_as_written_out(
+      R"({"spline": {"t": {"file": "lift.csv", "unit": "ms"}, "value": {"file": "lift.csv", "columns": 2, "unit": "mm"}}})",
+      "0,0\n500,20\n1000,10\n");
+}
+
+// A file in place of the lists of a table, and of the angles and radii of a cam that lifts a point.
+TEST(DataFiles, GiveTablesAndPolarCurves) {
+  const auto run_cam = [](const std::string& polar, const std::string& table) {
+    TemporaryFolder folder;
+    std::ofstream(folder / "cam.csv", std::ios::binary) << "0,50\n90,60\n180,50\n270,40\n";
+    const std::string path = folder / "scene.json";
+    std::ofstream(path, std::ios::binary)
+        << R"({"catena": 1, "bodies": {"f": {"particle": true, "position": [0, 0.06]}},
+      "tables": {"p": )" +
+               table + R"(}, "columns": {"lift": "=p(1.5 + 0*f.y) + 0"},
+      "constraints": [{"type": "absolute_x", "i": "f", "value": 0.025},
+        {"type": "point_on_curve", "i": "ground", "j": "f", "curve": {"polar": )" +
+               polar + R"(}}],
+      "outputs": ["f.y", "lift"], "analyses": [{"type": "kinematics"}]})";
+    TextRun run;
+    run.outcome = run_scene(path, {}, run.sink);
+    EXPECT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+    return std::pair(run.last("f.y"), run.last("lift"));
+  };
+  const std::string angles = R"("angle": [0, "90 deg", "180 deg", "270 deg"], "radius": [0.05, 0.06, 0.05, 0.04])";
+  const std::string table = R"({"x": [0, "90 deg", "180 deg", "270 deg"], "y": [0.05, 0.06, 0.05, 0.04]})";
+  const auto expected = run_cam("{" + angles + "}", table);
+  const std::string keys = R"("file": "cam.csv", "columns": [1, 2], "unit": ["deg", "mm"])";
+  for (const std::string& polar : {"{" + keys + "}", R"({"points": {)" + keys + "}}"}) {
+    const auto got = run_cam(polar, "{" + keys + R"(, "beyond": "hold"})");
+    EXPECT_NEAR(got.first, expected.first, 1e-16);
+    EXPECT_NEAR(got.second, expected.second, 1e-16);
+  }
 }
 
 // Rises by 1 mm a second with a zigzag of 0.1 mm on it: what may be moved by more than that is the line itself.

@@ -53,6 +53,21 @@ bool similar_length(std::string_view name, std::string_view candidate) {
   return candidate.size() <= name.size() + slack && name.size() <= candidate.size() + slack;
 }
 
+/// The element at the end j of a rope, of which a pulley that rolls makes several (rope_way.hpp).
+int at_end_of_rope(const Model& model, int element) {
+  bool leads_here = false;
+  for (std::size_t k = 0; k < model.rope_paths.size(); ++k) {
+    if (model.rope_paths[k].element != element) {
+      leads_here = model.rope_paths[k].leads_on;
+      continue;
+    }
+    if (leads_here) return element;  // a part that was asked for by its own name
+    while (model.rope_paths[k].leads_on && k + 1 < model.rope_paths.size()) ++k;
+    return model.rope_paths[k].element;
+  }
+  return element;
+}
+
 /// Looks up one name. The parts of a name are views into it.
 class Lookup {
  public:
@@ -146,7 +161,8 @@ class Lookup {
     bool found = false;
     for (const ElementColumn& column : columns) {
       if (rest_ != column.suffix && !(column.in_reaction && rest_ == "reaction")) continue;
-      take(join(head_, column.suffix), column.unit, {column.kind, element, column.detail});
+      const int held = column.kind == ColumnKind::far_pull ? at_end_of_rope(model_, element) : element;
+      take(join(head_, column.suffix), column.unit, {column.kind, held, column.detail});
       found = true;
     }
     if (found) return {};

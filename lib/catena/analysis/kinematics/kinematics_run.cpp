@@ -78,7 +78,7 @@ Report Kinematics::begin_run(const TimeGrid& grid, const Needs& needs, const Tim
   report.redundant = rows_.names();
   report.rank = plan().columns;
   report.dof = 0;
-  report.mobility = plan().driver_rows;
+  report.mobility = rows_.mobility();
   return needs.work ? start_work() : Report{};
 }
 

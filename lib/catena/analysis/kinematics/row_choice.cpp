@@ -35,6 +35,7 @@ bool RowChoice::choose_better(std::span<const double> q) {
 }
 
 void RowChoice::name_redundant(const MobilityReport& mobility) {
+  mobility_ = mobility.mobility();
   for (int element : mobility.redundant_elements) names_.push_back(evaluator_.model().element_name(element));
 }
 

@@ -20,7 +20,7 @@ class RowChoice {
  public:
   /// Both must outlive this object.
   RowChoice(Evaluator& evaluator, DrivenSolver& solver)
-      : evaluator_(evaluator), plan_(evaluator.plan()), solver_(solver) {}
+      : evaluator_(evaluator), plan_(evaluator.plan()), solver_(solver), mobility_(plan_.driver_rows) {}
 
   /// Whether there are more equations than coordinates.
   bool has_redundant_rows() const { return plan_.rows > plan_.columns; }
@@ -32,9 +32,11 @@ class RowChoice {
   void note_condition(std::span<const double> q) { chosen_rcond_ = solver_.factor_at(q); }
   /// Whether the condition of the equations in use has become much worse than where they were chosen.
   bool has_drifted() const { return chosen_rcond_ > 0 && solver_.rcond() < drifted * chosen_rcond_; }
-  /// The elements with redundant equations, for the report.
+  /// The elements with redundant equations, for the report, and how many freedoms the drivers take away.
   void name_redundant(const MobilityReport& mobility);
-  void forget_names() { names_.clear(); }
+  void forget_names() { names_.clear(), mobility_ = plan_.driver_rows; }
+  /// Degrees of freedom without the drivers, of which some may follow from others.
+  int mobility() const { return mobility_; }
   const std::vector<std::string>& names() const { return names_; }
 
   // `now`: the evaluator and the solver are there.
@@ -57,6 +59,7 @@ class RowChoice {
   const Plan& plan_;
   DrivenSolver& solver_;
   std::vector<std::string> names_;
+  int mobility_;
   std::vector<double> rest_, rates_;  // of redundant rows, by row; of a check, by column
   double chosen_rcond_ = 0;           // of the rows in use, where they were chosen
 };

@@ -53,7 +53,7 @@ std::vector<AnalysisDescription> describe_all() {
            "nothing resists), misfits (equations that are not met)",
            false, {at_time}),
       make("assemble", "The configuration nearest to the given one that meets all constraints.",
-           "residual, moved, iterations, misfits (equations that are not met)", false, {outputs, at_time}),
+           "residual, moved, iterations, misfits (equations that are not met)", false, {outputs, at_time, measures}),
       make("kinematics", "Positions, velocities and accelerations of a driven mechanism over time.",
            "dof, mobility, singular, events", true,
            {outputs, until, every, at_times, free_motions, branch, events, replicated, measures}),
@@ -145,7 +145,8 @@ std::vector<AnalysisDescription> describe_all() {
             measures}),
       make("sensitivity", "Total derivatives of rows and measures of an analysis with respect to parameters.",
            "what the analysis has; gradients; mode; deviation", false,
-           {{"of", KeyKind::analysis, "the analysis", UnitKind::none, Domain::any, {}, true},
+           {{"outputs", KeyKind::columns, "columns of the analysis inside (default: the scene's outputs)"},
+            {"of", KeyKind::analysis, "the analysis", UnitKind::none, Domain::any, {}, true},
             {"parameters", KeyKind::names, "which derivatives", UnitKind::none, Domain::any, {}, true},
             {"mode",
              KeyKind::word,
@@ -225,7 +226,7 @@ std::span<const AnalysisKey> event_keys() {
       {"when", KeyKind::columns, "the column, or the expression of columns, that is watched", {}, {}, {}, true},
       {"value", KeyKind::number, "the value at which the event happens (default 0)", UnitKind::none, Domain::any},
       {"direction", KeyKind::word, "rising, falling or both", {}, {}, {"any", "up", "down"}},
-      {"action", KeyKind::word, "what happens then", {}, {}, {"record", "stop", "release", "engage"}},
+      {"action", KeyKind::word, "what happens then", {}, {}, {"record", "stop", "release", "engage", "impulse"}},
       {"element", KeyKind::word, "the element that is released or engaged"},
       {"impulse", KeyKind::impulse, "a blow: {\"i\": point, \"value\": [px, py]} in ground axes, N s"}};
   return keys;

@@ -173,7 +173,8 @@ Example
   {"spline": {"points": [[0.1, 0], [0, 0.1], [-0.1, 0], [0, -0.1]], "end": "periodic"}}
 )"},
       {{"file"},
-       R"(file: columns of a CSV file, in place of a list of numbers or of pairs
+       R"(file: columns of a CSV file, in place of a list of numbers or of pairs; or its keys beside "end" and "beyond" of a
+      spline, polar curve or table, in place of both of its lists
   file     its path, relative to the scene's folder; numbers separated by commas, semicolons, tabs or blanks; empty
            lines, those that begin with #, and a first line of names are left out
   columns  numbers from 1, or names in the file's first line (default: the first ones)
@@ -183,6 +184,7 @@ Example
 
 Example
   {"spline": {"points": {"file": "lift.csv", "columns": ["angle", "lift"], "unit": ["deg", "mm"], "smooth": 0.02}}}
+  {"polar": {"file": "cam.csv", "unit": ["deg", "mm"]}}
 )"},
       {{"sum", "product"},
        R"(sum, product: functions of time made of others
@@ -195,7 +197,7 @@ Example
        R"(curve: a curve fixed in a body frame
   {"circle": {"centre": [x', y'], "radius": r}}            counter-clockwise
   {"spline": {"points": [[x', y'], ...], "end": "natural" or "periodic", "beyond": "error", "hold" or "line"}}
-  {"polar": {"angle": [...], "radius": [...]}}             periodic, about the body's origin
+  {"polar": {"angle": [...], "radius": [...]}}             periodic, about the body's origin; or "points", pairs of both
   {"line": {"point": [x', y'], "axis": [vx', vy']}}
 )"},
       {{"outputs", "columns"},

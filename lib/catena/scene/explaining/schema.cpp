@@ -313,7 +313,11 @@ std::string schema_json() {
       map_of({{"anyOf", json::array({expression,
                                      object_of({{"value", expression}, {"unit", {{"type", "string"}}}}, {"value"})})}}),
       "name -> expression over columns, parameters and t");
-  const json table = object_of({{"x", reference("numbersOrFile")},
+  const json table = object_of({{"file", reference("file/properties/file")},
+                                {"columns", reference("file/properties/columns")},
+                                {"unit", reference("file/properties/unit")},
+                                {"smooth", reference("file/properties/smooth")},
+                                {"x", reference("numbersOrFile")},
                                 {"y", reference("numbersOrFile")},
                                 {"points", reference("pairsOrFile")},
                                 {"end", {{"enum", {"natural", "clamped", "periodic"}}}},

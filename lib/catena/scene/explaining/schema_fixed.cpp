@@ -13,7 +13,10 @@ std::string_view fixed_definitions() {
 "beyond": {"enum": ["error", "hold", "line"], "description": "continuation beyond the ends (default: leaving the table is an error)"},
 "table": {"anyOf": [
   {"$ref": "#/$defs/pairsOrFile"},
-  {"type": "object", "additionalProperties": false, "required": ["points"], "properties": {
+  {"type": "object", "additionalProperties": false, "anyOf": [{"required": ["points"]}, {"required": ["file"]}],
+    "properties": {
+    "file": {"$ref": "#/$defs/file/properties/file"}, "columns": {"$ref": "#/$defs/file/properties/columns"},
+    "unit": {"$ref": "#/$defs/file/properties/unit"}, "smooth": {"$ref": "#/$defs/file/properties/smooth"},
     "points": {"$ref": "#/$defs/pairsOrFile"}, "beyond": {"$ref": "#/$defs/beyond"}}}
 ]},
 "measure": {"anyOf": [
@@ -30,9 +33,10 @@ std::string_view fixed_definitions() {
 "outputs": {"type": "array", "items": {"type": "string"}},
 "file": {"type": "object", "additionalProperties": false, "required": ["file"], "properties": {
   "file": {"type": "string", "description": "a CSV file; its path is relative to the scene's folder"},
-  "columns": {"type": "array", "items": {"type": ["integer", "string"]},
+  "columns": {"type": ["array", "integer", "string"], "items": {"type": ["integer", "string"]},
     "description": "numbers from 1, or names in the file's first line; by default the first ones"},
-  "unit": {"type": "array", "items": {"type": "string"}, "description": "of each column; by default SI and radians"},
+  "unit": {"type": ["array", "string"], "items": {"type": "string"},
+    "description": "of each column, or of all; by default SI and radians"},
   "smooth": {"type": ["number", "string"],
     "description": "root mean square by which values may be moved to be smoother, in the unit of the last column"}}},
 "numbersOrFile": {"anyOf": [{"$ref": "#/$defs/numbers"}, {"$ref": "#/$defs/file"}]},
@@ -67,6 +71,8 @@ std::string_view fixed_definitions() {
     "spline": {"type": "object", "additionalProperties": false, "properties": {
       "t": {"$ref": "#/$defs/numbersOrFile"}, "value": {"$ref": "#/$defs/numbersOrFile"},
       "points": {"$ref": "#/$defs/pairsOrFile"},
+      "file": {"$ref": "#/$defs/file/properties/file"}, "columns": {"$ref": "#/$defs/file/properties/columns"},
+      "unit": {"$ref": "#/$defs/file/properties/unit"}, "smooth": {"$ref": "#/$defs/file/properties/smooth"},
       "end": {"enum": ["natural", "clamped", "periodic"]}, "beyond": {"$ref": "#/$defs/beyond"}}},
     "sum": {"type": "array", "minItems": 1, "items": {"$ref": "#/$defs/function"}},
     "product": {"type": "array", "minItems": 1, "items": {"$ref": "#/$defs/function"}}}}
@@ -74,10 +80,17 @@ std::string_view fixed_definitions() {
 "curve": {"type": "object", "minProperties": 1, "maxProperties": 1, "additionalProperties": false, "properties": {
   "circle": {"type": "object", "additionalProperties": false, "required": ["centre", "radius"], "properties": {
     "centre": {"$ref": "#/$defs/pair"}, "radius": {"$ref": "#/$defs/number"}}},
-  "spline": {"type": "object", "additionalProperties": false, "required": ["points"], "properties": {
+  "spline": {"type": "object", "additionalProperties": false, "anyOf": [{"required": ["points"]}, {"required": ["file"]}],
+    "properties": {
+    "file": {"$ref": "#/$defs/file/properties/file"}, "columns": {"$ref": "#/$defs/file/properties/columns"},
+    "unit": {"$ref": "#/$defs/file/properties/unit"}, "smooth": {"$ref": "#/$defs/file/properties/smooth"},
     "points": {"$ref": "#/$defs/pairsOrFile"}, "end": {"enum": ["natural", "periodic"]},
     "beyond": {"$ref": "#/$defs/beyond"}}},
-  "polar": {"type": "object", "additionalProperties": false, "required": ["angle", "radius"], "properties": {
+  "polar": {"type": "object", "additionalProperties": false,
+    "anyOf": [{"required": ["angle", "radius"]}, {"required": ["points"]}, {"required": ["file"]}], "properties": {
+    "file": {"$ref": "#/$defs/file/properties/file"}, "columns": {"$ref": "#/$defs/file/properties/columns"},
+    "unit": {"$ref": "#/$defs/file/properties/unit"}, "smooth": {"$ref": "#/$defs/file/properties/smooth"},
+    "points": {"$ref": "#/$defs/pairsOrFile"},
     "angle": {"$ref": "#/$defs/numbersOrFile"}, "radius": {"$ref": "#/$defs/numbersOrFile"}}},
   "line": {"type": "object", "additionalProperties": false, "required": ["point", "axis"], "properties": {
     "point": {"$ref": "#/$defs/pair"}, "axis": {"$ref": "#/$defs/pair"}}}}}

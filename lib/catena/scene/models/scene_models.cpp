@@ -55,7 +55,9 @@ std::vector<std::vector<DesignScalar>> SceneModels::dual_values(const ParameterT
     const std::size_t count = std::min<std::size_t>(parameters_at_once, parameters.size() - first);
     for (std::size_t k = 0; k < count; ++k) {
       const int index = parameters[first + k];
-      dual.push_back({index, DesignScalar::variable(plain[static_cast<std::size_t>(index)], static_cast<int>(k))});
+      const bool given = std::any_of(seeds.begin(), seeds.end(), [&](const auto& seed) { return seed.index == index; });
+      dual.push_back(
+          {index, DesignScalar::variable(plain[static_cast<std::size_t>(index)], static_cast<int>(k)), !given});
     }
     groups.push_back(table.evaluate<DesignScalar>(scene_.expressions, diagnostics, dual));
   }

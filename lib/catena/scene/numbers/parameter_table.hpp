@@ -3,7 +3,8 @@
 //   "parameters": {"crank": 0.1, "rod": "=3*crank", "speed": {"value": "60 rpm", "min": 0, "max": "=10*pi"}}
 //
 // A circle of definitions is reported once, as the chain of names "a -> b -> a". Values are computed with any scalar:
-// a seed gives a parameter its value (and derivatives) in place of its definition; all dependent parameters follow.
+// a seed gives a parameter its value (and derivatives) in place of its definition; all dependent parameters follow. Of
+// a = 2, b = "=a^2" the derivatives by both count in b: db/da = 2 a, db/db = 1.
 #pragma once
 
 #include <optional>
@@ -17,11 +18,12 @@
 
 namespace catena {
 
-/// A value that stands in for the definition of parameter `index`.
+/// A value that stands in for the definition of parameter `index`; or, added to it, derivatives beside its own.
 template <class S>
 struct ParameterSeed {
   int index;
   S value;
+  bool added = false;  ///< the value is that of the definition, whose derivatives count too
 };
 
 class ParameterTable {
@@ -94,8 +96,8 @@ std::vector<S> ParameterTable::evaluate(const ExpressionPool& pool, Diagnostics&
                                         std::span<const ParameterSeed<S>> seeds) const {
   const S nothing(std::numeric_limits<double>::quiet_NaN());
   std::vector<S> values(definitions_.size(), nothing);
-  std::vector<const S*> seeded(definitions_.size(), nullptr);
-  for (const ParameterSeed<S>& seed : seeds) seeded[static_cast<std::size_t>(seed.index)] = &seed.value;
+  std::vector<const ParameterSeed<S>*> seeded(definitions_.size(), nullptr);
+  for (const ParameterSeed<S>& seed : seeds) seeded[static_cast<std::size_t>(seed.index)] = &seed;
   std::vector<typename Formula<S>::Table> tables(tables_.size());  // made when the first parameter uses them
   for (const int index : order_) {
     const auto i = static_cast<std::size_t>(index);
@@ -104,12 +106,13 @@ std::vector<S> ParameterTable::evaluate(const ExpressionPool& pool, Diagnostics&
       if (!table) table = try_to_make<S>(tables_[static_cast<std::size_t>(used)], pool, values);
     }
     const Definition& definition = definitions_[i];
-    if (seeded[i]) {
-      values[i] = *seeded[i];
+    if (seeded[i] && !seeded[i]->added) {
+      values[i] = seeded[i]->value;
       continue;
     }
     try {
       values[i] = catena::evaluate<S>(definition.value, pool, values, {}, tables);
+      if (seeded[i]) values[i] += seeded[i]->value - S(value_of(seeded[i]->value));
     } catch (const ExpressionError& error) {
       report(error, definition.value, *definition.source, diagnostics);
     }

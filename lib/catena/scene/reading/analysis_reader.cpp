@@ -223,12 +223,17 @@ std::optional<AnalysisTask> AnalysisReader::read(const JsonValue& object, const 
   read_parameters(set, task);
   values_ = task.parameters;
   bool own_outputs = false;
+  const bool has_rows_of_inner = task.type() == "sensitivity";
   for (std::size_t k = 0; k < keys.size(); ++k) {
     if (!values[k]) {
       if (known[k].required) error(object, fmt::format("{} needs {}", task.type(), in_quotes(keys[k])));
       continue;
     }
     if (keys[k] == "type") continue;
+    if (keys[k] == "outputs" && has_rows_of_inner) {
+      scene_outputs_ = values[k];
+      continue;
+    }
     own_outputs = own_outputs || keys[k] == "outputs";
     read_key(known[k], values[k], task);
   }
@@ -237,7 +242,7 @@ std::optional<AnalysisTask> AnalysisReader::read(const JsonValue& object, const 
   check_times(values, task);
   if (task.type() == "optimise") check_design(object, task);
   if (task.type() == "sweep") check_sweep(object, task);
-  if (!own_outputs && scene_outputs && task.description->find("outputs")) {
+  if (!own_outputs && !has_rows_of_inner && scene_outputs && task.description->find("outputs")) {
     task.outputs = names(scene_outputs, {"outputs"}, task.parameters);
   }
   return task;

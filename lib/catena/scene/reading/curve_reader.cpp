@@ -38,7 +38,7 @@ std::vector<NumberValue> SceneReading::pair_list(const JsonValue& value, const E
   std::vector<NumberValue> result;
   if (is_data_file(value)) {
     const ExpectedDimension dimensions[] = {first, second};
-    DataColumns columns = read_data_file(value, dimensions, field, scene, diagnostics);
+    DataColumns columns = read_data_file(value, dimensions, field, scene, diagnostics, use.beside);
     if (columns.smooth > 0 && !columns.empty()) smooth(columns, use, field);
     for (std::size_t row = 0; !columns.empty() && row < columns.values[0].size(); ++row) {
       for (std::size_t c = 0; c < 2; ++c)
@@ -103,14 +103,17 @@ int SceneReading::curve(const JsonValue& value, const FieldName& field) {
 
 void SceneReading::curve_of_kind(const JsonMember& member, const FieldName& field, CurveTemplate& result) {
   static constexpr std::array<std::array<std::string_view, 3>, 4> keys{
-      {{"centre", "radius", ""}, {"points", "end", "beyond"}, {"angle", "radius", ""}, {"point", "axis", ""}}};
+      {{"centre", "radius", ""}, {"points", "end", "beyond"}, {"angle", "radius", "points"}, {"point", "axis", ""}}};
   const auto key = std::find(curve_keys.begin(), curve_keys.end(), member.name());
   result.kind = static_cast<CurveTemplate::Kind>(key - curve_keys.begin());
   const std::string owner = fmt::format("{} in {}", *key, field.text());
-  const bool spline = result.kind == CurveTemplate::Kind::spline;
-  const auto names = std::span(keys[static_cast<std::size_t>(result.kind)]).first(spline ? 3 : 2);
+  const bool spline = result.kind == CurveTemplate::Kind::spline, polar = result.kind == CurveTemplate::Kind::polar;
+  const auto names = std::span(keys[static_cast<std::size_t>(result.kind)]).first(spline || polar ? 3 : 2);
   std::array<JsonValue, 3> v;
-  if (!read_members(member.value, names, owner, v, diagnostics)) return;
+  const bool read = spline || polar ? read_members_or_file(member.value, names, spline ? 0 : 2, owner, v, diagnostics)
+                                    : read_members(member.value, names, owner, v, diagnostics);
+  if (!read) return;
+  if (polar && v[2]) return polar_pairs(v, names, owner, result);
   for (std::size_t k = 0; k < 2; ++k) {
     if (!v[k] && !(spline && k == 1)) error(member.value, fmt::format("{} needs {}", owner, in_quotes(names[k])));
   }
@@ -131,7 +134,7 @@ void SceneReading::curve_of_kind(const JsonMember& member, const FieldName& fiel
         if (read_word(v[1], words, {names[1], owner}, diagnostics) == 1) result.end = SplineEnd::periodic;
       }
       result.numbers = pair_list(v[0], metre, metre, {names[0], owner},
-                                 {.places = true, .repeats = result.end == SplineEnd::periodic});
+                                 {.places = true, .repeats = result.end == SplineEnd::periodic, .beside = names});
       result.beyond = beyond(v[2], result.end, owner);
       break;
     case CurveTemplate::Kind::polar: {
@@ -152,20 +155,30 @@ void SceneReading::curve_of_kind(const JsonMember& member, const FieldName& fiel
   }
 }
 
+void SceneReading::polar_pairs(std::span<const JsonValue> v, std::span<const std::string_view> names,
+                               const std::string& owner, CurveTemplate& result) {
+  if (v[0] || v[1]) error(v[2], fmt::format("{} has pairs, or \"angle\" and \"radius\", not both", owner));
+  const std::vector<NumberValue> pairs = pair_list(v[2], dimension_of(UnitKind::angle), dimension_of(UnitKind::length),
+                                                   {names[2], owner}, {.repeats = true, .beside = names});
+  for (std::size_t c = 0; c < 2; ++c) {
+    for (std::size_t k = c; k < pairs.size(); k += 2) result.numbers.push_back(pairs[k]);
+  }
+}
+
 int SceneReading::table(const JsonValue& value, UnitKind first, UnitKind second, const FieldName& field) {
   TableTemplate result;
   result.offset = static_cast<std::uint32_t>(value.offset());
+  static constexpr std::array<std::string_view, 2> keys{"points", "beyond"};
   JsonValue pairs = value;
-  if (value.is(JsonKind::object) && !is_data_file(value)) {
-    static constexpr std::array<std::string_view, 2> keys{"points", "beyond"};
+  if (value.is(JsonKind::object)) {
     const std::string owner = field.text();
     std::array<JsonValue, 2> v;
-    read_members(value, keys, owner, v, diagnostics);
+    read_members_or_file(value, keys, 0, owner, v, diagnostics);
     if (!v[0]) error(value, fmt::format("{} needs \"points\", a list of pairs", owner));
     result.beyond = beyond(v[1], SplineEnd::natural, owner);
     pairs = v[0];
   }
-  if (pairs) result.numbers = pair_list(pairs, dimension_of(first), dimension_of(second), field, {});
+  if (pairs) result.numbers = pair_list(pairs, dimension_of(first), dimension_of(second), field, {.beside = keys});
   scene.tables.push_back(std::move(result));
   return static_cast<int>(scene.tables.size()) - 1;
 }

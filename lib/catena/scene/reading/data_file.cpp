@@ -21,6 +21,14 @@ std::string_view trimmed(std::string_view text) {
   return first == text.npos ? std::string_view() : text.substr(first, last - first + 1);
 }
 
+/// The entries of a list; of anything else itself, `count` times.
+std::vector<JsonValue> entries(const JsonValue& value, std::size_t count) {
+  if (!value.is(JsonKind::array)) return std::vector<JsonValue>(count, value);
+  std::vector<JsonValue> all;
+  for (const JsonValue& entry : value.elements()) all.push_back(entry);
+  return all;
+}
+
 /// The fields of a line, and where each begins in it. Blanks around other separators count with them.
 struct Fields {
   std::vector<std::string_view> text;
@@ -55,9 +63,11 @@ class DataFile {
   DataFile(const JsonValue& object, const FieldName& field, SceneTemplate& scene, Diagnostics& diagnostics)
       : object_(object), field_(field.text()), scene_(scene), diagnostics_(diagnostics) {}
 
-  DataColumns read(std::span<const ExpectedDimension> dimensions) {
-    std::array<JsonValue, keys.size()> v;
-    if (!read_members(object_, keys, field_, v, diagnostics_)) return {};
+  DataColumns read(std::span<const ExpectedDimension> dimensions, std::span<const std::string_view> beside) {
+    std::vector<std::string_view> all(keys.begin(), keys.end());
+    all.insert(all.end(), beside.begin(), beside.end());
+    std::vector<JsonValue> v(all.size());
+    if (!read_members(object_, all, field_, v, diagnostics_)) return {};
     if (!open(v[0])) return {};
     std::vector<std::vector<double>> rows = read_lines();
     if (rows.empty()) return {};
@@ -135,11 +145,12 @@ class DataFile {
       return std::vector<std::size_t>();
     };
     std::vector<std::size_t> places;
-    if (list && (!list.is(JsonKind::array) || list.size() != wanted))
+    const std::vector<JsonValue> given = list ? entries(list, 1) : std::vector<JsonValue>();
+    if (list && given.size() != wanted)
       return wrong(list,
                    fmt::format("must be a list of {}: numbers from 1, or names in the file's first line", wanted));
     if (list) {
-      for (const JsonValue& value : list.elements()) {
+      for (const JsonValue& value : given) {
         std::size_t place = there;
         if (value.is(JsonKind::string)) {
           place = static_cast<std::size_t>(std::find(names_.begin(), names_.end(), value.text()) - names_.begin());
@@ -165,13 +176,14 @@ class DataFile {
   std::vector<double> find_units(const JsonValue& list, std::span<const ExpectedDimension> dimensions) {
     std::vector<double> factors(dimensions.size(), 1.0);
     if (!list) return factors;
-    if (!list.is(JsonKind::array) || list.size() != dimensions.size()) {
+    const std::vector<JsonValue> given = entries(list, dimensions.size());
+    if (given.size() != dimensions.size()) {
       report(list, fmt::format("{} must be a list of {} units", FieldName{"unit", field_}.text(), dimensions.size()),
              diagnostics_);
       return {};
     }
     std::size_t k = 0;
-    for (const JsonValue& value : list.elements()) {
+    for (const JsonValue& value : given) {
       const std::string_view text = read_string(value, {"unit", field_}, diagnostics_);
       if (!value.is(JsonKind::string)) return {};
       const Parsed<Quantity> quantity = parse_quantity("1 " + std::string(text));
@@ -217,8 +229,19 @@ class DataFile {
 bool is_data_file(const JsonValue& value) { return value.is(JsonKind::object) && value.find("file"); }
 
 DataColumns read_data_file(const JsonValue& object, std::span<const ExpectedDimension> dimensions,
-                           const FieldName& field, SceneTemplate& scene, Diagnostics& diagnostics) {
-  return DataFile(object, field, scene, diagnostics).read(dimensions);
+                           const FieldName& field, SceneTemplate& scene, Diagnostics& diagnostics,
+                           std::span<const std::string_view> beside) {
+  return DataFile(object, field, scene, diagnostics).read(dimensions, beside);
+}
+
+bool read_members_or_file(const JsonValue& object, std::span<const std::string_view> keys, std::size_t pairs,
+                          std::string_view owner, std::span<JsonValue> out, Diagnostics& diagnostics) {
+  if (!is_data_file(object)) return read_members(object, keys, owner, out, diagnostics);
+  for (std::size_t k = 0; k < keys.size(); ++k) out[k] = object.find(keys[k]);
+  if (out[pairs])
+    report(out[pairs], fmt::format("{} has {} or \"file\", not both", owner, in_quotes(keys[pairs])), diagnostics);
+  out[pairs] = object;
+  return true;
 }
 
 }  // namespace catena

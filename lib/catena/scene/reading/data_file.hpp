@@ -18,6 +18,11 @@ namespace catena {
 /// Whether the value stands for columns of a file.
 bool is_data_file(const JsonValue& value);
 
+/// The members of an object with pairs under keys[pairs], or with a file's keys in place of them, beside the others:
+/// {"file": "cam.csv", "end": "periodic"}. out[pairs] is the object itself then. Otherwise as read_members.
+bool read_members_or_file(const JsonValue& object, std::span<const std::string_view> keys, std::size_t pairs,
+                          std::string_view owner, std::span<JsonValue> out, Diagnostics& diagnostics);
+
 struct DataColumns {
   std::vector<std::vector<double>> values;  ///< in SI, column after column; empty if they could not be read
   double smooth = 0;                        ///< in SI
@@ -26,8 +31,10 @@ struct DataColumns {
   bool empty() const { return values.empty(); }
 };
 
-/// `dimensions.size()` columns, each in its dimension. Empty, with a report, if they cannot be read.
+/// `dimensions.size()` columns, each in its dimension. Empty, with a report, if they cannot be read. `beside`: keys
+/// that the object may have besides those of a file.
 DataColumns read_data_file(const JsonValue& object, std::span<const ExpectedDimension> dimensions,
-                           const FieldName& field, SceneTemplate& scene, Diagnostics& diagnostics);
+                           const FieldName& field, SceneTemplate& scene, Diagnostics& diagnostics,
+                           std::span<const std::string_view> beside = {});
 
 }  // namespace catena

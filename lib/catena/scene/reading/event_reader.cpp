@@ -153,14 +153,17 @@ void AnalysisReader::read_event(const JsonValue& object, AnalysisTask& task) {
         number(words[2], v[2], {keys[2], "an event"}, {.place = TaskNumber::Place::event, .item = task.events.size()});
   if (v[3]) event.direction = read_word(v[3], words[3].words, {keys[3], "an event"}, diagnostics_);
   if (v[4]) event.action = read_word(v[4], words[4].words, {keys[4], "an event"}, diagnostics_);
+  const bool strikes = event.action >= 0 && words[4].words[static_cast<std::size_t>(event.action)] == "impulse";
+  if (strikes) event.action = 0;  // it is the impulse that says so
+  if (strikes && !v[6]) error(v[4], "an event with the action \"impulse\" needs \"impulse\": {\"i\", \"value\"}");
   event.element = text(5);
   event.element_place = v[5];
   if (event.action >= 2 && !v[5]) error(object, "an event that releases or engages needs \"element\"");
-  if (event.action < 2 && v[5])
+  if (event.action >= 0 && event.action < 2 && v[5])
     error(v[5], fmt::format("\"element\" of an event that is to {} has no meaning",
                             words[4].words[static_cast<std::size_t>(event.action)]));
   if (v[6]) event.impulse = read_impulse(v[6], task.events.size());
-  if (v[6] && v[4]) error(v[4], "an event with an \"impulse\" has no other action");
+  if (v[6] && v[4] && !strikes) error(v[4], "an event with an \"impulse\" has no other action");
   if (event.name.empty()) event.name = "event#" + std::to_string(task.events.size() + 1);
   if (v[1] && !event.column.empty()) task.events.push_back(std::move(event));
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "catena/scene/reading/data_file.hpp"
 #include "catena/scene/reading/scene_reading.hpp"
 
 namespace catena {
@@ -63,7 +64,7 @@ class FunctionData {
   void read_spline() {
     static constexpr std::array<std::string_view, 5> keys{"t", "value", "end", "beyond", "points"};
     std::array<JsonValue, keys.size()> v;
-    if (!read_members(data_, keys, owner_, v, reading_.diagnostics)) return;
+    if (!read_members_or_file(data_, keys, 4, owner_, v, reading_.diagnostics)) return;
     if (v[2]) {
       if (const int word = read_word(v[2], end_words, {"end", owner_}, reading_.diagnostics); word >= 0)
         result_.end = static_cast<SplineEnd>(word);
@@ -72,8 +73,8 @@ class FunctionData {
     if (v[4]) {
       if (v[0] || v[1])
         reading_.error(v[4], fmt::format("{} has \"points\", or \"t\" and \"value\", not both", owner_));
-      const std::vector<NumberValue> pairs =
-          reading_.pair_list(v[4], second_, unit_, {keys[4], owner_}, {.repeats = result_.end == SplineEnd::periodic});
+      const std::vector<NumberValue> pairs = reading_.pair_list(
+          v[4], second_, unit_, {keys[4], owner_}, {.repeats = result_.end == SplineEnd::periodic, .beside = keys});
       for (std::size_t k = 0; k < pairs.size(); ++k) lists[k % 2].push_back(pairs[k]);
     } else {
       for (std::size_t k = 0; k < 2; ++k) {

@@ -76,6 +76,7 @@ class SceneReading {
   /// What pairs are, to smooth measured ones: places of a curve, else values over their places; whether they repeat.
   struct PairUse {
     bool places = false, repeats = false;
+    std::span<const std::string_view> beside{};  ///< keys that stand beside those of a file
   };
   /// A list of pairs, or two columns of a file: the numbers of one pair after those of the other.
   std::vector<NumberValue> pair_list(const JsonValue& value, const ExpectedDimension& first,
@@ -105,6 +106,9 @@ class SceneReading {
   FunctionTemplate function_object(const JsonValue& value, const ExpectedDimension& unit, const FieldName& field);
   FunctionTemplate function_part(const JsonValue& value, const ExpectedDimension& unit, const FieldName& field);
   void curve_of_kind(const JsonMember& member, const FieldName& field, CurveTemplate& result);
+  /// A polar curve by pairs of angle and radius, v[2].
+  void polar_pairs(std::span<const JsonValue> v, std::span<const std::string_view> names, const std::string& owner,
+                   CurveTemplate& result);
   void part(const JsonValue& object, std::string_view owner);
   void part_list(const JsonValue& parts, const std::string& owner, BodyTemplate& body);
   /// The numbers of the one shape of these that is given; false if none is.

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "catena/scene/json/near_miss.hpp"
+#include "catena/scene/reading/data_file.hpp"
 #include "catena/scene/reading/scene_reading.hpp"
 
 namespace catena {
@@ -23,15 +24,15 @@ void SceneReading::table_functions(const JsonValue& object, std::span<const std:
     table.place = member.value;
     const std::string owner = "table " + in_quotes(table.name);
     std::array<JsonValue, table_keys.size()> v;
-    if (!read_members(member.value, table_keys, owner, v, diagnostics)) continue;
+    if (!read_members_or_file(member.value, table_keys, 2, owner, v, diagnostics)) continue;
     if (v[3]) {
       if (const int word = read_word(v[3], table_end_words, {"end", owner}, diagnostics); word >= 0)
         table.end = static_cast<SplineEnd>(word);
     }
     if (v[2]) {
       if (v[0] || v[1]) error(v[2], fmt::format("{} has \"points\", or \"x\" and \"y\", not both", owner));
-      const std::vector<NumberValue> pairs =
-          pair_list(v[2], {}, {}, {table_keys[2], owner}, {.repeats = table.end == SplineEnd::periodic});
+      const std::vector<NumberValue> pairs = pair_list(
+          v[2], {}, {}, {table_keys[2], owner}, {.repeats = table.end == SplineEnd::periodic, .beside = table_keys});
       for (std::size_t k = 0; k < pairs.size(); ++k) (k % 2 == 0 ? table.x : table.y).push_back(pairs[k]);
     } else {
       for (std::size_t k = 0; k < 2; ++k) {

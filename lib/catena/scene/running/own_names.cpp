@@ -55,10 +55,7 @@ bool has_by_itself(const AnalysisTask& task, std::string_view name, const Parame
 
 std::optional<std::string> why_no_outputs(const std::vector<AnalysisTask>& tasks, const std::vector<std::string>& names,
                                           const ParameterNames& parameters) {
-  // A sensitivity has the columns of the analysis inside of it.
-  const auto takes_columns = [](const AnalysisTask& task) {
-    return task.type() == "sensitivity" || task.description->find("outputs") != nullptr;
-  };
+  const auto takes_columns = [](const AnalysisTask& task) { return task.description->find("outputs") != nullptr; };
   if (tasks.empty() || std::any_of(tasks.begin(), tasks.end(), takes_columns)) return {};
   for (const std::string& name : names) {
     const auto is_own = [&](const AnalysisTask& task) { return has_by_itself(task, name, parameters); };

@@ -90,7 +90,7 @@ void run_assemble(AnalysisContext& context, AnalysisResult& result) {
   const std::vector<std::string> names = context.task.output_names();
   RopeWaysAt ways(context.model);
   if (!context.state.q.empty() && ways.begin(context.state)) context.model = ways.model();
-  PlanOptions options = plan_options(*context.model, names);
+  PlanOptions options = plan_options(*context.model, context.task.column_names());
   options.released_elements = context.model->gaps();
   Kinematics analysis(context.model, options);
   const ColumnSources sources{.analysis = context.task.type()};
@@ -132,6 +132,7 @@ void run_assemble(AnalysisContext& context, AnalysisResult& result) {
                    {"moved", outcome.moved},
                    {"iterations", std::int64_t{outcome.iterations}}};
   add_misfits(result, outcome, *context.model);
+  add_field_measures(context, result);
 }
 
 void run_check(AnalysisContext& context, AnalysisResult& result) {

@@ -26,7 +26,7 @@ class SceneRun {
 
  private:
   void save();
-  /// The task with the parameters that earlier paths left behind, unless it sets them itself.
+  /// The task with the parameters that earlier paths and optimisations left behind, unless it sets them itself.
   AnalysisTask with_handed_on(AnalysisTask task, std::optional<std::string>& why_not);
   ParameterSeeds handed_on_to(const AnalysisTask& task) const;
   std::string why_not_from_checkpoint(const AnalysisTask& task, int number) const;
@@ -40,8 +40,9 @@ class SceneRun {
   bool claims_digits(const AnalysisTask& task) const;
   void note_origin_of_state(const AnalysisTask& task);
 
-  bool inexact_ = false;      // the state has errors of an earlier motion, which no later analysis knows
-  ParameterSeeds handed_on_;  // values of parameters that paths and optimisations left behind
+  bool inexact_ = false;    // the state has errors of an earlier motion, which no later analysis knows
+  ParameterSeeds at_ends_;  // values of parameters where paths ended: until an analysis starts from the beginning
+  ParameterSeeds optimum_;  // those that optimisations found: for all later analyses
 };
 
 /// Whether places and rates follow from the model alone, whatever the state before.
@@ -68,10 +69,14 @@ void SceneRun::note_origin_of_state(const AnalysisTask& task) {
 
 ParameterSeeds SceneRun::handed_on_to(const AnalysisTask& task) const {
   ParameterSeeds seeds;
-  for (const ParameterSeed<double>& seed : handed_on_) {
-    const std::vector<int>& set = task.set_parameters;
-    if (std::find(set.begin(), set.end(), seed.index) == set.end()) seeds.push_back(seed);
-  }
+  const std::vector<int>& set = task.set_parameters;
+  const auto take = [&](const ParameterSeed<double>& seed) {
+    const auto same = [&](const auto& other) { return other.index == seed.index; };
+    const bool is_set = std::find(set.begin(), set.end(), seed.index) != set.end();
+    if (!is_set && std::none_of(seeds.begin(), seeds.end(), same)) seeds.push_back(seed);
+  };
+  std::for_each(at_ends_.begin(), at_ends_.end(), take);
+  std::for_each(optimum_.begin(), optimum_.end(), take);
   return seeds;
 }
 
@@ -111,7 +116,7 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
   result.type = task.type();
   std::string why_not = why_not_from_checkpoint(read, number);
   if (why_not.empty() && unfit)
-    why_not = fmt::format("with the parameters that the path before left behind: {}", *unfit);
+    why_not = fmt::format("with the parameters that an analysis before left behind: {}", *unfit);
   if (!why_not.empty()) {
     refuse(result, std::move(why_not));
     return result;
@@ -161,8 +166,11 @@ void SceneRun::run_in(AnalysisContext& context, AnalysisResult& result) {
     refuse(result, error.what());
   }
   for (const ParameterSeed<double>& value : context.values_at_end) {
-    std::erase_if(handed_on_, [&](const auto& seed) { return seed.index == value.index; });
-    handed_on_.push_back(value);
+    const auto same = [&](const auto& seed) { return seed.index == value.index; };
+    std::erase_if(at_ends_, same);
+    ParameterSeeds& kept = context.task.type() == "optimise" ? optimum_ : at_ends_;
+    std::erase_if(kept, same);
+    kept.push_back(value);
   }
 }
 
@@ -188,7 +196,7 @@ void SceneRun::run(ResultSink& sink) {
     if (task.from_initial) {
       state = {};
       inexact_ = false;
-      handed_on_.clear();
+      at_ends_.clear();
     } else if (k > first && !outcome_.analyses.back().report.ok()) {
       break;  // there is no state to go on from
     }
@@ -209,7 +217,7 @@ void SceneRun::run(ResultSink& sink) {
 void SceneRun::save() {
   if (outcome_.exit_code != 0) return;
   TextOutput file = TextOutput::file(options_.save);
-  file.write(text_with_values(setup_.scene(), handed_on_));
+  file.write(text_with_values(setup_.scene(), optimum_));
   if (!file.commit()) setup_.refuse(4, file.error());
 }
 

@@ -65,7 +65,9 @@ void SceneSetup::read_tasks() {
   if (command_.read_outputs(asked_outputs(), diagnostics_)) {
     const std::vector<PlacedName> outputs = read_outputs(command_.outputs(), scene, values, diagnostics_);
     for (AnalysisTask& task : tasks_) {
-      if (task.description->find("outputs")) task.outputs = outputs;
+      // A sensitivity has the columns of the analysis inside of it; a wrong one may have none.
+      AnalysisTask& with_rows = task.type() == "sensitivity" && !task.of.empty() ? task.of.front() : task;
+      if (with_rows.description->find("outputs")) with_rows.outputs = outputs;
     }
   }
   if (!options_.only.empty()) std::erase_if(tasks_, [&](const auto& task) { return task.type() != options_.only; });
