@@ -15,16 +15,13 @@ void move_by_ends(const StepEnds& ends, std::size_t n, double s, std::span<doubl
 }
 
 void DenseOutput::set(const StepEnds& ends, const Stages& stages) {
-  const double h = ends.h, *y0 = ends.y0.data(), *y1 = ends.y1.data();
-  const double *slope0 = ends.slope0.data(), *slope1 = ends.slope1.data();
-  double *r1 = r_[0].data(), *r2 = r_[1].data(), *r3 = r_[2].data();
   for (std::size_t i = 0; i < ends.y0.size(); ++i) {
-    const double difference = y1[i] - y0[i], bend = h * slope0[i] - difference;
-    r1[i] = difference;
-    r2[i] = bend;
-    r3[i] = difference - h * slope1[i] - bend;
+    const double difference = ends.y1[i] - ends.y0[i], bend = ends.h * ends.slope0[i] - difference;
+    r_[0][i] = difference;
+    r_[1][i] = bend;
+    r_[2][i] = difference - ends.h * ends.slope1[i] - bend;
   }
-  for (std::size_t k = 0; k < 4; ++k) stages.combine(dormand_prince_8().interpolant[k], h, nullptr, r_[3 + k]);
+  for (std::size_t k = 0; k < 4; ++k) stages.combine(dormand_prince_8().interpolant[k], ends.h, nullptr, r_[3 + k]);
   ready_ = true;
 }
 
