@@ -35,40 +35,40 @@ StaticSystem::StaticSystem(Evaluator& evaluator)
   evaluator_.start_jacobian(jacobian_);
   solution_.resize(at(plan_.columns + plan_.rows));
   if (!has_gaps()) return;
-  is_gap_.assign(at(plan_.rows), 0);
-  for (int r : plan_.gap_rows) is_gap_[at(r)] = 1;
+  gaps_.is.assign(at(plan_.rows), 0);
+  for (int r : plan_.gap_rows) gaps_.is[at(r)] = 1;
   use_gaps();
 }
 
 void StaticSystem::use_gaps() {
-  one_sided_ = has_gaps();
-  open_.clear();
+  gaps_.one_sided = has_gaps();
+  gaps_.open.clear();
   evaluator_.leave_out({});
   matrix_.set_compliance({});
 }
 
 void StaticSystem::close_gaps(std::span<const char> closed) {
   if (!has_gaps()) return;
-  one_sided_ = false;
-  open_.clear();
+  gaps_.one_sided = false;
+  gaps_.open.clear();
   std::vector<double> compliance(at(plan_.rows), 0.0);
   for (std::size_t k = 0; k < closed.size(); ++k) {
     if (closed[k]) continue;
-    open_.push_back(plan_.gap_rows[k]);
+    gaps_.open.push_back(plan_.gap_rows[k]);
     compliance[at(plan_.gap_rows[k])] = left_out_compliance;
   }
-  evaluator_.leave_out(open_);
+  evaluator_.leave_out(gaps_.open);
   matrix_.set_compliance(compliance);
 }
 
 void StaticSystem::all_gaps(std::vector<double>& out) {
   out.clear();
   if (!has_gaps()) return;
-  met_.resize(phi_.size());
+  gaps_.met.resize(phi_.size());
   evaluator_.leave_out({});
-  evaluator_.phi(met_);
-  evaluator_.leave_out(open_);
-  for (int r : plan_.gap_rows) out.push_back(met_[at(r)]);
+  evaluator_.phi(gaps_.met);
+  evaluator_.leave_out(gaps_.open);
+  for (int r : plan_.gap_rows) out.push_back(gaps_.met[at(r)]);
 }
 
 void StaticSystem::take_over_model() {
@@ -78,7 +78,7 @@ void StaticSystem::take_over_model() {
   scaling_ = Scaling(plan_, length_);
   springs_.take_over_model(evaluator_);
   load_ = total_load_ = 0;
-  dead_load_at_ = std::numeric_limits<double>::quiet_NaN();
+  dead_load_.t = std::numeric_limits<double>::quiet_NaN();
   linear_ = -1;
 }
 
@@ -130,10 +130,10 @@ double StaticSystem::force_norm(std::span<const double> forces) const {
 double StaticSystem::change_norm(std::span<const double> change) const { return scaling_.column_norm(change); }
 
 double StaticSystem::phi_norm() const {
-  if (!one_sided_) return scaling_.row_norm(phi_);
-  met_.assign(phi_.begin(), phi_.end());
-  for (int r : plan_.gap_rows) met_[at(r)] = std::min(met_[at(r)], 0.0);
-  return scaling_.row_norm(met_);
+  if (!gaps_.one_sided) return scaling_.row_norm(phi_);
+  gaps_.met.assign(phi_.begin(), phi_.end());
+  for (int r : plan_.gap_rows) gaps_.met[at(r)] = std::min(gaps_.met[at(r)], 0.0);
+  return scaling_.row_norm(gaps_.met);
 }
 
 double StaticSystem::force_scale(std::span<const double> lambda) const {
@@ -159,12 +159,12 @@ void StaticSystem::foresee(std::span<const double> change, double factor, double
 }
 
 double StaticSystem::dead_load() {
-  if (dead_load_at_ == evaluator_.time()) return dead_load_;
-  dead_load_at_ = evaluator_.time();
+  if (dead_load_.t == evaluator_.time()) return dead_load_.size;
+  dead_load_.t = evaluator_.time();
   const std::vector<double> loads = force_sizes(evaluator_).loads;
   std::vector<double> of_columns(at(plan_.columns));
   for (int c = 0; c < plan_.columns; ++c) of_columns[at(c)] = loads[at(plan_.coordinate[at(c)])];
-  return dead_load_ = measure(of_columns).largest;
+  return dead_load_.size = measure(of_columns).largest;
 }
 
 void StaticSystem::fill(std::span<const double> lambda, Curvature curvature, double shift) {

@@ -47,7 +47,7 @@ class StaticSystem {
   /// first configuration.
   bool has_linear_constraints();
   bool has_gaps() const { return !plan_.gap_rows.empty(); }
-  RowSide side(int row) const { return is_gap_.empty() || !is_gap_[at(row)] ? RowSide::both : RowSide::at_least; }
+  RowSide side(int row) const { return gaps_.is.empty() || !gaps_.is[at(row)] ? RowSide::both : RowSide::at_least; }
   /// All gaps as inequalities; move_to() comes next.
   void use_gaps();
   /// The gaps with closed[k] != 0, k counting plan().gap_rows, as equations, the others not at all; move_to() comes
@@ -135,16 +135,20 @@ class StaticSystem {
   double length_, extent_ = 1, force_ = 1, load_ = 0, total_load_ = 0;
   Scaling scaling_;
   std::vector<double> rest_, loads_;  // zero velocities, Q; all coordinates
-  double dead_load_ = 0, dead_load_at_ = std::numeric_limits<double>::quiet_NaN();  // N; s
+  struct {
+    double size = 0, t = std::numeric_limits<double>::quiet_NaN();  // N; s
+  } dead_load_;
   ForeseenSprings springs_;
   std::vector<double> foreseen_;  // all coordinates
   std::function<bool()> proceed_;
   std::vector<double> gradient_, jacobian_, phi_;
   std::vector<double> solution_, torque_;
-  std::vector<char> is_gap_;         // per row; empty: none is
-  std::vector<int> open_;            // rows left out
-  bool one_sided_ = false;           // gaps as inequalities
-  mutable std::vector<double> met_;  // phi without gaps that are open
+  struct {
+    std::vector<char> is;             // per row; empty: none is
+    std::vector<int> open;            // rows left out
+    bool one_sided = false;           // as inequalities
+    mutable std::vector<double> met;  // phi without gaps that are open
+  } gaps_;
 };
 
 }  // namespace catena

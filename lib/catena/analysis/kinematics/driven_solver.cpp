@@ -41,7 +41,7 @@ DrivenSolver::DrivenSolver(Evaluator& evaluator)
   values_.resize(at(plan_.trash_slot()) + 1);
   evaluator_.start_jacobian(values_);
   phi_.resize(at(plan_.rows));
-  q_factored_.resize(at(plan_.columns));
+  factored_.q.resize(at(plan_.columns));
   q_.resize(at(plan_.columns));
   step_.resize(at(plan_.columns));
   x_.resize(at(plan_.columns));
@@ -91,42 +91,43 @@ std::span<const double> DrivenSolver::jacobian() {
 }
 
 bool DrivenSolver::values_never_changed(std::span<const double> values) {
-  if (values_changed_) return false;
-  values_changed_ = !std::equal(values.begin(), values.end(), first_values_.begin(), first_values_.end());
-  if (values_changed_) first_values_ = {};
-  return !values_changed_;
+  if (matrix_.values_changed) return false;
+  matrix_.values_changed =
+      !std::equal(values.begin(), values.end(), matrix_.first_values.begin(), matrix_.first_values.end());
+  if (matrix_.values_changed) matrix_.first_values = {};
+  return !matrix_.values_changed;
 }
 
 bool DrivenSolver::factorize() {
   std::span<const double> values = jacobian();
   if (!all_rows_) {
-    for (std::size_t k = 0; k < gather_.size(); ++k) matrix_values_[k] = values[at(gather_[k])];
-    values = matrix_values_;
+    for (std::size_t k = 0; k < matrix_.gather.size(); ++k) matrix_.values[k] = values[at(matrix_.gather[k])];
+    values = matrix_.values;
   }
-  if (!analyzed_) {
-    factor_result_ =
-        factorization_.analyze(all_rows_ ? plan_.jacobian : matrix_, Kernel::automatic, evaluator_.counters);
-    if (!factor_result_.ok()) return false;
+  if (!matrix_.analyzed) {
+    factored_.result =
+        factorization_.analyze(all_rows_ ? plan_.jacobian : matrix_.pattern, Kernel::automatic, evaluator_.counters);
+    if (!factored_.result.ok()) return false;
     // Pivots, by which branches are told apart and rows chosen, must not depend on the unit of length.
     std::vector<double> units(at(plan_.columns));
     for (std::size_t c = 0; c < units.size(); ++c) {
       units[c] = plan_.coordinate[c] % 3 == 2 ? 1 : evaluator_.length_scale();
     }
     factorization_.set_column_units(units);
-    analyzed_ = true;
-    values_changed_ = false;
-    first_values_.assign(values.begin(), values.end());
+    matrix_.analyzed = true;
+    matrix_.values_changed = false;
+    matrix_.first_values.assign(values.begin(), values.end());
   }
   // Linear constraints, and joints at the origins of their bodies, give the same values at every configuration: their
   // factors stay. Once the values have changed they are not compared again.
   const bool same = factorization_.is_factorized() && (plan_.constant_jacobian || values_never_changed(values));
-  if (!same) factor_result_ = factorization_.factorize(values, evaluator_.counters);
-  factors_valid_ = factor_result_.ok();
-  rcond_ = factors_valid_ ? factorization_.rcond() : 0;
-  q_factored_ = q_;
-  t_factored_ = evaluator_.time();
-  gap_ = 0;
-  return factors_valid_;
+  if (!same) factored_.result = factorization_.factorize(values, evaluator_.counters);
+  factored_.valid = factored_.result.ok();
+  factored_.rcond = factored_.valid ? factorization_.rcond() : 0;
+  factored_.q = q_;
+  factored_.t = evaluator_.time();
+  factored_.gap = 0;
+  return factored_.valid;
 }
 
 // Evaluates the constraints at q, which it keeps, with its distance from where the factors were made.
@@ -137,10 +138,10 @@ void DrivenSolver::evaluate_at(std::span<const double> q) {
   const auto keep = [&](auto&& coordinate) {
     const auto sizes = scaling_.scan_columns<2>(q_.size(), [&](std::size_t c) {
       const double value = q_[c] = q[coordinate(c)];
-      return std::array{value, value - q_factored_[c]};
+      return std::array{value, value - factored_.q[c]};
     });
     extent_ = sizes[0].all;
-    gap_ = sizes[1].all;
+    factored_.gap = sizes[1].all;
   };
   if (plan_.contiguous) {
     keep([](std::size_t c) { return c; });
@@ -155,16 +156,18 @@ double DrivenSolver::residual_at(std::span<const double> q) {
 }
 
 bool DrivenSolver::factors_serve() const {
-  if (!factors_valid_) return false;
-  const bool exact = plan_.constant_jacobian || (gap_ == 0 && t_factored_ == evaluator_.time());
-  return exact || (gap_ <= keep_distance && rcond_ >= keep_rcond);
+  if (!factored_.valid) return false;
+  const bool exact = plan_.constant_jacobian || (factored_.gap == 0 && factored_.t == evaluator_.time());
+  return exact || (factored_.gap <= keep_distance && factored_.rcond >= keep_rcond);
 }
 
 // The part of an error that one refinement leaves with factors made at a distance.
-double DrivenSolver::refinement_rate() const { return plan_.constant_jacobian || gap_ == 0 ? 0 : gap_ / rcond_; }
+double DrivenSolver::refinement_rate() const {
+  return plan_.constant_jacobian || factored_.gap == 0 ? 0 : factored_.gap / factored_.rcond;
+}
 
 // A linear system needs no determinant: factors serve as long as refinement with them converges fast.
-bool DrivenSolver::factors_refine() const { return factors_valid_ && refinement_rate() <= keep_rate; }
+bool DrivenSolver::factors_refine() const { return factored_.valid && refinement_rate() <= keep_rate; }
 
 NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
   NewtonOutcome outcome;
@@ -192,7 +195,7 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
     last_residual = outcome.residual;
     if (outcome.iterations == max_iterations) return outcome;
     if (!factors_serve() && !factorize()) {
-      outcome.factor = factor_result_;
+      outcome.factor = factored_.result;
       return outcome;
     }
     factorization_.solve(step_, evaluator_.counters);
@@ -202,7 +205,7 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
     size = correction.all;
     if (!std::isfinite(size)) return outcome;
     // A correction with factors from a distance g leaves about (g + size) size.
-    rate = plan_.constant_jacobian ? 0 : gap_ + size;
+    rate = plan_.constant_jacobian ? 0 : factored_.gap + size;
     if (outcome.iterations == 0) {
       outcome.first_correction = size;
       outcome.first_turn = correction.angle;
@@ -210,7 +213,7 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
       const double ratio = size / last_size;
       outcome.contraction = std::max(outcome.contraction, ratio);
       rate = std::max(rate, ratio);
-      if (ratio > poor_contraction) factors_valid_ = false;
+      if (ratio > poor_contraction) factored_.valid = false;
     } else if (small && size <= std::max(rounding_floor, 64 * epsilon * extent_)) {
       rate = 0;  // what is left is rounding
     }
@@ -267,7 +270,7 @@ bool DrivenSolver::solve_refined(std::span<double> x, bool has_start) {
     if (!std::isfinite(size)) return false;
     if (k > 0) rate = std::max(rate, size / last_size);
     if (rate * size <= negligible * all || size <= rounding * all) {
-      left_of_rates_ = std::max(left_of_rates_, rate * size / all);
+      left_.of_rates = std::max(left_.of_rates, rate * size / all);
       return true;
     }
     if (k > 0 && size > poor_contraction * last_size) {
@@ -276,12 +279,12 @@ bool DrivenSolver::solve_refined(std::span<double> x, bool has_start) {
         factored_here = true;
         rate = 0;
       } else if (k > 1 && is_solved_to_rounding(values, x)) {
-        left_of_rates_ = std::max(left_of_rates_, size / all);
+        left_.of_rates = std::max(left_.of_rates, size / all);
         return true;
       }
     }
   }
-  left_of_rates_ = std::max(left_of_rates_, size / all);
+  left_.of_rates = std::max(left_.of_rates, size / all);
   return size <= tolerance * all || is_solved_to_rounding(values, x);
 }
 
@@ -323,7 +326,7 @@ bool DrivenSolver::solve_acceleration(std::span<const double> qd, std::span<doub
 }
 
 bool DrivenSolver::respond(std::span<const double> rows, std::span<double> change) {
-  if (!is_square() || !factors_valid_) return false;
+  if (!is_square() || !factored_.valid) return false;
   for (std::size_t k = 0; k < rows_.size(); ++k) step_[k] = rows[at(rows_[k])];
   factorization_.solve(step_, evaluator_.counters);
   std::fill(change.begin(), change.end(), 0.0);
@@ -358,22 +361,22 @@ bool DrivenSolver::solve_multipliers(std::span<const double> rhs, std::span<doub
     // The ratio of corrections alone may be that of forces while what is left is moments.
     const double ratio = k > 0 ? size / last_size : 0, rate = std::max(refinement_rate(), ratio);
     if (rate * size <= negligible * all || size <= rounding * all) {
-      if (all > 0) left_of_multipliers_ = std::max(left_of_multipliers_, rate * size / all);
+      if (all > 0) left_.of_multipliers = std::max(left_.of_multipliers, rate * size / all);
       return true;
     }
     if (ratio > poor_contraction) {
-      left_of_multipliers_ = std::max(left_of_multipliers_, size / all);
+      left_.of_multipliers = std::max(left_.of_multipliers, size / all);
       return size <= tolerance * all;
     }
   }
-  left_of_multipliers_ = 1;
+  left_.of_multipliers = 1;
   return true;
 }
 
 double DrivenSolver::factor_at(std::span<const double> q) {
   if (!is_square()) return 0;
   evaluate_at(q);
-  return factorize() ? rcond_ : 0;
+  return factorize() ? factored_.rcond : 0;
 }
 
 }  // namespace catena

@@ -48,7 +48,7 @@ class DrivenSolver {
   /// Factors the matrix at q, at the evaluator's time; returns its crude reciprocal condition number, 0 if singular.
   double factor_at(std::span<const double> q);
   /// The same of the last factorization.
-  double rcond() const { return rcond_; }
+  double rcond() const { return factored_.rcond; }
   /// Newton from q, at the evaluator's time; q is left at the last iterate.
   NewtonOutcome solve_position(std::span<double> q);
   /// Velocities at the configuration of the last solve_position. `qd` holds a start if `has_start`.
@@ -65,9 +65,9 @@ class DrivenSolver {
   std::span<const double> phi() const { return phi_; }
   /// The largest part of rates, and of multipliers, that refinement left to be corrected in any solve since the last
   /// forget_left(): next correction, as it was predicted, over the largest entry; rates in length scales and rad.
-  double left_of_rates() const { return left_of_rates_; }
-  double left_of_multipliers() const { return left_of_multipliers_; }
-  void forget_left() { left_of_rates_ = left_of_multipliers_ = 0; }
+  double left_of_rates() const { return left_.of_rates; }
+  double left_of_multipliers() const { return left_.of_multipliers; }
+  void forget_left() { left_.of_rates = left_.of_multipliers = 0; }
   /// Phi_q at the last configuration, current after solve_velocity.
   std::span<const double> jacobian();
   const Factorization& factorization() const { return factorization_; }
@@ -118,24 +118,35 @@ class DrivenSolver {
   std::vector<int> rows_;
   Scaling scaling_;
   bool all_rows_ = false;
-  SparsePattern matrix_;     // the rows in use
-  std::vector<int> gather_;  // entry of the matrix -> slot in the full Jacobian (empty: the same)
+  /// The rows in use.
+  struct {
+    SparsePattern pattern;
+    std::vector<int> gather;           // entry -> slot in the full Jacobian (empty: the same)
+    std::vector<double> values;        // if not all rows are in use
+    std::vector<double> first_values;  // of the first factorization, until they change
+    bool analyzed = false, values_changed = false;
+  } matrix_;
   Factorization factorization_;
-  bool analyzed_ = false, factors_valid_ = false, jacobian_valid_ = false, values_changed_ = false;
-  std::vector<double> values_;                     // full Jacobian
-  std::vector<double> matrix_values_;              // rows in use, if not all
-  std::vector<double> first_values_;               // of the first factorization, until they change
-  std::vector<char> in_use_;                       // per row
-  std::vector<double> phi_, rhs_, residual_all_;   // all rows
-  std::vector<double> step_, x_, q_, q_factored_;  // columns
-  std::vector<double> terms_;                      // all rows
-  double motion_unit_ = 1;                         // m: what shifts are compared with in distance()
-  double t_factored_ = 0;
-  double gap_ = 0;     // from q_ to q_factored_: how much worse than exact the factors are
-  double extent_ = 0;  // norm of q_
-  double rcond_ = 0;   // of the last factorization
-  double left_of_rates_ = 0, left_of_multipliers_ = 0;
-  FactorResult factor_result_;
+  /// Where it was factored last.
+  struct {
+    std::vector<double> q;  // columns
+    double t = 0;
+    double gap = 0;  // from q_ to here: how much worse than exact the factors are
+    double rcond = 0;
+    bool valid = false;
+    FactorResult result;
+  } factored_;
+  bool jacobian_valid_ = false;
+  std::vector<double> values_;                    // full Jacobian
+  std::vector<char> in_use_;                      // per row
+  std::vector<double> phi_, rhs_, residual_all_;  // all rows
+  std::vector<double> step_, x_, q_;              // columns
+  std::vector<double> terms_;                     // all rows
+  double motion_unit_ = 1;                        // m: what shifts are compared with in distance()
+  double extent_ = 0;                             // norm of q_
+  struct {
+    double of_rates = 0, of_multipliers = 0;
+  } left_;  // by refinement, as parts of the largest
 };
 
 }  // namespace catena

@@ -54,7 +54,7 @@ std::span<const BlockMargin> DrivenSolver::block_margins() {
 }
 
 bool DrivenSolver::null_vectors(std::span<double> w, std::span<double> z) {
-  if (!is_square() || !factors_valid_) return false;
+  if (!is_square() || !factored_.valid) return false;
   // A start without symmetry: a null vector orthogonal to it would be missed.
   for (std::size_t k = 0; k < step_.size(); ++k) step_[k] = 1 + 0.37 * std::sin(1.0 + static_cast<double>(k));
   const auto normalise = [&] {

@@ -24,23 +24,23 @@ constexpr int most_candidates = 256;
 void DrivenSolver::use_rows(std::vector<int> rows) {
   rows_ = std::move(rows);
   all_rows_ = static_cast<int>(rows_.size()) == plan_.rows;
-  analyzed_ = factors_valid_ = false;
-  gather_.clear();
+  matrix_.analyzed = factored_.valid = false;
+  matrix_.gather.clear();
   if (all_rows_) return;
   std::vector<int> place(at(plan_.rows), -1);
   in_use_.assign(at(plan_.rows), 0);
   for (std::size_t k = 0; k < rows_.size(); ++k) place[at(rows_[k])] = static_cast<int>(k), in_use_[at(rows_[k])] = 1;
-  matrix_ = {static_cast<int>(rows_.size()), plan_.columns, {0}, {}};
+  matrix_.pattern = {static_cast<int>(rows_.size()), plan_.columns, {0}, {}};
   for (int c = 0; c < plan_.columns; ++c) {
     for (int k = plan_.jacobian.column_start[at(c)]; k < plan_.jacobian.column_start[at(c) + 1]; ++k) {
       const int row = place[at(plan_.jacobian.row_index[at(k)])];
       if (row < 0) continue;
-      matrix_.row_index.push_back(row);
-      gather_.push_back(k);
+      matrix_.pattern.row_index.push_back(row);
+      matrix_.gather.push_back(k);
     }
-    matrix_.column_start.push_back(static_cast<int>(gather_.size()));
+    matrix_.pattern.column_start.push_back(static_cast<int>(matrix_.gather.size()));
   }
-  matrix_values_.resize(gather_.size());
+  matrix_.values.resize(matrix_.gather.size());
 }
 
 bool DrivenSolver::exchange_rows(std::span<const double> q) {

@@ -19,23 +19,23 @@ FactorResult Factorization::analyze(const SparsePattern& pattern, Kernel kernel,
   pattern_ = pattern;
   kernel_ = kernel;
   umfpack_in_use_ = kernel == Kernel::umfpack;
-  structural_rank_ = size();
+  form_.structural_rank = size();
   if (size() == 0) return {};
 
   ++counters.symbolic;
   if (umfpack_in_use_) {
-    blocks_ = 1;
-    largest_block_ = size();
-    block_of_column_.assign(static_cast<std::size_t>(size()), 0);
-    block_of_row_ = block_of_column_;
+    form_.blocks = 1;
+    form_.largest_block = size();
+    form_.block_of_column.assign(static_cast<std::size_t>(size()), 0);
+    form_.block_of_row = form_.block_of_column;
     return umfpack_.analyze(pattern_);
   }
   Matching matching = maximum_matching(pattern_);
-  structural_rank_ = matching.structural_rank;
-  if (structural_rank_ < size()) {
-    unmatched_rows_ = std::move(matching.unmatched_rows);
-    unmatched_columns_ = std::move(matching.unmatched_columns);
-    return {FactorStatus::singular, unmatched_columns_.front()};
+  form_.structural_rank = matching.structural_rank;
+  if (form_.structural_rank < size()) {
+    form_.unmatched_rows = std::move(matching.unmatched_rows);
+    form_.unmatched_columns = std::move(matching.unmatched_columns);
+    return {FactorStatus::singular, form_.unmatched_columns.front()};
   }
   const FactorResult result = klu_.analyze(pattern_, matching.row_of_column);
   if (result.ok()) read_block_form();
@@ -44,15 +44,15 @@ FactorResult Factorization::analyze(const SparsePattern& pattern, Kernel kernel,
 
 void Factorization::read_block_form() {
   const std::span<const int> start = klu_.block_starts();
-  block_start_.assign(start.begin(), start.end());
-  blocks_ = static_cast<int>(start.size()) - 1;
-  block_of_column_.resize(static_cast<std::size_t>(size()));
-  block_of_row_.resize(static_cast<std::size_t>(size()));
-  for (int block = 0; block < blocks_; ++block) {
-    largest_block_ = std::max(largest_block_, start[block + 1] - start[block]);
+  form_.block_start.assign(start.begin(), start.end());
+  form_.blocks = static_cast<int>(start.size()) - 1;
+  form_.block_of_column.resize(static_cast<std::size_t>(size()));
+  form_.block_of_row.resize(static_cast<std::size_t>(size()));
+  for (int block = 0; block < form_.blocks; ++block) {
+    form_.largest_block = std::max(form_.largest_block, start[block + 1] - start[block]);
     for (int place = start[block]; place < start[block + 1]; ++place) {
-      block_of_column_[klu_.column_order()[place]] = block;
-      block_of_row_[klu_.row_order()[place]] = block;
+      form_.block_of_column[klu_.column_order()[place]] = block;
+      form_.block_of_row[klu_.row_order()[place]] = block;
     }
   }
 }
@@ -68,7 +68,7 @@ FactorResult Factorization::factorize(std::span<const double> values, Counters& 
     throw std::invalid_argument("Factorization: as many values as the pattern has entries are needed");
   factorized_ = size() == 0;
   if (factorized_) return {};
-  if (structural_rank_ < size()) return {FactorStatus::singular, unmatched_columns_.front()};
+  if (form_.structural_rank < size()) return {FactorStatus::singular, form_.unmatched_columns.front()};
   if (kernel_ == Kernel::umfpack) return factor_by_umfpack(values, counters);
 
   umfpack_in_use_ = false;
@@ -139,7 +139,7 @@ PivotInfo Factorization::smallest_pivot(int block) const {
   if (!factorized_ || umfpack_in_use_) throw std::logic_error("Factorization: pivots of blocks need KLU's factors");
   PivotInfo smallest{std::numeric_limits<double>::infinity(), -1};
   const std::span<const double> pivots = klu_.pivots();
-  for (int place = block_start_[block]; place < block_start_[block + 1]; ++place) {
+  for (int place = form_.block_start[block]; place < form_.block_start[block + 1]; ++place) {
     const double magnitude = std::abs(pivots[place]);
     if (magnitude < smallest.magnitude) smallest = {magnitude, klu_.column_order()[place]};
   }
@@ -151,8 +151,8 @@ std::string Factorization::describe(const FactorResult& result) const {
     case FactorStatus::ok:
       return "factored";
     case FactorStatus::singular:
-      if (structural_rank_ < size())
-        return "the pattern of the matrix is singular: rank at most " + std::to_string(structural_rank_) + " of " +
+      if (form_.structural_rank < size())
+        return "the pattern of the matrix is singular: rank at most " + std::to_string(form_.structural_rank) + " of " +
                std::to_string(size());
       return result.index < 0 ? "the matrix is singular"
                               : "the matrix is singular: no pivot for column " + std::to_string(result.index);

@@ -89,18 +89,18 @@ class Factorization {
   double rcond() const;
 
   /// Rank that the pattern allows; size() when a full matching of rows and columns exists. UMFPACK forced: size().
-  int structural_rank() const { return structural_rank_; }
+  int structural_rank() const { return form_.structural_rank; }
   /// Rows and columns left over by a maximal matching: empty unless structurally singular.
-  const std::vector<int>& unmatched_rows() const { return unmatched_rows_; }
-  const std::vector<int>& unmatched_columns() const { return unmatched_columns_; }
+  const std::vector<int>& unmatched_rows() const { return form_.unmatched_rows; }
+  const std::vector<int>& unmatched_columns() const { return form_.unmatched_columns; }
 
   /// Block triangular form: number of diagonal blocks, size of the largest, and the block of every column and row.
   /// Blocks are numbered in the order of the upper triangular form: the last one is solved first. With UMFPACK forced
   /// there is one block, for a structurally singular pattern none.
-  int blocks() const { return blocks_; }
-  int largest_block() const { return largest_block_; }
-  std::span<const int> block_of_column() const { return block_of_column_; }
-  std::span<const int> block_of_row() const { return block_of_row_; }
+  int blocks() const { return form_.blocks; }
+  int largest_block() const { return form_.largest_block; }
+  std::span<const int> block_of_column() const { return form_.block_of_column; }
+  std::span<const int> block_of_row() const { return form_.block_of_row; }
 
   /// Smallest pivot of a block. KLU only: throws std::logic_error while UMFPACK is in use or nothing is factored.
   PivotInfo smallest_pivot(int block) const;
@@ -137,14 +137,12 @@ class Factorization {
   bool factorized_ = false;
   bool umfpack_in_use_ = false;
   bool pivots_are_fresh_ = false;
-  int structural_rank_ = 0;
-  int blocks_ = 0;
-  int largest_block_ = 0;
-  std::vector<int> block_of_column_;
-  std::vector<int> block_of_row_;
-  std::vector<int> block_start_;
-  std::vector<int> unmatched_rows_;
-  std::vector<int> unmatched_columns_;
+  /// Block triangular form.
+  struct {
+    int structural_rank = 0, blocks = 0, largest_block = 0;
+    std::vector<int> block_of_column, block_of_row, block_start;
+    std::vector<int> unmatched_rows, unmatched_columns;
+  } form_;
   bool parities_are_current_ = false;
   std::vector<signed char> parities_;  // of the pivoting within every block
   std::vector<BlockMargin> margins_;

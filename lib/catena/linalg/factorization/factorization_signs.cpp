@@ -14,13 +14,13 @@ void Factorization::find_parities() {
   const std::size_t n = before.size();
   place_of_row_.resize(n);
   cycle_.resize(n);
-  parities_.resize(static_cast<std::size_t>(blocks_));
+  parities_.resize(static_cast<std::size_t>(form_.blocks));
   for (std::size_t k = 0; k < n; ++k) place_of_row_[static_cast<std::size_t>(before[k])] = static_cast<int>(k);
   for (std::size_t k = 0; k < n; ++k) cycle_[k] = place_of_row_[static_cast<std::size_t>(after[k])];
-  for (int block = 0; block < blocks_; ++block) {
+  for (int block = 0; block < form_.blocks; ++block) {
     bool odd = false;
-    const auto first = static_cast<std::size_t>(block_start_[static_cast<std::size_t>(block)]);
-    const auto last = static_cast<std::size_t>(block_start_[static_cast<std::size_t>(block) + 1]);
+    const auto first = static_cast<std::size_t>(form_.block_start[static_cast<std::size_t>(block)]);
+    const auto last = static_cast<std::size_t>(form_.block_start[static_cast<std::size_t>(block) + 1]);
     for (std::size_t k = first; k < last; ++k) {
       // Walking a cycle marks it; every exchange after its first member changes the parity.
       while (cycle_[k] != static_cast<int>(k)) {
@@ -44,12 +44,12 @@ void Factorization::find_parities() {
 
 std::span<const BlockMargin> Factorization::block_margins() {
   require_factors();
-  if (umfpack_in_use_ || blocks_ == 0) return {};
+  if (umfpack_in_use_ || form_.blocks == 0) return {};
   if (!parities_are_current_) find_parities();
-  margins_.resize(static_cast<std::size_t>(blocks_));
+  margins_.resize(static_cast<std::size_t>(form_.blocks));
   const std::span<const double> pivots = klu_.pivots();
   for (std::size_t block = 0; block < margins_.size(); ++block) {
-    const int first = block_start_[block], last = block_start_[block + 1];
+    const int first = form_.block_start[block], last = form_.block_start[block + 1];
     const bool large = last - first > BlockMargin::largest_block;
     bool negative = parities_[block] < 0;
     double least = std::numeric_limits<double>::infinity(), product = 1;

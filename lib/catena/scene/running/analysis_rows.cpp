@@ -134,7 +134,7 @@ void AnalysisRows::look_at_what_is_left() {
 std::string AnalysisRows::why_no_derivative() const {
   if (!derivatives_->why().empty()) return derivatives_->why();
   if (!derivatives_->lack().empty()) return derivatives_->lack();
-  if (!measured_jump_.empty()) return measured_jump_;
+  if (!missing_.measured_jump.empty()) return missing_.measured_jump;
   if (measured_needs().work) return "work and dissipated energy, which are summed up over time, have no derivative";
   return "the derivative of its column is not a number there";
 }
@@ -146,7 +146,7 @@ void AnalysisRows::leave_out_at_instant(double t) {
   for (std::size_t k = 0; k < row_gradients_.size(); ++k) {
     if ((*rates)[k % rates->size()] == 0) continue;
     row_gradients_[k] = std::numeric_limits<double>::quiet_NaN();
-    jump_ = fmt::format(
+    missing_.jump = fmt::format(
         "at t = {:.9g} s the motion goes on in another way, at an instant that moves with the parameters: the row at "
         "it "
         "has no derivatives",
@@ -166,8 +166,8 @@ bool AnalysisRows::observe(const Snapshot& snapshot) {
     const std::size_t plain = columns_.size(), first = plain > 0 && info_[0].unit == UnitKind::time ? 1 : 0;
     const auto parameters = static_cast<std::size_t>(derivatives_->parameters());
     row_gradients_.assign(plain * parameters, std::numeric_limits<double>::quiet_NaN());
-    if (!derivatives_->derive(columns_, snapshot, row_gradients_)) ++missing_;
-    if (jump_.empty()) jump_ = derivatives_->jump();
+    if (!derivatives_->derive(columns_, snapshot, row_gradients_)) ++missing_.rows;
+    if (missing_.jump.empty()) missing_.jump = derivatives_->jump();
     leave_out_at_instant(snapshot.t);
     std::copy(row_gradients_.begin() + static_cast<std::ptrdiff_t>(first * parameters), row_gradients_.end(),
               values_.begin() + static_cast<std::ptrdiff_t>(plain));
@@ -203,7 +203,7 @@ void AnalysisRows::finish(AnalysisResult& result) {
   if (derivatives_ && derivatives_->goes_back() && context_.no_adjoint.empty())
     context_.no_adjoint = derivatives_->why();
   if (derivatives_) {
-    for (const std::string& why : {derivatives_->why(), derivatives_->lack(), jump_}) {
+    for (const std::string& why : {derivatives_->why(), derivatives_->lack(), missing_.jump}) {
       if (!why.empty()) result.report.warnings.push_back("derivatives: " + why);
     }
   }
@@ -211,7 +211,7 @@ void AnalysisRows::finish(AnalysisResult& result) {
     result.report.warnings.push_back(
         "derivatives: work and dissipated energy, which are summed up over time, have none");
   }
-  if (missing_ > 0) result.report.warnings.push_back(fmt::format("{} rows have no derivatives", missing_));
+  if (missing_.rows > 0) result.report.warnings.push_back(fmt::format("{} rows have no derivatives", missing_.rows));
 }
 
 }  // namespace catena

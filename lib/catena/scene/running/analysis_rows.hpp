@@ -98,18 +98,14 @@ class AnalysisRows final : public RowObserver {
   std::vector<double> values_, row_gradients_;  // of one row, kept for their memory
   bool timed_, row_derivatives_ = false, rows_alone_ = false;
   double first_, last_;
-  double covered_to_, reached_;          // how far measures have looked between rows, and rows have come
-  std::int64_t rows_ = 0, missing_ = 0;  // missing_: rows without derivatives
-  std::string jump_;                     // why columns have none in the first row that lacks some for a jump
-  std::string measured_jump_;            // the same of instants at which measures look
-  std::vector<std::size_t> stops_;       // events that stop it, whose columns are measured after all that is asked for
+  double covered_to_, reached_;  // how far measures have looked between rows, and rows have come
+  std::int64_t rows_ = 0;
+  struct {
+    std::int64_t rows = 0;
+    std::string jump;               // why columns have none in the first row that lacks some for a jump
+    std::string measured_jump;      // the same of instants at which measures look
+  } missing_;                       // derivatives
+  std::vector<std::size_t> stops_;  // events that stop it, whose columns are measured after all that is asked for
 };
-
-/// Measures of the kind `field`, from the fields of the result; those that it has not are told as such.
-void add_field_measures(const AnalysisContext& context, AnalysisResult& result);
-/// The gradient of the measures of a field, after add_field_measures(); number 0: it is no list.
-void set_field_gradient(const AnalysisContext& context, AnalysisResult& result, std::string_view field, int number,
-                        const std::vector<double>& gradient, const std::string& trouble = {},
-                        std::string_view part = "value");
 
 }  // namespace catena

@@ -50,7 +50,7 @@ void AnalysisRows::differentiate(std::unique_ptr<StateDerivatives> derivatives) 
   columns.at = [this](const Snapshot& snapshot, std::span<double> out, std::span<double> change) {
     if (back_) return back_->keep(snapshot);
     derivatives_->derive(measures_.columns(), snapshot, out, change);
-    if (measured_jump_.empty()) measured_jump_ = derivatives_->jump();
+    if (missing_.measured_jump.empty()) missing_.measured_jump = derivatives_->jump();
   };
   columns.moving = [this, known = std::map<double, std::vector<double>>()](double t) mutable {
     if (const std::vector<double>* rates = derivatives_->phase_instant(t)) return *rates;
@@ -62,7 +62,7 @@ void AnalysisRows::differentiate(std::unique_ptr<StateDerivatives> derivatives) 
       // Where columns bend alone, integrals have no part of it.
       if (rates[p] == 0 || instant.order > 2 || moves_as_one(context_, p, t, rates[p])) continue;
       rates[p] = std::numeric_limits<double>::quiet_NaN();
-      measured_jump_ = fmt::format(
+      missing_.measured_jump = fmt::format(
           "at t = {:.9g} s functions of time jump together, at instants that move apart with the parameters", t);
     }
     known.emplace(t, rates);

@@ -19,6 +19,7 @@
 #include "catena/scene/models/scene_models.hpp"
 #include "catena/scene/reading/analysis_task.hpp"
 #include "catena/scene/running/analysis_rows.hpp"
+#include "catena/scene/running/field_measures.hpp"
 #include "catena/scene/running/scene_checkpoints.hpp"
 
 namespace catena {

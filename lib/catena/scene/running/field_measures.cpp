@@ -1,4 +1,5 @@
-// Measures of what an analysis reports beside its rows: an energy, a critical load, an optimum.
+#include "catena/scene/running/field_measures.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
