@@ -72,11 +72,11 @@ class Dask(Checks):
             once.alive = os.path.join(folder, "alive")
             with open(once.alive, "w", encoding="utf-8"):
                 pass
-            self.check(catena.sweep(once, {"length": LENGTHS}, executor=executor, at_once=1, patience=240))
+            self.check(catena.sweep(once, {"length": LENGTHS}, executor=executor, at_once=1, patience=120))
             self.assertFalse(os.path.exists(once.alive), "no worker died")
 
             # Every worker dies that gets the design: it is lost alone.
-            result = catena.sweep(arm(MortalScene), {"length": LENGTHS}, executor=executor, at_once=1, patience=240)
+            result = catena.sweep(arm(MortalScene), {"length": LENGTHS}, executor=executor, at_once=1, patience=120)
             self.check(result, may_lack=[MortalScene.fatal])
             self.assertEqual(result.lost, [{"length": MortalScene.fatal}])
             self.assertIn("KilledWorker", result.failures[0].message)
