@@ -1,4 +1,5 @@
-// Designs of a sweep in lanes: sixteen kinematic analyses side by side, with the measures that each would have by itself.
+// Designs of a sweep in lanes: sixteen kinematic analyses side by side, with the measures that each would have by
+// itself.
 //
 // A sweep can be computed so if it repeats one analysis kinematics or inverse_dynamics without events or work, of a
 // mechanism that lanes know (analysis/batch/lane_program.hpp). The rows of all designs of a group are followed side by
