@@ -31,7 +31,7 @@ BEGIN {
 
   chain("analysis", "run pose motion events")
   after("analysis", "kinematics/course", "run pose")
-  after("analysis", "kinematics", "run pose motion events kinematics/course")
+  after("analysis", "kinematics", "run pose motion events contact kinematics/course")
   after("analysis", "dynamics/integrators", "run pose motion")
   after("analysis", "contact", "run pose motion events")
   after("analysis", "dynamics", "run pose motion events contact dynamics/integrators")

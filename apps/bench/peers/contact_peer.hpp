@@ -8,13 +8,16 @@
 // An engine's World is made from (Settings, restitution, friction), knows a floor y = 0, and has
 //   add_ball(x, y, radius, mass), add_dumbbell(x, y, angle, spin, half_length, radius, mass, inertia),
 //   add_block(x, half_size, mass), which does not turn;
-//   ready(h), called when all bodies are there; push(body, force along x, for the next step), step(h), x(body),
-//   y(body), angle(body).
+//   add_link(x, y, speed, half_length, radius, mass, inertia), a dumbbell that moves along x, its left end pinned to
+//   the right end of the link before, and touches the floor alone; left out where an engine takes no pins.
+// Then ready(h) is called; push(body, force along x, for the next step), step(h), x(body), y(body), angle(body).
 #pragma once
 
 #include <cstdio>
 #include <limits>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 #include "suites/contact_problems.hpp"
 #include "timing.hpp"
@@ -88,6 +91,31 @@ Outcome block(const Settings& settings, double h, int steps) {
   return outcome;
 }
 
+/// Whether an engine knows pins. One of them needs C++17.
+template <class World, class = void>
+inline constexpr bool pins = false;
+template <class World>
+inline constexpr bool pins<World, std::void_t<decltype(&World::add_link)>> = true;
+
+template <class World, class Settings>
+Outcome chain(const Settings& settings, double h, int steps) {
+  using Problem = bench::SlidingChain;
+  World world(settings, 0.0, Problem::friction);
+  for (int k = 0; k < Problem::count; ++k)
+    world.add_link(Problem::x(k), Problem::radius + Problem::drop, Problem::speed, Problem::half_length,
+                   Problem::radius, Problem::mass, Problem::inertia);
+  world.ready(h);
+  Outcome outcome;
+  const double begin = processor_time();
+  for (int s = 0; s < steps; ++s) world.step(h);
+  outcome.seconds = processor_time() - begin;
+  for (int k = 0; k < Problem::count; ++k) {
+    const double exact = Problem::x(k) + static_cast<double>(bench::exact_slide());
+    outcome.error = std::fmax(outcome.error, std::abs(world.x(k) - exact));
+  }
+  return outcome;
+}
+
 /// Every problem at every step size with one way to set the engine up.
 template <class World, class Settings>
 void run(const char* engine, const std::string& method, const Settings& settings) {
@@ -96,10 +124,12 @@ void run(const char* engine, const std::string& method, const Settings& settings
     double until;
     Outcome (*run)(const Settings&, double, int);
   };
-  const Problem problems[] = {
+  std::vector<Problem> problems = {
       {bench::BouncingBalls::name, bench::BouncingBalls::until, balls<World, Settings>},
       {bench::BouncingDumbbells::name, bench::BouncingDumbbells::until, dumbbells<World, Settings>},
       {bench::RubbingBlock::name, bench::RubbingBlock::until, block<World, Settings>}};
+  if constexpr (pins<World>)
+    problems.push_back({bench::SlidingChain::name, bench::SlidingChain::until, chain<World, Settings>});
   for (const Problem& problem : problems) {
     double expected = 0;
     for (const double h : step_sizes) {

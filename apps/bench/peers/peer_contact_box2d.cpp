@@ -45,6 +45,18 @@ class World {
     add_shape(body, box);
     set_mass(body, mass, 1);
   }
+  void add_link(double x, double y, double speed, double half_length, double radius, double mass, double inertia) {
+    add_dumbbell(x, y, 0, 0, half_length, radius, mass, inertia);
+    b2Filter apart;
+    apart.groupIndex = -1;  // shapes of one negative group do not touch each other
+    for (b2Fixture* f = bodies_.back()->GetFixtureList(); f; f = f->GetNext()) f->SetFilterData(apart);
+    bodies_.back()->SetLinearVelocity(b2Vec2(static_cast<float>(speed), 0.0f));
+    if (bodies_.size() == 1) return;
+    b2RevoluteJointDef pin;
+    pin.Initialize(bodies_[bodies_.size() - 2], bodies_.back(),
+                   b2Vec2(static_cast<float>(x - half_length), static_cast<float>(y)));
+    world_.CreateJoint(&pin);
+  }
 
   void ready(double) {}
   void push(int body, double force) {

@@ -38,6 +38,7 @@ class World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
   ~World() {
+    for (const auto& pin : pins_) world_->removeConstraint(pin.get());
     for (const auto& body : bodies_) world_->removeRigidBody(body.get());
   }
 
@@ -58,6 +59,14 @@ class World {
     box->setMargin(0);
     add_body(own(std::move(box)), mass, btVector3(mass, mass, mass), at(x, half_size, 0));
     bodies_.back()->setAngularFactor(btVector3(0, 0, 0));
+  }
+  void add_link(double x, double y, double speed, double half_length, double radius, double mass, double inertia) {
+    add_dumbbell(x, y, 0, 0, half_length, radius, mass, inertia);
+    bodies_.back()->setLinearVelocity(btVector3(speed, 0, 0));
+    if (bodies_.size() == 2) return;  // the floor and this
+    pins_.push_back(std::make_unique<btPoint2PointConstraint>(
+        *bodies_[bodies_.size() - 2], *bodies_.back(), btVector3(half_length, 0, 0), btVector3(-half_length, 0, 0)));
+    world_->addConstraint(pins_.back().get(), true);
   }
 
   void ready(double) {}
@@ -103,6 +112,7 @@ class World {
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
   std::unique_ptr<btDiscreteDynamicsWorld> world_;
   std::vector<std::unique_ptr<btRigidBody>> bodies_;
+  std::vector<std::unique_ptr<btTypedConstraint>> pins_;
 };
 
 }  // namespace

@@ -24,6 +24,10 @@ class World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
   ~World() {
+    for (cpConstraint* pin : pins_) {
+      cpSpaceRemoveConstraint(space_, pin);
+      cpConstraintFree(pin);
+    }
     for (cpShape* shape : shapes_) {
       cpSpaceRemoveShape(space_, shape);
       cpShapeFree(shape);
@@ -49,6 +53,17 @@ class World {
   void add_block(double x, double half_size, double mass) {
     cpBody* body = add_body(x, half_size, mass, INFINITY);
     add_shape(cpBoxShapeNew(body, 2 * half_size, 2 * half_size, 0), restitution_);
+  }
+  void add_link(double x, double y, double speed, double half_length, double radius, double mass, double inertia) {
+    const std::size_t first = shapes_.size();
+    add_dumbbell(x, y, 0, 0, half_length, radius, mass, inertia);
+    // Shapes of one group do not touch each other.
+    for (std::size_t k = first; k < shapes_.size(); ++k)
+      cpShapeSetFilter(shapes_[k], cpShapeFilterNew(1, CP_ALL_CATEGORIES, CP_ALL_CATEGORIES));
+    cpBodySetVelocity(bodies_.back(), cpv(speed, 0));
+    if (bodies_.size() == 1) return;
+    pins_.push_back(cpSpaceAddConstraint(
+        space_, cpPivotJointNew(bodies_[bodies_.size() - 2], bodies_.back(), cpv(x - half_length, y))));
   }
 
   void ready(double) {}
@@ -76,6 +91,7 @@ class World {
   double restitution_, friction_;
   std::vector<cpBody*> bodies_;
   std::vector<cpShape*> shapes_;
+  std::vector<cpConstraint*> pins_;
 };
 
 }  // namespace

@@ -57,11 +57,32 @@ class World {
     bodies_ << "<geom type=\"box\" size=\"" << half_size << ' ' << half_size << ' ' << half_size
             << "\" contype=\"1\" conaffinity=\"0\"/></body>";
   }
+  /// One body in another: hinges are joint coordinates.
+  void add_link(double x, double y, double speed, double half_length, double radius, double mass, double inertia) {
+    if (links_++ == 0) {
+      open(x, y, 0, mass, inertia, "");
+      speed_ = speed;
+    } else {
+      bodies_ << "<body pos=\"" << 2 * half_length << " 0 0\"><joint type=\"hinge\" axis=\"0 0 1\" pos=\""
+              << -half_length << " 0 0\"/>";
+      add_mass(mass, inertia);
+    }
+    for (const int end : {1, -1})
+      bodies_ << "<geom type=\"sphere\" size=\"" << radius << "\" pos=\"" << end * half_length
+              << " 0 0\" contype=\"1\" conaffinity=\"0\"/>";
+  }
 
-  void ready(double h) { build(h); }
+  void ready(double h) {
+    for (int k = 0; k < links_; ++k) bodies_ << "</body>";
+    build(h);
+  }
   void push(int, double) {}
   void step(double) { mj_step(model_.get(), data_.get()); }
-  double x(int body) const { return origins_[body].x + data_->qpos[3 * body]; }
+  double x(int body) const {
+    if (links_ == 0) return origins_[body].x + data_->qpos[3 * body];
+    mj_kinematics(model_.get(), data_.get());
+    return data_->xpos[3 * (body + 1)];  // after the world
+  }
   double y(int body) const { return origins_[body].y + data_->qpos[3 * body + 1]; }
   double angle(int body) const { return data_->qpos[3 * body + 2]; }
 
@@ -75,13 +96,17 @@ class World {
 
   void open(double x, double y, double spin, double mass, double inertia, const std::string& spring) {
     bodies_ << "<body pos=\"" << x << ' ' << y << " 0\"><joint type=\"slide\" axis=\"1 0 0\"" << spring
-            << "/><joint type=\"slide\" axis=\"0 1 0\"/><joint type=\"hinge\" axis=\"0 0 1\"/><inertial pos=\"0 0 0\" "
-               "mass=\""
-            << mass << "\" diaginertia=\"" << inertia << ' ' << inertia << ' ' << inertia << "\"/>";
+            << "/><joint type=\"slide\" axis=\"0 1 0\"/><joint type=\"hinge\" axis=\"0 0 1\"/>";
+    add_mass(mass, inertia);
     origins_.push_back({x, y});
     starts_.push_back(0);
     angles_.push_back(0);
     spins_.push_back(spin);
+  }
+
+  void add_mass(double mass, double inertia) {
+    bodies_ << "<inertial pos=\"0 0 0\" mass=\"" << mass << "\" diaginertia=\"" << inertia << ' ' << inertia << ' '
+            << inertia << "\"/>";
   }
 
   void build(double h) {
@@ -114,6 +139,7 @@ class World {
       data_->qpos[3 * k + 2] = angles_[k];
       data_->qvel[3 * k + 2] = spins_[k];
     }
+    if (links_ > 0) data_->qvel[0] = speed_;
   }
 
   Settings settings_;
@@ -121,6 +147,8 @@ class World {
   std::ostringstream bodies_;
   std::vector<bench::Ball> origins_;
   std::vector<double> starts_, angles_, spins_;
+  int links_ = 0;     // of a chain
+  double speed_ = 0;  // along x
   std::unique_ptr<mjModel, ModelDeleter> model_;
   std::unique_ptr<mjData, DataDeleter> data_;
 };

@@ -56,6 +56,15 @@ class World {
     dGeomID box = dCreateBox(space_, 2 * half_size, 2 * half_size, 2 * half_size);
     dGeomSetBody(box, body);
   }
+  void add_link(double x, double y, double speed, double half_length, double radius, double mass, double inertia) {
+    add_dumbbell(x, y, 0, 0, half_length, radius, mass, inertia);
+    dBodySetLinearVel(bodies_.back(), speed, 0, 0);
+    if (bodies_.size() == 1) return;
+    dJointID pin = dJointCreateHinge(world_, nullptr);
+    dJointAttach(pin, bodies_[bodies_.size() - 2], bodies_.back());
+    dJointSetHingeAnchor(pin, x - half_length, y, 0);
+    dJointSetHingeAxis(pin, 0, 0, 1);
+  }
 
   void ready(double) {}
   void push(int body, double force) { dBodyAddForce(bodies_[body], force, 0, 0); }

@@ -4,6 +4,8 @@
 //   balls      fall from rest and bounce: heights between impacts are parabolas, the speed e times as large after each
 //   dumbbells  fly and spin between impacts of either end ball: y(t) -+ a sin(phi(t)) = r by bisection, then
 //              J = -(1 + e) u / (1/m + a^2 cos^2(phi) / I)    with u the speed of the ball's centre, no friction
+//   chain      of links end to end falls flat and slides to rest: t = sqrt(2 h/g), v+ = v - mu g t (its friction takes
+//              part in the impact), then v+^2 / (2 mu g); pins carry nothing that would bend it
 //   block      on a spring and a rough floor: half waves about +- mu m g / k, then at rest where |k x| < mu m g
 //
 // SI, gravity 9.81 along -y, the floor is y = 0. Each problem ends while no body is about to touch. Source: closed
@@ -43,6 +45,22 @@ struct RubbingBlock {
   static constexpr std::string_view name = "a block rubs and sticks";
   static constexpr double mass = 1, stiffness = 100, friction = 0.25, start = 0.3, half_size = 0.1, until = 2.5;
 };
+
+struct SlidingChain {
+  static constexpr std::string_view name = "a chain of 20 falls and slides";
+  static constexpr int count = 20;
+  static constexpr double half_length = 0.1, radius = 0.02, mass = 0.2, inertia = 1e-3, friction = 0.3, drop = 0.05;
+  static constexpr double speed = 1.2, until = 0.6;
+  static double x(int k) { return 2 * half_length * k; }
+};
+
+/// How far the chain comes, m: at rest after 0.41 s.
+inline long double exact_slide() {
+  using Problem = SlidingChain;
+  const long double g = contact_gravity, mu = Problem::friction, fall = std::sqrt(2 * Problem::drop / g);
+  const long double speed = Problem::speed - mu * g * fall;
+  return Problem::speed * fall + speed * speed / (2 * mu * g);
+}
 
 /// Height of ball k's centre at the end, m.
 inline long double exact_ball(int k) {

@@ -18,7 +18,7 @@ struct TouchingProblem {
   std::string_view name;
   int bodies;
   double until;
-  std::string body_list{}, forces{}, outputs{};  ///< of the scene
+  std::string body_list{}, constraints{}, forces{}, outputs{};  ///< of the scene
   std::function<double(const AnalysisOutcome&)> error{};
 };
 
@@ -100,6 +100,33 @@ TouchingProblem rubbing_block() {
   return problem;
 }
 
+TouchingProblem sliding_chain() {
+  using Of = SlidingChain;
+  TouchingProblem problem{.name = Of::name, .bodies = Of::count, .until = Of::until};
+  const std::string rubs = fmt::format(R"("mu": {})", Of::friction);
+  for (int k = 0; k < Of::count; ++k) {
+    const std::string link = fmt::format("link{}", k);
+    add_to(problem.body_list,
+           fmt::format(R"("{}": {{"mass": {}, "inertia": {}, "position": [{:.17g}, {:.17g}], "velocity": [{}, 0],
+ "points": {{"right": [{}, 0], "left": [{}, 0]}}}})",
+                       link, Of::mass, Of::inertia, Of::x(k), Of::radius + Of::drop, Of::speed, Of::half_length,
+                       -Of::half_length));
+    add_to(problem.forces, contact_of(link + ".left", Of::radius, rubs));
+    if (k > 0)
+      add_to(problem.constraints,
+             fmt::format(R"({{"type": "revolute", "i": "link{}.right", "j": "{}.left"}})", k - 1, link));
+    add_to(problem.outputs, fmt::format(R"("{}.x")", link));
+  }
+  add_to(problem.forces, contact_of(fmt::format("link{}.right", Of::count - 1), Of::radius, rubs));
+  problem.error = [](const AnalysisOutcome& run) {
+    double worst = 0;
+    for (int k = 0; k < Of::count; ++k)
+      worst = std::max(worst, off(run, fmt::format("link{}.x", k), Of::x(k) + exact_slide()));
+    return worst;
+  };
+  return problem;
+}
+
 void measure_touching(Bench& bench, const TouchingProblem& problem, double tolerance) {
   Row row{.suite = "contact",
           .problem = std::string(problem.name),
@@ -111,9 +138,10 @@ void measure_touching(Bench& bench, const TouchingProblem& problem, double toler
           .reference = "closed forms between impacts in 64 bits"};
   if (!bench.wants(row)) return;
   Scene scene = Scene::loads(fmt::format(
-      R"({{"catena": 1, "gravity": [0, {:.17g}], "bodies": {{{}}}, "forces": [{}], "outputs": [{}],
+      R"({{"catena": 1, "gravity": [0, {:.17g}], "bodies": {{{}}}, "constraints": [{}], "forces": [{}], "outputs": [{}],
  "analyses": [{{"type": "dynamics", "at": [{}], "tolerance": {}}}]}})",
-      -contact_gravity, problem.body_list, problem.forces, problem.outputs, problem.until, tolerance));
+      -contact_gravity, problem.body_list, problem.constraints, problem.forces, problem.outputs, problem.until,
+      tolerance));
   const SceneResults results = scene.run();
   const AnalysisOutcome& run = results["dynamics"];
   row.counts = named_counts(run.report().counters);
@@ -129,7 +157,7 @@ void measure_touching(Bench& bench, const TouchingProblem& problem, double toler
 }  // namespace
 
 void contact_suite(Bench& bench) {
-  for (const TouchingProblem& problem : {bouncing_balls(), bouncing_dumbbells(), rubbing_block()}) {
+  for (const TouchingProblem& problem : {bouncing_balls(), bouncing_dumbbells(), rubbing_block(), sliding_chain()}) {
     for (int digits = bench.brief() ? 4 : 3; digits <= (bench.brief() ? 8 : 11); digits += bench.brief() ? 4 : 1)
       measure_touching(bench, problem, std::pow(10, -digits));
   }

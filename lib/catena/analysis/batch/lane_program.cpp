@@ -46,6 +46,10 @@ bool are_in_lanes(const Model& model) {
 
 std::unique_ptr<const LaneProgram> LaneProgram::make(const Model& model, std::shared_ptr<const Plan> plan, bool loads,
                                                      std::string& why_not) {
+  if (loads && !model.frictions().empty()) {
+    why_not = "it has joints with friction, which is found together with their reactions";
+    return nullptr;
+  }
   std::unique_ptr<LaneProgram> program(new LaneProgram);
   program->plan_ = std::move(plan);
   program->has_loads_ = loads;

@@ -25,13 +25,13 @@ constexpr double rounding = 1e-9;
 
 }  // namespace
 
-// Whether touching place a moves when a force presses it.
-bool ContactSwitch::gives_way(std::size_t a, double response) const {
-  const Evaluator::ScalarMotion& gap = gap_[active_[a]];
+// Whether a touching place moves when a force presses it, or acts along it: rows as those of D.
+bool ContactSwitch::gives_way(std::size_t row, double response) const {
+  const Evaluator::ScalarMotion& motion = row % 2 == 0 ? gap_[active_[row / 2]] : slide_[active_[row / 2]];
   const std::vector<double>& mass = equations_.masses().mass;
   const std::size_t moving = 3 * at(evaluator_.plan().moving);
   std::vector<double> gradient(load_.size(), 0.0);
-  scatter_gradient(gap, 1, gradient);
+  scatter_gradient(motion, 1, gradient);
   double free = 0;
   for (std::size_t c = 0; c < moving; ++c) {
     if (mass[c] > 0) free += gradient[c] * gradient[c] / mass[c];

@@ -268,6 +268,19 @@ bool ContactLoads::find_sizes(std::span<const double> lambda) {
   return false;
 }
 
+std::span<const double> ContactLoads::unit_load(std::size_t l) {
+  std::fill(unit_.begin(), unit_.end(), 0.0);
+  scatter_gradient(slide_[coupled_[l]], 1, unit_);
+  return unit_;
+}
+
+void ContactLoads::add_friction(std::span<double> loads) {
+  for (std::size_t l = 0; l < coupled_.size(); ++l) {
+    friction_[coupled_[l]] = sizes_->f(static_cast<Eigen::Index>(l));
+    scatter_gradient(slide_[coupled_[l]], friction_[coupled_[l]], loads);
+  }
+}
+
 bool ContactLoads::complete(EquationsOfMotion& equations, std::span<const double> gamma, std::span<double> loads,
                             std::span<double> qdd, std::span<double> lambda) {
   trouble_.clear();
@@ -275,16 +288,10 @@ bool ContactLoads::complete(EquationsOfMotion& equations, std::span<const double
     finish(lambda);
     return true;
   }
-  for (std::size_t l = 0; l < coupled_.size(); ++l) {
-    std::fill(unit_.begin(), unit_.end(), 0.0);
-    scatter_gradient(slide_[coupled_[l]], 1, unit_);
-    equations.solve_motion(unit_, nothing_, change_, response_[l]);
-  }
+  for (std::size_t l = 0; l < coupled_.size(); ++l)
+    equations.solve_motion(unit_load(l), nothing_, change_, response_[l]);
   if (!find_sizes(lambda)) return false;
-  for (std::size_t l = 0; l < coupled_.size(); ++l) {
-    friction_[coupled_[l]] = sizes_->f(static_cast<Eigen::Index>(l));
-    scatter_gradient(slide_[coupled_[l]], friction_[coupled_[l]], loads);
-  }
+  add_friction(loads);
   equations.solve_motion(loads, gamma, qdd, lambda);
   finish(lambda);
   return true;

@@ -40,6 +40,17 @@ class ContactLoads final : public StateLoads {
   void add(std::span<const double> qd, std::span<double> loads) override;
   bool complete(EquationsOfMotion& equations, std::span<const double> gamma, std::span<double> loads,
                 std::span<double> qdd, std::span<double> lambda) override;
+  // The steps of complete(), for loads that others solve with: after add(), response(l) takes the multipliers that
+  // unit_load(l) makes, l below coupled(); then the friction is found and added, and finish() reads the multipliers
+  // with it.
+  std::size_t coupled() const { return coupled_.size(); }
+  std::span<const double> unit_load(std::size_t l);
+  std::span<double> response(std::size_t l) { return response_[l]; }
+  /// lambda: multipliers without that friction. False: see trouble().
+  bool find_sizes(std::span<const double> lambda);
+  void add_friction(std::span<double> loads);
+  void finish(std::span<const double> lambda);
+
   double dissipation() const override { return lost_; }
   double energy() const override;
   bool dissipates() const override { return dissipates_; }
@@ -76,8 +87,6 @@ class ContactLoads final : public StateLoads {
   double sigma(std::size_t k) const;
   bool is_guide(const ContactPoint& point) const;
   void linearise(std::span<const double> lambda);
-  bool find_sizes(std::span<const double> lambda);
-  void finish(std::span<const double> lambda);
 
   const Evaluator& evaluator_;
   const std::vector<ContactPoint>& points_;

@@ -205,7 +205,11 @@ bool ContactProblem::is_ruled_out() const { return state == ruled_out_state_ && 
 // All places at once; first with what is preferred to what was ruled out, together and one by one.
 bool ContactProblem::pivot() {
   std::vector<Choice> given(place.size());
-  for (std::size_t k = 0; k < place.size(); ++k) given[k].slip = place[k].slip;
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    given[k].slip = place[k].slip;
+    const double rate = b[2 * k + 1];  // of what is carried altogether
+    if (place[k].slip == 0 && place[k].has_friction && is_carried(k, rate)) given[k].slip = rate > 0 ? 1 : -1;
+  }
   std::vector<std::size_t> give_way;
   for (std::size_t k = 0; k < preferred_state_.size() && !ruled_out_state_.empty(); ++k) {
     if (preferred_state_[k] != ruled_out_state_[k] || preferred_direction_[k] != ruled_out_direction_[k])

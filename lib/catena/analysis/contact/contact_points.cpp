@@ -30,8 +30,8 @@ ContactPoint point_of(const E& element, int number) {
   return point;
 }
 
-/// Appends the equation of a contact's slide; its value is zero where the contact is now.
-int append_slide(Model& model, const ElementEntry<Contact<double>, double>& contact) {
+/// Appends the equation of a contact's slide, with a name for messages; its value is zero where the contact is now.
+int append_slide(Model& model, const ElementEntry<Contact<double>, double>& contact, int number) {
   const Contact<double>& element = contact.element;
   const auto [i, j] = given_frames<Contact<double>>(model, contact.i, contact.j);
   const double start = element.curve.nearest(i.to_local(j.point(element.s_j) - i.origin()));
@@ -40,7 +40,8 @@ int append_slide(Model& model, const ElementEntry<Contact<double>, double>& cont
       custom_constraint(SlideOnCurve<double>(element.curve, element.s_j, element.free_side() * element.radius, start));
   slide.i = contact.i;
   slide.j = contact.j;
-  return model.append({}, slide, ElementKind::constraint);
+  const std::string name = model.element_name(number) + " (friction)";
+  return model.append(model.find_element(name) < 0 ? name : std::string(), slide, ElementKind::constraint);
 }
 
 /// The joint of a friction, with what presses and slides there.
@@ -77,6 +78,14 @@ void for_each_place(const Model& model, F&& f) {
 }
 
 }  // namespace
+
+std::vector<ContactPoint> joints_with_friction(const Model& model) {
+  std::vector<ContactPoint> joints;
+  for_each_place(model, [&](const auto&, const ContactPoint& point) {
+    if (point.kind == ContactKind::joint && point.mu_static > 0) joints.push_back(point);
+  });
+  return joints;
+}
 
 int first_friction(const Model& model) {
   int first = -1;
@@ -138,7 +147,7 @@ ContactModel contact_points(std::shared_ptr<const Model> model) {
     if constexpr (std::is_same_v<std::decay_t<decltype(entry)>, ElementEntry<Contact<double>, double>>) {
       if (point.mu_static > 0) {
         if (!expanded) expanded = std::make_shared<Model>(*model);
-        point.slide = append_slide(*expanded, entry);
+        point.slide = append_slide(*expanded, entry, point.element);
       }
     }
     result.points.push_back(point);

@@ -80,6 +80,9 @@ struct ContactModel {
 void lay_grips(ContactModel& contacts, const std::vector<RopeRoute>& routes,
                const std::function<std::vector<Frame<double>>(const RopeRoute&)>& frames);
 
+/// Joints with friction alone, as the contacts of a driven motion take no part in it.
+std::vector<ContactPoint> joints_with_friction(const Model& model);
+
 /// The first element of a model with dry friction; -1: none.
 int first_friction(const Model& model);
 

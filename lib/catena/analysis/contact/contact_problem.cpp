@@ -30,13 +30,13 @@ void ContactProblem::solve_along(std::size_t k, double w_t) {
   const std::size_t t = 2 * k + 1;
   const Place& p = place[k];
   const double stick = D(t, t) > 0 ? -w_t / D(t, t) : 0;
-  if (p.slip == 0 && std::abs(stick) <= p.limit) {
+  if (p.slip == 0 && std::abs(stick) <= p.limit && !is_carried(k, w_t)) {
     state[k] = State::sticks;
     x[t] = stick;
     return;
   }
   state[k] = State::slides;
-  direction[k] = p.slip != 0 ? p.slip : stick > 0 ? -1 : 1;
+  direction[k] = p.slip != 0 ? p.slip : w_t < 0 ? -1 : 1;
   x[t] = -direction[k] * p.kinetic;
 }
 
@@ -63,7 +63,7 @@ bool ContactProblem::solve_place(std::size_t k) {
     return true;
   }
   const double determinant = D(n, n) * D(t, t) - D(n, t) * D(t, n);
-  if (p.slip == 0) {
+  if (p.slip == 0 && !is_carried(k, w_t)) {
     // Where nothing resists along the contact there is no slip to stop.
     const bool regular = determinant > 1e-14 * D(n, n) * D(t, t);
     const double press = regular ? (-w_n * D(t, t) + w_t * D(n, t)) / determinant : -w_n / D(n, n);
@@ -195,6 +195,11 @@ double ContactProblem::rounding() const {
     if (D(r, r) > 0) largest = std::max(largest, size_of(r, sum(r).terms / D(r, r)));
   }
   return std::numeric_limits<double>::epsilon() * static_cast<double>(x.size() + 2) * largest;
+}
+
+bool ContactProblem::is_carried(std::size_t k, double w_t) const {
+  const std::size_t t = 2 * k + 1;
+  return !(D(t, t) > 0) && std::abs(w_t) > tolerated * std::max(std::abs(b[t]), b_terms[t]);
 }
 
 // Whether a slip that is there already wedges a place: nothing fits, or a free and a pressed place fit alike.

@@ -102,6 +102,8 @@ class ContactProblem {
   double size_of(std::size_t row, double change) const;
   double rounding() const;
   bool is_wedged() const;
+  /// Whether constraints and drivers move place k along whatever acts there, at the rate w_t.
+  bool is_carried(std::size_t k, double w_t) const;
   void solve_states();
   bool sweep(double& size);
   bool close_redundant(double size);

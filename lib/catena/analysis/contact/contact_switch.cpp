@@ -219,8 +219,12 @@ void ContactSwitch::fill(ContactProblem& problem) const {
       problem.place[a].head = static_cast<int>(head);
       problem.place[a].growth = std::exp(std::max(point.lines->exponent(evaluator_, {}).f, 0.0));
     }
-    if (!problem.place[a].has_normal || gives_way(a, problem.D(2 * a, 2 * a))) continue;
-    for (std::size_t c = 0; c < 2 * active_.size(); ++c) problem.D(2 * a, c) = problem.D(c, 2 * a) = 0;
+  }
+  // What constraints and drivers carry altogether is left with rounding.
+  for (std::size_t row = 0; row < 2 * active_.size(); ++row) {
+    const bool acts = row % 2 == 0 ? problem.place[row / 2].has_normal : problem.place[row / 2].has_friction;
+    if (!acts || gives_way(row, problem.D(row, row))) continue;
+    for (std::size_t c = 0; c < 2 * active_.size(); ++c) problem.D(row, c) = problem.D(c, row) = 0;
   }
 }
 

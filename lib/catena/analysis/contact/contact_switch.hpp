@@ -150,7 +150,7 @@ class ContactSwitch {
   double end_rocking(double t, const std::vector<std::size_t>& hit, std::span<double> qd);
   void note_flights(double t, const std::vector<std::size_t>& hit);
   // Drivers that move on against closed places: contact_jam.cpp.
-  bool gives_way(std::size_t a, double response) const;
+  bool gives_way(std::size_t row, double response) const;
   bool is_jammed(bool accelerates) const;
   bool returns(double t, std::size_t k, const Cause& cause) const;
   std::vector<std::size_t> pushed_through(double t, const ContactProblem& problem, const Cause& cause);

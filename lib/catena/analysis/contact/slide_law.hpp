@@ -58,15 +58,16 @@ class SlideOnCurve {
     foot_ = closed ? foot_ + std::remainder(s - foot_, curve_.range()) : s;
   }
   /// Length and turn of the curve from the start to s, by Gauss's rule of five points on pieces of a sixteenth of the
-  /// range: exact for lines and circles, to rounding for the pieces of a spline.
+  /// range: exact for circles, to rounding for the pieces of a spline.
   template <class T>
   std::array<T, 2> travel(const T& s) const {
     constexpr std::array<double, 5> place{-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831,
                                           0.9061798459386640};
     constexpr std::array<double, 5> weight{0.2369268850561891, 0.4786286704993665, 0.5688888888888889,
                                            0.4786286704993665, 0.2369268850561891};
+    if (curve_.is_line()) return {norm(curve_.evaluate(s).d1) * (s - T(start_)), T(0.0)};
     const double way = std::abs(foot_ - start_);
-    const int pieces = curve_.is_line() ? 1 : 1 + static_cast<int>(16 * way / curve_.range());
+    const int pieces = 1 + static_cast<int>(16 * way / curve_.range());
     const T h = (s - T(start_)) / T(2.0 * pieces);
     T length(0.0), turn(0.0);
     for (int n = 0; n < pieces; ++n) {

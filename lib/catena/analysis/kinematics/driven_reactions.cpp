@@ -36,6 +36,27 @@ Report DrivenReactions::solve(const DrivenInstant& now) {
     return report;
   }
   if (plan_.rows > plan_.columns) choose_least(now);
+  return friction_.any() ? add_friction(now) : report;
+}
+
+Report DrivenReactions::add_friction(const DrivenInstant& now) {
+  Report report;
+  if (!ambiguity_.empty()) {
+    report.status = Status::refused;
+    report.message = fmt::format(
+        "friction needs reactions that are unique, but {}; take away what repeats, or friction", ambiguity_);
+    return report;
+  }
+  std::vector<double> columns(loads_.size());
+  const auto solve = [&](std::span<const double> loads, std::span<double> lambda) {
+    for (std::size_t c = 0; c < columns.size(); ++c) columns[c] = loads[at(plan_.coordinate[c])];
+    solver_.solve_multipliers(columns, lambda);
+  };
+  std::fill(applied_.begin(), applied_.end(), 0.0);
+  if (Report found = friction_.find(now.t, now.qd, lambda_, applied_, solve); !found.ok()) return found;
+  for (std::size_t c = 0; c < loads_.size(); ++c) loads_[c] += applied_[at(plan_.coordinate[c])];
+  solver_.solve_multipliers(loads_, lambda_);
+  friction_.finish(lambda_);
   return report;
 }
 
@@ -58,6 +79,7 @@ void DrivenReactions::choose_least(const DrivenInstant& now) {
 
 void DrivenReactions::add_remarks(std::vector<std::string>& warnings) const {
   if (!ambiguity_.empty()) warnings.push_back(ambiguity_);
+  friction_.add_remarks(warnings);
   if (limit_rows_ == 0) return;
   std::string remark = fmt::format(
       "at t = {:.12g} s{} the mechanism is in a singular configuration: loads and reactions there are the limit of the "

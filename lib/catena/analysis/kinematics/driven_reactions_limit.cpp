@@ -116,8 +116,10 @@ void DrivenReactions::take_limit(const DrivenInstant& now, const BridgedStretch&
     lambda_[r] = std::numeric_limits<double>::quiet_NaN();
     if (without.empty() || without.back() != plan_.row_element[r]) without.push_back(plan_.row_element[r]);
   };
+  // Friction of joints has no limit of this kind: its slips turn there.
   for (std::size_t r = 0; r < lambda_.size(); ++r) {
-    if (!limit.known || !(std::abs(limit.pole[r]) * row_unit(r) <= unbounded * limit.scale)) leave_empty(r);
+    if (!limit.known || friction_.any() || !(std::abs(limit.pole[r]) * row_unit(r) <= unbounded * limit.scale))
+      leave_empty(r);
   }
   if (without.empty() && !balances_loads(limit.scale)) {
     for (std::size_t r = 0; r < lambda_.size(); ++r) leave_empty(r);

@@ -126,7 +126,10 @@ Report Kinematics::give_row(const Needs& needs, bool check_rates) {
   predictor_.push(now.t, now.q, now.qd, now.qdd);
   if (work_.is_on()) work_.update_driver_work();
   Snapshot row = snapshot();
-  if (needs.multipliers) row.lambda = reactions_.multipliers();
+  if (needs.multipliers) {
+    row.lambda = reactions_.multipliers();
+    row.contacts = reactions_.friction();
+  }
   return run_.observer->observe(row) ? Report{} : cancelled();
 }
 

@@ -45,7 +45,7 @@ Report Kinematics::sum_up_stretch(double t, double& error, std::vector<std::stri
     Report moved =
         visit(from + (t - from) * WorkSum::places[k], {.velocity = true, .acceleration = true, .multipliers = true});
     if (!moved.ok()) return moved;
-    work_.add_point(k, t - from, now_.qd, reactions_.multipliers());
+    work_.add_point(k, t - from, now_.qd, reactions_.multipliers(), reactions_.dissipation());
   }
   if (Report moved = visit(t, {.velocity = true, .acceleration = true}); !moved.ok()) return moved;
   error = work_.stretch_error(t - from, snapshot());

@@ -41,8 +41,10 @@ class WorkSum {
   double stretch_length(double limit, double speed, double gain) const;
   /// Begins a stretch at this snapshot: from here on it can be taken back.
   void begin_stretch(const Snapshot& start);
-  /// Adds the powers at the point of this number in a stretch of the length `span` (s, negative backwards in time).
-  void add_point(std::size_t point, double span, std::span<const double> qd, std::span<const double> lambda);
+  /// Adds the powers at the point of this number in a stretch of the length `span` (s, negative backwards in time);
+  /// `lost`: by friction.
+  void add_point(std::size_t point, double span, std::span<const double> qd, std::span<const double> lambda,
+                 double lost);
   /// Estimate of the error, J, of the stretch that ends with this snapshot.
   double stretch_error(double span, const Snapshot& end) const;
   /// The error, J, above which a stretch that ends with this snapshot is repeated in shorter ones.

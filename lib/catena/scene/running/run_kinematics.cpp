@@ -3,7 +3,7 @@
 
 #include "catena/analysis/accuracy/kinematic_accuracy.hpp"
 #include "catena/analysis/adjoint/kinematic_adjoint.hpp"
-#include "catena/analysis/contact/rope_grips.hpp"
+#include "catena/analysis/contact/contact_points.hpp"
 #include "catena/analysis/kinematics/kinematic_look.hpp"
 #include "catena/analysis/kinematics/kinematics_with_events.hpp"
 #include "catena/analysis/kinematics/minimum_norm_motion.hpp"
@@ -109,6 +109,12 @@ bool is_driven(const AnalysisContext& context) {
   return analysis.run(TimeGrid::instant(context.state.t), {}, nothing).status != Status::under_driven;
 }
 
+/// The first joint with friction; -1: none.
+int first_joint_friction(const Model& model) {
+  const std::vector<ContactPoint> joints = joints_with_friction(model);
+  return joints.empty() ? -1 : joints.front().element;
+}
+
 bool changes_mechanism(const EventRequest& event) {
   const auto action = static_cast<EventAction>(event.action);
   return action == EventAction::release || action == EventAction::engage;
@@ -129,6 +135,10 @@ std::string conflict(const AnalysisContext& context, bool inverse_dynamics) {
           event.name);
     }
     if (context.design) return "derivatives are not carried through events that release or engage a constraint";
+  }
+  if (inverse_dynamics && context.design && first_joint_friction(*context.model) >= 0) {
+    return fmt::format("loads with the friction of \"{}\" have no derivatives yet: leave it out, or take dynamics",
+                       context.model->element_name(first_joint_friction(*context.model)));
   }
   return {};
 }
@@ -247,7 +257,8 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
       });
     }
     // Where ropes meet pulleys the model changes on the way.
-    if (context.digits && !context.design && rope_routes(*context.model).empty())
+    const bool rubs = inverse_dynamics && !context.model->frictions().empty();
+    if (context.digits && !context.design && !rubs && rope_routes(*context.model).empty())
       rows.judge(std::make_unique<KinematicAccuracy>(analysis, rows.columns()));
     if (!context.design) return;
     differentiate(context, rows, analysis.evaluator());

@@ -1,0 +1,56 @@
+#include "catena/analysis/kinematics/driven_friction.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "catena/base/at.hpp"
+
+namespace catena {
+
+DrivenFriction::DrivenFriction(const Evaluator& evaluator)
+    : evaluator_(evaluator), joints_(joints_with_friction(evaluator.model())) {
+  if (any()) by_element_.resize(evaluator.model().elements.size());
+}
+
+// Which way each joint slips.
+void DrivenFriction::begin(double t, std::span<const double> qd, std::span<double> friction) {
+  std::vector<ContactState> states(joints_.size(), {.closed = true});
+  const double speed = fastest(evaluator_, qd);
+  bool rests = false;
+  for (std::size_t k = 0; k < joints_.size(); ++k) {
+    const double rate = evaluator_.scalar_motion(joints_[k].slide, qd).rate;
+    const double none = no_speed * speed / (joints_[k].turns ? evaluator_.length_scale() : 1);
+    states[k].direction = rate > none ? 1 : rate < -none ? -1 : 0;
+    if (states[k].direction != 0 || !joints_[k].is_exact()) continue;
+    if (rests_ == 0 && !rests) first_rest_ = t, resting_ = k;
+    rests = true;
+  }
+  rests_ += rests;
+  loads_.emplace(evaluator_, joints_, std::move(states));
+  loads_->add(qd, friction);
+}
+
+void DrivenFriction::finish(std::span<const double> lambda) {
+  loads_->finish(lambda);
+  loads_->scatter(by_element_);
+}
+
+Report DrivenFriction::no_friction(double t) const {
+  Report report;
+  report.status = Status::inconsistent;
+  report.message = fmt::format("at t = {:.12g} s {}", t, loads_->trouble());
+  return report;
+}
+
+void DrivenFriction::add_remarks(std::vector<std::string>& warnings) const {
+  if (rests_ == 0) return;
+  warnings.push_back(
+      fmt::format("\"{}\" rests at t = {:.12g} s: its friction may be anything up to mu_static N there, and none is "
+                  "taken{}; with vs it is smoothed, and known at rest as well",
+                  evaluator_.model().element_name(joints_[resting_].element), first_rest_,
+                  rests_ > 1 ? fmt::format(", nor at {} more instants at which a joint rests", rests_ - 1) : ""));
+}
+
+}  // namespace catena

@@ -1,0 +1,128 @@
+// Friction of joints in inverse dynamics: loads of drivers in closed form, and those of dynamics.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "scene/run_text.hpp"
+
+namespace catena::testing {
+namespace {
+
+// An arm of mass 2 whose centroid goes round its pin at the distance 1/2, phi = 0.3 + a t + b t^2: the pin's force does
+// not depend on its friction, which is mu R |force| against the motion.
+TEST(InverseFriction, OfAPinIsItsForce) {
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (int n = 0; n < 20; ++n) {
+    SCOPED_TRACE(n);
+    const double a = 3 * number(engine), b = number(engine), mu = 0.3 + 0.2 * number(engine);
+    const TextRun run = run_text(fmt::format(R"({{"catena": 1, "gravity": [0, -9.81],
+      "bodies": {{"arm": {{"mass": 2, "inertia": 0.1, "position": ["=cos(0.3)/2", "=sin(0.3)/2"], "angle": 0.3,
+                          "points": {{"o": [-0.5, 0]}}}}}},
+      "constraints": [{{"type": "revolute", "name": "pin", "i": "ground", "j": "arm.o"}}],
+      "drivers": [{{"type": "absolute_angle", "name": "drive", "i": "arm", "value": {{"polynomial": [0.3, {}, {}]}}}}],
+      "forces": [{{"type": "friction", "name": "rub", "joint": "pin", "mu": {}, "radius": 0.05}}],
+      "outputs": ["drive.load", "rub.friction", "rub.slip", "pin.fx", "pin.fy", "energy.dissipated", "energy.balance"],
+      "analyses": [{{"type": "inverse_dynamics", "until": 0.4, "every": 0.1}}]}})",
+                                             a, b, mu));
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+    const std::vector<double> t = run.column("t"), load = run.column("drive.load"),
+                              friction = run.column("rub.friction");
+    const std::vector<double> balance = run.column("energy.balance"), lost = run.column("energy.dissipated");
+    for (std::size_t k = 0; k < t.size(); ++k) {
+      const double phi = 0.3 + (a + b * t[k]) * t[k], omega = a + 2 * b * t[k], alpha = 2 * b;
+      const double ax = -(alpha * std::sin(phi) + omega * omega * std::cos(phi)) / 2;
+      const double ay = (alpha * std::cos(phi) - omega * omega * std::sin(phi)) / 2;
+      const double force = std::hypot(2 * ax, 2 * (ay + 9.81)), torque = mu * 0.05 * force * (omega > 0 ? 1 : -1);
+      EXPECT_NEAR(friction[k], -torque, 1e-11);
+      EXPECT_NEAR(load[k], (0.1 + 2 * 0.25) * alpha + 2 * 9.81 * std::cos(phi) / 2 + torque, 1e-10);
+      EXPECT_NEAR(balance[k], 0, 1e-8);
+      EXPECT_GE(lost[k], 0);
+    }
+  }
+}
+
+// A block pushed at the height h over a guide of the length l: N = m g + 2 |F h|/l and F = m a + mu N, so that
+// F (1 - 2 mu h/l) = m (a + mu g).
+std::string pushed_block(double mu, double h, double speed) {
+  return fmt::format(R"({{"catena": 1, "gravity": [0, -9.81],
+    "bodies": {{"block": {{"mass": 3, "inertia": 1, "points": {{"handle": [0, {}]}}}}}},
+    "constraints": [{{"type": "translational", "name": "guide", "i": "ground", "j": "block", "axis_i": [1, 0], "axis_j": [1, 0]}}],
+    "drivers": [{{"type": "absolute_x", "name": "push", "i": "block.handle", "value": {{"polynomial": [0, {}, 0.5]}}}}],
+    "forces": [{{"type": "friction", "joint": "guide", "mu": {}, "length": 0.4}}],
+    "outputs": ["push.load", "guide.fy"],
+    "analyses": [{{"type": "inverse_dynamics", "until": 0.4, "every": 0.1}}]}})",
+                     h, speed, mu);
+}
+
+TEST(InverseFriction, OfAGuideIsFoundTogetherWithItsReaction) {
+  for (const double mu : {0.1, 0.25, 0.4}) {
+    for (const double h : {0.0, 0.1, 0.3}) {
+      const TextRun run = run_text(pushed_block(mu, h, 1));
+      ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+      for (const double load : run.column("push.load"))
+        EXPECT_NEAR(load, 3 * (1 + mu * 9.81) / (1 - 2 * mu * h / 0.4), 1e-9) << mu << " " << h;
+    }
+  }
+}
+
+TEST(InverseFriction, TellsAGuideThatJams) {
+  const TextRun run = run_text(pushed_block(0.6, 0.4, 1));  // 2 mu h/l = 1.2
+  EXPECT_EQ(run.analysis().report.status, Status::inconsistent);
+  EXPECT_NE(run.analysis().report.message.find("friction"), std::string::npos) << run.analysis().report.message;
+}
+
+TEST(InverseFriction, IsNotKnownAtRest) {
+  const TextRun run = run_text(pushed_block(0.2, 0, 0));
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  EXPECT_NEAR(run.column("push.load")[0], 3, 1e-12);
+  EXPECT_NEAR(run.column("push.load")[1], 3 * (1 + 0.2 * 9.81), 1e-10);
+  ASSERT_EQ(run.analysis().report.warnings.size(), 1u);
+  EXPECT_NE(run.analysis().report.warnings[0].find("rests at t = 0 s"), std::string::npos);
+}
+
+// A crank-rocker of random lengths with four pins that rub, exact and smoothed: dynamics, which integrates the motion
+// and takes another matrix, has the same loads.
+TEST(InverseFriction, AgreesWithDynamics) {
+  std::mt19937 engine(2);
+  std::uniform_real_distribution<double> number(0, 1);
+  for (int n = 0; n < 8; ++n) {
+    SCOPED_TRACE(n);
+    const double x = 2 + number(engine), y = 1.5 + number(engine), omega = (n % 2 == 0 ? 1 : -1) * (1 + number(engine));
+    std::string frictions;
+    for (const char* joint : {"A", "B", "C", "D"}) {
+      const double mu = 0.1 + 0.3 * number(engine), radius = 0.02 + 0.05 * number(engine);
+      frictions +=
+          fmt::format(R"({}{{"type": "friction", "name": "f{}", "joint": "{}", "mu": {}, "radius": {}{}}})",
+                      frictions.empty() ? "" : ", ", joint, joint, mu, radius, n % 3 == 2 ? R"(, "vs": 0.05)" : "");
+    }
+    const TextRun run = run_text(fmt::format(R"({{"catena": 1, "gravity": [0, -9.81],
+      "bodies": {{"crank": {{"mass": 1, "rod": {{"from": [0, 0], "to": [0.5, 0.5]}}, "angular_velocity": {2}}},
+                 "coupler": {{"mass": 3, "rod": {{"from": [0.5, 0.5], "to": [{0}, {1}]}}}},
+                 "rocker": {{"mass": 2, "rod": {{"from": [2.5, 0], "to": [{0}, {1}]}}}}}},
+      "constraints": [{{"type": "revolute", "name": "A", "i": "ground", "j": "crank.from"}},
+                      {{"type": "revolute", "name": "B", "i": "crank.to", "j": "coupler.from"}},
+                      {{"type": "revolute", "name": "C", "i": "coupler.to", "j": "rocker.to"}},
+                      {{"type": "revolute", "name": "D", "i": ["ground", [2.5, 0]], "j": "rocker.from"}}],
+      "drivers": [{{"type": "absolute_angle", "name": "drive", "i": "crank", "value": {{"polynomial": ["=pi/4", {2}]}}}}],
+      "forces": [{3}],
+      "outputs": ["drive.load", "A.fx", "C.fy", "fA.friction", "fB.friction", "fC.friction", "fC.slip", "fD.friction"],
+      "analyses": [{{"type": "inverse_dynamics", "at": [0.05, 0.2]}},
+                   {{"type": "dynamics", "from": "initial", "at": [0.05, 0.2], "tolerance": 1e-11}}]}})",
+                                             x, y, omega, frictions));
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.analysis(0).report.message << run.analysis(1).report.message;
+    for (const char* name :
+         {"drive.load", "A.fx", "C.fy", "fA.friction", "fB.friction", "fC.friction", "fC.slip", "fD.friction"}) {
+      const std::vector<double> inverse = run.column(name, 0), dynamics = run.column(name, 1);
+      for (std::size_t k = 0; k < 2; ++k) {
+        EXPECT_NEAR(inverse[k], dynamics[k], 1e-6) << name;
+        EXPECT_NE(inverse[k], 0) << name;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace catena::testing
