@@ -1,0 +1,78 @@
+// Stacks and walls of many boxes, each on two feet that rub: what lies stays, what falls comes to rest where it
+// belongs, and a stack that is pushed ever harder gives way at the instant that statics says.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "scene/event_entries.hpp"
+
+namespace catena::testing {
+namespace {
+
+constexpr double g = 9.81;
+
+/// Boxes of mass 1 and width and height one; the lowest gap is `drop`, and each one above has as much more.
+std::string stack(int boxes, double mu, double drop, const std::string& more, const std::string& analysis) {
+  std::string bodies, forces, outputs;
+  for (int k = 0; k < boxes; ++k) {
+    bodies += fmt::format(
+        R"({}"b{}": {{"mass": 1, "inertia": "=1/6", "position": [0, {:.17g}], "points": {{"l": [-0.5, -0.5], "r": [0.5, -0.5]}}}})",
+        k > 0 ? ", " : "", k, k + 0.5 + drop * (k + 1));
+    const std::string below = k == 0 ? R"("ground")" : fmt::format(R"("b{}")", k - 1);
+    for (const char* foot : {"l", "r"})
+      forces += fmt::format(
+          R"({}{{"type": "contact", "name": "{}{}", "i": {}, "j": "b{}.{}", "mu": {:.17g},
+             "curve": {{"line": {{"point": [0, {}], "axis": [1, 0]}}}}}})",
+          forces.empty() ? "" : ", ", foot, k, below, k, foot, mu, k == 0 ? 0 : 0.5);
+    outputs += fmt::format(R"({}"b{}.x", "b{}.y")", k > 0 ? ", " : "", k, k);
+  }
+  return fmt::format(R"({{"catena": 1, "gravity": [0, -9.81], "bodies": {{{}}}, "forces": [{}{}], "outputs": [{}],
+    "analyses": [{{"type": "dynamics", {}}}]}})",
+                     bodies, forces, more, outputs, analysis);
+}
+
+TEST(TallStacks, LieAndFallToRest) {
+  for (const double drop : {0.0, 0.03}) {
+    for (const int boxes : {7, 10, 16, 25}) {
+      SCOPED_TRACE(boxes);
+      const TextRun run = run_text(stack(boxes, 0.4, drop, "", R"("until": 1, "every": 0.5, "tolerance": 1e-9)"));
+      ASSERT_EQ(run.outcome.exit_code, 0) << run.analysis().report.message;
+      for (int k = 0; k < boxes; ++k) {
+        EXPECT_NEAR(run.last(fmt::format("b{}.y", k)), k + 0.5, 1e-9);
+        EXPECT_NEAR(run.last(fmt::format("b{}.x", k)), 0, 1e-9);
+      }
+    }
+  }
+}
+
+// A force c t on box k: the boxes from j on tip about an edge at c t (k - j + 1/2) = (n - j) g/2 and slide at c t = mu
+// (n
+// - j) g, j <= k.
+TEST(TallStacks, GiveWayWhenStaticsSays) {
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<double> number(0, 1);
+  for (int n = 0; n < 14; ++n) {
+    SCOPED_TRACE(n);
+    const int boxes = 5 + n, k = static_cast<int>(number(engine) * boxes);
+    const double mu = n % 2 == 0 ? 0.9 : 0.02 + 0.1 * number(engine), rate = 1000;
+    double least = mu * (boxes - k) * g;
+    for (int j = 0; j <= k; ++j) least = std::min(least, (boxes - j) * g / 2 / (k - j + 0.5));
+    const double until = 1.05 * least / rate;
+    const TextRun run = run_text(stack(
+        boxes, mu, 0,
+        fmt::format(R"(, {{"type": "point_force", "i": ["b{}", [0, 0]], "force": [{{"polynomial": [0, {}]}}, 0]}})", k,
+                    rate),
+        fmt::format(R"("until": {:.17g}, "every": {:.17g}, "tolerance": 1e-10)", until, until)));
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.analysis().report.message;
+    const std::vector<EventEntry> events = events_of(run);
+    ASSERT_FALSE(events.empty());
+    EXPECT_NEAR(events.front().t, least / rate, 1e-9 * until);
+    EXPECT_GT(run.last(fmt::format("b{}.x", k)), 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace catena::testing
