@@ -3,7 +3,6 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace catena {
 namespace {
@@ -11,8 +10,6 @@ namespace {
 // Sweeps over all places. Two places of a body converge within some dozen, a stack of n within some n^2, up to a
 // hundred.
 constexpr int most_sweeps = 10000;
-// The answer of all places at once replaces that of the sweeps where it keeps every inequality to this part.
-constexpr double tolerated = 1e-9;
 
 }  // namespace
 
@@ -142,75 +139,6 @@ void ContactProblem::solve_unknowns(const std::vector<Unknown>& unknowns, const 
   for (Eigen::Index c = 0; c < size; ++c) {
     for (const auto& [part, factor] : unknowns[static_cast<std::size_t>(c)].parts) x[part] += factor * solution(c);
   }
-}
-
-// Whether x keeps the inequalities of its states, to a part of its size.
-bool ContactProblem::fits(double size) const {
-  for (std::size_t k = 0; k < place.size(); ++k) {
-    const std::size_t n = 2 * k, t = n + 1;
-    if (!std::isfinite(x[n]) || !std::isfinite(x[t])) return false;
-    const bool sticks = state[k] == State::sticks;
-    if (place[k].head >= 0) {
-      if (sticks && size_of(t, misfit(k)) > tolerated * size) return false;
-      continue;
-    }
-    if (place[k].has_normal && size_of(n, x[n]) < -tolerated * size) return false;
-    const double limit = place[k].has_normal ? place[k].mu_static * x[n] : place[k].limit;
-    if (sticks && size_of(t, std::abs(x[t]) - limit) > tolerated * size) return false;
-  }
-  return true;
-}
-
-double ContactProblem::unit(std::size_t row) const {
-  const Place& p = place[row / 2];
-  const std::size_t of = p.head >= 0 ? 2 * static_cast<std::size_t>(p.head) : row;
-  return D(of, of) > 0 ? 1 / std::sqrt(D(of, of)) : 0;
-}
-
-double ContactProblem::size_of(std::size_t row, double change) const {
-  const double one = unit(row);
-  return one > 0 ? change / one : 0;
-}
-
-double ContactProblem::size() const {
-  double largest = 0;
-  for (std::size_t r = 0; r < x.size(); ++r) largest = std::max(largest, size_of(r, std::abs(x[r])));
-  return largest;
-}
-
-ContactProblem::Sum ContactProblem::sum(std::size_t row) const {
-  Sum w{b[row], std::max(std::abs(b[row]), b_terms[row])};
-  for (std::size_t c = 0; c < x.size(); ++c) {
-    const double part = D(row, c) * x[c];
-    w.value += part;
-    w.terms += std::abs(part);
-  }
-  return w;
-}
-
-// Of x, without a unit: of the sums that it is the solution of.
-double ContactProblem::rounding() const {
-  double largest = 0;
-  for (std::size_t r = 0; r < x.size(); ++r) {
-    if (D(r, r) > 0) largest = std::max(largest, size_of(r, sum(r).terms / D(r, r)));
-  }
-  return std::numeric_limits<double>::epsilon() * static_cast<double>(x.size() + 2) * largest;
-}
-
-bool ContactProblem::is_carried(std::size_t k, double w_t) const {
-  const std::size_t t = 2 * k + 1;
-  return !(D(t, t) > 0) && std::abs(w_t) > tolerated * std::max(std::abs(b[t]), b_terms[t]);
-}
-
-// Whether a slip that is there already wedges a place: nothing fits, or a free and a pressed place fit alike.
-bool ContactProblem::is_wedged() const {
-  for (std::size_t k = 0; k < place.size(); ++k) {
-    const Place& p = place[k];
-    const double across = D(2 * k, 2 * k);
-    if (!p.has_normal || !p.has_friction || p.slip == 0 || !(across > 0)) continue;
-    if (!(across - p.mu * p.slip * D(2 * k, 2 * k + 1) > 0)) return true;
-  }
-  return false;
 }
 
 // Over all places until nothing changes. False: friction wedges a place, or sweeps do not settle.
