@@ -243,6 +243,15 @@ constexpr const char* driven_arm = R"({"catena": 1, "gravity": [0, -9.81],
   "forces": [{"type": "torsion_spring", "i": "ground", "j": "one", "k": "k"}],
   "analyses": []})";
 
+// A tip so light that solutions are refined one after the other instead of four side by side.
+constexpr const char* light_tip = R"({"catena": 1, "gravity": [0, -9.81],
+  "parameters": {"a": 0.6, "b": 0.9, "c": 0.02, "m": 2, "n": 4e-6},
+  "bodies": {"one": {"rod": {"from": [0, 0], "to": ["a", 0]}, "mass": "m"},
+    "two": {"rod": {"from": ["a", 0], "to": ["=a+b", 0]}, "mass": "n"}},
+  "constraints": [{"type": "revolute", "i": "ground", "j": "one.from"}, {"type": "revolute", "i": "one.to", "j": "two.from"}],
+  "forces": [{"type": "torsion_spring", "i": "ground", "j": "one", "k": 12, "c": "c"}],
+  "analyses": []})";
+
 class Adjoint : public ::testing::TestWithParam<const char*> {};
 
 // Both transpose the same steps: the difference is rounding.
@@ -262,7 +271,7 @@ TEST_P(Adjoint, IsTheForwardDerivativeBackwards) {
     }
   }
 }
-INSTANTIATE_TEST_SUITE_P(Mechanisms, Adjoint, ::testing::Values(slider_crank, driven_arm));
+INSTANTIATE_TEST_SUITE_P(Mechanisms, Adjoint, ::testing::Values(slider_crank, driven_arm, light_tip));
 
 // x - l = A cos(w t), w^2 = k / m, at the end and inside of a step.
 TEST(AdjointOfAMotion, IsThatOfTheClosedForm) {

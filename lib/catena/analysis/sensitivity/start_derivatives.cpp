@@ -210,6 +210,10 @@ bool StartDerivatives::solve_keeping(std::span<const double> goal, std::span<con
   for (std::size_t c = 0; c < v.size(); ++c) {
     if (given_[c]) asked[c] = goal[c];
   }
+  // Without given ones, and without massless ones that follow, the first solution is the last.
+  const auto counts = [](char is) { return is != 0; };
+  const bool keeps =
+      std::any_of(given_.begin(), given_.end(), counts) || std::any_of(follows_.begin(), follows_.end(), counts);
   double change = 0, size = 0;
   for (int round = 0; round < rounds_of_velocities; ++round) {
     for (std::size_t c = 0; c < v.size(); ++c) v[c] = weight_[c] * asked[c] + (given_[c] ? 0 : load[c]);
@@ -225,7 +229,7 @@ bool StartDerivatives::solve_keeping(std::span<const double> goal, std::span<con
       if (given_[c]) asked[c] += goal[c] - v[c];
       if (follows_[c]) asked[c] = v[c];
     }
-    if (round > 0 && change <= 1e-15 * size) return true;
+    if (!keeps || (round > 0 && change <= 1e-15 * size)) return true;
   }
   if (change <= settled * size) return true;
   return fail(

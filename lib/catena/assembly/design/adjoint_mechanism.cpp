@@ -93,7 +93,7 @@ void AdjointMechanism::set_motion(const Evaluator& evaluator, std::span<const do
 // (Phi_q)'' and (Phi_q)' of every element, by series in time under dual numbers.
 void AdjointMechanism::add_constraints_by_q(const AdjointWeights& weights, std::span<double> by_q,
                                             std::span<double> by_qd) const {
-  for_each_list(plan_->blocks, model_->constraints, [&](const auto& block, const auto& list, int) {
+  detail::visit_constraints(*plan_, *model_, [&](const auto& block, const auto& list) {
     using E = ElementOf<decltype(list)>;
     if constexpr (is_pin<E>) {
       // Phi by an angle is R a, a the arm: (R a)' = -a omega, (R a)'' = -a alpha - R a omega^2.
@@ -192,7 +192,7 @@ void AdjointMechanism::add_by_state(const Evaluator& evaluator, const AdjointWei
 
 // sum lambda Phi_qq w: the change of Phi_q^T lambda along w.
 void AdjointMechanism::add_curvature(const AdjointWeights& weights, std::span<double> by_q) const {
-  for_each_list(plan_->blocks, model_->constraints, [&](const auto& block, const auto& list, int) {
+  detail::visit_constraints(*plan_, *model_, [&](const auto& block, const auto& list) {
     using E = ElementOf<decltype(list)>;
     if constexpr (is_pin<E>) {
       for (int e = 0; e < block.size(); ++e) {

@@ -29,6 +29,17 @@ Frame<T> moved_by(Frame<T> f, const Vec2<double>& by) {
   return f;
 }
 
+/// Calls f(block, list) for all constraints. Where pins are all there is nothing else is looked through: of small
+/// mechanisms that takes longer than the pins themselves.
+template <class F>
+void visit_constraints(const Plan& plan, const Model& model, F&& f) {
+  const auto& pins = std::get<ConstraintBlock<Revolute<double>>>(plan.blocks);
+  if (Revolute<double>::rows * pins.size() == plan.rows)
+    f(pins, std::get<std::vector<ElementEntry<Revolute<double>, double>>>(model.constraints));
+  else
+    for_each_list(plan.blocks, model.constraints, [&](const auto& block, const auto& list, int) { f(block, list); });
+}
+
 /// The value of a series' frame at the instant itself.
 inline Frame<DesignScalar> present(const Frame<DesignSeries>& f) { return {f.x.f, f.y.f, f.phi.f, f.c.f, f.s.f}; }
 

@@ -154,7 +154,7 @@ void MechanismTangents::add_along(const Evaluator& evaluator, std::span<const do
                                   std::span<const double> dq, std::span<const double> dqd, std::size_t width,
                                   const TangentSums& sums) const {
   const Directions along{dq, dqd, width};
-  for_each_list(plan_->blocks, model_->constraints, [&](const auto& block, const auto& list, int) {
+  detail::visit_constraints(*plan_, *model_, [&](const auto& block, const auto& list) {
     using E = ElementOf<decltype(list)>;
     if constexpr (std::is_same_v<E, Revolute<double>>)
       add_pins(block, list, lambda, along, sums);
