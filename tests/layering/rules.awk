@@ -8,7 +8,7 @@
 # layer; a folder that is not listed there is an error, and so is one of more than 30 files:
 #
 #   analysis  run <- pose <- motion <- events <- {kinematics, contact <- dynamics};  pose <- balance <- spectrum <- statics/solvers <- statics <- stability
-#             run <- measures;  {pose, motion, contact} <- sensitivity, sensitivity/phases;  {sensitivity, measures} <- adjoint;  minimiser <- {statics, design};  kinematics, batch/kernels <- batch
+#             run <- measures;  {pose, motion, contact} <- sensitivity, sensitivity/phases, sensitivity/spectrum;  {sensitivity, measures} <- adjoint;  minimiser <- {statics, design};  kinematics, batch/kernels <- batch
 #             {kinematics, statics, dynamics} <- accuracy
 #             run, pose <- kinematics/course <- kinematics
 #   scene     json <- numbers <- describing <- reading <- building <- models <- judging <- running <- writing <- designing <- viewing <- loading
@@ -43,6 +43,7 @@ BEGIN {
   after("analysis", "stability", "run pose motion balance spectrum statics statics/solvers")
   after("analysis", "measures", "run")
   after("analysis", "sensitivity", "run pose motion")
+  after("analysis", "sensitivity/spectrum", "run pose motion sensitivity")
   after("analysis", "sensitivity/phases", "run pose motion events contact sensitivity")
   after("analysis", "adjoint", "run measures motion sensitivity")
   after("analysis", "design", "minimiser")

@@ -7,7 +7,7 @@
 
 #include "catena/analysis/run/energyless_forces.hpp"
 #include "catena/analysis/run/rope_ways_at.hpp"
-#include "catena/analysis/sensitivity/spectrum_derivatives.hpp"
+#include "catena/analysis/sensitivity/spectrum/spectrum_derivatives.hpp"
 #include "catena/analysis/stability/buckling.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 #include "catena/scene/running/drawn_shapes.hpp"

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "catena/analysis/run/energyless_forces.hpp"
 #include "catena/analysis/run/rope_ways_at.hpp"
-#include "catena/analysis/sensitivity/spectrum_derivatives.hpp"
+#include "catena/analysis/sensitivity/spectrum/spectrum_derivatives.hpp"
 #include "catena/analysis/stability/modes.hpp"
 #include "catena/columns/column_errors.hpp"
 #include "catena/scene/running/analysis_run.hpp"
@@ -41,10 +40,15 @@ void differentiate(const AnalysisContext& context, Modes& analysis, const ModesR
     const int number = static_cast<int>(k) + 1;
     std::optional<std::vector<double>> gradient;
     std::string trouble;
-    if (found && is_double(report.omega2, k))
+    if (k < report.imaginary.size() && report.imaginary[k] != 0)
+      trouble =
+          fmt::format("mode {} is one of a pair that flutters: derivatives of complex omega2 are not built", number);
+    else if (found && is_double(report.omega2, k))
       trouble = fmt::format("mode {} is one of two or more with the same frequency, which has no derivative", number);
-    else if (found)
+    else if (found && evaluator.conservative())
       gradient = derivatives.gradient(report.omega2[k], report.shapes[k]);
+    else if (found)
+      gradient = derivatives.gradient_without_energy(report.omega2[k], report.shapes[k]);
     if (!gradient && trouble.empty()) trouble = lambda ? derivatives.why() : "constraints are singular at this place";
     set_field_gradient(context, result, "omega2", number, gradient.value_or(none), trouble);
     // omega = sqrt |omega2|
@@ -57,17 +61,6 @@ void differentiate(const AnalysisContext& context, Modes& analysis, const ModesR
       for (double& derivative : *gradient) derivative *= factor;
     }
     set_field_gradient(context, result, "omega", number, gradient.value_or(none), trouble);
-  }
-}
-
-/// The vectors that an unsymmetric stiffness has on its left are not those that frequencies are differentiated with.
-void leave_out_derivatives(const AnalysisContext& context, const ModesReport& report, AnalysisResult& result) {
-  const std::vector<double> none(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
-  const std::string trouble =
-      forces_without_energy(*context.model) + ": derivatives of their frequencies are not built";
-  for (std::size_t k = 0; k < report.omega2.size(); ++k) {
-    set_field_gradient(context, result, "omega2", static_cast<int>(k) + 1, none, trouble);
-    set_field_gradient(context, result, "omega", static_cast<int>(k) + 1, none, trouble);
   }
 }
 
@@ -193,12 +186,7 @@ void run_modes(AnalysisContext& context, AnalysisResult& result) {
   if (judged && rows > 0) result.digits = digits_of(report, info.size());
   take_rows(result, std::move(info), rows);
   add_field_measures(context, result);
-  if (!context.design || !report.ok()) return;
-  if (analysis.evaluator().conservative()) {
-    differentiate(context, analysis, report, from_model, result);
-  } else {
-    leave_out_derivatives(context, report, result);
-  }
+  if (context.design && report.ok()) differentiate(context, analysis, report, from_model, result);
 }
 
 }  // namespace catena

@@ -2,6 +2,7 @@
 //
 //   frequency       K v + Phi_q^T mu = omega2 M v, Phi_q v = 0, v^T M v = 1
 //                   d omega2 = v^T (K_p - omega2 M_p) v + 2 mu^T (Phi_q)_p v
+//                   of unsymmetric K, with the vector on its left too: circulatory_derivatives.cpp
 //   buckling load   K(P) v + Phi_q^T mu = 0:    dP = -(v^T K_p v + 2 mu^T (Phi_q)_p v) / (the same by P)
 //   limit load      F(q, lambda, P) = 0 with the left null vector w of its matrix:   dP = -(w^T F_p) / (w^T F_P)
 //
@@ -46,8 +47,14 @@ class SpectrumDerivatives final : public StateDerivatives {
   /// derivatives of omega2 of the mode `shape` (over columns, v^T M v = 1); of stiffness alone with omega2 = 0.
   /// Nothing, and why() says it, where they cannot be had.
   std::optional<std::vector<double>> gradient(double omega2, std::span<const double> shape);
+  /// The same of a real omega2 where forces turn with their bodies: circulatory_derivatives.cpp.
+  std::optional<std::vector<double>> gradient_without_energy(double omega2, std::span<const double> shape);
 
  private:
+  /// Vectors on both sides, over coordinates, with the multipliers that hold them.
+  struct TwoVectors {
+    std::span<const double> v, mu, w, nu;
+  };
   bool is_in_balance();
   bool find_as_equilibrium(const Snapshot& snapshot);
   /// [Phi_q^T lambda - Q] and Phi at the group's q and lambda.
@@ -55,6 +62,9 @@ class SpectrumDerivatives final : public StateDerivatives {
   bool find_multipliers(Group& group, double t);
   /// mu with K v + Phi_q^T mu = omega2 M v.
   std::optional<std::vector<double>> holding_multipliers(double omega2, std::span<const double> v);
+  /// w and nu with K^T w + Phi_q^T nu = omega2 M w.
+  bool find_left(double omega2, std::span<const double> v, std::span<double> w, std::span<double> nu);
+  DesignScalar left_and_right(Group& group, std::span<const int> turning, const TwoVectors& of, double omega2);
 
   bool from_model_;
   SaddleSystem metric_;

@@ -1,4 +1,4 @@
-#include "catena/analysis/sensitivity/spectrum_derivatives.hpp"
+#include "catena/analysis/sensitivity/spectrum/spectrum_derivatives.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/sensitivity/spectrum_derivatives.hpp"
+#include "catena/analysis/sensitivity/spectrum/spectrum_derivatives.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {

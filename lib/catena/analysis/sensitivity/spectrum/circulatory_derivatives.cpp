@@ -1,0 +1,150 @@
+// SpectrumDerivatives: frequencies under forces that turn with their bodies, which have no energy. K is unsymmetric,
+// and has vectors on its left, w, beside those on its right:
+//
+//   K v + Phi_q^T mu = omega2 M v,   K^T w + Phi_q^T nu = omega2 M w,   Phi_q v = Phi_q w = 0
+//   d omega2 = [ w^T (K_p - omega2 M_p) v + mu^T (Phi_q)_p w + nu^T (Phi_q)_p v ] / (w^T M v)
+//
+// w^T K v is the mixed second derivative of V + lambda^T Phi along v and w, and of a force F that turns with its body
+// (w_x F_y - w_y F_x) v_phi: its moment about the body's centroid stays. w^T M v is zero where two frequencies meet,
+// and flutter begins. Source: Seyranian, Mailybaev, Multiparameter Stability Theory (2003), chapter 2.
+#include <algorithm>
+#include <cmath>
+
+#include "catena/analysis/sensitivity/spectrum/spectrum_derivatives.hpp"
+#include "catena/base/at.hpp"
+#include "catena/elements/all.hpp"
+
+namespace catena {
+namespace {
+
+// The matrix is factored this part of omega2 beside it, where it is regular: every round of inverse iteration leaves
+// the part that other frequencies, at least 1e-6 away, have in a vector by ten times as small or less.
+constexpr double beside = 1e-7;
+constexpr int most_inverse_rounds = 20;
+constexpr double settled_vector = 1e-12;
+
+/// The moving plan bodies on which forces that turn with them act; nothing where another force has no energy.
+std::optional<std::vector<int>> bodies_with_turning_forces(const Model& model, const Plan& plan) {
+  std::vector<int> bodies;
+  bool known = model.laws.empty();
+  for_each_list(model.forces, [&](const auto& list, int) {
+    for (const auto& entry : list) {
+      if (is_conservative(entry.element)) continue;
+      if constexpr (requires { entry.element.in_body_axes; }) {
+        const int body = entry.i < 0 ? plan.moving : plan.plan_body[at(entry.i)];
+        if (body < plan.moving) bodies.push_back(body);
+      } else {
+        known = false;
+      }
+    }
+  });
+  std::sort(bodies.begin(), bodies.end());
+  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+  return known ? std::optional(bodies) : std::nullopt;
+}
+
+ElementMatrix transposed(const ElementMatrix& m) {
+  ElementMatrix t{};
+  for (std::size_t r = 0; r < 6; ++r) {
+    for (std::size_t c = 0; c < 6; ++c) t[6 * r + c] = m[6 * c + r];
+  }
+  return t;
+}
+
+}  // namespace
+
+bool SpectrumDerivatives::find_left(double omega2, std::span<const double> v, std::span<double> w,
+                                    std::span<double> nu) {
+  SaddleSystem system(evaluator().shared_plan(), SaddleBlock::elements);
+  const DesignMechanism& mechanism = groups().front().mechanism;
+  const double shift = omega2 + beside * std::max(std::abs(omega2), 1e-300);
+  const bool factored = system.factorize(jacobian(), [&] {
+    const auto add = [&](int i, int j, const ElementMatrix& m) { system.add_element(i, j, transposed(m)); };
+    evaluator().visit_stiffness(rest_, add);
+    evaluator().visit_constraint_hessians(lambda_, add);
+    for (int c = 0; c < 3 * plan().moving; ++c) system.add_diagonal(c, -shift * mechanism.mass(c).v);
+  });
+  if (!factored) return fail("the vector on the left of its stiffness was not found");
+  std::copy(v.begin(), v.end(), w.begin());
+  std::vector<double> next(w.size());
+  for (int round = 0; round < most_inverse_rounds; ++round) {
+    for (std::size_t c = 0; c < next.size(); ++c)
+      next[c] = c < at(3 * plan().moving) ? mechanism.mass(static_cast<int>(c)).v * w[c] : 0;
+    std::fill(nu.begin(), nu.end(), 0.0);
+    if (!system.solve(next, nu)) break;
+    double size = 0, change = 0;
+    for (std::size_t c = 0; c < next.size(); ++c) {
+      if (std::abs(next[c]) > std::abs(size)) size = next[c];
+    }
+    if (!(std::abs(size) > 0)) break;
+    for (double& x : nu) x /= size;
+    for (std::size_t c = 0; c < next.size(); ++c) {
+      change = std::max(change, std::abs(next[c] / size - w[c]));
+      w[c] = next[c] / size;
+    }
+    if (change <= settled_vector) return true;
+  }
+  return fail("the vector on the left of its stiffness did not settle");
+}
+
+std::optional<std::vector<double>> SpectrumDerivatives::gradient_without_energy(double omega2,
+                                                                                std::span<const double> shape) {
+  const std::optional<std::vector<int>> turning = bodies_with_turning_forces(evaluator().model(), plan());
+  if (!turning) {
+    fail("derivatives of frequencies under laws of state, or forces of one's own without energy, are not built");
+    return {};
+  }
+  std::vector<double> v(at(plan().coordinates()), 0.0), w(v), nu(at(plan().rows), 0.0), gradient;
+  for (int c = 0; c < plan().columns; ++c) v[at(plan().coordinate[at(c)])] = shape[at(c)];
+  const std::optional<std::vector<double>> mu = holding_multipliers(omega2, v);
+  if (!mu || !find_left(omega2, v, w, nu)) return {};
+  double scale = 0;
+  for (int c = 0; c < 3 * plan().moving; ++c) scale += w[at(c)] * groups().front().mechanism.mass(c).v * v[at(c)];
+  for (Group& group : groups()) {
+    const DesignScalar sum = left_and_right(group, *turning, {v, *mu, w, nu}, omega2);
+    for (std::size_t p = 0; p < at(group.count); ++p) gradient.push_back(sum.d[p] / scale);
+  }
+  return gradient;
+}
+
+// w^T (K - omega2 M) v + mu^T Phi_q w + nu^T Phi_q v.
+DesignScalar SpectrumDerivatives::left_and_right(Group& group, std::span<const int> turning, const TwoVectors& of,
+                                                 double omega2) {
+  DesignMechanism& mechanism = group.mechanism;
+  std::vector<DesignScalar> along(of.v.size());
+  const auto look_along = [&](double by_v, double by_w) {
+    for (std::size_t c = 0; c < along.size(); ++c) along[c] = DesignScalar(by_v * of.v[c] + by_w * of.w[c]);
+    mechanism.set_state(group.q, along);
+    mechanism.rows(group.rows);
+  };
+  DesignScalar sum;
+  for (const double sign : {1.0, -1.0}) {
+    look_along(1, sign);
+    DesignScalar second = mechanism.potential().dd;
+    for (std::size_t r = 0; r < of.mu.size(); ++r) second += group.lambda[r] * group.rows[r].dd;
+    sum += DesignScalar(sign / 4) * second;
+  }
+  look_along(0, 1);
+  for (std::size_t r = 0; r < of.mu.size(); ++r) sum += DesignScalar(of.mu[r]) * group.rows[r].d;
+  look_along(1, 0);
+  for (std::size_t r = 0; r < of.mu.size(); ++r) sum += DesignScalar(of.nu[r]) * group.rows[r].d;
+  for (int c = 0; c < 3 * plan().moving; ++c)
+    sum -= DesignScalar(omega2 * of.v[at(c)] * of.w[at(c)]) * mechanism.mass(c);
+  // Of all forces on a body what is not the slope of V turns with it.
+  mechanism.set_state(group.q);
+  mechanism.applied_forces(group.loads);
+  for (const int body : turning) {
+    const std::size_t x = at(3 * body);
+    DesignScalar force[2];
+    for (std::size_t k = 0; k < 2; ++k) {
+      std::fill(along.begin(), along.end(), DesignScalar());
+      along[x + k] = DesignScalar(1.0);
+      mechanism.set_state(group.q, along);
+      force[k] = group.loads[x + k] + mechanism.potential().d;
+    }
+    sum += DesignScalar(of.v[x + 2]) * (DesignScalar(of.w[x]) * force[1] - DesignScalar(of.w[x + 1]) * force[0]);
+  }
+  return sum;
+}
+
+}  // namespace catena

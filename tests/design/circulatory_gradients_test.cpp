@@ -1,0 +1,98 @@
+// Derivatives of frequencies under a force that turns with its body: Ziegler's column of two rods against the roots of
+// its 2 x 2 problem, differenced in long double.
+//
+//   M = L^2 [m + n, n; n, n]    K = [k + c - P L + g L (m + n), P L - c; -c, c + g L n]    angles of both rods
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "design/measured.hpp"
+#include "oracles/scene_text.hpp"
+
+namespace catena::testing {
+namespace {
+
+using Long = long double;
+constexpr std::array<const char*, 7> column_parameters = {"L", "m", "n", "k", "c", "g", "P"};
+using ZieglerColumn = std::array<Long, 7>;
+
+/// Both omega2, the lesser first.
+std::array<Long, 2> roots_of(const ZieglerColumn& column) {
+  const auto& [L, m, n, k, c, g, P] = column;
+  const Long k11 = k + c - P * L + g * L * (m + n), k12 = P * L - c, k21 = -c, k22 = c + g * L * n;
+  const Long m11 = L * L * (m + n), m12 = L * L * n, m22 = m12;
+  const Long a = m11 * m22 - m12 * m12, b = k11 * m22 + k22 * m11 - (k12 + k21) * m12, d = k11 * k22 - k12 * k21;
+  const Long half = std::sqrt(b * b - 4 * a * d);
+  return {(b - half) / (2 * a), (b + half) / (2 * a)};
+}
+
+std::array<Long, 2> slope_of(const ZieglerColumn& column, std::size_t p) {
+  const Long h = 1e-4L * column[p];
+  const auto moved = [&](Long by) {
+    ZieglerColumn other = column;
+    other[p] += by;
+    return roots_of(other);
+  };
+  const auto far_below = moved(-2 * h), below = moved(-h), above = moved(h), far_above = moved(2 * h);
+  std::array<Long, 2> slope{};
+  for (std::size_t i = 0; i < 2; ++i) slope[i] = (8 * (above[i] - below[i]) - (far_above[i] - far_below[i])) / (12 * h);
+  return slope;
+}
+
+std::string scene_of(const ZieglerColumn& column) {
+  std::string numbers, names;
+  for (std::size_t p = 0; p < column.size(); ++p) {
+    numbers +=
+        (p > 0 ? ", \"" : "\"") + std::string(column_parameters[p]) + "\": " + text_of(static_cast<double>(column[p]));
+    names += (p > 0 ? ", \"" : "\"") + std::string(column_parameters[p]) + "\"";
+  }
+  return R"({"catena": 1, "gravity": ["g", 0], "parameters": {)" + numbers + R"(},
+  "bodies": {"one": {"mass": "m", "inertia": 0, "position": ["L", 0], "points": {"pin": ["=-L", 0]}},
+             "two": {"mass": "n", "inertia": 0, "position": ["=2*L", 0], "points": {"pin": ["=-L", 0]}}},
+  "constraints": [{"type": "revolute", "i": "ground", "j": "one.pin"}, {"type": "revolute", "i": "one", "j": "two.pin"}],
+  "forces": [{"type": "torsion_spring", "i": "ground", "j": "one", "k": "k"},
+             {"type": "torsion_spring", "i": "one", "j": "two", "k": "c"},
+             {"type": "point_force", "i": "two", "force": ["=-P", 0], "frame": "body"}],
+  "analyses": [{"type": "sensitivity", "parameters": [)" +
+         names + R"(], "of": {"type": "modes", "measures": {
+    "low": {"field": "omega2[1]"}, "high": {"field": "omega2[2]"}, "omega": {"field": "omega[1]"}}}}]})";
+}
+
+TEST(CirculatoryGradients, OfZieglersColumn) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers random(seed);
+    const std::array<std::array<double, 2>, 6> range = {{{0.5, 2}, {0.5, 3}, {0.5, 3}, {5, 30}, {5, 30}, {0, 3}}};
+    ZieglerColumn column{};
+    for (std::size_t p = 0; p < range.size(); ++p) column[p] = random(range[p][0], range[p][1]);
+    column[6] = random(0.1, 0.6) * static_cast<double>(std::min(column[3], column[4]) / column[0]);
+    const TextRun run = run_text(scene_of(column));
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+    const std::array<Long, 2> roots = roots_of(column);
+    const std::array<const char*, 2> names = {"low", "high"};
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto root = static_cast<double>(roots[i]);
+      EXPECT_NEAR(value(run, names[i]), root, 1e-11 * root);
+      for (std::size_t p = 0; p < column.size(); ++p) {
+        const auto exact = static_cast<double>(slope_of(column, p)[i]);
+        const double size = std::max(std::abs(exact), root / static_cast<double>(column[p]));
+        EXPECT_NEAR(gradient(run, names[i], p), exact, 1e-10 * size) << names[i] << " " << column_parameters[p];
+        if (i == 0) {
+          EXPECT_NEAR(gradient(run, "omega", p), exact / (2 * std::sqrt(root)), 1e-10 * size);
+        }
+      }
+    }
+  }
+}
+
+TEST(CirculatoryGradients, OfAPairThatFluttersAreNullAndSaidSo) {
+  const TextRun run = run_text(scene_of({1, 1, 1, 10, 10, 0.1L, 25}));
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+  EXPECT_TRUE(std::isnan(gradient(run, "low", 0)));
+  EXPECT_TRUE(warns(run, "mode 1 is one of a pair that flutters"));
+}
+
+}  // namespace
+}  // namespace catena::testing
