@@ -52,7 +52,8 @@ class Assembler {
   /// z: W^-1 r less what the constraints do not allow, at the place that was factored; r becomes W z, without what they
   /// take up, beside which z may be small; multipliers go to lambda_.
   void project(std::span<double> r, std::span<double> z);
-  /// Into step_: the step along the constraints to where the distance is least, and how far that slope alone leads.
+  /// Into step_: the step along the constraints to where the distance is least, and how far that slope alone leads (0:
+  /// q is there).
   double find_approach(std::span<const double> q, std::span<const double> estimate);
   /// An element whose residual at q overflows when it is squared, or -1.
   int element_out_of_range(std::span<const double> q);

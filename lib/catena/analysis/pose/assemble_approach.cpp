@@ -25,9 +25,9 @@ constexpr double seen_in_distance = 1e-12;
 // A slope of this part of the distance changes it by half its square, which is seen; of smaller ones only slopes tell
 // what a step is worth.
 constexpr double unseen_slope = 1e-5;
-// Of the distance: what Newton's last step leaves is far below, and what is left where no freedom is, rounding times
-// condition, need not be stepped along.
-constexpr double settled_slope = 1e-13;
+// Of the distance: what Newton's last step leaves is far below. With as many equations as coordinates there is freedom
+// only where equations depend on each other, and what is left as a rule is rounding times condition.
+constexpr double settled_slope = 1e-13, settled_without_freedom = 1e-10;
 // A direction is found to this part of its slope, and to the square of what is left of the first slope: as many digits
 // as Newton's step has.
 constexpr double direction_digits = 0.1;
@@ -101,6 +101,8 @@ double Assembler::find_approach(std::span<const double> q, std::span<const doubl
   std::copy(z.begin(), z.end(), step_.begin());
   if (!(first > 0)) return 0;
   const double distance = weighted_distance(q, estimate);
+  const double settled = plan_.rows < plan_.columns ? settled_slope : settled_without_freedom;
+  if (std::sqrt(first) <= settled * distance) return 0;
   const double enough =
       first * std::pow(std::clamp(std::sqrt(first) / distance, most_direction_digits, direction_digits), 2);
   const ConstraintCurvature curvature(evaluator_, lambda_);
@@ -133,7 +135,7 @@ void Assembler::approach_estimate(std::span<double> q, std::span<const double> e
     evaluator_.jacobian(values_);
     if (!projector_->factorize(values_, evaluator_.counters).ok()) return;
     const double slope = find_approach(q, estimate);
-    if (slope <= settled_slope * distance) return;
+    if (slope == 0) return;
     const bool unseen = slope <= unseen_slope * distance;
     // Rounding holds it.
     if (unseen && k > 0 && slope > last_slope / 2) return;
