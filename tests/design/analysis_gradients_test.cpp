@@ -80,6 +80,28 @@ TEST(FrequencyGradients, OfAPendulum) {
   EXPECT_LT(field<double>(run, "deviation"), 1e-6);
 }
 
+// A pendulum on a torsion spring: "verify" lets the place of an equilibrium before move as the derivatives do.
+TEST(FrequencyGradients, AboutAnEquilibriumAreVerifiedWithIt) {
+  const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -9.81], "parameters": {"k": 9, "m": 1.5},
+  "bodies": {"rod": {"rod": {"from": [0, 0], "to": [0.6, 0]}, "mass": "m"}},
+  "constraints": [{"type": "revolute", "i": "ground", "j": "rod.from"}],
+  "forces": [{"type": "torsion_spring", "i": "ground", "j": "rod", "k": "k"}], "outputs": ["rod.angle"],
+  "analyses": [{"type": "equilibrium"}, {"type": "sensitivity", "parameters": ["k", "m"], "verify": true,
+    "of": {"type": "modes", "measures": {"square": {"field": "omega2[1]"}}}}]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+  // k a + w cos(a) = 0, J omega2 = k - w sin(a), w = m g l/2, J = m l^2/3
+  const double k = 9, m = 1.5, w = m * 9.81 * 0.3, J = m * 0.12, a = run.last("rod.angle");
+  ASSERT_NEAR(k * a + w * std::cos(a), 0, 1e-10);
+  const double turn = -a / (k - w * std::sin(a));
+  ASSERT_EQ(run.analysis(1).measures.size(), 1u);
+  EXPECT_NEAR(run.analysis(1).measures[0].gradient.at(0), (1 - w * std::cos(a) * turn) / J, 1e-9 / J);
+  double deviation = 1;
+  for (const NamedField& f : run.analysis(1).fields) {
+    if (f.name == "deviation") deviation = std::get<double>(f.value);
+  }
+  EXPECT_LT(deviation, 1e-6);
+}
+
 TEST(FrequencyGradients, OfDoubleOnesAreRefused) {
   const TextRun run = run_text(R"({"catena": 1, "parameters": {"k": 7},
   "bodies": {"a": {"mass": 2, "particle": true}, "b": {"mass": 2, "particle": true, "position": [1, 0]}},

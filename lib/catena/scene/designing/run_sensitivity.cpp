@@ -17,6 +17,8 @@ namespace {
 constexpr double part_of_parameter = 1e-4;
 // A column that is below this everywhere, in SI units, is rounding of zero, and so are its differences.
 constexpr double no_output = 1e-13;
+// m and rad: a place that is an equilibrium is found again to this.
+constexpr double same_place = 1e-6;
 // Instants of rows are multiples of a step, rounded to 1e-16.
 constexpr double same_instant = 1e-12;
 
@@ -46,6 +48,7 @@ class Comparison {
   Comparison(const AnalysisContext& context, const SystemState& start, const std::vector<std::string>& names,
              const AnalysisResult& result, const ResultStorage& rows)
       : context_(context), start_(start), names_(names), result_(result), rows_(rows) {
+    find_place();
     const std::vector<double> values = context_.models->values(*context_.task.of.front().table, context_.seeds);
     for (std::size_t p = 0; p < names_.size(); ++p)
       compare(p, values[static_cast<std::size_t>(context_.task.design_parameters[p])]);
@@ -61,6 +64,27 @@ class Comparison {
     doubts_.push_back(fmt::format("\"verify\" of the derivatives by \"{}\": {}", name, why));
   }
 
+  // Modes about an equilibrium that an analysis before left are those of its place, which moves with the parameters.
+  void find_place() {
+    const AnalysisTask& modes = context_.task.of.front();
+    if (modes.type() != "modes" || start_.q.empty()) return;
+    place_.description = find_analysis_type("equilibrium");
+    place_.parameters = modes.parameters;
+    place_.table = modes.table;
+    place_.set_parameters = modes.set_parameters;
+    SystemState state = start_;
+    moves_ = go_to_place(context_.seeds, state);
+    for (std::size_t c = 0; moves_ && c < start_.q.size(); ++c)
+      moves_ = std::abs(state.q[c] - start_.q[c]) <= same_place;
+  }
+
+  bool go_to_place(const ParameterSeeds& seeds, SystemState& state) {
+    KeptRows none(nullptr);
+    AnalysisResult found;
+    InnerRun run{.seeds = seeds, .state = state, .rows = none};
+    return run_inner(context_, place_, run, found) && found.report.ok();
+  }
+
   /// The analysis with the parameter on either side; false, and told, where it cannot be analysed there.
   bool run_beside(std::size_t p, double value, double step, const AnalysisTask& task, std::array<KeptRows, 2>& rows,
                   std::array<AnalysisResult, 2>& shifted) {
@@ -69,6 +93,7 @@ class Comparison {
       ParameterSeeds seeds = context_.seeds;
       seeds.push_back({context_.task.design_parameters[p], at});
       SystemState state = start_;
+      if (moves_) go_to_place(seeds, state);
       InnerRun run{.seeds = seeds, .state = state, .rows = rows[side]};
       run_inner(context_, task, run, shifted[side]);
       if (shifted[side].report.ok()) continue;
@@ -171,6 +196,8 @@ class Comparison {
 
   const AnalysisContext& context_;
   const SystemState& start_;
+  AnalysisTask place_{};  // the equilibrium about which modes are
+  bool moves_ = false;    // whether there is one
   const std::vector<std::string>& names_;
   const AnalysisResult& result_;
   const ResultStorage& rows_;
