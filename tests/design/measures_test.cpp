@@ -195,6 +195,7 @@ TEST(Measures, WrongOnesAreReportedWhereTheyStand) {
     EXPECT_NE(run.outcome.errors.front().message.find(part), std::string::npos) << run.outcome.errors.front().message;
   };
   expect_error(R"({"a": §{"maxi": "crank.x"}})", "did you mean \"max\"?");
+  expect_error(R"({"a": {"max": "crank.x", "min": §"crank.x"}})", "a measure is of one kind");
   expect_error(R"({"a": {"max": §"crank.q"}})", "crank.q");
   expect_error(R"({"a": {"max": §"crank"}})", "a measure wants one column");
   expect_error(R"({§"a b": {"max": "crank.x"}})", "cannot stand in an expression");

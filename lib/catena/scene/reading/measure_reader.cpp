@@ -130,7 +130,14 @@ void AnalysisReader::read_measure(const JsonMember& member, AnalysisTask& task) 
   }
   std::optional<std::size_t> kind;
   for (std::size_t k = 0; k < kinds.size(); ++k) {
-    if (object.find(kinds[k])) kind = k;
+    const JsonValue found = object.find(kinds[k]);
+    if (!found) continue;
+    if (kind) {
+      error(found, fmt::format("measure {} has \"{}\" and \"{}\": a measure is of one kind", in_quotes(member.name()),
+                               kinds[*kind], kinds[k]));
+      return;
+    }
+    kind = k;
   }
   if (!kind) {
     const std::string_view given = object.size() > 0 ? (*object.members().begin()).name() : std::string_view();
