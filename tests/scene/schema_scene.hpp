@@ -137,12 +137,16 @@ class SchemaScene {
 
   Json object(const Json& schema, const std::string& key, int depth) {
     Json made = Json::object();
-    const std::set<std::string> required = schema.value("required", std::set<std::string>{});
+    // Of several ways to give an object the first: the others are files, which are not there.
+    const Json& demands = schema.contains("anyOf") ? schema["anyOf"][0] : schema;
+    const std::set<std::string> required = demands.value("required", std::set<std::string>{});
     const Json none = Json::object();
     const Json& properties = schema.contains("properties") ? schema["properties"] : none;
     const int most = schema.value("maxProperties", 99);
     for (const auto& [name, entry] : properties.items()) {
       if (name == "name" || name == "description" || name == "file") continue;
+      const bool of_file = name == "columns" || name == "unit" || name == "smooth";
+      if ((of_file && properties.contains("file")) || (name == "points" && required.contains("angle"))) continue;
       const bool effort = name == "until" || name == "max_steps" || name == "max_evaluations" || name == "samples";
       if (required.contains(name) || effort || (most > 1 && pick(4) == 0)) made[name] = value(entry, name, depth + 1);
     }
@@ -275,7 +279,7 @@ class SchemaScene {
     if (schema.contains("enum"))
       return schema["enum"][static_cast<std::size_t>(pick(static_cast<int>(schema["enum"].size())))];
     for (const char* several : {"anyOf", "allOf"}) {
-      if (!schema.contains(several)) continue;
+      if (!schema.contains(several) || schema.contains("properties")) continue;
       const int count = several[1] == 'n' ? static_cast<int>(schema[several].size()) : 1;
       return value(schema[several][static_cast<std::size_t>(pick(count))], key, depth);
     }

@@ -4,10 +4,10 @@
 //
 // Within a step of the integrator g is sampled on the dense output, at eight instants or more: some quarter of a radian
 // of the fastest body's turn apart, and where the samples of a column do not foretell each other (event_samples.hpp) in
-// halves. A change of sign, or a dip towards zero that a parabola through three samples takes beyond it, is enclosed and
-// the root found to rounding in t on states that meet the constraints, hence as exact as the rows of the run. A column
-// that starts at its value has no event there. A column that crosses its value twice between two samples without a
-// visible dip is missed; so may be one that no halving foretells.
+// halves. A change of sign, or a dip towards zero that a parabola through three samples takes beyond it, is enclosed
+// and the root found to rounding in t on states that meet the constraints, hence as exact as the rows of the run. A
+// column that starts at its value has no event there. A column that crosses its value twice between two samples without
+// a visible dip is missed; so may be one that no halving foretells.
 //
 // Events of the list are simultaneous if the later ones' columns are at their values, to rounding, when the first one
 // happens: they then have its instant, and come in the order of the list. Units: those of the columns, s.

@@ -15,8 +15,8 @@ std::string_view fixed_definitions() {
   {"$ref": "#/$defs/pairsOrFile"},
   {"type": "object", "additionalProperties": false, "anyOf": [{"required": ["points"]}, {"required": ["file"]}],
     "properties": {
-    "file": {"$ref": "#/$defs/file/properties/file"}, "columns": {"$ref": "#/$defs/file/properties/columns"},
-    "unit": {"$ref": "#/$defs/file/properties/unit"}, "smooth": {"$ref": "#/$defs/file/properties/smooth"},
+    "file": {"$ref": "#/$defs/fileName"}, "columns": {"$ref": "#/$defs/fileColumns"},
+    "unit": {"$ref": "#/$defs/fileUnit"}, "smooth": {"$ref": "#/$defs/fileSmooth"},
     "points": {"$ref": "#/$defs/pairsOrFile"}, "beyond": {"$ref": "#/$defs/beyond"}}}
 ]},
 "measure": {"anyOf": [
@@ -31,14 +31,16 @@ std::string_view fixed_definitions() {
     "to": {"$ref": "#/$defs/pairsOrFile"}, "timed": {"type": "boolean"}}}
 ], "description": "an extreme, value, mean or integral of a column or expression, a distance from a path, a field"},
 "outputs": {"type": "array", "items": {"type": "string"}},
+"fileName": {"type": "string", "description": "a CSV file; its path is relative to the scene's folder"},
+"fileColumns": {"type": ["array", "integer", "string"], "items": {"type": ["integer", "string"]},
+  "description": "numbers from 1, or names in the file's first line; by default the first ones"},
+"fileUnit": {"type": ["array", "string"], "items": {"type": "string"},
+  "description": "of each column, or of all; by default SI and radians"},
+"fileSmooth": {"type": ["number", "string"],
+  "description": "root mean square by which values may be moved to be smoother, in the unit of the last column"},
 "file": {"type": "object", "additionalProperties": false, "required": ["file"], "properties": {
-  "file": {"type": "string", "description": "a CSV file; its path is relative to the scene's folder"},
-  "columns": {"type": ["array", "integer", "string"], "items": {"type": ["integer", "string"]},
-    "description": "numbers from 1, or names in the file's first line; by default the first ones"},
-  "unit": {"type": ["array", "string"], "items": {"type": "string"},
-    "description": "of each column, or of all; by default SI and radians"},
-  "smooth": {"type": ["number", "string"],
-    "description": "root mean square by which values may be moved to be smoother, in the unit of the last column"}}},
+  "file": {"$ref": "#/$defs/fileName"}, "columns": {"$ref": "#/$defs/fileColumns"},
+  "unit": {"$ref": "#/$defs/fileUnit"}, "smooth": {"$ref": "#/$defs/fileSmooth"}}},
 "numbersOrFile": {"anyOf": [{"$ref": "#/$defs/numbers"}, {"$ref": "#/$defs/file"}]},
 "pairsOrFile": {"anyOf": [
   {"type": "array", "items": {"$ref": "#/$defs/pair"}}, {"$ref": "#/$defs/file"}]},
@@ -71,8 +73,8 @@ std::string_view fixed_definitions() {
     "spline": {"type": "object", "additionalProperties": false, "properties": {
       "t": {"$ref": "#/$defs/numbersOrFile"}, "value": {"$ref": "#/$defs/numbersOrFile"},
       "points": {"$ref": "#/$defs/pairsOrFile"},
-      "file": {"$ref": "#/$defs/file/properties/file"}, "columns": {"$ref": "#/$defs/file/properties/columns"},
-      "unit": {"$ref": "#/$defs/file/properties/unit"}, "smooth": {"$ref": "#/$defs/file/properties/smooth"},
+      "file": {"$ref": "#/$defs/fileName"}, "columns": {"$ref": "#/$defs/fileColumns"},
+      "unit": {"$ref": "#/$defs/fileUnit"}, "smooth": {"$ref": "#/$defs/fileSmooth"},
       "end": {"enum": ["natural", "clamped", "periodic"]}, "beyond": {"$ref": "#/$defs/beyond"}}},
     "sum": {"type": "array", "minItems": 1, "items": {"$ref": "#/$defs/function"}},
     "product": {"type": "array", "minItems": 1, "items": {"$ref": "#/$defs/function"}}}}
@@ -82,14 +84,14 @@ std::string_view fixed_definitions() {
     "centre": {"$ref": "#/$defs/pair"}, "radius": {"$ref": "#/$defs/number"}}},
   "spline": {"type": "object", "additionalProperties": false, "anyOf": [{"required": ["points"]}, {"required": ["file"]}],
     "properties": {
-    "file": {"$ref": "#/$defs/file/properties/file"}, "columns": {"$ref": "#/$defs/file/properties/columns"},
-    "unit": {"$ref": "#/$defs/file/properties/unit"}, "smooth": {"$ref": "#/$defs/file/properties/smooth"},
+    "file": {"$ref": "#/$defs/fileName"}, "columns": {"$ref": "#/$defs/fileColumns"},
+    "unit": {"$ref": "#/$defs/fileUnit"}, "smooth": {"$ref": "#/$defs/fileSmooth"},
     "points": {"$ref": "#/$defs/pairsOrFile"}, "end": {"enum": ["natural", "periodic"]},
     "beyond": {"$ref": "#/$defs/beyond"}}},
   "polar": {"type": "object", "additionalProperties": false,
     "anyOf": [{"required": ["angle", "radius"]}, {"required": ["points"]}, {"required": ["file"]}], "properties": {
-    "file": {"$ref": "#/$defs/file/properties/file"}, "columns": {"$ref": "#/$defs/file/properties/columns"},
-    "unit": {"$ref": "#/$defs/file/properties/unit"}, "smooth": {"$ref": "#/$defs/file/properties/smooth"},
+    "file": {"$ref": "#/$defs/fileName"}, "columns": {"$ref": "#/$defs/fileColumns"},
+    "unit": {"$ref": "#/$defs/fileUnit"}, "smooth": {"$ref": "#/$defs/fileSmooth"},
     "points": {"$ref": "#/$defs/pairsOrFile"},
     "angle": {"$ref": "#/$defs/numbersOrFile"}, "radius": {"$ref": "#/$defs/numbersOrFile"}}},
   "line": {"type": "object", "additionalProperties": false, "required": ["point", "axis"], "properties": {
