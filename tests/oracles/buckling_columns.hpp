@@ -23,6 +23,8 @@
 namespace catena::testing {
 
 class BucklingColumn {
+  using Real = long double;
+
  public:
   explicit BucklingColumn(unsigned seed) {
     std::mt19937 random(seed);
@@ -41,7 +43,8 @@ class BucklingColumn {
   }
 
   /// What the weights are multiplied by at x = p / unit.
-  double factor(double x) const {
+  template <class Real>
+  Real factor(Real x) const {
     switch (law_) {
       case 0:
         return x;
@@ -52,7 +55,7 @@ class BucklingColumn {
       case 3:
         return std::exp(x) - 1;
       case 4:
-        return x * x * x + 0.2 * x;
+        return x * x * x + Real(0.2) * x;
       default:
         return x / (1 + std::abs(x));
     }
@@ -80,19 +83,16 @@ class BucklingColumn {
   }
 
   /// The load nearest to the present one, of both signs; NaN: there is none within 1e4 units.
-  double nearest() const {
-    const std::vector<double> f = critical_factors();
+  Real nearest() const {
+    const std::vector<Real> f = critical_factors();
     // By a fine scan on both sides, then bisection: the factor passes one of the critical ones.
-    const auto count = [&](double x) {
-      return std::count_if(f.begin(), f.end(), [&](double v) { return v < factor(x); });
-    };
-    for (double step = 1e-3, d = step; d < 1e4; d += step, step = std::max(1e-3, 1e-3 * d)) {
-      double best = std::nan("");
-      for (const double side : {1.0, -1.0}) {
-        double a = present_ + side * (d - step), b = present_ + side * d;
+    const auto count = [&](Real x) { return std::count_if(f.begin(), f.end(), [&](Real v) { return v < factor(x); }); };
+    for (Real step = 1e-3L, d = step; d < 1e4L; d += step, step = std::max(1e-3L, 1e-3L * d)) {
+      Real best = std::nan("");
+      for (const Real side : {1.0L, -1.0L}) {
+        Real a = present_ + side * (d - step), b = present_ + side * d;
         if (count(a) == count(b)) continue;
-        for (int k = 0; k < 100; ++k)
-          (count(0.5 * (a + b)) == count(present_ + side * (d - step)) ? a : b) = 0.5 * (a + b);
+        for (int k = 0; k < 100; ++k) (count((a + b) / 2) == count(present_ + side * (d - step)) ? a : b) = (a + b) / 2;
         if (std::isnan(best) || std::abs(b - present_) < std::abs(best - present_)) best = b;
       }
       if (!std::isnan(best)) return best * unit_;
@@ -101,18 +101,20 @@ class BucklingColumn {
   }
 
  private:
-  // Makes the lowest critical factor of every column 0.9: laws with an upper bound then reach it.
-  double reduction() const { return raw_factors().front() / 0.9; }
-  std::vector<double> critical_factors() const {
-    std::vector<double> f = raw_factors();
-    const double lowest = f.front() / 0.9;
-    for (double& v : f) v /= lowest;
+  // Makes the lowest critical factor of every column about 0.9: laws with an upper bound then reach it. A double, as
+  // the model's weights are multiplied by it.
+  double reduction() const { return static_cast<double>(raw_factors().front() / 0.9L); }
+  std::vector<Real> critical_factors() const {
+    std::vector<Real> f = raw_factors();
+    const Real lowest = reduction();
+    for (Real& v : f) v /= lowest;
     return f;
   }
-  std::vector<double> raw_factors() const {
+  std::vector<Real> raw_factors() const {
+    using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
     const auto n = static_cast<Eigen::Index>(lengths_.size());
-    Eigen::MatrixXd c = Eigen::MatrixXd::Zero(n, n), d = c;
-    double above = 0;
+    Matrix c = Matrix::Zero(n, n), d = c;
+    Real above = 0;
     for (Eigen::Index k = n - 1; k >= 0; --k) {
       const auto i = static_cast<std::size_t>(k);
       above += weights_[i];
@@ -124,7 +126,7 @@ class BucklingColumn {
         c(k - 1, k) -= springs_[i];
       }
     }
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(c, d, Eigen::EigenvaluesOnly);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solver(c, d, Eigen::EigenvaluesOnly);
     return {solver.eigenvalues().data(), solver.eigenvalues().data() + n};
   }
 
@@ -139,7 +141,7 @@ inline std::string compare_buckling(unsigned seed) {
   Buckling buckling(column.model_at(column.present()), [&](double p) { return column.model_at(p); },
                     {.present = column.present(), .count = 1});
   const BucklingReport report = buckling.run();
-  const double wanted = column.nearest();
+  const auto wanted = static_cast<double>(column.nearest());
   const auto say = [&](const std::string& what) { return "seed " + std::to_string(seed) + ": " + what; };
   if (!report.ok()) return say(report.message);
   if (std::isnan(wanted)) return report.loads.empty() ? "" : say("found one where there is none near");

@@ -1,6 +1,9 @@
 // How many digits of the columns of random mechanisms are right, by their own claim and by a solution in long double:
 // the quick share of stress/digits_test.cpp, which has motions under forces as well.
+#include <random>
+
 #include "catena/analysis/stability/modes.hpp"
+#include "oracles/buckling_columns.hpp"
 #include "oracles/oscillators.hpp"
 #include "stress/driven_digits.hpp"
 #include "stress/moving_digits.hpp"
@@ -25,6 +28,33 @@ double optimism_of_modes(unsigned seed) {
   }
   const long double least = size * std::numeric_limits<double>::epsilon() / 4;
   return size > 0 ? static_cast<double>(std::max(error, least) / std::max(claimed, 2 * least)) : -1;
+}
+
+// The same of the nearest buckling load.
+double optimism_of_load(unsigned seed) {
+  const BucklingColumn column(seed);
+  Buckling buckling(column.model_at(column.present()), [&](double p) { return column.model_at(p); },
+                    {.present = column.present(), .count = 1, .errors = true});
+  const BucklingReport report = buckling.run();
+  const long double wanted = column.nearest();
+  if (!report.ok() || report.loads.empty() || std::isnan(wanted)) return -1;
+  // Of two at the same distance either is right.
+  const long double present = column.present(), found = report.loads[0];
+  const long double error = std::abs(std::abs(found - present) - std::abs(wanted - present));
+  const long double least = std::abs(wanted) * std::numeric_limits<double>::epsilon() / 4;
+  const long double claimed = std::max<long double>(report.errors[0], 2 * least);
+  return std::isnan(report.errors[0]) ? -1 : static_cast<double>(std::max(error, least) / claimed);
+}
+
+/// Prints them; never more than ten, and a hundredth at the median.
+void expect_optimism(const char* title, std::vector<double> optimism, std::size_t least) {
+  std::erase_if(optimism, [](double o) { return o < 0; });
+  ASSERT_GE(optimism.size(), least);
+  std::sort(optimism.begin(), optimism.end());
+  std::printf("%s: true / claimed error %.3g (most), %.3g (median)\n", title, optimism.back(),
+              optimism[optimism.size() / 2]);
+  EXPECT_LE(optimism.back(), 10);
+  EXPECT_GE(optimism[optimism.size() / 2], 0.01);
 }
 
 template <class Add>
@@ -90,18 +120,66 @@ TEST(ClaimedDigits, AreNoneOfWhatGoesOnFromAMotion) {
   }
 }
 
+/// A disc that turns after a function of time, by a driver or a torque, until w t = phase; columns as they are exact.
+struct TimedDisc {
+  double omega, until, phase;
+  bool driven;
+
+  TextRun run() const {
+    Json scene = {{"catena", 1},
+                  {"bodies", {{"disc", {{"mass", 1}, {"inertia", 2}, {"points", {{"rim", {1, 0}}}}}}}},
+                  {"constraints", {{{"type", "revolute"}, {"i", {"ground", {0, 0}}}, {"j", {"disc", {0, 0}}}}}},
+                  {"outputs", {"disc.rim.x", "disc.alpha"}}};
+    const Json wave = {{"harmonic", {{"amplitude", 1}, {"omega", omega}}}};
+    if (driven) {
+      scene["drivers"] = Json::array({{{"type", "absolute_angle"}, {"i", "disc"}, {"value", wave}}});
+      scene["analyses"] = Json::array({{{"type", "inverse_dynamics"}, {"until", until}, {"every", until / 7}}});
+    } else {
+      scene["forces"] = Json::array({{{"type", "torque"}, {"i", "disc"}, {"torque", wave}}});
+      scene["analyses"] =
+          Json::array({{{"type", "dynamics"}, {"until", until}, {"every", until / 7}, {"tolerance", 1e-6}}});
+    }
+    return run_text(scene.dump());
+  }
+  long double alpha(double t) const {
+    const long double w = omega, sine = std::sin(w * t);
+    return driven ? -w * w * sine : sine / 2;
+  }
+};
+
+// A function of time is known to the rounding of its argument: of w t = 1e4 four digits are lost.
+TEST(ClaimedDigits, CountTheRoundingOfTime) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> part(0.5, 1);
+  for (const bool driven : {true, false}) {
+    ClaimedDigits claims;
+    for (const double phase : {1e2, 1e3, 1e4}) {
+      for (int k = 0; k < 8; ++k) {
+        TimedDisc disc{.omega = 300 * part(random), .until = 0, .phase = phase * part(random), .driven = driven};
+        disc.until = disc.phase / disc.omega;
+        const TextRun run = disc.run();
+        ASSERT_TRUE(run.analysis().report.ok()) << run.analysis().report.message;
+        ASSERT_EQ(run.analysis().digits.size(), 3u);
+        std::vector<long double> alpha;
+        for (const double t : run.column("t")) alpha.push_back(disc.alpha(t));
+        claims.add(run, "disc.alpha", alpha, "w t = " + std::to_string(disc.phase));
+        EXPECT_LT(run.analysis().digits[2], 16.5 - std::log10(disc.phase)) << driven;
+        EXPECT_GT(run.analysis().digits[2], 14 - std::log10(disc.phase)) << driven;
+      }
+    }
+    claims.expect(driven ? "driven by functions of late times" : "under loads of late times");
+  }
+}
+
 TEST(ClaimedDigits, HoldOfOscillations) {
   std::vector<double> optimism;
-  for (unsigned seed = 1; seed <= 300; ++seed) {
-    const double of_one = optimism_of_modes(seed);
-    if (of_one >= 0) optimism.push_back(of_one);
-  }
-  ASSERT_GE(optimism.size(), 200u);
-  std::sort(optimism.begin(), optimism.end());
-  std::printf("modes: true / claimed error %.3g (most), %.3g (median)\n", optimism.back(),
-              optimism[optimism.size() / 2]);
-  EXPECT_LE(optimism.back(), 10);
-  EXPECT_GE(optimism[optimism.size() / 2], 0.01);
+  for (unsigned seed = 1; seed <= 300; ++seed) optimism.push_back(optimism_of_modes(seed));
+  expect_optimism("modes", optimism, 200);
+}
+TEST(ClaimedDigits, HoldOfBucklingLoads) {
+  std::vector<double> optimism;
+  for (unsigned seed = 1; seed <= 300; ++seed) optimism.push_back(optimism_of_load(seed));
+  expect_optimism("buckling", optimism, 150);
 }
 
 TEST(ClaimedDigits, HoldAtRest) { expect_claims("at rest", 40, 5, add_resting_digits); }

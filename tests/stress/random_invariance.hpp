@@ -107,6 +107,20 @@ inline std::string fault_in_other_units(unsigned seed, std::map<std::string, int
   return compare(seed, c, TransformedScene(c.random.scene, t).scene(), t, 0, "units", seen);
 }
 
+/// With bodies, constraints and forces in another order. Which of equal ways is taken may depend on it; places may not.
+inline std::string fault_in_other_order(unsigned seed, std::map<std::string, int>& seen) {
+  InvarianceCase c(seed);
+  std::mt19937 random(seed);
+  Json other = c.random.scene, bodies = Json::object();
+  for (const char* list : {"constraints", "forces"}) std::shuffle(other[list].begin(), other[list].end(), random);
+  std::vector<std::string> names;
+  for (const auto& [name, body] : other["bodies"].items()) names.push_back(name);
+  std::shuffle(names.begin(), names.end(), random);
+  for (const std::string& name : names) bodies[name] = other["bodies"][name];
+  other["bodies"] = bodies;
+  return compare(seed, c, other, {}, 1e-8, "order", seen);
+}
+
 /// Part of the cases that ended `ok` in which no places were compared, as another place of rest was found.
 inline double part_not_compared(const std::map<std::string, int>& seen) {
   const auto count = [&](const char* what) { return seen.contains(what) ? seen.at(what) : 0; };

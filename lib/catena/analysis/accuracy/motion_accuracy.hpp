@@ -1,7 +1,7 @@
 // How many digits of the columns of a motion are right, of one run: from the error that is carried along with it
 // (carried_error.hpp).
 //
-//   e = 2.6 max (|c(y + e + r) - c(y)|, |c(y + e - r) - c(y)|) / s + 4 eps |c|        largest of the rows looked at
+//   e = 2.3 max (|c(y + e + r) - c(y)|, |c(y + e - r) - c(y)|) / s + 4 eps |c|        largest of the rows looked at
 //
 // r: at random, 0.2 of the largest part of e in every coordinate and the rounding of places and rates, as far as the
 // constraints allow it: the error that is carried has a direction that is right by its size only. With functions of

@@ -227,6 +227,7 @@ Report Buckling::find(BucklingReport& report, const std::function<bool()>& go_on
     report.warnings.emplace_back(moved_by_load);
   }
   check_gaps(report);
+  if (options_.errors) find_errors(report);
   if (static_cast<int>(report.loads.size()) < options_.count) {
     report.warnings.push_back(fmt::format("there are only {} such values", report.loads.size()));
   }

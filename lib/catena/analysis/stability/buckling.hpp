@@ -34,6 +34,7 @@ namespace catena {
 struct BucklingOptions {
   double present = 0;  ///< value p0 of the parameter
   int count = 1;
+  bool errors = false;  ///< whether to tell what rounding makes of the loads; not of those without an energy
 };
 
 struct BucklingReport : AnalysisReport {
@@ -43,6 +44,7 @@ struct BucklingReport : AnalysisReport {
   };
   std::vector<double> loads;                ///< values of the parameter, nearest to the present one first
   std::vector<std::vector<double>> shapes;  ///< over columns; the largest turning or displacement is 1 rad or m
+  std::vector<double> errors;               ///< of the loads, if they are wanted; not a number: not known
   std::vector<double> flutter;              ///< loads of flutter
   bool flutter_sought = false;              ///< with the masses that it depends on
   std::vector<Critical> critical;           ///< of both kinds, nearest first, as the shapes; only without an energy
@@ -93,6 +95,7 @@ class Buckling {
   Report place_load(double p, std::vector<double>& lambda);
   /// Divergence and flutter, to the report.
   Report find_without_energy(BucklingReport& report, const std::function<bool()>& go_on);
+  void find_errors(BucklingReport& report);
   Report not_stable() const;
   /// Loads by the difference of K between p0 and p0 + step.
   Report find_with(double step, int count, std::vector<Load>& loads, double& effect,

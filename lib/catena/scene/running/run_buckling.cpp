@@ -9,6 +9,7 @@
 #include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/sensitivity/spectrum/spectrum_derivatives.hpp"
 #include "catena/analysis/stability/buckling.hpp"
+#include "catena/columns/column_errors.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 #include "catena/scene/running/drawn_shapes.hpp"
 #include "catena/scene/running/shape_columns.hpp"
@@ -74,6 +75,19 @@ void leave_out_derivatives(const AnalysisContext& context, const BucklingReport&
     set_field_gradient(context, result, "flutter", static_cast<int>(k) + 1, none, trouble);
 }
 
+/// Of the loads; shapes claim nothing.
+std::vector<double> digits_of(const BucklingReport& report, std::size_t columns) {
+  if (report.errors.empty()) return {};
+  ColumnErrors errors(columns);
+  std::vector<double> row(columns, 0.0);
+  for (std::size_t k = 0; k < report.errors.size(); ++k) {
+    row[0] = report.loads[k];
+    errors.take_row(row);
+    errors.take_error(0, report.errors[k]);
+  }
+  return errors.digits();
+}
+
 /// One row a load, with its shape if outputs are named; the columns, and how many rows were given.
 std::int64_t give_rows(AnalysisContext& context, Buckling& analysis, BucklingReport& report,
                        std::vector<ColumnInfo>& info) {
@@ -110,6 +124,7 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result) {
   BucklingOptions options;
   options.present = task.parameters.at(static_cast<std::size_t>(parameter));
   options.count = static_cast<int>(task.number("count", 1));
+  options.errors = context.digits && !context.design;
   SystemState start = context.state;
   start.t = frozen_time(context);
   if (const std::string why = trouble_with_one_sided(context, start); !why.empty()) return refuse(result, why);
@@ -138,6 +153,7 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result) {
   }
   if (!analysis.plan().gap_rows.empty()) result.fields.push_back({"active", report.active});
   result.report = report;
+  if (report.ok()) result.digits = digits_of(report, info.size());
   take_rows(result, std::move(info), rows);
   add_field_measures(context, result);
   if (!context.design || !report.ok()) return;

@@ -1,0 +1,50 @@
+// What rounding makes of a buckling load: from the stiffness along its shape that cannot be told from zero, and from
+// how fast the load changes it.
+//
+//   dP = part floor(v) / |v^T dK/dp v| + located |P - p0|
+#include <cmath>
+#include <limits>
+
+#include "catena/analysis/stability/buckling.hpp"
+
+namespace catena {
+namespace {
+
+// Of the floor, a bound of rounding. With it claims of 300 random columns were optimistic by 2.9 at most, pessimistic by
+// 80 at the median.
+constexpr double usual_part = 0.006;
+// In parts of a load's distance: what the search leaves of it, which ends at a bracket of 1e-14 but mostly hits the root
+// before; and Lanczos' method.
+constexpr double located = 2e-15, refined = 1e-12;
+// Parts of the distance by which the parameter is moved to see how the stiffness changes.
+constexpr double aside = 1e-4;
+
+}  // namespace
+
+void Buckling::find_errors(BucklingReport& report) {
+  const Counters counted = evaluator_.counters;
+  KktMatrix matrix(plan_, system_.radius());
+  std::vector<double> product(static_cast<std::size_t>(plan_->columns)), lambda;
+  for (std::size_t k = 0; k < report.loads.size(); ++k) {
+    const std::vector<double>& v = report.shapes[k];
+    const double load = report.loads[k], distance = std::abs(load - options_.present);
+    const auto stiffness = [&](double p) {
+      if (!stiffness_at(p, matrix).ok()) return std::numeric_limits<double>::quiet_NaN();
+      matrix.multiply_stiffness(v, product);
+      double sum = 0;
+      for (std::size_t c = 0; c < product.size(); ++c) sum += v[c] * product[c];
+      return sum;
+    };
+    const double slope =
+        (stiffness(load + aside * distance) - stiffness(load - aside * distance)) / (2 * aside * distance);
+    double error = std::numeric_limits<double>::quiet_NaN();
+    if (place_load(load, lambda).ok()) {
+      const StiffnessFloor floor(system_, lambda, 0);
+      error = usual_part * floor(v) / std::abs(slope) + (groups_->are_small() ? located : refined) * distance;
+    }
+    report.errors.push_back(error);
+  }
+  evaluator_.counters = counted;
+}
+
+}  // namespace catena
