@@ -142,8 +142,8 @@ void add_bench_command(CLI::App& app, Action& chosen) {
   const auto parsed = std::make_shared<BenchCommand>();
   command->add_option(
       "SUITE", parsed->suites,
-      "kinematics, dynamics, contact, equilibrium, design, kernels, scaling, economy, or all, which is meant "
-      "where none is named");
+      "kinematics, dynamics, contact, equilibrium, design, kernels, scaling, economy, digits, or all, which is "
+      "meant where none is named");
   command->add_option("--json", parsed->json, "write the rows to this file")->type_name("FILE");
   command->add_option("--html", parsed->html, "write a page with the rows and their plots")->type_name("FILE");
   command->add_option("--svg", parsed->svg, "write the plots alone into this folder")->type_name("DIR");

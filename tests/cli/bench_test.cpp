@@ -161,6 +161,7 @@ double largest_error(const json& row) {
   if (suite == "equilibrium") return 1e-9;
   if (suite == "scaling") return 1e-6;
   if (suite == "kernels") return 1e-10;
+  if (suite == "digits") return 1e-5;  // at tolerances from 1e-7 on and condition numbers up to 1e5
   return 1e-6;
 }
 
@@ -203,7 +204,7 @@ TEST(Bench, BriefRunOfAllSuitesIsRight) {
     EXPECT_LE(row.at("error"), largest_error(row)) << name;
   }
   for (const char* suite :
-       {"kinematics", "dynamics", "contact", "equilibrium", "design", "kernels", "scaling", "economy"})
+       {"kinematics", "dynamics", "contact", "equilibrium", "design", "kernels", "scaling", "economy", "digits"})
     EXPECT_GE(rows[suite], 4) << suite;
   // The page holds the plots, which name what they clip to differently.
   const std::string page = read_file(folder / "b.html");
@@ -213,6 +214,8 @@ TEST(Bench, BriefRunOfAllSuitesIsRight) {
   EXPECT_EQ(page.find("id=\"clip1\""), std::string::npos);
   expect_said(read_file(folder / "plots/dynamics_car_axis.svg"), "partitioning");
   expect_said(read_file(folder / "plots/scaling_time.svg"), "accelerations");
+  expect_said(read_file(folder / "plots/digits_claimed.svg"), "pendulums");
+  expect_said(read_file(folder / "plots/digits_condition.svg"), "acceleration, claimed");
 }
 
 TEST(Bench, CountsShowWhatIsLeftOut) {

@@ -51,6 +51,17 @@ class FigureMaker {
     lines[k].x.push_back(x);
     lines[k].y.push_back(y);
   }
+  /// A dot that no line leads to.
+  void add_dot(const std::string& line, double x, double y) {
+    add(line, x, y);
+    std::vector<PlotLine>& lines = plot_.panels.front().lines;
+    if (lines.empty() || !(x > 0) || !(y > 0)) return;
+    for (PlotLine& l : lines) {
+      if (l.name != line) continue;
+      l.x.push_back(x);
+      l.y.push_back(not_measured);  // a gap
+    }
+  }
   void rename(const std::string& line, const std::string& name) {
     for (PlotLine& l : plot_.panels.front().lines) {
       if (l.name == line) l.name = name;
@@ -128,12 +139,43 @@ void growth(const Document& document, std::vector<Figure>& figures) {
   memory.append_to(figures);
 }
 
+double count_of(const Row& row, std::string_view name) {
+  for (const auto& [of, value] : row.counts) {
+    if (of == name) return value;
+  }
+  return not_measured;
+}
+
+void claims(const Document& document, std::vector<Figure>& figures) {
+  FigureMaker scatter("digits_claimed", "Errors that columns claim over those that they have, relative", "true error",
+                      "", "claimed error", "");
+  FigureMaker sweep("digits_condition", "Error over the condition number: a slider-crank near its dead point",
+                    "condition number", "", "error, relative", "");
+  bool any = false;
+  for (const Row& row : document.rows) {
+    if (row.suite != "digits" || !shown(row)) continue;
+    any = true;
+    const double claimed = count_of(row, "claimed"), condition = count_of(row, "condition");
+    scatter.add_dot(row.problem, row.error, claimed);
+    sweep.add(row.method, condition, row.error);
+    sweep.add(row.method + ", claimed", condition, claimed);
+  }
+  if (!any) return;
+  for (const double error : {1e-16, 1e-3}) {
+    scatter.add("claim = truth", error, error);
+    scatter.add("ten times optimistic", error, error / 10);
+  }
+  scatter.append_to(figures);
+  sweep.append_to(figures);
+}
+
 }  // namespace
 
 std::vector<Figure> figures_of(const Document& document) {
   std::vector<Figure> figures;
   work_precision(document, figures);
   growth(document, figures);
+  claims(document, figures);
   return figures;
 }
 

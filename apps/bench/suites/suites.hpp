@@ -15,6 +15,7 @@ void equilibrium_suite(Bench& bench);  ///< hanging chains by every solver, smal
 void design_suite(Bench& bench);       ///< gradients and searches against closed forms
 void kernels_suite(Bench& bench);      ///< accelerations, Jacobians, plans, factorizations: a body
 void scaling_suite(Bench& bench);      ///< 10 ... 10^6 bodies, with fitted slopes
+void digits_suite(Bench& bench);       ///< digits that columns claim, beside those that are right
 void economy_suite(Bench& bench);      ///< what a scene does not need, and proof that the answer is the full one
 
 struct Suite {
@@ -22,13 +23,14 @@ struct Suite {
   void (*run)(Bench&);
 };
 
-inline constexpr std::array<Suite, 8> suites{{{"kinematics", kinematics_suite},
+inline constexpr std::array<Suite, 9> suites{{{"kinematics", kinematics_suite},
                                               {"dynamics", dynamics_suite},
                                               {"contact", contact_suite},
                                               {"equilibrium", equilibrium_suite},
                                               {"design", design_suite},
                                               {"kernels", kernels_suite},
                                               {"scaling", scaling_suite},
-                                              {"economy", economy_suite}}};
+                                              {"economy", economy_suite},
+                                              {"digits", digits_suite}}};
 
 }  // namespace bench

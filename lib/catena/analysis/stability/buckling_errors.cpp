@@ -10,11 +10,11 @@
 namespace catena {
 namespace {
 
-// Of the floor, a bound of rounding. With it claims of 300 random columns were optimistic by 2.9 at most, pessimistic by
-// 80 at the median.
+// Of the floor, a bound of rounding. With it claims of 300 random columns were optimistic by 2.9 at most, pessimistic
+// by 80 at the median.
 constexpr double usual_part = 0.006;
-// In parts of a load's distance: what the search leaves of it, which ends at a bracket of 1e-14 but mostly hits the root
-// before; and Lanczos' method.
+// In parts of a load's distance: what the search leaves of it, which ends at a bracket of 1e-14 but mostly hits the
+// root before; and Lanczos' method.
 constexpr double located = 2e-15, refined = 1e-12;
 // Parts of the distance by which the parameter is moved to see how the stiffness changes.
 constexpr double aside = 1e-4;
