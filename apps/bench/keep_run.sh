@@ -29,10 +29,10 @@ python3 - "$work/all.json" $((SECONDS - start)) <<'PYTHON'
 import datetime, json, re, sys
 run, seconds = json.load(open(sys.argv[1])), int(sys.argv[2])
 machine, day = run["machine"], datetime.date.fromisoformat(run["date"][:10])
-others = sorted({row["engine"] for row in run["rows"]} - {"catena"})
+others = sorted({row["engine"] for row in run["rows"]} - {"catena", "closed form by hand"})
 sentence = (f"{len(run['rows'])} rows in {seconds / 60:.1f} minutes\non {day.day} {day:%B %Y}, on {machine['cores']} cores of "
-            f"an {machine['cpu']} ({machine['compiler']}, load {machine['load']:.1f}), beside {len(others)} others: "
-            f"{', '.join(others) or 'none'};")
+            f"an {machine['cpu']} ({machine['compiler']}, load {machine['load']:.1f}), "
+            f"beside {', '.join(others) or 'no other engine'};")
 text = open("README.md").read()
 text, places = re.subn(r"(kept in \[data/bench/all\.json\]\(data/bench/all\.json\): )[^;]*;", lambda m: m[1] + sentence, text)
 if places != 1:
