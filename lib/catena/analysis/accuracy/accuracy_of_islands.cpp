@@ -36,11 +36,11 @@ class AccuracyOfIslands::Part final : public RowObserver {
   /// Adds its errors to those of all columns, which are below zero where none is known yet.
   void add_errors(const AnalysisReport& report, std::span<const ColumnInfo> all, std::span<double> errors) {
     const ColumnErrors* known = accuracy_ ? accuracy_->errors(report) : nullptr;
-    for (const std::size_t k : in_all_) {
-      double error = std::numeric_limits<double>::quiet_NaN();
-      for (std::size_t own = 0; known && own < values_.size(); ++own) {
-        if (columns_->info()[own].name == all[k].name) error = known->error(own);
-      }
+    // Both lists have one order.
+    for (std::size_t own = 0; own < in_all_.size(); ++own) {
+      const std::size_t k = in_all_[own];
+      const bool same = known && own < values_.size() && columns_->info()[own].name == all[k].name;
+      const double error = same ? known->error(own) : std::numeric_limits<double>::quiet_NaN();
       errors[k] = errors[k] < 0 ? error : errors[k] + error;
     }
   }

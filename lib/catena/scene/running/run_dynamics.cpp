@@ -258,7 +258,9 @@ void DynamicsTask::run_with_events_or_pauses() {
 void DynamicsTask::run_apart(const std::vector<std::vector<int>>& classes) {
   DynamicsOfIslands analysis(model_, plan_options(*model_, names_), used_options_, classes);
   run_over_time(context_, result_, analysis, *grid_, names_, sources, [&](AnalysisRows& rows) {
-    if (context_.digits) rows.judge(std::make_unique<AccuracyOfIslands>(analysis, rows.columns(), sources));
+    // Each mechanism with contacts is a class of its own, and there may be thousands.
+    if (context_.digits && !touches_)
+      rows.judge(std::make_unique<AccuracyOfIslands>(analysis, rows.columns(), sources));
   });
   add_singular_points(result_, analysis.singular_points(), *model_);
   std::string methods;
