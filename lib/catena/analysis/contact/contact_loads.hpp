@@ -56,6 +56,11 @@ class ContactLoads final : public StateLoads {
   bool dissipates() const override { return dissipates_; }
   std::string trouble() const override { return trouble_; }
 
+  /// After complete(), where multipliers are not unique: what presses and sticks is that of `lambda`, as good as those
+  /// of the accelerations. Friction that slides depends on what presses: then nothing is changed.
+  void take_share(std::span<const double> lambda) {
+    if (coupled_.empty()) finish(lambda);
+  }
   /// After complete(): what point k presses with, its friction, its slip.
   double normal(std::size_t k) const { return normal_[k]; }
   double friction(std::size_t k) const { return friction_[k]; }

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 
+#include "catena/analysis/contact/several_states.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -80,6 +81,7 @@ void ContactSwitch::take_over(const ContactSwitch& earlier) {
   bounced_at_ = earlier.bounced_at_;
   flight_ = earlier.flight_;
   other_laws_ = earlier.other_laws_;
+  several_states_ = earlier.several_states_;
   left_at_ = earlier.left_at_;
 }
 
@@ -392,8 +394,10 @@ Report ContactSwitch::choose_among(double t, std::span<const double> qd, std::ve
   if (cause.shares) prefer_giving_way(problem, states, cause);
   if (Report pressed = press_joints(t, qd, loads, problem); !pressed.ok())
     return is_jammed(true) ? blocked(t, active_) : pressed;
+  if (!cause.shares) stick_where_possible(problem);
   if (const std::vector<std::size_t> pushed = pushed_through(t, problem, cause); !pushed.empty())
     return blocked(t, pushed);
+  if (!cause.shares) note_other_states(t, problem);
   for (std::size_t a = 0; a < active_.size(); ++a) {
     const std::size_t k = active_[a];
     const bool grip = points_[k].kind == ContactKind::grip;

@@ -103,6 +103,13 @@ class ContactSwitch {
     int element = -1;  ///< that was hit then
   };
   const OtherLaws& other_laws() const { return other_laws_; }
+  /// Decisions at which other states of friction would have fitted as well (several_states.hpp).
+  struct SeveralStates {
+    int times = 0;
+    double first = 0;    ///< instant of the first of them, s
+    std::string states;  ///< those that were taken then, and others
+  };
+  const SeveralStates& several_states() const { return several_states_; }
   /// What happened since this was called last.
   std::vector<ContactEvent> take_events() { return std::move(events_); }
 
@@ -135,6 +142,8 @@ class ContactSwitch {
                 const Cause& cause);
   Report choose_among(double t, std::span<const double> qd, std::vector<ContactState>& states, const Cause& cause,
                       const ContactLoads& loads);
+  void note_other_states(double t, const ContactProblem& problem);
+  std::string describe(const std::vector<ContactProblem::State>& states, const std::vector<int>& directions) const;
   void let_leave(double t, std::vector<ContactState>& states, const Cause& cause);
   void set_up(ContactProblem& problem, const Cause& cause) const;
   void prefer_giving_way(ContactProblem& problem, const std::vector<ContactState>& states, const Cause& cause) const;
@@ -179,6 +188,7 @@ class ContactSwitch {
   std::vector<double> load_, nothing_, qdd_;
   std::vector<SharedForces> shared_;
   OtherLaws other_laws_;
+  SeveralStates several_states_;
   std::vector<ContactEvent> events_;
 };
 

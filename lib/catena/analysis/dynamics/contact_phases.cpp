@@ -239,6 +239,15 @@ std::string ContactPhases::remark_on_impacts() const {
       what, contacts_.model->element_name(laws.element), laws.first);
 }
 
+std::string ContactPhases::remark_on_states() const {
+  if (!switch_ || switch_->several_states().times == 0) return {};
+  const ContactSwitch::SeveralStates& several = switch_->several_states();
+  return fmt::format(
+      "at t = {:.9g} s{} friction leaves open what moves, as it is larger at rest (mu_static) than in motion (mu); "
+      "taken: {}. Both meet all equations; give equal coefficients, or let the load grow from where all is at rest",
+      several.first, several.times > 1 ? fmt::format(" and {} times later", several.times - 1) : "", several.states);
+}
+
 bool ContactPhases::shares(std::size_t k) const {
   return std::any_of(switch_->shared().begin(), switch_->shared().end(), [k](const SharedForces& forces) {
     return std::find(forces.places().begin(), forces.places().end(), k) != forces.places().end();

@@ -66,6 +66,8 @@ class ContactPhases {
   const std::optional<VelocityJump>& jump() const { return switch_->jump(); }
   /// What impacts made of restitutions, for the report; empty: what was asked for.
   std::string remark_on_impacts() const;
+  /// Whether friction left open what moves; empty: it did not.
+  std::string remark_on_states() const;
   /// How far ropes are wound at a place of the present phase.
   std::vector<RopeTurns> turns(const SystemState& state) const {
     return ropes_ ? ropes_->turns(state) : std::vector<RopeTurns>();

@@ -106,6 +106,7 @@ class Dynamics {
   Report prepare(std::vector<std::string>& warnings);
   std::unique_ptr<Integrator> make_integrator(const Motion& motion, double horizon) const;
   void look_for_singularity(double t);
+  std::string near_branches();
   std::optional<SingularPoint> dead_point_ahead();
   double time_to_dead_point(std::span<const double> w, std::vector<double>& q);
   void give_row_at_lock_up(RowObserver& observer);

@@ -150,11 +150,15 @@ Report Dynamics::check_pace(double last) {
     culprit = fmt::format(" the error of body \"{}\" asks for short ones;",
                           model_->body_name(plan_->model_body[at(integrator_->culprit() / 3)]));
   }
-  report.message = fmt::format(
-      "{} steps led to t = {:.12g} s, {} than max_steps = {} are needed at this pace;{} likely cause: masses, "
-      "stiffnesses or damping of very different sizes, or a tolerance near rounding; give a larger tolerance or "
-      "max_steps",
-      steps - pace_.first_step, t_, hopeless ? "many more" : "more", options_.max_steps, culprit);
+  std::string cause = near_branches();
+  if (cause.empty()) {
+    cause =
+        "masses, stiffnesses or damping of very different sizes, or a tolerance near rounding; give a larger tolerance "
+        "or max_steps";
+  }
+  report.message =
+      fmt::format("{} steps led to t = {:.12g} s, {} than max_steps = {} are needed at this pace;{} likely cause: {}",
+                  steps - pace_.first_step, t_, hopeless ? "many more" : "more", options_.max_steps, culprit, cause);
   return report;
 }
 

@@ -90,8 +90,10 @@ std::optional<Snapshot> Dynamics::state_at(double t) {
     const std::span<double> slope(row_.slope);
     if (!equations_.accelerations(t, Side::after, y.first(n), y.subspan(n, n), slope.subspan(n, n))) return {};
     look_for_singularity(t);
+    const bool shares = attached_.contacts && equations_.is_dependent();
+    if (run_.needs.multipliers || shares) find_multipliers();
+    if (shares) attached_.contacts->take_share(row_.lambda);
     if (attached_.contacts) attached_.contacts->scatter(row_.contact_loads);
-    if (run_.needs.multipliers) find_multipliers();
   } else {
     evaluator_.set_time(t);
     evaluator_.set_configuration(y.first(n));
@@ -175,6 +177,7 @@ Report Dynamics::stuck() {
     cause = fmt::format("a singular configuration: {} \"{}\" depends on other constraints there",
                         model_->element_type(element), model_->element_name(element));
   }
+  if (std::string branches = near_branches(); !branches.empty()) cause = std::move(branches);
   report.message =
       fmt::format("no step can be made at t = {:.12g} s: {}; likely cause: {}", integrator_->time(), where, cause);
   return report;

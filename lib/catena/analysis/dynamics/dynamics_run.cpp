@@ -158,7 +158,10 @@ Report Dynamics::step(RowObserver& observer) {
   if (!integrator_->advance(limit)) return stuck();
   const double before = t_;
   t_ = integrator_->time();
-  if (attached_.follower) attached_.follower->step(*integrator_, equations_);
+  if (attached_.follower) {
+    if (integrator_->straight_passages() > 0) attached_.follower->jump();
+    attached_.follower->step(*integrator_, equations_);
+  }
   singular_.follow_step();
   redundant_.follow(integrator_->state().first(q_.size()));
   if (!observer.proceed(t_)) return cancelled(t_);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/dynamics/integrators/branch_keeping.hpp"
 #include "catena/analysis/pose/scaling.hpp"
 
 namespace catena {
@@ -25,6 +26,19 @@ void Dynamics::look_for_singularity(double t) {
   if (!singular_.look(t, y.first(n), y.subspan(n, n), slope.subspan(n, n))) return;
   if (singular_.has_names() || !run_.needs.multipliers) return;
   if (MinimumNorm* least = reactions_.factorize(evaluator_)) singular_.name(least->name_ambiguous());
+}
+
+// What holds steps up where the motion has come to a place at which two branches nearly meet; else empty.
+std::string Dynamics::near_branches() {
+  if (!BranchKeeping::judges(equations_)) return {};
+  evaluator_.set_time(integrator_->time());
+  const double gap = BranchKeeping(equations_).narrow_gap(equations_, integrator_->state().first(q_.size()));
+  if (gap == 0) return {};
+  return fmt::format(
+      "two branches of the motion that pass each other here at a distance of {:.2g} rad or length scales, nearer than "
+      "steps can tell apart at a tolerance of {:.3g}: give dimensions that agree exactly or differ by 1e-9 and more, "
+      "or a larger tolerance",
+      gap, options_.tolerance);
 }
 
 // Whether the motion starts at such an instant; it then knows its first slope. The integrator was started, and the

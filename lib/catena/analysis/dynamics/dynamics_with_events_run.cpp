@@ -86,8 +86,9 @@ bool DynamicsWithEvents::go_on(std::int64_t rows, RowObserver& observer) {
 AnalysisReport DynamicsWithEvents::end() {
   if (run_.in_phase) take_report();
   run_.over = true;
-  if (std::string remark = contacts_.remark_on_impacts(); !remark.empty())
-    run_.total.warnings.push_back(std::move(remark));
+  for (const std::string& remark : {contacts_.remark_on_impacts(), contacts_.remark_on_states()}) {
+    if (!remark.empty()) run_.total.warnings.push_back(remark);
+  }
   return std::move(run_.total);
 }
 

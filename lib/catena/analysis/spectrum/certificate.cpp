@@ -250,7 +250,8 @@ class Certifier {
     KktMatrix& matrix = system_.matrix();
     if (std::optional<FreeMotions> free = find_free_motions(system_, lambda_, neutral_part)) {
       result_.negative_modes = free->negative;
-      result_.neutral_modes = std::max(free->count, result_.neutral_modes);
+      // Beside negative modes the softest one of regularised equations says nothing.
+      result_.neutral_modes = free->negative > 0 ? free->count : std::max(free->count, result_.neutral_modes);
       result_.neutral = result_.neutral_modes > 0;
       result_.free_bodies = std::move(free->bodies);
       if (free->negative > 0) {

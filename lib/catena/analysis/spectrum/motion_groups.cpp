@@ -1,9 +1,7 @@
 #include "catena/analysis/spectrum/motion_groups.hpp"
 
 #include <Eigen/QR>
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "catena/analysis/pose/jacobian_rank.hpp"
 #include "catena/base/at.hpp"
@@ -14,10 +12,6 @@ namespace {
 
 // Columns up to which dense algebra takes about a second whatever the freedoms.
 constexpr int most_columns = 2000;
-// Parts of the uncancelled stiffness that rounding may leave. Multipliers come from solutions refined to 1e-15 or so of
-// the largest; a value below a few hundred of these roundings cannot be distinguished from zero. Of coordinates far
-// from the origin the last digits are unknown.
-constexpr double stiffness_rounding = 2e-13, place_rounding = 4 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -131,116 +125,6 @@ void reduce_stiffness(const KktMatrix& matrix, const MotionGroup& group, std::ve
   }
   reduced.resize(static_cast<std::size_t>(f * f));
   Eigen::Map<Eigen::MatrixXd>(reduced.data(), f, f).noalias() = rows.transpose() * product;
-}
-
-namespace {
-
-// Calls f(a, b, K_ab) for every pair of moving coordinates in the stiffness of every element, forces and constraints.
-template <class F>
-void visit_entries(Evaluator& evaluator, std::span<const double> lambda, F&& f) {
-  const int coordinates = 3 * evaluator.plan().moving;
-  const auto element = [&](int body_i, int body_j, const auto& matrix) {
-    const int body[2] = {body_i, body_j};
-    for (int r = 0; r < 6; ++r) {
-      for (int c = 0; c < 6; ++c) {
-        const int row = 3 * body[r / 3] + r % 3, column = 3 * body[c / 3] + c % 3;
-        if (std::min(row, column) >= 0 && std::max(row, column) < coordinates) f(row, column, matrix[at(6 * r + c)]);
-      }
-    }
-  };
-  evaluator.visit_stiffness({}, element);
-  evaluator.visit_constraint_hessians(lambda, element);
-}
-
-}  // namespace
-
-std::vector<double> body_arms(StaticSystem& system, std::span<const double> lambda) {
-  const Plan& plan = system.plan();
-  std::vector<double> travel(at(plan.rows), 0.0), turning(at(plan.moving), 0.0), pushing(turning), arms(turning);
-  // Constraints: the distance from the body's origin to the point that they hold.
-  for (const bool turns : {false, true}) {
-    for (int c = 0; c < plan.columns; ++c) {
-      const int coordinate = plan.coordinate[at(c)];
-      if ((coordinate % 3 == 2) != turns) continue;
-      for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k) {
-        const double entry = std::abs(system.jacobian()[at(k)]);
-        double& moved = travel[at(plan.jacobian.row_index[at(k)])];
-        if (!turns) moved = std::max(moved, entry);
-        if (turns && moved > 0) arms[at(coordinate / 3)] = std::max(arms[at(coordinate / 3)], entry / moved);
-      }
-    }
-  }
-  // Forces: the same, from the stiffness against both.
-  visit_entries(system.evaluator(), lambda, [&](int row, int column, double value) {
-    if (row != column) return;
-    double& most = (row % 3 == 2 ? turning : pushing)[at(row / 3)];
-    most = std::max(most, std::abs(value));
-  });
-  for (std::size_t b = 0; b < arms.size(); ++b) {
-    if (!(arms[b] > 0) && pushing[b] > 0) arms[b] = std::sqrt(turning[b] / pushing[b]);
-    if (!(arms[b] > 0)) arms[b] = system.length();
-  }
-  return arms;
-}
-
-StiffnessFloor::StiffnessFloor(StaticSystem& system, std::span<const double> lambda, double residual,
-                               const MotionGroups* groups) {
-  const Plan& plan = system.plan();
-  Evaluator& evaluator = system.evaluator();
-  const std::vector<double> arms = body_arms(system, lambda);
-  // Per body, without cancellation: stiffness against travel, N/m, and against turning, N m.
-  std::vector<double> travel(arms.size(), 0.0), turning(arms.size(), 0.0);
-  visit_entries(evaluator, lambda, [&](int row, int column, double value) {
-    const std::size_t b = at(row / 3), d = at(column / 3);
-    const double size = std::abs(value);
-    if (row % 3 == 2) {
-      turning[b] += size * (column % 3 == 2 ? 1 : arms[b]);
-    } else {
-      travel[b] += size / (column % 3 == 2 ? arms[d] : 1);
-    }
-  });
-  // Only the part of a pin's force across the arm enters K, but its rounding is that of the whole force.
-  for (int c = 0; c < plan.columns; ++c) {
-    const int coordinate = plan.coordinate[at(c)];
-    if (coordinate % 3 == 2) continue;
-    for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k) {
-      const double force = std::abs(system.jacobian()[at(k)] * lambda[at(plan.jacobian.row_index[at(k)])]);
-      turning[at(coordinate / 3)] += force * arms[at(coordinate / 3)];
-    }
-  }
-  double farthest = 0;
-  for (int b = 0; b < plan.moving; ++b) {
-    const Frame<double> frame = evaluator.ground_frame(b);
-    farthest = std::max({farthest, std::abs(frame.x), std::abs(frame.y)});
-  }
-  const double part = stiffness_rounding + place_rounding * farthest / system.length();
-  // Shapes contain rounding too: every travel includes a little turning, and the other way round.
-  for (std::size_t b = 0; b < arms.size(); ++b) travel[b] += turning[b] / (arms[b] * arms[b]);
-  for (int coordinate : plan.coordinate) {
-    const std::size_t b = at(coordinate / 3);
-    floor_.push_back((coordinate % 3 == 2 ? arms[b] * arms[b] : 1) * (part * travel[b] + residual / arms[b]));
-  }
-  if (!groups) return;
-  for (const MotionGroup& group : groups->groups()) {
-    double stiffest = 0;
-    for (int c : group.columns) stiffest = std::max(stiffest, travel[at(plan.coordinate[at(c)] / 3)]);
-    for (int c : group.columns) {
-      const double arm = plan.coordinate[at(c)] % 3 == 2 ? arms[at(plan.coordinate[at(c)] / 3)] : 1;
-      floor_[at(c)] += place_rounding * stiffest * arm * arm;
-    }
-  }
-}
-
-double StiffnessFloor::operator()(std::span<const double> v) const {
-  double sum = 0;
-  for (std::size_t c = 0; c < floor_.size(); ++c) sum += floor_[c] * v[c] * v[c];
-  return sum;
-}
-
-double StiffnessFloor::between(std::span<const double> u, std::span<const double> v) const {
-  double sum = 0;
-  for (std::size_t c = 0; c < floor_.size(); ++c) sum += floor_[c] * std::abs(u[c] * v[c]);
-  return sum;
 }
 
 }  // namespace catena

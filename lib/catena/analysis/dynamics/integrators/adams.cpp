@@ -263,6 +263,7 @@ std::vector<std::string> Adams::remarks() const {
   if (crossing_steps_ > 0) {
     all.push_back(fmt::format("Runge-Kutta took {} steps across nearly singular positions", crossing_steps_));
   }
+  runge_kutta_.remark_on_branches(all);
   return all;
 }
 

@@ -29,6 +29,7 @@ class Adams final : public Integrator {
   /// By the polynomial of the last step, one order above the predictor's.
   void interpolate(double t, std::span<double> y) override;
   std::vector<std::string> remarks() const override;
+  std::int64_t straight_passages() const override { return runge_kutta_.straight_passages(); }
   /// Its differences are not included: an integrator that takes over this memory starts with a short step of order 1.
   IntegratorMemory memory() const override;
   void remember(const IntegratorMemory& memory) override;

@@ -11,10 +11,12 @@
 // the step tells it. Where H has one eigenvalue lambda of the sign of -c, the two parts are told apart by the sign of x
 // along its eigenvector e: a step between x of different signs has left its branch.
 //
-// q_s is found by Newton's method from the middle of the passage; lengths in length scales, rows of length one. Not
-// judged: c that rounding changes by more than 5e-4 of it, several combinations at once, more than `most_rows` rows,
-// drivers. Vectors of coordinates and rows are kept from one passage to the next; small dense matrices are made for
-// each step that passes beside a singular position. Source: apps/manual/numerics.md#singular-passages.
+// q_s is found by Newton's method from the middle of the passage; lengths in length scales, rows of length one, without
+// those that always depend on others. c that is all rounding counts as zero; where rounding changes it by more than
+// 5e-4 of it no step can follow the turn, and such a step is told apart. Equations of drivers are left out: branches
+// meet where the others lose rank. Not judged: several combinations at once, more than `most_rows` rows. Vectors of
+// coordinates and rows are kept from one passage to the next; small dense matrices are made for each step that passes
+// beside a singular position. Source: apps/manual/numerics.md#singular-passages.
 #pragma once
 
 #include <span>
@@ -28,15 +30,23 @@ class BranchKeeping {
  public:
   /// Whether steps of such a mechanism can be judged at all.
   static bool judges(const EquationsOfMotion& equations) {
-    const int rows = equations.plan().rows;
-    return rows > 0 && rows <= most_rows;
+    const Plan& plan = equations.plan();
+    return plan.rows > 0 && plan.rows <= most_rows;
   }
   explicit BranchKeeping(const EquationsOfMotion& equations);
 
-  /// Whether a step from q0 to q1 (size coordinates()) at the evaluator's time has left its branch; `middle`: about
-  /// where it passes. The evaluator is left elsewhere, the factors of the equations as they are.
-  bool leaves(EquationsOfMotion& equations, std::span<const double> q0, std::span<const double> q1,
-              std::span<const double> middle);
+  enum class Course {
+    kept,
+    left,                  ///< the step went straight on where its branch turns
+    left_within_rounding,  ///< the same, nearer to the other branch than rounding lets steps turn
+  };
+  /// What a step from q0 to q1 (size coordinates()) at the evaluator's time did; `middle`: about where it passes. The
+  /// evaluator is left elsewhere, the factors of the equations as they are.
+  Course course(EquationsOfMotion& equations, std::span<const double> q0, std::span<const double> q1,
+                std::span<const double> middle);
+  /// How far from each other branches pass beside q where that is so near that steps hardly turn there; 0: nowhere. The
+  /// evaluator is left elsewhere.
+  double narrow_gap(EquationsOfMotion& equations, std::span<const double> q);
   /// How far from each other the branches pass that the last step was caught between, rad or length scales.
   double gap() const { return gap_; }
 

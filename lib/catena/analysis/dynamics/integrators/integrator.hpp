@@ -26,6 +26,8 @@ class Integrator {
   virtual void interpolate(double t, std::span<double> y) = 0;
   /// Remarks on the run for the user; sentences.
   virtual std::vector<std::string> remarks() const { return {}; }
+  /// How often the motion went straight on where its branch turns, too near to another one for steps to follow it.
+  virtual std::int64_t straight_passages() const { return 0; }
   /// Quantities observed along the motion; and, before start(), those of another integrator.
   virtual IntegratorMemory memory() const = 0;
   virtual void remember(const IntegratorMemory& memory) = 0;

@@ -40,11 +40,8 @@ RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options)
   if (options.keeping == ConstraintKeeping::partition) {
     partition_ = std::make_unique<CoordinatePartition>(motion_.equations());
   }
-  const bool free = !is_driven(motion_.equations()) && !is_fixed();
-  if (free && BranchKeeping::judges(motion_.equations())) {
-    branches_ = std::make_unique<BranchKeeping>(motion_.equations());
-  }
-  const bool balances = free && !motion_.equations().state_loads();
+  const bool balances = !is_driven(motion_.equations()) && !is_fixed() && !motion_.equations().state_loads();
+  if (BranchKeeping::judges(motion_.equations())) branches_ = std::make_unique<BranchKeeping>(motion_.equations());
   energy_ = std::make_unique<StepEnergy>(motion_, stage_.size(), scale_.length, balances);
 }
 
@@ -99,19 +96,27 @@ std::vector<std::string> RungeKutta::remarks() const {
     all.push_back(fmt::format("order 5 took over for {} steps where order 8 failed repeatedly", order_.low_steps()));
   if (projected_steps_ > 0)
     all.push_back(fmt::format("{} steps across nearly singular positions were projected", projected_steps_));
-  if (turn_.turns() > 0)
-    all.push_back(
-        fmt::format("{} times the motion turned where branches pass each other, the last time at a distance "
-                    "of {:.2g} rad or length scales: steps there were shortened to it",
-                    turn_.turns(), branches_->gap()));
-  if (turn_.turns_given_up() > 0)
-    all.push_back(
-        fmt::format("{} times the motion went straight on where branches pass each other, the last time at a distance "
-                    "of {:.2g} rad or length scales: rounding does not let steps turn there",
-                    turn_.turns_given_up(), branches_->gap()));
+  remark_on_branches(all);
   if (partition_ && partition_->choices() > 1)
     all.push_back(fmt::format("independent coordinates were chosen {} times", partition_->choices()));
   return all;
+}
+
+void RungeKutta::remark_on_branches(std::vector<std::string>& remarks) const {
+  if (turn_.turns() > 0)
+    remarks.push_back(
+        fmt::format("{} times the motion turned where branches pass each other, the last time at a distance "
+                    "of {:.2g} rad or length scales: steps there were shortened to it",
+                    turn_.turns(), branches_->gap()));
+  if (turn_.straight_on() == 0) return;
+  const bool fixed = options_.fixed_step > 0;
+  remarks.push_back(fmt::format(
+      "at t = {:.6g} s the motion went straight on{} where two branches pass each other at a distance of "
+      "{:.2g} rad or length scales, too near for {} to follow the one that turns: what comes after is "
+      "right if they cross, as for dimensions that agree exactly; else {}",
+      turn_.straight_on_t(), turn_.straight_on() > 1 ? fmt::format(" ({} times in all)", turn_.straight_on()) : "",
+      branches_->gap(), fixed ? "steps of this length" : "steps",
+      fixed ? "take shorter ones" : "change those by 1e-9 or more"));
 }
 
 IntegratorMemory RungeKutta::memory() const {

@@ -63,6 +63,9 @@ class RungeKutta final : public Integrator {
   /// Of order 7 or 5.
   void interpolate(double t, std::span<double> y) override;
   std::vector<std::string> remarks() const override;
+  std::int64_t straight_passages() const override { return turn_.straight_on(); }
+  /// What is said of passages where two branches are near to each other.
+  void remark_on_branches(std::vector<std::string>& remarks) const;
   IntegratorMemory memory() const override;
   void remember(const IntegratorMemory& memory) override;
   bool may_pause() const override { return !crossing_ && !trials_.is_ending_near(); }
@@ -141,7 +144,7 @@ class RungeKutta final : public Integrator {
 
   Motion motion_;
   std::unique_ptr<CoordinatePartition> partition_;  // only where it is asked for
-  std::unique_ptr<BranchKeeping> branches_;         // only where steps can be judged, without drivers
+  std::unique_ptr<BranchKeeping> branches_;         // only where steps can be judged
   RungeKuttaOptions options_;
   ErrorScale scale_;
   double t_new_ = 0, h_ = 0, stabilisation_ = 0;

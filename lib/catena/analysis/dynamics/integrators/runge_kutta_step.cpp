@@ -48,8 +48,9 @@ bool RungeKutta::try_crossing(double h, const Judgement& judged) {
   return true;
 }
 
-// Whether the step of size h, which passes beside a singular position, has ended on another branch. The passage is
-// where the sines, roots of the pivot ratios, would be zero if they changed in proportion to time.
+// Whether the step of size h, which passes beside a singular position, has ended on another branch and is to be
+// repeated with shorter ones. The passage is where the sines, roots of the pivot ratios, would be zero if they changed
+// in proportion to time.
 bool RungeKutta::leaves_branch(double h) {
   EquationsOfMotion& equations = motion_.equations();
   const double end = pivot_ratio(), least = std::min(ratios_.at_start(), end), most = std::max(ratios_.at_start(), end);
@@ -67,10 +68,11 @@ bool RungeKutta::leaves_branch(double h) {
   }
   Evaluator& evaluator = equations.evaluator();
   const std::vector<CurvePlace> places = evaluator.curve_places();
-  const bool left = branches_->leaves(equations, q0, q1, middle);
+  const BranchKeeping::Course course = branches_->course(equations, q0, q1, middle);
   evaluator.go_to_curve_places(places);
   evaluator.set_configuration(q1);
-  return left;
+  if (course == BranchKeeping::Course::left_within_rounding) turn_.go_straight_on(t_new_);
+  return course == BranchKeeping::Course::left;
 }
 
 bool RungeKutta::advance(double limit) {
@@ -110,7 +112,7 @@ RungeKutta::Length RungeKutta::next_length(double limit) const {
 // One trial of a step; a next one has the size h_.
 RungeKutta::Trial RungeKutta::try_step(double limit, double& usual) {
   motion_.equations().evaluator().go_to_curve_places(curve_places_);
-  if (turn_.gives_up()) {
+  if (turn_.gives_up(t_new_)) {
     h_ = usual = turn_.step_that_left();
     order_.forget_rejections();
   }
@@ -139,10 +141,13 @@ RungeKutta::Trial RungeKutta::try_step(double limit, double& usual) {
     trials_.end_near();
   }
   if (!finish_step()) return cut_short(h);
-  if (projects() && !is_fixed() && !turn_.is_given_up() && leaves_branch(h)) {
-    turn_.begin(h);
-    reject(BranchTurn::shortened * h);
-    return Trial::again;
+  if (projects() && !turn_.is_given_up() && leaves_branch(h)) {
+    if (!is_fixed()) {
+      turn_.begin(h);
+      reject(BranchTurn::shortened * h);
+      return Trial::again;
+    }
+    turn_.go_straight_on(t_new_);
   }
   accept(judged.growth, std::max(usual, h));
   return Trial::made;
