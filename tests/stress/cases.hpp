@@ -19,11 +19,13 @@ inline int stress_cases(int usual) {
 }
 
 /// Seeds from the first to the last.
-inline unsigned first_case() {
+inline unsigned first_case(unsigned usual = 1) {
   const char* asked = std::getenv("CATENA_STRESS_FIRST");
-  return asked ? static_cast<unsigned>(std::atoi(asked)) : 1;
+  return asked ? static_cast<unsigned>(std::atoi(asked)) : usual;
 }
-inline unsigned last_case(int usual) { return first_case() + static_cast<unsigned>(stress_cases(usual)) - 1; }
+inline unsigned last_case(int usual, unsigned usual_first = 1) {
+  return first_case(usual_first) + static_cast<unsigned>(stress_cases(usual)) - 1;
+}
 
 /// Leaves a scene where it is asked for.
 inline void keep_scene(const std::string& kind, unsigned seed, const std::string& text) {

@@ -1,18 +1,18 @@
-// Elastic chains on a floor by the thousand against nested bisection, and the longest ones. CATENA_CASES sets how many.
+// Elastic chains on a floor by the thousand against nested bisection, and the longest ones.
 #include "oracles/elastic_chains.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstdlib>
+
+#include "stress/cases.hpp"
 
 namespace catena::testing {
 namespace {
 
 TEST(ElasticChains, ByTheThousand) {
-  const char* asked = std::getenv("CATENA_CASES");
-  const int cases = asked ? std::atoi(asked) : 3000;
-  std::mt19937 random(1);
+  const int cases = stress_cases(3000);
+  std::mt19937 random(first_case());
   int taut = 0, folded = 0, wrong = 0, refused = 0;
   for (int k = 0; k < cases; ++k) {
     const ElasticChain chain = random_elastic_chain(random, 300);

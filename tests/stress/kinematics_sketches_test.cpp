@@ -1,16 +1,17 @@
 // Thousands of linkages sketched in one line, and of slider-cranks in or on their way to a dead centre.
 #include "oracles/sketches.hpp"
+#include "stress/cases.hpp"
 
 namespace catena::testing {
 namespace {
 
 TEST(KinematicStress, FlatAndStraightSketchesAssembleInEveryAnalysis) {
-  for (unsigned seed = 1000; seed < 5000; ++seed) expect_assembled(seed);
+  for (unsigned seed = first_case(1000); seed <= last_case(4000, 1000); ++seed) expect_assembled(seed);
 }
 
 TEST(KinematicStress, DeadCentresLockOrLeaveBothWays) {
   for (const char* analysis : {"kinematics", "dynamics"}) {
-    for (unsigned seed = 1000; seed < 5000; ++seed) expect_dead_centre(seed, analysis);
+    for (unsigned seed = first_case(1000); seed <= last_case(4000, 1000); ++seed) expect_dead_centre(seed, analysis);
   }
 }
 

@@ -3,12 +3,13 @@
 
 #include "oracles/modes_trial.hpp"
 #include "oracles/random_seeds.hpp"
+#include "stress/cases.hpp"
 
 namespace catena::testing {
 namespace {
 
 TEST(ModesOfNetworks, TenThousandOfThem) {
-  expect_no_fault(1001, 11000, [](unsigned seed) { return compare_modes(seed); });
+  expect_no_fault(first_case(1001), last_case(10000, 1001), [](unsigned seed) { return compare_modes(seed); });
 }
 
 }  // namespace

@@ -1,21 +1,16 @@
 // Random chains over drums and on floors, and slack nets, by the thousand: none wrong, at most three in a hundred
-// refused. CATENA_CASES sets how many of each, CATENA_SEED the first.
+// refused.
 #include <cstdio>
-#include <cstdlib>
 
 #include "oracles/supported_chains.hpp"
+#include "stress/cases.hpp"
 
 namespace catena::testing {
 namespace {
 
-int setting(const char* name, int otherwise) {
-  const char* text = std::getenv(name);
-  return text ? std::atoi(text) : otherwise;
-}
-
 template <class Judge>
 void check_by_the_thousand(Judge&& judge) {
-  const int cases = setting("CATENA_CASES", 1000), first = setting("CATENA_SEED", 101);
+  const int cases = stress_cases(1000), first = static_cast<int>(first_case(101));
   int wrong = 0, refused = 0;
   for (int seed = first; seed < first + cases; ++seed) {
     const OneSidedVerdict verdict = judge(static_cast<unsigned>(seed));

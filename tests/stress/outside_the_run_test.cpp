@@ -6,6 +6,7 @@
 #include <regex>
 #include <sstream>
 
+#include "stress/cases.hpp"
 #include "trials/trial.hpp"
 
 namespace catena::testing {
@@ -39,7 +40,7 @@ class Random {
 // rail at the first instant at which it is beyond an end, whatever rows are asked for.
 TEST(OutsideTheRunLong, RunnersLeaveRailsWhereTheyEnd) {
   int left = 0, stayed = 0;
-  for (unsigned seed = 0; seed < 3000; ++seed) {
+  for (unsigned seed = first_case(); seed <= last_case(3000); ++seed) {
     Random random(seed);
     const double length = std::pow(10, random(-6, 6)), amplitude = length * random(0.2, 0.7);
     const double offset = length * random(0.3, 0.7), omega = random(0.5, 8), phase = random(-1, 1);
@@ -87,7 +88,7 @@ TEST(OutsideTheRunLong, RunnersLeaveRailsWhereTheyEnd) {
 // A mass on a spring whose table is straight swings with sqrt(k/m): it passes the end of the table at a quarter of its
 // swing, or goes on along the line.
 TEST(OutsideTheRunLong, SpringsPassTheEndsOfTheirTables) {
-  for (unsigned seed = 0; seed < 1500; ++seed) {
+  for (unsigned seed = first_case(); seed <= last_case(1500); ++seed) {
     Random random(seed);
     const double k = std::pow(10, random(-2, 4)), m = std::pow(10, random(-2, 2)), omega = std::sqrt(k / m);
     const double reach = std::pow(10, random(-3, 1)), swing = reach * random(0.3, 2), speed = swing * omega;
@@ -121,7 +122,7 @@ TEST(OutsideTheRunLong, SpringsPassTheEndsOfTheirTables) {
 // its end: the table is given by its values, and evaluated here by the piecewise cubic that its second derivatives
 // make.
 TEST(OutsideTheRunLong, TablesDriveFromTheFirstInstantToTheLast) {
-  for (unsigned seed = 0; seed < 600; ++seed) {
+  for (unsigned seed = first_case(); seed <= last_case(600); ++seed) {
     Random random(seed);
     const double until = random(0.3, 1.5), h = until / 4;
     double f[5], bend[5] = {};

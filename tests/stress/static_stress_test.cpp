@@ -11,6 +11,7 @@
 #include "catena/analysis/statics/equilibrium.hpp"
 #include "oracles/random_statics.hpp"
 #include "oracles/static_reference.hpp"
+#include "stress/cases.hpp"
 
 namespace catena {
 namespace {
@@ -72,23 +73,23 @@ double lower_nearby(Equilibrium& analysis, unsigned seed) {
 void check_many(bool linkages, int count) {
   std::map<std::string, int> outcomes;
   int failed = 0;
-  for (int seed = 1; seed <= count; ++seed) {
-    testing::RandomStatics random(static_cast<unsigned>(seed));
+  for (unsigned seed = testing::first_case(); seed <= testing::last_case(count); ++seed) {
+    testing::RandomStatics random(seed);
     Equilibrium analysis(linkages ? random.linkage() : random.network());
     const EquilibriumReport report = analysis.solve();
     ++outcomes[std::string(to_string(report.status))];
     if (!report.ok()) {
       ++failed;
-      if (failed <= 20) std::printf("seed %d: %s\n", seed, report.message.c_str());
+      if (failed <= 20) std::printf("seed %u: %s\n", seed, report.message.c_str());
       continue;
     }
     EXPECT_LE(force_left(analysis), 1e-9) << seed;
     EXPECT_TRUE(report.stable || report.neutral) << seed;
     if (!report.stable) continue;
-    EXPECT_LE(lower_nearby(analysis, static_cast<unsigned>(seed)), 1e-11 * (1 + std::abs(report.energy))) << seed;
+    EXPECT_LE(lower_nearby(analysis, seed), 1e-11 * (1 + std::abs(report.energy))) << seed;
   }
-  for (const auto& [status, times] : outcomes) std::printf("%s: %d of %d\n", status.c_str(), times, count);
-  EXPECT_LE(failed, count / 100);
+  testing::print_shares(linkages ? "linkages" : "networks", outcomes);
+  EXPECT_LE(failed, testing::stress_cases(count) / 100);
 }
 
 TEST(RandomStatics, SpringNetworks) { check_many(false, 5000); }

@@ -1,7 +1,9 @@
 // Modes of the trial scenes, and motions that nothing resists as equilibrium, modes and check name them.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "trials/trial.hpp"
 
@@ -89,6 +91,31 @@ TEST(ModesTrials, CheckCallsNothingFreeThatALoadDrives) {
   EXPECT_EQ(std::get<std::int64_t>(field(run.analysis(), "free_motions")), 2);
   EXPECT_EQ(std::get<std::vector<std::string>>(field(run.analysis(), "moving_freely")),
             std::vector<std::string>{"stone"});
+}
+
+// A body that hangs from one equation, at a distance h below the point held; all of it turned by an angle. The force
+// passes the centroid, and rounding alone is left of its lever. It swings as m g h / J, and slides along freely.
+TEST(ModesTrials, OfBodiesThatHangFromOneEquation) {
+  std::mt19937 engine(7);
+  const auto draw = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); };
+  for (int k = 0; k < 200; ++k) {
+    const double turned = draw(-3, 3), size = std::pow(10.0, draw(-3, 3)), mass = draw(0.1, 10);
+    const double x = size * draw(-1, 1), y = size * draw(-1, 1), h = std::hypot(x, y);
+    const double inertia = mass * h * h * draw(0.1, 3), start = draw(-3, 3), away = size * draw(-3, 3);
+    const double c = std::cos(turned), s = std::sin(turned);
+    const std::string slot = fmt::format(
+        R"({{"type": "displacement", "i": ["ground", [{:.17g}, {:.17g}]], "j": ["b", [{:.17g}, {:.17g}]], "value": 0,
+ "axis_i": [{:.17g}, {:.17g}]}})",
+        size * c, size * s, x, y, s, -c);
+    const TextRun run = run_text(fmt::format(
+        R"({{"catena": 1, "gravity": [{:.17g}, {:.17g}], "bodies": {{"b": {{"mass": {:.17g}, "inertia": {:.17g},
+ "position": [{:.17g}, {:.17g}], "angle": {:.17g}}}}}, "constraints": [{}],
+ "analyses": [{{"type": "equilibrium"}}, {{"type": "modes"}}]}})",
+        9.81 * s, -9.81 * c, mass, inertia, away, size, start, slot));
+    ASSERT_EQ(run.outcome.exit_code, 0) << k << run.outcome.error_text;
+    EXPECT_EQ(std::get<std::int64_t>(field(run.analysis(0), "free_motions")), 1) << k;
+    expect_omega2(run, 1, {0, mass * 9.81 * h / inertia}, 1e-9);
+  }
 }
 
 }  // namespace

@@ -111,10 +111,10 @@ void RungeKutta::remark_on_branches(std::vector<std::string>& remarks) const {
   if (turn_.straight_on() == 0) return;
   const bool fixed = options_.fixed_step > 0;
   remarks.push_back(fmt::format(
-      "at t = {:.6g} s the motion went straight on{} where two branches pass each other at a distance of "
+      "at t = {:.6g} s{} the motion went straight on where two branches pass each other at a distance of "
       "{:.2g} rad or length scales, too near for {} to follow the one that turns: what comes after is "
       "right if they cross, as for dimensions that agree exactly; else {}",
-      turn_.straight_on_t(), turn_.straight_on() > 1 ? fmt::format(" ({} times in all)", turn_.straight_on()) : "",
+      turn_.straight_on_t(), turn_.straight_on() > 1 ? fmt::format(" and {} times later", turn_.straight_on() - 1) : "",
       branches_->gap(), fixed ? "steps of this length" : "steps",
       fixed ? "take shorter ones" : "change those by 1e-9 or more"));
 }
