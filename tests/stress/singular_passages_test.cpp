@@ -127,7 +127,9 @@ TEST_P(SingularPassages, FollowTheKnownMotion) {
         refused += count.refused;
       }
       std::printf("  %.0e: %d/%d/%d/%d", tolerance, runs, wrong, told, refused);
-      if (distance >= told_apart) EXPECT_EQ(told, 0) << "at a distance of " << distance;
+      if (distance >= told_apart) {
+        EXPECT_EQ(told, 0) << "at a distance of " << distance;
+      }
       EXPECT_EQ(wrong, 0) << "at a distance of " << distance << ", tolerance " << tolerance;
     }
     std::printf("\n");
