@@ -7,7 +7,7 @@
 # umbrella header lib/catena/catena.hpp. `part[folder]` lists what a folder inside of a layer may include of its own
 # layer; a folder that is not listed there is an error, and so is one of more than 30 files:
 #
-#   analysis  run <- pose <- motion <- events <- {kinematics, contact <- dynamics};  pose <- balance <- spectrum <- statics/solvers <- statics <- stability
+#   analysis  run <- pose <- motion <- {events, branches} <- {kinematics, contact <- dynamics};  pose <- balance <- spectrum <- statics/solvers <- statics <- stability
 #             run <- measures;  {pose, motion, contact} <- sensitivity, sensitivity/phases, sensitivity/spectrum;  {sensitivity, measures} <- adjoint;  minimiser <- {statics, design};  kinematics, batch/kernels <- batch
 #             {kinematics, statics, dynamics} <- accuracy
 #             run, pose <- kinematics/course <- kinematics
@@ -32,9 +32,10 @@ BEGIN {
   chain("analysis", "run pose motion events")
   after("analysis", "kinematics/course", "run pose")
   after("analysis", "kinematics", "run pose motion events contact kinematics/course")
-  after("analysis", "dynamics/integrators", "run pose motion")
+  after("analysis", "branches", "run pose motion")
+  after("analysis", "dynamics/integrators", "run pose motion branches")
   after("analysis", "contact", "run pose motion events")
-  after("analysis", "dynamics", "run pose motion events contact dynamics/integrators")
+  after("analysis", "dynamics", "run pose motion branches events contact dynamics/integrators")
   after("analysis", "balance", "run pose")
   after("analysis", "spectrum", "run pose balance")
   after("analysis", "minimiser", "")

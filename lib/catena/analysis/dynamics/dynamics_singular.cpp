@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/branches/branch_keeping.hpp"
 #include "catena/analysis/dynamics/dynamics.hpp"
-#include "catena/analysis/dynamics/integrators/branch_keeping.hpp"
 #include "catena/analysis/pose/scaling.hpp"
 
 namespace catena {

@@ -26,7 +26,7 @@
 #include <string>
 #include <vector>
 
-#include "catena/analysis/dynamics/integrators/branch_keeping.hpp"
+#include "catena/analysis/branches/branch_keeping.hpp"
 #include "catena/analysis/dynamics/integrators/branch_turn.hpp"
 #include "catena/analysis/dynamics/integrators/coordinate_partition.hpp"
 #include "catena/analysis/dynamics/integrators/crossing_trials.hpp"

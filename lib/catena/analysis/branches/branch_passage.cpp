@@ -1,4 +1,4 @@
-#include "catena/analysis/dynamics/integrators/branch_passage.hpp"
+#include "catena/analysis/branches/branch_passage.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>

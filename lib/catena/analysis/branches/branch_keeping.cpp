@@ -1,10 +1,10 @@
-#include "catena/analysis/dynamics/integrators/branch_keeping.hpp"
+#include "catena/analysis/branches/branch_keeping.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "catena/analysis/dynamics/integrators/branch_passage.hpp"
+#include "catena/analysis/branches/branch_passage.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
