@@ -5,8 +5,8 @@
 //   one operand          -a, sin, cos, tan, asin, acos, atan, sqrt, exp, log, abs, a table of one's own
 //
 // Angles in radians. Where an operation has no value (division by zero, log of a negative number) the result is not
-// finite, as arithmetic has it, and the caller tests for that where it needs a finite number. min, max and abs take the derivative
-// of the branch that counts; of two equal operands the first one does.
+// finite, as arithmetic has it, and the caller tests for that where it needs a finite number. min, max and abs take the
+// derivative of the branch that counts; of two equal operands the first one does.
 #pragma once
 
 #include <cmath>

@@ -14,8 +14,8 @@ namespace catena {
 struct MotionStretch {
   double from = 0, to = 0;
   std::function<std::optional<Snapshot>(double)> at;
-  /// May be empty. Told of instants of the stretch that will probably be asked for next, at most eight: an analysis that
-  /// computes several at once does so.
+  /// May be empty. Told of instants of the stretch that will probably be asked for next, at most eight: an analysis
+  /// that computes several at once does so.
   std::function<void(std::span<const double>)> expect = {};
   /// The event that ends it, by its number: in the list, then among the changes of the mechanism itself; -1: none.
   int ended_by = -1;
