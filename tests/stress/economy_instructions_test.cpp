@@ -22,7 +22,8 @@ std::map<std::string, double> counted_instructions() {
   const std::string command = "'" CATENA_EXECUTABLE "' bench economy -q --budget 0.001 --json '" + document + "'";
   EXPECT_EQ(std::system(command.c_str()), 0) << "an answer is not that of the full run";
   std::map<std::string, double> counted;
-  for (const auto& row : nlohmann::json::parse(std::ifstream(document)).at("rows")) {
+  const nlohmann::json written = nlohmann::json::parse(std::ifstream(document));
+  for (const auto& row : written.at("rows")) {
     if (!row.at("counts").contains("instructions")) continue;
     counted[row.at("problem").get<std::string>() + ": " + row.at("method").get<std::string>()] =
         row.at("counts").at("instructions").get<double>();

@@ -22,8 +22,8 @@ inline std::string add_moving_digits(unsigned seed, ClaimedDigits& claims, Runs 
     analysis["tolerance"] = std::pow(10.0, -random.pick(5) - 5);
     analysis["estimate_error"] = true;
   } else {
-    static const char* const methods[] = {"auto", "auto", "auto", "rk8", "rk8", "rk5", "partitioning"};
-    analysis["method"] = methods[random.pick(7)];
+    static const char* const methods[] = {"auto", "auto", "auto", "rk8", "rk8", "rk5"};
+    analysis["method"] = methods[random.pick(6)];
     const double tolerance = std::pow(10.0, -random.pick(7) - 4), step = random.uniform(0.01, 0.1) / random.pace;
     if (random.pick(6)) {
       analysis["tolerance"] = tolerance;

@@ -157,8 +157,10 @@ void DynamicsTask::run_or_estimate(Analysis& analysis, const PlanOptions& plan) 
   if (!estimates_) {
     run_over_time(context_, result_, analysis, *grid_, names_, sources, [&](AnalysisRows& rows) {
       differentiate(rows, analysis);
-      // Contacts and ropes change the mechanism, and the error with it, in ways that are not followed.
-      const bool judged = context_.digits && !context_.design && !context_.checkpoint && !touches_ && routes_.empty();
+      // Contacts and ropes change the mechanism, and the error with it, in ways that are not followed; dependent
+      // coordinates of a partition have a rounding of their own.
+      const bool judged = context_.digits && !context_.design && !context_.checkpoint && !touches_ && routes_.empty() &&
+                          analysis.method() != IntegrationMethod::partitioning;
       if (judged) rows.judge(std::make_unique<MotionAccuracy>(analysis, rows.columns()));
     });
     return;
@@ -259,7 +261,7 @@ void DynamicsTask::run_apart(const std::vector<std::vector<int>>& classes) {
   DynamicsOfIslands analysis(model_, plan_options(*model_, names_), used_options_, classes);
   run_over_time(context_, result_, analysis, *grid_, names_, sources, [&](AnalysisRows& rows) {
     // Each mechanism with contacts is a class of its own, and there may be thousands.
-    if (context_.digits && !touches_)
+    if (context_.digits && !touches_ && options_.method != IntegrationMethod::partitioning)
       rows.judge(std::make_unique<AccuracyOfIslands>(analysis, rows.columns(), sources));
   });
   add_singular_points(result_, analysis.singular_points(), *model_);
