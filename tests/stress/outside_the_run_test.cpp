@@ -81,8 +81,8 @@ TEST(OutsideTheRunLong, RunnersLeaveRailsWhereTheyEnd) {
       EXPECT_TRUE(report.ok()) << seed << report.message;
     }
   }
-  EXPECT_GT(left, 300);
-  EXPECT_GT(stayed, 300);
+  EXPECT_GT(left, stress_cases(3000) / 10);
+  EXPECT_GT(stayed, stress_cases(3000) / 10);
 }
 
 // A mass on a spring whose table is straight swings with sqrt(k/m): it passes the end of the table at a quarter of its
