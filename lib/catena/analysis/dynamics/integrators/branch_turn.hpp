@@ -23,21 +23,26 @@ class BranchTurn {
     }
     turning_ = true;
   }
-  /// Counts a try of a step. True: the turn took too many, and is given up.
-  bool gives_up() {
+  /// Counts a try of a step to t (s). True: the turn took too many, and is given up.
+  bool gives_up(double t) {
     if (!turning_ || ++tries_ <= most_tries) return false;
     turning_ = false;
     crosses_ = true;
     --turns_;
-    ++turns_given_up_;
+    go_straight_on(t);
     return true;
+  }
+  /// Notes that the motion goes straight on at t (s) where its branch turns.
+  void go_straight_on(double t) {
+    if (straight_on_++ == 0) straight_on_t_ = t;
   }
   /// The passage is over.
   void end() { turning_ = crosses_ = false; }
 
   double step_that_left() const { return step_that_left_; }
   std::int64_t turns() const { return turns_; }
-  std::int64_t turns_given_up() const { return turns_given_up_; }
+  std::int64_t straight_on() const { return straight_on_; }
+  double straight_on_t() const { return straight_on_t_; }  // s, at first
 
  private:
   /// Steps, with those that are rejected, in which a motion must have turned into the other direction: twice as many as
@@ -46,7 +51,8 @@ class BranchTurn {
   bool turning_ = false, crosses_ = false;
   int tries_ = 0;
   double step_that_left_ = 0;  // s, the first in this passage
-  std::int64_t turns_ = 0, turns_given_up_ = 0;
+  std::int64_t turns_ = 0, straight_on_ = 0;
+  double straight_on_t_ = 0;
 };
 
 }  // namespace catena
