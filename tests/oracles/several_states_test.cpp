@@ -151,7 +151,7 @@ TEST(StatesOfFriction, SharedByTwoFeetNameTheFeet) {
   ASSERT_EQ(run.outcome.exit_code, 0) << run.analysis().report.message;
   std::string all;
   for (const std::string& warning : run.analysis().report.warnings) all += warning;
-  EXPECT_NE(all.find("\"friction of L\", \"friction of R\" are not unique"), std::string::npos) << all;
+  EXPECT_NE(all.find("\"L (friction)\", \"R (friction)\" are not unique"), std::string::npos) << all;
   // The least of all shares: as much on each.
   EXPECT_NEAR(run.last("L.friction"), -1, 1e-9);
   EXPECT_NEAR(run.last("R.friction"), -1, 1e-9);
