@@ -12,10 +12,10 @@ namespace {
 
 // Of the floor, a bound of rounding. With it claims of 300 random columns were optimistic by 2.9 at most, pessimistic
 // by 80 at the median.
-constexpr double usual_part = 0.006;
+constexpr double usual_load_part = 0.006;
 // In parts of a load's distance: what the search leaves of it, which ends at a bracket of 1e-14 but mostly hits the
 // root before; and Lanczos' method.
-constexpr double located = 2e-15, refined = 1e-12;
+constexpr double located_load = 2e-15, refined_load = 1e-12;
 // Parts of the distance by which the parameter is moved to see how the stiffness changes.
 constexpr double aside = 1e-4;
 
@@ -40,7 +40,8 @@ void Buckling::find_errors(BucklingReport& report) {
     double error = std::numeric_limits<double>::quiet_NaN();
     if (place_load(load, lambda).ok()) {
       const StiffnessFloor floor(system_, lambda, 0);
-      error = usual_part * floor(v) / std::abs(slope) + (groups_->are_small() ? located : refined) * distance;
+      error = usual_load_part * floor(v) / std::abs(slope) +
+              (groups_->are_small() ? located_load : refined_load) * distance;
     }
     report.errors.push_back(error);
   }
