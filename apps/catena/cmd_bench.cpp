@@ -9,18 +9,18 @@
 #include <memory>
 #include <optional>
 
+#include "cases/economy_cases.hpp"
 #include "catena/results/terminal/interrupt.hpp"
 #include "catena/scene/json/diagnostic.hpp"
 #include "catena/scene/json/near_miss.hpp"
 #include "catena/scene/json/source_text.hpp"
 #include "commands.hpp"
-#include "suites/comparison.hpp"
-#include "suites/document.hpp"
-#include "suites/economy_cases.hpp"
-#include "suites/figures.hpp"
-#include "suites/peers.hpp"
+#include "documents/comparison.hpp"
+#include "documents/document.hpp"
+#include "documents/figures.hpp"
+#include "documents/peers.hpp"
+#include "documents/table.hpp"
 #include "suites/suites.hpp"
-#include "suites/table.hpp"
 
 namespace catena::cli {
 namespace {

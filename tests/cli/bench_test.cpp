@@ -13,12 +13,12 @@
 #include <set>
 #include <thread>
 
+#include "cases/exact_chain.hpp"
+#include "cases/reference_file.hpp"
 #include "cli/program.hpp"
+#include "documents/comparison.hpp"
+#include "documents/document.hpp"
 #include "results/temporary_folder.hpp"
-#include "suites/comparison.hpp"
-#include "suites/document.hpp"
-#include "suites/exact_chain.hpp"
-#include "suites/reference_file.hpp"
 
 namespace catena::testing {
 namespace {

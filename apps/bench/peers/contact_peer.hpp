@@ -1,4 +1,4 @@
-// The problems of suites/contact_problems.hpp by an engine that steps a world of rigid bodies, for `catena bench
+// The problems of cases/contact_problems.hpp by an engine that steps a world of rigid bodies, for `catena bench
 // --peers`: peer_contact_ENGINE contact prints
 //
 //   S6 <tab> engine <tab> method <tab> setting <tab> problem <tab> steps <tab> ms <tab> error, m
@@ -19,7 +19,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "suites/contact_problems.hpp"
+#include "cases/contact_problems.hpp"
 #include "timing.hpp"
 
 namespace contact_peer {

@@ -1,5 +1,5 @@
 // Gradients of motions by SUNDIALS CVODES, for `catena bench --peers`: a chain of rods in the least coordinates with
-// hand-written derivatives (suites/pendulum_gradient.hpp), by the adjoint and forward, at several tolerances.
+// hand-written derivatives (cases/pendulum_gradient.hpp), by the adjoint and forward, at several tolerances.
 //
 //   peer_cvodes gradient      prints  S5 <tab> cvodes <tab> method <tab> tolerance <tab> rods <tab> ms <tab> parameters
 //                             <tab> error
@@ -17,7 +17,7 @@
 #include <ctime>
 #include <limits>
 
-#include "suites/pendulum_gradient.hpp"
+#include "cases/pendulum_gradient.hpp"
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "suites/bench_row.hpp"
+#include "documents/bench_row.hpp"
 #include "timing.hpp"
 
 namespace bench {

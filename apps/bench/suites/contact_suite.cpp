@@ -4,8 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "cases/contact_problems.hpp"
 #include "catena/scene/loading/scene.hpp"
-#include "suites/contact_problems.hpp"
 #include "suites/suites.hpp"
 
 namespace bench {

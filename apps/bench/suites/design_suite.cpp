@@ -11,12 +11,12 @@
 #include <memory>
 #include <numbers>
 
+#include "cases/gradient_costs.hpp"
 #include "catena/analysis/batch/batch.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/model_add.hpp"
 #include "catena/results/stored_results.hpp"
 #include "catena/scene/running/scene_runner.hpp"
-#include "suites/gradient_costs.hpp"
 #include "suites/suites.hpp"
 
 namespace bench {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "cases/digits_cases.hpp"
 #include "catena/scene/loading/scene.hpp"
-#include "suites/digits_cases.hpp"
 #include "suites/suites.hpp"
 
 namespace bench {

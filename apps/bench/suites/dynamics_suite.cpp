@@ -4,10 +4,10 @@
 #include <cmath>
 #include <functional>
 
+#include "cases/exact_chain.hpp"
+#include "cases/reference_file.hpp"
 #include "catena/analysis/dynamics/dynamics.hpp"
 #include "moving_mechanisms.hpp"
-#include "suites/exact_chain.hpp"
-#include "suites/reference_file.hpp"
 #include "suites/suites.hpp"
 
 namespace bench {

@@ -1,7 +1,7 @@
 // What a scene does not need costs nothing, and the answer is that of the full solve: counts, instructions, times.
 #include <cmath>
 
-#include "suites/economy_cases.hpp"
+#include "cases/economy_cases.hpp"
 #include "suites/instructions.hpp"
 #include "suites/suites.hpp"
 

@@ -2,9 +2,9 @@
 // oscillations of masses between springs against their closed form.
 #include <cmath>
 
+#include "cases/resting_chains.hpp"
 #include "catena/analysis/stability/modes.hpp"
 #include "catena/analysis/statics/equilibrium.hpp"
-#include "suites/resting_chains.hpp"
 #include "suites/suites.hpp"
 
 namespace bench {

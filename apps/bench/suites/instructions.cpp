@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "suites/economy_cases.hpp"
+#include "cases/economy_cases.hpp"
 
 namespace bench {
 

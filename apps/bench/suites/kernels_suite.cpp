@@ -5,9 +5,9 @@
 //   factorizations  A x = b for a known x
 #include <cmath>
 
+#include "cases/chain_kernels.hpp"
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "mechanisms.hpp"
-#include "suites/chain_kernels.hpp"
 #include "suites/suites.hpp"
 
 namespace bench {

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <functional>
 
+#include "cases/driven_problems.hpp"
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/elements/constraints/absolute_angle.hpp"
 #include "catena/elements/constraints/absolute_y.hpp"
 #include "catena/elements/constraints/revolute.hpp"
 #include "catena/model/model_add.hpp"
 #include "mechanisms.hpp"
-#include "suites/driven_problems.hpp"
 #include "suites/suites.hpp"
 
 namespace bench {

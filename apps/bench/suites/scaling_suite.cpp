@@ -6,15 +6,15 @@
 
 #include <cmath>
 
+#include "cases/chain_kernels.hpp"
+#include "cases/driven_problems.hpp"
+#include "cases/resting_chains.hpp"
 #include "catena/analysis/dynamics/dynamics.hpp"
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/analysis/statics/equilibrium.hpp"
 #include "catena/results/stored_results.hpp"
 #include "catena/scene/running/scene_runner.hpp"
 #include "moving_mechanisms.hpp"
-#include "suites/chain_kernels.hpp"
-#include "suites/driven_problems.hpp"
-#include "suites/resting_chains.hpp"
 #include "suites/suites.hpp"
 
 namespace bench {

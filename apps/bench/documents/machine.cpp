@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "suites/document.hpp"
+#include "documents/document.hpp"
 
 namespace bench {
 

@@ -1,4 +1,4 @@
-#include "suites/peers.hpp"
+#include "documents/peers.hpp"
 
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -9,10 +9,10 @@
 #include <filesystem>
 #include <sstream>
 
+#include "cases/contact_problems.hpp"
+#include "cases/exact_chain.hpp"
+#include "cases/pendulum_gradient.hpp"
 #include "catena/scene/json/source_text.hpp"
-#include "suites/contact_problems.hpp"
-#include "suites/exact_chain.hpp"
-#include "suites/pendulum_gradient.hpp"
 
 namespace bench {
 

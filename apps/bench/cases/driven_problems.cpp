@@ -1,4 +1,4 @@
-#include "suites/driven_problems.hpp"
+#include "cases/driven_problems.hpp"
 
 #include <algorithm>
 #include <cmath>

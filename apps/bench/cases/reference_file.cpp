@@ -1,4 +1,4 @@
-#include "suites/reference_file.hpp"
+#include "cases/reference_file.hpp"
 
 #include <charconv>
 #include <stdexcept>

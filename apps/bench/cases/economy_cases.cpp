@@ -1,7 +1,8 @@
-#include "suites/economy_cases.hpp"
+#include "cases/economy_cases.hpp"
 
 #include <cmath>
 
+#include "cases/resting_chains.hpp"
 #include "catena/analysis/dynamics/dynamics_of_islands.hpp"
 #include "catena/analysis/dynamics/paces.hpp"
 #include "catena/analysis/kinematics/kinematics.hpp"
@@ -14,10 +15,9 @@
 #include "catena/elements/constraints/weld.hpp"
 #include "catena/elements/forces/spring_damper.hpp"
 #include "catena/model/model_add.hpp"
+#include "documents/bench_row.hpp"
 #include "mechanisms.hpp"
 #include "moving_mechanisms.hpp"
-#include "suites/bench_row.hpp"
-#include "suites/resting_chains.hpp"
 
 namespace bench {
 

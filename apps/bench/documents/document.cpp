@@ -1,4 +1,4 @@
-#include "suites/document.hpp"
+#include "documents/document.hpp"
 
 #include <cmath>
 #include <ctime>

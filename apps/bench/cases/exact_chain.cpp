@@ -1,4 +1,4 @@
-#include "suites/exact_chain.hpp"
+#include "cases/exact_chain.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "suites/digits_cases.hpp"
+#include "cases/digits_cases.hpp"
 
 #include <fmt/format.h>
 

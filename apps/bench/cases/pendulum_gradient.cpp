@@ -1,4 +1,4 @@
-#include "suites/pendulum_gradient.hpp"
+#include "cases/pendulum_gradient.hpp"
 
 #include <algorithm>
 

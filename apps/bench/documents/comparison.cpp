@@ -1,4 +1,4 @@
-#include "suites/comparison.hpp"
+#include "documents/comparison.hpp"
 
 #include <fmt/format.h>
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "cases/exact_chain.hpp"
 #include "catena/analysis/motion/equations_of_motion.hpp"
 #include "suites/bench.hpp"
-#include "suites/exact_chain.hpp"
 
 namespace bench {
 

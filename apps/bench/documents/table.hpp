@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "suites/comparison.hpp"
-#include "suites/document.hpp"
+#include "documents/comparison.hpp"
+#include "documents/document.hpp"
 
 namespace bench {
 

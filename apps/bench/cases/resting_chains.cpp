@@ -1,16 +1,16 @@
-#include "suites/resting_chains.hpp"
+#include "cases/resting_chains.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
 
+#include "cases/exact_chain.hpp"
 #include "catena/elements/constraints/absolute_y.hpp"
 #include "catena/elements/constraints/revolute.hpp"
 #include "catena/elements/forces/spring_damper.hpp"
 #include "catena/model/model_add.hpp"
 #include "mechanisms.hpp"
-#include "suites/exact_chain.hpp"
 
 namespace bench {
 

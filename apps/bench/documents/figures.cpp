@@ -1,4 +1,4 @@
-#include "suites/figures.hpp"
+#include "documents/figures.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "suites/table.hpp"
+#include "documents/table.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 // The page of a run: machine, plots, rows by suite. Everything stands in one file.
 #include <fmt/format.h>
 
-#include "suites/figures.hpp"
+#include "documents/figures.hpp"
+#include "documents/table.hpp"
 #include "suites/suites.hpp"
-#include "suites/table.hpp"
 
 namespace bench {
 

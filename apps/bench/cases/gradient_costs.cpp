@@ -1,7 +1,9 @@
-#include "suites/gradient_costs.hpp"
+#include "cases/gradient_costs.hpp"
 
 #include <cmath>
 
+#include "cases/pendulum_gradient.hpp"
+#include "cases/resting_chains.hpp"
 #include "catena/analysis/dynamics/dynamics.hpp"
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/analysis/sensitivity/kinematic_derivatives.hpp"
@@ -11,8 +13,6 @@
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/model_add.hpp"
-#include "suites/pendulum_gradient.hpp"
-#include "suites/resting_chains.hpp"
 
 namespace bench {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "suites/document.hpp"
+#include "documents/document.hpp"
 
 namespace bench {
 

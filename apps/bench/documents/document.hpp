@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "suites/bench_row.hpp"
+#include "documents/bench_row.hpp"
 
 namespace bench {
 
