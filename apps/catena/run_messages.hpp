@@ -8,7 +8,7 @@
 
 namespace catena::cli {
 
-/// The run tells the bar how far it is, if anybody sees it. `bar` must outlive the run.
+/// The run tells the bar how far it is, if it is shown. `bar` must outlive the run.
 void show_progress(ProgressBar& bar, RunOptions& options);
 
 /// One line an analysis that failed: the scene, its type, its status and why.

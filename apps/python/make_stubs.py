@@ -6,7 +6,7 @@
 import pathlib
 import sys
 
-#: What the schema's definitions are for those who write Python.
+#: The schema's definitions as types of Python.
 TYPES = {
     "number": "_Number",
     "positive": "_Number",

@@ -54,7 +54,7 @@ struct Evaluated {
   Evaluated(bool body_i, bool body_j) {
     const int a = add_body(model, "a", pose_a), b = add_body(model, "b", pose_b);
     model.add("", example<E>(), body_i ? a : ground, body_j ? b : ground);
-    // A weld to the ground would be eliminated if nobody asked for its reaction.
+    // A weld to the ground would be eliminated if its reaction were not asked for.
     evaluator = std::make_unique<Evaluator>(Plan::make(model, {.keep_elements = {0}, .one_sided = true}), model);
     evaluator->set_configuration(evaluator->given_configuration());
   }

@@ -2,7 +2,7 @@
 //
 //   node <test>.mjs CATENA CHROMEDRIVER CHROMIUM DATA OUTPUT
 //
-// Screenshots stay in OUTPUT, to be looked at by whoever changes the page.
+// Screenshots stay in OUTPUT, to be looked at after a change of the page.
 
 import { execFileSync, spawnSync } from "node:child_process";
 import { mkdirSync, statSync, writeFileSync } from "node:fs";

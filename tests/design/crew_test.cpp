@@ -1,5 +1,5 @@
-// Processes that share a sweep, here threads that pass messages through memory: the same designs whoever does them, and
-// none is lost with a process that falls silent.
+// Processes that share a sweep, here threads that pass messages through memory: the same designs whichever computes
+// them, and none is lost with a process that falls silent.
 #include <gtest/gtest.h>
 
 #include <atomic>

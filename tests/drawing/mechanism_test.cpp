@@ -150,7 +150,8 @@ Model random_model(std::mt19937& random) {
   return model;
 }
 
-// Who moves a whole mechanism moves its picture: all corners but those of symbols that stand upright on the page.
+// Where a whole mechanism moves its picture moves with it: all corners but those of symbols that stand upright on the
+// page.
 TEST(Drawings, OfRandomMechanismsMoveWithThem) {
   std::mt19937 random(2024);
   std::uniform_real_distribution<double> part(-1, 1);

@@ -81,7 +81,7 @@ TEST(ViewDocument, AnalysesWithOtherBodiesHaveNamesOfTheirOwn) {
   EXPECT_EQ(numbers_in<float>(page.at("analyses")[1].at("poses").at("frames")).size(), 3u * 3 * 4);
 }
 
-// Whoever draws sees more than the columns need; the columns stay the same to the last digit.
+// Drawings ask for more than the columns need; the columns stay the same to the last digit.
 TEST(ViewDocument, DrawingChangesNoRow) {
   for (const char* name : {"crank_rocker", "jansen_leg", "six_bar", "slider_crank_joints", "cam_followers",
                            "four_bar_gradients", "path_generation", "two_bar_truss"}) {

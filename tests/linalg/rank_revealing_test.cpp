@@ -118,7 +118,7 @@ TEST(RevealRank, FindsADuplicatedRowAtAnyScale) {
       expect_true_report(b, report, tolerance_of(report));
       ASSERT_EQ(report.rank, 8);
       EXPECT_TRUE(report.verified) << report.warning;
-      // The two rows concerned, and nobody else, are named.
+      // The two rows concerned, and no others, are named.
       ASSERT_EQ(report.left_null_vectors.count(), 1);
       std::vector<int> concerned(report.left_null_vectors.indices(0).begin(),
                                  report.left_null_vectors.indices(0).end());

@@ -2,8 +2,8 @@
 //
 // Every kind comes in random sizes (1e-2 ... 1e2 m), masses and directions of gravity, with springs and dampers or
 // without, turned and shifted in the plane. Bodies have centroids off their pins. Most kinds can pass flat positions,
-// in which further equations become dependent; whoever draws them sees to it that they pass with a speed
-// (redundant_trials.hpp). The kinds themselves stand in files of their own.
+// in which further equations become dependent; redundant_trials.hpp gives them a speed with which they pass. The kinds
+// themselves stand in files of their own.
 #pragma once
 
 #include "oracles/redundant_cranks.hpp"

@@ -48,9 +48,8 @@ TEST(TallStacks, LieAndFallToRest) {
   }
 }
 
-// A force c t on box k: the boxes from j on tip about an edge at c t (k - j + 1/2) = (n - j) g/2 and slide at c t = mu
-// (n
-// - j) g, j <= k.
+// A force c t on box k: the boxes from j on tip about an edge at c t (k - j + 1/2) = (n - j) g/2 and slide at
+// c t = mu (n - j) g, j <= k.
 TEST(TallStacks, GiveWayWhenStaticsSays) {
   std::mt19937 engine(5);
   std::uniform_real_distribution<double> number(0, 1);

@@ -47,7 +47,7 @@ TEST(MisspeltKeys, ComeBeforeOtherErrors) {
   EXPECT_LT(outcome.error_text.find("forcs"), outcome.error_text.find("gravity"));
 }
 
-// What such a part has in it nobody can know: names that are missing may be there.
+// What such a part has in it is not known: names that are missing may be there.
 TEST(MisspeltKeys, ThatAreNearToNothingHideUnknownNames) {
   std::string text = good;
   text.replace(text.find("\"bodies\""), 8, "\"things\"");

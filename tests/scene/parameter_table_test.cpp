@@ -53,7 +53,7 @@ TEST(ParameterTable, NamesCircles) {
   EXPECT_EQ(t.errors(),
             "1:7 parameters depend on each other in a circle: a -> b -> c -> a\n"
             "4:9 parameters depend on each other in a circle: own -> own\n");
-  EXPECT_TRUE(std::isnan(t.value("user")));  // no further error for those who use them
+  EXPECT_TRUE(std::isnan(t.value("user")));  // no further error where they are used
   EXPECT_EQ(t.value("b0"), 1);
   EXPECT_EQ(t.diagnostics.count(), 2u);
 }

@@ -1,4 +1,4 @@
-// What scenes may say and what results then hold, as users found it to be otherwise.
+// Faults that users found in what scenes may say and in what results hold: each test failed before it was mended.
 #include <gtest/gtest.h>
 
 #include <cmath>

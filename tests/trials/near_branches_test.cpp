@@ -141,7 +141,7 @@ INSTANTIATE_TEST_SUITE_P(All, NarrowPassages,
                                             ::testing::Values(1e-13, 1e-12, 1e-11, 3e-11, 1e-10, 1e-9),
                                             ::testing::Values(1e-4, 1e-8, 1e-10), ::testing::Bool()));
 
-// With the crank driven as well: where the other constraints lose rank branches meet, whoever moves the mechanism.
+// With the crank driven as well: branches meet where the other constraints lose rank, driven or not.
 using Driven = std::tuple<double, double, bool>;
 class DrivenNarrowPassages : public ::testing::TestWithParam<Driven> {};
 

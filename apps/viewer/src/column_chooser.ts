@@ -1,4 +1,4 @@
-// Which columns a plot shows: a list with boxes, and a search for those who have thousands.
+// Which columns a plot shows: a list with boxes, and a search for pages of thousands of columns.
 
 import { make } from "./dom";
 import { Plot } from "./plot";

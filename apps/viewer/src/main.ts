@@ -9,7 +9,7 @@ function main(): void {
   const data = JSON.parse(text) as PageData;
   if (data.catena_view !== 1) throw new Error(`data of version ${data.catena_view}: this page reads version 1`);
   const page = new Page(data);
-  // For tests, and for those who want to look behind the page in their browser's console.
+  // For tests, and for the browser's console.
   Object.assign(window, { catena: page });
 }
 

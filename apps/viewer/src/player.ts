@@ -1,4 +1,4 @@
-// The clock: runs, stops, steps, loops. Whoever shows something is told of every change.
+// The clock: runs, stops, steps, loops. All parts of the page that show something are told of every change.
 
 import { byId, iconButton, setIcon } from "./dom";
 import { Motion } from "./motion";

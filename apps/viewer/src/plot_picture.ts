@@ -14,7 +14,7 @@ export interface Drawable {
 
 export class PlotPicture {
   private readonly kept = make("canvas");
-  /** How often the plot was drawn, for those who measure. */
+  /** How often the plot was drawn, for measurements. */
   drawn = 0;
 
   constructor(private readonly plot: Drawable, private readonly canvas: HTMLCanvasElement) {}

@@ -35,7 +35,7 @@ export class Stage {
   private extentLow: [number, number] = [0, 0];
   private extentHigh: [number, number] = [0, 0];
   private paths!: Traces;
-  /** Pictures drawn so far, for those who measure. */
+  /** Pictures drawn so far, for measurements. */
   pictures = 0;
 
   constructor(public theme: Theme, private readonly changed: () => void,

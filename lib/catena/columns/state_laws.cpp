@@ -119,7 +119,7 @@ class Binding {
   void look_up(int number) {
     StateLaw<double>& law = model_.laws[at(number)];
     law.inputs.clear();
-    const std::string who = describe_law(model_, number);
+    const std::string law_name = describe_law(model_, number);
     for (const std::string& name : law.names) {
       std::vector<NamedColumn> found;
       if (auto unknown = find_columns(model_, name, found)) {
@@ -139,7 +139,7 @@ class Binding {
       if (closes_a_loop(column.kind)) {
         problems_.push_back({number,
                              name,
-                             "an algebraic loop: " + who + " -> " + name + " -> " + who +
+                             "an algebraic loop: " + law_name + " -> " + name + " -> " + law_name +
                                  ": reactions and accelerations follow from all forces, this one among them",
                              {}});
       } else if (!is_known_before(column.kind) || is_of_rope(column)) {

@@ -1,4 +1,4 @@
-// Keeps the rows of every analysis of a run, each for as long as anybody holds them.
+// Keeps the rows of every analysis of a run, each as long as a pointer to them is left.
 #pragma once
 
 #include <memory>

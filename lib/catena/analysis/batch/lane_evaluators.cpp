@@ -23,7 +23,7 @@ LaneEvaluators::Lane& LaneEvaluators::begin(int lane, const Model& model) {
 void LaneEvaluators::set_design(int lane, const Model& model) {
   are_one_ = false;
   Lane& own = begin(lane, model);
-  // The model outlives its use: nobody else need own it.
+  // A pointer that owns nothing: the model outlives its use.
   own.ropes.emplace(std::shared_ptr<const Model>(std::shared_ptr<const Model>(), &model));
   if (!own.ropes->any()) return;
   try {
@@ -32,7 +32,7 @@ void LaneEvaluators::set_design(int lane, const Model& model) {
       if (std::find(route.off.begin(), route.off.end(), 1) != route.off.end()) own.lost = "a rope lies beside a pulley";
     }
   } catch (const ModelError&) {
-    own.lost = "a rope has no way";
+    own.lost = "a rope cannot lie over its pulleys";
   }
 }
 
@@ -46,7 +46,7 @@ const char* LaneEvaluators::Lane::follow_ropes() {
   try {
     if (ropes->follow(evaluator)) lost = "a rope comes to touch or to leave a pulley";
   } catch (const ModelError&) {
-    lost = "a rope has no way";
+    lost = "a rope cannot lie over its pulleys";
   }
   return lost;
 }
@@ -58,7 +58,7 @@ const char* LaneEvaluators::go_to(int lane, double t, const LaneNumbers& q, cons
     const Vec2<double> origin = own.evaluator.origin(n / 3);
     own.q[at(n)] = q[n][lane] - (n % 3 == 0 ? origin.x : n % 3 == 1 ? origin.y : 0);
     own.qd[at(n)] = qd[n][lane];
-    if (!std::isfinite(own.q[at(n)]) || !std::isfinite(own.qd[at(n)])) return "it is nowhere";
+    if (!std::isfinite(own.q[at(n)]) || !std::isfinite(own.qd[at(n)])) return "its places or velocities are not finite";
   }
   own.evaluator.set_time(t);
   own.evaluator.set_configuration(own.q);

@@ -27,7 +27,8 @@ class DynamicsOfIslands {
   ~DynamicsOfIslands();
 
   std::size_t classes() const { return parts_.size(); }
-  /// The motion of a class, by numbers of its own, for those who follow it; and who sees its rows beside those of all.
+  /// The motion of a class, whose bodies and elements have numbers of their own; and an observer that is given its rows
+  /// beside those of all; nullptr: none.
   DynamicsWithEvents& motion_of(std::size_t part);
   void watch_rows_of(std::size_t part, RowObserver* observer);
   const Plan& plan() const { return *plan_; }

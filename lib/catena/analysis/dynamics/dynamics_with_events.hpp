@@ -50,8 +50,8 @@ class DynamicsWithEvents {
   Evaluator& evaluator() { return dynamics_->evaluator(); }
   /// Told of every phase of the motion; nullptr: none.
   void witness(PhaseWitness* witness) { witness_ = witness; }
-  /// Who sees the steps of run() until another phase of the motion begins, which is a jump; nullptr: nobody. Before
-  /// run(), where no contacts are.
+  /// Before run(), without contacts: the follower is told of every step; where another phase of the motion begins, of
+  /// a jump, and of no steps after it. nullptr: none.
   void follow(StepFollower* follower) {
     follower_ = follower;
     dynamics_->follow(follower);

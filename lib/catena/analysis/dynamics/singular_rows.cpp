@@ -7,6 +7,7 @@
 #include "catena/analysis/motion/dependence.hpp"
 
 namespace catena {
+
 void SingularRows::begin_run() {
   dependent_ = always_dependent_ = unbounded_ = false;
   limits_ = formal_ = {};

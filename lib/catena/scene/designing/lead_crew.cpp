@@ -157,7 +157,7 @@ std::vector<std::string> Leader::run() {
   try {
     lead();
   } catch (...) {
-    // Nobody shall wait for what does not come any more.
+    // No member is left waiting for designs that do not come any more.
     for (const Member& member : members_) {
       if (!member.lost) link_.send(member.rank, CrewWriter(CrewWord::stop, terms_.sweep).take());
     }

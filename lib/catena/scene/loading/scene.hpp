@@ -37,7 +37,7 @@ class AnalysisOutcome {
   const AnalysisResult& result() const { return result_; }  ///< fields, events, gradients
   const AnalysisReport& report() const { return result_.report; }
   bool ok() const { return report().ok(); }
-  /// All rows; columns().size() values each. Lives as long as anybody holds it.
+  /// All rows; columns().size() values each. Every copy of the pointer keeps them alive.
   const std::shared_ptr<const ResultStorage>& rows() const { return rows_; }
   /// All values of a column. Throws std::out_of_range with the names that there are.
   std::vector<double> column(std::string_view name) const;

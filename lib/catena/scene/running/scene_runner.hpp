@@ -74,7 +74,7 @@ struct RunOptions {
   bool resume = false;
   ProcessLink* link = nullptr;  ///< to other processes that share the work of sweeps, if there are any
   double patience = 10;         ///< s of silence after which such a process counts as lost
-  PoseSink* poses = nullptr;    ///< told where the bodies are (results/pose_sink.hpp), if anybody draws
+  PoseSink* poses = nullptr;    ///< takes the places of the bodies (results/pose_sink.hpp); nullptr: nothing is drawn
   std::string restart;  ///< file from which a run is taken up again, or empty; checkpoint_every is then the file's
 };
 
