@@ -39,6 +39,8 @@ TEST(Explain, SaysEquationFieldsUnitsColumnsAndAnExample) {
     }
   }
   EXPECT_NE(explain("spring_damper").value_or("").find("N s/m"), std::string::npos);
+  // Of the friction itself, which stands behind its joint.
+  EXPECT_NE(explain("friction").value_or("").find("A.friction ["), std::string::npos);
 }
 
 TEST(Explain, EveryExampleOfAnElementIsASoundScene) {

@@ -60,7 +60,7 @@ std::string form(const FieldDescription& field, bool force) {
       return fmt::format("{}, {} for an angle{}", unit_text(field.unit), unit_text(field.second_unit),
                          field.domain == Domain::any ? "" : fmt::format("; {}", wanted(field.domain)));
     case FieldKind::column:
-      return "\"A.angle\", \"A.slide\", \"A.length\", \"body.x\", ...";
+      return field.key == "joint" ? "its name" : "\"A.angle\", \"A.slide\", \"A.length\", \"body.x\", ...";
     case FieldKind::flag:
       return "true or false";
     case FieldKind::side:
@@ -93,8 +93,9 @@ std::vector<Line> example_columns(const ElementDescription& type) {
   std::vector<Line> lines;
   if (!scene) return lines;
   const Model model = build_model<double>(*scene, std::span<const double>(), {}, diagnostics);
-  if (model.elements.empty()) return lines;
-  for (const ElementColumn& column : columns_of_element(model, 0))
+  const int element = model.find_element("A");
+  if (element < 0) return lines;
+  for (const ElementColumn& column : columns_of_element(model, element))
     lines.push_back({"A." + column.suffix, std::string(si_unit(column.unit))});
   return lines;
 }

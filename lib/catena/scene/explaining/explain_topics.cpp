@@ -262,21 +262,33 @@ Example
   value       at which it happens, SI units and radians (default 0)
   direction   "any" (default), "up" or "down"
   action      "record" (default): nothing but a row; "stop": the analysis ends there, the next goes on from there;
-              "release": a constraint ceases to hold; "engage": a constraint begins to hold, and does not before
+              "release": a constraint ceases to hold; "engage": a constraint begins to hold, and does not before;
+              "impulse": a blow, which needs the key of that name and is meant where that stands alone
   element     the constraint or driver that is released or engaged
-  impulse     in dynamics, in place of an action: {"i": point, "value": [px, py]}, a blow in ground axes, N s
+  impulse     in dynamics: {"i": point, "value": [px, py]}, a blow in ground axes, N s
   Every event gets a row of its own between the others, and an entry {"name", "t", "row", "kind"} in the result "events";
   rows count from 0. Those of one instant come and act in the order of the list. A column that starts at its value has
-  no event there. What engages must hold already, to 1e-6 of the
-  scene's size; velocities then change as in a plastic impact, and the energy lost counts as dissipated. Where they
-  jump, by that, a blow or a driver (kind "jump"), the result "impulses" has what constraints exert, N s. In kinematics
-  a motion must be determined after a release; inverse_dynamics has "record" and "stop" alone.
+  no event there. What engages must hold already, to 1e-6 of the scene's size; velocities then change as in a plastic
+  impact, and the energy lost counts as dissipated. Where they jump, by that, a blow or a driver (kind "jump"), the
+  result "impulses" has what constraints exert, N s. In kinematics a motion must be determined after a release;
+  inverse_dynamics has "record" and "stop" alone.
   "replicate" beside "events" repeats some: {"count": N, "first": 1, "variable": "k", "events": [...]}; names, columns
   and elements may hold {expressions} of k.
 
 Example
   "events": [{"name": "landing", "when": "ball.y", "value": 0.1, "direction": "down", "action": "stop"}],
   "replicate": [{"count": 8, "events": [{"name": "tooth{k}", "when": "=wheel.angle - 2*pi*k/8"}]}]
+)"},
+      {{"measures"},
+       R"(measures: what a motion or a state is worth, one number each; sensitivity, optimise and sweep take them
+  max, min, range, mean, rms, integral    a column or "=expression" over the motion, between its rows as well
+  first, final                            at the first and the last instant
+  at, of                                  of a column at an instant
+  path, to, timed                         root mean square distance of a path [x, y] from places [[x, y], ...]
+  field                                   a number among the results: "energy", "omega[1]", "loads[1]"
+
+Example
+  "measures": {"reach": {"range": "coupler.pen.x"}, "late": {"at": 0.2, "of": "rocker.omega"}}
 )"},
       {{"gravity"}, "gravity: [gx, gy] in m/s^2, default [0, 0]\n\nExample\n  \"gravity\": [0, -9.81]\n"},
   };
