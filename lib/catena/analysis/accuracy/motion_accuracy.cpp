@@ -45,8 +45,8 @@ MotionAccuracy::MotionAccuracy(DynamicsWithEvents& analysis, const ColumnSet& co
 template <class Analysis>
 void MotionAccuracy::follow(Analysis& analysis) {
   analysis.follow(&carried_);
-  follow_ = [&analysis](StepFollower* follower) { analysis.follow(follower); };
-  smooth_ = [&analysis] { return analysis.singular_points().empty() && analysis.jolts().empty(); };
+  motion_.follow = [&analysis](StepFollower* follower) { analysis.follow(follower); };
+  motion_.is_smooth = [&analysis] { return analysis.singular_points().empty() && analysis.jolts().empty(); };
 }
 
 void MotionAccuracy::take(const Snapshot& snapshot, std::span<const double> values) {
@@ -62,19 +62,19 @@ void MotionAccuracy::take(const Snapshot& snapshot, std::span<const double> valu
   keep();
   keep_sharpest(snapshot.qdd);
   const double size = carried_.norm(row_.error);
-  last_examined_ = size > grown * examined_ && carried_.spend(cost_of_row);
-  if (!last_examined_) return;
-  examined_ = size;
+  examined_.is_last = size > grown * examined_.size && carried_.spend(cost_of_row);
+  if (!examined_.is_last) return;
+  examined_.size = size;
   examine(row_);
 }
 
 // What the rounding of time does differs from row to row with the phase of what depends on it: a few late rows are
 // kept.
 void MotionAccuracy::keep() {
-  if (!timed_ || ++rows_ < next_) return;
-  kept_[at(oldest_)] = row_;
-  oldest_ = (oldest_ + 1) % late_rows;
-  next_ = static_cast<std::int64_t>(further * static_cast<double>(rows_)) + 1;
+  if (!timed_ || ++kept_.count < kept_.next) return;
+  kept_.rows[at(kept_.oldest)] = row_;
+  kept_.oldest = (kept_.oldest + 1) % late_rows;
+  kept_.next = static_cast<std::int64_t>(further * static_cast<double>(kept_.count)) + 1;
 }
 
 // Where accelerations have a peak, a small error of places makes a large one of theirs.
@@ -82,9 +82,9 @@ void MotionAccuracy::keep_sharpest(std::span<const double> qdd) {
   double largest = 0;
   for (std::size_t c = 0; c < qdd.size(); ++c)
     largest = std::max(largest, std::abs(qdd[c]) / (c % 3 == 2 ? 1 : carried_.length()));
-  if (!(largest > sharpest_)) return;
-  sharpest_ = largest;
-  kept_[at(late_rows)] = row_;
+  if (!(largest > kept_.sharpest)) return;
+  kept_.sharpest = largest;
+  kept_.rows[at(late_rows)] = row_;
 }
 
 std::vector<double> MotionAccuracy::digits(const AnalysisReport& report) {
@@ -101,10 +101,10 @@ std::vector<double> MotionAccuracy::claimed(const ColumnErrors& errors) {
 }
 
 const ColumnErrors* MotionAccuracy::errors(const AnalysisReport& report) {
-  if (!report.ok() || !smooth_() || carried_.lost() || row_.q.empty()) return nullptr;
-  if (!last_examined_ && !carried_.can_look()) return nullptr;
-  if (!last_examined_) examine(row_);
-  for (const Row& row : kept_) {
+  if (!report.ok() || !motion_.is_smooth() || carried_.lost() || row_.q.empty()) return nullptr;
+  if (!examined_.is_last && !carried_.can_look()) return nullptr;
+  if (!examined_.is_last) examine(row_);
+  for (const Row& row : kept_.rows) {
     if (!row.q.empty() && row.t != row_.t && carried_.spend(cost_of_row)) examine(row);
   }
   errors_.take_places(columns_.info(), carried_.length());

@@ -9,8 +9,8 @@
 // and multipliers are those at y + e + r with the rounding of their equations (kinematic_accuracy.hpp). All is made so
 // small, or large, by s, that its effect is in proportion. Rows: where e has grown by a quarter since the last one, as
 // far as the allowance goes, the last of all, that of the largest accelerations, and with functions of time four of the
-// later half. Nothing is said of
-// work, which is summed up over time, of reactions where equations depend on each other, and where the error is lost.
+// later half. Nothing is said of work, which is summed up over time, of reactions where equations depend on each other,
+// and where the error is lost.
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ class MotionAccuracy final : public RowAccuracy {
   MotionAccuracy(Dynamics& analysis, const ColumnSet& columns);
   /// The same as long as no event acts; the instants at which others happen are not judged. Without contacts.
   MotionAccuracy(DynamicsWithEvents& analysis, const ColumnSet& columns);
-  ~MotionAccuracy() override { follow_(nullptr); }
+  ~MotionAccuracy() override { motion_.follow(nullptr); }
   MotionAccuracy(const MotionAccuracy&) = delete;
   MotionAccuracy& operator=(const MotionAccuracy&) = delete;
 
@@ -63,23 +63,29 @@ class MotionAccuracy final : public RowAccuracy {
   template <class Analysis>
   void follow(Analysis& analysis);
 
-  std::function<void(StepFollower*)> follow_ = [](StepFollower*) {};
-  std::function<bool()> smooth_;  // whether the motion passed neither jumps nor singular positions
+  struct {
+    std::function<void(StepFollower*)> follow = [](StepFollower*) {};
+    std::function<bool()> is_smooth;  // whether it passed neither jumps nor singular positions
+  } motion_;
   const ColumnSet& columns_;
   CarriedError carried_;
   ColumnErrors errors_;
   Disturbance random_;
   Row row_;
-  double examined_ = 0;  // norm of the error in the row that was looked at last
-  bool last_examined_ = false;
+  struct {
+    double size = 0;       // norm of the error in the row that was looked at last
+    bool is_last = false;  // whether that is the last row so far
+  } examined_;
   RowTerms terms_;
   bool timed_;                   // something depends on time
   bool finds_instants_ = false;  // some rows lie at instants that the motion decides on
   static constexpr int late_rows = 4;
-  std::array<Row, late_rows + 1> kept_;  // late ones, and the one of the largest accelerations
-  int oldest_ = 0;
-  double sharpest_ = 0;  // 1/s^2
-  std::int64_t rows_ = 0, next_ = 1;
+  struct {
+    std::array<Row, late_rows + 1> rows;  // late ones, and the one of the largest accelerations
+    int oldest = 0;
+    double sharpest = 0;               // 1/s^2
+    std::int64_t count = 0, next = 1;  // of rows so far; the one that is kept next
+  } kept_;
   // Of a disturbed state.
   std::vector<double> disturbance_, q_, qd_, qdd_, lambda_, jacobian_, loads_, gamma_, change_, change_lambda_;
   std::vector<double> other_, largest_, unknown_, moduli_;

@@ -141,7 +141,7 @@ struct LaneCode {
   const LaneTail* tail;
   const LaneUnknown* unknown;  ///< lengths, then angles
   int lengths;
-  const int* searched;  ///< rows that are evaluated lane by lane, lengths all of them
+  const int* searched;  ///< rows that are evaluated lane by lane, all of them lengths
   int searched_rows;
   // Of loads; where none are wanted there are none.
   const LaneForce* force;  ///< type after type

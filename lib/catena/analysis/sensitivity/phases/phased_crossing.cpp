@@ -199,9 +199,9 @@ void PhasedDerivatives::note_landings(const MotionPhase& phase, const std::vecto
 
 void PhasedDerivatives::begin(const MotionPhase& phase) {
   if (!why().empty()) return;
-  if (!started_) {
-    if (has_phase_ && phase.t != to_) not_shown(phase.t);
-    has_phase_ = true;
+  if (!has_.start) {
+    if (has_.phase && phase.t != to_) not_shown(phase.t);
+    has_.phase = true;
     to_ = phase.t;
     phase_ = phase;
     equations_->hold(phase.released, phase.states);
@@ -220,7 +220,7 @@ void PhasedDerivatives::begin(const MotionPhase& phase) {
   note_landings(phase, rate);
   if (!cross(phase, rate)) return;
   from_ = to_;
-  has_step_ = false;
+  has_.step = false;
   found_.clear();
 }
 

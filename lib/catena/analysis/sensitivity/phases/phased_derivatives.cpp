@@ -86,7 +86,7 @@ void PhasedDerivatives::lose(std::size_t k, std::size_t p, Track& track) {
 }
 
 bool PhasedDerivatives::start(double t, std::span<const double> q_values, std::span<const double> qd_values) {
-  started_ = true;
+  has_.start = true;
   from_ = to_ = t;
   for (const VelocityJump& jump : phase_.jumps) {
     if (!jump.places.empty()) return fail("the motion begins with an impact: earlier or later are different motions");
@@ -224,7 +224,7 @@ bool PhasedDerivatives::project(double t, Side side, Vector Track::*y) {
 // Once derivatives are lost they stay lost: why() says it, and find() fails.
 void PhasedDerivatives::cover(const MotionStretch& stretch) {
   if (!why().empty()) return;
-  if (!started_) {
+  if (!has_.start) {
     const std::optional<Snapshot> state = stretch.at(stretch.from);
     if (!state) {
       not_shown(stretch.from);
@@ -237,8 +237,8 @@ void PhasedDerivatives::cover(const MotionStretch& stretch) {
   for (Track& track : tracks_) track.begin = track.end;
   from_ = stretch.from;
   to_ = stretch.to;
-  has_step_ = true;
-  interpolant_ready_ = false;
+  has_.step = true;
+  has_.interpolant = false;
   if (!make_step(to_ - from_) || !take_values(stretch, to_, &Track::end) || !project(to_, Side::before, &Track::end))
     return;
   found_.clear();
@@ -272,15 +272,15 @@ bool PhasedDerivatives::prepare_interpolant() {
 
 bool PhasedDerivatives::find(const Snapshot& snapshot) {
   if (!why().empty()) return false;
-  if (!started_) {
+  if (!has_.start) {
     const std::vector<double> q(snapshot.q.begin(), snapshot.q.end()), qd(snapshot.qd.begin(), snapshot.qd.end());
     if (!start(snapshot.t, q, qd)) return false;
   }
   if (snapshot.t < from_ || snapshot.t > to_) return not_shown(snapshot.t);
-  const bool inside = has_step_ && snapshot.t != to_ && snapshot.t != from_;
-  if (inside && !interpolant_ready_) {
+  const bool inside = has_.step && snapshot.t != to_ && snapshot.t != from_;
+  if (inside && !has_.interpolant) {
     if (!prepare_interpolant()) return false;
-    interpolant_ready_ = true;
+    has_.interpolant = true;
   }
   // At a jump of functions the motion may show velocities of either side: its own are those after it.
   const bool jumps = crossed_ == snapshot.t;
@@ -291,7 +291,7 @@ bool PhasedDerivatives::find(const Snapshot& snapshot) {
     Group& group = groups()[k];
     Track& track = tracks_[k];
     group.mechanism.go_to_curve_places(places);
-    y_ = has_step_ && snapshot.t == from_ ? track.begin : track.end;
+    y_ = has_.step && snapshot.t == from_ ? track.begin : track.end;
     if (inside) {
       const double h = to_ - from_;
       interpolate_derivatives((snapshot.t - from_) / h, h, track.begin, end_of_step(track), track.stage, y_);

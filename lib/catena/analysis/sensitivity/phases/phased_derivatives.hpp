@@ -130,7 +130,9 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   std::unique_ptr<PhaseEquations> equations_;
   MotionPhase phase_;
   std::vector<Track> tracks_;
-  bool has_phase_ = false, started_ = false, has_step_ = false, interpolant_ready_ = false;
+  struct {
+    bool phase = false, start = false, step = false, interpolant = false;
+  } has_;
   double from_ = 0, to_ = 0, length_scale_ = 1;
   std::optional<double> crossed_;  // where functions of time jumped last
   // Of the end of the present phase, by the event or transition found there.
