@@ -82,6 +82,19 @@ class RopeLayout {
   Straight straight(int a, int b) const;
   /// The angle of contact of node k in (-pi, 2 pi): below zero the rope would cross itself to touch it.
   double contact_between(int a, int k, int b) const;
+  double contact_at(int k, double theta, double out, double known) const;
+  /// A line between nodes a and b, and which of them winds the rope as an end of the stretch.
+  struct Winding {
+    int a, b;
+    bool on_a, on_b;
+  };
+  void wind(RopeSpan<S>& span, const Winding& at_ends, bool going_on, RopeMemory& memory) const;
+  /// Rope that a body winds, m/rad.
+  struct Wound {
+    int body;
+    S by_turn;
+  };
+  static void share_out(const std::vector<Wound>& wound, const S& constant, RopeStretch<S>& stretch);
 
   const BasicModel<S>& model_;
   std::vector<RopePulley<S>> nodes_;
@@ -194,6 +207,53 @@ RopeStretch<S> RopeLayout<S>::skeleton(int first, int end) const {
   return result;
 }
 
+// The angle of contact of node k, where the line before has the direction theta and the one behind `out`; `known`: what
+// it was, or not a number.
+template <class S>
+double RopeLayout<S>::contact_at(int k, double theta, double out, double known) const {
+  const double now = nodes_[at(k)].side * (out - theta);
+  if (!std::isnan(known)) return known + std::remainder(now - known, turn);
+  const double contact = now - turn * std::floor(now / turn);
+  const bool none = contact > turn - no_contact;
+  // Round a point the rope turns either way.
+  const bool point = value_of(nodes_[at(k)].radius) == 0;
+  return none || (point && contact > turn / 2) ? contact - turn : contact;
+}
+
+// Rope that is wound on the ends a and b of a stretch counts from where it lies in the given configuration.
+template <class S>
+void RopeLayout<S>::wind(RopeSpan<S>& span, const Winding& at_ends, bool going_on, RopeMemory& memory) const {
+  const Frame<S>&i = frames_[at(at_ends.a)], &j = frames_[at(at_ends.b)];
+  const S heading = span.heading(span.line(separation(i, j, span.s_i, span.s_j)).along);
+  const auto count = [&](const S& given, double& first) {
+    if (!going_on) first = value_of(given);
+    span.constant += going_on ? S(first) : given;
+  };
+  if (at_ends.on_a) {
+    span.turn_i = -span.radius_i;
+    count(span.radius_i * (i.phi - heading), memory.wound_i);
+  }
+  if (at_ends.on_b) {
+    span.turn_j = span.radius_j;
+    count(span.radius_j * (heading - j.phi), memory.wound_j);
+  }
+}
+
+// Adds what winds on bodies to the first straight part that each of them is an end of, and a constant length.
+template <class S>
+void RopeLayout<S>::share_out(const std::vector<Wound>& wound, const S& constant, RopeStretch<S>& stretch) {
+  if (stretch.straight.empty())
+    throw ModelError("without the pulleys that it lies beside it ties together what does not move");
+  for (const Wound& w : wound) {
+    for (auto& part : stretch.straight) {
+      if (part.i != w.body && part.j != w.body) continue;
+      (part.i == w.body ? part.span.turn_i : part.span.turn_j) += w.by_turn;
+      break;
+    }
+  }
+  stretch.straight.front().span.constant += constant;
+}
+
 template <class S>
 RopeStretch<S> RopeLayout<S>::between(int first, int end, RopeMemory& memory) const {
   RopeStretch<S> result;
@@ -202,10 +262,6 @@ RopeStretch<S> RopeLayout<S>::between(int first, int end, RopeMemory& memory) co
   if (all_together) return result;
   const bool going_on = memory.known();
   memory.contact.resize(nodes_.size(), std::nan(""));
-  struct Wound {
-    int body;
-    S by_turn;
-  };
   std::vector<Wound> wound;
   S constant(0.0);
   double fixed_before = std::nan(""), theta = 0;
@@ -216,38 +272,13 @@ RopeStretch<S> RopeLayout<S>::between(int first, int end, RopeMemory& memory) co
       theta = going_on ? memory.theta + std::remainder(span.angle - memory.theta, turn) : span.angle;
       memory.theta = theta;
     } else {
-      const double sense = nodes_[at(a)].side;
       double& contact = memory.contact[at(a)];
-      double now = sense * (span.angle - theta);
-      if (going_on && !std::isnan(contact)) {
-        now = contact + std::remainder(now - contact, turn);
-      } else {
-        now -= turn * std::floor(now / turn);
-        const bool none = now > turn - no_contact;
-        // Round a point the rope turns either way.
-        const bool point = value_of(nodes_[at(a)].radius) == 0;
-        if (none || (point && now > turn / 2)) now -= turn;
-      }
-      contact = now;
-      theta += sense * now;
+      contact = contact_at(a, theta, span.angle, going_on ? contact : std::nan(""));
+      theta += nodes_[at(a)].side * contact;
     }
     span.angle = theta;
-    const bool starts = a == first && nodes_[at(a)].rolls, ends = b == end && nodes_[at(end)].rolls;
     const Frame<S>&i = frames_[at(a)], &j = frames_[at(b)];
-    const S heading = span.heading(span.line(separation(i, j, span.s_i, span.s_j)).along);
-    // Wound rope counts from where it lies in the given configuration.
-    if (starts) {
-      span.turn_i = -span.radius_i;
-      const S given = span.radius_i * (i.phi - heading);
-      if (!going_on) memory.wound_i = value_of(given);
-      span.constant += going_on ? S(memory.wound_i) : given;
-    }
-    if (ends) {
-      span.turn_j = span.radius_j;
-      const S given = span.radius_j * (heading - j.phi);
-      if (!going_on) memory.wound_j = value_of(given);
-      span.constant += going_on ? S(memory.wound_j) : given;
-    }
+    wind(span, {a, b, a == first && nodes_[at(a)].rolls, b == end && nodes_[at(end)].rolls}, going_on, memory);
     const S extent = span.extent(i, j);
     result.way += extent;
     if (together(a, b)) {
@@ -271,16 +302,7 @@ RopeStretch<S> RopeLayout<S>::between(int first, int end, RopeMemory& memory) co
     fixed_before = std::nan("");
     result.straight.push_back({nodes_[at(a)].body, nodes_[at(b)].body, span});
   }
-  if (result.straight.empty())
-    throw ModelError("without the pulleys that it lies beside it ties together what does not move");
-  for (const Wound& w : wound) {
-    for (auto& part : result.straight) {
-      if (part.i != w.body && part.j != w.body) continue;
-      (part.i == w.body ? part.span.turn_i : part.span.turn_j) += w.by_turn;
-      break;
-    }
-  }
-  result.straight.front().span.constant += constant;
+  share_out(wound, constant, result);
   return result;
 }
 

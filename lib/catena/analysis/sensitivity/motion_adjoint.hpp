@@ -97,6 +97,9 @@ class MotionAdjoint : public StateDerivatives {
                   const std::function<Vector&(std::size_t)>& target);
   /// Pulses at one instant inside of a step, to slopes and ends.
   bool add_inside(const Step& step, std::span<const Look> looks);
+  std::optional<std::vector<Look>> looks_at(const std::vector<std::vector<MotionPulse>>& measures);
+  static std::vector<Look> take_last(std::vector<Look>& looks);
+  std::size_t go_back_over_block(std::size_t k, std::vector<Look>& looks, Step& joined);
   bool add_start(const Vector& y0, Vector& gradient);
 
   std::size_t n_;  // coordinates

@@ -202,6 +202,67 @@ std::optional<std::vector<double>> MotionAdjoint::gradient(std::vector<MotionPul
   return std::move(all->front());
 }
 
+// The pulses of all measures in the order of their instants; nothing where one lies outside of the motion.
+std::optional<std::vector<MotionAdjoint::Look>> MotionAdjoint::looks_at(
+    const std::vector<std::vector<MotionPulse>>& measures) {
+  std::vector<Look> looks;
+  for (std::size_t m = 0; m < measures.size(); ++m) {
+    for (const MotionPulse& pulse : measures[m]) looks.push_back({&pulse, m});
+  }
+  std::stable_sort(looks.begin(), looks.end(), [](const Look& a, const Look& b) { return a.pulse->t < b.pulse->t; });
+  if (looks.empty()) return looks;
+  const double first = looks.front().pulse->t, last = looks.back().pulse->t;
+  if (first >= steps_.front().from && last <= steps_.back().to) return looks;
+  lose(first < steps_.front().from ? first : last, "there is no motion");
+  return {};
+}
+
+// The pulses at the last instant of those left, taken away from them.
+std::vector<MotionAdjoint::Look> MotionAdjoint::take_last(std::vector<Look>& looks) {
+  const double t = looks.back().pulse->t;
+  std::size_t first = looks.size() - 1;
+  while (first > 0 && looks[first - 1].pulse->t == t) --first;
+  std::vector<Look> last(looks.begin() + static_cast<std::ptrdiff_t>(first), looks.end());
+  looks.resize(first);
+  return last;
+}
+
+// Goes back over a block of the first k steps, the last ones, to the instant of the next pulse at most. Returns of how
+// many steps it is; 0: that cannot be done.
+std::size_t MotionAdjoint::go_back_over_block(std::size_t k, std::vector<Look>& looks, Step& joined) {
+  const Step& last = steps_[k - 1];
+  const double next = looks.empty() ? steps_.front().from : looks.back().pulse->t;
+  // A step that has a pulse inside is taken by itself.
+  const bool inside = !looks.empty() && next > last.from;
+  const double bound = inside ? last.from : next;
+  std::size_t given = 1;
+  while (given < std::min(k, RecomputedSteps::most_at_once) && steps_[k - given - 1].from >= bound) ++given;
+  const auto singular = [&] {
+    lose(again_.singular_at(), "constraints depend on each other");
+    return std::size_t{0};
+  };
+  const std::size_t count =
+      again_.join(std::span<const Step>(steps_).subspan(k - given, given), RecomputedSteps::From::back, joined);
+  if (count == 0) return singular();
+  for (Way& way : ways_) {
+    std::fill(way.y0.begin(), way.y0.end(), 0.0);
+    if (inside) way.slopes.assign(dormand_prince_8().c.size(), Vector(2 * n_, 0.0));
+  }
+  if (inside && !again_.prepare_interpolant(joined)) return singular();
+  while (!looks.empty() && looks.back().pulse->t > joined.from) {
+    if (!add_inside(joined, take_last(looks))) return 0;
+  }
+  if (!factorize_end(joined.to, Side::before, joined.end)) return 0;
+  for (Way& way : ways_) {
+    if (!way.begun) continue;
+    go_back(joined, way, inside);
+    std::swap(way.y0, way.y1);
+  }
+  again_.exchange_first(end_);
+  ++blocks_;
+  return count;
+}
+
 std::optional<MotionAdjoint::Gradients> MotionAdjoint::gradients(
     const std::vector<std::vector<MotionPulse>>& measures) {
   if (!why().empty()) return {};
@@ -209,72 +270,28 @@ std::optional<MotionAdjoint::Gradients> MotionAdjoint::gradients(
     fail("the motion was not looked at");
     return {};
   }
-  std::vector<Look> looks;
-  for (std::size_t m = 0; m < measures.size(); ++m) {
-    for (const MotionPulse& pulse : measures[m]) looks.push_back({&pulse, m});
-  }
-  std::stable_sort(looks.begin(), looks.end(), [](const Look& a, const Look& b) { return a.pulse->t < b.pulse->t; });
-  const auto t_of = [](const Look& look) { return look.pulse->t; };
-  if (!looks.empty() && (t_of(looks.front()) < steps_.front().from || t_of(looks.back()) > steps_.back().to)) {
-    lose(t_of(looks.front()) < steps_.front().from ? t_of(looks.front()) : t_of(looks.back()), "there is no motion");
-    return {};
-  }
+  std::optional<std::vector<Look>> looks = looks_at(measures);
+  if (!looks) return {};
   const Way still{Vector(2 * n_, 0.0), Vector(2 * n_, 0.0), Vector(at(parameters()), 0.0), {}};
   ways_.assign(measures.size(), still);
   again_.begin_anew();
   end_->t = std::numeric_limits<double>::quiet_NaN();
   blocks_ = 0;
-  Step joined;
-  // The pulses at the last instant of those left, taken away from them.
-  const auto take_last = [&] {
-    std::size_t first = looks.size() - 1;
-    while (first > 0 && t_of(looks[first - 1]) == t_of(looks.back())) --first;
-    std::vector<Look> last(looks.begin() + static_cast<std::ptrdiff_t>(first), looks.end());
-    looks.resize(first);
-    return last;
-  };
   const auto end_of_way = [this](std::size_t m) -> Vector& {
     ways_[m].begun = true;
     return ways_[m].y1;
   };
+  Step joined;
   for (std::size_t k = steps_.size(); k > 0;) {
     const Step& last = steps_[k - 1];
-    while (!looks.empty() && t_of(looks.back()) >= last.to) {
-      if (!add_pulses(take_last(), last.to, last.end, end_of_way)) return {};
+    while (!looks->empty() && looks->back().pulse->t >= last.to) {
+      if (!add_pulses(take_last(*looks), last.to, last.end, end_of_way)) return {};
     }
-    // No further than to the instant of the next pulse: the step that has one inside by itself.
-    const bool inside = !looks.empty() && t_of(looks.back()) > last.from;
-    const double bound = inside ? last.from : looks.empty() ? steps_.front().from : t_of(looks.back());
-    std::size_t given = 1;
-    while (given < std::min(k, RecomputedSteps::most_at_once) && steps_[k - given - 1].from >= bound) ++given;
-    const std::size_t count =
-        again_.join(std::span<const Step>(steps_).subspan(k - given, given), RecomputedSteps::From::back, joined);
-    if (count == 0) {
-      lose(again_.singular_at(), "constraints depend on each other");
-      return {};
-    }
-    for (Way& way : ways_) {
-      std::fill(way.y0.begin(), way.y0.end(), 0.0);
-      if (inside) way.slopes.assign(dormand_prince_8().c.size(), Vector(2 * n_, 0.0));
-    }
-    if (inside && !again_.prepare_interpolant(joined)) {
-      lose(again_.singular_at(), "constraints depend on each other");
-      return {};
-    }
-    while (!looks.empty() && t_of(looks.back()) > joined.from) {
-      if (!add_inside(joined, take_last())) return {};
-    }
-    if (!factorize_end(joined.to, Side::before, joined.end)) return {};
-    for (Way& way : ways_) {
-      if (!way.begun) continue;
-      go_back(joined, way, inside);
-      std::swap(way.y0, way.y1);
-    }
-    again_.exchange_first(end_);
-    ++blocks_;
+    const std::size_t count = go_back_over_block(k, *looks, joined);
+    if (count == 0) return {};
     k -= count;
   }
-  if (!looks.empty() && !add_pulses(looks, steps_.front().from, steps_.front().begin, end_of_way)) return {};
+  if (!looks->empty() && !add_pulses(*looks, steps_.front().from, steps_.front().begin, end_of_way)) return {};
   Gradients gradients;
   for (Way& way : ways_) {
     if (any(way.y1) && !add_start(way.y1, way.gradient)) return {};

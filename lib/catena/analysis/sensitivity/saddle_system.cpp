@@ -131,31 +131,40 @@ bool SaddleSystem::make_pattern() {
     jacobian_slot_[at(used[k])] = slotted.slot[first + 2 * k];
     transposed_slot_[at(used[k])] = slotted.slot[first + 2 * k + 1];
   }
+  find_dependent_entries();
+  solution_.resize(at(size));
+  if (!dense_) return factorization_.analyze(pattern_, Kernel::automatic, counters_).ok();
+  find_dense_slots();
+  return true;
+}
+
+// Entries of Phi_q in rows that depend on others.
+void SaddleSystem::find_dependent_entries() {
   std::vector<int> place_of_dependent(at(plan_->rows), -1);
   for (std::size_t k = 0; k < dependent_.size(); ++k) place_of_dependent[at(dependent_[k])] = static_cast<int>(k);
   dependent_entries_.clear();
-  for (int c = 0; c < columns && !dependent_.empty(); ++c) {
+  for (int c = 0; c < plan_->columns && !dependent_.empty(); ++c) {
     for (int k = plan_->jacobian.column_start[at(c)]; k < plan_->jacobian.column_start[at(c) + 1]; ++k) {
       const int place = place_of_dependent[at(plan_->jacobian.row_index[at(k)])];
       if (place >= 0) dependent_entries_.push_back({place, c, k, 0});
     }
   }
   asked_.assign(dependent_.size(), 0.0);
-  solution_.resize(at(size));
-  if (dense_) {
-    dense_slot_.assign(at(plan_->jacobian.entries()), -1);
-    for (int c = 0; c < columns; ++c) {
-      for (int k = plan_->jacobian.column_start[at(c)]; k < plan_->jacobian.column_start[at(c) + 1]; ++k) {
-        const int row = place_of_row_[at(plan_->jacobian.row_index[at(k)])];
-        if (row >= 0) dense_slot_[at(k)] = row * columns + c;
-      }
+}
+
+// Places of the entries of Phi_q where it is stored in full, row after row.
+void SaddleSystem::find_dense_slots() {
+  const int columns = plan_->columns;
+  dense_slot_.assign(at(plan_->jacobian.entries()), -1);
+  for (int c = 0; c < columns; ++c) {
+    for (int k = plan_->jacobian.column_start[at(c)]; k < plan_->jacobian.column_start[at(c) + 1]; ++k) {
+      const int row = place_of_row_[at(plan_->jacobian.row_index[at(k)])];
+      if (row >= 0) dense_slot_[at(k)] = row * columns + c;
     }
-    dense_solution_.resize(at(size));
-    dense_side_.resize(at(columns));
-    dense_places_.resize(at(columns));
-    return true;
   }
-  return factorization_.analyze(pattern_, Kernel::automatic, counters_).ok();
+  dense_solution_.resize(at(2 * columns));
+  dense_side_.resize(at(columns));
+  dense_places_.resize(at(columns));
 }
 
 bool SaddleSystem::begin(std::span<const double> jacobian) {

@@ -59,7 +59,7 @@ class SaddleSystem {
   bool solve(std::span<double> f, std::span<double> b);
   /// Whether solve_places() can be used: A = 0 and Phi_q is square, regular and small.
   bool solves_in_lanes() const { return dense_ && dependent_.empty(); }
-  /// Phi_q x = b for four right-hand sides; sizes as in solve(), what is no unknown is left alone in x.
+  /// Phi_q x = b for four right-hand sides; sizes as in solve(); entries of x that are no unknowns stay as they are.
   void solve_places(std::span<const Lanes> b, std::span<Lanes> x);
   /// The dependent row that x of the last solve() does not meet, b of the rows it depends on asking for another change;
   /// -1 where all agree. The worst one.
@@ -76,6 +76,8 @@ class SaddleSystem {
 
   void choose_rows(std::span<const double> jacobian);
   bool make_pattern();
+  void find_dependent_entries();
+  void find_dense_slots();
   void solve_dense();
   int block_of(int body_i, int body_j) const;
 

@@ -91,9 +91,22 @@ class AdjointMechanism {
   std::vector<Taylor<double>> values_;  // of functions, at the present time
   std::vector<double> rates_;           // qd
 
+  bool is_immobile(int body) const { return body >= plan_->moving && body < plan_->bodies; }
+  /// A body's motion with derivatives by parameters: immobile bodies move with them, and so do the angles of particles,
+  /// which are no unknowns.
+  Frame<Taylor<DesignScalar>> frame_of(const DesignMechanism& mechanism, int body) const;
+  Frame<Taylor<DesignScalar>> turned_by_parameters(const DesignModel& model, Frame<Taylor<DesignScalar>> frame,
+                                                   int body) const;
+
  private:
   void add_pins(const Reached& reached, const AdjointWeights& weights,
                 std::array<double, parameters_at_once>& sum) const;
+  /// sum -= lambda^T Phi_q w and the rows by their weights, of constraints that parameters reach.
+  void add_constraints(const DesignMechanism& mechanism, const Reached& reached, const AdjointWeights& weights,
+                       DesignScalar& sum) const;
+  /// sum += w^T Q of forces that parameters reach.
+  void add_forces(const DesignMechanism& mechanism, const Reached& reached, std::span<const double> w,
+                  DesignScalar& sum) const;
   void add_constraints_by_q(const AdjointWeights& weights, std::span<double> by_q, std::span<double> by_qd) const;
   void add_curvature(const AdjointWeights& weights, std::span<double> by_q) const;
   void add_forces_by_state(const Evaluator& evaluator, std::span<const double> w, std::span<double> by_q,

@@ -12,10 +12,6 @@ namespace {
 
 using detail::DesignSeries;
 
-template <class E>
-constexpr bool is_asked = !std::is_same_v<E, CustomConstraint<double>> && !std::is_same_v<E, CustomForce<double>> &&
-                          !Joining<E> && !Sharing<E>;
-
 bool moves(const DesignScalar& x) {
   return std::any_of(x.d.begin(), x.d.end(), [](double d) { return d != 0; });
 }
@@ -88,11 +84,6 @@ bool force_moves(const E& element) {
     }
   }
   return false;
-}
-
-DesignSeries lifted(const Taylor<double>& x) { return {DesignScalar(x.f), DesignScalar(x.d), DesignScalar(x.dd)}; }
-Frame<DesignSeries> lifted(const Frame<Taylor<double>>& f) {
-  return {lifted(f.x), lifted(f.y), lifted(f.phi), lifted(f.c), lifted(f.s)};
 }
 
 }  // namespace
@@ -169,14 +160,14 @@ AdjointMechanism::Reached::Reached(const AdjointMechanism& adjoint, const Design
   };
   for_each_list(plan.blocks, model.constraints, [&](const auto& block, const auto& list, int) {
     using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
-    if constexpr (is_asked<Plain>)
+    if constexpr (detail::is_differentiated<Plain>)
       collect(block, list, constraints_, [](const auto& element) { return phi_moves(element); });
     else
       constraints_.emplace_back();
   });
   for_each_list(plan.forces, model.forces, [&](const auto& block, const auto& list, int) {
     using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
-    if constexpr (is_asked<Plain>)
+    if constexpr (detail::is_differentiated<Plain>)
       collect(block, list, forces_, [](const auto& element) { return force_moves(element); });
     else
       forces_.emplace_back();
@@ -190,11 +181,110 @@ AdjointMechanism::Reached::Reached(const AdjointMechanism& adjoint, const Design
   gravity_ = moves(model.gravity);
 }
 
+Frame<DesignSeries> AdjointMechanism::turned_by_parameters(const DesignModel& model, Frame<DesignSeries> frame,
+                                                           int body) const {
+  if (body >= plan_->moving || plan_->column[at(3 * body + 2)] >= 0) return frame;
+  const DesignScalar& angle = model.bodies[at(plan_->model_body[at(body)])].angle;
+  frame.phi.f.d = angle.d;
+  for (std::size_t p = 0; p < angle.d.size(); ++p) {
+    frame.c.f.d[p] = -frame.s.f.v * angle.d[p];
+    frame.s.f.d[p] = frame.c.f.v * angle.d[p];
+  }
+  return frame;
+}
+
+Frame<DesignSeries> AdjointMechanism::frame_of(const DesignMechanism& mechanism, int body) const {
+  if (is_immobile(body)) return mechanism.motion(body);
+  return turned_by_parameters(mechanism.model(), detail::lifted(motion_[at(body)]), body);
+}
+
+void AdjointMechanism::add_constraints(const DesignMechanism& mechanism, const Reached& reached,
+                                       const AdjointWeights& weights, DesignScalar& sum) const {
+  const DesignModel& model = mechanism.model();
+  const auto frame = [&](int body) { return frame_of(mechanism, body); };
+  // The same bodies moving along w.
+  const auto frame_along = [&](int body) {
+    if (is_immobile(body)) return mechanism.motion(body);
+    Frame<Taylor<double>> m = motion_[at(body)];
+    const double* w = weights.w.data() + 3 * body;
+    if (body < plan_->moving) m = moving(Frame<double>{m.x.f, m.y.f, m.phi.f, m.c.f, m.s.f}, w[0], w[1], w[2]);
+    return turned_by_parameters(model, detail::lifted(m), body);
+  };
+  std::size_t type_number = 0;
+  for_each_list(plan_->blocks, model.constraints, [&](const auto& block, const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
+    const std::vector<int>& places = reached.constraints_[type_number++];
+    if (places.empty()) return;
+    if constexpr (detail::is_differentiated<Plain>) {
+      for (const int e : places) {
+        const auto& entry = list[at(block.entry[at(e)])];
+        DesignSeries c;
+        if constexpr (E::functions > 0) c = mechanism.element_value(entry.id);
+        const double scale = scale_[at(entry.id)];
+        DesignSeries rows[E::rows];
+        const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_, frame);
+        entry.element.phi(Arguments<DesignSeries>{f.i, f.j, c, f.ground}, rows);
+        for (int r = 0; r < E::rows; ++r) {
+          const std::size_t row = at(block.row(e) + r);
+          if (!weights.phi.empty()) sum -= DesignScalar(scale * weights.phi[row]) * rows[r].f;
+          if (!weights.rate.empty()) sum -= DesignScalar(scale * weights.rate[row]) * rows[r].d;
+          if (!weights.bend.empty()) sum -= DesignScalar(scale * weights.bend[row]) * rows[r].dd;
+        }
+        if (weights.lambda.empty()) continue;
+        // lambda^T Phi_q w: without what the function of time itself changes by.
+        const auto g = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_, frame_along);
+        entry.element.phi(Arguments<DesignSeries>{g.i, g.j, DesignSeries(c.f), g.ground}, rows);
+        for (int r = 0; r < E::rows; ++r) sum -= DesignScalar(scale * weights.lambda[at(block.row(e) + r)]) * rows[r].d;
+      }
+    }
+  });
+}
+
+void AdjointMechanism::add_forces(const DesignMechanism& mechanism, const Reached& reached, std::span<const double> w,
+                                  DesignScalar& sum) const {
+  const DesignModel& model = mechanism.model();
+  const auto pose = [&](int body) { return detail::present(frame_of(mechanism, body)); };
+  const auto twist = [&](int body) {
+    const double* rate = rates_.data() + 3 * body;
+    return Twist<DesignScalar>{rate[0], rate[1], rate[2]};
+  };
+  const auto add = [&](int body, const Wrench<DesignScalar>& wrench) {
+    const double* of_body = w.data() + 3 * body;
+    sum += DesignScalar(of_body[0]) * wrench.fx + DesignScalar(of_body[1]) * wrench.fy +
+           DesignScalar(of_body[2]) * wrench.moment;
+  };
+  std::size_t type_number = 0;
+  for_each_list(plan_->forces, model.forces, [&](const auto& block, const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
+    const std::vector<int>& places = reached.forces_[type_number++];
+    if (places.empty()) return;
+    if constexpr (detail::is_differentiated<Plain>) {
+      for (const int e : places) {
+        const auto& entry = list[at(block.entry[at(e)])];
+        const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_, pose);
+        std::array<DesignScalar, E::functions + 1> values;
+        for (std::size_t n = 0; n < entry.values.size(); ++n) {
+          const auto& own = entry.values[n];
+          values[n] = own.function < 0 ? DesignScalar(own.constant)
+                                       : model.functions[at(own.function)].evaluate(mechanism.time()).f;
+        }
+        const int body_i = block.body_i[at(e)], body_j = E::bodies == 2 ? block.body_j[at(e)] : plan_->bodies;
+        const Twist<DesignScalar> u = twist(body_i), v = twist(body_j);
+        Wrench<DesignScalar> on_i, on_j;
+        entry.element.force(ForceArguments<DesignScalar>{f.i, f.j, u, v, values.data(), f.ground}, on_i, on_j);
+        add(body_i, on_i);
+        if constexpr (E::bodies == 2) add(body_j, on_j);
+      }
+    }
+  });
+}
+
 std::array<double, parameters_at_once> AdjointMechanism::by_parameters(const DesignMechanism& mechanism,
                                                                        const Reached& reached,
                                                                        const AdjointWeights& weights,
                                                                        std::span<const double> qdd) {
-  const DesignModel& model = mechanism.model();
   DesignScalar sum;
   add_pins(reached, weights, sum.d);
   if (!weights.w.empty()) {
@@ -205,111 +295,13 @@ std::array<double, parameters_at_once> AdjointMechanism::by_parameters(const Des
     }
   }
   if (!reached.asks_mechanism()) return sum.d;
-  const auto immobile = [&](int body) { return body >= plan_->moving && body < plan_->bodies; };
-  // A particle's angle is no unknown: it carries the model's derivatives.
-  const auto turned = [&](auto frame, int body) {
-    if (body < plan_->moving && plan_->column[at(3 * body + 2)] < 0) {
-      const DesignScalar& angle = model.bodies[at(plan_->model_body[at(body)])].angle;
-      if constexpr (requires { frame.phi.f; }) {
-        frame.phi.f.d = angle.d;
-        for (std::size_t p = 0; p < angle.d.size(); ++p) {
-          frame.c.f.d[p] = -frame.s.f.v * angle.d[p];
-          frame.s.f.d[p] = frame.c.f.v * angle.d[p];
-        }
-      }
-    }
-    return frame;
-  };
-  const auto frame = [&](int body) {
-    return immobile(body) ? mechanism.motion(body) : turned(lifted(motion_[at(body)]), body);
-  };
-  // The same bodies moving along w.
-  const auto frame_along = [&](int body) {
-    if (immobile(body)) return mechanism.motion(body);
-    Frame<Taylor<double>> m = motion_[at(body)];
-    const double* w = weights.w.data() + 3 * body;
-    if (body < plan_->moving) m = moving(Frame<double>{m.x.f, m.y.f, m.phi.f, m.c.f, m.s.f}, w[0], w[1], w[2]);
-    return turned(lifted(m), body);
-  };
-  const auto value = [&](const auto& entry) {
-    if constexpr (std::remove_cvref_t<decltype(entry)>::Element::functions > 0) {
-      return mechanism.element_value(entry.id);
-    } else {
-      return DesignSeries();
-    }
-  };
-  std::size_t type_number = 0;
-  if (reached.any_constraint_)
-    for_each_list(plan_->blocks, model.constraints, [&](const auto& block, const auto& list, int) {
-      using E = ElementOf<decltype(list)>;
-      using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
-      const std::vector<int>& places = reached.constraints_[type_number++];
-      if (places.empty()) return;
-      if constexpr (is_asked<Plain>) {
-        for (const int e : places) {
-          const auto& entry = list[at(block.entry[at(e)])];
-          const DesignSeries c = value(entry);
-          const double scale = scale_[at(entry.id)];
-          DesignSeries rows[E::rows];
-          const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_, frame);
-          entry.element.phi(Arguments<DesignSeries>{f.i, f.j, c, f.ground}, rows);
-          for (int r = 0; r < E::rows; ++r) {
-            const std::size_t row = at(block.row(e) + r);
-            if (!weights.phi.empty()) sum -= DesignScalar(scale * weights.phi[row]) * rows[r].f;
-            if (!weights.rate.empty()) sum -= DesignScalar(scale * weights.rate[row]) * rows[r].d;
-            if (!weights.bend.empty()) sum -= DesignScalar(scale * weights.bend[row]) * rows[r].dd;
-          }
-          if (weights.lambda.empty()) continue;
-          // lambda^T Phi_q w: without what the function of time itself changes by.
-          const auto g = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_, frame_along);
-          entry.element.phi(Arguments<DesignSeries>{g.i, g.j, DesignSeries(c.f), g.ground}, rows);
-          for (int r = 0; r < E::rows; ++r)
-            sum -= DesignScalar(scale * weights.lambda[at(block.row(e) + r)]) * rows[r].d;
-        }
-      }
-    });
+  if (reached.any_constraint_) add_constraints(mechanism, reached, weights, sum);
   if (weights.w.empty()) return sum.d;
-  type_number = 0;
-  const auto pose = [&](int body) {
-    if (immobile(body)) return detail::present(mechanism.motion(body));
-    return detail::present(turned(lifted(motion_[at(body)]), body));
-  };
-  if (reached.any_force_)
-    for_each_list(plan_->forces, model.forces, [&](const auto& block, const auto& list, int) {
-      using E = ElementOf<decltype(list)>;
-      using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
-      const std::vector<int>& places = reached.forces_[type_number++];
-      if (places.empty()) return;
-      if constexpr (is_asked<Plain>) {
-        for (const int e : places) {
-          const auto& entry = list[at(block.entry[at(e)])];
-          const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_, pose);
-          std::array<DesignScalar, E::functions + 1> values;
-          for (std::size_t n = 0; n < entry.values.size(); ++n) {
-            const auto& own = entry.values[n];
-            values[n] = own.function < 0 ? DesignScalar(own.constant)
-                                         : model.functions[at(own.function)].evaluate(mechanism.time()).f;
-          }
-          const int body_i = block.body_i[at(e)], body_j = E::bodies == 2 ? block.body_j[at(e)] : plan_->bodies;
-          const auto twist = [&](int body) {
-            const double* rate = rates_.data() + 3 * body;
-            return Twist<DesignScalar>{rate[0], rate[1], rate[2]};
-          };
-          const Twist<DesignScalar> u = twist(body_i), v = twist(body_j);
-          Wrench<DesignScalar> on_i, on_j;
-          entry.element.force(ForceArguments<DesignScalar>{f.i, f.j, u, v, values.data(), f.ground}, on_i, on_j);
-          const auto add = [&](int body, const Wrench<DesignScalar>& wrench) {
-            const double* w = weights.w.data() + 3 * body;
-            sum += DesignScalar(w[0]) * wrench.fx + DesignScalar(w[1]) * wrench.fy + DesignScalar(w[2]) * wrench.moment;
-          };
-          add(body_i, on_i);
-          if constexpr (E::bodies == 2) add(body_j, on_j);
-        }
-      }
-    });
+  if (reached.any_force_) add_forces(mechanism, reached, weights.w, sum);
+  const Vec2<DesignScalar>& gravity = mechanism.model().gravity;
   for (int c = 0; c < 3 * plan_->moving && reached.gravity_; ++c) {
     if (c % 3 == 2) continue;
-    const DesignScalar& field = c % 3 == 0 ? model.gravity.x : model.gravity.y;
+    const DesignScalar& field = c % 3 == 0 ? gravity.x : gravity.y;
     for (std::size_t p = 0; p < sum.d.size(); ++p) sum.d[p] += weights.w[at(c)] * mechanism.mass(c).v * field.d[p];
   }
   return sum.d;

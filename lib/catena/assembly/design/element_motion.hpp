@@ -2,12 +2,27 @@
 // For the source files of DesignMechanism.
 #pragma once
 
+#include <type_traits>
+
 #include "catena/assembly/design/design_mechanism.hpp"
 #include "catena/elements/all.hpp"
 
 namespace catena::detail {
 
 using DesignSeries = Taylor<DesignScalar>;
+
+/// Elements that are differentiated by design parameters: not those that only C++ can make, nor ropes.
+template <class E>
+constexpr bool is_differentiated = !std::is_same_v<E, CustomConstraint<double>> &&
+                                   !std::is_same_v<E, CustomForce<double>> && !Joining<E> && !Sharing<E>;
+
+/// Without derivatives by parameters.
+inline DesignSeries lifted(const Taylor<double>& x) {
+  return {DesignScalar(x.f), DesignScalar(x.d), DesignScalar(x.dd)};
+}
+inline Frame<DesignSeries> lifted(const Frame<Taylor<double>>& f) {
+  return {lifted(f.x), lifted(f.y), lifted(f.phi), lifted(f.c), lifted(f.s)};
+}
 
 /// c(t) of an element's entry, a series of T; `functions`: those of the model.
 template <class T, class Entry>

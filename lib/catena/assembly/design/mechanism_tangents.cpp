@@ -9,10 +9,6 @@
 namespace catena {
 namespace {
 
-template <class E>
-constexpr bool has_tangents = !std::is_same_v<E, CustomConstraint<double>> && !std::is_same_v<E, CustomForce<double>> &&
-                              !Joining<E> && !Sharing<E>;
-
 /// out += factor x along, over all directions.
 void add_row(double factor, const double* along, std::size_t width, double* out) {
   for (std::size_t p = 0; p < width; p += Lanes::count)
@@ -158,12 +154,13 @@ void MechanismTangents::add_along(const Evaluator& evaluator, std::span<const do
     using E = ElementOf<decltype(list)>;
     if constexpr (std::is_same_v<E, Revolute<double>>)
       add_pins(block, list, lambda, along, sums);
-    else if constexpr (has_tangents<E>)
+    else if constexpr (detail::is_differentiated<E>)
       add_constraints(block, list, lambda, along, sums);
   });
   if (sums.loads.empty()) return;
   for_each_list(plan_->forces, model_->forces, [&](const auto& block, const auto& list, int) {
-    if constexpr (has_tangents<ElementOf<decltype(list)>>) add_forces(evaluator, block, list, along, sums.loads);
+    if constexpr (detail::is_differentiated<ElementOf<decltype(list)>>)
+      add_forces(evaluator, block, list, along, sums.loads);
   });
 }
 

@@ -37,6 +37,11 @@ class MechanismTangents : public AdjointMechanism {
     std::span<const double> dq, dqd;
     std::size_t width;
   };
+  void add_constraint_parameters(const DesignMechanism& mechanism, const Reached& reached,
+                                 std::span<const double> lambda, std::size_t first, std::size_t width,
+                                 const TangentSums& sums) const;
+  void add_force_parameters(const DesignMechanism& mechanism, Side side, const Reached& reached, std::size_t first,
+                            std::size_t width, std::span<double> loads) const;
   void add_pin_parameters(const Reached& reached, std::span<const double> lambda, std::size_t first, std::size_t width,
                           const TangentSums& sums) const;
   template <class Block, class List>

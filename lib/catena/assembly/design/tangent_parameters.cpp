@@ -1,6 +1,5 @@
 // MechanismTangents: derivatives by design parameters, of what these reach.
 #include <algorithm>
-#include <type_traits>
 
 #include "catena/assembly/design/element_motion.hpp"
 #include "catena/assembly/design/mechanism_tangents.hpp"
@@ -11,12 +10,6 @@ namespace catena {
 namespace {
 
 using detail::DesignSeries;
-
-template <class E>
-constexpr bool is_differentiated = !std::is_same_v<E, CustomConstraint<double>> &&
-                                   !std::is_same_v<E, CustomForce<double>> && !Joining<E> && !Sharing<E>;
-
-DesignSeries lift_series(const Taylor<double>& x) { return {DesignScalar(x.f), DesignScalar(x.d), DesignScalar(x.dd)}; }
 
 /// A function at t, where its derivatives by parameters may have two sides; see DesignMechanism::set_time().
 DesignSeries value_at(const TimeFunction<DesignScalar>& function, double t, Side side) {
@@ -62,113 +55,109 @@ void MechanismTangents::add_pin_parameters(const Reached& reached, std::span<con
   }
 }
 
+void MechanismTangents::add_constraint_parameters(const DesignMechanism& mechanism, const Reached& reached,
+                                                  std::span<const double> lambda, std::size_t first, std::size_t width,
+                                                  const TangentSums& sums) const {
+  const auto target = [&](std::span<double> all, std::size_t row) { return all.data() + row * width + first; };
+  const auto frame = [&](int body) { return frame_of(mechanism, body); };
+  std::size_t type = 0;
+  for_each_list(plan_->blocks, mechanism.model().constraints, [&](const auto& block, const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
+    const std::vector<int>& places = reached.constraints_[type++];
+    if constexpr (detail::is_differentiated<Plain>) {
+      for (const int e : places) {
+        const auto& entry = list[at(block.entry[at(e)])];
+        const double scale = scale_[at(entry.id)];
+        DesignSeries c;
+        if constexpr (E::functions > 0) c = mechanism.element_value(entry.id);
+        const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_, frame);
+        DesignSeries rows[E::rows];
+        entry.element.phi(Arguments<DesignSeries>{f.i, f.j, c, f.ground}, rows);
+        for (int r = 0; r < E::rows; ++r) {
+          const std::size_t row = at(block.row(e) + r);
+          if (!sums.phi.empty()) add_derivatives(scale, rows[r].f, target(sums.phi, row));
+          if (!sums.rates.empty()) add_derivatives(scale, rows[r].d, target(sums.rates, row));
+          if (!sums.bends.empty()) add_derivatives(scale, rows[r].dd, target(sums.bends, row));
+        }
+        if (sums.loads.empty()) continue;
+        constexpr int columns = 3 * E::bodies;
+        using D = Dual<DesignScalar, columns>;
+        Frame<D> j;
+        if constexpr (E::bodies == 2) j = seed<DesignScalar, columns>(detail::present(f.j), 3);
+        D slopes[E::rows];
+        entry.element.phi(Arguments<D>{seed<DesignScalar, columns>(detail::present(f.i), 0), j, D(c.f), f.ground},
+                          slopes);
+        for (int r = 0; r < E::rows; ++r) {
+          const double weight = -scale * lambda[at(block.row(e) + r)];
+          for (int k = 0; k < columns; ++k) {
+            const int body = k < 3 ? block.body_i[at(e)] : block.body_j[at(e)];
+            add_derivatives(weight, slopes[r].d[at(k)], target(sums.loads, at(3 * body + k % 3)));
+          }
+        }
+      }
+    }
+  });
+}
+
+void MechanismTangents::add_force_parameters(const DesignMechanism& mechanism, Side side, const Reached& reached,
+                                             std::size_t first, std::size_t width, std::span<double> loads) const {
+  const DesignModel& model = mechanism.model();
+  const auto target = [&](std::size_t row) { return loads.data() + row * width + first; };
+  const auto pose = [&](int body) { return detail::present(frame_of(mechanism, body)); };
+  const auto twist = [&](int body) {
+    const double* rate = rates_.data() + 3 * body;
+    return Twist<DesignScalar>{rate[0], rate[1], rate[2]};
+  };
+  std::size_t type = 0;
+  for_each_list(plan_->forces, model.forces, [&](const auto& block, const auto& list, int) {
+    using E = ElementOf<decltype(list)>;
+    using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
+    const std::vector<int>& places = reached.forces_[type++];
+    if constexpr (detail::is_differentiated<Plain>) {
+      for (const int e : places) {
+        const auto& entry = list[at(block.entry[at(e)])];
+        const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_, pose);
+        std::array<DesignScalar, E::functions + 1> values;
+        for (std::size_t n = 0; n < entry.values.size(); ++n) {
+          const auto& own = entry.values[n];
+          values[n] = own.function < 0 ? DesignScalar(own.constant)
+                                       : value_at(model.functions[at(own.function)], mechanism.time(), side).f;
+        }
+        const int bodies[2] = {block.body_i[at(e)], E::bodies == 2 ? block.body_j[at(e)] : plan_->bodies};
+        const Twist<DesignScalar> u = twist(bodies[0]), v = twist(bodies[1]);
+        Wrench<DesignScalar> on[2];
+        entry.element.force(ForceArguments<DesignScalar>{f.i, f.j, u, v, values.data(), f.ground}, on[0], on[1]);
+        for (int b = 0; b < E::bodies; ++b) {
+          const std::size_t c = at(3 * bodies[b]);
+          add_derivatives(1, on[b].fx, target(c));
+          add_derivatives(1, on[b].fy, target(c + 1));
+          add_derivatives(1, on[b].moment, target(c + 2));
+        }
+      }
+    }
+  });
+}
+
 void MechanismTangents::add_parameters(const DesignMechanism& mechanism, Side side, const Reached& reached,
                                        std::span<const double> lambda, std::span<const double> qdd, std::size_t first,
                                        std::size_t width, const TangentSums& sums) const {
   add_pin_parameters(reached, lambda, first, width, sums);
-  const DesignModel& model = mechanism.model();
-  const auto target = [&](std::span<double> all, std::size_t row) { return all.data() + row * width + first; };
+  const auto load = [&](int coordinate) { return sums.loads.data() + at(coordinate) * width + first; };
   if (!sums.loads.empty()) {
     for (const Reached::Mass& mass : reached.masses_) {
-      const std::size_t c = at(mass.coordinate);
-      const double pull = mass.pull - (qdd.empty() ? 0 : qdd[c]);
-      double* const load = target(sums.loads, c);
-      for (std::size_t p = 0; p < mass.by.size(); ++p) load[p] += pull * mass.by[p];
+      const double pull = mass.pull - (qdd.empty() ? 0 : qdd[at(mass.coordinate)]);
+      double* const out = load(mass.coordinate);
+      for (std::size_t p = 0; p < mass.by.size(); ++p) out[p] += pull * mass.by[p];
     }
   }
   if (!reached.asks_mechanism()) return;
-  // Immobile bodies move with the parameters; so do the angles of particles, which are no unknowns.
-  const auto frame = [&](int body) {
-    if (body >= plan_->moving && body < plan_->bodies) return mechanism.motion(body);
-    const Frame<Series>& m = motion_[at(body)];
-    Frame<DesignSeries> f{lift_series(m.x), lift_series(m.y), lift_series(m.phi), lift_series(m.c), lift_series(m.s)};
-    if (body < plan_->moving && plan_->column[at(3 * body + 2)] < 0) {
-      const DesignScalar& angle = model.bodies[at(plan_->model_body[at(body)])].angle;
-      f.phi.f.d = angle.d;
-      for (std::size_t p = 0; p < angle.d.size(); ++p) {
-        f.c.f.d[p] = -f.s.f.v * angle.d[p];
-        f.s.f.d[p] = f.c.f.v * angle.d[p];
-      }
-    }
-    return f;
-  };
-  std::size_t type = 0;
-  if (reached.any_constraint_)
-    for_each_list(plan_->blocks, model.constraints, [&](const auto& block, const auto& list, int) {
-      using E = ElementOf<decltype(list)>;
-      using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
-      const std::vector<int>& places = reached.constraints_[type++];
-      if constexpr (is_differentiated<Plain>) {
-        for (const int e : places) {
-          const auto& entry = list[at(block.entry[at(e)])];
-          const double scale = scale_[at(entry.id)];
-          DesignSeries c;
-          if constexpr (E::functions > 0) c = mechanism.element_value(entry.id);
-          const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_, frame);
-          DesignSeries rows[E::rows];
-          entry.element.phi(Arguments<DesignSeries>{f.i, f.j, c, f.ground}, rows);
-          for (int r = 0; r < E::rows; ++r) {
-            const std::size_t row = at(block.row(e) + r);
-            if (!sums.phi.empty()) add_derivatives(scale, rows[r].f, target(sums.phi, row));
-            if (!sums.rates.empty()) add_derivatives(scale, rows[r].d, target(sums.rates, row));
-            if (!sums.bends.empty()) add_derivatives(scale, rows[r].dd, target(sums.bends, row));
-          }
-          if (sums.loads.empty()) continue;
-          constexpr int columns = 3 * E::bodies;
-          using D = Dual<DesignScalar, columns>;
-          Frame<D> j;
-          if constexpr (E::bodies == 2) j = seed<DesignScalar, columns>(detail::present(f.j), 3);
-          D slopes[E::rows];
-          entry.element.phi(Arguments<D>{seed<DesignScalar, columns>(detail::present(f.i), 0), j, D(c.f), f.ground},
-                            slopes);
-          for (int r = 0; r < E::rows; ++r) {
-            const double weight = -scale * lambda[at(block.row(e) + r)];
-            for (int k = 0; k < columns; ++k) {
-              const int body = k < 3 ? block.body_i[at(e)] : block.body_j[at(e)];
-              add_derivatives(weight, slopes[r].d[at(k)], target(sums.loads, at(3 * body + k % 3)));
-            }
-          }
-        }
-      }
-    });
+  if (reached.any_constraint_) add_constraint_parameters(mechanism, reached, lambda, first, width, sums);
   if (sums.loads.empty()) return;
-  type = 0;
-  if (reached.any_force_)
-    for_each_list(plan_->forces, model.forces, [&](const auto& block, const auto& list, int) {
-      using E = ElementOf<decltype(list)>;
-      using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
-      const std::vector<int>& places = reached.forces_[type++];
-      if constexpr (is_differentiated<Plain>) {
-        for (const int e : places) {
-          const auto& entry = list[at(block.entry[at(e)])];
-          const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_,
-                                                             [&](int body) { return detail::present(frame(body)); });
-          std::array<DesignScalar, E::functions + 1> values;
-          for (std::size_t n = 0; n < entry.values.size(); ++n) {
-            const auto& own = entry.values[n];
-            values[n] = own.function < 0 ? DesignScalar(own.constant)
-                                         : value_at(model.functions[at(own.function)], mechanism.time(), side).f;
-          }
-          const int bodies[2] = {block.body_i[at(e)], E::bodies == 2 ? block.body_j[at(e)] : plan_->bodies};
-          const auto twist = [&](int body) {
-            const double* rate = rates_.data() + 3 * body;
-            return Twist<DesignScalar>{rate[0], rate[1], rate[2]};
-          };
-          const Twist<DesignScalar> u = twist(bodies[0]), v = twist(bodies[1]);
-          Wrench<DesignScalar> on[2];
-          entry.element.force(ForceArguments<DesignScalar>{f.i, f.j, u, v, values.data(), f.ground}, on[0], on[1]);
-          for (int b = 0; b < E::bodies; ++b) {
-            const std::size_t c = at(3 * bodies[b]);
-            add_derivatives(1, on[b].fx, target(sums.loads, c));
-            add_derivatives(1, on[b].fy, target(sums.loads, c + 1));
-            add_derivatives(1, on[b].moment, target(sums.loads, c + 2));
-          }
-        }
-      }
-    });
+  if (reached.any_force_) add_force_parameters(mechanism, side, reached, first, width, sums.loads);
+  const Vec2<DesignScalar>& gravity = mechanism.model().gravity;
   for (int c = 0; c < 3 * plan_->moving && reached.gravity_; ++c) {
-    if (c % 3 < 2)
-      add_derivatives(mechanism.mass(c).v, c % 3 == 0 ? model.gravity.x : model.gravity.y, target(sums.loads, at(c)));
+    if (c % 3 < 2) add_derivatives(mechanism.mass(c).v, c % 3 == 0 ? gravity.x : gravity.y, load(c));
   }
 }
 

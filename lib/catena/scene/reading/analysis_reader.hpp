@@ -43,6 +43,7 @@ class AnalysisReader {
   // measure_reader.cpp
   void read_measures(const JsonValue& object, AnalysisTask& task);
   void read_measure(const JsonMember& member, AnalysisTask& task);
+  std::optional<std::size_t> measure_kind(const JsonMember& member);
   void read_path(const JsonValue& object, std::size_t number, PlacedMeasure& measure);
   bool read_measured_column(const JsonValue& value, PlacedMeasure& measure);
   void read_field_name(const JsonValue& value, PlacedMeasure& measure);

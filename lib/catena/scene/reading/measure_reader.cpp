@@ -113,6 +113,28 @@ void AnalysisReader::check_field(const JsonValue& value, std::string_view field,
     error(value, fmt::format("{} reports no {}: that is a result of {}", own.type, in_quotes(field), others));
 }
 
+// Of an object; nothing, with a report, where it has none or several.
+std::optional<std::size_t> AnalysisReader::measure_kind(const JsonMember& member) {
+  const JsonValue& object = member.value;
+  std::optional<std::size_t> kind;
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    const JsonValue found = object.find(kinds[k]);
+    if (!found) continue;
+    if (kind) {
+      error(found, fmt::format("measure {} has \"{}\" and \"{}\": a measure is of one kind", in_quotes(member.name()),
+                               kinds[*kind], kinds[k]));
+      return {};
+    }
+    kind = k;
+  }
+  if (kind) return kind;
+  const std::string_view given = object.size() > 0 ? (*object.members().begin()).name() : std::string_view();
+  error(object, fmt::format("measure {} needs one of max, min, range, first, final, mean, rms, integral, at, path, "
+                            "field{}",
+                            in_quotes(member.name()), NearMiss(given).consider_all(kinds).hint()));
+  return {};
+}
+
 void AnalysisReader::read_measure(const JsonMember& member, AnalysisTask& task) {
   PlacedMeasure measure;
   measure.request.name = member.name();
@@ -128,24 +150,8 @@ void AnalysisReader::read_measure(const JsonMember& member, AnalysisTask& task) 
           fmt::format("a measure must be an object such as {{\"max\": column}}; this is {}", describe(object.kind())));
     return;
   }
-  std::optional<std::size_t> kind;
-  for (std::size_t k = 0; k < kinds.size(); ++k) {
-    const JsonValue found = object.find(kinds[k]);
-    if (!found) continue;
-    if (kind) {
-      error(found, fmt::format("measure {} has \"{}\" and \"{}\": a measure is of one kind", in_quotes(member.name()),
-                               kinds[*kind], kinds[k]));
-      return;
-    }
-    kind = k;
-  }
-  if (!kind) {
-    const std::string_view given = object.size() > 0 ? (*object.members().begin()).name() : std::string_view();
-    error(object, fmt::format("measure {} needs one of max, min, range, first, final, mean, rms, integral, at, path, "
-                              "field{}",
-                              in_quotes(member.name()), NearMiss(given).consider_all(kinds).hint()));
-    return;
-  }
+  const std::optional<std::size_t> kind = measure_kind(member);
+  if (!kind) return;
   measure.request.kind = static_cast<MeasureKind>(*kind);
   const JsonValue value = object.find(kinds[*kind]);
   if (measure.request.kind == MeasureKind::path) {
