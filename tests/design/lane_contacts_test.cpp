@@ -101,9 +101,7 @@ Family laws_of_state() {
       {R"json({"max": "drive.load"})json", R"json({"mean": "drive.power"})json", R"json({"final": "rocker.alpha"})json",
        R"json({"rms": "=drive.load + k"})json"},
       {{0.2, 0.6}, {0.8, 1.6}, {0.7, 1.3}, {1.0, 1.8}, {1, 3}, {0.1, 0.8}}};
-  for (std::size_t at = family.mechanism.find("{\"rod\""); at != std::string::npos;
-       at = family.mechanism.find("{\"rod\"", at + 9))
-    family.mechanism.insert(at + 1, R"json("mass": 1, )json");
+  give_masses(family);
   family.analysis = "inverse_dynamics";
   family.size = 100;
   return family;
@@ -129,9 +127,7 @@ Family ropes() {
       {R"json({"max": "drive.load"})json", R"json({"mean": "drive.power"})json",
        R"json({"range": "rocker.angle"})json"},
       {{0.2, 0.6}, {0.8, 1.6}, {0.7, 1.3}, {1.0, 1.8}, {1, 3}, {0.1, 0.2}}};
-  for (std::size_t at = family.mechanism.find("{\"rod\""); at != std::string::npos;
-       at = family.mechanism.find("{\"rod\"", at + 9))
-    family.mechanism.insert(at + 1, R"json("mass": 1, )json");
+  give_masses(family);
   family.analysis = "inverse_dynamics";
   family.size = 100;
   return family;

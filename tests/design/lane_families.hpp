@@ -34,6 +34,13 @@ inline const std::string four_bar = R"json( "bodies": {
 inline const std::string drive =
     R"json( "drivers": [{"type": "absolute_angle", "i": "crank", "value": {"polynomial": [0, "w"]}}],)json";
 
+/// Every rod has the mass 1.
+inline void give_masses(Family& family) {
+  const std::string rod = "{\"rod\"";
+  for (std::size_t at = family.mechanism.find(rod); at != std::string::npos; at = family.mechanism.find(rod, at + 9))
+    family.mechanism.insert(at + 1, R"json("mass": 1, )json");
+}
+
 inline std::string scene_of(const Family& family, const std::vector<double>& values, const std::string& analysis) {
   std::string text = R"json({"catena": 1, "parameters": {)json";
   for (std::size_t p = 0; p < family.names.size(); ++p)

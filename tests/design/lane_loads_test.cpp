@@ -105,9 +105,7 @@ Family geared_four_bars() {
 /// The same with the loads of the teeth.
 Family loaded_gears() {
   Family family = geared_four_bars();
-  for (std::size_t at = family.mechanism.find("{\"rod\""); at != std::string::npos;
-       at = family.mechanism.find("{\"rod\"", at + 9))
-    family.mechanism.insert(at + 1, R"json("mass": 1, )json");
+  give_masses(family);
   family.measures = {R"json({"max": "drive.load"})json", R"json({"max": "mesh.lambda1"})json",
                      R"json({"rms": "belt.lambda1"})json", R"json({"max": "teeth.lambda2"})json",
                      R"json({"max": "ring.fx"})json"};

@@ -9,6 +9,7 @@
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/base/at.hpp"
 #include "catena/columns/energy.hpp"
+#include "catena/scene/designing/no_rows.hpp"
 
 namespace catena {
 namespace {
@@ -58,12 +59,6 @@ std::optional<LaneColumns> columns_of(const LaneProgram& program, const Model& m
   return LaneColumns::make(program, model, names);
 }
 
-class Nobody final : public RowSink {
- public:
-  void begin(std::span<const ColumnInfo>) override {}
-  bool row(std::span<const double>) override { return true; }
-};
-
 }  // namespace
 
 std::unique_ptr<LaneDesigns> LaneDesigns::make(const AnalysisContext& context, std::string& why_not) {
@@ -105,9 +100,13 @@ LaneDesigns::LaneDesigns(const AnalysisContext& context, std::shared_ptr<const M
 }
 
 AnalysisContext LaneDesigns::context_of(const Lane& lane) {
-  static Nobody nobody;
-  return {
-      .task = lane.task, .model = lane.model, .state = start_, .rows = nobody, .progress = {}, .models = outer_.models};
+  static NoRows no_rows;
+  return {.task = lane.task,
+          .model = lane.model,
+          .state = start_,
+          .rows = no_rows,
+          .progress = {},
+          .models = outer_.models};
 }
 
 std::string LaneDesigns::prepare(Lane& lane, const ParameterSeeds& seeds) {

@@ -4,16 +4,10 @@
 #include <limits>
 
 #include "catena/scene/designing/missing_derivatives.hpp"
+#include "catena/scene/designing/no_rows.hpp"
 
 namespace catena {
 namespace {
-
-/// Rows of analyses inside of an optimisation or a sweep, which are not kept.
-class NoRows final : public RowSink {
- public:
-  void begin(std::span<const ColumnInfo>) override {}
-  bool row(std::span<const double>) override { return true; }
-};
 
 /// The reason of a measure that has none.
 std::string why_without_value(const PlacedMeasure& measure, const AnalysisResult& result) {
@@ -75,9 +69,9 @@ bool run_inner(const AnalysisContext& outer, const AnalysisTask& inner, InnerRun
   if (run.went_back && !forward_because.empty()) {
     DesignRequest forward = *run.design;
     forward.mode = GradientMode::forward;
-    NoRows nobody;
+    NoRows no_rows;
     run.state = start;
-    InnerRun again{.seeds = run.seeds, .state = run.state, .rows = nobody, .design = &forward};
+    InnerRun again{.seeds = run.seeds, .state = run.state, .rows = no_rows, .design = &forward};
     AnalysisResult anew;
     anew.type = result.type;
     result = std::move(anew);
@@ -95,7 +89,7 @@ std::optional<Status> run_design(const AnalysisContext& context, ParameterSeeds 
                                  DesignSink* watch, const TakeAnalysis& take, std::string* why, AdjointRecord* record) {
   SystemState state = context.state;
   const ParameterSeeds given = seeds;
-  NoRows nobody;
+  NoRows no_rows;
   std::optional<MissingDerivatives> missing;
   if (design) missing.emplace(*context.models, *design);
   std::optional<DesignRequest> forward;
@@ -115,7 +109,7 @@ std::optional<Status> run_design(const AnalysisContext& context, ParameterSeeds 
     result.type = inner.type();
     InnerRun run{.seeds = seeds,
                  .state = state,
-                 .rows = watch ? watch->begin_analysis(inner.type()) : nobody,
+                 .rows = watch ? watch->begin_analysis(inner.type()) : no_rows,
                  .design = design && record && (*record)[k] < 0 ? &*forward : design,
                  .poses = watch ? &watch->poses() : nullptr};
     const bool possible = run_inner(context, inner, run, result);
