@@ -108,4 +108,10 @@ inline Matrix dyad_chain(int dyads, Random& random) {
   return assemble(row, row, triplets);
 }
 
+/// |A x - b| relative to |A| |x|, the backward error.
+inline double backward_error(const Eigen::MatrixXd& a, const Eigen::VectorXd& x, const Eigen::VectorXd& b) {
+  return (a * x - b).lpNorm<Eigen::Infinity>() /
+         (a.cwiseAbs().rowwise().sum().maxCoeff() * x.lpNorm<Eigen::Infinity>());
+}
+
 }  // namespace catena::testing

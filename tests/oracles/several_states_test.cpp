@@ -20,7 +20,7 @@ namespace catena::testing {
 namespace {
 
 constexpr double g = 10, duration = 0.1;
-// Nearer to a limit than this part of the loads no case is judged.
+// A case nearer to a limit than this part of the loads is not judged.
 constexpr double clear = 1e-4;
 
 struct Stack {
