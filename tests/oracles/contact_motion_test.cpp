@@ -175,6 +175,11 @@ TEST(ContactMotion, CompliantFloorsPressAndRelease) {
     EXPECT_NEAR(run.first("ball.y"), y(b / 2), 1e-9);
     EXPECT_NEAR(run.first("contact#1.force"), force(b / 2), 1e-6 * k * height);
     EXPECT_NEAR(run.last("ball.y"), depth + v * later - g * later * later / 2, 1e-8);
+    ASSERT_EQ(instants(run, "contact").size(), 1u);
+    ASSERT_EQ(instants(run, "release").size(), 1u);
+    EXPECT_NEAR(instants(run, "contact")[0], fall, 1e-9);
+    EXPECT_NEAR(instants(run, "release")[0], fall + b, 1e-7);
+    EXPECT_TRUE(instants(run, "impact").empty());
     EXPECT_NEAR(run.last("energy.balance"), 0, 1e-8 * mass);
   }
 }

@@ -123,5 +123,28 @@ TEST(EventsAtRest, BlocksThatStick) {
   EXPECT_GT(judged, 20);
 }
 
+// A body at rest under a law that is a pulse in time, sqrt(pi) width high in sum: it moves on with that impulse.
+TEST(EventsAtRest, PulsesOfLaws) {
+  expect_no_fault(1, 60, [](unsigned seed) -> std::string {
+    RandomNumbers random(seed);
+    const double end = std::exp(random(0, 4)), width = end * std::exp(random(-4.5, -2)), at = end * random(0.3, 0.7);
+    const double force = random(1, 20), stiffness = seed % 2 == 0 ? 0 : random(0.1, 1) / (end * end);
+    const char* method = seed % 3 == 0 ? "adams" : seed % 3 == 1 ? "rk8" : "rk5";
+    const std::string law =
+        fmt::format("=-{:.17g}*b.x + {:.17g}*exp(-((t - {:.17g})/{:.17g})^2)", stiffness, force, at, width);
+    const TextRun run =
+        run_text(R"({"catena": 1, "gravity": [0, 0], "bodies": {"b": {"mass": 2, "particle": true}},
+      "forces": [{"type": "point_force", "i": "b", "force": [")" +
+                 law + R"(", 0]}], "outputs": ["b.vx", "b.x"], "analyses": [{"type": "dynamics", "method": ")" +
+                 method + R"(", "until": )" + text_of(end) + ", \"every\": " + text_of(end) + "}]}");
+    if (run.outcome.exit_code != 0) return run.outcome.error_text + run.analysis().report.message;
+    // On a spring: v = integral of F(s) cos(omega (end - s)) / m, by the transform of the bell.
+    const double omega = std::sqrt(stiffness / 2), whole = force * std::sqrt(std::numbers::pi) * width / 2;
+    const double v = whole * std::exp(-omega * omega * width * width / 4) * std::cos(omega * (end - at));
+    return std::abs(run.last("b.vx") - v) <= 1e-5 * whole ? std::string()
+                                                          : fmt::format("{} m/s, not {}", run.last("b.vx"), v);
+  });
+}
+
 }  // namespace
 }  // namespace catena::testing

@@ -24,6 +24,16 @@ constexpr double energy_rounding = 1e-12;
 // Halvings of restitution before it is left out: what is left then is far below any speed of rest.
 constexpr int most_halvings = 40;
 
+/// What rates of the active places are sums of, for their rounding: that is what a rate of none is left with.
+void note_sizes(const std::vector<Evaluator::ScalarMotion>& gap, const std::vector<Evaluator::ScalarMotion>& slide,
+                const std::vector<std::size_t>& active, std::span<const double> qd, ContactProblem& problem) {
+  for (std::size_t a = 0; a < active.size(); ++a) {
+    const ContactProblem::Place& place = problem.place[a];
+    if (place.has_normal) problem.b_terms[2 * a] = size_of_product(gap[active[a]], qd);
+    if (place.has_friction) problem.b_terms[2 * a + 1] = size_of_product(slide[active[a]], qd);
+  }
+}
+
 }  // namespace
 
 double ContactSwitch::kinetic_energy(std::span<const double> qd) const {
@@ -31,6 +41,30 @@ double ContactSwitch::kinetic_energy(std::span<const double> qd) const {
   double twice = 0;
   for (int c = 0; c < 3 * evaluator_.plan().moving; ++c) twice += mass[at(c)] * qd[at(c)] * qd[at(c)];
   return twice / 2;
+}
+
+// M (qd+ - qd-) + Phi_q^T p = [P; (R A s)^T P] on the body that is struck.
+void ContactSwitch::apply(const Strike& strike, std::span<const double> q, std::span<double> qd) {
+  const Plan& plan = evaluator_.plan();
+  const int body = plan.plan_body[at(strike.body)];
+  work_of_strike_ = 0;
+  if (body >= plan.moving) return;
+  const double phi = q[at(3 * body + 2)], c = std::cos(phi), s = std::sin(phi);
+  const Vec2<double> arm{c * strike.point.x - s * strike.point.y, s * strike.point.x + c * strike.point.y};
+  const auto speed = [&] {
+    const double* rate = &qd[at(3 * body)];
+    return strike.impulse.x * (rate[0] - rate[2] * arm.y) + strike.impulse.y * (rate[1] + rate[2] * arm.x);
+  };
+  std::fill(load_.begin(), load_.end(), 0.0);
+  load_[at(3 * body)] = strike.impulse.x;
+  load_[at(3 * body + 1)] = strike.impulse.y;
+  load_[at(3 * body + 2)] = cross(arm, strike.impulse);
+  std::vector<double> change(load_.size(), 0.0), multipliers(nothing_);
+  equations_.solve_motion(load_, nothing_, change, multipliers);
+  const double before = speed();
+  for (std::size_t k = 0; k < qd.size(); ++k) qd[k] += change[k];
+  for (std::size_t r = 0; r < p_.size(); ++r) p_[r] += multipliers[r];
+  work_of_strike_ = (before + speed()) / 2;
 }
 
 // Whether a touching place is hit: its gap closes.
@@ -101,6 +135,7 @@ double ContactSwitch::act(const ContactProblem& problem, std::span<double> qd) {
 bool ContactSwitch::bounce(double restitution_part, std::span<double> qd, double& work) {
   ContactProblem problem(active_.size());
   set_up(problem, restitution_part);
+  note_sizes(gap_, slide_, active_, qd, problem);
   if (!problem.solve()) return false;
   take_note(problem);
   work = act(problem, qd);
@@ -111,6 +146,7 @@ bool ContactSwitch::bounce(double restitution_part, std::span<double> qd, double
 bool ContactSwitch::bounce_by_poisson(std::span<double> qd, double& work) {
   ContactProblem compression(active_.size());
   set_up(compression, 0);
+  note_sizes(gap_, slide_, active_, qd, compression);
   const auto grips = [](const ContactProblem::Place& place) { return place.head >= 0; };
   if (std::any_of(compression.place.begin(), compression.place.end(), grips) || !compression.solve()) return false;
   ContactProblem release(active_.size());
@@ -130,9 +166,12 @@ bool ContactSwitch::bounce_by_poisson(std::span<double> qd, double& work) {
   };
   for (std::size_t r = 0; r < release.b.size(); ++r) {
     release.b[r] = rate_of(r);
+    release.b_terms[r] = compression.b_terms[r];
     for (std::size_t c = 0; c < release.b.size(); ++c) {
       const double released = c % 2 == 0 ? across[c / 2] : 0;
-      release.b[r] += compression.D(r, c) * (compression.x[c] + released);
+      const double part = compression.D(r, c) * (compression.x[c] + released);
+      release.b[r] += part;
+      release.b_terms[r] += std::abs(part);
     }
   }
   if (!release.solve()) return false;

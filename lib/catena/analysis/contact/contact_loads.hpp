@@ -14,6 +14,7 @@
 // impact, SIAM Review 42 (2000). Units as in contact_points.hpp.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <string>
@@ -75,6 +76,8 @@ class ContactLoads final : public StateLoads {
   void scatter(std::span<ContactLoad> loads) const;
   /// The largest speed at which forces were asked for.
   double speed() const { return speed_; }
+  /// Takes note of one before.
+  void know_speed(double speed) { speed_ = std::max(speed_, speed); }
   /// Whether rigid places are closed, or exact friction holds or rubs: what a jump of velocities may end.
   bool holds() const { return holds_; }
 

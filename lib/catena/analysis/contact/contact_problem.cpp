@@ -177,7 +177,7 @@ bool ContactProblem::solve() {
   if (!ruled_out_state_.empty() && search()) return true;
   // What is left to sweeps may come back to what was ruled out: the motion then ends, as contacts that change without
   // end.
-  if (!sweep(size)) return search();
+  if (!sweep(size)) return search() || (!is_many() && !has_grips_ && !is_wedged() && pivot());
   if (sticks_together() && search()) return true;
   const std::vector<double> swept = x;
   const std::vector<State> states = state;

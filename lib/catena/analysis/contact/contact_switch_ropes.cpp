@@ -66,4 +66,15 @@ void ContactSwitch::tie_grips(const ContactProblem& problem, std::vector<Contact
   }
 }
 
+// Without their ropes grips hold nothing.
+void ContactSwitch::let_grips_go(std::vector<ContactState>& states) {
+  std::vector<std::size_t> left;
+  for (const std::size_t k : active_) {
+    const bool holds = points_[k].kind != ContactKind::grip || is_active(at(points_[k].rope->head));
+    if (holds) left.push_back(k);
+    if (!holds) states[k] = {};
+  }
+  active_ = std::move(left);
+}
+
 }  // namespace catena

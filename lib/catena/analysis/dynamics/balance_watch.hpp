@@ -6,6 +6,11 @@
 // Where constraints are not kept but drift by the size of the tolerance, weights do the work  tolerance x weights x
 // length scale  on the way: allowed as well, or no mechanism at rest would ever do.
 //
+// What constraints hold balances its loads Q to rounding alone: eps times a dozen terms, of which bodies of mass m take
+// up velocities Q h / m and energies Q^2 h^2 / m in a time h. Steps at rest may be long: that is allowed as well,
+//
+//   rounding of Q:   16 eps  sum Q^2 / m  sum h^2       h: between checks; small beside what moves where all move
+//
 // Errors of positions and velocities of `tolerance` (of the scale of the motion) change the energy by a few times
 // tolerance x (T + V); a motion with a much larger error of energy is wrong. No check is possible where forces without
 // a potential act and their work is not summed up. Units: J.
@@ -13,6 +18,7 @@
 
 #include <algorithm>
 #include <span>
+#include <vector>
 
 #include "catena/base/status.hpp"
 #include "catena/columns/snapshot.hpp"
@@ -41,6 +47,8 @@ class BalanceWatch {
   double tolerance_ = 0, initial_ = 0, missing_ = 0, largest_kinetic_ = 0, least_potential_ = 0, largest_potential_ = 0;
   double earlier_ = 0, weight_ = 0;  // of all bodies, times the length scale: V is zero by chance alone
   double length_ = 1;
+  double t_ = 0, squared_times_ = 0;  // of the latest state, s; sum of (time between states)^2, s^2
+  std::vector<double> inverse_mass_;  // by coordinate; massless: 0
   bool work_known_ = false, drifts_ = false;
 };
 

@@ -204,8 +204,10 @@ Report ContactPhases::change(int transition, SystemState& state) {
   if (contacts_.points[watched.place].is_elastic_grip()) return change_elastic(watched, state);
   if (watched.ends == PhaseEnd::pressing) {
     // A compliant place is pressed by a force that its own depth decides about.
-    states_[watched.place].closed = !states_[watched.place].closed;
-    states_[watched.place].direction = 0;
+    ContactState& place = states_[watched.place];
+    place.closed = !place.closed;
+    place.direction = 0;
+    events_.push_back({contacts_.points[watched.place].element, place.closed ? "contact" : "release", state.t});
   }
   ContactSwitch::Cause cause{.place = static_cast<int>(watched.place),
                              .rests = watched.ends == PhaseEnd::slide,
@@ -280,8 +282,12 @@ void ContactPhases::add_transitions(std::size_t k, const Dynamics& dynamics, std
   const ContactLoads& loads = *loads_;
   const int element = point.element, slide = point.slide;
   const auto normal = [&loads, k](const Snapshot& s) { return loads.normal_from(k, s.qd, s.lambda); };
-  if (point.kind == ContactKind::rigid && !state.closed)
-    watch([element](const Snapshot& s) { return s.evaluator.measure(element, {}, {}).value; }, 1, PhaseEnd::contact);
+  if (point.kind == ContactKind::rigid && !state.closed) {
+    // A place that touches, to rounding, and lifts from there may begin a little below zero.
+    const double start = std::min(switch_->evaluator().measure(element, {}, {}).value, 0.0);
+    watch([element, start](const Snapshot& s) { return s.evaluator.measure(element, {}, {}).value - start; }, 1,
+          PhaseEnd::contact);
+  }
   if (point.kind == ContactKind::rigid && state.closed) {
     if (!shares(k)) watch(normal, 1, PhaseEnd::contact);
     needs.multipliers = true;
@@ -310,6 +316,7 @@ void ContactPhases::attach(Dynamics& dynamics, EventWatch& watch) {
   if (loads_) switch_->know_speed(loads_->speed());
   const double speed = switch_->speed(), length = dynamics.evaluator().length_scale();
   loads_ = std::make_unique<ContactLoads>(dynamics.evaluator(), contacts_.points, states_);
+  loads_->know_speed(speed);
   dynamics.attach(loads_.get());
   std::vector<Transition> transitions;
   watched_.clear();

@@ -19,6 +19,7 @@
 #include "catena/analysis/dynamics/integrators/step_follower.hpp"
 #include "catena/analysis/dynamics/singular_rows.hpp"
 #include "catena/analysis/events/event_watch.hpp"
+#include "catena/analysis/events/law_stretches.hpp"
 #include "catena/analysis/motion/equations_of_motion.hpp"
 #include "catena/analysis/motion/redundant_rows.hpp"
 #include "catena/analysis/pose/assemble.hpp"
@@ -78,6 +79,9 @@ class Dynamics {
   /// What moved in the last run, J, and in those before it of the same motion: errors are compared with the whole.
   double energy_in_motion() const { return work_.balance ? work_.balance->energy() : work_.earlier_motion; }
   void know_energy(double energy) { work_.earlier_motion = energy; }
+  /// How laws change with time, where that was looked at; to be known by another phase of the same motion.
+  const std::shared_ptr<const LawStretches>& law_stretches() const { return law_stretches_; }
+  void know_law_stretches(std::shared_ptr<const LawStretches> laws) { law_stretches_ = std::move(laws); }
   /// Counts work from an earlier start; energy that is missing against then counts as dissipated (an impact).
   void carry_on(WorkSoFar work) { work_.earlier = std::move(work); }
 
@@ -140,6 +144,7 @@ class Dynamics {
   static Report cancelled(double t);
   Report check_pace(double last);
   double next_breakpoint(double t) const;
+  void look_ahead_at_laws();
   Snapshot snapshot(double t, std::span<const double> y, const Needs& needs) const;
 
   std::shared_ptr<const Model> model_;
@@ -165,6 +170,7 @@ class Dynamics {
   std::optional<Evaluator::TimeLimit> time_limit_;  // while it lasts
   std::optional<Motion> motion_;
   std::unique_ptr<Integrator> integrator_;
+  std::shared_ptr<const LawStretches> law_stretches_;  // none where no law reads t, or steps are fixed
   StepPace pace_;
   MotionWork work_;
   PresentRow row_;

@@ -107,7 +107,11 @@ class DynamicsOfIslands::Part final : public RowObserver {
     DynamicsWithEvents again(model_, plan_options_, options_, {}, {});
     if (start_) again.start_from(*start_);
     ahead_.clear();
-    if (!again.run(TimeGrid::instant(t), needs, *this).ok()) return false;
+    // Who sees the rows of this part has seen those before.
+    RowObserver* const seen = std::exchange(own_rows_, nullptr);
+    const bool comes_there = again.run(TimeGrid::instant(t), needs, *this).ok();
+    own_rows_ = seen;
+    if (!comes_there) return false;
     show(ahead_.back());
     return true;
   }

@@ -71,6 +71,7 @@ Report Dynamics::start() {
     integrator_.reset();
     return out;
   }
+  look_ahead_at_laws();
   pace_.step = evaluator_.counters.steps + evaluator_.counters.rejected;
   pace_.first_step = pace_.step - (origin_.resumed ? memory_.steps : 0);
   pace_.t = t_;
@@ -85,6 +86,17 @@ Report Dynamics::start() {
   if (!watched_.may_end()) return {};
   evaluator_.set_configuration(std::span<const double>(row_.y).first(q_.size()));
   return check_ends_at(row_.y);
+}
+
+// What laws do for a short time, a mechanism at rest does not announce.
+void Dynamics::look_ahead_at_laws() {
+  const std::span<const double> y(row_.y);
+  if (model_->laws.empty() || options_.step > 0) return;
+  if (law_stretches_ && law_stretches_->covers(t_, run_.grid.last())) return;
+  evaluator_.set_configuration(y.first(q_.size()));
+  law_stretches_ =
+      std::make_shared<const LawStretches>(evaluator_, y.subspan(q_.size(), q_.size()), t_, run_.grid.last());
+  evaluator_.set_time(t_);
 }
 
 // The energy now and then, and at the end: the last evaluation was at the integrator's state.
@@ -155,7 +167,7 @@ Report Dynamics::next(RowObserver& observer) {
 
 Report Dynamics::step(RowObserver& observer) {
   const double limit = std::min(next_breakpoint(t_), run_.grid.last());
-  if (!integrator_->advance(limit)) return stuck();
+  if (!integrator_->advance(law_stretches_ ? std::min(limit, law_stretches_->limit(t_)) : limit)) return stuck();
   const double before = t_;
   t_ = integrator_->time();
   if (attached_.follower) {

@@ -147,10 +147,12 @@ void DynamicsWithEvents::go_on_from(const SystemState& state, std::span<const in
     if (!work.by_driver.empty()) work.by_driver[static_cast<std::size_t>(driver)] += own;
   }
   const double energy = dynamics_->energy_in_motion();
+  std::shared_ptr<const LawStretches> laws = dynamics_->law_stretches();
   make_dynamics();
   dynamics_->start_from(state);
   turn_values_to_bodies(engaged, state);
   dynamics_->know_energy(energy);
+  dynamics_->know_law_stretches(std::move(laws));
   if (sum_up_work) dynamics_->carry_on(std::move(work));
 }
 

@@ -22,8 +22,10 @@ class EventSamples {
  public:
   static constexpr int parts = 8;
 
-  void resize(std::size_t columns) {
+  /// Begins a step.
+  void begin(std::size_t columns) {
     for (std::vector<double>& g : g_) g.resize(columns);
+    kinks_.assign(columns, 0);
   }
   /// The instant of sample n in [a, b].
   static double instant(double a, double b, int n) {
@@ -32,16 +34,27 @@ class EventSamples {
   /// All columns at sample n.
   std::span<double> at(int n) { return g_[static_cast<std::size_t>(n)]; }
 
-  /// Whether column k may pass zero without being seen. `tiny`: what counts as zero.
+  /// Column k has a kink or noise here: halves show no more of it.
+  void note_kink(std::size_t k) { ++kinks_[k]; }
+
+  /// Whether column k may pass zero without being seen. `tiny`: what counts as zero. Of a column with many kinks in
+  /// this step, which is noise, nothing more can be said.
   bool may_hide(std::size_t k, double tiny) const {
-    double least = g_[0][k], most = least, nearest = std::abs(least), miss = 0;
+    if (kinks_[k] >= most_kinks) return false;
+    double least = g_[0][k], most = least, nearest = std::abs(least);
     for (const std::vector<double>& g : g_) {
       least = std::min(least, g[k]);
       most = std::max(most, g[k]);
       nearest = std::min(nearest, std::abs(g[k]));
     }
-    for (std::size_t n = 1; n < places.size(); n += 2) miss = std::max(miss, std::abs(g_[n][k] - foretold(n, k)));
+    const double miss = this->miss(k);
     return most - least > above_rounding * tiny && miss > foreseen * (most - least) && miss > out_of_reach * nearest;
+  }
+  /// By how much the polynomial misses what it is to foretell.
+  double miss(std::size_t k) const {
+    double miss = 0;
+    for (std::size_t n = 1; n < places.size(); n += 2) miss = std::max(miss, std::abs(g_[n][k] - foretold(n, k)));
+    return miss;
   }
 
  private:
@@ -51,6 +64,8 @@ class EventSamples {
   // samples it is missed by not much more than at them.
   static constexpr double out_of_reach = 0.3;
   static constexpr double above_rounding = 1e3;
+  // Each takes some two hundred samples to be found.
+  static constexpr int most_kinks = 8;
 
   /// Lagrange's polynomial through every second sample, at sample n.
   double foretold(std::size_t n, std::size_t k) const {
@@ -65,6 +80,7 @@ class EventSamples {
   }
 
   std::array<std::vector<double>, parts + 1> g_;
+  std::vector<int> kinks_;  // by column
 };
 
 }  // namespace catena

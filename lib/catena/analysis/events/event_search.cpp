@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include "catena/analysis/events/event_samples.hpp"
 #include "catena/analysis/events/event_watch.hpp"
 
 namespace catena {
@@ -14,8 +13,6 @@ constexpr double turn_in_a_stretch = 0.25 * EventSamples::parts, most_stretches 
 // A stretch is halved so often at most: ten thousand radians of an oscillation within one are seen.
 constexpr int most_halvings = 12;
 constexpr int most_iterations = 80;
-// Those of the stretch that is looked at: memory that steps share.
-thread_local EventSamples taken;
 // Of the time between two samples: nearer to the first one nothing is looked for.
 constexpr double smallest_part = 1e-13;
 
@@ -116,36 +113,35 @@ int EventWatch::stretches(double from, double to, const StateAt& state_at) {
 /// A search in one step.
 struct EventWatch::Look {
   const StateAt& state_at;
-  bool ended = false;       // the motion could not be looked at any further
-  bool foreseeable = true;  // columns become smooth in shorter stretches: no kinks, no noise
+  bool ended = false;  // the motion could not be looked at any further
 };
 
 // The first event in samples of (from, to], or of its halves where they do not show what columns do in it.
 std::optional<FoundEvent> EventWatch::look_within(double from, double to, int halvings, Look& look) {
-  std::copy(g_[2].begin(), g_[2].end(), taken.at(0).begin());
+  std::copy(g_[2].begin(), g_[2].end(), taken_.at(0).begin());
   for (int n = 1; n <= EventSamples::parts; ++n) {
     const std::optional<Snapshot> state = look.state_at(EventSamples::instant(from, to, n));
     if (!state) {
       look.ended = true;
       return first_in_samples(from, to, n - 1, look.state_at);  // what comes before counts
     }
-    sample(*state, taken.at(n));
+    sample(*state, taken_.at(n));
   }
   const double middle = from + (to - from) / 2;
-  if (look.foreseeable && middle > from && middle < to && may_hide_a_passage()) {
-    look.foreseeable = halvings < most_halvings;
-    if (look.foreseeable) {
-      std::optional<FoundEvent> first = look_within(from, middle, halvings + 1, look);
-      if (!first && !look.ended) first = look_within(middle, to, halvings + 1, look);
-      return first;
-    }
+  if (middle > from && middle < to && may_hide_a_passage(halvings)) {
+    std::optional<FoundEvent> first = look_within(from, middle, halvings + 1, look);
+    if (!first && !look.ended) first = look_within(middle, to, halvings + 1, look);
+    return first;
   }
   return first_in_samples(from, to, EventSamples::parts, look.state_at);
 }
 
-bool EventWatch::may_hide_a_passage() const {
+// Columns become smooth in shorter stretches, but for those that have a kink there.
+bool EventWatch::may_hide_a_passage(int halvings) {
   for (std::size_t k = 0; k < side_.size(); ++k) {
-    if (taken.may_hide(k, tiny(k))) return true;
+    if (!taken_.may_hide(k, tiny(k))) continue;
+    if (halvings < most_halvings) return true;
+    taken_.note_kink(k);
   }
   return false;
 }
@@ -157,7 +153,7 @@ std::optional<FoundEvent> EventWatch::first_in_samples(double from, double to, i
     std::rotate(g_.begin(), g_.begin() + 1, g_.end());
     std::rotate(times_.begin(), times_.begin() + 1, times_.end());
     times_[2] = EventSamples::instant(from, to, n);
-    std::copy(taken.at(n).begin(), taken.at(n).end(), g_[2].begin());
+    std::copy(taken_.at(n).begin(), taken_.at(n).end(), g_[2].begin());
     found_.clear();
     bool dips = false;
     for (std::size_t k = 0; k < side_.size(); ++k) {
@@ -214,7 +210,7 @@ std::optional<FoundEvent> EventWatch::find(double from, double to, const StateAt
     const int now = side(k, g_[2][k]);
     if (now != 0) side_[k] = now;
   }
-  taken.resize(side_.size());
+  taken_.begin(side_.size());
   Look look{state_at};
   std::optional<FoundEvent> first;
   double start = from;

@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "catena/analysis/events/event_samples.hpp"
 #include "catena/analysis/events/strike.hpp"
 #include "catena/analysis/motion/motion_memory.hpp"
 #include "catena/columns/column_set.hpp"
@@ -110,7 +111,7 @@ class EventWatch {
   int stretches(double from, double to, const StateAt& state_at);
   struct Look;
   std::optional<FoundEvent> look_within(double from, double to, int halvings, Look& look);
-  bool may_hide_a_passage() const;
+  bool may_hide_a_passage(int halvings);
   std::optional<FoundEvent> first_in_samples(double from, double to, int count, const StateAt& state_at);
   void sample(const Snapshot& state, std::span<double> g);
   double watched(std::size_t k, double t, const StateAt& state_at);
@@ -132,6 +133,7 @@ class EventWatch {
   std::vector<double> found_at_;          // when each event was last found, s
   std::array<std::vector<double>, 3> g_;  // the last samples, of all columns
   std::array<double, 3> times_{};
+  EventSamples taken_;          // of the stretch that is looked at
   std::vector<double> angles_;  // of moving bodies, where a step begins
   std::vector<FoundEvent> found_,
       simultaneous_;  // between two samples; those that are still to be given, the next last

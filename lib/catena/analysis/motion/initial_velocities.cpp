@@ -117,6 +117,10 @@ void meet_constraints(EquationsOfMotion& equations, std::span<const double> q, c
   evaluator.nu(nu);
   const auto values = std::span<const double>(jacobian).first(at(plan.trash_slot()));
   const double length = evaluator.length_scale();
+  for (std::size_t c = 0; c < step.size(); ++c) step[c] = -asked[c];
+  rest = nu;
+  multiply_add(plan.jacobian, values, step, rest);
+  outcome.missed = row_norm(plan, rest, length);
   if (known && meets_constraints(equations, q, values, nu, velocity)) return;
   ConstraintProjector projector(evaluator.shared_plan());
   projector.set_inverse_weights(inverse);

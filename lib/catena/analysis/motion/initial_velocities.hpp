@@ -23,9 +23,10 @@
 namespace catena {
 
 struct VelocityOutcome : Report {
-  double changed = 0;                       ///< largest change of a given component, m/s or rad/s
-  bool changed_turn = false;                ///< an angular velocity
-  int changed_body = -1;                    ///< whose it was, in the model's numbering
+  double changed = 0;         ///< largest change of a given component, m/s or rad/s
+  bool changed_turn = false;  ///< an angular velocity
+  int changed_body = -1;      ///< whose it was, in the model's numbering
+  double missed = 0;          ///< by what was asked for, of the equations, m/s; angles times the length scale
   std::optional<SingularPoint> dead_point;  ///< where the status is lock_up
 };
 

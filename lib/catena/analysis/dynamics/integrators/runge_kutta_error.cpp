@@ -24,8 +24,8 @@ double RungeKutta::error_size(double h) {
   double high = 0, low = 0;
   for (std::size_t c = 0; c < moving; ++c) {
     const double v_unit = scale_.velocity_unit(c, h, v[c]);
-    // Where nothing has moved yet velocities have no scale; positions are then used.
-    const double q_scale = 1 / scale_.position_unit(c, h), v_scale = v_unit > 0 ? 1 / v_unit : 0;
+    // Where nothing has moved yet velocities have no scale but that of the positions that they grow into.
+    const double q_scale = 1 / scale_.position_unit(c, h), v_scale = v_unit > 0 ? 1 / v_unit : std::abs(h) * q_scale;
     const double q_error = error_[c] * q_scale, v_error = error_[offset + c] * v_scale;
     const double size = q_error * q_error + v_error * v_error;
     if (!(size <= high)) {
@@ -38,6 +38,8 @@ double RungeKutta::error_size(double h) {
   }
   if (!two) return std::abs(h) * std::sqrt(high);
   const double denominator = high + 0.01 * low;
+  // Beside velocities of next to nothing squares overflow: such an error is large, whatever their ratio.
+  if (!std::isfinite(denominator)) return std::numeric_limits<double>::infinity();
   return denominator == 0 ? 0 : std::abs(h) * high / std::sqrt(denominator);
 }
 

@@ -1,0 +1,223 @@
+// ContactSwitch: which of the touching places press, stick and slide from now on, by the accelerations of gaps and
+// slides without forces there.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "catena/analysis/contact/contact_switch.hpp"
+#include "catena/analysis/contact/several_states.hpp"
+#include "catena/base/at.hpp"
+
+namespace catena {
+namespace {
+
+// Friction of joints and their forces, in turns: each leaves a part of the error, about mu; a thousand rounds reach
+// rounding where that part is up to 0.96.
+constexpr int most_rounds = 1000;
+// Of the terms that a multiplier is the sum of.
+constexpr double multiplier_rounding = 1e-14;
+
+int sign(double x, double none) { return x > none ? 1 : x < -none ? -1 : 0; }
+
+}  // namespace
+
+// Accelerations without rigid places and exact friction; compliant ones press as they do.
+bool ContactSwitch::find_free_accelerations(double t, std::span<const double> q, std::span<const double> qd,
+                                            ContactLoads& loads) {
+  equations_.attach(&loads);
+  const bool found = equations_.accelerations(t, Side::after, q, qd, qdd_);
+  equations_.attach(nullptr);
+  return found;
+}
+
+// What presses a joint depends on the forces themselves: both are found in turns.
+Report ContactSwitch::press_joints(double t, std::span<const double> qd, const ContactLoads& loads,
+                                   ContactProblem& problem) {
+  const std::span<const double> free = equations_.multipliers();
+  // The multipliers, and the sizes of the terms that they are sums of, for their rounding.
+  std::vector<double> lambda(free.begin(), free.end()), terms(free.size());
+  for (std::size_t r = 0; r < free.size(); ++r) terms[r] = std::abs(free[r]);
+  for (int round = 0; round < most_rounds; ++round) {
+    double change = 0, size = 0;
+    for (std::size_t a = 0; a < active_.size(); ++a) {
+      ContactProblem::Place& place = problem.place[a];
+      if (place.has_normal || place.head >= 0) continue;
+      const double normal = std::max(loads.normal_from(active_[a], qd, lambda), 0.0);
+      const double limit = points_[active_[a]].mu_static * normal;
+      change = std::max(change, std::abs(limit - place.limit));
+      size = std::max(size, points_[active_[a]].mu_static * loads.normal_from(active_[a], qd, terms));
+      place.limit = limit;
+      place.kinetic = points_[active_[a]].mu * normal;
+    }
+    if (!problem.solve()) return wedged(t);
+    if (change <= multiplier_rounding * size) return {};
+    for (std::size_t r = 0; r < lambda.size(); ++r) {
+      lambda[r] = free[r];
+      terms[r] = std::abs(free[r]);
+      for (std::size_t c = 0; c < problem.x.size(); ++c) {
+        const double part = multipliers_[c][r] * problem.x[c];
+        lambda[r] += part;
+        terms[r] += std::abs(part);
+      }
+    }
+  }
+  return failure(t, fmt::format("the friction of {} and the reactions that press there do not settle within {} rounds",
+                                names_of(*model_, points_, active_), most_rounds));
+}
+
+// Which places press, stick and slide from now on.
+Report ContactSwitch::choose(double t, std::span<const double> q, std::span<const double> qd,
+                             std::vector<ContactState>& states, const Cause& cause) {
+  std::vector<ContactState> forces = states;
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    if (points_[k].is_elastic_grip()) continue;
+    if (points_[k].kind != ContactKind::compliant) forces[k].closed = false;
+    if (points_[k].is_exact()) forces[k].direction = 0;
+  }
+  ContactLoads loads(evaluator_, points_, forces);
+  if (!find_free_accelerations(t, q, qd, loads))
+    return failure(t, loads.trouble().empty() ? "accelerations are not finite" : loads.trouble());
+  forget_shared();
+  let_leave(t, states, cause);
+  for (std::vector<std::size_t>& group : active_by_group()) {
+    active_ = std::move(group);
+    if (Report chosen = choose_among(t, qd, states, cause, loads); !chosen.ok()) return chosen;
+  }
+  return {};
+}
+
+// Places whose gaps open already, or that nothing presses any more.
+void ContactSwitch::let_leave(double t, std::vector<ContactState>& states, const Cause& cause) {
+  std::erase_if(active_, [&](std::size_t k) {
+    const bool opens = cause.opens && static_cast<int>(k) == cause.place;
+    const bool leaves =
+        points_[k].kind == ContactKind::rigid && !returns(t, k, cause) && gap_[k].rate > part_of_speed(k, no_speed);
+    if (!opens && !leaves) return false;
+    states[k] = {};
+    left_at_[k] = t;
+    return true;
+  });
+  let_grips_go(states);
+}
+
+// Mechanisms that constraints tie, and those that a gap or a slide ties as well.
+void ContactSwitch::find_groups() {
+  const Plan& plan = evaluator_.plan();
+  std::vector<int> leader(at(plan.islands));
+  std::iota(leader.begin(), leader.end(), 0);
+  const auto find = [&](int island) {
+    while (leader[at(island)] != island) island = leader[at(island)] = leader[at(leader[at(island)])];
+    return island;
+  };
+  std::vector<int> first(points_.size(), -1);
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    const auto tie = [&](int body) {
+      if (body < 0 || body >= plan.moving) return;
+      const int island = find(plan.island[at(body)]);
+      if (first[k] < 0) first[k] = island;
+      leader[at(island)] = find(first[k]);
+    };
+    for (const Evaluator::ScalarMotion* motion : {&gap_[k], &slide_[k]}) {
+      tie(motion->body_i);
+      tie(motion->body_j);
+      for (const Evaluator::ScalarMotion::Part& part : motion->parts) {
+        tie(part.body_i);
+        tie(part.body_j);
+      }
+    }
+  }
+  group_.clear();
+  for (const int island : first) group_.push_back(island < 0 ? -1 : find(island));
+}
+
+// Forces of one mechanism do not reach another.
+std::vector<std::vector<std::size_t>> ContactSwitch::active_by_group() {
+  if (group_.empty()) find_groups();
+  std::vector<std::vector<std::size_t>> groups;
+  for (const std::size_t k : active_) {
+    const auto same = [&](const std::vector<std::size_t>& group) { return group_[group.front()] == group_[k]; };
+    const auto found = std::find_if(groups.begin(), groups.end(), same);
+    if (found == groups.end())
+      groups.push_back({k});
+    else
+      found->push_back(k);
+  }
+  return groups;
+}
+
+// Accelerations of gaps and slides without forces there.
+void ContactSwitch::set_up(ContactProblem& problem, const Cause& cause) const {
+  fill(problem);
+  const auto take = [&](std::size_t row, const Evaluator::ScalarMotion& motion) {
+    problem.b[row] = motion.bend + product(motion, qdd_);
+    problem.b_terms[row] = std::abs(motion.bend) + size_of_product(motion, qdd_);
+  };
+  for (std::size_t a = 0; a < active_.size(); ++a) {
+    const std::size_t k = active_[a];
+    ContactProblem::Place& place = problem.place[a];
+    if (place.has_normal) take(2 * a, gap_[k]);
+    if (!points_[k].has_friction()) continue;
+    take(2 * a + 1, slide_[k]);
+    place.slip = sign(slide_[k].rate, part_of_speed(k, no_speed));
+    if (static_cast<int>(k) == cause.place && cause.rests) place.slip = cause.leaves;
+  }
+}
+
+// Places that hold each other go on as they are but for those that give way; as they all are they cannot.
+void ContactSwitch::prefer_giving_way(ContactProblem& problem, const std::vector<ContactState>& states,
+                                      const Cause& cause) const {
+  using State = ContactProblem::State;
+  for (std::size_t a = 0; a < active_.size(); ++a) {
+    const ContactState& state = states[active_[a]];
+    const bool sticks = points_[active_[a]].has_friction() && state.direction == 0;
+    problem.state[a] = !state.closed ? State::open : sticks ? State::sticks : State::slides;
+    problem.direction[a] = state.direction;
+  }
+  problem.rule_out_states();
+  for (const GivesWay& place : cause.giving_way) {
+    const auto a = static_cast<std::size_t>(std::find(active_.begin(), active_.end(), place.point) - active_.begin());
+    if (a == active_.size()) continue;
+    problem.state[a] = place.direction == 0 ? State::open : State::slides;
+    problem.direction[a] = place.direction;
+  }
+  if (!cause.giving_way.empty()) problem.prefer_states();
+}
+
+// Of the active places, which are of one mechanism.
+Report ContactSwitch::choose_among(double t, std::span<const double> qd, std::vector<ContactState>& states,
+                                   const Cause& cause, const ContactLoads& loads) {
+  find_responses();
+  ContactProblem problem(active_.size());
+  set_up(problem, cause);
+  if (cause.shares) prefer_giving_way(problem, states, cause);
+  if (Report pressed = press_joints(t, qd, loads, problem); !pressed.ok())
+    return is_jammed(true) ? blocked(t, active_) : pressed;
+  if (!cause.shares) stick_where_possible(problem);
+  if (const std::vector<std::size_t> pushed = pushed_through(t, problem, cause); !pushed.empty())
+    return blocked(t, pushed);
+  if (!cause.shares) note_other_states(t, problem);
+  for (std::size_t a = 0; a < active_.size(); ++a) {
+    const std::size_t k = active_[a];
+    const bool grip = points_[k].kind == ContactKind::grip;
+    const bool joint = points_[k].kind != ContactKind::rigid && !grip;
+    if (!joint) states[k].closed = problem.state[a] != ContactProblem::State::open;
+    states[k].direction = problem.state[a] == ContactProblem::State::slides ? problem.direction[a] : 0;
+    states[k].tied = false;
+  }
+  SharedForces forces(problem, active_);
+  if (!forces.places().empty()) shared_.push_back(std::move(forces));
+  tie_grips(problem, states);
+  return {};
+}
+
+// What was known of the places that are decided about now.
+void ContactSwitch::forget_shared() {
+  const auto is_touched = [&](std::size_t k) { return std::find(active_.begin(), active_.end(), k) != active_.end(); };
+  std::erase_if(shared_, [&](const SharedForces& forces) {
+    return std::any_of(forces.places().begin(), forces.places().end(), is_touched);
+  });
+}
+
+}  // namespace catena
