@@ -15,6 +15,11 @@ constexpr double around[] = {0.5, 0.25, 0.75};
 constexpr double price_of_violation = 10;
 // Of the objective's size, on the square of the distance beyond a border in parts of the ranges.
 constexpr double steepness = 10;
+// Designs that are left for judging the best one: its gradient, and a step of either length (optimise_design.cpp).
+constexpr int for_judging = 3;
+// The part of all designs that a search everywhere leaves for the search from the best one; where there are fewer than
+// ten times those for judging, nothing is left.
+constexpr int parts = 10;
 
 double size_of(double value, std::span<const double> gradient, const std::vector<double>& range) {
   double sum = 0;
@@ -61,7 +66,13 @@ std::vector<double> DesignSearch::design(std::span<const double> u) const {
 
 bool DesignSearch::go_on() {
   cancelled_ = cancelled_ || (options_.go_on && !options_.go_on());
-  return !cancelled_ && outcome_.evaluations < options_.max_evaluations;
+  return !cancelled_ && outcome_.evaluations < most_evaluations();
+}
+
+int DesignSearch::most_evaluations() const {
+  const int most = options_.max_evaluations;
+  if (most < parts * for_judging) return most;
+  return most - for_judging - (searches_everywhere(options_.method) && !is_near_ ? most / parts : 0);
 }
 
 bool DesignSearch::analyse(std::span<const double> u, Point& point) {
@@ -97,6 +108,7 @@ std::optional<double> DesignSearch::change_along(std::span<const double> directi
   std::vector<double> u = best();
   for (std::size_t v = 0; v < u.size(); ++v) u[v] = std::clamp(u[v] + direction[v], 0.0, 1.0);
   const double before = outcome_.values.objective;
+  if (outcome_.evaluations >= options_.max_evaluations) return {};
   Point point;
   if (!analyse(u, point) || violation_of(point.values) > allowed) return {};
   compare(point);
@@ -135,6 +147,7 @@ void DesignSearch::compare(const Point& point) {
 
 bool DesignSearch::complete_best() {
   if (gradients_) return true;
+  if (outcome_.evaluations >= options_.max_evaluations) return false;
   ++outcome_.evaluations;
   DesignEvaluation evaluation = evaluate_(outcome_.x, true);
   const bool complete = evaluation.failure.empty() && has_values(evaluation.values) &&
@@ -152,7 +165,7 @@ void DesignSearch::take_sizes(const DesignSearch& other) {
 }
 
 bool DesignSearch::absorb(const DesignSearch& other) {
-  const int left = options_.max_evaluations - outcome_.evaluations;
+  const int left = most_evaluations() - outcome_.evaluations;
   for (const Improvement& improvement : other.improved_) {
     if (improvement.number <= left) compare(improvement.point);
   }

@@ -39,6 +39,8 @@ class DesignSearch final : public MinimisationProblem {
   /// The best design in parts of the ranges.
   std::vector<double> best() const;
   bool was_cancelled() const { return cancelled_; }
+  /// After a search everywhere: what it left of the designs may be spent near the best one.
+  void stay_near() { is_near_ = true; }
   /// How many designs were better than all before.
   int improvements() const { return improvements_; }
   /// Measures constraints and objectives by the sizes that another search has taken.
@@ -72,6 +74,8 @@ class DesignSearch final : public MinimisationProblem {
   void replace_failed(std::span<const double> u);
   void compare(const Point& point);
   double violation_of(const DesignValues& values) const;
+  /// How many designs may be analysed before the best one is judged.
+  int most_evaluations() const;
 
   const DesignProblem& problem_;
   DesignProblem::Evaluate evaluate_;
@@ -79,7 +83,7 @@ class DesignSearch final : public MinimisationProblem {
   DesignOutcome& outcome_;
   bool gradients_;
   Point now_, good_;
-  bool cancelled_ = false, has_sizes_ = false;
+  bool cancelled_ = false, has_sizes_ = false, is_near_ = false;
   int improvements_ = 0;
   std::vector<Improvement> improved_;
   std::vector<Failure> failures_;

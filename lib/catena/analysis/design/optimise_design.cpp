@@ -159,18 +159,33 @@ void look_aside(const DesignProblem& problem, const DesignOptions& options, Desi
   ended.downhill = goes_downhill(problem, options, search, outcome);
 }
 
+/// A search everywhere knows no end but that of its designs: the best of them is the start of a search without
+/// gradients that has one. How that ended.
+MinimiserEnd search_near_best(const DesignOptions& options, DesignSearch& search, const DesignOutcome& outcome,
+                              MinimiserEnd end) {
+  search.stay_near();
+  std::vector<double> u = search.best();
+  if (!search.go_on() || !search.begin(u)) return end;
+  MinimiserOptions wanted = minimiser_options(options, outcome.evaluations, u.size());
+  // A parabola takes two variables or more, and knows bounds alone.
+  const bool bounds_alone = search.inequalities() + search.equations() == 0 && u.size() > 1;
+  wanted.method = bounds_alone ? MinimiserMethod::bobyqa : MinimiserMethod::cobyla;
+  return minimise(search, wanted, u);
+}
+
 }  // namespace
 
 DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions& options) {
   require_sound(problem);
   DesignOutcome outcome;
   DesignSearch search(problem, options, outcome);
-  const std::optional<MinimiserEnd> found = search_from_all_starts(problem, options, search, outcome);
+  std::optional<MinimiserEnd> found = search_from_all_starts(problem, options, search, outcome);
   if (!found) {
     search.go_on();
     if (search.was_cancelled()) outcome.end = DesignEnd::cancelled;
     return outcome;
   }
+  if (searches_everywhere(options.method)) found = search_near_best(options, search, outcome, *found);
   Ended ended{*found, goes_downhill(problem, options, search, outcome)};
   auto& [end, downhill] = ended;
   for (int n = 0; downhill && end == MinimiserEnd::converged && n < most_renewals && search.go_on(); ++n) {

@@ -23,6 +23,8 @@ enum class MinimiserMethod { slsqp, mma, ipopt, bobyqa, cobyla, crs2, isres, dir
 
 /// Whether a method asks for gradients.
 constexpr bool uses_gradients(MinimiserMethod method) { return method <= MinimiserMethod::ipopt; }
+/// Whether a method looks for designs everywhere within the bounds: it finds the best ones coarsely.
+constexpr bool searches_everywhere(MinimiserMethod method) { return method >= MinimiserMethod::crs2; }
 
 /// What is minimised. Gradients and Jacobians (row-major, a row a constraint) are wanted where their spans are not
 /// empty.
