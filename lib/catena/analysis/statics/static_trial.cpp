@@ -1,6 +1,7 @@
 #include "catena/analysis/statics/static_trial.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/statics/solvers/static_descent.hpp"
@@ -27,6 +28,9 @@ constexpr double gap_tolerance = 1e-12;
 constexpr int few_first_steps = 40, most_first_steps = 80;
 // Constraints that hold to this part of the length are not assembled first.
 constexpr double assembled = 1e-12;
+// Constraints that are missed by more than this part of the length were left out of a search: what a search meets it
+// meets to its tolerance, 1e-8 unless another is asked for.
+constexpr double missed = 1e-4;
 
 const char* solver_of(StaticWay way) {
   switch (way) {
@@ -59,16 +63,8 @@ StaticOutcome StaticTrial::run_smooth(std::vector<double>& q, std::vector<double
   system_.move_to(q);
   if (way == StaticWay::ipopt || way == StaticWay::nlopt) return optimise(q, lambda, warm, way);
   if (way == StaticWay::settling) return solve_by_settling(system_, q, lambda, {.tolerance = options_.tolerance});
-  if (way == StaticWay::valley) {
-    Assembler assembler(system_.evaluator());
-    std::vector<double> start = q;
-    const std::vector<CurvePlace> places = system_.evaluator().curve_places();
-    if (system_.phi_norm() <= assembled || assembler.assemble(start).ok()) {
-      q = start;
-      return solve_by_descent(system_, q, lambda, {.tolerance = options_.tolerance});
-    }
-    system_.evaluator().go_to_curve_places(places);
-  }
+  if (way == StaticWay::valley && (system_.phi_norm() <= assembled || assemble(q)))
+    return solve_by_descent(system_, q, lambda, {.tolerance = options_.tolerance});
   StaticOutcome outcome = solve_by_newton(
       system_, q, lambda, {.tolerance = options_.tolerance, .warm = warm, .stationary = options_.stationary});
   if (outcome.end != StaticEnd::slow) return outcome;
@@ -80,8 +76,39 @@ StaticOutcome StaticTrial::run_smooth(std::vector<double>& q, std::vector<double
   return outcome;
 }
 
+bool StaticTrial::assemble(std::vector<double>& q) {
+  std::vector<double> start = q;
+  const std::vector<CurvePlace> places = system_.evaluator().curve_places();
+  if (Assembler(system_.evaluator()).assemble(start).ok()) {
+    q = std::move(start);
+    return true;
+  }
+  system_.evaluator().go_to_curve_places(places);
+  return false;
+}
+
+// Where constraints are singular and do not hold, as in a sketch that is drawn flat, some seem to depend on others, and
+// what is found without them misses them: the search begins once more where the sketch is assembled.
+StaticOutcome StaticTrial::optimise_by_nlopt(std::vector<double>& q, std::vector<double>& lambda) {
+  std::vector<double> start = q;
+  const bool holds = system_.has_gaps() || system_.phi_norm() <= assembled;
+  StaticOutcome outcome = solve_by_nlopt(system_, q, lambda, {.tolerance = options_.tolerance});
+  const bool found = outcome.converged() && system_.phi_norm() <= missed;
+  if (holds || found || outcome.end == StaticEnd::cancelled) return outcome;
+  system_.move_to(start);
+  if (!assemble(start)) {
+    system_.move_to(q);
+    return outcome;
+  }
+  const int iterations = outcome.iterations;
+  q = std::move(start);
+  outcome = solve_by_nlopt(system_, q, lambda, {.tolerance = options_.tolerance});
+  outcome.iterations += iterations;
+  return outcome;
+}
+
 StaticOutcome StaticTrial::optimise(std::vector<double>& q, std::vector<double>& lambda, bool warm, StaticWay way) {
-  if (way == StaticWay::nlopt) return solve_by_nlopt(system_, q, lambda, {.tolerance = options_.tolerance});
+  if (way == StaticWay::nlopt) return optimise_by_nlopt(q, lambda);
   return solve_by_ipopt(
       system_, q, lambda,
       {.tolerance = std::max(options_.tolerance, finest_barrier), .warm = warm, .verbose = options_.verbose});

@@ -26,6 +26,9 @@ class StaticTrial {
   StaticOutcome run_smooth(std::vector<double>& q, std::vector<double>& lambda, bool warm, StaticWay way);
   StaticOutcome run_with_gaps(std::vector<double>& q, std::vector<double>& lambda, bool warm, StaticWay way,
                               StaticResult& result);
+  /// Brings q onto the constraints; where they cannot be met nothing changes.
+  bool assemble(std::vector<double>& q);
+  StaticOutcome optimise_by_nlopt(std::vector<double>& q, std::vector<double>& lambda);
   StaticOutcome optimise(std::vector<double>& q, std::vector<double>& lambda, bool warm, StaticWay way);
   StaticOutcome polish_by_newton(std::vector<double>& q, std::vector<double>& lambda, StaticOutcome outcome);
 
