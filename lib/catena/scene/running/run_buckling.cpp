@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "catena/analysis/run/energyless_forces.hpp"
 #include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/sensitivity/spectrum/spectrum_derivatives.hpp"
 #include "catena/analysis/stability/buckling.hpp"
@@ -21,8 +20,18 @@ namespace {
 constexpr double apart = 1e-6;
 constexpr const char* singular = "constraints are singular at this place";
 
-/// dP/dp = -h_p / h_P, h = v^T K v on the null space; see spectrum_derivatives.hpp. The configuration is that of the
-/// present equilibrium, which moves with every parameter but the load.
+/// The shapes of loads: under forces without a potential those of flutter are among them.
+std::vector<std::span<const double>> shapes_of_loads(const BucklingReport& report) {
+  std::vector<std::span<const double>> shapes;
+  for (std::size_t k = 0; k < report.shapes.size(); ++k) {
+    if (report.critical.empty() || report.critical[k].omega == 0) shapes.emplace_back(report.shapes[k]);
+  }
+  return shapes;
+}
+
+/// dP/dp = -h_p / h_P, h = v^T K v on the null space, of unsymmetric K with the vector on its left; see
+/// spectrum_derivatives.hpp. The configuration is that of the present equilibrium, which moves with every parameter but
+/// the load.
 void differentiate(const AnalysisContext& context, Buckling& analysis, const BucklingReport& report,
                    AnalysisResult& result) {
   const int parameter = context.task.word("parameter");
@@ -32,6 +41,7 @@ void differentiate(const AnalysisContext& context, Buckling& analysis, const Buc
   StaticDerivatives equilibrium(present, designs_of(context, parameter), static_cast<int>(count) + 1);
   const bool moves =
       held && equilibrium.find({.evaluator = present, .t = analysis.time(), .q = analysis.q(), .lambda = *held});
+  const std::vector<std::span<const double>> shapes = shapes_of_loads(report);
   for (std::size_t k = 0; k < report.loads.size(); ++k) {
     const double load = report.loads[k];
     std::vector<double> gradient(count, std::numeric_limits<double>::quiet_NaN());
@@ -51,7 +61,9 @@ void differentiate(const AnalysisContext& context, Buckling& analysis, const Buc
       if (lambda &&
           derivatives.find_held({.evaluator = evaluator, .t = analysis.time(), .q = analysis.q(), .lambda = *lambda},
                                 equilibrium))
-        h = derivatives.gradient(0, report.shapes[k]);
+        h = evaluator.conservative()
+                ? derivatives.gradient(0, shapes[k])
+                : derivatives.gradient_without_energy(0, shapes[k], SpectrumDerivatives::Metric::lengths);
       if (!h) {
         trouble = lambda ? derivatives.why() : singular;
       } else if ((*h)[count] == 0) {
@@ -65,14 +77,12 @@ void differentiate(const AnalysisContext& context, Buckling& analysis, const Buc
   }
 }
 
-/// The vectors that an unsymmetric stiffness has on its left are not those that loads are differentiated with.
-void leave_out_derivatives(const AnalysisContext& context, const BucklingReport& report, AnalysisResult& result) {
+/// Where two frequencies meet they change with the root of the load.
+void leave_out_flutter(const AnalysisContext& context, const BucklingReport& report, AnalysisResult& result) {
   const std::vector<double> none(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
-  const std::string trouble = forces_without_energy(*context.model) + ": derivatives of critical loads are not built";
-  for (std::size_t k = 0; k < report.loads.size(); ++k)
-    set_field_gradient(context, result, "loads", static_cast<int>(k) + 1, none, trouble);
   for (std::size_t k = 0; k < report.flutter.size(); ++k)
-    set_field_gradient(context, result, "flutter", static_cast<int>(k) + 1, none, trouble);
+    set_field_gradient(context, result, "flutter", static_cast<int>(k) + 1, none,
+                       "derivatives of loads of flutter, where two frequencies meet, are not built");
 }
 
 /// Of the loads; shapes claim nothing.
@@ -157,11 +167,8 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result) {
   take_rows(result, std::move(info), rows);
   add_field_measures(context, result);
   if (!context.design || !report.ok()) return;
-  if (analysis.evaluator().conservative()) {
-    differentiate(context, analysis, report, result);
-  } else {
-    leave_out_derivatives(context, report, result);
-  }
+  differentiate(context, analysis, report, result);
+  leave_out_flutter(context, report, result);
 }
 
 }  // namespace catena

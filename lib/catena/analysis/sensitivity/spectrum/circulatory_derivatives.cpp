@@ -1,9 +1,10 @@
-// SpectrumDerivatives: frequencies under forces that turn with their bodies, which have no energy. K is unsymmetric,
-// and has vectors on its left, w, beside those on its right:
+// SpectrumDerivatives: frequencies, and loads of divergence, under forces that turn with their bodies, which have no
+// energy. K is unsymmetric, and has vectors on its left, w, beside those on its right:
 //
 //   K v + Phi_q^T mu = omega2 M v,   K^T w + Phi_q^T nu = omega2 M w,   Phi_q v = Phi_q w = 0
 //   d omega2 = [ w^T (K_p - omega2 M_p) v + mu^T (Phi_q)_p w + nu^T (Phi_q)_p v ] / (w^T M v)
 //
+// At a load of divergence omega2 = 0, M does not count, and dP = -h_p / h_P with h what stands in brackets.
 // w^T K v is the mixed second derivative of V + lambda^T Phi along v and w, and of a force F that turns with its body
 // (w_x F_y - w_y F_x) v_phi: its moment about the body's centroid stays. w^T M v is zero where two frequencies meet,
 // and flutter begins. Source: Seyranian, Mailybaev, Multiparameter Stability Theory (2003), chapter 2.
@@ -18,7 +19,8 @@ namespace catena {
 namespace {
 
 // The matrix is factored this part of omega2 beside it, where it is regular: every round of inverse iteration leaves
-// the part that other frequencies, at least 1e-6 away, have in a vector by ten times as small or less.
+// the part that other frequencies, at least 1e-6 away, have in a vector by ten times as small or less. Of a load: this
+// part of the largest stiffness.
 constexpr double beside = 1e-7;
 constexpr int most_inverse_rounds = 20;
 constexpr double settled_vector = 1e-12;
@@ -53,34 +55,54 @@ ElementMatrix transposed(const ElementMatrix& m) {
 
 }  // namespace
 
-bool SpectrumDerivatives::find_left(double omega2, std::span<const double> v, std::span<double> w,
+std::vector<double> SpectrumDerivatives::weights_of(Metric metric) {
+  std::vector<double> weights(at(plan().coordinates()), 0.0);
+  const std::vector<double> radius = evaluator().attachment_radii();
+  const DesignMechanism& mechanism = groups().front().mechanism;
+  for (int c = 0; c < 3 * plan().moving; ++c) {
+    const double length = c % 3 == 2 ? radius[at(c / 3)] : 1;
+    weights[at(c)] = metric == Metric::masses ? mechanism.mass(c).v : length * length;
+  }
+  return weights;
+}
+
+bool SpectrumDerivatives::find_left(double omega2, Metric metric, std::span<const double> v, std::span<double> w,
                                     std::span<double> nu) {
   SaddleSystem system(evaluator().shared_plan(), SaddleBlock::elements);
-  const DesignMechanism& mechanism = groups().front().mechanism;
-  const double shift = omega2 + beside * std::max(std::abs(omega2), 1e-300);
+  const std::vector<double> weight = weights_of(metric);
+  double size = std::max(std::abs(omega2), 1e-300);
+  if (metric == Metric::lengths) {
+    evaluator().visit_stiffness(rest_, [&](int i, int j, const ElementMatrix& m) {
+      const int body[2] = {i, j};
+      for (std::size_t r = 0; r < 6; ++r) {
+        const int of = body[r / 3];
+        if (of < plan().moving) size = std::max(size, std::abs(m[7 * r]) / weight[at(3 * of) + r % 3]);
+      }
+    });
+  }
+  const double shift = omega2 + beside * size;
   const bool factored = system.factorize(jacobian(), [&] {
     const auto add = [&](int i, int j, const ElementMatrix& m) { system.add_element(i, j, transposed(m)); };
     evaluator().visit_stiffness(rest_, add);
     evaluator().visit_constraint_hessians(lambda_, add);
-    for (int c = 0; c < 3 * plan().moving; ++c) system.add_diagonal(c, -shift * mechanism.mass(c).v);
+    for (int c = 0; c < 3 * plan().moving; ++c) system.add_diagonal(c, -shift * weight[at(c)]);
   });
   if (!factored) return fail("the vector on the left of its stiffness was not found");
   std::copy(v.begin(), v.end(), w.begin());
   std::vector<double> next(w.size());
   for (int round = 0; round < most_inverse_rounds; ++round) {
-    for (std::size_t c = 0; c < next.size(); ++c)
-      next[c] = c < at(3 * plan().moving) ? mechanism.mass(static_cast<int>(c)).v * w[c] : 0;
+    for (std::size_t c = 0; c < next.size(); ++c) next[c] = weight[c] * w[c];
     std::fill(nu.begin(), nu.end(), 0.0);
     if (!system.solve(next, nu)) break;
-    double size = 0, change = 0;
+    double largest = 0, change = 0;
     for (std::size_t c = 0; c < next.size(); ++c) {
-      if (std::abs(next[c]) > std::abs(size)) size = next[c];
+      if (std::abs(next[c]) > std::abs(largest)) largest = next[c];
     }
-    if (!(std::abs(size) > 0)) break;
-    for (double& x : nu) x /= size;
+    if (!(std::abs(largest) > 0)) break;
+    for (double& x : nu) x /= largest;
     for (std::size_t c = 0; c < next.size(); ++c) {
-      change = std::max(change, std::abs(next[c] / size - w[c]));
-      w[c] = next[c] / size;
+      change = std::max(change, std::abs(next[c] / largest - w[c]));
+      w[c] = next[c] / largest;
     }
     if (change <= settled_vector) return true;
   }
@@ -88,18 +110,22 @@ bool SpectrumDerivatives::find_left(double omega2, std::span<const double> v, st
 }
 
 std::optional<std::vector<double>> SpectrumDerivatives::gradient_without_energy(double omega2,
-                                                                                std::span<const double> shape) {
+                                                                                std::span<const double> shape,
+                                                                                Metric metric) {
   const std::optional<std::vector<int>> turning = bodies_with_turning_forces(evaluator().model(), plan());
   if (!turning) {
-    fail("derivatives of frequencies under laws of state, or forces of one's own without energy, are not built");
+    fail(
+        "derivatives of frequencies and loads under laws of state, or forces of one's own without energy, are not "
+        "built");
     return {};
   }
   std::vector<double> v(at(plan().coordinates()), 0.0), w(v), nu(at(plan().rows), 0.0), gradient;
   for (int c = 0; c < plan().columns; ++c) v[at(plan().coordinate[at(c)])] = shape[at(c)];
   const std::optional<std::vector<double>> mu = holding_multipliers(omega2, v);
-  if (!mu || !find_left(omega2, v, w, nu)) return {};
-  double scale = 0;
-  for (int c = 0; c < 3 * plan().moving; ++c) scale += w[at(c)] * groups().front().mechanism.mass(c).v * v[at(c)];
+  if (!mu || !find_left(omega2, metric, v, w, nu)) return {};
+  double scale = metric == Metric::lengths ? 1 : 0;
+  for (int c = 0; metric == Metric::masses && c < 3 * plan().moving; ++c)
+    scale += w[at(c)] * groups().front().mechanism.mass(c).v * v[at(c)];
   for (Group& group : groups()) {
     const DesignScalar sum = left_and_right(group, *turning, {v, *mu, w, nu}, omega2);
     for (std::size_t p = 0; p < at(group.count); ++p) gradient.push_back(sum.d[p] / scale);

@@ -2,7 +2,7 @@
 //
 //   frequency       K v + Phi_q^T mu = omega2 M v, Phi_q v = 0, v^T M v = 1
 //                   d omega2 = v^T (K_p - omega2 M_p) v + 2 mu^T (Phi_q)_p v
-//                   of unsymmetric K, with the vector on its left too: circulatory_derivatives.cpp
+//                   of unsymmetric K, with the vector on its left too, as loads: circulatory_derivatives.cpp
 //   buckling load   K(P) v + Phi_q^T mu = 0:    dP = -(v^T K_p v + 2 mu^T (Phi_q)_p v) / (the same by P)
 //   limit load      F(q, lambda, P) = 0 with the left null vector w of its matrix:   dP = -(w^T F_p) / (w^T F_P)
 //
@@ -47,8 +47,12 @@ class SpectrumDerivatives final : public StateDerivatives {
   /// derivatives of omega2 of the mode `shape` (over columns, v^T M v = 1); of stiffness alone with omega2 = 0.
   /// Nothing, and why() says it, where they cannot be had.
   std::optional<std::vector<double>> gradient(double omega2, std::span<const double> shape);
-  /// The same of a real omega2 where forces turn with their bodies: circulatory_derivatives.cpp.
-  std::optional<std::vector<double>> gradient_without_energy(double omega2, std::span<const double> shape);
+  /// What vectors on the left are found with: the masses of a frequency, the metric (1, 1, radius^2) of a load.
+  enum class Metric { masses, lengths };
+  /// The same of a real omega2 where forces turn with their bodies, and by `lengths`, with omega2 = 0, of a load of
+  /// divergence: circulatory_derivatives.cpp.
+  std::optional<std::vector<double>> gradient_without_energy(double omega2, std::span<const double> shape,
+                                                             Metric metric = Metric::masses);
 
  private:
   /// Vectors on both sides, over coordinates, with the multipliers that hold them.
@@ -63,7 +67,8 @@ class SpectrumDerivatives final : public StateDerivatives {
   /// mu with K v + Phi_q^T mu = omega2 M v.
   std::optional<std::vector<double>> holding_multipliers(double omega2, std::span<const double> v);
   /// w and nu with K^T w + Phi_q^T nu = omega2 M w.
-  bool find_left(double omega2, std::span<const double> v, std::span<double> w, std::span<double> nu);
+  bool find_left(double omega2, Metric metric, std::span<const double> v, std::span<double> w, std::span<double> nu);
+  std::vector<double> weights_of(Metric metric);
   DesignScalar left_and_right(Group& group, std::span<const int> turning, const TwoVectors& of, double omega2);
 
   bool from_model_;
