@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <stdexcept>
 #include <tuple>
 
 #include "catena/analysis/batch/lane_lists.hpp"
@@ -22,9 +20,6 @@ inline constexpr bool in_lanes = false CATENA_LANE_ELEMENTS(CATENA_LANE_IS);
 template <class E>
 inline constexpr bool searched_in_lanes =
     std::is_same_v<E, PointOnCurve<double>> || std::is_same_v<E, CamFlat<double>> || std::is_same_v<E, CamCam<double>>;
-#undef CATENA_LANE_IS
-
-#define CATENA_LANE_IS(Type) || std::is_same_v<E, Type<double>>
 template <class E>
 inline constexpr bool force_in_lanes = false CATENA_LANE_FORCES(CATENA_LANE_IS);
 #undef CATENA_LANE_IS

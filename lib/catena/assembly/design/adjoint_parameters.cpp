@@ -1,6 +1,8 @@
 // AdjointMechanism: derivatives by design parameters, of what these reach.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <type_traits>
 
 #include "catena/assembly/design/adjoint_mechanism.hpp"
@@ -51,10 +53,25 @@ Frame<T> some_frame(const double* place) {
   return make_frame(T(place[0]), T(place[1]), T(place[2]));
 }
 
+/// Instants of no special kind, s.
+constexpr double instants[] = {0.37, -1.61, 2.93};
+
+/// Whether a parameter may be in a function of time. Those without breakpoints are analytic: what moves them shows at
+/// any instant but single ones. Of pieces and tables, which parameters move here and there, nothing is known: it may.
+bool function_moves(const TimeFunction<DesignScalar>& function) {
+  constexpr double never = std::numeric_limits<double>::infinity();
+  const bool analytic = !function.has_callback() && function.next_breakpoint(-never) == never &&
+                        function.next_breakpoint(0) == never;  // of periodic ones, which have no first breakpoint
+  return !analytic ||
+         std::any_of(std::begin(instants), std::end(instants), [&](double t) { return moves(function.evaluate(t)); });
+}
+
 template <class Entry>
-bool entry_moves(const Entry& entry) {
-  return std::any_of(entry.values.begin(), entry.values.end(),
-                     [](const auto& value) { return value.function >= 0 || moves(DesignScalar(value.constant)); });
+bool entry_moves(const Entry& entry, const DesignModel& model) {
+  return std::any_of(entry.values.begin(), entry.values.end(), [&](const auto& value) {
+    return value.function >= 0 ? function_moves(model.functions[at(value.function)])
+                               : moves(DesignScalar(value.constant));
+  });
 }
 
 template <class E>
@@ -150,7 +167,7 @@ AdjointMechanism::Reached::Reached(const AdjointMechanism& adjoint, const Design
     for (int e = 0; e < block.size(); ++e) {
       const auto& entry = list[at(block.entry[at(e)])];
       const bool by_body = body_moves(block.body_i[at(e)]) || (E::bodies == 2 && body_moves(block.body_j[at(e)]));
-      if (!(by_body || entry_moves(entry) || fields_move(entry.element) || own(entry.element))) continue;
+      if (!(by_body || entry_moves(entry, model) || fields_move(entry.element) || own(entry.element))) continue;
       ++elements_;
       if constexpr (std::is_same_v<E, Revolute<DesignScalar>>) {
         if (take_pin(adjoint, block.row(e), {block.body_i[at(e)], block.body_j[at(e)]}, entry.element)) continue;
