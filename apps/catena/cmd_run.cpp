@@ -129,7 +129,7 @@ void add_common_options(CLI::App& command, Parsed& parsed) {
       ->check(CLI::IsMember(std::vector<std::string>(ResultFolder::formats.begin(), ResultFolder::formats.end())))
       ->type_name("FORMAT")
       ->needs("--output-dir");
-  add_units(command, parsed.units, "the table, of --csv, of files and pages");
+  add_units(command, parsed.units, "the table, of --json and --csv, of files and pages");
   command.add_option("--view", run.page, "also write a page with the moving mechanism and its plots")
       ->type_name("FILE");
   command

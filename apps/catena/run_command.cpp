@@ -134,12 +134,14 @@ int execute(const RunCommand& command) {
   TeeSink sinks;
   sinks.add(before);
   CsvSink csv(output);
-  // What is in the units that were asked for: all but the JSON on the standard output; pages convert by themselves.
+  // What is in the units that were asked for; pages convert by themselves. JSON on the standard output, which machines
+  // read, is in SI whatever the scene wants to be shown, unless the command asks for other units.
   TeeSink converted;
   UnitsSink shown(converted, command.units);
   sinks.add(shown);
+  std::optional<UnitsSink> asked;
   if (command.json) {
-    sinks.add(*json);
+    sinks.add(asked.emplace(*json, command.units, UnitsSink::Scene::is_passed_over));
   } else if (command.csv) {
     converted.add(csv);
   } else if (!command.quiet) {

@@ -26,7 +26,8 @@ SceneOutcome run_watched(const std::string& path, RunOptions options, ResultSink
     outcome = running.get();
   }
   if (signals.interrupted()) throw py::error_already_set();
-  if (outcome.exit_code >= 2) throw SceneError(outcome.error_text, std::move(outcome.errors));
+  if (outcome.exit_code >= 2)
+    throw SceneError(in_python_words(std::move(outcome.error_text)), std::move(outcome.errors));
   return outcome;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 #include "catena/scene/building/build_model.hpp"
 #include "catena/scene/json/near_miss.hpp"
@@ -29,6 +31,17 @@ SourceText source_of(const std::string& path, const std::optional<std::string>& 
 }
 
 }  // namespace
+
+std::string in_python_words(std::string text) {
+  constexpr std::pair<std::string_view, std::string_view> words[] = {{"catena: --set: ", "catena: parameters: "},
+                                                                     {"catena: --outputs: ", "catena: outputs: "}};
+  for (const auto& [option, argument] : words) {
+    for (std::size_t at = 0; (at = text.find(option, at)) != std::string::npos; at += argument.size()) {
+      if (at == 0 || text[at - 1] == '\n') text.replace(at, option.size(), argument);
+    }
+  }
+  return text;
+}
 
 OpenScene::OpenScene(const std::string& path, const std::optional<std::string>& text, const Texts& set,
                      const std::vector<std::string>& outputs) {
@@ -60,7 +73,7 @@ void OpenScene::check(const Diagnostics& diagnostics) const {
     if (!CommandText::is_command(error)) throw SceneError(diagnostics.text(), diagnostics.in_order());
     text += "catena: " + command_.option_of(error) + ": " + error.message + "\n";
   }
-  throw SceneError(text, {});
+  throw SceneError(in_python_words(text), {});
 }
 
 std::vector<std::pair<std::string, double>> OpenScene::parameters() const {

@@ -46,6 +46,9 @@ class OpenScene {
   std::vector<std::string> outputs_;
 };
 
+/// Errors of options with the names that arguments have in Python.
+std::string in_python_words(std::string text);
+
 /// Throws SceneError, with what may be meant, for the first name that is no parameter of the scene; and where its text
 /// cannot be read.
 void check_names(const std::string& path, const std::optional<std::string>& text,

@@ -14,9 +14,10 @@ std::string count(std::int64_t n, const std::string& one, const std::string& man
   return std::to_string(n) + " " + (n == 1 ? one : many);
 }
 
-/// The first entries, separated by commas, and how many more there are.
+/// The first entries, separated by commas, and how many more there are; "none" where there are none.
 template <class Range, class F>
 std::string enumerate(const Range& range, F&& text_of) {
+  if (range.empty()) return "none";
   std::string text;
   std::size_t shown = 0;
   for (const auto& entry : range) {

@@ -51,7 +51,7 @@ std::vector<AnalysisDescription> describe_all() {
       make("check", "Bodies, equations, degrees of freedom by count and by rank, redundant constraints, islands.",
            "bodies, rows, rank, dof, mobility, redundant, islands, free_bodies, free_motions and moving_freely (what "
            "nothing resists), misfits (equations that are not met)",
-           false, {at_time}),
+           false, {at_time, measures}),
       make("assemble", "The configuration nearest to the given one that meets all constraints.",
            "residual, moved, iterations, misfits (equations that are not met)", false, {outputs, at_time, measures}),
       make("kinematics", "Positions, velocities and accelerations of a driven mechanism over time.",

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "catena/analysis/run/process_time.hpp"
+#include "catena/base/si_unit.hpp"
 #include "catena/scene/numbers/quantity.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 
@@ -16,6 +17,8 @@ namespace {
 /// The unit of an integral over time of what has this unit; empty where that is not known.
 std::string times_second(const std::string& unit) {
   if (unit.empty()) return {};
+  // Of what torques and energies have in common, a power gives energies.
+  if (unit == si_unit(UnitKind::power)) return std::string(si_unit(UnitKind::energy));
   const Parsed<Quantity> quantity = parse_quantity(unit == "1" ? "1 s" : "1 " + unit);
   if (!quantity) return {};
   return si_unit(unit == "1" ? quantity->dimension : quantity->dimension * dimension_of(UnitKind::time));

@@ -11,6 +11,17 @@
 namespace catena {
 namespace {
 
+/// A number of the report, which is written beside the fields.
+std::optional<double> reported_number(const AnalysisReport& report, std::string_view name) {
+  if (name == "bodies") return report.bodies;
+  if (name == "rows") return report.rows;
+  if (name == "islands") return report.islands;
+  if (name == "rank") return report.rank;
+  if (name == "dof") return report.dof;
+  if (name == "mobility") return report.mobility;
+  return {};
+}
+
 /// The number that a measure of the kind `field` names, if the result has it.
 std::optional<double> reported(const AnalysisResult& result, const MeasureRequest& request) {
   for (const NamedField& field : result.fields) {
@@ -29,7 +40,7 @@ std::optional<double> reported(const AnalysisResult& result, const MeasureReques
       }
     }
   }
-  return {};
+  return request.number == 0 ? reported_number(result.report, request.field) : std::nullopt;
 }
 
 }  // namespace

@@ -50,6 +50,23 @@ void add_misfits(AnalysisResult& result, const AssemblyOutcome& outcome, const M
   result.fields.push_back({"misfits", std::move(records)});
 }
 
+/// Measures of the assembled place, as the rows of assemble have them.
+void measure_place(const AnalysisContext& context, Kinematics& analysis, double residual, AnalysisResult& result) {
+  const double t = analysis.time();
+  MeasureSet measures(context.task.measure_requests(), *context.model, analysis.plan(),
+                      {.analysis = context.task.type()}, {t, t});
+  if (measures.empty()) return;
+  if (result.report.ok()) {
+    analysis.evaluator().set_configuration(analysis.q());
+    measures.take_row({.evaluator = analysis.evaluator(), .t = t, .q = analysis.q(), .residual = residual}, true);
+  }
+  for (MeasureResult& measure : measures.results()) {
+    if (!measure.trouble.empty())
+      result.report.warnings.push_back(fmt::format("measure \"{}\": {}", measure.name, measure.trouble));
+    result.measures.push_back(std::move(measure));
+  }
+}
+
 /// Checks the changes that a start of dynamics would make to the given velocities.
 void check_velocities(Kinematics& analysis, const Model& model, AnalysisReport& report) {
   const bool given = std::any_of(model.bodies.begin(), model.bodies.end(),
@@ -136,6 +153,8 @@ void run_assemble(AnalysisContext& context, AnalysisResult& result) {
 }
 
 void run_check(AnalysisContext& context, AnalysisResult& result) {
+  if (context.design)
+    return refuse(result, "check has no derivatives: take assemble, whose columns and measures have them");
   const ProcessTimer timer;
   const Model& model = *context.model;
   // Every equation counts here, those of welded bodies too.
@@ -184,6 +203,8 @@ void run_check(AnalysisContext& context, AnalysisResult& result) {
     result.fields.push_back({"moving_freely", free->bodies});
   }
   add_misfits(result, outcome, model);
+  measure_place(context, analysis, outcome.residual * analysis.evaluator().length_scale(), result);
+  add_field_measures(context, result);
 }
 
 }  // namespace catena

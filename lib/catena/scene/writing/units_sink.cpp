@@ -12,7 +12,7 @@ ColumnInfo converted(const ColumnInfo& column, const OutputUnits::Conversion& to
 
 void UnitsSink::begin_run(const RunHeader& header) {
   units_ = {};
-  units_.ask(header.units);
+  if (scene_ == Scene::counts) units_.ask(header.units);
   units_.ask(wishes_);
   target_.begin_run(header);
 }

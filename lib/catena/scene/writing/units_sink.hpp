@@ -1,5 +1,5 @@
-// Passes results on in the units that were asked for: columns, measures, least and largest values. Other named results
-// stay in SI.
+// Passes results on in the units that were asked for: columns, measures, least and largest values, each of which tells
+// its unit. Other named results stay in SI.
 #pragma once
 
 #include <vector>
@@ -11,8 +11,10 @@ namespace catena {
 
 class UnitsSink final : public ResultSink, private RowSink {
  public:
-  /// `wishes` come before those of the scene.
-  UnitsSink(ResultSink& target, OutputUnits::Wishes wishes) : target_(target), wishes_(std::move(wishes)) {}
+  /// Whether the units that a scene wants its results shown in count where `wishes` say nothing.
+  enum class Scene { counts, is_passed_over };
+  UnitsSink(ResultSink& target, OutputUnits::Wishes wishes, Scene scene = Scene::counts)
+      : target_(target), wishes_(std::move(wishes)), scene_(scene) {}
 
   void begin_run(const RunHeader& header) override;
   RowSink& begin_analysis(std::string_view type) override;
@@ -25,6 +27,7 @@ class UnitsSink final : public ResultSink, private RowSink {
 
   ResultSink& target_;
   OutputUnits::Wishes wishes_;
+  Scene scene_;
   OutputUnits units_;
   RowSink* rows_ = nullptr;
   std::vector<double> factor_, row_;  // by column
