@@ -235,17 +235,32 @@ int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t,
       const double unit = plan_.coordinate[at(c)] % 3 == 2 ? 1 : extent_;
       if (!(std::abs(newton_[at(c)]) < astray * unit)) return -1;
     }
-    // A residual that may be rounding of the stiffest spring counts as such only if a step would move nothing.
-    if (error <= noise && system_.change_norm({newton_.data(), at(plan_.columns)}) <= nearly_solved) return k;
+    // A residual that may be rounding of the stiffest spring counts as such only if a step would move nothing. That
+    // step is made: a short spring is as stiff as its length is short, and rounding of its force is less than its
+    // stiffness allows.
+    if (error <= noise && system_.change_norm({newton_.data(), at(plan_.columns)}) <= nearly_solved) {
+      PathPoint mended = x;
+      make_newton_step(mended, dp);
+      if (move_to(mended))
+        x = std::move(mended);
+      else
+        move_to(x);
+      return k;
+    }
     // A law whose own value is zero at rest leaves no force to compare the residual with.
     if (is_circulatory() && k > 0 && system_.phi_norm() <= exact && std::abs(place) <= place_solved &&
         std::abs(dp) <= solved * scale_ && system_.change_norm({newton_.data(), at(plan_.columns)}) <= solved)
       return k;
-    for (int c = 0; c < plan_.columns; ++c) x.q[at(plan_.coordinate[at(c)])] += newton_[at(c)];
-    for (int r = 0; r < plan_.rows; ++r) x.lambda[at(r)] += newton_[at(plan_.columns + r)];
-    x.p += dp;
+    make_newton_step(x, dp);
   }
   return -1;
+}
+
+// By newton_, and by dp of the parameter.
+void PathSystem::make_newton_step(PathPoint& x, double dp) const {
+  for (int c = 0; c < plan_.columns; ++c) x.q[at(plan_.coordinate[at(c)])] += newton_[at(c)];
+  for (int r = 0; r < plan_.rows; ++r) x.lambda[at(r)] += newton_[at(plan_.columns + r)];
+  x.p += dp;
 }
 
 }  // namespace catena

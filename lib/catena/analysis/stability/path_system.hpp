@@ -99,6 +99,7 @@ class PathSystem {
   bool factorize_here(std::span<const double> lambda, double shift);
   double largest_stiffness() const;
   void residual(const PathPoint& x, std::vector<double>& out);
+  void make_newton_step(PathPoint& x, double dp) const;
 
   StaticSystem& system_;
   Evaluator& evaluator_;
