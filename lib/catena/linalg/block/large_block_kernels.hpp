@@ -109,7 +109,7 @@ inline void add_update(const double* panel, int height, int columns, const doubl
 /// y := L^-1 y of the block's columns, `own` being their part of y; the contributions to the rows below, whose places
 /// in y are `rows`, are subtracted there. V: numbers, or several in lanes.
 template <class V>
-void solve_forward(const double* panel, int height, int columns, const int* rows, V* own, V* y) {
+inline void solve_forward(const double* panel, int height, int columns, const int* rows, V* own, V* y) {
   for (int first = 0; first < columns;) {
     first += with_group(columns - first, [&](auto c) {
       const double* const l = panel + static_cast<std::size_t>(first) * static_cast<std::size_t>(height);
@@ -135,7 +135,7 @@ void solve_forward(const double* panel, int height, int columns, const int* rows
 
 /// y := L^-T D^-1 y of the block's columns, the rows below being solved already.
 template <class V>
-void solve_backward(const double* panel, int height, int columns, const int* rows, V* own, const V* y) {
+inline void solve_backward(const double* panel, int height, int columns, const int* rows, V* own, const V* y) {
   for (int left = columns; left > 0;) {
     left -= with_group(left, [&](auto c) {
       const int first = left - c;
