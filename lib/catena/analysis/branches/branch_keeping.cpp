@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "catena/analysis/branches/branch_passage.hpp"
 #include "catena/base/at.hpp"
@@ -30,6 +29,16 @@ double along(const Plan& plan, const BranchCorner& corner, std::span<const doubl
   return sum;
 }
 
+/// The largest difference of two places, length scales or rad.
+double distance(EquationsOfMotion& equations, std::span<const double> a, std::span<const double> b) {
+  double largest = 0;
+  for (const int k : equations.plan().coordinate) {
+    const double unit = k % 3 == 2 ? 1 : equations.evaluator().length_scale();
+    largest = std::max(largest, std::abs(a[at(k)] - b[at(k)]) / unit);
+  }
+  return largest;
+}
+
 }  // namespace
 
 BranchKeeping::BranchKeeping(const EquationsOfMotion& equations)
@@ -40,23 +49,26 @@ BranchKeeping::BranchKeeping(const EquationsOfMotion& equations)
 BranchKeeping::Course BranchKeeping::course(EquationsOfMotion& equations, std::span<const double> q0,
                                             std::span<const double> q1, std::span<const double> middle) {
   std::copy(middle.begin(), middle.end(), q_.begin());
-  const std::optional<BranchCorner> corner = find_branch_corner(equations, q_, q0, phi_, values_);
+  BranchCorner corner;
+  const BranchMeeting meeting = find_branch_meeting(equations, q_, q0, phi_, values_, corner);
+  if (meeting == BranchMeeting::several) return Course::unjudged;
+  // The middle is known no better than the step is long.
+  if (meeting == BranchMeeting::crossing && distance(equations, middle, q_) < distance(equations, q0, q1))
+    return Course::crossed;
   const Plan& plan = equations.plan();
-  if (!corner || !(along(plan, *corner, q0, q_) * along(plan, *corner, q1, q_) < 0)) return Course::kept;
-  gap_ = corner->gap;
-  return largest_rounding_of_offset * corner->offset > corner->rounding ? Course::left : Course::left_within_rounding;
+  if (meeting != BranchMeeting::corner || !(along(plan, corner, q0, q_) * along(plan, corner, q1, q_) < 0))
+    return Course::kept;
+  gap_ = corner.gap;
+  return largest_rounding_of_offset * corner.offset > corner.rounding ? Course::left : Course::left_within_rounding;
 }
 
 double BranchKeeping::narrow_gap(EquationsOfMotion& equations, std::span<const double> q) {
   std::copy(q.begin(), q.end(), q_.begin());
-  const std::optional<BranchCorner> corner = find_branch_corner(equations, q_, q, phi_, values_);
-  if (!corner || !(largest_rounding_of_offset * corner->offset < narrow * corner->rounding)) return 0;
-  double distance = 0;
-  for (const int k : equations.plan().coordinate) {
-    const double unit = k % 3 == 2 ? 1 : equations.evaluator().length_scale();
-    distance = std::max(distance, std::abs(q[at(k)] - q_[at(k)]) / unit);
-  }
-  return distance < beside ? corner->gap : 0;
+  BranchCorner corner;
+  if (find_branch_meeting(equations, q_, q, phi_, values_, corner) != BranchMeeting::corner ||
+      !(largest_rounding_of_offset * corner.offset < narrow * corner.rounding))
+    return 0;
+  return distance(equations, q, q_) < beside ? corner.gap : 0;
 }
 
 }  // namespace catena

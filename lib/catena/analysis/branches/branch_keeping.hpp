@@ -14,9 +14,9 @@
 // q_s is found by Newton's method from the middle of the passage; lengths in length scales, rows of length one, without
 // those that always depend on others. c that is all rounding counts as zero; where rounding changes it by more than
 // 5e-4 of it no step can follow the turn, and such a step is told apart. Equations of drivers are left out: branches
-// meet where the others lose rank. Not judged: several combinations at once, more than `most_rows` rows. Vectors of
-// coordinates and rows are kept from one passage to the next; small dense matrices are made for each step that passes
-// beside a singular position. Source: apps/manual/numerics.md#singular-passages.
+// meet where the others lose rank. Not judged, and told: several combinations at once, more than `most_rows` rows.
+// Vectors of coordinates and rows are kept from one passage to the next; small dense matrices are made for each step
+// that passes beside a singular position. Source: apps/manual/numerics.md#singular-passages.
 #pragma once
 
 #include <span>
@@ -39,6 +39,8 @@ class BranchKeeping {
     kept,
     left,                  ///< the step went straight on where its branch turns
     left_within_rounding,  ///< the same, nearer to the other branch than rounding lets steps turn
+    crossed,               ///< it went straight on where branches cross, to rounding
+    unjudged,              ///< several combinations are near to losing their gradients
   };
   /// What a step from q0 to q1 (size coordinates()) at the evaluator's time did; `middle`: about where it passes. The
   /// evaluator is left elsewhere, the factors of the equations as they are.

@@ -33,7 +33,8 @@ class Passage {
   Passage(EquationsOfMotion& of, std::span<double> start, std::span<const double> place, std::span<double> phi,
           std::span<double> values);
 
-  /// One step of Newton's method; c, H and Z are those of the place before it. False: there is no such place nearby.
+  /// One step of Newton's method; c, H and Z are those of the place before it. False: there is no such place nearby, or
+  /// several combinations are near to losing their gradients.
   bool approach(bool& arrived);
 
   EquationsOfMotion& equations;
@@ -41,6 +42,7 @@ class Passage {
   Eigen::VectorXd unit;            // of columns, m or rad
   Eigen::MatrixXd basis, hessian;  // Z over columns in these units, H
   double offset = 0;               // c
+  bool several = false;
 
  private:
   Eigen::MatrixXd scaled_jacobian(std::span<const double> place, Eigen::VectorXd& scale);
@@ -120,7 +122,8 @@ bool Passage::approach(bool& arrived) {
   const Eigen::Index rest = kept_.cols() - 1, free = plan.columns - rest;
   const auto& value = squares.eigenvalues();
   if (rest < 0 || free < 1 || !(value[0] < nearly_lost * nearly_lost)) return false;
-  if (rest > 0 && value[1] < nearly_lost * nearly_lost && value[1] < 100 * value[0]) return false;
+  several = rest > 0 && value[1] < nearly_lost * nearly_lost && value[1] < 100 * value[0];
+  if (several) return false;
   const Eigen::VectorXd w = squares.eigenvectors().col(0);
   const Eigen::MatrixXd others = jacobian.transpose() * squares.eigenvectors().rightCols(rest);
   const Eigen::HouseholderQR<Eigen::MatrixXd> factors(others);
@@ -164,9 +167,8 @@ bool Passage::approach(bool& arrived) {
 
 }  // namespace
 
-std::optional<BranchCorner> find_branch_corner(EquationsOfMotion& equations, std::span<double> q,
-                                               std::span<const double> place, std::span<double> phi,
-                                               std::span<double> values) {
+BranchMeeting find_branch_meeting(EquationsOfMotion& equations, std::span<double> q, std::span<const double> place,
+                                  std::span<double> phi, std::span<double> values, BranchCorner& corner) {
   const Plan& plan = equations.plan();
   Passage passage(equations, q, place, phi, values);
   double extent = std::numbers::pi;  // of angles, out of which whole turns are taken
@@ -176,10 +178,10 @@ std::optional<BranchCorner> find_branch_corner(EquationsOfMotion& equations, std
   }
   bool arrived = false;
   for (int k = 0; k < most_steps && !arrived; ++k) {
-    if (!passage.approach(arrived)) return {};
+    if (!passage.approach(arrived)) return passage.several ? BranchMeeting::several : BranchMeeting::none;
   }
-  BranchCorner corner{std::abs(passage.offset), few_roundings * extent, 0, {}};
-  if (!arrived || !(corner.offset > corner.rounding)) return {};
+  if (!arrived) return BranchMeeting::none;
+  corner = {std::abs(passage.offset), few_roundings * extent, 0, {}};
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> curvature(passage.hessian);
   const Eigen::VectorXd& value = curvature.eigenvalues();
   const double least = unconcerned * value.cwiseAbs().maxCoeff();
@@ -193,11 +195,13 @@ std::optional<BranchCorner> find_branch_corner(EquationsOfMotion& equations, std
       ++against;
     }
   }
-  if (of_its_sign != 1 || against == 0) return {};
+  if (!(corner.offset > corner.rounding))
+    return of_its_sign > 0 && against > 0 ? BranchMeeting::crossing : BranchMeeting::none;
+  if (of_its_sign != 1 || against == 0) return BranchMeeting::none;
   corner.gap = std::sqrt(2 * corner.offset / std::abs(value[own]));
   const Eigen::VectorXd direction = passage.basis * curvature.eigenvectors().col(own);
   for (int c = 0; c < plan.columns; ++c) corner.direction.push_back(direction[c] / passage.unit[c]);
-  return corner;
+  return BranchMeeting::corner;
 }
 
 }  // namespace catena

@@ -3,7 +3,6 @@
 // where its other constraints lose rank, whoever moves it. Small dense matrices.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,11 +17,16 @@ struct BranchCorner {
   std::vector<double> direction;    ///< e by column, per m and rad of it
 };
 
+enum class BranchMeeting {
+  none,
+  corner,    ///< they pass each other
+  crossing,  ///< they cross, to rounding
+  several,   ///< not told: several combinations are near to losing their gradients at once
+};
+
 /// Newton's method from q, which is left at q_s; `place`: one of the motion beside the passage, whose size rounding
-/// follows. Nothing where branches cross, to rounding, or there are none. phi, values: for rows, entries of Phi_q. The
-/// evaluator is left elsewhere.
-std::optional<BranchCorner> find_branch_corner(EquationsOfMotion& equations, std::span<double> q,
-                                               std::span<const double> place, std::span<double> phi,
-                                               std::span<double> values);
+/// follows. `corner`: where it is one. phi, values: for rows, entries of Phi_q. The evaluator is left elsewhere.
+BranchMeeting find_branch_meeting(EquationsOfMotion& equations, std::span<double> q, std::span<const double> place,
+                                  std::span<double> phi, std::span<double> values, BranchCorner& corner);
 
 }  // namespace catena

@@ -1,11 +1,23 @@
 // A turn of the motion where two branches nearly meet: steps that left their branch (branch_keeping.hpp) are repeated
 // shorter until they follow it round its corner. Where that takes too many, the corner is one that rounding does not
-// let steps follow: the passage is then crossed as one where branches cross, and judged no more.
+// let steps follow: the passage is then crossed as one where branches cross, and judged no more. How often the motion
+// went straight on, and why, is counted.
 #pragma once
 
 #include <cstdint>
+#include <utility>
 
 namespace catena {
+
+/// Passages of one kind.
+struct PassageCount {
+  std::int64_t times = 0;
+  double first = 0;  ///< s
+
+  void add(double t) {
+    if (times++ == 0) first = t;
+  }
+};
 
 class BranchTurn {
  public:
@@ -23,7 +35,7 @@ class BranchTurn {
     }
     turning_ = true;
   }
-  /// Counts a try of a step to t (s). True: the turn took too many, and is given up.
+  /// Counts a try of a step that ends at t (s). True: the turn took too many, and is given up.
   bool gives_up(double t) {
     if (!turning_ || ++tries_ <= most_tries) return false;
     turning_ = false;
@@ -32,27 +44,34 @@ class BranchTurn {
     go_straight_on(t);
     return true;
   }
-  /// Notes that the motion goes straight on at t (s) where its branch turns.
-  void go_straight_on(double t) {
-    if (straight_on_++ == 0) straight_on_t_ = t;
+  /// A step that ends at t (s) goes straight on where its branch turns.
+  void go_straight_on(double t) { straight_on_.add(t); }
+  /// Such a step passes where branches cross, or cannot be judged; once a passage.
+  void cross(double t) {
+    if (!std::exchange(noted_, true)) crossings_.add(t);
+  }
+  void pass_unjudged(double t) {
+    if (!std::exchange(noted_, true)) unjudged_.add(t);
   }
   /// The passage is over.
-  void end() { turning_ = crosses_ = false; }
+  void end() { turning_ = crosses_ = noted_ = false; }
 
   double step_that_left() const { return step_that_left_; }
   std::int64_t turns() const { return turns_; }
-  std::int64_t straight_on() const { return straight_on_; }
-  double straight_on_t() const { return straight_on_t_; }  // s, at first
+  /// Straight on where the branch turns, where branches cross, and unjudged.
+  const PassageCount& straight_on() const { return straight_on_; }
+  const PassageCount& crossings() const { return crossings_; }
+  const PassageCount& unjudged() const { return unjudged_; }
 
  private:
   /// Steps, with those that are rejected, in which a motion must have turned into the other direction: twice as many as
   /// parallel cranks off by 1e-10 need at a tolerance of 1e-10.
   static constexpr int most_tries = 500;
-  bool turning_ = false, crosses_ = false;
+  bool turning_ = false, crosses_ = false, noted_ = false;
   int tries_ = 0;
   double step_that_left_ = 0;  // s, the first in this passage
-  std::int64_t turns_ = 0, straight_on_ = 0;
-  double straight_on_t_ = 0;
+  std::int64_t turns_ = 0;
+  PassageCount straight_on_, crossings_, unjudged_;
 };
 
 }  // namespace catena

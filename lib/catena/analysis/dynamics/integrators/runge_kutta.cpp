@@ -1,7 +1,5 @@
 #include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -88,35 +86,6 @@ bool RungeKutta::begin_projection() {
   if (!derivative(t_, Side::after, y_, slope_)) return false;
   std::copy(slope_.begin(), slope_.end(), stage_[0].begin());
   return true;
-}
-
-std::vector<std::string> RungeKutta::remarks() const {
-  std::vector<std::string> all;
-  if (order_.low_steps() > 0)
-    all.push_back(fmt::format("order 5 took over for {} steps where order 8 failed repeatedly", order_.low_steps()));
-  if (projected_steps_ > 0)
-    all.push_back(fmt::format("{} steps across nearly singular positions were projected", projected_steps_));
-  remark_on_branches(all);
-  if (partition_ && partition_->choices() > 1)
-    all.push_back(fmt::format("independent coordinates were chosen {} times", partition_->choices()));
-  return all;
-}
-
-void RungeKutta::remark_on_branches(std::vector<std::string>& remarks) const {
-  if (turn_.turns() > 0)
-    remarks.push_back(
-        fmt::format("{} times the motion turned where branches pass each other, the last time at a distance "
-                    "of {:.2g} rad or length scales: steps there were shortened to it",
-                    turn_.turns(), branches_->gap()));
-  if (turn_.straight_on() == 0) return;
-  const bool fixed = options_.fixed_step > 0;
-  remarks.push_back(fmt::format(
-      "at t = {:.6g} s{} the motion went straight on where two branches pass each other at a distance of "
-      "{:.2g} rad or length scales, too near for {} to follow the one that turns: what comes after is "
-      "right if they cross, as for dimensions that agree exactly; else {}",
-      turn_.straight_on_t(), turn_.straight_on() > 1 ? fmt::format(" and {} times later", turn_.straight_on() - 1) : "",
-      branches_->gap(), fixed ? "steps of this length" : "steps",
-      fixed ? "take shorter ones" : "change those by 1e-9 or more"));
 }
 
 IntegratorMemory RungeKutta::memory() const {

@@ -63,7 +63,7 @@ class RungeKutta final : public Integrator {
   /// Of order 7 or 5.
   void interpolate(double t, std::span<double> y) override;
   std::vector<std::string> remarks() const override;
-  std::int64_t straight_passages() const override { return turn_.straight_on(); }
+  std::int64_t straight_passages() const override { return turn_.straight_on().times; }
   /// What is said of passages where two branches are near to each other.
   void remark_on_branches(std::vector<std::string>& remarks) const;
   IntegratorMemory memory() const override;
@@ -128,6 +128,7 @@ class RungeKutta final : public Integrator {
   Judgement judge(double h);
   Trial cut_short(double h);
   bool try_crossing(double h, const Judgement& judged);
+  bool passes_beside() const;
   bool leaves_branch(double h);
   void reject(double h);
   void accept(double growth, double proposed);

@@ -48,15 +48,24 @@ bool RungeKutta::try_crossing(double h, const Judgement& judged) {
   return true;
 }
 
-// Whether the step of size h, which passes beside a singular position, has ended on another branch and is to be
-// repeated with shorter ones. The passage is where the sines, roots of the pivot ratios, would be zero if they changed
-// in proportion to time.
-bool RungeKutta::leaves_branch(double h) {
-  EquationsOfMotion& equations = motion_.equations();
+// Whether the step passes beside a singular position.
+bool RungeKutta::passes_beside() const {
   const double end = pivot_ratio(), least = std::min(ratios_.at_start(), end), most = std::max(ratios_.at_start(), end);
-  if (!(std::min(ratios_.smallest(), least) < dependence::near_passage)) return false;
-  if (!(ratios_.smallest() < dip_inside * least) && !(least < dip_at_end * most)) return false;
-  if (!branches_) return false;
+  return std::min(ratios_.smallest(), least) < dependence::near_passage &&
+         (ratios_.smallest() < dip_inside * least || least < dip_at_end * most);
+}
+
+// Whether the step of size h has ended on another branch and is to be repeated with shorter ones. The passage is where
+// the sines, roots of the pivot ratios, would be zero if they changed in proportion to time.
+bool RungeKutta::leaves_branch(double h) {
+  if (!passes_beside()) return false;
+  EquationsOfMotion& equations = motion_.equations();
+  const double end = pivot_ratio();
+  const bool near = std::min({ratios_.smallest(), ratios_.at_start(), end}) < dependence::singular_passage;
+  if (!branches_) {
+    if (near && motion_.equations().plan().rows > 0) turn_.pass_unjudged(t_new_);
+    return false;
+  }
   const double before = std::sqrt(ratios_.at_start()), s = before / (before + std::sqrt(end));
   const std::span<const double> y(y_), next(y_new_);
   const std::span<const double> q0 = motion_.q(y), v0 = motion_.qd(y), q1 = motion_.q(next), v1 = motion_.qd(next);
@@ -72,6 +81,8 @@ bool RungeKutta::leaves_branch(double h) {
   evaluator.go_to_curve_places(places);
   evaluator.set_configuration(q1);
   if (course == BranchKeeping::Course::left_within_rounding) turn_.go_straight_on(t_new_);
+  if (course == BranchKeeping::Course::crossed) turn_.cross(t_new_);
+  if (course == BranchKeeping::Course::unjudged && near) turn_.pass_unjudged(t_new_);
   return course == BranchKeeping::Course::left;
 }
 
