@@ -123,11 +123,11 @@ TEST(EventsAtRest, BlocksThatStick) {
   EXPECT_GT(judged, 20);
 }
 
-// A body at rest under a law that is a pulse in time, sqrt(pi) width high in sum: it moves on with that impulse.
+// A body at rest under a law that is a pulse in time, six widths and more from both ends: it moves on with its impulse.
 TEST(EventsAtRest, PulsesOfLaws) {
   expect_no_fault(1, 60, [](unsigned seed) -> std::string {
     RandomNumbers random(seed);
-    const double end = std::exp(random(0, 4)), width = end * std::exp(random(-4.5, -2)), at = end * random(0.3, 0.7);
+    const double end = std::exp(random(0, 4)), width = end * std::exp(random(-4.5, -3)), at = end * random(0.3, 0.7);
     const double force = random(1, 20), stiffness = seed % 2 == 0 ? 0 : random(0.1, 1) / (end * end);
     const char* method = seed % 3 == 0 ? "adams" : seed % 3 == 1 ? "rk8" : "rk5";
     const std::string law =

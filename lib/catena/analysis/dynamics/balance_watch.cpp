@@ -88,12 +88,15 @@ Report BalanceWatch::check(double t, std::span<const double> loads) const {
   const double allowed = permitted * tolerance_ * energy + drift + rounding * size;
   if (std::abs(missing_) <= allowed) return report;
   // Where nothing moves and nothing weighs, the work of loads is all there is.
-  double most = 0, free = 0;
+  double most = 0, all = 0, free = 0;
   for (std::size_t c = 0; c < loads.size(); ++c) {
-    most = std::max(most, std::abs(loads[c]) * (c % 3 == 2 ? 1 : length_));
-    free += loads[c] * loads[c] * inverse_mass_[c] * squared_times_;
+    const bool turns = c % 3 == 2;
+    most = std::max(most, std::abs(loads[c]) * (turns ? 1 : length_));
+    all += std::abs(loads[c]) / (turns ? length_ : 1);
+    free += std::abs(loads[c]) * inverse_mass_[c] * (turns ? length_ : 1);
   }
-  if (std::abs(missing_) <= allowed + rounding * most + rounding_of_balance * free) return report;
+  if (std::abs(missing_) <= allowed + rounding * most + rounding_of_balance * free * all * squared_times_)
+    return report;
   report.status = Status::not_converged;
   report.message = fmt::format(
       "the motion up to t = {:.12g} s is wrong: {:.3g} J of energy {} without a cause, of {:.3g} J in "

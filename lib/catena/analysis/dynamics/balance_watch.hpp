@@ -6,10 +6,14 @@
 // Where constraints are not kept but drift by the size of the tolerance, weights do the work  tolerance x weights x
 // length scale  on the way: allowed as well, or no mechanism at rest would ever do.
 //
-// What constraints hold balances its loads Q to rounding alone: eps times a dozen terms, of which bodies of mass m take
-// up velocities Q h / m and energies Q^2 h^2 / m in a time h. Steps at rest may be long: that is allowed as well,
+// Constraints hold bodies against loads Q by forces up to F, the sum of all |Q|, which a stack hands down: balanced to
+// eps times a dozen terms. Of what is left of F a body takes up a way F h^2 / m in a step h, on which its load works;
+// steps at rest may be long:
 //
-//   rounding of Q:   16 eps  sum Q^2 / m  sum h^2       h: between checks; small beside what moves where all move
+//   rounding of what is held:   16 eps  sum |Q| / m  F  sum h^2       h: between checks
+//
+// Of a stack of ten that is pushed for 40 s the balance missed 6e-9 J, a ninth of this; of twenty for 100 s a fifth.
+// Where bodies move this is 16 eps of what they could gain in free fall.
 //
 // Errors of positions and velocities of `tolerance` (of the scale of the motion) change the energy by a few times
 // tolerance x (T + V); a motion with a much larger error of energy is wrong. No check is possible where forces without
