@@ -32,13 +32,25 @@ double ContactSwitch::end_rocking(double t, const std::vector<std::size_t>& hit,
   std::vector<std::size_t> held = rocking(t, hit);
   if (held.empty()) return t;
   held.insert(held.end(), hit.begin(), hit.end());
+  // What is at rest stays so.
+  const auto rests = [&](std::size_t k, const Evaluator::ScalarMotion& motion) {
+    return std::abs(motion.rate) <= part_of_speed(k, no_speed);
+  };
+  const auto first_at_rest = static_cast<std::ptrdiff_t>(held.size());
+  for (const std::size_t k : active_) {
+    const bool is_held = std::find(held.begin(), held.begin() + first_at_rest, k) != held.begin() + first_at_rest;
+    if (!is_held && points_[k].kind == ContactKind::rigid && rests(k, gap_[k])) held.push_back(k);
+  }
   // Rows across, and along where friction holds what moves so little.
   std::vector<std::size_t> rows;
-  for (const std::size_t k : held) {
+  for (std::size_t n = 0; n < held.size(); ++n) {
+    const std::size_t k = held[n];
     const auto a = static_cast<std::size_t>(std::find(active_.begin(), active_.end(), k) - active_.begin());
     rows.push_back(2 * a);
     const bool grips = points_[k].has_friction() && points_[k].is_exact();
-    if (grips && std::abs(slide_[k].rate) < rest_speed(k)) rows.push_back(2 * a + 1);
+    const bool was_at_rest = static_cast<std::ptrdiff_t>(n) >= first_at_rest;
+    if (grips && (was_at_rest ? rests(k, slide_[k]) : std::abs(slide_[k].rate) < rest_speed(k)))
+      rows.push_back(2 * a + 1);
   }
   const auto size = static_cast<Eigen::Index>(rows.size());
   const auto row = [&](Eigen::Index r) { return rows[static_cast<std::size_t>(r)]; };
