@@ -73,5 +73,36 @@ TEST(TallStacks, GiveWayWhenStaticsSays) {
   }
 }
 
+// A chain of links in waves falls on a rough floor: in the end all of its pins lie there.
+TEST(TallStacks, ChainsFallFlat) {
+  for (const int links : {6, 14, 20}) {
+    SCOPED_TRACE(links);
+    const double l = 0.1;
+    double x = 0, y = 0.05;
+    std::string bodies, joints, floors, outputs;
+    for (int k = 0; k < links; ++k) {
+      const double angle = 0.2 * std::sin(0.7 * k), dx = l * std::cos(angle), dy = l * std::sin(angle);
+      bodies += fmt::format(
+          R"({}"b{}": {{"mass": 0.1, "inertia": "=0.1*0.01/12", "position": [{:.17g}, {:.17g}], "angle": {:.17g},
+             "points": {{"f": [-0.05, 0], "t": [0.05, 0]}}}})",
+          k > 0 ? ", " : "", k, x + dx / 2, y + dy / 2, angle);
+      if (k > 0)
+        joints += fmt::format(R"({}{{"type": "revolute", "i": "b{}.t", "j": "b{}.f"}})", k > 1 ? ", " : "", k - 1, k);
+      floors += fmt::format(R"({{"type": "contact", "i": "ground", "j": "b{}.t", "mu": 0.4,
+             "curve": {{"line": {{"point": [0, 0], "axis": [1, 0]}}}}}}, )",
+                            k);
+      outputs += fmt::format(R"({}"b{}.t.y")", k > 0 ? ", " : "", k);
+      x += dx, y += dy;
+    }
+    const TextRun run = run_text(fmt::format(
+        R"({{"catena": 1, "gravity": [0, -9.81], "bodies": {{{}}}, "constraints": [{}], "forces": [{}{{"type": "contact",
+           "i": "ground", "j": "b0.f", "mu": 0.4, "curve": {{"line": {{"point": [0, 0], "axis": [1, 0]}}}}}}],
+           "outputs": [{}], "analyses": [{{"type": "dynamics", "until": 1.5, "every": 1.5}}]}})",
+        bodies, joints, floors, outputs));
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+    for (int k = 0; k < links; ++k) EXPECT_NEAR(run.last(fmt::format("b{}.t.y", k)), 0, 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace catena::testing
