@@ -97,6 +97,12 @@ TEST_F(Run, WritesRowsInTheFormatAndUnitsAskedFor) {
   const ProgramResult table = run_catena({"run", path, "--units", "length=mm,angle=deg"});
   EXPECT_NE(table.out.find("deg"), std::string::npos) << table.out;
 
+  // What machines read is in SI unless the command asks, and tells its units.
+  const json shown = json::parse(run_catena({"run", path, "--json", "--units", "length=mm"}).out)["analyses"][0];
+  EXPECT_EQ(shown["units"], json({"s", "mm", "mm", "rad"}));
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    EXPECT_NEAR(shown["rows"][k][1].get<double>(), 1000 * rows[k][1].get<double>(), 1e-12);
+
   // Report and files of one folder speak the same units.
   EXPECT_EQ(run_catena({"run", path, "-o", target, "--format", "csv", "-q", "--units", "length=mm"}).exit_code, 0);
   const json units = json::parse(read_file(target + "/report.json"))["analyses"][0]["units"];

@@ -1,5 +1,5 @@
-// Derivatives of frequencies under a force that turns with its body: Ziegler's column of two rods against the roots of
-// its 2 x 2 problem, differenced in long double.
+// Derivatives of frequencies, and of the load of divergence, under a force that turns with its body: Ziegler's column
+// of two rods against the roots of its 2 x 2 problem, differenced in long double.
 //
 //   M = L^2 [m + n, n; n, n]    K = [k + c - P L + g L (m + n), P L - c; -c, c + g L n]    angles of both rods
 #include <gtest/gtest.h>
@@ -28,20 +28,34 @@ std::array<Long, 2> roots_of(const ZieglerColumn& column) {
   return {(b - half) / (2 * a), (b + half) / (2 * a)};
 }
 
-std::array<Long, 2> slope_of(const ZieglerColumn& column, std::size_t p) {
+/// P at which K is singular: without weights nothing but flutter ends the stability of the column.
+std::array<Long, 1> load_of(const ZieglerColumn& column) {
+  const auto& [L, m, n, k, c, g, P] = column;
+  return {((k + c + g * L * (m + n)) * (c + g * L * n) - c * c) / (L * L * g * n)};
+}
+
+template <std::size_t count>
+std::array<Long, count> slope_of(std::array<Long, count> (*values_of)(const ZieglerColumn&),
+                                 const ZieglerColumn& column, std::size_t p) {
   const Long h = 1e-4L * column[p];
   const auto moved = [&](Long by) {
     ZieglerColumn other = column;
     other[p] += by;
-    return roots_of(other);
+    return values_of(other);
   };
   const auto far_below = moved(-2 * h), below = moved(-h), above = moved(h), far_above = moved(2 * h);
-  std::array<Long, 2> slope{};
-  for (std::size_t i = 0; i < 2; ++i) slope[i] = (8 * (above[i] - below[i]) - (far_above[i] - far_below[i])) / (12 * h);
+  std::array<Long, count> slope{};
+  for (std::size_t i = 0; i < count; ++i)
+    slope[i] = (8 * (above[i] - below[i]) - (far_above[i] - far_below[i])) / (12 * h);
   return slope;
 }
 
-std::string scene_of(const ZieglerColumn& column) {
+constexpr const char* modes = R"("type": "modes", "measures": {
+    "low": {"field": "omega2[1]"}, "high": {"field": "omega2[2]"}, "omega": {"field": "omega[1]"}})";
+constexpr const char* buckling = R"("type": "buckling", "parameter": "P", "count": 3, "measures": {
+    "load": {"field": "loads[1]"}})";
+
+std::string scene_of(const ZieglerColumn& column, const char* analysis = modes) {
   std::string numbers, names;
   for (std::size_t p = 0; p < column.size(); ++p) {
     numbers +=
@@ -56,8 +70,7 @@ std::string scene_of(const ZieglerColumn& column) {
              {"type": "torsion_spring", "i": "one", "j": "two", "k": "c"},
              {"type": "point_force", "i": "two", "force": ["=-P", 0], "frame": "body"}],
   "analyses": [{"type": "sensitivity", "parameters": [)" +
-         names + R"(], "of": {"type": "modes", "measures": {
-    "low": {"field": "omega2[1]"}, "high": {"field": "omega2[2]"}, "omega": {"field": "omega[1]"}}}}]})";
+         names + R"(], "of": {)" + analysis + "}}]}";
 }
 
 TEST(CirculatoryGradients, OfZieglersColumn) {
@@ -76,13 +89,33 @@ TEST(CirculatoryGradients, OfZieglersColumn) {
       const auto root = static_cast<double>(roots[i]);
       EXPECT_NEAR(value(run, names[i]), root, 1e-11 * root);
       for (std::size_t p = 0; p < column.size(); ++p) {
-        const auto exact = static_cast<double>(slope_of(column, p)[i]);
+        const auto exact = static_cast<double>(slope_of(roots_of, column, p)[i]);
         const double size = std::max(std::abs(exact), root / static_cast<double>(column[p]));
         EXPECT_NEAR(gradient(run, names[i], p), exact, 1e-10 * size) << names[i] << " " << column_parameters[p];
         if (i == 0) {
           EXPECT_NEAR(gradient(run, "omega", p), exact / (2 * std::sqrt(root)), 1e-10 * size);
         }
       }
+    }
+  }
+}
+
+TEST(CirculatoryGradients, OfALoadOfDivergence) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers random(seed);
+    const std::array<std::array<double, 2>, 6> range = {{{0.5, 2}, {0.5, 3}, {0.5, 3}, {5, 30}, {5, 30}, {5, 30}}};
+    ZieglerColumn column{};
+    for (std::size_t p = 0; p < range.size(); ++p) column[p] = random(range[p][0], range[p][1]);
+    column[6] = 0.1L;
+    const TextRun run = run_text(scene_of(column, buckling));
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+    const auto load = static_cast<double>(load_of(column)[0]);
+    EXPECT_NEAR(value(run, "load"), load, 1e-9 * load);
+    for (std::size_t p = 0; p < column.size(); ++p) {
+      const auto exact = static_cast<double>(slope_of(load_of, column, p)[0]);
+      EXPECT_NEAR(gradient(run, "load", p), exact, 1e-8 * load / static_cast<double>(column[p]))
+          << column_parameters[p];
     }
   }
 }

@@ -156,9 +156,10 @@ TEST(Measures, OfMotionsUnderForces) {
 // Under gravity of 10 m/s^2 against a damper of 0.5 N m s: W = 5 (sin(0.3 + t) - sin 0.3) + 0.5 t, 0.5 t of it
 // dissipated.
 TEST(Measures, OfWorkBetweenTheRows) {
-  std::string text = crank(R"--({"most": {"max": "drive.work"}, "lost": {"integral": "energy.dissipated"},
+  std::string text = crank(
+      R"--({"most": {"max": "drive.work"}, "lost": {"integral": "energy.dissipated"}, "given": {"integral": "drive.power"},
     "end": {"final": "drive.work"}, "doubt": {"max": "=abs(energy.balance)"}})--",
-                           5, "inverse_dynamics");
+      5, "inverse_dynamics");
   text.insert(text.find("\"bodies\""), R"("gravity": [0, -10],
   "forces": [{"type": "torsion_spring", "i": "ground", "j": "crank", "k": 0, "c": 0.5}], )");
   const TextRun run = run_text(text);
@@ -168,6 +169,8 @@ TEST(Measures, OfWorkBetweenTheRows) {
   EXPECT_NEAR(value(run, "most"), work(top), 1e-9);
   EXPECT_NEAR(*measure(run, "most").t, top, 1e-7);
   EXPECT_NEAR(value(run, "lost"), 0.25 * 25, 1e-9);
+  EXPECT_NEAR(value(run, "given"), work(5), 1e-9);
+  EXPECT_EQ(measure(run, "given").unit, "J");
   EXPECT_NEAR(value(run, "end"), work(5), 1e-9);
   EXPECT_LT(value(run, "doubt"), 1e-9);
   EXPECT_TRUE(measure(run, "most").trouble.empty()) << measure(run, "most").trouble;
@@ -182,6 +185,18 @@ TEST(Measures, OfWhatAnAnalysisReports) {
   EXPECT_NEAR(value(run, "energy"), -15, 1e-9);
   EXPECT_FALSE(measure(run, "none").value);
   EXPECT_NE(measure(run, "none").trouble.find("reports no number lode"), std::string::npos);
+}
+
+// A rod of 2 m, put on its driver at 0.3 rad.
+TEST(Measures, OfACheckAreThoseOfTheAssembledPlace) {
+  const TextRun run = run_text(R"({"catena": 1,
+  "bodies": {"rod": {"rod": {"from": [0, 0], "to": [2, 0.1]}}},
+  "constraints": [{"type": "revolute", "i": "ground", "j": "rod.from"}],
+  "drivers": [{"type": "absolute_angle", "i": "rod", "value": 0.3}],
+  "analyses": [{"type": "check", "measures": {"height": {"first": "rod.to.y"}, "freedoms": {"field": "mobility"}}}]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  EXPECT_NEAR(value(run, "height"), std::hypot(2, 0.1) * std::sin(0.3), 1e-12);
+  EXPECT_EQ(value(run, "freedoms"), 1);
 }
 
 TEST(Measures, WrongOnesAreReportedWhereTheyStand) {

@@ -99,6 +99,8 @@ class Sweeps(unittest.TestCase):
             catena.sweep(arm(), {"length": [1, math.nan]})
         with self.assertRaisesRegex(catena.SceneError, 'no parameter "lenght".*did you mean "length"'):
             catena.sweep(arm(), {"length": [1, 2], "lenght": [1, 2]})
+        with self.assertRaisesRegex(catena.SceneError, '^catena: parameters: unknown parameter "lenght"'):
+            arm().run({"lenght": 1})
         with self.assertRaisesRegex(ValueError, "1000000000 designs are asked for"):
             catena.sweep(arm(), {"length": range(10**5), "width": range(10**4)})
         with self.assertRaisesRegex(ValueError, "parameter length needs a list of values, not 5"):

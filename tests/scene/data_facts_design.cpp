@@ -1,4 +1,6 @@
 // Facts about scenes that look for designs, or for derivatives.
+#include <array>
+
 #include "scene/data_facts.hpp"
 
 namespace catena::testing {
@@ -39,6 +41,35 @@ double by_opposite(double x, double y, double z) {
   return z / (x * y * std::sqrt(1 - cosine * cosine));
 }
 
+/// Mean and mean square deviation of the pen's height on a four-bar with crank 1, ground 2 and equal arms, over the
+/// half turn in which the crank points away from the rocker. The rocker's pin is the middle of the coupler, as far from
+/// its ends as from the rocker's pivot: the pen is seen from there at right angles to the crank's end.
+std::array<double, 2> height_and_spread(double arm) {
+  constexpr int parts = 2000;
+  double sum = 0, squares = 0;
+  for (int k = 0; k <= parts; ++k) {
+    const double cosine = std::sin(std::numbers::pi * k / parts), distance2 = 5 + 4 * cosine;
+    const double y = std::sqrt((4 * arm * arm - distance2) / distance2) * (2 + cosine);
+    const double weight = k % parts == 0 ? 1.0 / 3 : k % 2 == 0 ? 2.0 / 3 : 4.0 / 3;  // Simpson
+    sum += weight * y / parts;
+    squares += weight * y * y / parts;
+  }
+  return {sum, squares - sum * sum};
+}
+
+/// Where a function of one variable is least, to the root of its rounding.
+template <class F>
+double least(double low, double high, F&& f) {
+  while (high - low > 1e-7) {
+    const double third = (high - low) / 3;
+    if (f(low + third) < f(high - third))
+      high -= third;
+    else
+      low += third;
+  }
+  return (low + high) / 2;
+}
+
 }  // namespace
 
 SceneFacts design_facts() {
@@ -66,6 +97,24 @@ SceneFacts design_facts() {
          EXPECT_NEAR(variable(run, "coupler"), 1.1, 1e-5);
          EXPECT_NEAR(variable(run, "rocker"), 0.9, 1e-5);
          EXPECT_NEAR(variable(run, "ground"), 1.2, 1e-5);
+       }},
+      {"untimed_path_generation.json",
+       [](const TextRun& run) {
+         EXPECT_NEAR(variable(run, "crank"), 0.4, 1e-5);
+         EXPECT_NEAR(variable(run, "coupler"), 1.1, 1e-5);
+         EXPECT_NEAR(variable(run, "rocker"), 0.9, 1e-5);
+         EXPECT_NEAR(variable(run, "ground"), 1.2, 1e-5);
+       }},
+      {"hoecken_search.json",
+       [](const TextRun& run) {
+         const double arm = least(2.3, 2.7, [](double a) { return height_and_spread(a)[1]; });
+         const auto [height, spread] = height_and_spread(arm);
+         EXPECT_NEAR(variable(run, "arm"), 0.1 * arm, 1e-6);
+         EXPECT_NEAR(variable(run, "height"), 0.1 * height, 1e-6);
+         EXPECT_NEAR(std::get<double>(field_of(run.analysis(), "objective")), spread, 1e-6 * spread);
+         // Hoecken took arms of 2.5 cranks.
+         EXPECT_NEAR(arm, 2.5, 0.002);
+         for (const double y : run.column("coupler.pen.y", 1)) EXPECT_NEAR(y, 0.1 * height, 0.0006);
        }},
       {"rigid_body_generation.json",
        [](const TextRun& run) {
