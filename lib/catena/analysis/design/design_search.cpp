@@ -15,8 +15,9 @@ constexpr double around[] = {0.5, 0.25, 0.75};
 constexpr double price_of_violation = 10;
 // Of the objective's size, on the square of the distance beyond a border in parts of the ranges.
 constexpr double steepness = 10;
-// Designs that are left for judging the best one: its gradient, and a step of either length (optimise_design.cpp).
-constexpr int for_judging = 3;
+// Designs that are left for judging the best one: its gradient, a step of either length, and the gradient of a better
+// one that such a step finds (optimise_design.cpp).
+constexpr int for_judging = 4;
 // The part of all designs that a search everywhere leaves for the search from the best one; where there are fewer than
 // ten times those for judging, nothing is left.
 constexpr int parts = 10;
