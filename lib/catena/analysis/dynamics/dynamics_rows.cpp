@@ -162,7 +162,6 @@ Report Dynamics::stuck() {
     return report;
   }
   report.status = Status::step_too_small;
-  const int row = equations_.weakest_row();
   std::string where;
   if (integrator_->culprit() >= 0) {
     where = fmt::format("the error of body \"{}\" cannot be kept small enough",
@@ -172,11 +171,6 @@ Report Dynamics::stuck() {
   }
   std::string cause = "forces that grow without bound, or a motion that jumps";
   if (const std::string undetermined = equations_.undetermined(); !undetermined.empty()) cause = undetermined;
-  if (plan_->rows > 0 && equations_.smallest_pivot_ratio() < dependence::likely_cause && row >= 0) {
-    const int element = plan_->row_element[at(row)];
-    cause = fmt::format("a singular configuration: {} \"{}\" depends on other constraints there",
-                        model_->element_type(element), model_->element_name(element));
-  }
   if (std::string branches = near_branches(); !branches.empty()) cause = std::move(branches);
   report.message =
       fmt::format("no step can be made at t = {:.12g} s: {}; likely cause: {}", integrator_->time(), where, cause);

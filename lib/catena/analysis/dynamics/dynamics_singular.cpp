@@ -6,6 +6,7 @@
 
 #include "catena/analysis/branches/branch_keeping.hpp"
 #include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/motion/dependence.hpp"
 #include "catena/analysis/pose/scaling.hpp"
 
 namespace catena {
@@ -28,12 +29,20 @@ void Dynamics::look_for_singularity(double t) {
   if (MinimumNorm* least = reactions_.factorize(evaluator_)) singular_.name(least->name_ambiguous());
 }
 
-// What holds steps up where the motion has come to a place at which two branches nearly meet; else empty.
+// What holds steps up where the motion has come to a place at which two branches nearly meet, or constraints depend on
+// each other; else empty.
 std::string Dynamics::near_branches() {
-  if (!BranchKeeping::judges(equations_)) return {};
+  const int row = equations_.weakest_row();
+  std::string cause;
+  if (plan_->rows > 0 && equations_.smallest_pivot_ratio() < dependence::likely_cause && row >= 0) {
+    const int element = plan_->row_element[static_cast<std::size_t>(row)];
+    cause = fmt::format("a singular configuration: {} \"{}\" depends on other constraints there",
+                        model_->element_type(element), model_->element_name(element));
+  }
+  if (!BranchKeeping::judges(equations_)) return cause;
   evaluator_.set_time(integrator_->time());
   const double gap = BranchKeeping(equations_).narrow_gap(equations_, integrator_->state().first(q_.size()));
-  if (gap == 0) return {};
+  if (gap == 0) return cause;
   return fmt::format(
       "two branches of the motion that pass each other here at a distance of {:.2g} rad or length scales, nearer than "
       "steps can tell apart at a tolerance of {:.3g}: give dimensions that agree exactly or differ by 1e-9 and more, "
