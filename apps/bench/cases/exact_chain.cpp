@@ -9,7 +9,7 @@ using Vector = catena::Vec2<Real>;
 
 namespace {
 
-constexpr Real gravity = 9.81L;
+constexpr Real chain_gravity = 9.81L;
 
 /// A symmetric 2 x 2 matrix a I + b n n^T has three entries; products of two of them are not symmetric.
 struct Matrix {
@@ -47,7 +47,7 @@ std::vector<Real> ExactChain::solve(Vector& tip) const {
     Matrix here = diagonal_and(1, 3, across[k]);
     Vector right = Real(-0.5L) * rate[k] * rate[k] * u[k];
     if (k == 0) {
-      right += Vector{0, gravity};
+      right += Vector{0, chain_gravity};
     } else {
       const Matrix lower = diagonal_and(-1, 3, across[k - 1]), before = diagonal_and(1, 3, across[k - 1]);
       const Matrix carried = lower * next[k - 1];
@@ -72,7 +72,7 @@ std::vector<Real> ExactChain::solve(Vector& tip) const {
     alpha[k] = -6 * (across[k].x * sum.x + across[k].y * sum.y);
   }
   const std::size_t last = n - 1;
-  tip = force[last] - Vector{0, gravity} + Real(0.5L) * alpha[last] * across[last] -
+  tip = force[last] - Vector{0, chain_gravity} + Real(0.5L) * alpha[last] * across[last] -
         Real(0.5L) * rate[last] * rate[last] * u[last];
   return alpha;
 }

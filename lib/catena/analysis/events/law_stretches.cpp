@@ -8,9 +8,9 @@ namespace catena {
 namespace {
 
 // All stretches are looked at this far down, whatever longer ones look like: 32 of nine samples each.
-constexpr int least_halvings = 5;
+constexpr int least_law_halvings = 5;
 // A jump of a law is enclosed to a thousandth of the run; the error of the step that meets it does the rest.
-constexpr int most_halvings = 10;
+constexpr int most_law_halvings = 10;
 constexpr double foreseen = 1e-3;
 constexpr double stretches_in_a_step = 4;
 
@@ -28,7 +28,7 @@ LawStretches::LawStretches(Evaluator& evaluator, std::span<const double> qd, dou
   }
   if (laws_.empty() || !(from < to)) return;
   taken_.begin(laws_.size());
-  constexpr int instants = EventSamples::parts << least_halvings;
+  constexpr int instants = EventSamples::parts << least_law_halvings;
   std::vector<double> values(laws_.size()), least(laws_.size(), std::numeric_limits<double>::max());
   std::vector<double> most(laws_.size(), std::numeric_limits<double>::lowest());
   for (int n = 0; n <= instants; ++n) {
@@ -65,8 +65,8 @@ bool LawStretches::is_foretold(Evaluator& evaluator, std::span<const double> qd,
 void LawStretches::divide(Evaluator& evaluator, std::span<const double> qd, double from, double to, int halvings) {
   const double middle = from + (to - from) / 2;
   const std::size_t before = stretches_.size();
-  const bool small = halvings >= least_halvings;
-  if (halvings == most_halvings || (small && is_foretold(evaluator, qd, from, to))) {
+  const bool small = halvings >= least_law_halvings;
+  if (halvings == most_law_halvings || (small && is_foretold(evaluator, qd, from, to))) {
     stretches_.push_back({from, to - from, 0});
     return;
   }
