@@ -18,7 +18,7 @@ std::string swing_of_a_rocker(const char* solver, const char* before) {
       R"json({{"type": "optimise", "of": [{}{{"type": "kinematics", "from": "initial", "until": "=2*pi/w", "every": "=2*pi/w/48",
         "measures": {{"swing": {{"range": "rocker.angle"}}, "reach": {{"max": "coupler.pen.y"}}}}}}],
       "variables": {{"a": {{"min": 0.25, "max": 0.6, "start": 0.35}}, "c": {{"min": 0.7, "max": 1.2, "start": 1}}}},
-      "minimise": "=(swing - 0.8)^2 + 0.1*(reach - 0.5)^2", "solver": "{}", "max_evaluations": 1500, "tolerance": 1e-7}})json",
+      "minimise": "=(swing - 0.8)^2 + 0.1*(reach - 0.5)^2", "solver": "{}", "max_evaluations": 500, "tolerance": 1e-7}})json",
       before, solver);
   return scene_of(family, {0.35, 1.1, 1, 1.2, 2}, search);
 }
@@ -31,8 +31,8 @@ TEST_P(SearchByValues, EndsInLanesAsWithoutThem) {
   ASSERT_EQ(lanes.outcome.analyses.size(), 1u) << lanes.outcome.error_text;
   ASSERT_EQ(alone.outcome.analyses.size(), 1u) << alone.outcome.error_text;
   EXPECT_EQ(lanes.analysis().report.status, alone.analysis().report.status);
-  // The simplex of cobyla turns on differences of rounding.
-  if (std::string_view(GetParam()) != "cobyla") {
+  // The simplex of cobyla, with which isres ends too, turns on differences of rounding.
+  if (const std::string_view method = GetParam(); method != "cobyla" && method != "isres") {
     EXPECT_EQ(field<std::int64_t>(lanes, "evaluations"), field<std::int64_t>(alone, "evaluations"));
   }
   EXPECT_NEAR(field<double>(lanes, "objective"), field<double>(alone, "objective"), 1e-9);
