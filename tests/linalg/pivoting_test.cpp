@@ -106,14 +106,14 @@ TEST(VertexMinimum, IsThatOfAllCorners) {
       A(rows - 1, c) = 1;  // the sum of all is one
     }
     const Eigen::VectorXd b = Eigen::VectorXd::Unit(rows, rows - 1);
-    const VertexMinimum polytope({A.data(), static_cast<std::size_t>(A.size())},
-                                 {b.data(), static_cast<std::size_t>(b.size())});
+    VertexMinimum polytope({A.data(), static_cast<std::size_t>(A.size())},
+                           {b.data(), static_cast<std::size_t>(b.size())});
     for (int search = 0; search < 5; ++search) {
       const std::vector<double> a = draw(engine, static_cast<std::size_t>(columns), -1, 1);
       const double least = least_of_all(A, b, a);
       ASSERT_EQ(polytope.empty(), std::isinf(least));
       if (polytope.empty()) break;
-      EXPECT_NEAR(polytope.least(a), least, 1e-9);
+      EXPECT_NEAR(polytope.least(a).value(), least, 1e-9);
       EXPECT_LE(polytope.support().size(), static_cast<std::size_t>(rows));
     }
     empty += polytope.empty();
@@ -124,9 +124,9 @@ TEST(VertexMinimum, IsThatOfAllCorners) {
 
 TEST(VertexMinimum, MayHaveRowsThatRepeatEachOther) {
   const std::vector<double> A{1, 1, 2, 2, 1, 1}, b{1, 1};  // w_1 + 2 w_2 + w_3 = 1, twice
-  const VertexMinimum polytope(A, b);
+  VertexMinimum polytope(A, b);
   ASSERT_FALSE(polytope.empty());
-  EXPECT_NEAR(polytope.least(std::vector<double>{3, 4, 5}), 2, 1e-12);
+  EXPECT_NEAR(polytope.least(std::vector<double>{3, 4, 5}).value(), 2, 1e-12);
   EXPECT_EQ(polytope.support(), std::vector<std::size_t>{1});
 }
 

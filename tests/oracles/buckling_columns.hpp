@@ -43,8 +43,8 @@ class BucklingColumn {
   }
 
   /// What the weights are multiplied by at x = p / unit.
-  template <class Real>
-  Real factor(Real x) const {
+  template <class Number>
+  Number factor(Number x) const {
     switch (law_) {
       case 0:
         return x;
@@ -55,7 +55,7 @@ class BucklingColumn {
       case 3:
         return std::exp(x) - 1;
       case 4:
-        return x * x * x + Real(0.2) * x;
+        return x * x * x + Number(0.2) * x;
       default:
         return x / (1 + std::abs(x));
     }

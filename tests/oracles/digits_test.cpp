@@ -37,7 +37,12 @@ double optimism_of_load(unsigned seed) {
                     {.present = column.present(), .count = 1, .errors = true});
   const BucklingReport report = buckling.run();
   const long double wanted = column.nearest();
-  if (!report.ok() || report.loads.empty() || std::isnan(wanted)) return -1;
+  if (!report.ok() || report.loads.empty() != std::isnan(wanted)) {
+    ADD_FAILURE() << seed << ": " << report.message << ", " << report.loads.size() << " loads found, nearest "
+                  << static_cast<double>(wanted);
+    return -1;
+  }
+  if (report.loads.empty()) return -1;
   // Of two at the same distance either is right.
   const long double present = column.present(), found = report.loads[0];
   const long double error = std::abs(std::abs(found - present) - std::abs(wanted - present));

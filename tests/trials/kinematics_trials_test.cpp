@@ -76,6 +76,32 @@ TEST(KinematicTrials, LoadOnAFlatRowIsTheLimitOfTheMotion) {
   EXPECT_TRUE(said);
 }
 
+// Nor is what presses a joint there, its friction, its slip and what it takes: rows beside have them.
+TEST(KinematicTrials, FrictionOnAFlatRowIsNotKnown) {
+  const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -9.81],
+    "bodies": {"crank": {"mass": 1, "rod": {"from": [0, 0], "to": [0, 1]}},
+               "coupler": {"mass": 1, "rod": {"from": [0, 1], "to": [2, 1]}},
+               "rocker": {"mass": 1, "rod": {"from": [2, 0], "to": [2, 1]}}},
+    "constraints": [{"type": "revolute", "name": "A", "i": "ground", "j": "crank.from"},
+                    {"type": "revolute", "name": "B", "i": "crank.to", "j": "coupler.from"},
+                    {"type": "revolute", "name": "C", "i": "coupler.to", "j": "rocker.to"},
+                    {"type": "revolute", "name": "D", "i": ["ground", [2, 0]], "j": "rocker.from"}],
+    "drivers": [{"type": "absolute_angle", "name": "d", "i": "crank", "value": {"polynomial": ["=pi/2", "=2*pi"]}}],
+    "forces": [{"type": "friction", "name": "rub", "joint": "A", "mu": 0.2, "radius": 0.05}],
+    "outputs": ["d.load", "rub.force", "rub.friction", "rub.slip"],
+    "analyses": [{"type": "inverse_dynamics", "at": [0, 0.125, 0.25, 0.375, 0.5, 0.75]}]})");
+  expect_ok(run);
+  for (const double t : run.column("t")) {
+    const bool flat = t == 0.25 || t == 0.75;
+    for (const char* column : {"d.load", "rub.force", "rub.friction", "rub.slip"})
+      EXPECT_EQ(std::isnan(at_instant(run, column, t)), flat) << column << " " << t;
+    if (flat) continue;
+    EXPECT_NEAR(at_instant(run, "rub.slip", t), 2 * pi, 1e-9);
+    EXPECT_GT(at_instant(run, "rub.force", t), 0);
+    EXPECT_NEAR(at_instant(run, "rub.friction", t), -0.2 * at_instant(run, "rub.force", t), 1e-10);
+  }
+}
+
 // However far apart rows are: the distance that is driven, and the one end that may go through it.
 TEST(KinematicTrials, WhatIsNotSingularIsPassed) {
   const TextRun run = run_trial("not_singular_at_a_quarter");

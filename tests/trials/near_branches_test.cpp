@@ -183,17 +183,27 @@ INSTANTIATE_TEST_SUITE_P(All, NarrowPassages,
 using Driven = std::tuple<double, double, bool>;
 class DrivenNarrowPassages : public ::testing::TestWithParam<Driven> {};
 
-TEST_P(DrivenNarrowPassages, AreNotMistakenInSilence) {
-  const auto [d, tolerance, doubled] = GetParam();
+TextRun run_driven(double d, double tolerance, bool doubled) {
   Json scene = slider_crank(d, tolerance, "auto", doubled);
   Json driver = {{"type", "absolute_angle"}, {"name", "motor"}, {"i", "crank"}};
   driver["value"]["polynomial"] = {start, rate};
   scene["drivers"] = Json::array();
   scene["drivers"].push_back(driver);
-  const TextRun run = run_text(scene.dump());
-  // Doubled joints with a driver end `not_converged` in part.
+  return run_text(scene.dump());
+}
+
+// Doubled joints with a driver end in part with words on a wrong balance of energy; see below how many do not.
+TEST_P(DrivenNarrowPassages, AreNotMistakenInSilence) {
+  const auto [d, tolerance, doubled] = GetParam();
+  const TextRun run = run_driven(d, tolerance, doubled);
   if (run.outcome.exit_code != 0) {
-    EXPECT_TRUE(d < 1e-9 || doubled);
+    const Report& report = run.analysis().report;
+    EXPECT_LT(d, doubled ? 1e-5 : 1e-9) << report.message;
+    if (doubled) {
+      EXPECT_EQ(report.status, Status::not_converged) << report.message;
+    } else {
+      EXPECT_NE(report.message.find("two branches"), std::string::npos) << report.message;
+    }
     return;
   }
   const double z = start + rate * until, rod = 1 + d;
@@ -207,6 +217,19 @@ TEST_P(DrivenNarrowPassages, AreNotMistakenInSilence) {
 INSTANTIATE_TEST_SUITE_P(All, DrivenNarrowPassages,
                          ::testing::Combine(::testing::Values(1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-6, 1e-4),
                                             ::testing::Values(1e-4, 1e-6, 1e-8, 1e-10), ::testing::Bool()));
+
+// Today 31 of 32, and 18 where joints are doubled: rounding decides some, which compilers make differently.
+TEST(NearBranches, DrivenOnesEndWellInMostCases) {
+  int well = 0, well_doubled = 0;
+  for (const double d : {1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-6, 1e-4}) {
+    for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
+      well += run_driven(d, tolerance, false).outcome.exit_code == 0;
+      well_doubled += run_driven(d, tolerance, true).outcome.exit_code == 0;
+    }
+  }
+  EXPECT_GE(well, 30);
+  EXPECT_GE(well_doubled, 16);
+}
 
 // Steps of a fixed length cannot be shortened: they turn, end with a status, or say that they went straight on.
 TEST(NearBranches, FixedStepsThatAreTooLongForATurnSaySo) {

@@ -41,26 +41,23 @@ class FigureMaker {
     plot_.log_x = plot_.log_y = true;
     plot_.panels.push_back({.unit = std::move(y_unit), .lines = {}});
   }
-  /// Only what a logarithmic axis can show.
-  void add(const std::string& line, double x, double y) {
-    if (!(x > 0) || !(y > 0)) return;
+  /// Only what a logarithmic axis can show; the line that has it now.
+  PlotLine* add(const std::string& line, double x, double y) {
+    if (!(x > 0) || !(y > 0)) return nullptr;
     std::vector<PlotLine>& lines = plot_.panels.front().lines;
     std::size_t k = 0;
     while (k < lines.size() && lines[k].name != line) ++k;
     if (k == lines.size()) lines.push_back({.name = line, .y = {}, .x = {}, .marks = true});
     lines[k].x.push_back(x);
     lines[k].y.push_back(y);
+    return &lines[k];
   }
   /// A dot that no line leads to.
   void add_dot(const std::string& line, double x, double y) {
-    add(line, x, y);
-    std::vector<PlotLine>& lines = plot_.panels.front().lines;
-    if (lines.empty() || !(x > 0) || !(y > 0)) return;
-    for (PlotLine& l : lines) {
-      if (l.name != line) continue;
-      l.x.push_back(x);
-      l.y.push_back(not_measured);  // a gap
-    }
+    PlotLine* const dots = add(line, x, y);
+    if (!dots) return;
+    dots->x.push_back(x);
+    dots->y.push_back(not_measured);  // a gap
   }
   void rename(const std::string& line, const std::string& name) {
     for (PlotLine& l : plot_.panels.front().lines) {

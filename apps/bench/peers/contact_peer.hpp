@@ -35,17 +35,23 @@ struct Outcome {
   double seconds = 0, error = 0;
 };
 
+/// s
+template <class World>
+double time_of_steps(World& world, double h, int steps) {
+  world.ready(h);
+  const double begin = processor_time();
+  for (int s = 0; s < steps; ++s) world.step(h);
+  return processor_time() - begin;
+}
+
 template <class World, class Settings>
 Outcome balls(const Settings& settings, double h, int steps) {
   using Problem = bench::BouncingBalls;
   World world(settings, Problem::restitution, 0.0);
   for (int k = 0; k < Problem::count; ++k)
     world.add_ball(Problem::ball(k).x, Problem::ball(k).y, Problem::radius, Problem::mass);
-  world.ready(h);
   Outcome outcome;
-  const double begin = processor_time();
-  for (int s = 0; s < steps; ++s) world.step(h);
-  outcome.seconds = processor_time() - begin;
+  outcome.seconds = time_of_steps(world, h, steps);
   for (int k = 0; k < Problem::count; ++k)
     outcome.error = std::fmax(outcome.error, std::abs(world.y(k) - static_cast<double>(bench::exact_ball(k))));
   return outcome;
@@ -60,11 +66,8 @@ Outcome dumbbells(const Settings& settings, double h, int steps) {
     world.add_dumbbell(start.x, start.y, start.angle, start.spin, Problem::half_length, Problem::radius, Problem::mass,
                        Problem::inertia);
   }
-  world.ready(h);
   Outcome outcome;
-  const double begin = processor_time();
-  for (int s = 0; s < steps; ++s) world.step(h);
-  outcome.seconds = processor_time() - begin;
+  outcome.seconds = time_of_steps(world, h, steps);
   for (int k = 0; k < Problem::count; ++k) {
     const auto exact = bench::exact_dumbbell(k);
     outcome.error = std::fmax(outcome.error, std::abs(world.y(k) - static_cast<double>(exact[0])));
@@ -104,11 +107,8 @@ Outcome chain(const Settings& settings, double h, int steps) {
   for (int k = 0; k < Problem::count; ++k)
     world.add_link(Problem::x(k), Problem::radius + Problem::drop, Problem::speed, Problem::half_length,
                    Problem::radius, Problem::mass, Problem::inertia);
-  world.ready(h);
   Outcome outcome;
-  const double begin = processor_time();
-  for (int s = 0; s < steps; ++s) world.step(h);
-  outcome.seconds = processor_time() - begin;
+  outcome.seconds = time_of_steps(world, h, steps);
   for (int k = 0; k < Problem::count; ++k) {
     const double exact = Problem::x(k) + static_cast<double>(bench::exact_slide());
     outcome.error = std::fmax(outcome.error, std::abs(world.x(k) - exact));

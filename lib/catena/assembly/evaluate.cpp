@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
-#include <string>
 
 #include "catena/assembly/length_scale.hpp"
 #include "catena/assembly/same_structure.hpp"

@@ -83,6 +83,11 @@ struct Plan {
   std::vector<std::pair<int, int>> law_pairs;
 
   bool is_released(int element) const { return !released.empty() && released[static_cast<std::size_t>(element)]; }
+  /// Column of entry k of an element's six [x, y, phi of i, of j], where i and j are plan bodies or -1; or -1.
+  int column_of(int i, int j, int k) const {
+    const int body = k < 3 ? i : j;
+    return body >= 0 && body < moving ? column[static_cast<std::size_t>(3 * body + k % 3)] : -1;
+  }
   int trash_slot() const { return jacobian.entries(); }  ///< where entries of immobile bodies go
   int coordinates() const { return 3 * (bodies + 1); }   ///< of all bodies and, last and always zero, the ground
   int mobility() const { return columns - (rows - driver_rows); }  ///< Grübler's count

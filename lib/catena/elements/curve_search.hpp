@@ -17,13 +17,15 @@ struct Descent {
 };
 
 inline constexpr double singular_bend = 1e-9;
+/// The longest step, in parts of the curve's range.
+inline constexpr double longest_search_step = 1.0 / 8;
 
 /// Moves s to a minimum; `descent` maps a CurvePoint<double> to Descent. False, s being anything, if Newton's method
 /// meets a place that is no minimum or does not converge.
 template <class S, class F>
 bool follow_minimum(const BodyCurve<S>& curve, const F& descent, double& s) {
   constexpr int attempts = 30;
-  const double range = curve.range(), longest = range / 8, enough = 1e-9 * range;
+  const double range = curve.range(), longest = longest_search_step * range, enough = 1e-9 * range;
   if (std::isnan(s)) return false;
   for (int k = 0; k < attempts; ++k) {
     const Descent d = descent(curve.plain(s));

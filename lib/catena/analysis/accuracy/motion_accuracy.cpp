@@ -28,8 +28,8 @@ MotionAccuracy::MotionAccuracy(const Evaluator& evaluator, const ColumnSet& colu
       carried_(evaluator),
       errors_(columns.size()),
       terms_(evaluator),
-      // Of rows before the last it is not known where curves touched.
-      timed_(!evaluator.model().functions.empty() && evaluator.curve_places().empty()) {}
+      curves_(!evaluator.curve_places().empty()),
+      timed_(!evaluator.model().functions.empty() && !curves_) {}
 
 MotionAccuracy::MotionAccuracy(Dynamics& analysis, const ColumnSet& columns)
     : MotionAccuracy(analysis.evaluator(), columns) {
@@ -79,6 +79,7 @@ void MotionAccuracy::keep() {
 
 // Where accelerations have a peak, a small error of places makes a large one of theirs.
 void MotionAccuracy::keep_sharpest(std::span<const double> qdd) {
+  if (curves_) return;
   double largest = 0;
   for (std::size_t c = 0; c < qdd.size(); ++c)
     largest = std::max(largest, std::abs(qdd[c]) / (c % 3 == 2 ? 1 : carried_.length()));
@@ -104,8 +105,11 @@ const ColumnErrors* MotionAccuracy::errors(const AnalysisReport& report) {
   if (!report.ok() || !motion_.is_smooth() || carried_.lost() || row_.q.empty()) return nullptr;
   if (!examined_.is_last && !carried_.can_look()) return nullptr;
   if (!examined_.is_last) examine(row_);
+  std::vector<double> seen{row_.t};
   for (const Row& row : kept_.rows) {
-    if (!row.q.empty() && row.t != row_.t && carried_.spend(cost_of_row)) examine(row);
+    if (row.q.empty() || std::find(seen.begin(), seen.end(), row.t) != seen.end()) continue;
+    seen.push_back(row.t);
+    if (carried_.spend(cost_of_row)) examine(row);
   }
   errors_.take_places(columns_.info(), carried_.length());
   for (std::size_t k = 0; finds_instants_ && k < columns_.size(); ++k) {

@@ -77,7 +77,8 @@ class MotionAccuracy final : public RowAccuracy {
     bool is_last = false;  // whether that is the last row so far
   } examined_;
   RowTerms terms_;
-  bool timed_;                   // something depends on time
+  bool curves_;                  // of rows before the last it is not known where they touched
+  bool timed_;                   // something depends on time, and rows before the last are looked at
   bool finds_instants_ = false;  // some rows lie at instants that the motion decides on
   static constexpr int late_rows = 4;
   struct {

@@ -28,6 +28,7 @@ bool KinematicAdjoint::find(const Snapshot& snapshot) {
   if (!system_.factorize(jacobian(), [] {}))
     return fail(fmt::format("at t = {:.9g} s the mechanism is in a singular configuration, which has no derivative",
                             snapshot.t));
+  // Of all: columns read functions of time as well.
   for (Group& group : groups()) group.mechanism.set_time(snapshot.t);
   mechanism_.set_motion(evaluator(), snapshot.qd, snapshot.qdd);
   return true;

@@ -45,8 +45,7 @@ void add_stiffness_times_places(StaticSystem& system, std::span<const double> la
     // The distance of two bodies, or of a body from the ground's origin, to which places in the ground refer.
     const double length = std::max(norm(place(i) - place(j)), system.length()) + reach(i) + reach(j);
     for (int row = 0; row < 6; ++row) {
-      const int body = row < 3 ? i : j;
-      const int c = moves(body) ? plan.column[at(3 * body + row % 3)] : -1;
+      const int c = plan.column_of(i, j, row);
       if (c < 0) continue;
       for (int k = 0; k < 6; ++k) {
         const int other = k < 3 ? i : j;

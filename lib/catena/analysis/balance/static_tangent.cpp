@@ -43,11 +43,9 @@ void StaticTangent::visit(std::span<const double> lambda, F&& entry) {
   const Plan& plan = system_.plan();
   const auto element = [&](int i, int j, const ElementMatrix& m) {
     for (int a = 0; a < 6; ++a) {
-      const int body_a = a < 3 ? i : j;
-      const int row = body_a >= 0 && body_a < plan.moving ? plan.column[at(3 * body_a + a % 3)] : -1;
+      const int row = plan.column_of(i, j, a);
       for (int b = 0; b < 6 && row >= 0; ++b) {
-        const int body_b = b < 3 ? i : j;
-        const int column = body_b >= 0 && body_b < plan.moving ? plan.column[at(3 * body_b + b % 3)] : -1;
+        const int column = plan.column_of(i, j, b);
         if (column >= 0) entry(row, column, m[at(6 * a + b)]);
       }
     }

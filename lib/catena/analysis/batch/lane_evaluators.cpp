@@ -22,17 +22,21 @@ LaneEvaluators::Lane& LaneEvaluators::begin(int lane, const Model& model) {
 
 void LaneEvaluators::set_design(int lane, const Model& model) {
   are_one_ = false;
-  Lane& own = begin(lane, model);
+  begin(lane, model).begin_ropes();
+}
+
+void LaneEvaluators::Lane::begin_ropes() {
+  lost = nullptr;
   // A pointer that owns nothing: the model outlives its use.
-  own.ropes.emplace(std::shared_ptr<const Model>(std::shared_ptr<const Model>(), &model));
-  if (!own.ropes->any()) return;
+  ropes.emplace(std::shared_ptr<const Model>(std::shared_ptr<const Model>(), &evaluator.model()));
+  if (!ropes->any()) return;
   try {
-    if (own.ropes->begin({}) || !own.ropes->lie_as_given()) own.lost = "its ropes lie otherwise than given";
-    for (const RopeRoute& route : own.ropes->routes()) {
-      if (std::find(route.off.begin(), route.off.end(), 1) != route.off.end()) own.lost = "a rope lies beside a pulley";
+    if (ropes->begin({}) || !ropes->lie_as_given()) lost = "its ropes lie otherwise than given";
+    for (const RopeRoute& route : ropes->routes()) {
+      if (std::find(route.off.begin(), route.off.end(), 1) != route.off.end()) lost = "a rope lies beside a pulley";
     }
   } catch (const ModelError&) {
-    own.lost = "a rope cannot lie over its pulleys";
+    lost = "a rope cannot lie over its pulleys";
   }
 }
 

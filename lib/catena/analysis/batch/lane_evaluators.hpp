@@ -26,6 +26,8 @@ class LaneEvaluators {
 
   /// A lane's design; the model must outlive its use.
   void set_design(int lane, const Model& model);
+  /// Follows the ropes of a lane's design from its given configuration once more: where it went since does not count.
+  void start_anew(int lane) { lane_of(lane).begin_ropes(); }
   /// One design for all lanes, at instants in any order: ways of ropes are not followed.
   void set_designs(const Model& model);
   /// Goes to the state of a lane and looks at it: empty, or what is wrong there.
@@ -36,6 +38,7 @@ class LaneEvaluators {
  private:
   struct Lane {
     Lane(std::shared_ptr<const Plan> plan, const Model& model);
+    void begin_ropes();
     const char* follow_ropes();
 
     Evaluator evaluator;

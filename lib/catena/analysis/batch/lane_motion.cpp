@@ -69,6 +69,7 @@ bool LaneMotion::set_design(int lane, const Model& model, double length_scale) {
 void LaneMotion::set_start(int lane, std::span<const double> q, std::span<const CurvePlace> places) {
   for (int k = 0; k < coordinates_; ++k) now_->q[k][lane] = q[at(k)];
   solver_.searches().take_places(places, lane, now_->places);
+  solver_.start_anew(lane);
 }
 
 unsigned LaneMotion::assemble(const std::array<double, lane_count>& t) {

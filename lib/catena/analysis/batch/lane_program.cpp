@@ -18,9 +18,6 @@ namespace {
 template <class E>
 inline constexpr bool in_lanes = false CATENA_LANE_ELEMENTS(CATENA_LANE_IS);
 template <class E>
-inline constexpr bool searched_in_lanes =
-    std::is_same_v<E, PointOnCurve<double>> || std::is_same_v<E, CamFlat<double>> || std::is_same_v<E, CamCam<double>>;
-template <class E>
 inline constexpr bool force_in_lanes = false CATENA_LANE_FORCES(CATENA_LANE_IS);
 #undef CATENA_LANE_IS
 
@@ -78,7 +75,7 @@ bool LaneProgram::list_elements(const Model& model, std::string& why_not) {
   const Plan& plan = *plan_;
   for_each_list(plan.blocks, [&](const auto& block, int) {
     using E = typename std::remove_cvref_t<decltype(block)>::Element;
-    if (in_lanes<E> || searched_in_lanes<E> || block.size() == 0 || !why_not.empty()) return;
+    if (in_lanes<E> || LaneSearchedElements::has<E> || block.size() == 0 || !why_not.empty()) return;
     const int row = Joining<E> ? block.row(0) : block.first_row;
     const int element = plan.row_element[at(row)];
     why_not = fmt::format("{} \"{}\" is of a type that is not computed in lanes", model.element_type(element),
@@ -122,7 +119,9 @@ bool LaneProgram::list_elements(const Model& model, std::string& why_not) {
 }
 
 void LaneProgram::list_searched(const Model& model) {
-  const auto list_type = [&]<class E>(std::type_identity<E>, std::vector<LaneSearched>& searched) {
+  std::size_t type = 0;
+  LaneSearchedElements::for_each([&]<class E>(std::type_identity<E>) {
+    std::vector<LaneSearched>& searched = searched_.of_type[type++];
     const auto& block = std::get<ConstraintBlock<E>>(plan_->blocks);
     const auto& list = std::get<std::vector<ElementEntry<E, double>>>(model.constraints);
     static_assert(E::rows == 1 && varying_entries<E>() == 6 && E::functions == 0);
@@ -133,10 +132,7 @@ void LaneProgram::list_searched(const Model& model) {
       searched.push_back(code);
       searched_row_.push_back(code.row);
     }
-  };
-  list_type(std::type_identity<PointOnCurve<double>>{}, searched_.of_type[0]);
-  list_type(std::type_identity<CamFlat<double>>{}, searched_.of_type[1]);
-  list_type(std::type_identity<CamCam<double>>{}, searched_.of_type[2]);
+  });
 }
 
 void LaneProgram::list_forces(const Model& model) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "catena/base/at.hpp"
+#include "catena/elements/curve_search.hpp"
 
 namespace catena {
 namespace {
@@ -23,9 +24,9 @@ Frame<Taylor<double>> moving_frame(const Frame<double>& frame, const double* qd,
   return moving(frame, qd[lane], qd[lane_count + lane], qd[2 * lane_count + lane]);
 }
 
-// Half of the longest step of a search (curve_search.hpp): a contact that moves further at once may have been found
-// anew at another place. Steps are halved until it moves less; one that jumps always moves as far.
-constexpr double longest_move = 1.0 / 16;
+// Half of the longest step of a search: a contact that moves further at once may have been found anew at another
+// place. Steps are halved until it moves less; one that jumps always moves as far.
+constexpr double longest_move = longest_search_step / 2;
 
 bool is_far(const BodyCurve<double>& curve, double from, double to) {
   const double range = curve.range(), moved = std::abs(to - from);

@@ -7,8 +7,11 @@
 // so that a step that is not taken leaves no trace. A row is not a number where its bodies are nowhere. Units m, rad.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <span>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 #include "catena/analysis/batch/lane_numbers.hpp"
@@ -19,6 +22,21 @@
 
 namespace catena {
 
+/// Types of elements, in the order of their lists.
+template <class... E>
+struct LaneSearchedList {
+  template <class T>
+  static constexpr bool has = (std::is_same_v<T, E> || ...);
+  static constexpr std::size_t types = sizeof...(E);
+  using Copies = std::tuple<std::vector<E>...>;
+  /// Calls f(std::type_identity<E>) for every type.
+  template <class F>
+  static void for_each(F&& f) {
+    (f(std::type_identity<E>{}), ...);
+  }
+};
+using LaneSearchedElements = LaneSearchedList<PointOnCurve<double>, CamFlat<double>, CamCam<double>>;
+
 /// A row that is searched for, of the list of its type in the model.
 struct LaneSearched {
   int row, body_i, body_j;  ///< frames
@@ -26,11 +44,15 @@ struct LaneSearched {
   int entry, element;       ///< in the list of its type; in the model
 };
 
-/// Type after type: point_on_curve, cam_flat, cam_cam.
+/// Type after type, as in LaneSearchedElements.
 struct LaneSearchedTypes {
-  std::vector<LaneSearched> of_type[3];
+  std::array<std::vector<LaneSearched>, LaneSearchedElements::types> of_type;
 
-  int count() const { return static_cast<int>(of_type[0].size() + of_type[1].size() + of_type[2].size()); }
+  int count() const {
+    std::size_t rows = 0;
+    for (const std::vector<LaneSearched>& type : of_type) rows += type.size();
+    return static_cast<int>(rows);
+  }
 };
 
 class LaneSearches {
@@ -55,8 +77,6 @@ class LaneSearches {
   static void search(const LaneJob& job, LaneSearch what, int first, int count);
 
  private:
-  using Copies = std::tuple<std::vector<PointOnCurve<double>>, std::vector<CamFlat<double>>,
-                            std::vector<CamCam<double>>>;  // element after element, lane_count of each
   template <class F>
   void for_each_list_of_copies(F&& f) const;
   template <class E>
@@ -64,7 +84,7 @@ class LaneSearches {
 
   const LaneSearchedTypes& types_;
   int moving_;
-  Copies copies_;
+  LaneSearchedElements::Copies copies_;  // element after element, lane_count of each
 };
 
 }  // namespace catena

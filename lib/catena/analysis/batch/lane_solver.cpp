@@ -51,18 +51,22 @@ LaneSolver::LaneSolver(const LaneProgram& program)
     std::fill(matrix_[slot], matrix_[slot] + lane_count, program.initial()[at(slot)]);
 }
 
-bool LaneSolver::set_design(int lane, const Model& model, double length_scale) {
+bool LaneSolver::put_design(int lane, const Model& model, double length_scale) {
   model_[at(lane)] = &model;
   unit_[0][lane] = 1 / length_scale;
   searches_.set_design(lane, model);
-  if (evaluators_) evaluators_->set_design(lane, model);
   return program_.put(model, length_scale, lane, field_, function_, frame_);
 }
 
+bool LaneSolver::set_design(int lane, const Model& model, double length_scale) {
+  if (evaluators_) evaluators_->set_design(lane, model);
+  return put_design(lane, model, length_scale);
+}
+
 bool LaneSolver::set_designs(const Model& model, double length_scale) {
-  const bool finite = set_design(0, model, length_scale);
-  model_.fill(&model);
   if (evaluators_) evaluators_->set_designs(model);
+  const bool finite = put_design(0, model, length_scale);
+  model_.fill(&model);
   for (int lane = 1; lane < lane_count && !searches_.empty(); ++lane) searches_.set_design(lane, model);
   for (LaneNumbers* numbers : {&field_, &function_, &frame_, &unit_}) numbers->spread(0);
   return finite;

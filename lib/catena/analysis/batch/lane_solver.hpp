@@ -5,7 +5,7 @@
 #pragma once
 
 #include <array>
-#include <span>
+#include <memory>
 
 #include "catena/analysis/batch/lane_evaluators.hpp"
 #include "catena/analysis/batch/lane_program.hpp"
@@ -64,6 +64,10 @@ class LaneSolver {
   bool set_design(int lane, const Model& model, double length_scale);
   /// The same design in all lanes.
   bool set_designs(const Model& model, double length_scale);
+  /// A lane starts anew from where its design was given: its ropes lie as they do there.
+  void start_anew(int lane) {
+    if (evaluators_) evaluators_->start_anew(lane);
+  }
   /// Functions of time, and the instants, are the same in all lanes: they are evaluated once.
   void share_functions(bool shared) { shared_ = shared; }
 
@@ -97,6 +101,8 @@ class LaneSolver {
   double tolerance = 1e-12;  ///< of residuals, relative to the length scale
 
  private:
+  /// All of a design but its evaluator.
+  bool put_design(int lane, const Model& model, double length_scale);
   /// Lanes in which an element or a force means nothing have not converged.
   void refuse_trouble(const LaneState& state, int lanes);
   /// The lanes that have 1 in flag_.

@@ -133,14 +133,11 @@ bool Passage::approach(bool& arrived) {
   const Eigen::VectorXd lambda = scale.cwiseProduct(kept_ * w);
   Eigen::MatrixXd bend = Eigen::MatrixXd::Zero(plan.columns, plan.columns);
   evaluator.visit_constraint_hessians(std::span(lambda.data(), at(plan.rows)), [&](int i, int j, const auto& matrix) {
-    const auto column = [&](int k) {
-      const int body = k < 3 ? i : j;
-      return body >= 0 && body < plan.moving ? plan.column[at(3 * body + k % 3)] : -1;
-    };
     for (int r = 0; r < 6; ++r) {
+      const int row = plan.column_of(i, j, r);
       for (int c = 0; c < 6; ++c) {
-        if (column(r) >= 0 && column(c) >= 0)
-          bend(column(r), column(c)) += matrix[at(6 * r + c)] * unit[column(r)] * unit[column(c)];
+        const int column = plan.column_of(i, j, c);
+        if (row >= 0 && column >= 0) bend(row, column) += matrix[at(6 * r + c)] * unit[row] * unit[column];
       }
     }
   });

@@ -19,8 +19,6 @@ constexpr int most_rounds = 1000;
 // Of the terms that a multiplier is the sum of.
 constexpr double multiplier_rounding = 1e-14;
 
-int sign(double x, double none) { return x > none ? 1 : x < -none ? -1 : 0; }
-
 }  // namespace
 
 // Accelerations without rigid places and exact friction; compliant ones press as they do.
@@ -160,7 +158,7 @@ void ContactSwitch::set_up(ContactProblem& problem, const Cause& cause) const {
     if (place.has_normal) take(2 * a, gap_[k]);
     if (!points_[k].has_friction()) continue;
     take(2 * a + 1, slide_[k]);
-    place.slip = sign(slide_[k].rate, part_of_speed(k, no_speed));
+    place.slip = direction_of(slide_[k].rate, part_of_speed(k, no_speed));
     if (static_cast<int>(k) == cause.place && cause.rests) place.slip = cause.leaves;
   }
 }

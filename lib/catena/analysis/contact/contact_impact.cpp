@@ -24,16 +24,6 @@ constexpr double energy_rounding = 1e-12;
 // Halvings of restitution before it is left out: what is left then is far below any speed of rest.
 constexpr int most_halvings = 40;
 
-/// What rates of the active places are sums of, for their rounding: that is what a rate of none is left with.
-void note_sizes(const std::vector<Evaluator::ScalarMotion>& gap, const std::vector<Evaluator::ScalarMotion>& slide,
-                const std::vector<std::size_t>& active, std::span<const double> qd, ContactProblem& problem) {
-  for (std::size_t a = 0; a < active.size(); ++a) {
-    const ContactProblem::Place& place = problem.place[a];
-    if (place.has_normal) problem.b_terms[2 * a] = size_of_product(gap[active[a]], qd);
-    if (place.has_friction) problem.b_terms[2 * a + 1] = size_of_product(slide[active[a]], qd);
-  }
-}
-
 }  // namespace
 
 double ContactSwitch::kinetic_energy(std::span<const double> qd) const {
@@ -95,8 +85,9 @@ void ContactSwitch::take_note(const ContactProblem& problem) {
   }
 }
 
-// Of impulses with the given part of every restitution.
-void ContactSwitch::set_up(ContactProblem& problem, double restitution_part) const {
+// Of impulses with the given part of every restitution, at the velocities qd; with what rates of the active places are
+// sums of, for their rounding: that is what a rate of none is left with.
+void ContactSwitch::set_up(ContactProblem& problem, double restitution_part, std::span<const double> qd) const {
   fill(problem);
   for (std::size_t a = 0; a < active_.size(); ++a) {
     const std::size_t k = active_[a];
@@ -114,6 +105,11 @@ void ContactSwitch::set_up(ContactProblem& problem, double restitution_part) con
     place.mu_static = place.mu;
     problem.b[2 * a] = gap_[k].rate - restitution_part * rebound(k);
     problem.b[2 * a + 1] = place.has_friction ? slide_[k].rate : 0;
+  }
+  for (std::size_t a = 0; a < active_.size(); ++a) {
+    const ContactProblem::Place& place = problem.place[a];
+    if (place.has_normal) problem.b_terms[2 * a] = size_of_product(gap_[active_[a]], qd);
+    if (place.has_friction) problem.b_terms[2 * a + 1] = size_of_product(slide_[active_[a]], qd);
   }
 }
 
@@ -134,8 +130,7 @@ double ContactSwitch::act(const ContactProblem& problem, std::span<double> qd) {
 
 bool ContactSwitch::bounce(double restitution_part, std::span<double> qd, double& work) {
   ContactProblem problem(active_.size());
-  set_up(problem, restitution_part);
-  note_sizes(gap_, slide_, active_, qd, problem);
+  set_up(problem, restitution_part, qd);
   if (!problem.solve()) return false;
   take_note(problem);
   work = act(problem, qd);
@@ -145,8 +140,7 @@ bool ContactSwitch::bounce(double restitution_part, std::span<double> qd, double
 // False: compression has no solution, a place would close again while others are released, or ropes rub on pulleys.
 bool ContactSwitch::bounce_by_poisson(std::span<double> qd, double& work) {
   ContactProblem compression(active_.size());
-  set_up(compression, 0);
-  note_sizes(gap_, slide_, active_, qd, compression);
+  set_up(compression, 0, qd);
   const auto grips = [](const ContactProblem::Place& place) { return place.head >= 0; };
   if (std::any_of(compression.place.begin(), compression.place.end(), grips) || !compression.solve()) return false;
   ContactProblem release(active_.size());

@@ -15,16 +15,6 @@
 #include "catena/base/at.hpp"
 
 namespace catena {
-namespace {
-
-// Of D_nn without constraints: what the solution of the constrained system leaves of nothing is rounding, 1e-16 times
-// the condition of that system.
-constexpr double no_response = 1e-11;
-// Of the terms that an acceleration of a gap is the sum of.
-constexpr double rounding = 1e-9;
-
-}  // namespace
-
 // Whether a touching place moves when a force presses it, or acts along it: rows as those of D.
 bool ContactSwitch::gives_way(std::size_t row, double response) const {
   const Evaluator::ScalarMotion& motion = row % 2 == 0 ? gap_[active_[row / 2]] : slide_[active_[row / 2]];
@@ -38,7 +28,7 @@ bool ContactSwitch::gives_way(std::size_t row, double response) const {
     // What has no mass moves as far as its constraints let it.
     if (!(mass[c] > 0) && gradient[c] != 0) return response > 0;
   }
-  return response > no_response * free;
+  return response > ContactProblem::no_response * free;
 }
 
 // Whether the places cannot be held even without friction. `accelerates`: by forces, else by impulses.
@@ -73,8 +63,9 @@ std::vector<std::size_t> ContactSwitch::pushed_through(double t, const ContactPr
     scatter_gradient(gap_[k], 1, gradient);
     double terms = std::abs(gap_[k].bend);
     for (std::size_t c = 0; c < gradient.size(); ++c) terms = std::max(terms, std::abs(gradient[c] * qdd_[c]));
-    const bool accelerates = problem.b[2 * a] < -rounding * terms;
-    if (accelerates || (returns(t, k, cause) && problem.b[2 * a] <= rounding * terms)) places.push_back(k);
+    const double rounding = ContactProblem::rounding_of_sums * terms;
+    const bool accelerates = problem.b[2 * a] < -rounding;
+    if (accelerates || (returns(t, k, cause) && problem.b[2 * a] <= rounding)) places.push_back(k);
     left_at_[k] = t;
   }
   return places;

@@ -118,6 +118,14 @@ std::string names_of(const Model& model, const std::vector<ContactPoint>& points
 /// The largest velocity of a body, m/s; of its turning, rad/s, times the length scale.
 double fastest(const Evaluator& evaluator, std::span<const double> qd);
 
+/// The rate of a point's slide, or gap, that a speed of the motion stands for, m/s or rad/s.
+inline double rate_of_speed(const ContactPoint& point, double speed, double length_scale) {
+  return speed / (point.turns ? length_scale : 1);
+}
+
+/// The sign of a rate; 0: it is not faster than `none`.
+inline int direction_of(double rate, double none) { return rate > none ? 1 : rate < -none ? -1 : 0; }
+
 /// loads += factor x gradient of a scalar equation.
 void scatter_gradient(const Evaluator::ScalarMotion& of, double factor, std::span<double> loads);
 

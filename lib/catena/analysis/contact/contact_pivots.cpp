@@ -12,7 +12,6 @@
 // again, until no more slip with mu_static. The states at the end are those of what is zero: a gap that does not open
 // is closed, a slide that is at rest sticks. The pivots' x is one share of forces; what rounding left of it is taken
 // away by the least change.
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -22,9 +21,6 @@
 
 namespace catena {
 namespace {
-
-// Of the terms of a sum, after pivots: what counts as none.
-constexpr double pivot_rounding = 1e-9;
 
 /// A variable of the pivots: x that one unit of it makes, and the row that it is complementary to.
 struct PivotVariable {
@@ -143,12 +139,12 @@ void ContactProblem::read_states(const std::vector<Choice>& choices) {
     direction[k] = 0;
     if (choices[k].left_out || (p.has_normal && !(D(n, n) > 0))) continue;
     const Sum across = p.has_normal ? sum(n) : Sum{}, along = p.has_friction ? sum(t) : Sum{};
-    if (across.value > pivot_rounding * across.terms && !(x[n] > 0)) continue;
+    if (across.value > rounding_of_sums * across.terms && !(x[n] > 0)) continue;
     if (!p.has_normal && !p.has_friction) continue;
     state[k] = State::slides;
     if (!p.has_friction) continue;
     direction[k] = choices[k].slip != 0 ? choices[k].slip : along.value > 0 ? 1 : -1;
-    if (choices[k].slip != 0 || std::abs(along.value) > pivot_rounding * along.terms) continue;
+    if (choices[k].slip != 0 || std::abs(along.value) > rounding_of_sums * along.terms) continue;
     state[k] = State::sticks;
     direction[k] = 0;
   }

@@ -132,7 +132,7 @@ void ContactProblem::solve_unknowns(const std::vector<Unknown>& unknowns, const 
     }
   }
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
-  factors.setThreshold(1e-11);
+  factors.setThreshold(no_response);
   factors.compute(matrix);
   const Eigen::VectorXd solution = factors.solve(right);
   x = known;
@@ -164,6 +164,7 @@ bool ContactProblem::sweep(double& size) {
 
 bool ContactProblem::solve() {
   double size = 0;
+  find_units();
   has_grips_ = std::any_of(place.begin(), place.end(), [](const Place& p) { return p.head >= 0; });
   if (!preferred_state_.empty() && !is_many()) {
     state = preferred_state_;

@@ -48,7 +48,14 @@ class ContactProblem {
         x(2 * places, 0.0),
         state(places, State::open),
         direction(places, 0),
-        d_(4 * places * places, 0.0) {}
+        d_(4 * places * places, 0.0),
+        units_(2 * places, 0.0) {}
+
+  /// Of D in the units of unit(), or of a response without constraints: what is left of none, 1e-16 times the condition
+  /// of the constrained system that D is solved from.
+  static constexpr double no_response = 1e-11;
+  /// Of the terms of a sum: what is left of none. States that do not fit miss by parts of their loads.
+  static constexpr double rounding_of_sums = 1e-9;
 
   double& D(std::size_t row, std::size_t column) { return d_[row * b.size() + column]; }
   double D(std::size_t row, std::size_t column) const { return d_[row * b.size() + column]; }
@@ -65,6 +72,17 @@ class ContactProblem {
     ruled_out_state_ = state;
     ruled_out_direction_ = direction;
   }
+
+  struct Sum {
+    double value = 0, terms = 0;
+  };
+  /// w in a row, with the sizes of its terms together.
+  Sum sum(std::size_t row) const;
+  /// After solve(): of x in a row, at which it counts as one: 1 / sqrt(D_rr), of a grip that of its rope; 0 where
+  /// nothing gives way.
+  double unit(std::size_t row) const { return units_[row]; }
+  /// x that goes with the present states, whatever its limits; what slides under a known force keeps its own.
+  void solve_states();
 
   std::vector<Place> place;
   std::vector<double> b;
@@ -93,13 +111,7 @@ class ContactProblem {
   void solve_along(std::size_t k, double w_t);
   /// w at place k, across (0) or along (1), but for the part of its own x.
   double without_own(std::size_t k, std::size_t along) const;
-  struct Sum {
-    double value = 0, terms = 0;
-  };
-  /// w in a row, with the sizes of its terms together.
-  Sum sum(std::size_t row) const;
-  /// Of x in a row, at which it counts as one: 1 / sqrt(D_rr), of a grip that of its rope; 0 where nothing gives way.
-  double unit(std::size_t row) const;
+  void find_units();
   /// Of x, and of a change of x, without a unit.
   double size() const;
   double size_of(std::size_t row, double change) const;
@@ -107,7 +119,6 @@ class ContactProblem {
   bool is_wedged() const;
   /// Whether constraints and drivers move place k along whatever acts there, at the rate w_t.
   bool is_carried(std::size_t k, double w_t) const;
-  void solve_states();
   bool sweep(double& size);
   bool close_redundant(double size);
   bool fits(double size) const;
@@ -131,7 +142,7 @@ class ContactProblem {
   void refine();
   bool is_ruled_out() const;
 
-  std::vector<double> d_;
+  std::vector<double> d_, units_;
   std::vector<State> preferred_state_, ruled_out_state_;  // empty: none
   std::vector<int> preferred_direction_;
   std::vector<int> ruled_out_direction_;

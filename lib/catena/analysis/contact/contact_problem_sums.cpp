@@ -24,10 +24,12 @@ bool ContactProblem::fits(double size) const {
   return true;
 }
 
-double ContactProblem::unit(std::size_t row) const {
-  const Place& p = place[row / 2];
-  const std::size_t of = p.head >= 0 ? 2 * static_cast<std::size_t>(p.head) : row;
-  return D(of, of) > 0 ? 1 / std::sqrt(D(of, of)) : 0;
+void ContactProblem::find_units() {
+  for (std::size_t row = 0; row < units_.size(); ++row) {
+    const Place& p = place[row / 2];
+    const std::size_t of = p.head >= 0 ? 2 * static_cast<std::size_t>(p.head) : row;
+    units_[row] = D(of, of) > 0 ? 1 / std::sqrt(D(of, of)) : 0;
+  }
 }
 
 double ContactProblem::size_of(std::size_t row, double change) const {

@@ -9,7 +9,6 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <span>
 
@@ -21,10 +20,6 @@ namespace {
 
 // Four states each: 4096 choices, some 20 us each.
 constexpr std::size_t most_searched = 6;
-// Of the terms of a sum: what counts as rounding of it. Choices that do not fit miss by parts of their loads.
-constexpr double fitting = 1e-9;
-// Of the largest diagonal entry, rows scaled to one: what dependent rows leave.
-constexpr double rank_of_held = 1e-11;
 
 /// The entries of a vector, or of a matrix column by column.
 template <class M>
@@ -49,15 +44,14 @@ bool ContactProblem::sticks_together() const {
   const auto size = static_cast<Eigen::Index>(rows.size());
   Eigen::MatrixXd held(size, size);
   for (Eigen::Index r = 0; r < size; ++r) {
-    const double own = D(rows[static_cast<std::size_t>(r)], rows[static_cast<std::size_t>(r)]);
+    const std::size_t row = rows[static_cast<std::size_t>(r)];
     for (Eigen::Index c = 0; c < size; ++c) {
-      const double other = D(rows[static_cast<std::size_t>(c)], rows[static_cast<std::size_t>(c)]);
-      const double scale = std::sqrt(own * other);
-      held(r, c) = scale > 0 ? D(rows[static_cast<std::size_t>(r)], rows[static_cast<std::size_t>(c)]) / scale : 0;
+      const std::size_t column = rows[static_cast<std::size_t>(c)];
+      held(r, c) = unit(row) * unit(column) * D(row, column);
     }
   }
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors;
-  factors.setThreshold(rank_of_held);
+  factors.setThreshold(no_response);
   return factors.compute(held).rank() < size;
 }
 
@@ -93,17 +87,16 @@ bool ContactProblem::try_states() {
     }
   }
   Eigen::MatrixXd A(static_cast<Eigen::Index>(held.size()), static_cast<Eigen::Index>(columns.size()));
-  Eigen::VectorXd right(A.rows()), unit(A.rows());
+  Eigen::VectorXd right(A.rows());
   for (Eigen::Index r = 0; r < A.rows(); ++r) {
     const std::size_t row = held[static_cast<std::size_t>(r)];
     // Rows across and along, and of places that turn, have different sizes.
-    unit(r) = D(row, row) > 0 ? 1 / std::sqrt(D(row, row)) : 0;
     right(r) = b[row];
     for (std::size_t c = 0; c < known.size(); ++c) right(r) += D(row, c) * known[c];
-    right(r) *= unit(r);
+    right(r) *= unit(row);
     for (Eigen::Index c = 0; c < A.cols(); ++c) {
       const Edge& of = columns[static_cast<std::size_t>(c)];
-      A(r, c) = unit(r) * (D(row, 2 * of.place) * of.normal + D(row, 2 * of.place + 1) * of.along);
+      A(r, c) = unit(row) * (D(row, 2 * of.place) * of.normal + D(row, 2 * of.place + 1) * of.along);
     }
   }
   Eigen::VectorXd sizes(A.cols());
@@ -125,14 +118,14 @@ bool ContactProblem::keeps_states() const {
       const Place& p = place[k];
       if (along == 0 ? !p.has_normal : !p.has_friction || state[k] == State::open) continue;
       const auto [w, terms] = sum(2 * k + along);
-      const double rounding = fitting * terms;
+      const double rounding = rounding_of_sums * terms;
       if (!std::isfinite(w)) return false;
       if (along == 0 && (state[k] == State::open ? w < -rounding : std::abs(w) > rounding)) return false;
       if (along == 0) continue;
       if (state[k] == State::sticks && std::abs(w) > rounding) return false;
       if (state[k] == State::slides && p.slip == 0 && direction[k] * w < -rounding) return false;
     }
-    if (state[k] == State::sticks && !place[k].has_normal && x[2 * k + 1] > place[k].limit * (1 + fitting))
+    if (state[k] == State::sticks && !place[k].has_normal && x[2 * k + 1] > place[k].limit * (1 + rounding_of_sums))
       return false;
   }
   return true;

@@ -170,7 +170,7 @@ Report ContactSwitch::wedged(double t) const {
 }
 
 double ContactSwitch::part_of_speed(std::size_t k, double part) const {
-  return part * speed_ / (points_[k].turns ? evaluator_.length_scale() : 1);
+  return rate_of_speed(points_[k], part * speed_, evaluator_.length_scale());
 }
 
 double ContactSwitch::rest_speed(std::size_t k) const {

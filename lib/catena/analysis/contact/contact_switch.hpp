@@ -130,7 +130,7 @@ class ContactSwitch {
   bool hits(std::size_t k) const;
   Report collide(double t, std::span<double> qd, std::vector<ContactState>& states);
   // Impacts: contact_impact.cpp.
-  void set_up(ContactProblem& problem, double restitution_part) const;
+  void set_up(ContactProblem& problem, double restitution_part, std::span<const double> qd) const;
   double act(const ContactProblem& problem, std::span<double> qd);
   bool bounce(double restitution_part, std::span<double> qd, double& work);
   bool bounce_by_poisson(std::span<double> qd, double& work);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -15,89 +14,56 @@ using State = ContactProblem::State;
 
 // Three states each of five places: some milliseconds.
 constexpr std::size_t most_states = 243;
-// Of the terms of a sum: below it a difference is rounding; motions that differ by less are the same.
-constexpr double rounding_of_sums = 1e-9, same_motion = 1e-6;
+// Of the terms of a sum: motions that differ by less are the same.
+constexpr double same_motion = 1e-6;
 
 /// Forces of given states, as the equations have them, and the accelerations that go with them.
 class Trial {
  public:
-  Trial(const ContactProblem& problem, const StatesOfFriction& states) : p_(problem), s_(states) { solve(); }
+  Trial(const ContactProblem& problem, const StatesOfFriction& states);
 
   bool fits() const;
-  const std::vector<double>& forces() const { return x_; }
+  const std::vector<double>& forces() const { return p_.x; }
   /// Along place k: acceleration, and the sizes of the terms that it is a sum of.
-  double along(std::size_t k) const { return w_[2 * k + 1]; }
-  double terms(std::size_t k) const { return terms_[2 * k + 1]; }
+  double along(std::size_t k) const { return w_[2 * k + 1].value; }
+  double terms(std::size_t k) const { return w_[2 * k + 1].terms; }
 
  private:
-  void solve();
   double limit(std::size_t k) const {
-    return p_.place[k].has_normal ? p_.place[k].mu_static * x_[2 * k] : p_.place[k].limit;
+    return p_.place[k].has_normal ? p_.place[k].mu_static * p_.x[2 * k] : p_.place[k].limit;
   }
 
-  const ContactProblem& p_;
-  const StatesOfFriction& s_;
-  std::vector<double> x_, w_, terms_;
+  ContactProblem p_;  // with these states
+  std::vector<ContactProblem::Sum> w_;
 };
 
-void Trial::solve() {
-  const std::size_t n = p_.b.size();
-  Eigen::VectorXd known = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
-  std::vector<std::pair<std::size_t, double>> unknown;  // row, and the friction that one unit makes
+Trial::Trial(const ContactProblem& problem, const StatesOfFriction& states) : p_(problem) {
+  p_.state = states.state;
+  p_.direction = states.direction;
   for (std::size_t k = 0; k < p_.place.size(); ++k) {
     const ContactProblem::Place& place = p_.place[k];
-    if (s_.state[k] == State::open) continue;
-    const bool slides = place.has_friction && s_.state[k] == State::slides;
-    if (place.has_normal) unknown.emplace_back(2 * k, slides ? -place.mu * s_.direction[k] : 0);
-    if (s_.state[k] == State::sticks) unknown.emplace_back(2 * k + 1, 0);
-    if (slides && !place.has_normal) known[static_cast<Eigen::Index>(2 * k + 1)] = -s_.direction[k] * place.kinetic;
+    const bool rubs = !place.has_normal && place.has_friction && p_.state[k] == State::slides;
+    p_.x[2 * k] = 0;
+    p_.x[2 * k + 1] = rubs ? -p_.direction[k] * place.kinetic : 0;
   }
-  const auto size = static_cast<Eigen::Index>(unknown.size());
-  Eigen::MatrixXd matrix(size, size);
-  Eigen::VectorXd right(size);
-  for (Eigen::Index r = 0; r < size; ++r) {
-    const std::size_t row = unknown[static_cast<std::size_t>(r)].first;
-    right(r) = -p_.b[row];
-    for (std::size_t c = 0; c < n; ++c) right(r) -= p_.D(row, c) * known[static_cast<Eigen::Index>(c)];
-    for (Eigen::Index c = 0; c < size; ++c) {
-      const auto& [column, friction] = unknown[static_cast<std::size_t>(c)];
-      matrix(r, c) = p_.D(row, column) + (friction != 0 ? friction * p_.D(row, column + 1) : 0);
-    }
-  }
-  x_.assign(known.begin(), known.end());
-  if (size > 0) {
-    const Eigen::VectorXd forces = matrix.completeOrthogonalDecomposition().solve(right);
-    for (Eigen::Index c = 0; c < size; ++c) {
-      const auto& [column, friction] = unknown[static_cast<std::size_t>(c)];
-      x_[column] += forces(c);
-      if (friction != 0) x_[column + 1] += friction * forces(c);
-    }
-  }
-  w_ = p_.b;
-  terms_.assign(n, 0.0);
-  for (std::size_t r = 0; r < n; ++r) {
-    terms_[r] = std::max(std::abs(p_.b[r]), p_.b_terms[r]);
-    for (std::size_t c = 0; c < n; ++c) {
-      w_[r] += p_.D(r, c) * x_[c];
-      terms_[r] += std::abs(p_.D(r, c) * x_[c]);
-    }
-  }
+  p_.solve_states();
+  for (std::size_t row = 0; row < p_.x.size(); ++row) w_.push_back(p_.sum(row));
 }
 
 bool Trial::fits() const {
+  const auto is_none = [](const ContactProblem::Sum& w) {
+    return std::abs(w.value) <= ContactProblem::rounding_of_sums * w.terms;
+  };
   for (std::size_t k = 0; k < p_.place.size(); ++k) {
     const ContactProblem::Place& place = p_.place[k];
-    const std::size_t n = 2 * k, t = n + 1;
-    if (!std::isfinite(w_[n] + w_[t])) return false;
-    if (place.has_normal) {
-      const bool open = s_.state[k] == State::open;
-      if (open ? w_[n] < -rounding_of_sums * terms_[n] : std::abs(w_[n]) > rounding_of_sums * terms_[n] || x_[n] < 0)
-        return false;
-    }
-    if (!place.has_friction || s_.state[k] == State::open) continue;
-    if (s_.state[k] == State::sticks && (std::abs(w_[t]) > rounding_of_sums * terms_[t] || std::abs(x_[t]) > limit(k)))
-      return false;
-    if (s_.state[k] == State::slides && place.slip == 0 && !(s_.direction[k] * w_[t] > same_motion * terms_[t]))
+    const ContactProblem::Sum &across = w_[2 * k], &along = w_[2 * k + 1];
+    if (!std::isfinite(across.value + along.value)) return false;
+    const bool open = p_.state[k] == State::open;
+    if (place.has_normal && open && across.value < 0 && !is_none(across)) return false;
+    if (place.has_normal && !open && (!is_none(across) || p_.x[2 * k] < 0)) return false;
+    if (!place.has_friction || open) continue;
+    if (p_.state[k] == State::sticks && (!is_none(along) || std::abs(p_.x[2 * k + 1]) > limit(k))) return false;
+    if (p_.state[k] == State::slides && place.slip == 0 && !(p_.direction[k] * along.value > same_motion * along.terms))
       return false;
   }
   return true;

@@ -8,8 +8,6 @@
 namespace catena {
 namespace {
 
-// Of the largest singular value of rows scaled to one: what dependent rows leave.
-constexpr double no_response = 1e-11;
 // Of the length of a null vector: entries that rounding leaves.
 constexpr double no_share = 1e-9;
 
@@ -53,10 +51,7 @@ Eigen::MatrixXd free_forces(const ContactProblem& problem, const std::vector<Hel
   const auto size = static_cast<Eigen::Index>(held.size());
   const auto at = [&](Eigen::Index r) -> const Held& { return held[static_cast<std::size_t>(r)]; };
   Eigen::VectorXd unit(size);
-  for (Eigen::Index r = 0; r < size; ++r) {
-    const double own = problem.D(at(r).row(), at(r).row());
-    unit(r) = own > 0 ? 1 / std::sqrt(own) : 0;
-  }
+  for (Eigen::Index r = 0; r < size; ++r) unit(r) = problem.unit(at(r).row());
   Eigen::MatrixXd response(size, size);
   for (Eigen::Index r = 0; r < size; ++r) {
     for (Eigen::Index c = 0; c < size; ++c) {
@@ -66,7 +61,7 @@ Eigen::MatrixXd free_forces(const ContactProblem& problem, const std::vector<Hel
     }
   }
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors;
-  factors.setThreshold(no_response);
+  factors.setThreshold(ContactProblem::no_response);
   const Eigen::Index rank = size < 2 ? size : factors.compute(response).rank();
   if (rank == size) return Eigen::MatrixXd(size, 0);
   return unit.asDiagonal() * null_space(factors, rank);

@@ -12,6 +12,7 @@
 // double. N.
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -33,22 +34,22 @@ class SharedForces {
 
   /// Points whose forces are not unique; empty: none.
   const std::vector<std::size_t>& places() const { return places_; }
-  /// From forces of one share: what presses point k, normal(k), and along it where it sticks, along(k).
+  /// From forces of one share: what presses point k, normal(k), and along it where it sticks, along(k). Not a number
+  /// where it was not found.
   template <class Normal, class Along>
   double margin(Normal&& normal, Along&& along) const {
     if (shares_.empty()) return std::numeric_limits<double>::max();
-    std::vector<double> left;
-    left.reserve(limits_.size());
+    left_.clear();
     for (const Limit& limit : limits_)
-      left.push_back(limit.mu * normal(limit.point) + (limit.sign != 0 ? limit.sign * along(limit.point) : 0));
-    return shares_.least(left);
+      left_.push_back(limit.mu * normal(limit.point) + (limit.sign != 0 ? limit.sign * along(limit.point) : 0));
+    return shares_.least(left_).value_or(std::numeric_limits<double>::quiet_NaN());
   }
-  /// Those whose limits meet at that margin.
+  /// Those whose limits meet at that margin; none where it was not found.
   template <class Normal, class Along>
   std::vector<GivesWay> giving_way(Normal&& normal, Along&& along) const {
     std::vector<GivesWay> places;
     if (shares_.empty()) return places;
-    margin(normal, along);
+    if (std::isnan(margin(normal, along))) return places;
     // T = -mu N, the limit of sign 1, goes with a slip forwards.
     for (const std::size_t limit : shares_.support())
       places.push_back({limits_[limit].point, static_cast<int>(limits_[limit].sign)});
@@ -64,7 +65,8 @@ class SharedForces {
 
   std::vector<std::size_t> places_;
   std::vector<Limit> limits_;
-  VertexMinimum shares_;  // of w
+  mutable VertexMinimum shares_;      // of w, with the corner of the last margin
+  mutable std::vector<double> left_;  // a_l of the last margin, kept for its memory
 };
 
 }  // namespace catena

@@ -139,6 +139,17 @@ MinimiserEnd lessen_violation(const DesignOptions& options, DesignSearch& search
   return minimise(problem, wanted, x);
 }
 
+/// What goes on from the best design: the method itself, or after a search everywhere one that stays near it.
+MinimiserOptions near_options(const DesignOptions& options, const DesignSearch& search, const DesignOutcome& outcome) {
+  const auto variables = static_cast<std::size_t>(search.variables());
+  MinimiserOptions wanted = minimiser_options(options, outcome.evaluations, variables);
+  if (!searches_everywhere(options.method)) return wanted;
+  // A parabola takes two variables or more, and knows bounds alone.
+  const bool bounds_alone = search.inequalities() + search.equations() == 0 && variables > 1;
+  wanted.method = bounds_alone ? MinimiserMethod::bobyqa : MinimiserMethod::cobyla;
+  return wanted;
+}
+
 /// How a search ended, and whether a step downhill leads on from its best design.
 struct Ended {
   MinimiserEnd end;
@@ -155,7 +166,7 @@ void look_aside(const DesignProblem& problem, const DesignOptions& options, Desi
   outcome.is_constant = search.change_along(aside, std::numeric_limits<double>::infinity()) == 0.0;
   if (search.improvements() == before) return;
   if (std::vector<double> u = search.best(); search.begin(u))
-    ended.end = minimise(search, minimiser_options(options, outcome.evaluations, u.size()), u);
+    ended.end = minimise(search, near_options(options, search, outcome), u);
   ended.downhill = goes_downhill(problem, options, search, outcome);
 }
 
@@ -166,11 +177,7 @@ MinimiserEnd search_near_best(const DesignOptions& options, DesignSearch& search
   search.stay_near();
   std::vector<double> u = search.best();
   if (!search.go_on() || !search.begin(u)) return end;
-  MinimiserOptions wanted = minimiser_options(options, outcome.evaluations, u.size());
-  // A parabola takes two variables or more, and knows bounds alone.
-  const bool bounds_alone = search.inequalities() + search.equations() == 0 && u.size() > 1;
-  wanted.method = bounds_alone ? MinimiserMethod::bobyqa : MinimiserMethod::cobyla;
-  return minimise(search, wanted, u);
+  return minimise(search, near_options(options, search, outcome), u);
 }
 
 }  // namespace
@@ -191,7 +198,7 @@ DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions&
   for (int n = 0; downhill && end == MinimiserEnd::converged && n < most_renewals && search.go_on(); ++n) {
     std::vector<double> u = search.best();
     if (!search.begin(u)) break;
-    end = minimise(search, minimiser_options(options, outcome.evaluations, u.size()), u);
+    end = minimise(search, near_options(options, search, outcome), u);
     downhill = goes_downhill(problem, options, search, outcome);
   }
   if (outcome.violation > 10 * options.tolerance && search.go_on()) {
@@ -200,7 +207,7 @@ DesignOutcome optimise_design(const DesignProblem& problem, const DesignOptions&
       if (least == MinimiserEnd::converged || least == MinimiserEnd::rounding) end = MinimiserEnd::converged;
       measure(problem, search, outcome);
     } else if (std::vector<double> u = search.best(); search.begin(u)) {
-      end = minimise(search, minimiser_options(options, outcome.evaluations, u.size()), u);
+      end = minimise(search, near_options(options, search, outcome), u);
       downhill = goes_downhill(problem, options, search, outcome);
     }
   }

@@ -21,19 +21,6 @@ constexpr double rounding = 1e-13;
 // Of loads that constraints balance: sums of a dozen terms.
 constexpr double rounding_of_balance = 16 * std::numeric_limits<double>::epsilon();
 
-/// By coordinate; of what has none: zero.
-std::vector<double> inverse_masses(const Evaluator& evaluator) {
-  const Plan& plan = evaluator.plan();
-  std::vector<double> inverse(static_cast<std::size_t>(plan.coordinates()), 0.0);
-  for (int c = 0; c < 3 * plan.moving; ++c) {
-    const auto& body =
-        evaluator.model().bodies[static_cast<std::size_t>(plan.model_body[static_cast<std::size_t>(c / 3)])];
-    const double mass = c % 3 == 2 ? body.inertia : body.mass;
-    if (mass > 0) inverse[static_cast<std::size_t>(c)] = 1 / mass;
-  }
-  return inverse;
-}
-
 }  // namespace
 
 bool BalanceWatch::conserves(Evaluator& evaluator) {
@@ -47,7 +34,8 @@ bool BalanceWatch::conserves(Evaluator& evaluator) {
   return evaluator.dissipation(motion) == 0 && evaluator.load_power(motion) == 0;
 }
 
-void BalanceWatch::begin(const Snapshot& start, double tolerance, bool work_known, bool drifts) {
+void BalanceWatch::begin(const Snapshot& start, const MassMatrix& masses, double tolerance, bool work_known,
+                         bool drifts) {
   tolerance_ = tolerance;
   drifts_ = drifts;
   work_known_ = work_known;
@@ -62,7 +50,10 @@ void BalanceWatch::begin(const Snapshot& start, double tolerance, bool work_know
   weight_ *= std::hypot(model.gravity.x, model.gravity.y) * length_;
   t_ = start.t;
   squared_times_ = 0;
-  inverse_mass_ = inverse_masses(start.evaluator);
+  inverse_mass_.assign(static_cast<std::size_t>(start.evaluator.plan().coordinates()), 0.0);
+  for (std::size_t c = 0; c < masses.mass.size(); ++c) {
+    if (masses.mass[c] > 0) inverse_mass_[c] = 1 / masses.mass[c];
+  }
 }
 
 void BalanceWatch::observe(const Snapshot& state) {

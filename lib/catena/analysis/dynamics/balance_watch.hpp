@@ -24,6 +24,7 @@
 #include <span>
 #include <vector>
 
+#include "catena/analysis/motion/mass_matrix.hpp"
 #include "catena/base/status.hpp"
 #include "catena/columns/snapshot.hpp"
 
@@ -36,7 +37,7 @@ class BalanceWatch {
 
   /// `work_known`: snapshots carry work and dissipation; `drifts`: constraints are not kept. Evaluates energies at the
   /// start.
-  void begin(const Snapshot& start, double tolerance, bool work_known, bool drifts);
+  void begin(const Snapshot& start, const MassMatrix& masses, double tolerance, bool work_known, bool drifts);
   /// Energy of what came before, in phases of one motion: a part of its errors is that of the whole.
   void know_energy(double energy) { earlier_ = energy; }
   /// Largest kinetic energy and range of the potential, so far.

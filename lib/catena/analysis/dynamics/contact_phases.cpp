@@ -327,7 +327,7 @@ void ContactPhases::attach(Dynamics& dynamics, EventWatch& watch) {
   for (std::size_t n = 0; n < watched_.size(); ++n) {
     const std::size_t k = watched_[n].place;
     const bool slides = watched_[n].ends == PhaseEnd::slide && states_[k].direction != 0;
-    if (slides) transitions[n].scale = speed / (contacts_.points[k].turns ? length : 1);
+    if (slides) transitions[n].scale = rate_of_speed(contacts_.points[k], speed, length);
   }
   if (ropes_) ropes_->add_transitions(transitions);
   watch.watch(std::move(transitions), needs);

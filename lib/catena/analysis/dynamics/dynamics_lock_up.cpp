@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "catena/analysis/dynamics/dynamics.hpp"
+#include "catena/analysis/motion/dependence.hpp"
 #include "catena/analysis/pose/dead_point.hpp"
 
 namespace catena {
@@ -19,9 +20,6 @@ namespace {
 
 // Rows nearer to dependence than this (sine) count as dependent: steps end where velocities have grown a thousandfold.
 constexpr double nearly_dependent = 1e-3;
-// A dead point is sought where a pivot keeps less than this of itself, a sine of 0.03: steps of a large tolerance, and
-// pivots of unequal masses, tell the sine no better. Whether there is one is told by the place that is found.
-constexpr double worth_a_search = 1e-3;
 // The part of |w| |nu| from which w^T nu counts as something, w known to nearly_dependent.
 constexpr double not_nothing = 1e-2;
 // How much longer than by its accelerations the way to the dead point may be.
@@ -60,7 +58,7 @@ std::optional<SingularPoint> Dynamics::dead_point_ahead() {
     integrator_ = std::move(shorter);
     t_ = integrator_->time();
   }
-  if (!(equations_.smallest_pivot_ratio() < worth_a_search)) return {};
+  if (!(equations_.smallest_pivot_ratio() < dependence::worth_a_search)) return {};
   const std::size_t n = q_.size();
   const double t = integrator_->time();
   std::vector<double> q(integrator_->state().begin(), integrator_->state().begin() + static_cast<std::ptrdiff_t>(n));

@@ -153,7 +153,7 @@ class DynamicsOfIslands::Part final : public RowObserver {
   }
 
   bool observe(const Snapshot& s) override {
-    if (own_rows_) own_rows_->observe(s);
+    if (own_rows_ && !own_rows_->observe(s)) return false;
     Row& row = ahead_.emplace_back(std::exchange(spare_, {}));
     const auto take = [&](std::vector<double>& values, std::span<const double> of) {
       values.clear();

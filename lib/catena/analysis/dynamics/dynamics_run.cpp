@@ -80,7 +80,7 @@ Report Dynamics::start() {
     evaluator_.set_time(t_);
     evaluator_.set_configuration(std::span<const double>(row_.y).first(q_.size()));
     work_.balance->know_energy(work_.earlier_motion);
-    work_.balance->begin(snapshot(t_, row_.y, {}), options_.tolerance, work_.account.has_value(),
+    work_.balance->begin(snapshot(t_, row_.y, {}), equations_.masses(), options_.tolerance, work_.account.has_value(),
                          !integrator_->meets_constraints());
   }
   if (!watched_.may_end()) return {};
@@ -91,7 +91,7 @@ Report Dynamics::start() {
 // What laws do for a short time, a mechanism at rest does not announce.
 void Dynamics::look_ahead_at_laws() {
   const std::span<const double> y(row_.y);
-  if (model_->laws.empty() || options_.step > 0) return;
+  if (options_.step > 0 || !LawStretches::any(evaluator_)) return;
   if (law_stretches_ && law_stretches_->covers(t_, run_.grid.last())) return;
   evaluator_.set_configuration(y.first(q_.size()));
   law_stretches_ =

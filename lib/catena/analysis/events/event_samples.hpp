@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -47,13 +46,18 @@ class EventSamples {
       most = std::max(most, g[k]);
       nearest = std::min(nearest, std::abs(g[k]));
     }
+    if (!(most - least > above_rounding * tiny)) return false;
     const double miss = this->miss(k);
-    return most - least > above_rounding * tiny && miss > foreseen * (most - least) && miss > out_of_reach * nearest;
+    return miss > foreseen * (most - least) && miss > out_of_reach * nearest;
   }
   /// By how much the polynomial misses what it is to foretell.
   double miss(std::size_t k) const {
     double miss = 0;
-    for (std::size_t n = 1; n < places.size(); n += 2) miss = std::max(miss, std::abs(g_[n][k] - foretold(n, k)));
+    for (std::size_t n = 0; n < weights.size(); ++n) {
+      double foretold = 0;
+      for (std::size_t i = 0; i < weights[n].size(); ++i) foretold += weights[n][i] * g_[2 * i][k];
+      miss = std::max(miss, std::abs(g_[2 * n + 1][k] - foretold));
+    }
     return miss;
   }
 
@@ -67,17 +71,19 @@ class EventSamples {
   // Each takes some two hundred samples to be found.
   static constexpr int most_kinks = 8;
 
-  /// Lagrange's polynomial through every second sample, at sample n.
-  double foretold(std::size_t n, std::size_t k) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < places.size(); i += 2) {
-      double weight = 1;
-      for (std::size_t j = 0; j < places.size(); j += 2)
-        if (j != i) weight *= (places[n] - places[j]) / (places[i] - places[j]);
-      sum += weight * g_[i][k];
+  /// Lagrange's polynomial through every second sample, at those between: weight of sample 2 i at sample 2 n + 1.
+  using Weights = std::array<std::array<double, parts / 2 + 1>, parts / 2>;
+  static constexpr Weights weights = [] {
+    Weights of{};
+    for (std::size_t n = 0; n < of.size(); ++n) {
+      for (std::size_t i = 0; i < of[n].size(); ++i) {
+        of[n][i] = 1;
+        for (std::size_t j = 0; j < of[n].size(); ++j)
+          if (j != i) of[n][i] *= (places[2 * n + 1] - places[2 * j]) / (places[2 * i] - places[2 * j]);
+      }
     }
-    return sum;
-  }
+    return of;
+  }();
 
   std::array<std::vector<double>, parts + 1> g_;
   std::vector<int> kinks_;  // by column

@@ -45,7 +45,10 @@ double EventWatch::tiny(std::size_t k) const {
   return std::max(smallest, rounding * std::max(largest_[k], std::abs(target(k))));
 }
 
-int EventWatch::side(std::size_t k, double g) const { return g > tiny(k) ? 1 : g < -tiny(k) ? -1 : 0; }
+int EventWatch::side(std::size_t k, double g) const {
+  const double none = tiny(k);
+  return g > none ? 1 : g < -none ? -1 : 0;
+}
 
 /// Whether a passage from the side last seen to the other one is in the direction that is watched.
 bool EventWatch::counts(std::size_t k) const {

@@ -21,6 +21,10 @@ bool reads_time(const CompiledLaw<double>& law) {
 
 }  // namespace
 
+bool LawStretches::any(const Evaluator& evaluator) {
+  return std::any_of(evaluator.laws().begin(), evaluator.laws().end(), reads_time);
+}
+
 LawStretches::LawStretches(Evaluator& evaluator, std::span<const double> qd, double from, double to)
     : from_(from), to_(to) {
   for (std::size_t k = 0; k < evaluator.laws().size(); ++k) {

@@ -20,6 +20,8 @@ namespace catena {
 
 class LawStretches {
  public:
+  /// Whether some law reads t: else there is nothing to look at.
+  static bool any(const Evaluator& evaluator);
   /// In [from, to], where the evaluator and qd are; leaves the evaluator at another time.
   LawStretches(Evaluator& evaluator, std::span<const double> qd, double from, double to);
 

@@ -2,33 +2,38 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
+#include <limits>
+#include <utility>
 
 #include "catena/base/at.hpp"
 
 namespace catena {
+namespace {
+
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
 
 DrivenFriction::DrivenFriction(const Evaluator& evaluator)
     : evaluator_(evaluator), joints_(joints_with_friction(evaluator.model())) {
   if (any()) by_element_.resize(evaluator.model().elements.size());
+  states_.assign(joints_.size(), {.closed = true});
 }
 
 // Which way each joint slips.
 void DrivenFriction::begin(double t, std::span<const double> qd, std::span<double> friction) {
-  std::vector<ContactState> states(joints_.size(), {.closed = true});
-  const double speed = fastest(evaluator_, qd);
-  bool rests = false;
+  const double none = no_speed * fastest(evaluator_, qd);
+  bool rests = false, changed = !loads_;
   for (std::size_t k = 0; k < joints_.size(); ++k) {
     const double rate = evaluator_.scalar_motion(joints_[k].slide, qd).rate;
-    const double none = no_speed * speed / (joints_[k].turns ? evaluator_.length_scale() : 1);
-    states[k].direction = rate > none ? 1 : rate < -none ? -1 : 0;
-    if (states[k].direction != 0 || !joints_[k].is_exact()) continue;
+    const int direction = direction_of(rate, rate_of_speed(joints_[k], none, evaluator_.length_scale()));
+    changed |= std::exchange(states_[k].direction, direction) != direction;
+    if (direction != 0 || !joints_[k].is_exact()) continue;
     if (rests_ == 0 && !rests) first_rest_ = t, resting_ = k;
     rests = true;
   }
   rests_ += rests;
-  loads_.emplace(evaluator_, joints_, std::move(states));
+  if (changed) loads_.emplace(evaluator_, joints_, states_);
   loads_->add(qd, friction);
 }
 
@@ -36,6 +41,13 @@ void DrivenFriction::finish(std::span<const double> lambda) {
   loads_->finish(lambda);
   loads_->scatter(by_element_);
 }
+
+void DrivenFriction::forget() {
+  loads_.reset();
+  for (const ContactPoint& joint : joints_) by_element_[at(joint.element)] = {not_known, not_known, not_known};
+}
+
+double DrivenFriction::dissipation() const { return loads_ ? loads_->dissipation() : any() ? not_known : 0; }
 
 Report DrivenFriction::no_friction(double t) const {
   Report report;

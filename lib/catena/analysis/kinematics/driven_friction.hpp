@@ -40,8 +40,10 @@ class DrivenFriction {
   void finish(std::span<const double> lambda);
   /// Of all elements, once it is finished.
   std::span<const ContactLoad> loads() const { return by_element_; }
+  /// At an instant that leaves the multipliers open: forces, friction, slips and what is lost are NaN.
+  void forget();
   /// Power lost then.
-  double dissipation() const { return loads_ ? loads_->dissipation() : 0; }
+  double dissipation() const;
   void add_remarks(std::vector<std::string>& warnings) const;
 
  private:
@@ -50,6 +52,7 @@ class DrivenFriction {
 
   const Evaluator& evaluator_;
   std::vector<ContactPoint> joints_;
+  std::vector<ContactState> states_;  // of which loads_ was made last
   std::optional<ContactLoads> loads_;
   std::vector<ContactLoad> by_element_;
   std::int64_t rests_ = 0;  // instants at which a joint rested

@@ -47,10 +47,10 @@ Report DrivenReactions::add_friction(const DrivenInstant& now) {
         "friction needs reactions that are unique, but {}; take away what repeats, or friction", ambiguity_);
     return report;
   }
-  std::vector<double> columns(loads_.size());
+  columns_.resize(loads_.size());
   const auto solve = [&](std::span<const double> loads, std::span<double> lambda) {
-    for (std::size_t c = 0; c < columns.size(); ++c) columns[c] = loads[at(plan_.coordinate[c])];
-    solver_.solve_multipliers(columns, lambda);
+    for (std::size_t c = 0; c < columns_.size(); ++c) columns_[c] = loads[at(plan_.coordinate[c])];
+    solver_.solve_multipliers(columns_, lambda);
   };
   std::fill(applied_.begin(), applied_.end(), 0.0);
   if (Report found = friction_.find(now.t, now.qd, lambda_, applied_, solve); !found.ok()) return found;

@@ -67,6 +67,7 @@ class DrivenReactions {
   const FixedCoordinates& fixed_;
   std::vector<double> lambda_, least_lambda_;
   std::vector<double> loads_, applied_;      // Q - M qdd by columns; by coordinates
+  std::vector<double> columns_;              // of a unit of friction
   std::optional<MinimumNorm> minimum_norm_;  // where rows depend on each other
   DrivenFriction friction_;                  // of joints
   std::string ambiguity_;                    // in words: the elements whose reactions are not unique

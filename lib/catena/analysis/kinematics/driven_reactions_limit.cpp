@@ -117,6 +117,7 @@ void DrivenReactions::take_limit(const DrivenInstant& now, const BridgedStretch&
     if (without.empty() || without.back() != plan_.row_element[r]) without.push_back(plan_.row_element[r]);
   };
   // Friction of joints has no limit of this kind: its slips turn there.
+  if (friction_.any()) friction_.forget();
   for (std::size_t r = 0; r < lambda_.size(); ++r) {
     if (!limit.known || friction_.any() || !(std::abs(limit.pole[r]) * row_unit(r) <= unbounded * limit.scale))
       leave_empty(r);

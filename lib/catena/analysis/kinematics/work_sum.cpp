@@ -69,7 +69,7 @@ void WorkSum::begin_stretch(const Snapshot& start) {
 void WorkSum::add_point(std::size_t point, double span, std::span<const double> qd, std::span<const double> lambda,
                         double lost) {
   account_->powers(qd, lambda, power_);
-  power_[0] += lost;
+  EnergyAccount::dissipated(std::span(power_)) += lost;
   for (std::size_t c = 0; c < work_.size(); ++c) {
     const double part = span * weights[point] * power_[c];
     work_[c] += part;

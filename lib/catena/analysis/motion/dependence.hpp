@@ -16,11 +16,16 @@ namespace catena::dependence {
 inline constexpr double independent = 1e-8;
 /// No step ends below, or below a limit that follows from its tolerance (compared); accelerations lose ratio^1.5 there.
 inline constexpr double end_of_step = 1e-7, lost_digits = 2e-11;
+/// Below, a sine of 0.03: where no step can be made a dead point is sought; steps of a large tolerance, and pivots of
+/// unequal masses, tell the sine no better. Whether there is one is told by the place that is found.
+inline constexpr double worth_a_search = 1e-3;
 /// Below: a singular configuration is told as the likely cause where no step can be made.
 inline constexpr double likely_cause = 1e-6;
 /// Below, where rounding is a thousand times that elsewhere: stages are projected and steps balanced (compared), Adams
 /// methods leave the steps to Runge-Kutta (compared), and what is interpolated is checked by itself.
 inline constexpr double singular_passage = 1e-2;
+/// What small ratios are to others of the motion beside a singular position: light parts make all of them small.
+inline constexpr double unusual = 0.3;
 /// From here on Adams methods take over again (compared).
 inline constexpr double behind_passage = 2e-2;
 /// Below: all methods project their steps, and a step may pass a place where branches meet (compared) ...

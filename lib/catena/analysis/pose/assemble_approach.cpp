@@ -52,10 +52,7 @@ class ConstraintCurvature {
   void multiply_add(std::span<const double> x, std::span<double> y) const {
     for (const Part& part : parts_) {
       int column[6];
-      for (int k = 0; k < 6; ++k) {
-        const int body = k < 3 ? part.i : part.j;
-        column[k] = body >= 0 && body < plan_.moving ? plan_.column[at(3 * body + k % 3)] : -1;
-      }
+      for (int k = 0; k < 6; ++k) column[k] = plan_.column_of(part.i, part.j, k);
       for (int row = 0; row < 6; ++row) {
         if (column[row] < 0) continue;
         double sum = 0;

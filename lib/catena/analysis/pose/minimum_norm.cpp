@@ -44,10 +44,7 @@ MinimumNorm::MinimumNorm(Evaluator& evaluator) : evaluator_(evaluator) {
     block.first_row = plan.element_row[e];
     block.rows = jacobian.rows;
     block.columns = 3 * jacobian.bodies;
-    for (int k = 0; k < block.columns; ++k) {
-      const int body = k < 3 ? jacobian.body_i : jacobian.body_j;
-      block.column[k] = body < plan.bodies ? plan.column[at(3 * body + k % 3)] : -1;
-    }
+    for (int k = 0; k < block.columns; ++k) block.column[k] = plan.column_of(jacobian.body_i, jacobian.body_j, k);
     blocks_.push_back(block);
   }
   make_pattern();

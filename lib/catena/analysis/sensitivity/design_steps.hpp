@@ -14,6 +14,7 @@
 
 namespace catena {
 
+/// Numbers with derivatives, over coordinates, rows or both.
 using DesignVector = std::vector<DesignScalar>;
 
 /// out = from + h sum weight k.

@@ -23,7 +23,6 @@ KinematicDerivatives::KinematicDerivatives(const Evaluator& evaluator, const Des
 
 bool KinematicDerivatives::solve_rows(const std::vector<double>& rows, std::vector<double>& x, bool places) {
   if (system_.solves_in_lanes()) {
-    static_assert(parameters_at_once == Lanes::count);
     for (std::size_t first = 0; first < width_; first += parameters_at_once) {
       for (std::size_t r = 0; r < side_.size(); ++r) side_[r] = -Lanes::load(rows.data() + r * width_ + first);
       system_.solve_places(side_, place_);
@@ -55,8 +54,8 @@ bool KinematicDerivatives::find_by_tangents(const Snapshot& snapshot, Side side)
   if (acceleration) own.bends = bends_;
   if (reacts) own.loads = loads_;
   for (std::size_t g = 0; g < groups().size(); ++g) {
-    tangents_->add_parameters(groups()[g].mechanism, side, reached_[g], snapshot.lambda, snapshot.qdd,
-                              g * parameters_at_once, width_, own);
+    tangents_->add_parameters(groups()[g].mechanism, reached_[g], snapshot.lambda, snapshot.qdd, g * parameters_at_once,
+                              width_, own);
   }
   if (!solve_rows(phi_, q_, true)) return false;
   if (velocity) {

@@ -27,7 +27,6 @@ MotionAdjoint::MotionAdjoint(const Evaluator& of, const DesignModels& models, in
     fail("the adjoint of the motion is not built where " + why);
     return;
   }
-  end_ = again_.make_stage();
   if (!again_.why_not().empty()) {
     fail("the adjoint of the motion is not built where " + again_.why_not());
     return;

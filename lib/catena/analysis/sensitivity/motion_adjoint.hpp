@@ -85,6 +85,8 @@ class MotionAdjoint : public StateDerivatives {
   };
 
   bool lose(double t, std::string_view what);
+  /// A stage for projections and pulses.
+  Stage& end_stage();
   /// From y1^ at the end of a step, which has been recomputed, to y0^, which is added to.
   void go_back(const Step& step, Way& way, bool interpolated);
   /// y^ through the projection at the end, which factorize_end() has prepared.
@@ -98,8 +100,8 @@ class MotionAdjoint : public StateDerivatives {
   /// Pulses at one instant inside of a step, to slopes and ends.
   bool add_inside(const Step& step, std::span<const Look> looks);
   std::optional<std::vector<Look>> looks_at(const std::vector<std::vector<MotionPulse>>& measures);
-  static std::vector<Look> take_last(std::vector<Look>& looks);
-  std::size_t go_back_over_block(std::size_t k, std::vector<Look>& looks, Step& joined);
+  static std::span<const Look> take_last(std::span<const Look>& looks);
+  std::size_t go_back_over_block(std::size_t k, std::span<const Look>& looks, Step& joined);
   bool add_start(const Vector& y0, Vector& gradient);
 
   std::size_t n_;  // coordinates
@@ -108,7 +110,7 @@ class MotionAdjoint : public StateDerivatives {
   std::vector<std::unique_ptr<AdjointMechanism::Reached>> reached_;  // by group
   RecomputedSteps again_;
   std::vector<Vector> back_;    // Y^ by stage
-  std::unique_ptr<Stage> end_;  // for projections and pulses
+  std::unique_ptr<Stage> end_;  // once it was asked for
   std::vector<Step> steps_;
   std::vector<Way> ways_;  // by measure
   int blocks_ = 0;

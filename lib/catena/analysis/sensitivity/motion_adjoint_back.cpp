@@ -1,7 +1,6 @@
 // MotionAdjoint: the way back.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
 #include "catena/analysis/motion/stage_sums.hpp"
@@ -51,6 +50,13 @@ void MotionAdjoint::add_parameters(double t, Side side, const AdjointWeights& we
     for (std::size_t p = 0; p < at(group.count); ++p) way.gradient[first + p] += part[p];
     first += at(group.count);
   }
+}
+
+MotionAdjoint::Stage& MotionAdjoint::end_stage() {
+  if (end_) return *end_;
+  end_ = again_.make_stage();
+  end_->t = std::numeric_limits<double>::quiet_NaN();  // it has no factors yet
+  return *end_;
 }
 
 bool MotionAdjoint::factorize_end(double t, Side side, std::span<const double> values) {
@@ -130,8 +136,9 @@ bool MotionAdjoint::add_pulses(std::span<const Look> looks, double t, std::span<
     for (std::size_t c = 0; c < pulse.by_qd.size(); ++c) y[n_ + c] += pulse.by_qd[c];
     if (pulse.by_qdd.empty() && pulse.by_lambda.empty()) continue;
     if (!evaluated) {
-      std::copy(values.begin(), values.end(), end_->y.begin());
-      if (!RecomputedSteps::evaluate(*end_, t, Side::after)) return lose(t, "constraints depend on each other");
+      Stage& end = end_stage();
+      std::copy(values.begin(), values.end(), end.y.begin());
+      if (!RecomputedSteps::evaluate(end, t, Side::after)) return lose(t, "constraints depend on each other");
     }
     evaluated = true;
     const std::span<const double> qdd = std::span<const double>(end_->slope).subspan(n_);
@@ -218,18 +225,18 @@ std::optional<std::vector<MotionAdjoint::Look>> MotionAdjoint::looks_at(
 }
 
 // The pulses at the last instant of those left, taken away from them.
-std::vector<MotionAdjoint::Look> MotionAdjoint::take_last(std::vector<Look>& looks) {
+std::span<const MotionAdjoint::Look> MotionAdjoint::take_last(std::span<const Look>& looks) {
   const double t = looks.back().pulse->t;
   std::size_t first = looks.size() - 1;
   while (first > 0 && looks[first - 1].pulse->t == t) --first;
-  std::vector<Look> last(looks.begin() + static_cast<std::ptrdiff_t>(first), looks.end());
-  looks.resize(first);
+  const std::span<const Look> last = looks.subspan(first);
+  looks = looks.first(first);
   return last;
 }
 
 // Goes back over a block of the first k steps, the last ones, to the instant of the next pulse at most. Returns of how
 // many steps it is; 0: that cannot be done.
-std::size_t MotionAdjoint::go_back_over_block(std::size_t k, std::vector<Look>& looks, Step& joined) {
+std::size_t MotionAdjoint::go_back_over_block(std::size_t k, std::span<const Look>& looks, Step& joined) {
   const Step& last = steps_[k - 1];
   const double next = looks.empty() ? steps_.front().from : looks.back().pulse->t;
   // A step that has a pulse inside is taken by itself.
@@ -244,6 +251,7 @@ std::size_t MotionAdjoint::go_back_over_block(std::size_t k, std::vector<Look>& 
   const std::size_t count =
       again_.join(std::span<const Step>(steps_).subspan(k - given, given), RecomputedSteps::From::back, joined);
   if (count == 0) return singular();
+  static_cast<void>(end_stage());  // after the first stage, which has been evaluated now
   for (Way& way : ways_) {
     std::fill(way.y0.begin(), way.y0.end(), 0.0);
     if (inside) way.slopes.assign(dormand_prince_8().c.size(), Vector(2 * n_, 0.0));
@@ -270,12 +278,13 @@ std::optional<MotionAdjoint::Gradients> MotionAdjoint::gradients(
     fail("the motion was not looked at");
     return {};
   }
-  std::optional<std::vector<Look>> looks = looks_at(measures);
-  if (!looks) return {};
+  const std::optional<std::vector<Look>> all_looks = looks_at(measures);
+  if (!all_looks) return {};
+  std::span<const Look> looks = *all_looks;
   const Way still{Vector(2 * n_, 0.0), Vector(2 * n_, 0.0), Vector(at(parameters()), 0.0), {}};
   ways_.assign(measures.size(), still);
   again_.begin_anew();
-  end_->t = std::numeric_limits<double>::quiet_NaN();
+  if (end_) end_->t = std::numeric_limits<double>::quiet_NaN();
   blocks_ = 0;
   const auto end_of_way = [this](std::size_t m) -> Vector& {
     ways_[m].begun = true;
@@ -284,14 +293,14 @@ std::optional<MotionAdjoint::Gradients> MotionAdjoint::gradients(
   Step joined;
   for (std::size_t k = steps_.size(); k > 0;) {
     const Step& last = steps_[k - 1];
-    while (!looks->empty() && looks->back().pulse->t >= last.to) {
-      if (!add_pulses(take_last(*looks), last.to, last.end, end_of_way)) return {};
+    while (!looks.empty() && looks.back().pulse->t >= last.to) {
+      if (!add_pulses(take_last(looks), last.to, last.end, end_of_way)) return {};
     }
-    const std::size_t count = go_back_over_block(k, *looks, joined);
+    const std::size_t count = go_back_over_block(k, looks, joined);
     if (count == 0) return {};
     k -= count;
   }
-  if (!looks->empty() && !add_pulses(*looks, steps_.front().from, steps_.front().begin, end_of_way)) return {};
+  if (!looks.empty() && !add_pulses(looks, steps_.front().from, steps_.front().begin, end_of_way)) return {};
   Gradients gradients;
   for (Way& way : ways_) {
     if (any(way.y1) && !add_start(way.y1, way.gradient)) return {};

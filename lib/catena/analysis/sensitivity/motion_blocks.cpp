@@ -6,10 +6,15 @@
 
 namespace catena {
 
-void MotionDerivatives::to_rows(Vector Track::*y, MotionTangents::Rows& rows) const {
+RecomputedSteps::Stage& MotionDerivatives::place() {
+  if (!place_) place_ = again_->make_stage();
+  return *place_;
+}
+
+void MotionDerivatives::to_rows(DesignVector Track::*y, MotionTangents::Rows& rows) const {
   const std::size_t width = tangents_->width();
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
-    const Vector& from = tracks_[k].*y;
+    const DesignVector& from = tracks_[k].*y;
     for (const int coordinate : plan().coordinate) {
       for (const std::size_t i : {at(coordinate), n_ + at(coordinate)})
         std::copy(from[i].d.begin(), from[i].d.end(),
@@ -18,10 +23,10 @@ void MotionDerivatives::to_rows(Vector Track::*y, MotionTangents::Rows& rows) co
   }
 }
 
-void MotionDerivatives::from_rows(const MotionTangents::Rows& rows, Vector Track::*y) {
+void MotionDerivatives::from_rows(const MotionTangents::Rows& rows, DesignVector Track::*y) {
   const std::size_t width = tangents_->width();
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
-    Vector& to = tracks_[k].*y;
+    DesignVector& to = tracks_[k].*y;
     for (const int coordinate : plan().coordinate) {
       for (const std::size_t i : {at(coordinate), n_ + at(coordinate)})
         std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(i * width + k * parameters_at_once), parameters_at_once,
@@ -67,8 +72,8 @@ bool MotionDerivatives::take_block(std::span<const Step> steps) {
 bool MotionDerivatives::take_by_tangents() {
   to_rows(&Track::begin, begin_rows_);
   tangents_->step(*again_, step_.to - step_.from, begin_rows_, end_rows_);
-  place_->y = step_.end;
-  if (!tangents_->project(*place_, step_.to, Side::before, end_rows_)) return false;
+  place().y = step_.end;
+  if (!tangents_->project(place(), step_.to, Side::before, end_rows_)) return false;
   for (Track& track : tracks_) track.end = track.begin;
   take_values(step_.end, &Track::end);
   from_rows(end_rows_, &Track::end);
@@ -103,13 +108,14 @@ bool MotionDerivatives::find_by_tangents(const Snapshot& snapshot) {
   } else {
     to_rows(jumps ? &Track::after : has_step_ && t == from_ ? &Track::begin : &Track::end, rows_);
   }
-  std::copy(snapshot.q.begin(), snapshot.q.end(), place_->y.begin());
-  for (std::size_t c = 0; c < n_; ++c) place_->y[n_ + c] = jumps ? tracks_.front().after[n_ + c].v : snapshot.qd[c];
-  if (!tangents_->project(*place_, t, Side::after, rows_)) return false;
+  RecomputedSteps::Stage& there = place();
+  std::copy(snapshot.q.begin(), snapshot.q.end(), there.y.begin());
+  for (std::size_t c = 0; c < n_; ++c) there.y[n_ + c] = jumps ? tracks_.front().after[n_ + c].v : snapshot.qd[c];
+  if (!tangents_->project(there, t, Side::after, rows_)) return false;
   const bool accelerates = !snapshot.qdd.empty();
   if (accelerates) {
-    if (!RecomputedSteps::evaluate(*place_, t, Side::after)) return false;
-    tangents_->slope(*place_, rows_, slope_rows_);
+    if (!RecomputedSteps::evaluate(there, t, Side::after)) return false;
+    tangents_->slope(there, rows_, slope_rows_);
   }
   const std::size_t width = tangents_->width();
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
@@ -121,17 +127,17 @@ bool MotionDerivatives::find_by_tangents(const Snapshot& snapshot) {
     group.mechanism.set_time(t, Side::after);
     group.mechanism.lift_configuration(snapshot.q, group.q);
     std::fill(group.qdd.begin(), group.qdd.end(), DesignScalar());
-    for (std::size_t c = 0; c < n_; ++c) group.qd[c] = place_->y[n_ + c];
+    for (std::size_t c = 0; c < n_; ++c) group.qd[c] = there.y[n_ + c];
     for (const int coordinate : plan().coordinate) {
       const std::size_t c = at(coordinate);
       take(rows_, c, group.q[c]);
       take(rows_, n_ + c, group.qd[c]);
       if (!accelerates) continue;
-      group.qdd[c] = place_->slope[n_ + c];
+      group.qdd[c] = there.slope[n_ + c];
       take(slope_rows_, n_ + c, group.qdd[c]);
     }
     for (std::size_t r = 0; accelerates && r < group.lambda.size(); ++r) {
-      group.lambda[r] = place_->lambda[r];
+      group.lambda[r] = there.lambda[r];
       take(tangents_->multipliers(), r, group.lambda[r]);
     }
     group.mechanism.set_state(group.q, group.qd);

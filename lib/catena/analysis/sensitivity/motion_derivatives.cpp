@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "catena/analysis/sensitivity/design_steps.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -22,13 +21,12 @@ MotionDerivatives::MotionDerivatives(const Evaluator& evaluator, const DesignMod
       y_(2 * n_) {
   for (std::size_t k = 0; k < groups().size(); ++k) {
     Track& track = tracks_.emplace_back();
-    for (Vector* y : {&track.begin, &track.end, &track.before, &track.after}) y->resize(2 * n_);
-    track.stage.assign(16, Vector(2 * n_));
+    for (DesignVector* y : {&track.begin, &track.end, &track.before, &track.after}) y->resize(2 * n_);
+    track.stage.assign(16, DesignVector(2 * n_));
   }
   if (groups().empty() || !AdjointMechanism::why_not(evaluator.model()).empty()) return;
   again_ = std::make_unique<RecomputedSteps>(this->evaluator());
   if (!again_->why_not().empty()) return;
-  place_ = again_->make_stage();
   std::vector<DesignMechanism*> mechanisms;
   for (Group& group : groups()) mechanisms.push_back(&group.mechanism);
   tangents_ = std::make_unique<MotionTangents>(this->evaluator(), mechanisms);
@@ -57,7 +55,7 @@ bool MotionDerivatives::factorize(double t, Side side, std::span<const DesignSca
 }
 
 // Accelerations and multipliers with their derivatives at y; the factors belong to its values.
-bool MotionDerivatives::derivative(Group& group, double t, Side side, const Vector& y, Vector& slope) {
+bool MotionDerivatives::derivative(Group& group, double t, Side side, const DesignVector& y, DesignVector& slope) {
   const std::span<const DesignScalar> q = std::span(y).first(n_), qd = std::span(y).subspan(n_);
   DesignMechanism& mechanism = group.mechanism;
   mechanism.set_time(t, side);
@@ -88,12 +86,12 @@ bool MotionDerivatives::derivative(Group& group, double t, Side side, const Vect
   return true;
 }
 
-bool MotionDerivatives::project(Group& group, double t, Side side, Vector& y) {
+bool MotionDerivatives::project(Group& group, double t, Side side, DesignVector& y) {
   const std::span<DesignScalar> q = std::span(y).first(n_), qd = std::span(y).subspan(n_);
   DesignMechanism& mechanism = group.mechanism;
   mechanism.set_time(t, side);
   const std::span<double> f = loads_scratch(), b = rows_scratch();
-  Vector bare(n_);  // the part of the state whose derivatives are sought, without them
+  DesignVector bare(n_);  // the part of the state whose derivatives are sought, without them
   for (const bool velocity : {false, true}) {
     const std::span<DesignScalar> part = velocity ? qd : q;
     for (std::size_t c = 0; c < n_; ++c) bare[c] = part[c].v;
@@ -166,7 +164,7 @@ bool MotionDerivatives::make_step(double h) {
 }
 
 // Values are the motion's own: angles may have been moved by whole turns.
-void MotionDerivatives::take_values(const RecomputedSteps::Vector& values, Vector Track::*y) {
+void MotionDerivatives::take_values(const RecomputedSteps::Vector& values, DesignVector Track::*y) {
   for (Track& track : tracks_) {
     for (std::size_t i = 0; i < values.size(); ++i) (track.*y)[i].v = values[i];
   }
@@ -245,7 +243,7 @@ bool MotionDerivatives::cross(Group& group, Track& track, std::span<const double
   if (!derivative(group, to_, Side::after, track.after, stage_)) return false;
   for (std::size_t c = 0; c < n_; ++c) jump_of_acceleration[c] -= stage_[n_ + c].v;
   // Along the moving instant, where the blow acts.
-  Vector q_there(q_before.begin(), q_before.end());
+  DesignVector q_there(q_before.begin(), q_before.end());
   for (const int c : plan().coordinate) {
     for (std::size_t p = 0; p < rate.size(); ++p) {
       q_there[at(c)].d[p] += qd_before[at(c)].v * rate[p];
@@ -321,14 +319,14 @@ bool MotionDerivatives::find(const Snapshot& snapshot) {
 bool MotionDerivatives::find_before(const Snapshot& snapshot) {
   if (crossed_ != snapshot.t || !why().empty()) return false;
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
-    const Vector& y = tracks_[k].before;
+    const DesignVector& y = tracks_[k].before;
     if (k == 0 && !factorize(snapshot.t, Side::before, std::span(y).first(n_))) return singular(snapshot.t);
     if (!take_state(groups()[k], snapshot, Side::before, y)) return false;
   }
   return true;
 }
 
-bool MotionDerivatives::take_state(Group& group, const Snapshot& snapshot, Side side, const Vector& y) {
+bool MotionDerivatives::take_state(Group& group, const Snapshot& snapshot, Side side, const DesignVector& y) {
   std::copy_n(y.begin(), n_, group.q.begin());
   std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(n_), n_, group.qd.begin());
   group.mechanism.set_time(snapshot.t, side);

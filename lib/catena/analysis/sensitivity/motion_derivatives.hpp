@@ -29,6 +29,7 @@
 #include <optional>
 
 #include "catena/analysis/motion/tableau.hpp"
+#include "catena/analysis/sensitivity/design_steps.hpp"
 #include "catena/analysis/sensitivity/motion_tangents.hpp"
 #include "catena/analysis/sensitivity/recomputed_steps.hpp"
 #include "catena/analysis/sensitivity/saddle_system.hpp"
@@ -51,18 +52,17 @@ class MotionDerivatives final : public StateDerivatives {
   int seen_order() const override { return 3; }
 
  private:
-  using Vector = std::vector<DesignScalar>;
   using Step = RecomputedSteps::Step;
   /// Of one group: y = [q, qd] where the present step begins, where it ends, its stages and those of the
   /// interpolant; and at the last instant at which functions of time jump, just before it and after.
   struct Track {
-    Vector begin, end, before, after;
-    std::vector<Vector> stage;
+    DesignVector begin, end, before, after;
+    std::vector<DesignVector> stage;
   };
 
   bool start(double t, std::span<const double> q, std::span<const double> qd);
   /// Positions and velocities of the motion to y of all tracks.
-  void take_values(const RecomputedSteps::Vector& values, Vector Track::*y);
+  void take_values(const RecomputedSteps::Vector& values, DesignVector Track::*y);
   /// Carries derivatives over the steps that wait, so that t, within the last of them, can be asked for.
   bool catch_up(double t);
   /// Over as many of these steps as can be taken as one; what waits begins with them.
@@ -72,8 +72,10 @@ class MotionDerivatives final : public StateDerivatives {
   bool take_in_dual_numbers();
   /// The last block, which is one step, once more: where an instant inside of it has no tangents.
   bool retake_in_dual_numbers();
-  void to_rows(Vector Track::*y, MotionTangents::Rows& rows) const;
-  void from_rows(const MotionTangents::Rows& rows, Vector Track::*y);
+  /// A stage where derivatives are projected and looked at.
+  RecomputedSteps::Stage& place();
+  void to_rows(DesignVector Track::*y, MotionTangents::Rows& rows) const;
+  void from_rows(const MotionTangents::Rows& rows, DesignVector Track::*y);
   /// The state at a snapshot from rows of derivatives; nothing where constraints depend on each other.
   bool find_by_tangents(const Snapshot& snapshot);
   /// Past the jump of functions of time where the step ends.
@@ -83,13 +85,13 @@ class MotionDerivatives final : public StateDerivatives {
   bool project_end(double t, Side side);
   bool make_step(double h);
   /// y' at stage (or end) `y` of a group.
-  bool derivative(Group& group, double t, Side side, const Vector& y, Vector& slope);
+  bool derivative(Group& group, double t, Side side, const DesignVector& y, DesignVector& slope);
   bool prepare_interpolant(Group& group, Track& track);
   /// Projects the derivatives in y onto the constraints at its values.
-  bool project(Group& group, double t, Side side, Vector& y);
+  bool project(Group& group, double t, Side side, DesignVector& y);
   bool factorize(double t, Side side, std::span<const DesignScalar> q);
   /// State, accelerations and multipliers of a group from y, where they are wanted.
-  bool take_state(Group& group, const Snapshot& snapshot, Side side, const Vector& y);
+  bool take_state(Group& group, const Snapshot& snapshot, Side side, const DesignVector& y);
   bool singular(double t);
   bool not_shown(double t);
 
@@ -101,11 +103,11 @@ class MotionDerivatives final : public StateDerivatives {
   std::optional<double> crossed_;  // where functions of time jumped last
   std::vector<Track> tracks_;
   std::vector<double> values_;
-  Vector stage_, y_;
+  DesignVector stage_, y_;
   // By tangents; nullptr where the model does not have them.
   std::unique_ptr<RecomputedSteps> again_;
   std::unique_ptr<MotionTangents> tangents_;
-  std::unique_ptr<RecomputedSteps::Stage> place_;  // where derivatives are projected and looked at
+  std::unique_ptr<RecomputedSteps::Stage> place_;  // once it was asked for
   std::vector<Step> pending_, block_;              // steps that wait, and those that the last block is made of
   Step step_;                                      // that block
   bool by_tangents_ = false;                       // it was carried over by them

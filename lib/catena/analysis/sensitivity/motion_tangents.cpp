@@ -45,12 +45,11 @@ void MotionTangents::add_parameters(double t, Side side, std::span<const double>
                                     const TangentSums& sums) {
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     if (reached_[g].asks_mechanism()) groups_[g]->set_time(t, side);
-    mechanism_.add_parameters(*groups_[g], side, reached_[g], lambda, qdd, g * parameters_at_once, width_, sums);
+    mechanism_.add_parameters(*groups_[g], reached_[g], lambda, qdd, g * parameters_at_once, width_, sums);
   }
 }
 
 void MotionTangents::solve(Stage& stage, const Rows& loads, const Rows& rows, double* x) {
-  static_assert(parameters_at_once == Lanes::count);
   for (std::size_t first = 0; first < width_; first += parameters_at_once) {
     for (std::size_t c = 0; c < n_; ++c) f_[c] = Lanes::load(loads.data() + c * width_ + first);
     for (std::size_t r = 0; r < b_.size(); ++r) b_[r] = -Lanes::load(rows.data() + r * width_ + first);

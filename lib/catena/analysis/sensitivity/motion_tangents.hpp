@@ -10,7 +10,6 @@
 // constraints depend on each other, nor for models that AdjointMechanism refuses.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "catena/analysis/sensitivity/recomputed_steps.hpp"

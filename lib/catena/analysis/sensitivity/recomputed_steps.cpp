@@ -57,7 +57,7 @@ RecomputedSteps::RecomputedSteps(const Evaluator& evaluator)
   stages_.push_back(make_stage());
 }
 
-// The first stage is evaluated before there is a second one: it finds the structure of the equations for all.
+// The first stage finds the structure of the equations for all that are made after it was evaluated.
 std::unique_ptr<RecomputedSteps::Stage> RecomputedSteps::make_stage() {
   if (!stages_.empty()) return std::make_unique<Stage>(evaluator_, *stages_.front());
   auto stage = std::make_unique<Stage>(evaluator_, size_);
@@ -101,15 +101,16 @@ bool RecomputedSteps::prepare_interpolant(const Step& step) {
   const Tableau& table = dormand_prince_8();
   const double h = step.to - step.from;
   while (stages_.size() < table.c.size()) stages_.push_back(make_stage());
-  for (int s = table.stages; s < static_cast<int>(table.c.size()); ++s) {
+  Stage& end = *stages_[at(table.stages)];
+  end.y = step.end;
+  singular_at_ = step.to;
+  if (!evaluate(end, step.to, Side::before)) return false;
+  for (int s = table.stages + 1; s < static_cast<int>(table.c.size()); ++s) {
     Stage& stage = *stages_[at(s)];
-    const bool at_end = s == table.stages;
-    const StageSum none;
     add_stages(
-        at_end ? step.end : step.begin, h, at_end ? none : table.a[at(s)],
-        [this](int k) { return stages_[at(k)]->slope.data(); }, stage.y);
-    singular_at_ = at_end ? step.to : step.from + table.c[at(s)] * h;
-    if (!evaluate(stage, singular_at_, at_end ? Side::before : Side::after)) return false;
+        step.begin, h, table.a[at(s)], [this](int k) { return stages_[at(k)]->slope.data(); }, stage.y);
+    singular_at_ = step.from + table.c[at(s)] * h;
+    if (!evaluate(stage, singular_at_, Side::after)) return false;
   }
   return true;
 }

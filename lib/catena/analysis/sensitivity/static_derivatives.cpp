@@ -71,16 +71,17 @@ bool StaticDerivatives::factorize(const Snapshot& snapshot, bool transposed) {
   evaluator().set_configuration(snapshot.q);
   if (!leave_open_gaps_out(snapshot)) return false;
   if (is_neutral_ && is_neutral_()) return neutral();
-  if (!system_.begin(jacobian())) return neutral();
-  evaluator().visit_stiffness(rest_, [&](int i, int j, ElementMatrix m) {
-    for (std::size_t r = 0; transposed && r < 6; ++r) {
-      for (std::size_t c = 0; c < r; ++c) std::swap(m[6 * r + c], m[6 * c + r]);
-    }
-    system_.add_element(i, j, m);
+  const bool factored = system_.factorize(jacobian(), [&] {
+    evaluator().visit_stiffness(rest_, [&](int i, int j, ElementMatrix m) {
+      for (std::size_t r = 0; transposed && r < 6; ++r) {
+        for (std::size_t c = 0; c < r; ++c) std::swap(m[6 * r + c], m[6 * c + r]);
+      }
+      system_.add_element(i, j, m);
+    });
+    evaluator().visit_constraint_hessians(snapshot.lambda,
+                                          [&](int i, int j, const ElementMatrix& m) { system_.add_element(i, j, m); });
   });
-  evaluator().visit_constraint_hessians(snapshot.lambda,
-                                        [&](int i, int j, const ElementMatrix& m) { system_.add_element(i, j, m); });
-  return system_.factorize() || neutral();
+  return factored || neutral();
 }
 
 bool StaticDerivatives::find(const Snapshot& snapshot) {

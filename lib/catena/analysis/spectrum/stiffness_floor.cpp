@@ -33,17 +33,25 @@ void visit_entries(Evaluator& evaluator, std::span<const double> lambda, F&& f) 
   evaluator.visit_constraint_hessians(lambda, element);
 }
 
-// A body that hangs from one equation, its centroid below the point held, has no lever there but for rounding: the
-// force passes the centroid. The stiffness against turning is that force times the distance.
-void lengthen_by_loads(StaticSystem& system, std::span<const double> lambda, std::vector<double>& arms) {
+/// What the equations hold every body with: the sum of the sizes of their forces, N.
+std::vector<double> forces_of_equations(const StaticSystem& system, std::span<const double> lambda) {
   const Plan& plan = system.plan();
-  std::vector<double> force(arms.size(), 0.0), turning(arms.size(), 0.0);
+  std::vector<double> force(at(plan.moving), 0.0);
   for (int c = 0; c < plan.columns; ++c) {
     const int coordinate = plan.coordinate[at(c)];
     if (coordinate % 3 == 2) continue;
     for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k)
       force[at(coordinate / 3)] += std::abs(system.jacobian()[at(k)] * lambda[at(plan.jacobian.row_index[at(k)])]);
   }
+  return force;
+}
+
+// A body that hangs from one equation, its centroid below the point held, has no lever there but for rounding: the
+// force passes the centroid. The stiffness against turning is that force times the distance.
+void lengthen_by_loads(StaticSystem& system, std::span<const double> lambda, std::vector<double>& arms) {
+  const Plan& plan = system.plan();
+  const std::vector<double> force = forces_of_equations(system, lambda);
+  std::vector<double> turning(arms.size(), 0.0);
   system.evaluator().visit_constraint_hessians(lambda, [&](int body_i, int body_j, const auto& matrix) {
     constexpr int turning_of_i = 6 * 2 + 2, turning_of_j = 6 * 5 + 5;
     if (body_i >= 0 && body_i < plan.moving) turning[at(body_i)] += std::abs(matrix[at(turning_of_i)]);
@@ -104,14 +112,8 @@ StiffnessFloor::StiffnessFloor(StaticSystem& system, std::span<const double> lam
     }
   });
   // Only the part of a pin's force across the arm enters K, but its rounding is that of the whole force.
-  for (int c = 0; c < plan.columns; ++c) {
-    const int coordinate = plan.coordinate[at(c)];
-    if (coordinate % 3 == 2) continue;
-    for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k) {
-      const double force = std::abs(system.jacobian()[at(k)] * lambda[at(plan.jacobian.row_index[at(k)])]);
-      turning[at(coordinate / 3)] += force * arms[at(coordinate / 3)];
-    }
-  }
+  const std::vector<double> force = forces_of_equations(system, lambda);
+  for (std::size_t b = 0; b < arms.size(); ++b) turning[b] += force[b] * arms[b];
   double farthest = 0;
   for (int b = 0; b < plan.moving; ++b) {
     const Frame<double> frame = evaluator.ground_frame(b);

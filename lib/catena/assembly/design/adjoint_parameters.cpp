@@ -1,6 +1,5 @@
 // AdjointMechanism: derivatives by design parameters, of what these reach.
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <limits>
 #include <type_traits>
@@ -129,8 +128,7 @@ bool AdjointMechanism::Reached::take_pin(const AdjointMechanism& adjoint, int ro
                                          const Revolute<DesignScalar>& pin) {
   const Plan& plan = adjoint.plan();
   for (const int body : bodies) {
-    const bool immobile = body >= plan.moving && body < plan.bodies;
-    if (immobile || (body < plan.moving && plan.column[at(3 * body + 2)] < 0)) return false;
+    if (adjoint.is_immobile(body) || (body < plan.moving && plan.column[at(3 * body + 2)] < 0)) return false;
   }
   for (const bool second : {false, true}) {
     const Vec2<DesignScalar>& s = second ? pin.s_j : pin.s_i;
@@ -281,12 +279,7 @@ void AdjointMechanism::add_forces(const DesignMechanism& mechanism, const Reache
       for (const int e : places) {
         const auto& entry = list[at(block.entry[at(e)])];
         const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_, pose);
-        std::array<DesignScalar, E::functions + 1> values;
-        for (std::size_t n = 0; n < entry.values.size(); ++n) {
-          const auto& own = entry.values[n];
-          values[n] = own.function < 0 ? DesignScalar(own.constant)
-                                       : model.functions[at(own.function)].evaluate(mechanism.time()).f;
-        }
+        const auto values = detail::function_values<DesignScalar>(entry, mechanism.functions(), detail::no_law);
         const int body_i = block.body_i[at(e)], body_j = E::bodies == 2 ? block.body_j[at(e)] : plan_->bodies;
         const Twist<DesignScalar> u = twist(body_i), v = twist(body_j);
         Wrench<DesignScalar> on_i, on_j;

@@ -8,21 +8,6 @@ namespace {
 
 using detail::DesignSeries;
 
-/// Values of an element's functions of time and laws, one more than there are so that there is always one; law(number)
-/// gives those of laws.
-template <class T, class Entry, class Law>
-std::array<T, Entry::Element::functions + 1> function_values(const Entry& entry,
-                                                             const std::vector<DesignSeries>& functions, Law&& law) {
-  std::array<T, Entry::Element::functions + 1> f;
-  for (std::size_t k = 0; k < entry.values.size(); ++k) {
-    const auto& value = entry.values[k];
-    f[k] = value.law >= 0        ? T(law(value.law))
-           : value.function >= 0 ? T(functions[at(value.function)].f)
-                                 : T(value.constant);
-  }
-  return f;
-}
-
 /// What laws read: the state of a mechanism with derivatives.
 class DesignView {
  public:
@@ -78,7 +63,8 @@ void DesignMechanism::applied_forces(std::span<DesignScalar> Q) const {
       const auto& entry = list[at(block.entry[at(e)])];
       const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_,
                                                          [&](int body) { return detail::present(motion_[at(body)]); });
-      const auto values = function_values<DesignScalar>(entry, function_, [&](int law) { return law_value(law); });
+      const auto values =
+          detail::function_values<DesignScalar>(entry, function_, [&](int law) { return law_value(law); });
       const int body_i = block.body_i[at(e)], body_j = E::bodies == 2 ? block.body_j[at(e)] : plan_->bodies;
       const Twist<DesignScalar> u = twist(body_i), v = twist(body_j);
       Wrench<DesignScalar> on_i, on_j;
@@ -125,7 +111,7 @@ Taylor<DesignScalar> DesignMechanism::potential() const {
       const auto f = detail::design_frames<DesignSeries>(block, e, plan_->moving, origin_,
                                                          [&](int body) { return motion_[at(body)]; });
       // Laws have no potential.
-      const auto values = function_values<DesignSeries>(entry, function_, [](int) { return 0.0; });
+      const auto values = detail::function_values<DesignSeries>(entry, function_, detail::no_law);
       if constexpr (requires(const ForceArguments<DesignSeries>& a) { entry.element.potential(a); }) {
         if (is_conservative(entry.element)) {
           sum += entry.element.potential(ForceArguments<DesignSeries>{f.i, f.j, rest, rest, values.data(), f.ground});

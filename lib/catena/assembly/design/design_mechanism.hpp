@@ -48,6 +48,8 @@ class DesignMechanism {
   /// The same, frozen there: as constants.
   void freeze_time(double t);
   double time() const { return time_; }
+  /// Of every function of the model, as it was set.
+  std::span<const Taylor<DesignScalar>> functions() const { return function_; }
   /// q as dual numbers, without derivatives but those of coordinates that are no unknowns. Sizes coordinates().
   void lift_configuration(std::span<const double> q, std::span<DesignScalar> out) const;
   /// qd and qdd may be empty: at rest, without acceleration.

@@ -2,6 +2,8 @@
 // For the source files of DesignMechanism.
 #pragma once
 
+#include <array>
+#include <span>
 #include <type_traits>
 
 #include "catena/assembly/design/design_mechanism.hpp"
@@ -35,6 +37,23 @@ Taylor<T> value_of_entry([[maybe_unused]] const Entry& entry,
     return {};
   }
 }
+
+/// Values of an element's functions of time and laws, one more than there are so that there is always one; law(number)
+/// gives those of laws.
+template <class T, class Entry, class Law>
+std::array<T, Entry::Element::functions + 1> function_values(const Entry& entry,
+                                                             std::span<const DesignSeries> functions, Law&& law) {
+  std::array<T, Entry::Element::functions + 1> f;
+  for (std::size_t k = 0; k < entry.values.size(); ++k) {
+    const auto& value = entry.values[k];
+    f[k] = value.law >= 0        ? T(law(value.law))
+           : value.function >= 0 ? T(functions[static_cast<std::size_t>(value.function)].f)
+                                 : T(value.constant);
+  }
+  return f;
+}
+/// Where laws do not count, or there are none.
+inline double no_law(int) { return 0; }
 
 /// f relative to another origin.
 template <class T>

@@ -11,8 +11,12 @@
 #pragma once
 
 #include "catena/assembly/design/adjoint_mechanism.hpp"
+#include "catena/linalg/kernels/lanes.hpp"
 
 namespace catena {
+
+// The parameters of a group are as many directions as one pack holds.
+static_assert(parameters_at_once == Lanes::count);
 
 /// Where derivatives go; empty spans: they are not wanted. Sizes: coordinates, or rows, times the width.
 struct TangentSums {
@@ -26,11 +30,10 @@ class MechanismTangents : public AdjointMechanism {
   /// Along directions, at the motion that was set. `lambda` of the solver's rows; without `sums.loads` it may be empty.
   void add_along(const Evaluator& evaluator, std::span<const double> lambda, std::span<const double> dq,
                  std::span<const double> dqd, std::size_t width, const TangentSums& sums) const;
-  /// By the parameters of a group, which are the directions from number `first` on; `mechanism` is set to the time, on
-  /// this side of it.
-  void add_parameters(const DesignMechanism& mechanism, Side side, const Reached& reached,
-                      std::span<const double> lambda, std::span<const double> qdd, std::size_t first, std::size_t width,
-                      const TangentSums& sums) const;
+  /// By the parameters of a group, which are the directions from number `first` on; `mechanism` is set to the time, and
+  /// the side of it, where reached.asks_mechanism().
+  void add_parameters(const DesignMechanism& mechanism, const Reached& reached, std::span<const double> lambda,
+                      std::span<const double> qdd, std::size_t first, std::size_t width, const TangentSums& sums) const;
 
  private:
   struct Directions {
@@ -40,7 +43,7 @@ class MechanismTangents : public AdjointMechanism {
   void add_constraint_parameters(const DesignMechanism& mechanism, const Reached& reached,
                                  std::span<const double> lambda, std::size_t first, std::size_t width,
                                  const TangentSums& sums) const;
-  void add_force_parameters(const DesignMechanism& mechanism, Side side, const Reached& reached, std::size_t first,
+  void add_force_parameters(const DesignMechanism& mechanism, const Reached& reached, std::size_t first,
                             std::size_t width, std::span<double> loads) const;
   void add_pin_parameters(const Reached& reached, std::span<const double> lambda, std::size_t first, std::size_t width,
                           const TangentSums& sums) const;

@@ -1,6 +1,4 @@
 // MechanismTangents: derivatives by design parameters, of what these reach.
-#include <algorithm>
-
 #include "catena/assembly/design/element_motion.hpp"
 #include "catena/assembly/design/mechanism_tangents.hpp"
 #include "catena/base/at.hpp"
@@ -10,13 +8,6 @@ namespace catena {
 namespace {
 
 using detail::DesignSeries;
-
-/// A function at t, where its derivatives by parameters may have two sides; see DesignMechanism::set_time().
-DesignSeries value_at(const TimeFunction<DesignScalar>& function, double t, Side side) {
-  const TimeRange domain = function.domain();
-  const double there = std::clamp(t, domain.first, domain.last);
-  return side == Side::after ? function.evaluate(there) : function.continue_from(there, side, there);
-}
 
 /// Derivatives by the parameters of a group into a row of directions.
 void add_derivatives(double factor, const DesignScalar& x, double* out) {
@@ -100,7 +91,7 @@ void MechanismTangents::add_constraint_parameters(const DesignMechanism& mechani
   });
 }
 
-void MechanismTangents::add_force_parameters(const DesignMechanism& mechanism, Side side, const Reached& reached,
+void MechanismTangents::add_force_parameters(const DesignMechanism& mechanism, const Reached& reached,
                                              std::size_t first, std::size_t width, std::span<double> loads) const {
   const DesignModel& model = mechanism.model();
   const auto target = [&](std::size_t row) { return loads.data() + row * width + first; };
@@ -118,12 +109,7 @@ void MechanismTangents::add_force_parameters(const DesignMechanism& mechanism, S
       for (const int e : places) {
         const auto& entry = list[at(block.entry[at(e)])];
         const auto f = detail::design_frames<DesignScalar>(block, e, plan_->moving, origin_, pose);
-        std::array<DesignScalar, E::functions + 1> values;
-        for (std::size_t n = 0; n < entry.values.size(); ++n) {
-          const auto& own = entry.values[n];
-          values[n] = own.function < 0 ? DesignScalar(own.constant)
-                                       : value_at(model.functions[at(own.function)], mechanism.time(), side).f;
-        }
+        const auto values = detail::function_values<DesignScalar>(entry, mechanism.functions(), detail::no_law);
         const int bodies[2] = {block.body_i[at(e)], E::bodies == 2 ? block.body_j[at(e)] : plan_->bodies};
         const Twist<DesignScalar> u = twist(bodies[0]), v = twist(bodies[1]);
         Wrench<DesignScalar> on[2];
@@ -139,7 +125,7 @@ void MechanismTangents::add_force_parameters(const DesignMechanism& mechanism, S
   });
 }
 
-void MechanismTangents::add_parameters(const DesignMechanism& mechanism, Side side, const Reached& reached,
+void MechanismTangents::add_parameters(const DesignMechanism& mechanism, const Reached& reached,
                                        std::span<const double> lambda, std::span<const double> qdd, std::size_t first,
                                        std::size_t width, const TangentSums& sums) const {
   add_pin_parameters(reached, lambda, first, width, sums);
@@ -154,7 +140,7 @@ void MechanismTangents::add_parameters(const DesignMechanism& mechanism, Side si
   if (!reached.asks_mechanism()) return;
   if (reached.any_constraint_) add_constraint_parameters(mechanism, reached, lambda, first, width, sums);
   if (sums.loads.empty()) return;
-  if (reached.any_force_) add_force_parameters(mechanism, side, reached, first, width, sums.loads);
+  if (reached.any_force_) add_force_parameters(mechanism, reached, first, width, sums.loads);
   const Vec2<DesignScalar>& gravity = mechanism.model().gravity;
   for (int c = 0; c < 3 * plan_->moving && reached.gravity_; ++c) {
     if (c % 3 < 2) add_derivatives(mechanism.mass(c).v, c % 3 == 0 ? gravity.x : gravity.y, load(c));

@@ -61,11 +61,9 @@ bool KktMatrix::constraints_are_linear(Evaluator& evaluator) {
   bool linear = true;
   evaluator.visit_constraint_hessians(lambda, [&](int i, int j, const ElementMatrix& matrix) {
     for (std::size_t k = 0; linear && k < matrix.size(); ++k) {
-      const auto column = [&](std::size_t coordinate) {
-        const int body = coordinate < 3 ? i : j;
-        return body >= 0 && body < moving_ ? plan_->column[3 * at(body) + coordinate % 3] : -1;
-      };
-      linear = matrix[k] == 0 || column(k / 6) < 0 || column(k % 6) < 0;
+      const int row = plan_->column_of(i, j, static_cast<int>(k / 6));
+      const int column = plan_->column_of(i, j, static_cast<int>(k % 6));
+      linear = matrix[k] == 0 || row < 0 || column < 0;
     }
   });
   return linear;

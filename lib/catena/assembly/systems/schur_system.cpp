@@ -241,7 +241,10 @@ void SchurSystem::solve_motion(std::span<const Lanes> Q, std::span<const Lanes> 
     return solve_with_masses(Q, gamma, qdd, lambda, scratch, counters);
   }
   // How often a solution is refined depends on it: one after the other.
-  std::vector<double> own_Q(Q.size()), own_gamma(gamma.size()), own_qdd(qdd.size()), own_lambda(lambda.size());
+  scratch.own_Q.resize(Q.size());
+  scratch.own_gamma.resize(gamma.size());
+  scratch.own_qdd.resize(qdd.size());
+  scratch.own_lambda.resize(lambda.size());
   const auto take = [](std::span<const Lanes> all, int lane, std::vector<double>& own) {
     for (std::size_t k = 0; k < own.size(); ++k) own[k] = all[k][lane];
   };
@@ -249,11 +252,11 @@ void SchurSystem::solve_motion(std::span<const Lanes> Q, std::span<const Lanes> 
     for (std::size_t k = 0; k < own.size(); ++k) all[k].set(lane, own[k]);
   };
   for (int lane = 0; lane < Lanes::count; ++lane) {
-    take(Q, lane, own_Q);
-    take(gamma, lane, own_gamma);
-    solve_motion(own_Q, own_gamma, own_qdd, own_lambda, counters);
-    give(own_qdd, lane, qdd);
-    give(own_lambda, lane, lambda);
+    take(Q, lane, scratch.own_Q);
+    take(gamma, lane, scratch.own_gamma);
+    solve_motion(scratch.own_Q, scratch.own_gamma, scratch.own_qdd, scratch.own_lambda, counters);
+    give(scratch.own_qdd, lane, qdd);
+    give(scratch.own_lambda, lane, lambda);
   }
 }
 

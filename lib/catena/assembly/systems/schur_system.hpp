@@ -51,6 +51,7 @@ struct SchurScratch {
 };
 struct SchurLanes : SchurScratch<Lanes> {
   std::vector<Lanes> work;
+  std::vector<double> own_Q, own_gamma, own_qdd, own_lambda;  // of one lane, where each is solved for by itself
 };
 
 class SchurSystem {

@@ -124,17 +124,17 @@ VertexMinimum::VertexMinimum(std::span<const double> A, std::span<const double> 
     polytope_ = std::move(polytope);
 }
 
-double VertexMinimum::least(std::span<const double> a) const {
+std::optional<double> VertexMinimum::least(std::span<const double> a) {
   Polytope& p = *polytope_;
   const Eigen::VectorXd cost = Eigen::Map<const Eigen::VectorXd>(a.data(), static_cast<Index>(a.size()));
   for (int step = 0; step < most_steps; ++step) {
     const Index enters = p.entering(cost, step);
     const Index leaves = enters < 0 ? -1 : p.leaving(enters);
-    if (leaves < 0) break;
+    if (leaves < 0) return p.value(cost);
     p.basis[static_cast<std::size_t>(leaves)] = enters;
     p.factorize();
   }
-  return p.value(cost);
+  return {};
 }
 
 std::vector<std::size_t> VertexMinimum::support() const {

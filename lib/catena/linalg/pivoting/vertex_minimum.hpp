@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,9 +23,10 @@ class VertexMinimum {
   VertexMinimum(std::span<const double> A, std::span<const double> b);
 
   bool empty() const { return !polytope_; }
-  /// The least value for the coefficients a; not of an empty polytope.
-  double least(std::span<const double> a) const;
-  /// Columns that are not zero at the corner of the last search.
+  /// The least value for the coefficients a, not of an empty polytope; nothing where no corner was found to be the
+  /// least. The search goes on from the last corner, of copies as well.
+  std::optional<double> least(std::span<const double> a);
+  /// Columns that are not zero at the corner of the last search, which found one.
   std::vector<std::size_t> support() const;
 
  private:

@@ -9,6 +9,7 @@
 #include "catena/results/result_storage.hpp"
 #include "catena/scene/designing/measured_design.hpp"
 #include "catena/scene/designing/missing_derivatives.hpp"
+#include "catena/scene/designing/no_rows.hpp"
 
 namespace catena {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 constexpr double part_of_parameter = 1e-4;
 // A column that is below this everywhere, in SI units, is rounding of zero, and so are its differences.
 constexpr double no_output = 1e-13;
-// m and rad: a place that is an equilibrium is found again to this.
+// Length scales or rad: a place that is an equilibrium is found again to this.
 constexpr double same_place = 1e-6;
 // Instants of rows are multiples of a step, rounded to 1e-16.
 constexpr double same_instant = 1e-12;
@@ -74,12 +75,13 @@ class Comparison {
     place_.set_parameters = modes.set_parameters;
     SystemState state = start_;
     moves_ = go_to_place(context_.seeds, state);
+    const double length = Evaluator(Plan::make(*context_.model), *context_.model).length_scale();
     for (std::size_t c = 0; moves_ && c < start_.q.size(); ++c)
-      moves_ = std::abs(state.q[c] - start_.q[c]) <= same_place;
+      moves_ = std::abs(state.q[c] - start_.q[c]) <= same_place * (c % 3 == 2 ? 1 : length);
   }
 
   bool go_to_place(const ParameterSeeds& seeds, SystemState& state) {
-    KeptRows none(nullptr);
+    NoRows none;
     AnalysisResult found;
     InnerRun run{.seeds = seeds, .state = state, .rows = none};
     return run_inner(context_, place_, run, found) && found.report.ok();
@@ -93,7 +95,10 @@ class Comparison {
       ParameterSeeds seeds = context_.seeds;
       seeds.push_back({context_.task.design_parameters[p], at});
       SystemState state = start_;
-      if (moves_) go_to_place(seeds, state);
+      if (moves_ && !go_to_place(seeds, state)) {
+        doubt(names_[p], fmt::format("at {:.12g} no equilibrium is found for the modes", at));
+        return false;
+      }
       InnerRun run{.seeds = seeds, .state = state, .rows = rows[side]};
       run_inner(context_, task, run, shifted[side]);
       if (shifted[side].report.ok()) continue;

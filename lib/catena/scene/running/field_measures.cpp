@@ -2,24 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "catena/scene/running/analysis_run.hpp"
 
 namespace catena {
 namespace {
 
-/// A number of the report, which is written beside the fields.
-std::optional<double> reported_number(const AnalysisReport& report, std::string_view name) {
-  if (name == "bodies") return report.bodies;
-  if (name == "rows") return report.rows;
-  if (name == "islands") return report.islands;
-  if (name == "rank") return report.rank;
-  if (name == "dof") return report.dof;
-  if (name == "mobility") return report.mobility;
-  return {};
+/// Numbers of the report, which are written beside the fields.
+std::array<std::pair<std::string_view, std::optional<int>>, 6> reported_numbers(const AnalysisReport& report) {
+  return {{{"bodies", report.bodies},
+           {"rows", report.rows},
+           {"islands", report.islands},
+           {"rank", report.rank},
+           {"dof", report.dof},
+           {"mobility", report.mobility}}};
 }
 
 /// The number that a measure of the kind `field` names, if the result has it.
@@ -40,7 +43,10 @@ std::optional<double> reported(const AnalysisResult& result, const MeasureReques
       }
     }
   }
-  return request.number == 0 ? reported_number(result.report, request.field) : std::nullopt;
+  for (const auto& [name, number] : reported_numbers(result.report)) {
+    if (number && request.number == 0 && name == request.field) return *number;
+  }
+  return {};
 }
 
 }  // namespace
@@ -58,11 +64,14 @@ void add_field_measures(const AnalysisContext& context, AnalysisResult& result) 
       result.gradient_parameters = context.design->names;
     }
     if (!measure.value) {
-      std::string names;
-      for (const NamedField& field : result.fields) names += (names.empty() ? "" : ", ") + field.name;
+      std::vector<std::string_view> has;
+      for (const NamedField& field : result.fields) has.push_back(field.name);
+      for (const auto& [name, number] : reported_numbers(result.report)) {
+        if (number) has.push_back(name);
+      }
       measure.trouble = fmt::format("{} reports no number {}{}{} (it has {})", context.task.type(), request.field,
                                     request.number > 0 ? fmt::format("[{}]", request.number) : "",
-                                    request.part.empty() ? "" : "." + request.part, names.empty() ? "none" : names);
+                                    request.part.empty() ? "" : "." + request.part, fmt::join(has, ", "));
       result.report.warnings.push_back(fmt::format("measure \"{}\": {}", request.name, measure.trouble));
     }
     measure.unit = request.field == "energy"   ? "J"

@@ -16,7 +16,6 @@ constexpr double steady_error[] = {0,      0.5,     0.0833,  0.0417,  0.0264,  0
                                    0.0114, 0.00936, 0.00789, 0.00679, 0.00592, 0.00524, 0.00468};
 constexpr double first_step = 0.25;      // parts of the time scale, times the root of the tolerance
 constexpr double removed_part = 0.1;     // that counts of an error which the projection removes
-constexpr double unusual_dip = 0.3;      // part of the usual ratio of pivots, below which Runge-Kutta takes over
 constexpr double forgotten = 0.97;       // of what was usual, at every step
 constexpr double residual_bound = 1e-6;  // of positions after their projection, in length scales or rad
 constexpr std::size_t block = 256;       // entries that stay in the first cache while all differences are added
@@ -72,7 +71,7 @@ void Adams::observe_ratio() {
 
 bool Adams::dips() const {
   const double ratio = motion_.equations().smallest_pivot_ratio();
-  return ratio < std::min(dependence::singular_passage * usual_ratio_, unusual_dip * largest_ratio_);
+  return ratio < std::min(dependence::singular_passage * usual_ratio_, dependence::unusual * largest_ratio_);
 }
 
 // Positions, velocities and derivatives that the polynomial through the last k points gives for t_new_.

@@ -26,14 +26,16 @@ class BranchTurn {
 
   bool is_under_way() const { return turning_; }
   bool is_given_up() const { return crosses_; }
-  /// A step of size h (s) has left its branch.
-  void begin(double h) {
+  /// A step of size h (s) has left its branch, which passes another one at this distance (rad, length scales).
+  void begin(double h, double gap) {
     if (!turning_) {
       ++turns_;
       tries_ = 0;
       step_that_left_ = h;
+      gap_before_ = gap_;
     }
     turning_ = true;
+    gap_ = gap;
   }
   /// Counts a try of a step that ends at t (s). True: the turn took too many, and is given up.
   bool gives_up(double t) {
@@ -41,11 +43,14 @@ class BranchTurn {
     turning_ = false;
     crosses_ = true;
     --turns_;
-    go_straight_on(t);
+    go_straight_on(t, std::exchange(gap_, gap_before_));
     return true;
   }
-  /// A step that ends at t (s) goes straight on where its branch turns.
-  void go_straight_on(double t) { straight_on_.add(t); }
+  /// A step that ends at t (s) goes straight on where its branch turns, at this distance from another one.
+  void go_straight_on(double t, double gap) {
+    straight_on_.add(t);
+    if (straight_on_.times == 1) gap_straight_on_ = gap;
+  }
   /// Such a step passes where branches cross, or cannot be judged; once a passage.
   void cross(double t) {
     if (!std::exchange(noted_, true)) crossings_.add(t);
@@ -58,6 +63,10 @@ class BranchTurn {
 
   double step_that_left() const { return step_that_left_; }
   std::int64_t turns() const { return turns_; }
+  /// Of the last turn, and of the first passage straight on where the branch turns: how far from each other the
+  /// branches pass, rad or length scales.
+  double gap_of_turn() const { return gap_; }
+  double gap_straight_on() const { return gap_straight_on_; }
   /// Straight on where the branch turns, where branches cross, and unjudged.
   const PassageCount& straight_on() const { return straight_on_; }
   const PassageCount& crossings() const { return crossings_; }
@@ -69,7 +78,9 @@ class BranchTurn {
   static constexpr int most_tries = 500;
   bool turning_ = false, crosses_ = false, noted_ = false;
   int tries_ = 0;
-  double step_that_left_ = 0;  // s, the first in this passage
+  double step_that_left_ = 0;        // s, the first in this passage
+  double gap_ = 0, gap_before_ = 0;  // of the last turn, and of the one before
+  double gap_straight_on_ = 0;
   std::int64_t turns_ = 0;
   PassageCount straight_on_, crossings_, unjudged_;
 };

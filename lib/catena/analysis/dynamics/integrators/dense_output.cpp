@@ -21,7 +21,7 @@ void DenseOutput::set(const StepEnds& ends, const Stages& stages) {
     r_[1][i] = bend;
     r_[2][i] = difference - ends.h * ends.slope1[i] - bend;
   }
-  for (std::size_t k = 0; k < 4; ++k) stages.combine(dormand_prince_8().interpolant[k], ends.h, nullptr, r_[3 + k]);
+  for (std::size_t k = 0; k < 4; ++k) stages.combine(dormand_prince_8().interpolant[k], ends.h, {}, r_[3 + k]);
   ready_ = true;
 }
 

@@ -10,10 +10,11 @@ namespace {
 constexpr double largest_residual = 1e-6;  // of positions after their projection, in length scales or rad
 constexpr double largest_drift = 1e-2;     // of positions that are not projected
 
-// What drivers do follows from multipliers, which a singular position leaves open.
-bool is_driven(EquationsOfMotion& equations) {
+// Whether all energy is accounted for: what drivers do follows from multipliers, which a singular position leaves open.
+bool keeps_account(EquationsOfMotion& equations) {
   const auto& elements = equations.evaluator().model().elements;
-  return std::any_of(elements.begin(), elements.end(), [](const auto& e) { return e.kind == ElementKind::driver; });
+  const auto drives = [](const auto& element) { return element.kind == ElementKind::driver; };
+  return !equations.state_loads() && std::none_of(elements.begin(), elements.end(), drives);
 }
 
 }  // namespace
@@ -25,7 +26,9 @@ RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options)
       dense_(motion_.size()),
       order_(options.order, options.may_lower_order),
       ratios_(stage_.size(), options.usual_ratio),
-      trials_(options.tolerance) {
+      trials_(options.tolerance),
+      energy_(motion_, stage_.size(), motion_.equations().evaluator().length_scale(),
+              !is_fixed() && keeps_account(motion_.equations())) {
   for (std::vector<double>* y : {&y_, &y_before_, &y_new_, &y_stage_, &slope_, &slope_new_}) {
     y->assign(motion_.size(), 0.0);
   }
@@ -38,9 +41,7 @@ RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options)
   if (options.keeping == ConstraintKeeping::partition) {
     partition_ = std::make_unique<CoordinatePartition>(motion_.equations());
   }
-  const bool balances = !is_driven(motion_.equations()) && !is_fixed() && !motion_.equations().state_loads();
   if (BranchKeeping::judges(motion_.equations())) branches_ = std::make_unique<BranchKeeping>(motion_.equations());
-  energy_ = std::make_unique<StepEnergy>(motion_, stage_.size(), scale_.length, balances);
 }
 
 bool RungeKutta::start(double t, std::span<const double> y) {
@@ -67,7 +68,7 @@ bool RungeKutta::follow_motion() {
   }
   if (projects()) return true;
   double wanted = scale_.rate();
-  if (options_.fixed_step > 0) wanted = std::min(wanted, 1 / options_.fixed_step);
+  if (is_fixed()) wanted = std::min(wanted, 1 / options_.fixed_step);
   if (stabilisation_ > 0.5 * wanted && stabilisation_ < 2 * wanted) return true;
   stabilisation_ = wanted;
   return derivative(t_, Side::after, y_, slope_);
@@ -131,11 +132,11 @@ bool RungeKutta::evaluate_stages(double h) {
   if (watching) {
     motion_.equations().evaluator().set_time(t_, h > 0 ? Side::after : Side::before);
     motion_.equations().evaluator().set_configuration(motion_.q(std::span<const double>(y_)));
-    energy_->note_power(motion_, 0, y_);
+    energy_.note_power(motion_, 0, y_);
   }
   ratios_.begin();
   for (std::size_t s = 1; s < static_cast<std::size_t>(table.stages); ++s) {
-    stage_.combine(table.a[s], h, y_.data(), y_stage_);
+    stage_.combine(table.a[s], h, y_, y_stage_);
     // The last stages lie at the end exactly: a function of time may jump there.
     const bool at_end = table.c[s] == 1;
     const double t = at_end ? t_new_ : t_ + table.c[s] * h;
@@ -144,12 +145,12 @@ bool RungeKutta::evaluate_stages(double h) {
     if (partitions() && !solve_dependent(t, side, y_stage_)) return false;
     if (!derivative(t, side, y_stage_, stage_[s])) return false;
     ratios_.note(s, motion_.equations().smallest_pivot_ratio());
-    if (watching) energy_->note_power(motion_, s, y_stage_);
+    if (watching) energy_.note_power(motion_, s, y_stage_);
   }
   if (trials_.project_stages() || watching) ratios_.find_roughness(table.b);
-  stage_.combine(table.b, h, y_.data(), y_new_);
-  stage_.combine(table.error, 1, nullptr, error_);
-  if (table.order == 8) stage_.combine(table.error_low, 1, nullptr, error_low_);
+  stage_.combine(table.b, h, y_, y_new_);
+  stage_.combine(table.error, 1, {}, error_);
+  if (table.order == 8) stage_.combine(table.error_low, 1, {}, error_low_);
   return true;
 }
 
@@ -191,19 +192,19 @@ bool RungeKutta::finish_step() {
 }
 
 bool RungeKutta::watches_energy() const {
-  return projects() && energy_->watches(ratios_.at_start(), trials_.project_stages());
+  return projects() && energy_.watches(ratios_.at_start(), trials_.project_stages());
 }
 
 // Balances the step from y_ to y_new_, of size h, which was projected.
 bool RungeKutta::restore_energy(double h) {
-  return energy_->restore(motion_, {.t = t_new_,
-                                    .h = h,
-                                    .y_before = y_,
-                                    .y = y_new_,
-                                    .error = error_,
-                                    .errors = step_error_ + rounding_of_velocity(h),
-                                    .scale = scale_,
-                                    .weights = tableau().b});
+  return energy_.restore(motion_, {.t = t_new_,
+                                   .h = h,
+                                   .y_before = y_,
+                                   .y = y_new_,
+                                   .error = error_,
+                                   .errors = step_error_ + rounding_of_velocity(h),
+                                   .scale = scale_,
+                                   .weights = tableau().b});
 }
 
 }  // namespace catena

@@ -157,7 +157,7 @@ class RungeKutta final : public Integrator {
   StageRatios ratios_;
   CrossingTrials trials_;
   BranchTurn turn_;
-  std::unique_ptr<StepEnergy> energy_;
+  StepEnergy energy_;
   bool crossing_ = false;  // steps are projected that are not elsewhere
   std::int64_t projected_steps_ = 0;
   double step_error_ = 1;  // of the step that is accepted, in tolerances, at least 1

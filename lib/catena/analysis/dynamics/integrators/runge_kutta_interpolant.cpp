@@ -26,7 +26,7 @@ bool RungeKutta::prepare_interpolant() {
   const double h = t_ - t_before_;
   stage_[12] = slope_;
   for (std::size_t s = 13; s < 16; ++s) {
-    stage_.combine(table.a[s], h, y_before_.data(), y_stage_);
+    stage_.combine(table.a[s], h, y_before_, y_stage_);
     const double t = t_before_ + table.c[s] * h;
     const auto evaluate = [&](bool projected) {
       return (!projected || project_stage(t, Side::after)) && motion_.derivative(t, Side::after, y_stage_, stage_[s]);

@@ -30,14 +30,14 @@ void RungeKutta::remark_on_branches(std::vector<std::string>& remarks) const {
     remarks.push_back(
         fmt::format("{} times the motion turned where branches pass each other, the last time at a distance "
                     "of {:.2g} rad or length scales: steps there were shortened to it",
-                    turn_.turns(), branches_->gap()));
+                    turn_.turns(), turn_.gap_of_turn()));
   if (turn_.straight_on().times > 0) {
-    const bool fixed = options_.fixed_step > 0;
+    const bool fixed = is_fixed();
     remarks.push_back(
         fmt::format("at {} the motion went straight on where two branches pass each other at a distance of "
                     "{:.2g} rad or length scales, too near for {} to follow the one that turns: what comes after is "
                     "right if they cross, as for dimensions that agree exactly; else {}",
-                    instants_of(turn_.straight_on()), branches_->gap(), fixed ? "steps of this length" : "steps",
+                    instants_of(turn_.straight_on()), turn_.gap_straight_on(), fixed ? "steps of this length" : "steps",
                     fixed ? "take shorter ones" : "change those by 1e-9 or more"));
   }
   if (turn_.crossings().times > 0) {

@@ -63,7 +63,7 @@ bool RungeKutta::leaves_branch(double h) {
   const double end = pivot_ratio();
   const bool near = std::min({ratios_.smallest(), ratios_.at_start(), end}) < dependence::singular_passage;
   if (!branches_) {
-    if (near && motion_.equations().plan().rows > 0) turn_.pass_unjudged(t_new_);
+    if (near && equations.plan().rows > 0) turn_.pass_unjudged(t_new_);
     return false;
   }
   const double before = std::sqrt(ratios_.at_start()), s = before / (before + std::sqrt(end));
@@ -80,7 +80,7 @@ bool RungeKutta::leaves_branch(double h) {
   const BranchKeeping::Course course = branches_->course(equations, q0, q1, middle);
   evaluator.go_to_curve_places(places);
   evaluator.set_configuration(q1);
-  if (course == BranchKeeping::Course::left_within_rounding) turn_.go_straight_on(t_new_);
+  if (course == BranchKeeping::Course::left_within_rounding) turn_.go_straight_on(t_new_, branches_->gap());
   if (course == BranchKeeping::Course::crossed) turn_.cross(t_new_);
   if (course == BranchKeeping::Course::unjudged && near) turn_.pass_unjudged(t_new_);
   return course == BranchKeeping::Course::left;
@@ -154,11 +154,11 @@ RungeKutta::Trial RungeKutta::try_step(double limit, double& usual) {
   if (!finish_step()) return cut_short(h);
   if (projects() && !turn_.is_given_up() && leaves_branch(h)) {
     if (!is_fixed()) {
-      turn_.begin(h);
+      turn_.begin(h, branches_->gap());
       reject(BranchTurn::shortened * h);
       return Trial::again;
     }
-    turn_.go_straight_on(t_new_);
+    turn_.go_straight_on(t_new_, branches_->gap());
   }
   accept(judged.growth, std::max(usual, h));
   return Trial::made;

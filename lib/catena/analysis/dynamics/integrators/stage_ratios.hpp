@@ -46,7 +46,7 @@ class StageRatios {
   double smallest() const { return smallest_; }
 
   /// Whether a singular position lies within the step. Light parts make all ratios small without any.
-  bool dip() const { return smallest_ < std::min(dependence::singular_passage, ratio_dip * largest_); }
+  bool dip() const { return smallest_ < std::min(dependence::singular_passage, dependence::unusual * largest_); }
 
   void find_roughness(const StageSum& weights) {
     roughness_ = 0;
@@ -59,9 +59,6 @@ class StageRatios {
   double roughness() const { return roughness_; }
 
  private:
-  /// A stage counts whose ratio is this much smaller than that of others.
-  static constexpr double ratio_dip = 0.3;
-
   std::vector<double> of_stage_;
   double smallest_ = 1, largest_ = 1, start_ = 1, usual_ = 1e-300, roughness_ = 0;
 };

@@ -17,8 +17,8 @@ class Stages {
   std::vector<double>& operator[](std::size_t stage) { return slope_[stage]; }
   const std::vector<double>& operator[](std::size_t stage) const { return slope_[stage]; }
 
-  /// out = from + h sum weight k; `from` may be nullptr.
-  void combine(const StageSum& sum, double h, const double* from, std::span<double> out) const;
+  /// out = from + h sum weight k; `from` may be empty.
+  void combine(const StageSum& sum, double h, std::span<const double> from, std::span<double> out) const;
   /// The same of one entry, without h.
   double sum(const StageSum& weights, std::size_t entry) const {
     double all = 0;

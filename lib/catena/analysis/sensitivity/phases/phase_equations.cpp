@@ -302,7 +302,7 @@ void PhaseEquations::contacts(const Design& design, std::span<const DesignScalar
 bool PhaseEquations::project(const Design& design, std::span<const DesignScalar> anchor, std::span<DesignScalar> q,
                              std::span<DesignScalar> qd) {
   DesignMechanism& mechanism = design.mechanism;
-  Vector bare(q.size());
+  DesignVector bare(q.size());
   for (const bool velocity : {false, true}) {
     const std::span<DesignScalar> part = velocity ? qd : q;
     for (std::size_t c = 0; c < bare.size(); ++c) {
@@ -336,7 +336,7 @@ bool PhaseEquations::jump(const Design& design, const VelocityJump& jump, const 
       coupled.push_back(
           {place.place, slide_row(place.place), design.places[place.place].mu * DesignScalar(place.direction)});
   }
-  Vector blow(f_.size());
+  DesignVector blow(f_.size());
   mechanism.set_state(q);
   const int struck = strike ? plan().plan_body[at(strike->body)] : -1;
   if (struck >= 0 && struck < plan().moving) {
@@ -354,7 +354,7 @@ bool PhaseEquations::jump(const Design& design, const VelocityJump& jump, const 
   for (std::size_t c = 0; c < f_.size(); ++c)
     f_[c] = c < at(3 * plan().moving) ? mechanism.mass(static_cast<int>(c)).v * qd[c].v + blow[c].v : 0;
   if (!solve_values(design, coupled)) return false;
-  Vector after(qd.size()), impulse(b_.size());
+  DesignVector after(qd.size()), impulse(b_.size());
   for (const int c : plan().coordinate) after[at(c)] = DesignScalar(f_[at(c)]);
   set_values(b_, impulse);
   for (std::size_t l = 0; l < coupled.size(); ++l) impulse[at(coupled[l].slide_row)] = DesignScalar(-sizes_[l]);

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "catena/analysis/contact/motion_phase.hpp"
+#include "catena/analysis/sensitivity/design_steps.hpp"
 #include "catena/analysis/sensitivity/phases/design_places.hpp"
 #include "catena/analysis/sensitivity/saddle_system.hpp"
 #include "catena/columns/design_state.hpp"
@@ -35,7 +36,6 @@ struct DesignStrike {
 
 class PhaseEquations {
  public:
-  using Vector = std::vector<DesignScalar>;
   /// A mechanism with derivatives by some parameters, and its places.
   struct Design {
     DesignMechanism& mechanism;
@@ -109,7 +109,7 @@ class PhaseEquations {
   std::vector<double> sizes_, slope_;  // of friction forces; d(f + mu sigma N)/df, row by row
   std::vector<Response> response_;
   std::vector<Taylor<DesignScalar>> rows_;
-  Vector loads_, forces_, unit_;
+  DesignVector loads_, forces_, unit_;
 };
 
 }  // namespace catena

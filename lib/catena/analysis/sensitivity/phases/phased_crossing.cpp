@@ -26,7 +26,7 @@ std::vector<int> PhasedDerivatives::released_in(const VelocityJump& jump) const 
 }
 
 // Places that close at one instant must do so whatever the parameters are.
-void PhasedDerivatives::check_hits(const VelocityJump& jump, std::size_t k, const Vector& there) {
+void PhasedDerivatives::check_hits(const VelocityJump& jump, std::size_t k, const DesignVector& there) {
   Group& group = groups()[k];
   const auto hits = std::count_if(jump.places.begin(), jump.places.end(), [](const auto& p) { return p.was_hit; });
   if (hits < 2) return;
@@ -53,8 +53,8 @@ std::span<const double> PhasedDerivatives::rates_of_group(const std::vector<doub
 
 // One step of a jump, of all groups, with the equations that are held.
 template <class Target>
-bool PhasedDerivatives::jump_on(const VelocityJump& jump, const std::vector<double>& rate, std::vector<Vector>& there,
-                                Target&& target) {
+bool PhasedDerivatives::jump_on(const VelocityJump& jump, const std::vector<double>& rate,
+                                std::vector<DesignVector>& there, Target&& target) {
   if (!factorize(to_, Side::after, there.front())) return false;
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
     groups()[k].mechanism.set_time(to_, Side::after);
@@ -66,13 +66,14 @@ bool PhasedDerivatives::jump_on(const VelocityJump& jump, const std::vector<doub
 }
 
 // A jump of velocities along the instant: what is there first, then the impact that follows.
-bool PhasedDerivatives::jump(const VelocityJump& jump, const std::vector<double>& rate, std::vector<Vector>& there) {
+bool PhasedDerivatives::jump(const VelocityJump& jump, const std::vector<double>& rate,
+                             std::vector<DesignVector>& there) {
   std::vector<int> released = released_in(jump);
   if (jump.meets_constraints) {
     VelocityJump first = jump;
     first.places.clear();
     equations_->hold(released, {});
-    if (!jump_on(first, rate, there, [&](std::size_t) { return Vector(at(plan().rows)); })) return false;
+    if (!jump_on(first, rate, there, [&](std::size_t) { return DesignVector(at(plan().rows)); })) return false;
   }
   if (jump.places.empty()) return true;
   if (jump.other_law || jump.settles) {
@@ -95,7 +96,7 @@ bool PhasedDerivatives::jump(const VelocityJump& jump, const std::vector<double>
     Group& group = groups()[k];
     group.mechanism.set_state(q(there[k]), qd(there[k]));
     group.mechanism.rows(group.rows);
-    Vector target(at(plan().rows));
+    DesignVector target(at(plan().rows));
     for (const ImpactPlace& place : impact.places) {
       if (!place.rebounds) continue;
       const std::size_t row = at(equations_->gap_row(place.place));
@@ -106,7 +107,8 @@ bool PhasedDerivatives::jump(const VelocityJump& jump, const std::vector<double>
 }
 
 // Where an instant is not known it is left aside; see end_crossing().
-void PhasedDerivatives::move_along(Vector& y, const Vector& slope, std::span<const double> rate, double sign) {
+void PhasedDerivatives::move_along(DesignVector& y, const DesignVector& slope, std::span<const double> rate,
+                                   double sign) {
   for (std::size_t i = 0; i < y.size(); ++i) {
     for (std::size_t p = 0; p < rate.size(); ++p) {
       if (!std::isnan(rate[p])) y[i].d[p] += sign * slope[i].v * rate[p];
@@ -115,7 +117,7 @@ void PhasedDerivatives::move_along(Vector& y, const Vector& slope, std::span<con
 }
 
 // An instant that is not known matters only where the motion jumps or bends.
-void PhasedDerivatives::end_crossing(std::size_t k, const std::vector<double>& rate, const Vector& slope_before,
+void PhasedDerivatives::end_crossing(std::size_t k, const std::vector<double>& rate, const DesignVector& slope_before,
                                      bool jumps) {
   double change = 0, size = 0;
   for (std::size_t i = 0; i < stage_.size(); ++i) {
@@ -134,7 +136,7 @@ void PhasedDerivatives::end_crossing(std::size_t k, const std::vector<double>& r
 
 bool PhasedDerivatives::cross(const MotionPhase& phase, const std::vector<double>& rate) {
   lose_.assign(tracks_.size(), {});
-  std::vector<Vector> there, slope_before;
+  std::vector<DesignVector> there, slope_before;
   if (!factorize(to_, Side::before, tracks_.front().end)) return singular(to_);
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
     if (!slope(k, to_, Side::before, tracks_[k].end, stage_)) return singular(to_);
@@ -149,7 +151,7 @@ bool PhasedDerivatives::cross(const MotionPhase& phase, const std::vector<double
   equations_->hold(phase_.released, phase_.states);
   // Functions of time that jump while the same equations hold.
   const bool meets = phase_.functions_jump && phase_.jumps.empty();
-  const auto nothing = [&](std::size_t) { return Vector(at(plan().rows)); };
+  const auto nothing = [&](std::size_t) { return DesignVector(at(plan().rows)); };
   if (meets && !jump_on({.meets_constraints = true}, rate, there, nothing)) return singular(to_);
   if (!factorize(to_, Side::after, there.front())) return singular(to_);
   for (std::size_t k = 0; k < tracks_.size(); ++k) {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "catena/analysis/sensitivity/design_steps.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -36,9 +35,9 @@ PhasedDerivatives::PhasedDerivatives(PhasedDesign design, GivenByModel start, st
   length_scale_ = std::max(evaluator().length_scale(), 1.0);
   for (const Group& group : groups()) {
     Track& track = tracks_.emplace_back();
-    for (Vector* y : {&track.begin, &track.end, &track.before}) y->resize(2 * n_);
+    for (DesignVector* y : {&track.begin, &track.end, &track.before}) y->resize(2 * n_);
     track.anchor.resize(at(plan().rows));
-    track.stage.assign(16, Vector(2 * n_));
+    track.stage.assign(16, DesignVector(2 * n_));
     places_.push_back(design_places(group.mechanism.model(), contacts_.points));
     if (std::string trouble = trouble_with_places(group.mechanism.model()); !trouble.empty()) fail(std::move(trouble));
   }
@@ -64,12 +63,12 @@ bool PhasedDerivatives::not_shown(double t) {
       fmt::format("the motion could not be looked at at t = {:.9g} s, beyond which its derivatives are not known", t));
 }
 
-bool PhasedDerivatives::factorize(double t, Side side, const Vector& y) {
+bool PhasedDerivatives::factorize(double t, Side side, const DesignVector& y) {
   return equations_->factorize(t, side, std::span(y).first(n_), groups().front().mechanism);
 }
 
 // y' at y; the factors belong to its values, accelerations and multipliers of the group to it.
-bool PhasedDerivatives::slope(std::size_t k, double t, Side side, const Vector& y, Vector& out) {
+bool PhasedDerivatives::slope(std::size_t k, double t, Side side, const DesignVector& y, DesignVector& out) {
   Group& group = groups()[k];
   group.mechanism.set_time(t, side);
   const std::span<const DesignScalar> q = std::span(y).first(n_), qd = std::span(y).subspan(n_);
@@ -195,7 +194,7 @@ bool PhasedDerivatives::make_step(double h) {
 }
 
 // Values are the motion's own: angles may have been moved by whole turns.
-bool PhasedDerivatives::take_values(const MotionStretch& stretch, double t, Vector Track::*y) {
+bool PhasedDerivatives::take_values(const MotionStretch& stretch, double t, DesignVector Track::*y) {
   const std::optional<Snapshot> state = stretch.at(t);
   if (!state) return not_shown(t);
   std::vector<CurvePlace> places;
@@ -211,7 +210,7 @@ bool PhasedDerivatives::take_values(const MotionStretch& stretch, double t, Vect
   return true;
 }
 
-bool PhasedDerivatives::project(double t, Side side, Vector Track::*y) {
+bool PhasedDerivatives::project(double t, Side side, DesignVector Track::*y) {
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
     Track& track = tracks_[k];
     if (k == 0 && !factorize(t, side, track.*y)) return singular(t);
@@ -247,7 +246,7 @@ void PhasedDerivatives::cover(const MotionStretch& stretch) {
   if (instant.order == 1 || instant.moves()) cross_functions();
 }
 
-const PhasedDerivatives::Vector& PhasedDerivatives::end_of_step(const Track& track) const {
+const DesignVector& PhasedDerivatives::end_of_step(const Track& track) const {
   return crossed_ == to_ ? track.before : track.end;
 }
 
@@ -257,7 +256,7 @@ bool PhasedDerivatives::prepare_interpolant() {
   const double h = to_ - from_;
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
     Track& track = tracks_[k];
-    const Vector& end = end_of_step(track);
+    const DesignVector& end = end_of_step(track);
     if (!factorize(to_, Side::before, end)) return singular(to_);
     if (!slope(k, to_, Side::before, end, track.stage[12])) return singular(to_);
     for (std::size_t s = 13; s < 16; ++s) {
@@ -311,14 +310,14 @@ bool PhasedDerivatives::find(const Snapshot& snapshot) {
 bool PhasedDerivatives::find_before(const Snapshot& snapshot) {
   if (crossed_ != snapshot.t || !why().empty()) return false;
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
-    const Vector& y = tracks_[k].before;
+    const DesignVector& y = tracks_[k].before;
     if (k == 0 && !factorize(snapshot.t, Side::before, y)) return singular(snapshot.t);
     if (!take_state(k, snapshot, Side::before, y)) return false;
   }
   return true;
 }
 
-bool PhasedDerivatives::take_state(std::size_t k, const Snapshot& snapshot, Side side, const Vector& y) {
+bool PhasedDerivatives::take_state(std::size_t k, const Snapshot& snapshot, Side side, const DesignVector& y) {
   Group& group = groups()[k];
   std::copy_n(y.begin(), n_, group.q.begin());
   std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(n_), n_, group.qd.begin());

@@ -70,29 +70,28 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   int seen_order() const override { return 3; }
 
  private:
-  using Vector = std::vector<DesignScalar>;
   /// Of one group: y = [q, qd] where the present step begins, where it ends, just before the last crossing; its stages
   /// and those of the interpolant; and what its rows keep, see PhaseEquations::project().
   struct Track {
-    Vector begin, end, before, anchor;
-    std::vector<Vector> stage;
+    DesignVector begin, end, before, anchor;
+    std::vector<DesignVector> stage;
   };
   PhaseEquations::Design design(std::size_t group);
-  std::span<DesignScalar> q(Vector& y) const { return std::span(y).first(n_); }
-  std::span<DesignScalar> qd(Vector& y) const { return std::span(y).subspan(n_); }
+  std::span<DesignScalar> q(DesignVector& y) const { return std::span(y).first(n_); }
+  std::span<DesignScalar> qd(DesignVector& y) const { return std::span(y).subspan(n_); }
   bool start(double t, std::span<const double> q, std::span<const double> qd);
   void find_anchors(std::size_t group);
   void check_rows(std::size_t group, double t, bool starts);
   void lose(std::size_t group, std::size_t p, Track& track);
-  bool take_values(const MotionStretch& stretch, double t, Vector Track::*y);
-  bool factorize(double t, Side side, const Vector& y);
-  bool slope(std::size_t group, double t, Side side, const Vector& y, Vector& out);
+  bool take_values(const MotionStretch& stretch, double t, DesignVector Track::*y);
+  bool factorize(double t, Side side, const DesignVector& y);
+  bool slope(std::size_t group, double t, Side side, const DesignVector& y, DesignVector& out);
   bool make_step(double h);
-  bool project(double t, Side side, Vector Track::*y);
+  bool project(double t, Side side, DesignVector Track::*y);
   bool prepare_interpolant();
   /// Before the crossing there, if the step ends with one.
-  const Vector& end_of_step(const Track& track) const;
-  bool take_state(std::size_t group, const Snapshot& snapshot, Side side, const Vector& y);
+  const DesignVector& end_of_step(const Track& track) const;
+  bool take_state(std::size_t group, const Snapshot& snapshot, Side side, const DesignVector& y);
   bool singular(double t);
   bool not_shown(double t);
   // Instants and crossings: phased_instants.cpp, phased_crossing.cpp.
@@ -105,14 +104,15 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   bool cross(const MotionPhase& phase, const std::vector<double>& rate);
   bool cross_functions();
   std::span<const double> rates_of_group(const std::vector<double>& rate, std::size_t group);
-  bool jump(const VelocityJump& jump, const std::vector<double>& rate, std::vector<Vector>& there);
+  bool jump(const VelocityJump& jump, const std::vector<double>& rate, std::vector<DesignVector>& there);
   template <class Target>
-  bool jump_on(const VelocityJump& jump, const std::vector<double>& rate, std::vector<Vector>& there, Target&& target);
+  bool jump_on(const VelocityJump& jump, const std::vector<double>& rate, std::vector<DesignVector>& there,
+               Target&& target);
   std::vector<int> released_in(const VelocityJump& jump) const;
-  void check_hits(const VelocityJump& jump, std::size_t group, const Vector& there);
-  void end_crossing(std::size_t group, const std::vector<double>& rate, const Vector& slope_before, bool jumps);
+  void check_hits(const VelocityJump& jump, std::size_t group, const DesignVector& there);
+  void end_crossing(std::size_t group, const std::vector<double>& rate, const DesignVector& slope_before, bool jumps);
   double rounding(std::size_t group, std::size_t p) const;
-  static void move_along(Vector& y, const Vector& slope, std::span<const double> rate, double sign);
+  static void move_along(DesignVector& y, const DesignVector& slope, std::span<const double> rate, double sign);
   DesignScalar end_value(std::size_t group, const WatchedPlace& watched);
   std::optional<double> rate_along(const MotionStretch& stretch, const std::function<std::optional<double>(double)>& f);
   static void note_instant(InstantRates& instants, double t, const std::vector<double>& rate);
@@ -145,7 +145,7 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   };
   std::map<std::size_t, Bounce> bounces_;  // by place, the last one
   std::string lost_;
-  Vector stage_, y_;
+  DesignVector stage_, y_;
 };
 
 }  // namespace catena

@@ -56,13 +56,9 @@ ElementMatrix transposed(const ElementMatrix& m) {
 }  // namespace
 
 std::vector<double> SpectrumDerivatives::weights_of(Metric metric) {
+  if (metric == Metric::lengths) return length_metric(evaluator());
   std::vector<double> weights(at(plan().coordinates()), 0.0);
-  const std::vector<double> radius = evaluator().attachment_radii();
-  const DesignMechanism& mechanism = groups().front().mechanism;
-  for (int c = 0; c < 3 * plan().moving; ++c) {
-    const double length = c % 3 == 2 ? radius[at(c / 3)] : 1;
-    weights[at(c)] = metric == Metric::masses ? mechanism.mass(c).v : length * length;
-  }
+  for (int c = 0; c < 3 * plan().moving; ++c) weights[at(c)] = groups().front().mechanism.mass(c).v;
   return weights;
 }
 

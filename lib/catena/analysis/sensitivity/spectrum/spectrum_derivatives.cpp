@@ -15,16 +15,23 @@ constexpr double balanced = 1e-6;
 /// Fills the metric (1, 1, radius^2) and Phi_q, and factors.
 bool factor_metric(Evaluator& evaluator, SaddleSystem& system, std::span<double> jacobian) {
   const Plan& plan = evaluator.plan();
-  const std::vector<double> radius = evaluator.attachment_radii();
   evaluator.start_jacobian(jacobian);
   evaluator.jacobian(jacobian);
-  if (!system.begin(std::span<const double>(jacobian).first(at(plan.trash_slot())))) return false;
-  for (int c = 0; c < 3 * plan.moving; ++c)
-    system.add_diagonal(c, c % 3 == 2 ? radius[at(c / 3)] * radius[at(c / 3)] : 1);
-  return system.factorize();
+  const std::vector<double> weight = length_metric(evaluator);
+  return system.factorize(std::span<const double>(jacobian).first(at(plan.trash_slot())), [&] {
+    for (int c = 0; c < 3 * plan.moving; ++c) system.add_diagonal(c, weight[at(c)]);
+  });
 }
 
 }  // namespace
+
+std::vector<double> length_metric(const Evaluator& evaluator) {
+  const Plan& plan = evaluator.plan();
+  const std::vector<double> radius = evaluator.attachment_radii();
+  std::vector<double> weights(at(plan.coordinates()), 0.0);
+  for (int c = 0; c < 3 * plan.moving; ++c) weights[at(c)] = c % 3 == 2 ? radius[at(c / 3)] * radius[at(c / 3)] : 1;
+  return weights;
+}
 
 std::optional<std::vector<double>> balancing_multipliers(Evaluator& evaluator, double t, std::span<const double> q) {
   const Plan& plan = evaluator.plan();
@@ -64,11 +71,12 @@ bool SpectrumDerivatives::is_in_balance() {
 // The place is an equilibrium, which moves with the parameters.
 bool SpectrumDerivatives::find_as_equilibrium(const Snapshot& snapshot) {
   SaddleSystem system(evaluator().shared_plan(), SaddleBlock::elements);
-  if (!system.begin(jacobian())) return false;
-  const auto add = [&](int i, int j, const ElementMatrix& m) { system.add_element(i, j, m); };
-  evaluator().visit_stiffness(rest_, add);
-  evaluator().visit_constraint_hessians(lambda_, add);
-  if (!system.factorize()) return false;
+  const bool factored = system.factorize(jacobian(), [&] {
+    const auto add = [&](int i, int j, const ElementMatrix& m) { system.add_element(i, j, m); };
+    evaluator().visit_stiffness(rest_, add);
+    evaluator().visit_constraint_hessians(lambda_, add);
+  });
+  if (!factored) return false;
   std::vector<double> f(rest_.size()), b(lambda_.size());
   for (Group& group : groups()) {
     lift_state(group, snapshot);
@@ -96,12 +104,17 @@ void SpectrumDerivatives::fill_residual(Group& group, double t) {
 
 // Multipliers balance the forces best wherever the place moves to,  W x + Phi_q^T lambda = Q,  Phi_q x = 0:  what they
 // leave over, W x, turns with the constraints, (dPhi_q) x.
+bool SpectrumDerivatives::find_multipliers(double t) {
+  const auto find_in = [&](Group& group) { return find_multipliers(group, t); };
+  return (factor_metric(evaluator(), metric_, values_) && std::all_of(groups().begin(), groups().end(), find_in)) ||
+         fail("constraints are singular");
+}
+
 bool SpectrumDerivatives::find_multipliers(Group& group, double t) {
   fill_residual(group, t);
   std::vector<double> f(rest_.size()), b(lambda_.size());
-  if (!factor_metric(evaluator(), metric_, values_)) return fail("constraints are singular");
   for (std::size_t c = 0; c < f.size(); ++c) f[c] = -group.loads[c].v;
-  if (!metric_.solve(f, b)) return fail("constraints are singular");
+  if (!metric_.solve(f, b)) return false;
   // As the rate of a motion along x, without derivatives of its own.
   const std::vector<DesignScalar> x(f.begin(), f.end());
   group.mechanism.set_state(group.q, x);
@@ -109,7 +122,7 @@ bool SpectrumDerivatives::find_multipliers(Group& group, double t) {
   for (std::size_t p = 0; p < at(group.count); ++p) {
     for (std::size_t c = 0; c < f.size(); ++c) f[c] = -group.loads[c].d[p];
     for (std::size_t r = 0; r < b.size(); ++r) b[r] = -group.rows[r].d.d[p];
-    if (!metric_.solve(f, b)) return fail("constraints are singular");
+    if (!metric_.solve(f, b)) return false;
     for (std::size_t r = 0; r < b.size(); ++r) group.lambda[r].d[p] = b[r];
   }
   return true;
@@ -127,9 +140,8 @@ bool SpectrumDerivatives::find(const Snapshot& snapshot) {
     if (!start.find_places(group.mechanism, group.count, group.q))
       return fail("the place has no derivative: " + start.why());
     if (!start.lack().empty()) lack_derivatives(start.lack());
-    if (!find_multipliers(group, snapshot.t)) return false;
   }
-  return true;
+  return find_multipliers(snapshot.t);
 }
 
 bool SpectrumDerivatives::find_held(const Snapshot& snapshot, const StateDerivatives& equilibrium) {
@@ -145,9 +157,8 @@ bool SpectrumDerivatives::find_held(const Snapshot& snapshot, const StateDerivat
       group.q[c].d = moved[c].d;
       if (last) group.q[c].d[at(group.count - 1)] = 0;
     }
-    if (!find_multipliers(group, snapshot.t)) return false;
   }
-  return true;
+  return find_multipliers(snapshot.t);
 }
 
 std::optional<std::vector<double>> SpectrumDerivatives::holding_multipliers(double omega2, std::span<const double> v) {

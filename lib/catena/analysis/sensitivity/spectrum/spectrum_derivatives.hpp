@@ -27,6 +27,9 @@ struct StaticPlace {
   std::span<const double> q, lambda;
 };
 
+/// The metric (1, 1, radius^2) by coordinate; zero of bodies that do not move.
+std::vector<double> length_metric(const Evaluator& evaluator);
+
 /// Multipliers that balance the forces at a place best, in the metric (1, 1, radius^2), size rows; nothing where its
 /// constraints are singular.
 std::optional<std::vector<double>> balancing_multipliers(Evaluator& evaluator, double t, std::span<const double> q);
@@ -63,6 +66,8 @@ class SpectrumDerivatives final : public StateDerivatives {
   bool find_as_equilibrium(const Snapshot& snapshot);
   /// [Phi_q^T lambda - Q] and Phi at the group's q and lambda.
   void fill_residual(Group& group, double t);
+  /// Multipliers of all groups at the evaluator's configuration, or of one, with the metric factored there.
+  bool find_multipliers(double t);
   bool find_multipliers(Group& group, double t);
   /// mu with K v + Phi_q^T mu = omega2 M v.
   std::optional<std::vector<double>> holding_multipliers(double omega2, std::span<const double> v);

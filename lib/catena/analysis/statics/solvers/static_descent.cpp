@@ -25,35 +25,13 @@ constexpr double polishing_change = 1e-6;
 constexpr double restored = 1e-10;
 // Curvature along a step below this part of the sum of its terms' magnitudes is rounding.
 constexpr double neutral_part = 1e-10;
-// A mechanism that has moved this many extents, or turned this many radians, downhill is not held.
-constexpr double lost_extents = 1e5, lost_turns = 1e4;
-
-struct Travel {
-  double turn = 0, length = 0;  // largest of all bodies
-};
-
-Travel travel_of(const Plan& plan, std::span<const double> change) {
-  Travel t;
-  for (int c = 0; c < plan.columns; ++c) {
-    double& largest = plan.coordinate[at(c)] % 3 == 2 ? t.turn : t.length;
-    largest = std::max(largest, std::abs(change[at(c)]));
-  }
-  return t;
-}
+// A mechanism that has turned this many radians downhill is not held.
+constexpr double lost_turns = 1e4;
 
 double dot(std::span<const double> a, std::span<const double> b) {
   double sum = 0;
   for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
   return sum;
-}
-
-bool is_lost(std::span<const double> q, std::span<const double> start, double extent) {
-  double turn = 0, length = 0;
-  for (std::size_t k = 0; k < q.size(); ++k) {
-    double& largest = k % 3 == 2 ? turn : length;
-    largest = std::max(largest, std::abs(q[k] - start[k]));
-  }
-  return length > lost_extents * extent || turn > lost_turns;
 }
 
 }  // namespace
@@ -168,23 +146,17 @@ StaticOutcome Descent::run() {
     outcome_.end = StaticEnd::singular;
     return outcome_;
   }
-  for (outcome_.iterations = 1; outcome_.iterations <= options_.max_iterations; ++outcome_.iterations) {
-    ++system_.evaluator().counters.iterations;
-    if (system_.is_cancelled()) {
-      outcome_.end = StaticEnd::cancelled;
-      return outcome_;
-    }
-    if (!step()) return outcome_;
+  iterate(system_, options_.max_iterations, outcome_, [this] {
+    if (!step()) return false;
     std::copy(trial_.begin(), trial_.end(), q_.begin());
     std::copy(next_lambda_.begin(), next_lambda_.end(), lambda_.begin());
     measure();
     tell();
-    if (is_lost(q_, start_, extent_)) {
-      outcome_.end = StaticEnd::unbounded;
-      return outcome_;
-    }
-  }
-  outcome_.end = StaticEnd::slow;
+    const Travel travel = travel_between(start_, q_);
+    if (!travel.is_lost(extent_) && travel.turn <= lost_turns) return true;
+    outcome_.end = StaticEnd::unbounded;
+    return false;
+  });
   return outcome_;
 }
 

@@ -13,8 +13,8 @@ namespace {
 constexpr double gap_turn = 1;
 // Changes below this, length scales or rad, are followed by the exact K.
 constexpr double followed_change = 0.3;
-// No step is longer than this many sizes of the mechanism; one that has moved so many away is not held.
-constexpr double largest_stride = 1, lost_sizes = 1e5;
+// No step is longer than this many sizes of the mechanism.
+constexpr double largest_stride = 1;
 // The smoothing begins with one of these, L being the size of the mechanism: where many gaps share a load a large t
 // makes them act from a distance, with a small t their state alternates. It ends when the active set is certain.
 constexpr double first_smoothings[] = {0.1, 0.03, 0.3};
@@ -78,14 +78,6 @@ double size_of(StaticSystem& system) {
   return std::max({system.length(), high.x - low.x, high.y - low.y});
 }
 
-double farthest(std::span<const double> q, std::span<const double> start) {
-  double most = 0;
-  for (std::size_t k = 0; k < q.size(); ++k) {
-    if (k % 3 != 2) most = std::max(most, std::abs(q[k] - start[k]));
-  }
-  return most;
-}
-
 // Fills and factors the matrix, exact if allowed and if its inertia is that of a minimum; `exact` reports which.
 bool factorize(StaticSystem& system, std::span<const double> lambda, bool may_be_exact, bool& exact) {
   exact = false;
@@ -94,11 +86,7 @@ bool factorize(StaticSystem& system, std::span<const double> lambda, bool may_be
     exact = system.factorize().ok() && system.matrix().negative_modes() == 0;
     if (exact) return true;
   }
-  for (double shift = 0; shift < 1; shift = shift == 0 ? 1e-9 : shift * 1e3) {
-    system.fill(lambda, Curvature::convex, shift * std::max(system.matrix().largest_stiffness(), 1e-300));
-    if (system.factorize().ok()) return true;
-  }
-  return false;
+  return factorize_convex(system, lambda);
 }
 
 /// One search: the smoothed equations for t that decreases.
@@ -124,6 +112,7 @@ class SmoothingSearch {
   double step();
   Point judge(double factor) const;
   bool next_smoothing(Point point);
+  bool make_step(const std::vector<double>& start);
 
   StaticSystem& system_;
   std::span<double> q_, lambda_;
@@ -135,9 +124,9 @@ class SmoothingSearch {
   double size_ = 1;  // of the mechanism, m
   double t_ = 0;
   // The last point that was solved, and the factor of t from there.
-  std::vector<double> q_before_, lambda_before_;
+  KeptPlace before_;
   double t_before_ = 0, cooling_ = first_cooling;
-  bool near_ = false;
+  bool near_ = false, finished_ = false;
   int steps_ = 0;  // for the present t
 };
 
@@ -155,8 +144,7 @@ bool SmoothingSearch::begin(double first_smoothing) {
   gaps_.emplace(system_, GapUnits{size_, typical_force(system_)});
   t_ = t_before_ = first_smoothing;
   for (int r : plan.gap_rows) lambda_[at(r)] = gaps_->fitting(r, t_);
-  q_before_.assign(q_.begin(), q_.end());
-  lambda_before_.assign(lambda_.begin(), lambda_.end());
+  before_.keep(system_, q_, lambda_);
   return true;
 }
 
@@ -205,15 +193,12 @@ bool SmoothingSearch::next_smoothing(Point point) {
   const bool first = t_before_ == t_;
   if (point == Point::solved) {
     if (!first && steps_ <= quick_steps) cooling_ *= cooling_;
-    q_before_.assign(q_.begin(), q_.end());
-    lambda_before_.assign(lambda_.begin(), lambda_.end());
+    before_.keep(system_, q_, lambda_);
     t_before_ = t_;
   } else {
     cooling_ = std::sqrt(cooling_);
     if (first || cooling_ > least_cooling) return false;
-    std::copy(q_before_.begin(), q_before_.end(), q_.begin());
-    std::copy(lambda_before_.begin(), lambda_before_.end(), lambda_.begin());
-    system_.move_to(q_);
+    before_.take_back(system_, q_, lambda_);
     system_.forget_lengths();
   }
   t_ = std::max(t_before_ * cooling_, 0.5 * last_smoothing);
@@ -221,34 +206,38 @@ bool SmoothingSearch::next_smoothing(Point point) {
   return true;
 }
 
-StaticOutcome SmoothingSearch::run(double first_smoothing) {
+// False: the search ends.
+bool SmoothingSearch::make_step(const std::vector<double>& start) {
   const auto ended = [&](StaticEnd end) {
     outcome_.end = end;
-    return outcome_;
+    return false;
   };
+  if (!linearise()) return ended(StaticEnd::singular);
+  const double factor = step();
+  if (travel_between(start, q_).is_lost(size_)) return ended(StaticEnd::unbounded);
+  const Point point = judge(factor);
+  if (point == Point::sought) return true;
+  if (point == Point::too_far || t_ > last_smoothing) return next_smoothing(point);
+  const int smoothed = outcome_.iterations;
+  system_.forget_lengths();
+  outcome_ = finish_with_gaps(system_, q_, lambda_, set_, options_);
+  outcome_.iterations += smoothed;
+  finished_ = true;
+  return false;
+}
+
+StaticOutcome SmoothingSearch::run(double first_smoothing) {
   const std::vector<double> start(q_.begin(), q_.end());
-  if (!begin(first_smoothing)) return ended(StaticEnd::singular);
-  for (outcome_.iterations = 1; outcome_.iterations <= options_.max_iterations; ++outcome_.iterations) {
-    ++system_.evaluator().counters.iterations;
-    if (system_.is_cancelled()) return ended(StaticEnd::cancelled);
-    if (!linearise()) return ended(StaticEnd::singular);
-    const double factor = step();
-    if (farthest(q_, start) > lost_sizes * size_) return ended(StaticEnd::unbounded);
-    const Point point = judge(factor);
-    if (point == Point::sought) continue;
-    if (point == Point::solved && t_ <= last_smoothing) {
-      const int smoothed = outcome_.iterations;
-      system_.forget_lengths();
-      outcome_ = finish_with_gaps(system_, q_, lambda_, set_, options_);
-      outcome_.iterations += smoothed;
-      return outcome_;
-    }
-    if (!next_smoothing(point)) break;
+  if (!begin(first_smoothing)) {
+    outcome_.end = StaticEnd::singular;
+    return outcome_;
   }
+  iterate(system_, options_.max_iterations, outcome_, [&] { return make_step(start); });
+  if (finished_ || outcome_.end != StaticEnd::slow) return outcome_;
   std::vector<double> residual(force_.size());
   system_.residual(lambda_, residual);
   outcome_.residual = system_.force_norm(residual);
-  return ended(StaticEnd::slow);
+  return outcome_;
 }
 
 }  // namespace
@@ -256,10 +245,12 @@ StaticOutcome SmoothingSearch::run(double first_smoothing) {
 StaticOutcome solve_with_gaps(StaticSystem& system, std::span<double> q, std::span<double> lambda, ActiveSet& set,
                               const StaticGapOptions& options) {
   const std::vector<double> start(q.begin(), q.end());
+  const std::vector<CurvePlace> places = system.evaluator().curve_places();
   StaticOutcome outcome;
   int iterations = 0;
   for (const double t : first_smoothings) {
     std::copy(start.begin(), start.end(), q.begin());
+    system.evaluator().go_to_curve_places(places);
     outcome = SmoothingSearch(system, q, lambda, set, options).run(t);
     system.forget_lengths();
     iterations += outcome.iterations;

@@ -62,8 +62,8 @@ bool first_tensions(StaticSystem& system, std::span<double> lambda) {
 }
 
 void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda, StaticOutcome& outcome) {
-  std::vector<double> residual(at(system.plan().columns)), gap(at(system.plan().rows)), q_before, lambda_before;
-  std::vector<CurvePlace> places_before;
+  std::vector<double> residual(at(system.plan().columns)), gap(at(system.plan().rows));
+  KeptPlace before_step;
   const double force = system.force_size(), rounding = system.rounding_change();
   // In units of the possible rounding.
   const auto size = [&] {
@@ -80,9 +80,7 @@ void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda,
         polishing_part * std::max(outcome.residual / force, system.phi_norm() * system.length() / system.extent());
     const StaticStep step = system.solve(residual, gap, tolerance);
     const double change = system.change_norm(step.change);
-    q_before.assign(q.begin(), q.end());
-    lambda_before.assign(lambda.begin(), lambda.end());
-    system.evaluator().curve_places(places_before);
+    before_step.keep(system, q, lambda);
     system.advance(q, step.change, 1, newton_turn);
     for (std::size_t r = 0; r < lambda.size(); ++r) lambda[r] += step.lambda[r];
     system.move_to(q);
@@ -91,10 +89,7 @@ void polish(StaticSystem& system, std::span<double> q, std::span<double> lambda,
     // in soft modes; further ones are made while they shrink.
     const bool rounded = then <= std::max(4 * now, few_roundings);
     if (!(then < now || (rounded && (k == 0 || change < 0.1 * before)))) {
-      std::copy(q_before.begin(), q_before.end(), q.begin());
-      std::copy(lambda_before.begin(), lambda_before.end(), lambda.begin());
-      system.evaluator().go_to_curve_places(places_before);
-      system.move_to(q);
+      before_step.take_back(system, q, lambda);
       size();
       return;
     }
@@ -132,8 +127,8 @@ class NewtonSearch {
   std::span<double> q_, lambda_;
   const StaticNewtonOptions& options_;
   StaticOutcome outcome_;
-  std::vector<double> residual_, q_before_, lambda_before_;
-  std::vector<CurvePlace> places_before_;
+  std::vector<double> residual_;
+  KeptPlace before_;  // the last step from a balanced place
   double force_ = 0;
   bool linear_ = false, near_ = false, balanced_ = false;
   bool minimum_ = false;  // by the inertia of the last exact K
@@ -177,23 +172,13 @@ bool NewtonSearch::factorize() {
     outcome_.exact = factored && (minimum_ || options_.stationary);
   }
   if (outcome_.exact) return true;
-  system_.fill(lambda_, Curvature::convex, 0);
-  bool factored = system_.factorize().ok();
-  for (double shift = 1e-9; !factored && shift < 1; shift *= 1e3) {
-    system_.fill(lambda_, Curvature::convex, shift * system_.matrix().largest_stiffness());
-    factored = system_.factorize().ok();
-  }
-  return factored;
+  return factorize_convex(system_, lambda_);
 }
 
 // Moves by a step; the residual from before.
 double NewtonSearch::move(const StaticStep& step) {
   const double residual_before = outcome_.residual;
-  if (balanced_) {
-    q_before_.assign(q_.begin(), q_.end());
-    lambda_before_.assign(lambda_.begin(), lambda_.end());
-    system_.evaluator().curve_places(places_before_);
-  }
+  if (balanced_) before_.keep(system_, q_, lambda_);
   system_.foresee(step.change, 1, newton_turn);
   system_.advance(q_, step.change, 1, newton_turn);
   std::copy(step.lambda.begin(), step.lambda.end(), lambda_.begin());
@@ -205,10 +190,7 @@ double NewtonSearch::move(const StaticStep& step) {
 // Along motions that nothing resists a step from a balanced place consists of rounding: it is taken back.
 bool NewtonSearch::returns_from_rounding(double change, double residual_before) {
   if (!balanced_ || !(change > polished_change) || outcome_.residual <= no_gain * residual_before) return false;
-  std::copy(q_before_.begin(), q_before_.end(), q_.begin());
-  std::copy(lambda_before_.begin(), lambda_before_.end(), lambda_.begin());
-  system_.evaluator().go_to_curve_places(places_before_);
-  system_.move_to(q_);
+  before_.take_back(system_, q_, lambda_);
   outcome_.residual = residual_before;
   return true;
 }
@@ -260,15 +242,7 @@ StaticOutcome NewtonSearch::run() {
     outcome_.end = StaticEnd::singular;
     return outcome_;
   }
-  for (outcome_.iterations = 1; outcome_.iterations <= options_.max_iterations; ++outcome_.iterations) {
-    ++system_.evaluator().counters.iterations;
-    if (system_.is_cancelled()) {
-      outcome_.end = StaticEnd::cancelled;
-      return outcome_;
-    }
-    if (!step()) return outcome_;
-  }
-  outcome_.end = StaticEnd::slow;
+  iterate(system_, options_.max_iterations, outcome_, [this] { return step(); });
   return outcome_;
 }
 

@@ -14,32 +14,10 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
-#include "catena/analysis/balance/static_system.hpp"
+#include "catena/analysis/statics/solvers/static_steps.hpp"
 
 namespace catena {
-
-/// How an iteration ended.
-enum class StaticEnd {
-  minimum,     ///< converged, the inertia of the last matrix that of a minimum
-  stationary,  ///< converged to a point that is none, or in the way asked for
-  diverged,    ///< multipliers or steps without bound, or not finite
-  slow,        ///< iterations exhausted
-  singular,    ///< no factorization: a direction in which nothing resists
-  unbounded,   ///< the energy falls without end
-  cancelled,   ///< stopped by the user
-};
-
-struct StaticOutcome {
-  StaticEnd end = StaticEnd::slow;
-  int iterations = 0;
-  double step = 0;      ///< last change: length scales or rad
-  double residual = 0;  ///< last residual force, N
-  bool exact = false;   ///< the last matrix was the true one
-
-  bool converged() const { return end == StaticEnd::minimum || end == StaticEnd::stationary; }
-};
 
 struct StaticNewtonOptions {
   int max_iterations = 60;

@@ -18,7 +18,6 @@ constexpr double regularisation = 1e-11;
 // Growth of the residual allowed in an accepted step, and the change of the damping from step to step.
 constexpr double tolerated_growth = 3, fastest_fading = 0.05, settling_stiffening = 8;
 constexpr double largest_damping = 1e12, least_damping = 1e-14;
-constexpr double settling_lost_extents = 1e5;
 // Without damping no further gain is possible below this, length scales or rad.
 constexpr double settling_last_change = 1e-10;
 
@@ -41,7 +40,6 @@ class Settling {
   bool solve();
   bool stiffen();
   double move();
-  bool is_lost() const;
   bool is_balanced();
   bool step();
 
@@ -51,7 +49,8 @@ class Settling {
   std::optional<StaticTangent> tangent_;
   StaticOutcome outcome_;
   const std::vector<double> start_;
-  std::vector<double> x_, residual_, q_before_, lambda_before_;  // x: changes of q and lambda
+  std::vector<double> x_, residual_;  // x: changes of q and lambda
+  KeptPlace before_;
   double extent_ = 1, force_ = 1, stiffness_ = 1;
   double damping_ = 0, size_ = 0;  // E times the stiffness; of the residual where the step begins
   double factor_ = 1;              // part of the step that was made
@@ -90,13 +89,8 @@ bool Settling::stiffen() {
 
 // Moves by the step in x_, shortened; the size of the residual there. What cannot be a step moves nothing.
 double Settling::move() {
-  const Plan& plan = system_.plan();
   const std::span<const double> change(x_.data(), residual_.size());
-  double turn = 0, travel = 0;
-  for (int c = 0; c < plan.columns; ++c) {
-    double& largest = plan.coordinate[at(c)] % 3 == 2 ? turn : travel;
-    largest = std::max(largest, std::abs(change[at(c)]));
-  }
+  const auto [turn, travel] = travel_of(system_.plan(), change);
   factor_ = std::min({1.0, settling_turn / turn, largest_travel * extent_ / travel});
   if (!std::isfinite(turn + travel)) return size_;
   system_.advance(q_, change, factor_, settling_turn);
@@ -109,13 +103,6 @@ double Settling::move() {
   return then;
 }
 
-bool Settling::is_lost() const {
-  for (std::size_t k = 0; k < q_.size(); ++k) {
-    if (k % 3 != 2 && std::abs(q_[k] - start_[k]) > settling_lost_extents * extent_) return true;
-  }
-  return false;
-}
-
 // Rounding of the stiffest spring may be the whole force of a soft one: then the step decides.
 bool Settling::is_balanced() {
   const double scale = std::max(system_.force_scale(lambda_), force_);
@@ -126,17 +113,13 @@ bool Settling::is_balanced() {
 
 // False: the search ends.
 bool Settling::step() {
-  outcome_.end = StaticEnd::slow;
   tangent_->fill(lambda_, damping_, regularisation / stiffness_);
   if (!tangent_->factorize()) return stiffen();
   const bool solved = solve();
-  q_before_.assign(q_.begin(), q_.end());
-  lambda_before_.assign(lambda_.begin(), lambda_.end());
+  before_.keep(system_, q_, lambda_);
   const double then = solved ? move() : size_;
   if (!solved || !(then <= tolerated_growth * size_ + options_.tolerance)) {
-    std::copy(q_before_.begin(), q_before_.end(), q_.begin());
-    std::copy(lambda_before_.begin(), lambda_before_.end(), lambda_.begin());
-    system_.move_to(q_);
+    before_.take_back(system_, q_, lambda_);
     size_ = size();
     return stiffen();
   }
@@ -144,7 +127,7 @@ bool Settling::step() {
   damping_ *= factor_ < 1 ? 2 : std::clamp(ratio, fastest_fading, settling_stiffening);
   if (damping_ < least_damping * stiffness_) damping_ = 0;
   size_ = then;
-  if (is_lost()) {
+  if (travel_between(start_, q_).is_lost(extent_)) {
     outcome_.end = StaticEnd::unbounded;
     return false;
   }
@@ -158,14 +141,7 @@ StaticOutcome Settling::run() {
     outcome_.end = StaticEnd::singular;
     return outcome_;
   }
-  for (outcome_.iterations = 1; outcome_.iterations <= options_.max_iterations; ++outcome_.iterations) {
-    ++system_.evaluator().counters.iterations;
-    if (system_.is_cancelled()) {
-      outcome_.end = StaticEnd::cancelled;
-      return outcome_;
-    }
-    if (!step()) return outcome_;
-  }
+  iterate(system_, options_.max_iterations, outcome_, [this] { return step(); });
   return outcome_;
 }
 

@@ -1,0 +1,74 @@
+// What the searches for equilibria share: how they end, their iterations, places to return to, and how far they moved.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "catena/analysis/balance/static_system.hpp"
+
+namespace catena {
+
+/// How an iteration ended.
+enum class StaticEnd {
+  minimum,     ///< converged, the inertia of the last matrix that of a minimum
+  stationary,  ///< converged to a point that is none, or in the way asked for
+  diverged,    ///< multipliers or steps without bound, or not finite
+  slow,        ///< iterations exhausted
+  singular,    ///< no factorization: a direction in which nothing resists
+  unbounded,   ///< the energy falls without end
+  cancelled,   ///< stopped by the user
+};
+
+struct StaticOutcome {
+  StaticEnd end = StaticEnd::slow;
+  int iterations = 0;
+  double step = 0;      ///< last change: length scales or rad
+  double residual = 0;  ///< last residual force, N
+  bool exact = false;   ///< the last matrix was the true one
+
+  bool converged() const { return end == StaticEnd::minimum || end == StaticEnd::stationary; }
+};
+
+/// The iterations of a search. `step` makes one of them; where it returns false it has said in `outcome` how the search
+/// ended. Without an end after `most` of them it was slow, as `outcome` says from the beginning.
+template <class Step>
+void iterate(StaticSystem& system, int most, StaticOutcome& outcome, Step&& step) {
+  for (int k = 1; k <= most; ++k) {
+    outcome.iterations = k;
+    ++system.evaluator().counters.iterations;
+    if (system.is_cancelled()) {
+      outcome.end = StaticEnd::cancelled;
+      return;
+    }
+    if (!step()) return;
+  }
+}
+
+/// A place that a search may have to return to: its coordinates and multipliers, and where curves touch there, as they
+/// are searched from where they touched last.
+struct KeptPlace {
+  std::vector<double> q, lambda;
+  std::vector<CurvePlace> curves;
+
+  void keep(StaticSystem& system, std::span<const double> q_now, std::span<const double> lambda_now);
+  /// Moves the system there.
+  void take_back(StaticSystem& system, std::span<double> q_now, std::span<double> lambda_now) const;
+};
+
+/// Of all bodies the largest.
+struct Travel {
+  double turn = 0;    ///< rad
+  double length = 0;  ///< m, along x or y
+
+  /// A mechanism that has moved 10^5 extents (m) is not held.
+  bool is_lost(double extent) const { return length > 1e5 * extent; }
+};
+/// By a change of the plan's columns.
+Travel travel_of(const Plan& plan, std::span<const double> change);
+/// Between two configurations.
+Travel travel_between(std::span<const double> from, std::span<const double> to);
+
+/// Fills and factors the convex K, with shifts that grow where it has no factors. False: it has none.
+bool factorize_convex(StaticSystem& system, std::span<const double> lambda);
+
+}  // namespace catena
