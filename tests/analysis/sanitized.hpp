@@ -16,6 +16,9 @@ inline constexpr bool is_sanitized = false;
 inline constexpr bool is_sanitized = false;
 #endif
 
-constexpr int size_of_test(int whole, int if_sanitized) { return is_sanitized ? if_sanitized : whole; }
+template <class N>
+constexpr N size_of_test(N whole, N if_sanitized) {
+  return is_sanitized ? if_sanitized : whole;
+}
 
 }  // namespace catena::testing

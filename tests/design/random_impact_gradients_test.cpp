@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "analysis/sanitized.hpp"
 #include "design/measured.hpp"
 #include "oracles/random_seeds.hpp"
 #include "oracles/scene_text.hpp"
@@ -212,9 +213,9 @@ void expect_gradients(unsigned first, unsigned last, Make&& make) {
   EXPECT_GT(compared, static_cast<int>(last - first + 1));
 }
 
-TEST(RandomImpactGradients, OfChainsThatHitStops) { expect_gradients(1, 8, chain_with_stops); }
-TEST(RandomImpactGradients, OfDiscsThatAreThrown) { expect_gradients(1, 4, thrown_disc); }
-TEST(RandomImpactGradients, OfSlidersThatRub) { expect_gradients(1, 4, slider_with_catch); }
+TEST(RandomImpactGradients, OfChainsThatHitStops) { expect_gradients(1, size_of_test(8u, 4u), chain_with_stops); }
+TEST(RandomImpactGradients, OfDiscsThatAreThrown) { expect_gradients(1, size_of_test(4u, 2u), thrown_disc); }
+TEST(RandomImpactGradients, OfSlidersThatRub) { expect_gradients(1, size_of_test(4u, 2u), slider_with_catch); }
 
 }  // namespace
 }  // namespace catena::testing

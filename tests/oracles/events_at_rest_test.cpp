@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/sanitized.hpp"
 #include "oracles/random_seeds.hpp"
 #include "oracles/scene_text.hpp"
 #include "scene/event_entries.hpp"
@@ -56,7 +57,7 @@ struct Load {
 
 // The reaction of a body that is held under a force, by a function of time or a law; a body beside it turns evenly.
 TEST(EventsAtRest, LoadsOfAHeldBody) {
-  expect_no_fault(1, 60, [](unsigned seed) {
+  expect_no_fault(1, size_of_test(60u, 20u), [](unsigned seed) {
     const Load load(seed);
     const std::string by_time =
         fmt::format(R"({{"harmonic": {{"amplitude": {:.17g}, "omega": {:.17g}, "phase": {:.17g}}}}})", load.amplitude,
