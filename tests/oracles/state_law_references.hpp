@@ -1,5 +1,5 @@
-// What tests of laws of state are held against: cubic splines by a dense solve for the slopes at the knots, and motions
-// by the classical Runge-Kutta method with many small steps. No code of the library.
+// Scenes with laws of state, and what their tests are held against: cubic splines by a dense solve for the slopes at
+// the knots, and motions by the classical Runge-Kutta method with many small steps. No code of the library.
 #pragma once
 
 #include <Eigen/Dense>
@@ -10,6 +10,12 @@
 #include <vector>
 
 namespace catena::testing {
+
+/// A scene of bodies and forces.
+inline std::string law_scene(const std::string& parts, const std::string& outputs, const std::string& analyses) {
+  return R"--({"catena": 1, )--" + parts + R"--(, "outputs": [)--" + outputs + R"--(], "analyses": [)--" + analyses +
+         "]}";
+}
 
 /// A cubic spline in Hermite form: its slopes follow from continuous second derivatives.
 class ReferenceSpline {

@@ -15,14 +15,9 @@ namespace {
 
 using std::numbers::pi;
 
-std::string scene(const std::string& parts, const std::string& outputs, const std::string& analyses) {
-  return R"--({"catena": 1, )--" + parts + R"--(, "outputs": [)--" + outputs + R"--(], "analyses": [)--" + analyses +
-         "]}";
-}
-
 /// A mass that slides along x, pulled by an expression.
 std::string oscillator(const std::string& analyses) {
-  return scene(
+  return law_scene(
       R"--("parameters": {"k": 50, "m": 2},
     "bodies": {"mass": {"mass": "m", "particle": true, "position": [0.3, 0], "velocity": [0.4, 0]}},
     "forces": [{"type": "point_force", "name": "pull", "i": "mass", "force": ["=-k*mass.x", 0]}])--",
@@ -61,11 +56,11 @@ TEST(StateLaws, MotionsHaveDerivatives) {
 }
 
 TEST(StateLaws, DragEndsInTheTerminalVelocity) {
-  const TextRun run = run_text(scene(R"--("gravity": [0, -9.81], "parameters": {"c": 0.7},
+  const TextRun run = run_text(law_scene(R"--("gravity": [0, -9.81], "parameters": {"c": 0.7},
     "bodies": {"ball": {"mass": 3, "particle": true}},
     "forces": [{"type": "point_force", "name": "drag", "i": "ball", "force": [0, "=-c*ball.vy*abs(ball.vy)"]}])--",
-                                     R"--("ball.y", "ball.vy", "energy.balance", "energy.dissipated")--",
-                                     R"--({"type": "dynamics", "until": 5, "every": 0.05, "tolerance": 1e-11})--"));
+                                         R"--("ball.y", "ball.vy", "energy.balance", "energy.dissipated")--",
+                                         R"--({"type": "dynamics", "until": 5, "every": 0.05, "tolerance": 1e-11})--"));
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
   const double terminal = std::sqrt(3 * 9.81 / 0.7);
   const std::vector<double> t = run.column("t");
@@ -79,12 +74,12 @@ TEST(StateLaws, DragEndsInTheTerminalVelocity) {
 
 TEST(StateLaws, AMotorCurveRunsUpExponentially) {
   const TextRun run =
-      run_text(scene(R"--("parameters": {"stall": 12, "free": 150},
+      run_text(law_scene(R"--("parameters": {"stall": 12, "free": 150},
     "bodies": {"rotor": {"mass": 1, "inertia": 0.02}},
     "constraints": [{"type": "revolute", "name": "bearing", "i": "ground", "j": "rotor"}],
     "forces": [{"type": "torque", "name": "motor", "i": "rotor", "torque": "=stall*(1 - bearing.omega/free)"}])--",
-                     R"--("rotor.omega", "rotor.angle", "motor.torque", "motor.power", "energy.balance")--",
-                     R"--({"type": "dynamics", "until": 1, "every": 0.02, "tolerance": 1e-11})--"));
+                         R"--("rotor.omega", "rotor.angle", "motor.torque", "motor.power", "energy.balance")--",
+                         R"--({"type": "dynamics", "until": 1, "every": 0.02, "tolerance": 1e-11})--"));
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
   const std::vector<double> t = run.column("t");
   const double rate = 12 / (150 * 0.02);
@@ -99,11 +94,11 @@ TEST(StateLaws, AMotorCurveRunsUpExponentially) {
 
 /// A rod of 1 m under gravity, hinged at its end, with a controller towards 0.5 rad.
 std::string controlled(const std::string& analyses) {
-  return scene(R"--("gravity": [0, -9.81], "parameters": {"kp": 60, "kd": 4},
+  return law_scene(R"--("gravity": [0, -9.81], "parameters": {"kp": 60, "kd": 4},
     "bodies": {"arm": {"mass": 3, "rod": {"from": [0, 0], "to": [1, 0]}}},
     "constraints": [{"type": "revolute", "name": "hinge", "i": "ground", "j": "arm.from"}],
     "forces": [{"type": "torque", "name": "motor", "i": "arm", "torque": "=-kp*(arm.angle - 0.5) - kd*arm.omega"}])--",
-               R"--("arm.angle", "arm.omega", "motor.torque", "hinge.fx", "hinge.fy")--", analyses);
+                   R"--("arm.angle", "arm.omega", "motor.torque", "hinge.fx", "hinge.fy")--", analyses);
 }
 
 TEST(StateLaws, APendulumIsControlledToASetPoint) {
@@ -162,14 +157,14 @@ TEST(StateLaws, StabilityAnalysesTakeTheirStiffness) {
 
 // A driven arm: the load of its driver is what the controller, gravity and inertia leave to it.
 TEST(StateLaws, CountInTheLoadsOfDrivers) {
-  const TextRun run = run_text(scene(R"--("gravity": [0, -9.81], "parameters": {"kp": 60, "kd": 4},
+  const TextRun run = run_text(law_scene(R"--("gravity": [0, -9.81], "parameters": {"kp": 60, "kd": 4},
     "bodies": {"arm": {"mass": 3, "rod": {"from": [0, 0], "to": [1, 0]}}},
     "constraints": [{"type": "revolute", "name": "hinge", "i": "ground", "j": "arm.from"}],
     "drivers": [{"type": "absolute_angle", "name": "drive", "i": "arm",
                  "value": {"harmonic": {"amplitude": 0.4, "omega": 3}}}],
     "forces": [{"type": "torque", "name": "motor", "i": "arm", "torque": "=-kp*(arm.angle - 0.5) - kd*arm.omega"}])--",
-                                     R"--("drive.load", "arm.angle", "arm.omega", "arm.alpha", "motor.torque")--",
-                                     R"--({"type": "inverse_dynamics", "until": 2, "every": 0.1},
+                                         R"--("drive.load", "arm.angle", "arm.omega", "arm.alpha", "motor.torque")--",
+                                         R"--({"type": "inverse_dynamics", "until": 2, "every": 0.1},
     {"type": "sensitivity", "from": "initial", "parameters": ["kp", "kd"],
      "of": {"type": "inverse_dynamics", "at": [0.7], "measures": {"load": {"final": "drive.load"}}}})--"));
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
@@ -191,7 +186,7 @@ TEST(StateLaws, GasPressureDoesTheWorkOfItsDiagram) {
   std::string points;
   for (std::size_t k = 0; k < x.size(); ++k) points += (k > 0 ? "," : "") + pair_of(x[k], y[k]);
   const TextRun run = run_text(
-      scene(R"--("tables": {"gas": {"points": [)--" + points + R"--(], "end": "periodic"}},
+      law_scene(R"--("tables": {"gas": {"points": [)--" + points + R"--(], "end": "periodic"}},
     "bodies": {"crank": {"mass": 1, "inertia": 0.1, "points": {"pin": [0.04, 0]}},
                "rod": {"mass": 0.4, "rod": {"from": [0.04, 0], "to": [0.18, 0]}},
                "piston": {"mass": 0.5, "particle": true, "position": [0.18, 0]}},
@@ -201,8 +196,8 @@ TEST(StateLaws, GasPressureDoesTheWorkOfItsDiagram) {
     "drivers": [{"type": "absolute_angle", "name": "drive", "i": "crank", "value": {"polynomial": [0, 20]}}],
     "forces": [{"type": "point_force", "name": "gas force", "i": "piston", "force": ["=-3*gas(crank.angle)", 0]
 }])--",
-            R"--("drive.work", "piston.x", "gas force.fx", "energy.balance")--",
-            R"--({"type": "inverse_dynamics", "until": )--" + text_of(2 * pi / 20) + R"--(, "every": 0.01})--"));
+                R"--("drive.work", "piston.x", "gas force.fx", "energy.balance")--",
+                R"--({"type": "inverse_dynamics", "until": )--" + text_of(2 * pi / 20) + R"--(, "every": 0.01})--"));
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
   const ReferenceSpline gas(x, y, "periodic");
   // Gauss quadrature of three points in small intervals that begin and end at knots.
@@ -227,13 +222,14 @@ TEST(StateLaws, GasPressureDoesTheWorkOfItsDiagram) {
 
 // Laws between bodies that nothing else ties, of very different pace: they may not be integrated apart.
 TEST(StateLaws, TieBodies) {
-  const TextRun run = run_text(scene(R"--("bodies": {
+  const TextRun run =
+      run_text(law_scene(R"--("bodies": {
       "slow": {"mass": 100, "particle": true, "position": [0, 0], "velocity": [0.01, 0]},
       "fast": {"mass": 0.1, "particle": true, "position": [1, 5], "velocity": [3, 0]}},
     "forces": [{"type": "point_force", "i": "slow", "force": ["=40*(fast.x - slow.x) - 3*fast.vx", 0]},
                {"type": "point_force", "i": "fast", "force": ["=-40*(fast.x - slow.x) + 0.2*slow.vx", 0]}])--",
-                                     R"--("slow.x", "fast.x", "slow.vx", "fast.vx")--",
-                                     R"--({"type": "dynamics", "until": 1.5, "every": 1.5, "tolerance": 1e-11})--"));
+                         R"--("slow.x", "fast.x", "slow.vx", "fast.vx")--",
+                         R"--({"type": "dynamics", "until": 1.5, "every": 1.5, "tolerance": 1e-11})--"));
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
   const auto slope = [](double, const ReferenceState& y) {
     return ReferenceState{y[2], y[3], (40 * (y[1] - y[0]) - 3 * y[3]) / 100, (-40 * (y[1] - y[0]) + 0.2 * y[2]) / 0.1};
@@ -253,8 +249,8 @@ TEST(StateLaws, GoWithTheirMechanismsWhenTheseAreIntegratedApart) {
     "constraints": [{"type": "revolute", "name": "pin", "i": "ground", "j": "quick", "at": [7, 0]}],
     "forces": [{"type": "point_force", "i": "lazy", "force": ["=-25*lazy.x", "=post.top.y + 3"]},
                {"type": "torque", "i": "quick", "torque": "=-3*(quick.rim.y - 0.5) - 2*pin.angle"}])--";
-  const TextRun run = run_text(scene(parts, R"--("lazy.x", "lazy.y", "quick.angle")--",
-                                     R"--({"type": "dynamics", "until": 2, "every": 2, "tolerance": 1e-11})--"));
+  const TextRun run = run_text(law_scene(parts, R"--("lazy.x", "lazy.y", "quick.angle")--",
+                                         R"--({"type": "dynamics", "until": 2, "every": 2, "tolerance": 1e-11})--"));
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
   EXPECT_NEAR(run.last("lazy.x"), 0.2 * std::cos(0.5 * 2), 1e-9);
   EXPECT_NEAR(run.last("lazy.y"), 0, 1e-12);
@@ -266,7 +262,8 @@ TEST(StateLaws, GoWithTheirMechanismsWhenTheseAreIntegratedApart) {
 
 // A law that reads the force of a spring whose own force is a law, in joints' and springs' columns.
 TEST(StateLaws, ReadEachOtherThroughSprings) {
-  const TextRun run = run_text(scene(R"--("columns": {"error": "=guide.slide - 0.4"},
+  const TextRun run =
+      run_text(law_scene(R"--("columns": {"error": "=guide.slide - 0.4"},
     "bodies": {"cart": {"mass": 2, "inertia": 1, "position": [0.1, 0]},
                "wheel": {"mass": 1, "inertia": 0.5, "position": [0, 3]}},
     "constraints": [{"type": "translational", "name": "guide", "i": "ground", "j": "cart", "axis_i": [1, 0]},
@@ -276,8 +273,8 @@ TEST(StateLaws, ReadEachOtherThroughSprings) {
                {"type": "torsion_spring", "name": "w", "i": "ground", "j": "wheel", "k": 4, "angle": 0,
                 "torque": "=0.5*s.force*s.length - 0.2*s.rate"},
                {"type": "torque", "i": "wheel", "torque": "=0.1*w.torque + 0.2*w.angle"}])--",
-                                     R"--("guide.slide", "wheel.angle", "s.force", "energy.balance")--",
-                                     R"--({"type": "dynamics", "until": 1.5, "every": 1.5, "tolerance": 1e-11})--"));
+                         R"--("guide.slide", "wheel.angle", "s.force", "energy.balance")--",
+                         R"--({"type": "dynamics", "until": 1.5, "every": 1.5, "tolerance": 1e-11})--"));
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
   const auto tension = [](const ReferenceState& y) {
     return 30 * y[0] + 2 * y[2] + 5 * (y[0] - 0.4) + 0.3 * y[2] + y[3];
@@ -294,12 +291,12 @@ TEST(StateLaws, ReadEachOtherThroughSprings) {
 }
 
 TEST(StateLaws, AreRepeated) {
-  const TextRun run = run_text(scene(R"--("replicate": [{"count": 3,
+  const TextRun run = run_text(law_scene(R"--("replicate": [{"count": 3,
       "bodies": {"ball{k}": {"mass": 1, "particle": true, "position": ["=k", 0]}},
       "forces": [{"type": "point_force", "i": "ball{k}", "force": ["=-k^2*('ball{k}'.x - 0.5*k)", 0]}]
 }])--",
-                                     R"--("ball1.x", "ball2.x", "ball3.x")--",
-                                     R"--({"type": "dynamics", "until": 1, "every": 1, "tolerance": 1e-11})--"));
+                                         R"--("ball1.x", "ball2.x", "ball3.x")--",
+                                         R"--({"type": "dynamics", "until": 1, "every": 1, "tolerance": 1e-11})--"));
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
   for (int k = 1; k <= 3; ++k)
     EXPECT_NEAR(run.last("ball" + std::to_string(k) + ".x"), 0.5 * k * (1 + std::cos(k)), 1e-9);
@@ -308,10 +305,10 @@ TEST(StateLaws, AreRepeated) {
 // A table that ends: the motion ends where it is left.
 TEST(StateLaws, EndAMotionWhereATableEnds) {
   const auto text = [](const std::string& beyond) {
-    return scene(R"--("tables": {"field": {"x": [-1, 0, 1.25], "y": [0, 0, 0])--" + beyond + R"--(}},
+    return law_scene(R"--("tables": {"field": {"x": [-1, 0, 1.25], "y": [0, 0, 0])--" + beyond + R"--(}},
       "bodies": {"mass": {"mass": 1, "particle": true, "velocity": [0.5, 0]}},
       "forces": [{"type": "point_force", "name": "pull", "i": "mass", "force": ["=field(mass.x)", 0]}])--",
-                 R"--("mass.x")--", R"--({"type": "dynamics", "until": 4, "every": 0.5})--");
+                     R"--("mass.x")--", R"--({"type": "dynamics", "until": 4, "every": 0.5})--");
   };
   const TextRun run = run_text(text(""));
   EXPECT_EQ(run.outcome.exit_code, 1);
@@ -326,147 +323,12 @@ TEST(StateLaws, EndAMotionWhereATableEnds) {
 }
 
 TEST(StateLaws, EndAMotionWhereTheyHaveNoValue) {
-  const TextRun run = run_text(scene(R"--("bodies": {"mass": {"mass": 1, "particle": true, "velocity": [-0.5, 0]}},
+  const TextRun run = run_text(law_scene(R"--("bodies": {"mass": {"mass": 1, "particle": true, "velocity": [-0.5, 0]}},
       "forces": [{"type": "point_force", "name": "pull", "i": "mass", "force": ["=0*sqrt(mass.x + 1)", 0]}])--",
-                                     R"--("mass.x")--", R"--({"type": "dynamics", "until": 4, "every": 0.5})--"));
+                                         R"--("mass.x")--", R"--({"type": "dynamics", "until": 4, "every": 0.5})--"));
   EXPECT_EQ(run.outcome.exit_code, 1);
   EXPECT_NE(run.analysis().report.message.find("\"pull\" is undefined beyond t = 2 s"), std::string::npos)
       << run.analysis().report.message;
-}
-
-// Random laws over particles in the plane: every component reads places and velocities of all, the time and a table.
-std::string random_motion(unsigned seed) {
-  RandomNumbers random(seed);
-  const int count = 1 + static_cast<int>(random(0, 3)), n = 2 * count;
-  std::vector<double> x{-9, -5, -2, 0, 1.5, 4, 9}, y;
-  for (std::size_t k = 0; k < x.size(); ++k) y.push_back(random(-2, 2));
-  const bool clamped = seed % 2 == 0;
-  const ReferenceSpline table(x, y, clamped ? "clamped" : "natural");
-  std::vector<double> mass, start, a(static_cast<std::size_t>(n * n)), b(a.size()), c(a.size()), d(a.size()), w;
-  for (double& v : a) v = random(-6, 2);
-  for (double& v : b) v = random(-0.8, 0.3);
-  for (double& v : c) v = random(-0.2, 0.2);
-  for (double& v : d) v = random(-1, 1);
-  for (int k = 0; k < n; ++k) w.push_back(random(0.5, 4));
-  for (int k = 0; k < count; ++k) mass.push_back(random(0.5, 3));
-  for (int k = 0; k < 2 * n; ++k) start.push_back(random(-1, 1));
-  const auto name = [](int k, const char* rate) {
-    return "p" + std::to_string(k / 2) + "." + rate + (k % 2 == 0 ? "x" : "y");
-  };
-  std::string bodies, forces, outputs, list_x, list_y;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    list_x += (k > 0 ? "," : "") + text_of(x[k]);
-    list_y += (k > 0 ? "," : "") + text_of(y[k]);
-  }
-  for (int body = 0; body < count; ++body) {
-    const auto at = [&](int k) { return start[static_cast<std::size_t>(k)]; };
-    bodies += (body > 0 ? "," : "") + ("\"p" + std::to_string(body)) + R"--(": {"particle": true, "mass": )--" +
-              text_of(mass[static_cast<std::size_t>(body)]) + R"--(, "position": )--" +
-              pair_of(at(2 * body), at(2 * body + 1)) + R"--(, "velocity": )--" +
-              pair_of(at(n + 2 * body), at(n + 2 * body + 1)) + "}";
-    std::string component[2];
-    for (int k = 0; k < 2; ++k) {
-      const int i = 2 * body + k;
-      component[k] = "=sin(" + text_of(w[static_cast<std::size_t>(i)]) + "*t)";
-      for (int j = 0; j < n; ++j) {
-        const auto e = static_cast<std::size_t>(i * n + j);
-        component[k] += " + " + text_of(a[e]) + "*" + name(j, "") + " + " + text_of(b[e]) + "*" + name(j, "v") + " + " +
-                        text_of(c[e]) + "*" + name(j, "v") + "*" + name(i, "") + " + " + text_of(d[e]) + "*tab(" +
-                        name(j, "") + ")";
-      }
-    }
-    forces += (body > 0 ? "," : "") + (R"--({"type": "point_force", "i": "p)--" + std::to_string(body)) +
-              R"--(", "force": [")--" + component[0] + R"--(", ")--" + component[1] + R"--("]})--";
-    outputs += (body > 0 ? "," : "") + ("\"p" + std::to_string(body) + "\"");
-  }
-  const TextRun run = run_text(scene(R"--("tables": {"tab": {"x": [)--" + list_x + R"--(], "y": [)--" + list_y +
-                                         R"--(], "beyond": "line", "end": ")--" + (clamped ? "clamped" : "natural") +
-                                         R"--("}}, "bodies": {)--" + bodies + R"--(}, "forces": [)--" + forces + "]",
-                                     outputs + R"--(, "energy.balance")--",
-                                     R"--({"type": "dynamics", "until": 0.8, "every": 0.8, "tolerance": 1e-11})--"));
-  if (run.outcome.exit_code != 0) return run.outcome.error_text + run.analysis().report.message;
-  const auto slope = [&](double t, const ReferenceState& s) {
-    ReferenceState rate(s.size());
-    for (int i = 0; i < n; ++i) {
-      const auto at = [&](int k) { return s[static_cast<std::size_t>(k)]; };
-      double force = std::sin(w[static_cast<std::size_t>(i)] * t);
-      for (int j = 0; j < n; ++j) {
-        const auto e = static_cast<std::size_t>(i * n + j);
-        force += a[e] * at(j) + b[e] * at(n + j) + c[e] * at(n + j) * at(i) + d[e] * table(at(j));
-      }
-      rate[static_cast<std::size_t>(i)] = at(n + i);
-      rate[static_cast<std::size_t>(n + i)] = force / mass[static_cast<std::size_t>(i / 2)];
-    }
-    return rate;
-  };
-  const ReferenceState end = integrate(slope, start, 0.8, 4000);
-  double worst = std::abs(run.last("energy.balance")) / 100;
-  for (int i = 0; i < n; ++i) {
-    worst = std::max({worst, std::abs(run.last(name(i, "")) - end[static_cast<std::size_t>(i)]),
-                      std::abs(run.last(name(i, "v")) - end[static_cast<std::size_t>(n + i)])});
-  }
-  // The reference's own error where the table's third derivative jumps is h^4 of a jump of some hundred.
-  return worst < 1e-8 ? "" : "off by " + text_of(worst);
-}
-
-TEST(StateLaws, RandomOnesMoveAsIntegratedInTheTest) { expect_no_fault(1, 40, random_motion); }
-
-// Random linear laws at rest: F_i = b_i - sum_j K_ij x_j, not symmetric, so that no energy could be minimised.
-// `unsolved` counts searches that end without an answer, and say so.
-std::string random_balance(unsigned seed, int& unsolved) {
-  RandomNumbers random(seed);
-  const int count = 1 + static_cast<int>(random(0, 3)), n = 2 * count;
-  Eigen::MatrixXd k(n, n), by_p(n, n);
-  Eigen::VectorXd b(n);
-  const double p = random(0.5, 2);
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) {
-      k(i, j) = random(-1, 1) + (i == j ? 1.5 * n : 0);
-      by_p(i, j) = random(-0.3, 0.3);
-    }
-    b(i) = random(-2, 2);
-  }
-  const Eigen::VectorXd rest = (k + p * by_p).fullPivLu().solve(b);
-  const Eigen::VectorXd rest_p = (k + p * by_p).fullPivLu().solve(-by_p * rest);
-  const auto name = [](int i) { return "p" + std::to_string(i / 2) + (i % 2 == 0 ? ".x" : ".y"); };
-  std::string bodies, forces, outputs;
-  for (int body = 0; body < count; ++body) {
-    std::string component[2];
-    for (int c = 0; c < 2; ++c) {
-      const int i = 2 * body + c;
-      component[c] = "=" + text_of(b(i));
-      for (int j = 0; j < n; ++j)
-        component[c] += " - (" + text_of(k(i, j)) + " + p*" + text_of(by_p(i, j)) + ")*" + name(j);
-    }
-    const std::string comma = body > 0 ? "," : "", who = "p" + std::to_string(body);
-    const double y = random(-1, 1), x = random(-1, 1);
-    bodies += comma + "\"" + who + R"--(": {"particle": true, "mass": 1, "position": )--" + pair_of(x, y) + "}";
-    forces += comma + R"--({"type": "point_force", "i": ")--" + who + R"--(", "force": [")--" + component[0] +
-              R"--(", ")--" + component[1] + R"--("]})--";
-    outputs += comma + "\"" + who + R"--(.x", ")--" + who + R"--(.y")--";
-  }
-  const std::string parts = R"--("parameters": {"p": )--" + text_of(p) + R"--(}, "bodies": {)--" + bodies +
-                            R"--(}, "forces": [)--" + forces + "]";
-  const TextRun run = run_text(scene(parts, outputs, R"--({"type": "equilibrium"},
-    {"type": "sensitivity", "from": "initial", "parameters": ["p"], "of": {"type": "equilibrium", "measures": {"x": {"final": "p0.x"}}}})--"));
-  if (run.outcome.exit_code > 1) return run.outcome.error_text;
-  if (run.outcome.analyses.front().report.status == Status::not_converged) {
-    ++unsolved;
-    return {};
-  }
-  if (run.outcome.exit_code != 0) return run.outcome.analyses.back().report.message;
-  double worst = 0;
-  for (int i = 0; i < n; ++i) {
-    worst = std::max(
-        {worst, std::abs(run.last(name(i)) - rest(i)), std::abs(run.last("d(" + name(i) + ")/d(p)", 1) - rest_p(i))});
-  }
-  return worst < 1e-9 ? "" : "off by " + text_of(worst);
-}
-
-TEST(StateLaws, RandomOnesBalanceAsSolvedInTheTest) {
-  int unsolved = 0;
-  expect_no_fault(1, 40, [&](unsigned seed) { return random_balance(seed, unsolved); });
-  EXPECT_LE(unsolved, 2);
 }
 
 }  // namespace
