@@ -162,7 +162,7 @@ TEST(ContactStacks, TipsAndSlidesWhereStaticsSays) {
     EXPECT_EQ(sticks, part < 1);
     (sticks ? held : moved)++;
     if (sticks) {
-      const SharedForces forces(problem, point);
+      SharedForces forces(problem, point);
       const auto normal = [&](std::size_t p) { return problem.x[2 * p]; };
       const auto along = [&](std::size_t p) { return problem.x[2 * p + 1]; };
       EXPECT_EQ(forces.places().size(), point.size());
@@ -187,7 +187,7 @@ TEST(ContactStacks, TheMarginEndsWhereTheStackGivesWay) {
       ASSERT_TRUE(problem.solve());
       std::vector<std::size_t> point(problem.place.size());
       for (std::size_t p = 0; p < point.size(); ++p) point[p] = p;
-      const SharedForces forces(problem, point);
+      SharedForces forces(problem, point);
       // All forces are linear in the push: T of a side, N by the lever. One share for each box: half and half along.
       const auto margin_at = [&](double force) {
         std::vector<double> N, T;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "catena/analysis/balance/force_sizes.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -19,7 +20,7 @@ constexpr double moved = 1e-6;         // of places by a disturbance, length sca
 constexpr double further = 1.25;       // rows until another one is kept, of those so far
 // 12519 columns of 492 random mechanisms were optimistic by 7.3 at most, pessimistic by 81 at the median; 8194 of 381
 // others by 8.1 and 83.
-constexpr double factor = 2.3, common = 4 * std::numeric_limits<double>::epsilon();
+constexpr double factor = 2.3;
 
 }  // namespace
 
@@ -268,7 +269,8 @@ void MotionAccuracy::examine(const Row& row) {
   }
   for (std::size_t k = 0; k < largest_.size(); ++k) {
     // Columns that are not defined here are judged in other rows.
-    if (!std::isnan(row.values[k])) errors_.take_error(k, factor * largest_[k] + common * std::abs(row.values[k]));
+    if (!std::isnan(row.values[k]))
+      errors_.take_error(k, factor * largest_[k] + thresholds::few_roundings * std::abs(row.values[k]));
   }
 }
 

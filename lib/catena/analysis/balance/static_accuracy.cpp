@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "catena/analysis/balance/force_sizes.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -14,8 +15,6 @@ namespace {
 
 // A residual above this part of the loads changes the third digit of some force: not an equilibrium.
 constexpr double shown = 1e-3;
-// Rounding of the few sums behind one number: a place is the sum of four products, a force of two differences.
-constexpr double few_roundings = 4 * std::numeric_limits<double>::epsilon();
 
 // Sums over the terms of the residual, by columns.
 std::vector<double> sum_terms(const StaticSystem& system, std::span<const double> sizes,
@@ -79,7 +78,7 @@ bool are_rounding(const Plan& plan, std::span<const double> applied, std::span<c
   for (int c = 0; c < plan.columns; ++c) {
     const std::size_t group = at(find(c));
     force[group] = std::max(force[group], terms[at(c)] * inverse_arms[at(c)]);
-    rounding[group] = std::max(rounding[group], few_roundings * floor[at(c)] * inverse_arms[at(c)]);
+    rounding[group] = std::max(rounding[group], thresholds::few_roundings * floor[at(c)] * inverse_arms[at(c)]);
     acting[group] = std::max(acting[group], applied[at(plan.coordinate[at(c)])]);
   }
   for (std::size_t group = 0; group < force.size(); ++group) {
@@ -93,7 +92,7 @@ bool are_rounding(const Plan& plan, std::span<const double> applied, std::span<c
 std::vector<double> balance_rounding(StaticSystem& system, std::span<const double> lambda) {
   std::vector<double> rounding = sum_terms(system, force_sizes(system.evaluator()).all, lambda);
   add_stiffness_times_places(system, lambda, rounding);
-  for (double& size : rounding) size *= few_roundings;
+  for (double& size : rounding) size *= thresholds::few_roundings;
   return rounding;
 }
 
@@ -128,7 +127,7 @@ StaticAccuracy judge_balance(StaticSystem& system, std::span<const double> lambd
   bool rounded = true;
   double worst = -1;
   for (int c = 0; c < plan.columns; ++c) {
-    const double force = std::abs(residual[at(c)]), rounding = few_roundings * floor[at(c)];
+    const double force = std::abs(residual[at(c)]), rounding = thresholds::few_roundings * floor[at(c)];
     rounded = rounded && force <= rounding;
     if (force > worst * rounding) {
       worst = rounding > 0 ? force / rounding : std::numeric_limits<double>::infinity();

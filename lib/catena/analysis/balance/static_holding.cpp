@@ -6,15 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "catena/analysis/run/name_list.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 #include "catena/model/disjoint_sets.hpp"
 
 namespace catena {
 namespace {
-
-// A load below this part of its largest share is rounding of shares that cancel.
-constexpr double rounding_of_loads = 1e-9;
 
 // Groups of plan bodies tied together; immobile bodies and the ground share the last place.
 class Groups {
@@ -53,14 +52,12 @@ Groups tie_bodies(const Plan& plan, const Evaluator& evaluator) {
 
 /// The first group of bodies that nothing holds: their names, and the load on all of them about the ground's origin.
 struct LooseBodies {
-  int count = 0;
-  std::string names;
+  NameList names;
   double load[3] = {0, 0, 0};  // N, N, N m
   double size = 0;             // the largest part of it
 };
 
 LooseBodies first_loose(Groups& groups, const StaticSystem& system, const Evaluator& evaluator) {
-  constexpr int most_names = 3;
   const Plan& plan = system.plan();
   LooseBodies loose;
   int first = -1;
@@ -68,10 +65,7 @@ LooseBodies first_loose(Groups& groups, const StaticSystem& system, const Evalua
     if (groups.is_held(b)) continue;
     if (first < 0) first = b;
     if (!groups.are_tied(b, first)) continue;
-    if (++loose.count <= most_names) {
-      loose.names +=
-          fmt::format("{}\"{}\"", loose.count > 1 ? ", " : "", evaluator.model().body_name(plan.model_body[at(b)]));
-    }
+    loose.names.add(evaluator.model().body_name(plan.model_body[at(b)]));
     double force[3] = {0, 0, 0};
     for (int k = 0; k < 3; ++k) {
       const int c = plan.column[at(3 * b + k)];
@@ -83,7 +77,6 @@ LooseBodies first_loose(Groups& groups, const StaticSystem& system, const Evalua
     loose.load[1] += force[1];
     loose.load[2] += force[2] + place.x * force[1] - place.y * force[0];
   }
-  if (loose.count > most_names) loose.names += fmt::format(" and {} more", loose.count - most_names);
   return loose;
 }
 
@@ -92,20 +85,20 @@ LooseBodies first_loose(Groups& groups, const StaticSystem& system, const Evalua
 std::optional<Report> find_loose_bodies(const StaticSystem& system, const Evaluator& evaluator) {
   Groups groups = tie_bodies(system.plan(), evaluator);
   const LooseBodies loose = first_loose(groups, system, evaluator);
-  if (loose.count == 0) return {};
-  const bool many = loose.count > 1;
+  if (loose.names.count() == 0) return {};
+  const bool many = loose.names.count() > 1;
   const char *bodies = many ? "the bodies" : "body", *them = many ? "them" : "it";
-  if (std::hypot(loose.load[0], loose.load[1], loose.load[2]) > rounding_of_loads * loose.size) {
+  if (std::hypot(loose.load[0], loose.load[1], loose.load[2]) > thresholds::no_force * loose.size) {
     return Report{Status::unbounded,
                   fmt::format("nothing holds {} {}: no constraint or spring ties {} to the ground, and the load "
                               "({:.4g}, {:.4g}) N moves {} without end; which joint or spring is missing?",
-                              bodies, loose.names, them, loose.load[0], loose.load[1], them),
+                              bodies, loose.names.text(), them, loose.load[0], loose.load[1], them),
                   {}};
   }
   return Report{Status::refused,
                 fmt::format("{} {} {} free to move along x, along y and to turn: no constraint or spring ties {} to "
                             "the ground, so every place is an equilibrium",
-                            bodies, loose.names, many ? "are" : "is", them),
+                            bodies, loose.names.text(), many ? "are" : "is", them),
                 {}};
 }
 

@@ -64,11 +64,11 @@ void StaticSystem::close_gaps(std::span<const char> closed) {
 void StaticSystem::all_gaps(std::vector<double>& out) {
   out.clear();
   if (!has_gaps()) return;
-  gaps_.met.resize(phi_.size());
+  gaps_.all.resize(phi_.size());
   evaluator_.leave_out({});
-  evaluator_.phi(gaps_.met);
+  evaluator_.phi(gaps_.all);
   evaluator_.leave_out(gaps_.open);
-  for (int r : plan_.gap_rows) out.push_back(gaps_.met[at(r)]);
+  for (int r : plan_.gap_rows) out.push_back(gaps_.all[at(r)]);
 }
 
 void StaticSystem::take_over_model() {
@@ -131,9 +131,8 @@ double StaticSystem::change_norm(std::span<const double> change) const { return 
 
 double StaticSystem::phi_norm() const {
   if (!gaps_.one_sided) return scaling_.row_norm(phi_);
-  gaps_.met.assign(phi_.begin(), phi_.end());
-  for (int r : plan_.gap_rows) gaps_.met[at(r)] = std::min(gaps_.met[at(r)], 0.0);
-  return scaling_.row_norm(gaps_.met);
+  return scaling_.scan_rows(phi_.size(),
+                            [&](std::size_t row) { return gaps_.is[row] ? std::min(phi_[row], 0.0) : phi_[row]; });
 }
 
 double StaticSystem::force_scale(std::span<const double> lambda) const {

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "catena/analysis/pose/scaling.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/assembly/evaluate.hpp"
 #include "catena/assembly/systems/kkt_matrix.hpp"
 
@@ -36,7 +37,7 @@ class StaticSystem {
  public:
   explicit StaticSystem(Evaluator& evaluator);
 
-  /// Updates all values that depend on the evaluator's model after it changed.
+  /// To be called after the evaluator's model changed: updates all values that depend on it.
   void take_over_model();
   /// Called between steps of every search: whether to continue. Empty: always.
   void watch(std::function<bool()> proceed) { proceed_ = std::move(proceed); }
@@ -83,15 +84,16 @@ class StaticSystem {
   bool has_springs() const { return springs_.any(); }
 
   /// Changes below this cannot be told from rounding of the coordinates: length scales or rad.
-  double rounding_change() const { return 1e-15 * extent_ / length_; }
+  double rounding_change() const { return thresholds::position_rounding * extent_ / length_; }
 
   /// Residual forces below this may be rounding: a stiff spring's length is known to so many digits only, N.
   double rounding_force() const { return 1e-14 * matrix_.largest_stiffness() * extent_; }
 
-  /// Stiff springs that turn in a step, as links of a chain, lengthen to second order, and the resulting change of k (l
-  /// - l0) exceeds the forces that they will carry. fill() takes their stiffness, along the present line, at the length
-  /// to which this change (columns, as in advance()) leads to first order, as if tensions were unknowns of their own;
-  /// without a change at the free length. Call it before the step is made.
+  /// A stiff spring that turns in a step, as a link of a chain does, lengthens to second order in the turn, and the
+  /// force k (l - l0) that this gives exceeds what it will carry. From here on fill() takes the stiffness of such
+  /// springs along their present lines, but at the length to which this change (columns, as in advance()) leads to
+  /// first order, as if their tensions were unknowns; without a change, at their free length. To be called before the
+  /// step is made.
   void foresee(std::span<const double> change = {}, double factor = 1, double largest_turn = 0);
   /// Back to present lengths: the exact K of the energy.
   void forget_lengths() { springs_.forget(); }
@@ -144,10 +146,10 @@ class StaticSystem {
   std::vector<double> gradient_, jacobian_, phi_;
   std::vector<double> solution_, torque_;
   struct {
-    std::vector<char> is;             // per row; empty: none is
-    std::vector<int> open;            // rows left out
-    bool one_sided = false;           // as inequalities
-    mutable std::vector<double> met;  // phi without gaps that are open
+    std::vector<char> is;     // per row; empty: none is
+    std::vector<int> open;    // rows left out
+    bool one_sided = false;   // as inequalities
+    std::vector<double> all;  // phi of all rows, as all_gaps() reads them
   } gaps_;
 };
 

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
 constexpr int most_tangent_corrections = 10;
-// A correction that is not below this part of the one before is rounding.
-constexpr double least_tangent_gain = 0.5;
 
 }  // namespace
 
@@ -121,7 +120,7 @@ void StaticTangent::solve_to_rounding(std::span<const double> given, std::span<d
     for (std::size_t i = 0; i < x.size(); ++i) correction_[i] = given[i] - correction_[i];
     solve_once(correction_);
     const double now = size(correction_);
-    if (!(now < least_tangent_gain * before)) return;
+    if (!(now < thresholds::least_gain * before)) return;
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += correction_[i];
     before = now;
   }

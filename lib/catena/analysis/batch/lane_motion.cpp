@@ -7,16 +7,16 @@
 #include <limits>
 #include <utility>
 
+#include "catena/analysis/kinematics/course/step_rules.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-// The rules of Kinematics: kinematics.cpp for the first two, kinematics_march.cpp for the others.
-constexpr double nearby = 0.1, nearby_contraction = 0.25;
-constexpr LaneSolver::Rules rules{
-    .largest_turn = 0.1, .largest_contraction = 0.25, .longest_step = 0.5, .sudden_part = 0.6};
-constexpr double remaining_part = 0.3;
+constexpr LaneSolver::Rules rules{.largest_turn = step_rules::largest_turn,
+                                  .largest_contraction = step_rules::largest_contraction,
+                                  .longest_step = step_rules::longest_step,
+                                  .sudden_part = step_rules::sudden_part};
 // Kinematics looks at a singular position where a determinant has fallen to 0.6 of its value within a step however
 // short. Halved so often, a step over which that happens is so near to one that lanes leave it to Kinematics.
 constexpr int most_halvings = 10;
@@ -79,8 +79,8 @@ unsigned LaneMotion::assemble(const std::array<double, lane_count>& t) {
   solver_.solve(*next_);
   unsigned near = 0;
   for (int lane = 0; lane < lane_count; ++lane) {
-    const bool is_near = solver_.converged(lane) && solver_.first_size(lane) <= nearby &&
-                         solver_.contraction(lane) <= nearby_contraction;
+    const bool is_near = solver_.converged(lane) && solver_.first_size(lane) <= step_rules::nearby &&
+                         solver_.contraction(lane) <= step_rules::largest_contraction;
     if (is_near) near |= 1U << lane;
   }
   return near;
@@ -144,7 +144,7 @@ void LaneMotion::advance(unsigned lanes, const std::array<double, lane_count>& t
 unsigned LaneMotion::attempt(unsigned lanes, const std::array<double, lane_count>& t) {
   for (int lane = 0; lane < lane_count; ++lane)
     next_->t[at(lane)] = lanes & 1U << lane ? t[at(lane)] : now_->t[at(lane)];
-  const unsigned hopeful = lanes & ~solver_.foretell(*before_, *now_, remaining_part, *next_);
+  const unsigned hopeful = lanes & ~solver_.foretell(*before_, *now_, step_rules::remaining_part, *next_);
   if (hopeful == 0) return 0;
   for (int lane = 0; lane < lane_count; ++lane) {
     if (has_before_[at(lane)]) continue;

@@ -154,9 +154,9 @@ void LaneProgram::list_forces(const Model& model) {
 }
 
 void LaneProgram::list_masses() {
-  code_.masses = fields_;
-  code_.gravity = fields_ + 2 * plan_->moving;
-  fields_ = code_.gravity + 2;
+  code_.loads.masses = fields_;
+  code_.loads.gravity = fields_ + 2 * plan_->moving;
+  fields_ = code_.loads.gravity + 2;
 }
 
 bool LaneProgram::list_steps(const Model& model, std::string& why_not) {
@@ -186,9 +186,9 @@ void LaneProgram::close() {
   code_.solve_runs = static_cast<int>(e.solve.size());
   code_.transposed = e.transposed.data();
   code_.transposed_runs = static_cast<int>(e.transposed.size());
-  code_.force = force_.data();
-  code_.of_force_type = of_force_type_.data();
-  code_.force_types = static_cast<int>(of_force_type_.size());
+  code_.loads.force = force_.data();
+  code_.loads.of_type = of_force_type_.data();
+  code_.loads.types = static_cast<int>(of_force_type_.size());
   code_.step = e.step.data();
   code_.reset = e.reset.data();
   code_.resets = static_cast<int>(e.reset.size());

@@ -99,12 +99,12 @@ bool LaneProgram::put_forces(const Model& model, int lane, LaneNumbers& field, L
 void LaneProgram::put_masses(const Model& model, int lane, LaneNumbers& field) const {
   for (int b = 0; b < plan_->moving; ++b) {
     const auto& body = model.bodies[at(plan_->model_body[at(b)])];
-    field[code_.masses + 2 * b][lane] = body.mass;
-    field[code_.masses + 2 * b + 1][lane] = body.inertia;
+    field[code_.loads.masses + 2 * b][lane] = body.mass;
+    field[code_.loads.masses + 2 * b + 1][lane] = body.inertia;
   }
   // Forces that evaluators give have the weight in them.
-  field[code_.gravity][lane] = takes_forces_ ? 0 : model.gravity.x;
-  field[code_.gravity + 1][lane] = takes_forces_ ? 0 : model.gravity.y;
+  field[code_.loads.gravity][lane] = takes_forces_ ? 0 : model.gravity.x;
+  field[code_.loads.gravity + 1][lane] = takes_forces_ ? 0 : model.gravity.y;
 }
 
 LaneProgram::Constraint LaneProgram::constraint(const Model& model, int element, int lane,

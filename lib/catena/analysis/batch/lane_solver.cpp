@@ -42,11 +42,11 @@ LaneSolver::LaneSolver(const LaneProgram& program)
   job_.load = load_.data();
   job_.search = LaneSearches::search;
   job_.searches = &searches_;
-  job_.converged = converged_.data();
-  job_.first_size = first_size_.data();
-  job_.first_turn = first_turn_.data();
-  job_.contraction = contraction_.data();
-  job_.residual = residual_.data();
+  job_.found.converged = converged_.data();
+  job_.found.first_size = first_size_.data();
+  job_.found.first_turn = first_turn_.data();
+  job_.found.contraction = contraction_.data();
+  job_.found.residual = residual_.data();
   for (int slot = 0; slot < program.slots(); ++slot)
     std::fill(matrix_[slot], matrix_[slot] + lane_count, program.initial()[at(slot)]);
 }
@@ -86,7 +86,7 @@ void LaneSolver::solve(LaneState& state, int lanes) {
   job_.q = state.q.data();
   job_.qd = state.qd.data();
   job_.qdd = state.qdd.data();
-  job_.margin = state.margin.data();
+  job_.found.margin = state.margin.data();
   job_.lambda = state.lambda.data();
   job_.turned = state.turned.data();
   if (!searches_.empty()) searches_.go_to(state.places);

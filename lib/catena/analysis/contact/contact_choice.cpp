@@ -94,7 +94,7 @@ void ContactSwitch::let_leave(double t, std::vector<ContactState>& states, const
         points_[k].kind == ContactKind::rigid && !returns(t, k, cause) && gap_[k].rate > part_of_speed(k, no_speed);
     if (!opens && !leaves) return false;
     states[k] = {};
-    left_at_[k] = t;
+    past_.left_at[k] = t;
     return true;
   });
   let_grips_go(states);

@@ -229,16 +229,16 @@ Report ContactSwitch::collide(double t, std::span<double> qd, std::vector<Contac
     events_.push_back({points_[k].element, "impact", t});
     const double rebound = gap_[k].rate;
     if (rebound > part_of_speed(k, no_speed)) {
-      bounced_at_[k] = t;
+      past_.bounced_at[k] = t;
       states[k].closed = false;
       continue;
     }
     // It stays. The bounces that were left out would have taken their time.
-    landing_[k] = end;
+    past_.landing[k] = end;
     if (points_[k].restitution > 0 && points_[k].restitution < 1 &&
-        bounced_at_[k] > -std::numeric_limits<double>::infinity()) {
-      const double fall = std::max(t - bounced_at_[k], 0.0);
-      landing_[k] = t + fall * points_[k].restitution / (1 - points_[k].restitution);
+        past_.bounced_at[k] > -std::numeric_limits<double>::infinity()) {
+      const double fall = std::max(t - past_.bounced_at[k], 0.0);
+      past_.landing[k] = t + fall * points_[k].restitution / (1 - points_[k].restitution);
     }
   }
   note_flights(t, hit);

@@ -49,7 +49,7 @@ bool ContactSwitch::is_jammed(bool accelerates) const {
 // Whether place k, which closed just now, was let go at this very instant: it has not left by more than rounding.
 bool ContactSwitch::returns(double t, std::size_t k, const Cause& cause) const {
   return cause.place >= 0 && k == static_cast<std::size_t>(cause.place) &&
-         t - left_at_[k] <= 4 * std::numeric_limits<double>::epsilon() * std::abs(t);
+         t - past_.left_at[k] <= 4 * std::numeric_limits<double>::epsilon() * std::abs(t);
 }
 
 // Touching places that no force holds and that drivers push through: with an acceleration, or with what shows only
@@ -66,7 +66,7 @@ std::vector<std::size_t> ContactSwitch::pushed_through(double t, const ContactPr
     const double rounding = ContactProblem::rounding_of_sums * terms;
     const bool accelerates = problem.b[2 * a] < -rounding;
     if (accelerates || (returns(t, k, cause) && problem.b[2 * a] <= rounding)) places.push_back(k);
-    left_at_[k] = t;
+    past_.left_at[k] = t;
   }
   return places;
 }

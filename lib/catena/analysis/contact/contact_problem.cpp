@@ -157,7 +157,7 @@ bool ContactProblem::sweep(double& size) {
     }
     if (!std::isfinite(size)) return false;
     change = std::max(change, grip_change_);
-    if (change <= tolerated * size && change <= rounding()) return true;
+    if (change <= rounding_of_sums * size && change <= rounding()) return true;
   }
   return false;
 }
@@ -200,9 +200,9 @@ bool ContactProblem::close_redundant(double size) {
   for (std::size_t k = 0; k < place.size(); ++k) {
     const std::size_t n = 2 * k, t = n + 1;
     if (state[k] != State::open || !place[k].has_normal || !(D(n, n) > 0)) continue;
-    if (std::abs(without_own(k, 0)) > tolerated * D(n, n) * unit(n) * size) continue;
+    if (std::abs(without_own(k, 0)) > rounding_of_sums * D(n, n) * unit(n) * size) continue;
     const double w_t = place[k].has_friction ? without_own(k, 1) : 0;
-    const bool rests = place[k].slip == 0 && std::abs(w_t) <= tolerated * D(t, t) * unit(t) * size;
+    const bool rests = place[k].slip == 0 && std::abs(w_t) <= rounding_of_sums * D(t, t) * unit(t) * size;
     state[k] = place[k].has_friction && rests ? State::sticks : State::slides;
     if (place[k].has_friction && !rests) direction[k] = place[k].slip != 0 ? place[k].slip : w_t > 0 ? 1 : -1;
     for (const std::size_t grip : grips_of(k)) {

@@ -92,9 +92,6 @@ class ContactProblem {
   std::vector<int> direction;   ///< of the slip, where it slides with friction
 
  private:
-  /// The answer of all places at once replaces that of the sweeps where it keeps every inequality to this part.
-  static constexpr double tolerated = 1e-9;
-
   bool solve_place(std::size_t k);
   struct Unknown {
     std::size_t row;

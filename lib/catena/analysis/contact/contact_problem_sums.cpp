@@ -14,12 +14,12 @@ bool ContactProblem::fits(double size) const {
     if (!std::isfinite(x[n]) || !std::isfinite(x[t])) return false;
     const bool sticks = state[k] == State::sticks;
     if (place[k].head >= 0) {
-      if (sticks && size_of(t, misfit(k)) > tolerated * size) return false;
+      if (sticks && size_of(t, misfit(k)) > rounding_of_sums * size) return false;
       continue;
     }
-    if (place[k].has_normal && size_of(n, x[n]) < -tolerated * size) return false;
+    if (place[k].has_normal && size_of(n, x[n]) < -rounding_of_sums * size) return false;
     const double limit = place[k].has_normal ? place[k].mu_static * x[n] : place[k].limit;
-    if (sticks && size_of(t, std::abs(x[t]) - limit) > tolerated * size) return false;
+    if (sticks && size_of(t, std::abs(x[t]) - limit) > rounding_of_sums * size) return false;
   }
   return true;
 }
@@ -64,7 +64,7 @@ double ContactProblem::rounding() const {
 
 bool ContactProblem::is_carried(std::size_t k, double w_t) const {
   const std::size_t t = 2 * k + 1;
-  return !(D(t, t) > 0) && std::abs(w_t) > tolerated * std::max(std::abs(b[t]), b_terms[t]);
+  return !(D(t, t) > 0) && std::abs(w_t) > rounding_of_sums * std::max(std::abs(b[t]), b_terms[t]);
 }
 
 // Whether a slip that is there already wedges a place: nothing fits, or a free and a pressed place fit alike.

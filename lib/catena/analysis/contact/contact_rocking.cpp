@@ -16,10 +16,11 @@ namespace catena {
 // Closed places that an impact opens too slowly to matter, where the places that are hit and they took turns before.
 std::vector<std::size_t> ContactSwitch::rocking(double t, const std::vector<std::size_t>& hit) const {
   std::vector<std::size_t> lifted;
-  const bool shorter = std::all_of(hit.begin(), hit.end(), [&](std::size_t k) { return t - left_at_[k] < flight_[k]; });
+  const bool shorter =
+      std::all_of(hit.begin(), hit.end(), [&](std::size_t k) { return t - past_.left_at[k] < past_.flight[k]; });
   if (!shorter) return lifted;
   for (const std::size_t k : active_) {
-    if (points_[k].kind != ContactKind::rigid || std::isnan(flight_[k])) continue;
+    if (points_[k].kind != ContactKind::rigid || std::isnan(past_.flight[k])) continue;
     if (std::find(hit.begin(), hit.end(), k) != hit.end()) continue;
     if (gap_[k].rate > part_of_speed(k, no_speed) && gap_[k].rate < rest_speed(k)) lifted.push_back(k);
   }
@@ -70,13 +71,13 @@ double ContactSwitch::end_rocking(double t, const std::vector<std::size_t>& hit,
   if (jump_) jump_->settles = true;
   look(qd);
   // Two flights of one foot lie two ratios apart.
-  const double flight = t - left_at_[hit.front()], ratio = std::sqrt(flight / flight_[hit.front()]);
+  const double flight = t - past_.left_at[hit.front()], ratio = std::sqrt(flight / past_.flight[hit.front()]);
   return ratio < 1 ? t + flight * ratio / (1 - ratio) : t;
 }
 
 void ContactSwitch::note_flights(double t, const std::vector<std::size_t>& hit) {
   for (const std::size_t k : hit) {
-    if (std::isfinite(left_at_[k])) flight_[k] = t - left_at_[k];
+    if (std::isfinite(past_.left_at[k])) past_.flight[k] = t - past_.left_at[k];
   }
 }
 

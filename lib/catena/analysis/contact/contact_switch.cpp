@@ -6,14 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-// A gap of this part of the length scale (or rad) is closed: instants of impacts are found to rounding, configurations
-// are given to some ten digits.
-constexpr double closed_gap = 1e-9;
 
 /// Not a joint or a grip, which have a slide alone.
 bool has_gap(const ContactPoint& point) {
@@ -54,10 +51,7 @@ ContactSwitch::ContactSwitch(std::shared_ptr<const Model> model, const std::vect
       evaluator_(Plan::make(*model_, plan), *model_),
       equations_(evaluator_),
       redundant_(equations_),
-      bounced_at_(points.size(), -std::numeric_limits<double>::infinity()),
-      landing_(points.size(), std::numeric_limits<double>::quiet_NaN()),
-      left_at_(bounced_at_),
-      flight_(points.size(), std::numeric_limits<double>::quiet_NaN()),
+      past_(points.size()),
       gap_(points.size()),
       slide_(points.size()) {
   const auto coordinates = at(evaluator_.plan().coordinates());
@@ -68,11 +62,9 @@ ContactSwitch::ContactSwitch(std::shared_ptr<const Model> model, const std::vect
 
 void ContactSwitch::take_over(const ContactSwitch& earlier) {
   know_speed(earlier.speed_);
-  bounced_at_ = earlier.bounced_at_;
-  flight_ = earlier.flight_;
+  past_.take_over(earlier.past_);
   other_laws_ = earlier.other_laws_;
   several_states_ = earlier.several_states_;
-  left_at_ = earlier.left_at_;
 }
 
 Report ContactSwitch::prepare(std::span<const double> q) {
@@ -100,7 +92,7 @@ void ContactSwitch::find_touching(const std::vector<ContactState>& states, const
   for (std::size_t k = 0; k < points_.size(); ++k) {
     if (is_of_one_group && group_[k] != group_[at(cause.place)]) continue;
     const ContactPoint& point = points_[k];
-    const double near = closed_gap * (point.turns ? 1 : evaluator_.length_scale());
+    const double near = thresholds::closed_gap * (point.turns ? 1 : evaluator_.length_scale());
     bool touches = states[k].closed || (point.kind == ContactKind::rigid && gap_[k].value <= near);
     touches = touches || (point.kind == ContactKind::rigid && static_cast<int>(k) == cause.place);
     // Compliant and smoothed places are forces; only exact friction is decided about there.
@@ -190,9 +182,9 @@ void ContactSwitch::tell_changes(double t, const std::vector<ContactState>& befo
         tell(after[k].direction == 0 ? "stick" : "slip", t);
       continue;
     }
-    if (after[k].closed && !before[k].closed) tell("contact", std::isnan(landing_[k]) ? t : landing_[k]);
-    if (!after[k].closed && before[k].closed && !(bounced_at_[k] == t)) tell("release", t);
-    landing_[k] = std::numeric_limits<double>::quiet_NaN();
+    if (after[k].closed && !before[k].closed) tell("contact", std::isnan(past_.landing[k]) ? t : past_.landing[k]);
+    if (!after[k].closed && before[k].closed && !(past_.bounced_at[k] == t)) tell("release", t);
+    past_.landing[k] = std::numeric_limits<double>::quiet_NaN();
     const bool exact = points_[k].has_friction() && points_[k].is_exact();
     if (!exact || !after[k].closed || !before[k].closed) continue;
     if (after[k].direction == 0 && before[k].direction != 0) tell("stick", t);
@@ -231,7 +223,7 @@ Report ContactSwitch::decide(double t, std::span<const double> q, std::span<doub
   if (is_told) impulses_ = impulses_of(equations_, q, qd, p_);
   if (Report chosen = choose(t, q, qd, states, cause); !chosen.ok()) return chosen;
   if (cause.tell) tell_changes(t, before, states);
-  std::fill(landing_.begin(), landing_.end(), std::numeric_limits<double>::quiet_NaN());
+  std::fill(past_.landing.begin(), past_.landing.end(), std::numeric_limits<double>::quiet_NaN());
   return {};
 }
 

@@ -22,6 +22,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -95,6 +96,7 @@ class ContactSwitch {
   const std::optional<SingularPoint>& blocked() const { return blocked_; }
   /// Of places that hold each other since they were decided about last.
   const std::vector<SharedForces>& shared() const { return shared_; }
+  std::vector<SharedForces>& shared() { return shared_; }
   /// Impacts in which Newton's restitution would have made energy grow.
   struct OtherLaws {
     int poisson = 0;   ///< Poisson's took its place
@@ -114,6 +116,26 @@ class ContactSwitch {
   std::vector<ContactEvent> take_events() { return std::move(events_); }
 
  private:
+  /// What was noted of every point, s.
+  struct Past {
+    explicit Past(std::size_t points)
+        : bounced_at(points, -std::numeric_limits<double>::infinity()),
+          landing(points, std::numeric_limits<double>::quiet_NaN()),
+          left_at(bounced_at),
+          flight(landing) {}
+    /// All but the event under way.
+    void take_over(const Past& earlier) {
+      bounced_at = earlier.bounced_at;
+      left_at = earlier.left_at;
+      flight = earlier.flight;
+    }
+
+    std::vector<double> bounced_at;  // when it hit and came back last
+    std::vector<double> landing;     // instant of the `contact` event under way, or NaN
+    std::vector<double> left_at;     // when it was last let go, by its speed or by drivers
+    std::vector<double> flight;      // how long it was open before it landed last; NaN: it never was
+  };
+
   void look(std::span<const double> qd);
   void apply(const Strike& strike, std::span<const double> q, std::span<double> qd);
   void find_touching(const std::vector<ContactState>& states, const Cause& cause);
@@ -173,11 +195,8 @@ class ContactSwitch {
   double work_of_strike_ = 0;
   std::vector<double> p_;  // multipliers of the velocities' jumps, while it decides
   std::vector<ConstraintImpulse> impulses_;
-  double speed_ = 0;                // largest of the motion so far, m/s or rad/s times the length scale
-  std::vector<double> bounced_at_;  // by point: when it hit and came back last
-  std::vector<double> landing_;     // by point: instant of the `contact` event under way, or NaN
-  std::vector<double> left_at_;     // by point: when it was last let go, by its speed or by drivers
-  std::vector<double> flight_;      // by point: how long it was open before it landed last; NaN: it never was
+  double speed_ = 0;  // largest of the motion so far, m/s or rad/s times the length scale
+  Past past_;
   std::optional<SingularPoint> blocked_;
   std::optional<VelocityJump> jump_;
   std::vector<Evaluator::ScalarMotion> gap_, slide_;

@@ -10,11 +10,6 @@
 namespace catena {
 namespace {
 
-// Of what a row gives way without the others: rounding.
-constexpr double dependent = 1e-9;
-// Of the terms of an acceleration.
-constexpr double at_rest = 1e-9;
-
 /// Whether row r of D depends on others.
 bool depends(const ContactProblem& problem, const std::vector<std::size_t>& rows, std::size_t r) {
   const auto size = static_cast<Eigen::Index>(rows.size());
@@ -26,7 +21,7 @@ bool depends(const ContactProblem& problem, const std::vector<std::size_t>& rows
   }
   const double left =
       size > 0 ? problem.D(r, r) - d.dot(D.completeOrthogonalDecomposition().solve(d)) : problem.D(r, r);
-  return !(left > dependent * problem.D(r, r));
+  return !(left > ContactProblem::rounding_of_sums * problem.D(r, r));
 }
 
 /// The acceleration along place a, zero if it is rounding.
@@ -36,7 +31,7 @@ double acceleration(const ContactProblem& problem, std::size_t a) {
     sum += problem.D(2 * a + 1, c) * problem.x[c];
     terms += std::abs(problem.D(2 * a + 1, c) * problem.x[c]);
   }
-  return std::abs(sum) > at_rest * terms ? sum : 0;
+  return std::abs(sum) > ContactProblem::rounding_of_sums * terms ? sum : 0;
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/assembly/rope_ways.hpp"
 #include "catena/base/at.hpp"
 #include "catena/linalg/rank/nonnegative_least_squares.hpp"
@@ -25,8 +26,6 @@ namespace {
 // Of the loads, and of the forces that balance them: what is left unbalanced by rounding. Where places wedge a body the
 // forces grow without bound as friction falls to the least that holds.
 constexpr double balanced = 1e-11, balanced_of_forces = 64 * std::numeric_limits<double>::epsilon();
-// A place within this part of the length scale is closed.
-constexpr double closed_place = 1e-6;
 // Friction beyond this is as good as any: the edges of the cone are then along the tangent to this part.
 constexpr double most_friction = 1e8;
 
@@ -131,7 +130,7 @@ Report find_cones(const ContactModel& contacts, Evaluator& evaluator, ForceColum
     const ContactPoint& point = contacts.points[k];
     if (point.kind == ContactKind::grip) continue;  // with its rope
     const Evaluator::ScalarMotion gap = columns.motion(point.element);
-    if (gap.value > closed_place * evaluator.length_scale()) continue;
+    if (gap.value > thresholds::given_depth * evaluator.length_scale()) continue;
     RopeEdges rope{columns.along(gap), {}, {}};
     for (const ContactPoint& grip : contacts.points) {
       if (grip.kind != ContactKind::grip || grip.rope->head != static_cast<int>(k) || !grip.has_friction()) continue;

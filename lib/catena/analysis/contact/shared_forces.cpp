@@ -8,9 +8,6 @@
 namespace catena {
 namespace {
 
-// Of the length of a null vector: entries that rounding leaves.
-constexpr double no_share = 1e-9;
-
 using State = ContactProblem::State;
 
 /// A row that holds: across a place, or along it.
@@ -73,7 +70,7 @@ SharedForces::SharedForces(const ContactProblem& problem, const std::vector<std:
   const std::vector<Held> held = held_rows(problem);
   const Eigen::MatrixXd free = free_forces(problem, held);
   if (free.cols() < 1) return;
-  const double share = no_share * free.rowwise().norm().maxCoeff();
+  const double share = ContactProblem::rounding_of_sums * free.rowwise().norm().maxCoeff();
   const auto row = [&](std::size_t place, bool along) -> Eigen::VectorXd {
     const auto found =
         std::find_if(held.begin(), held.end(), [&](const Held& h) { return h.place == place && h.along == along; });

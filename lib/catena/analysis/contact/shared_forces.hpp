@@ -37,7 +37,7 @@ class SharedForces {
   /// From forces of one share: what presses point k, normal(k), and along it where it sticks, along(k). Not a number
   /// where it was not found.
   template <class Normal, class Along>
-  double margin(Normal&& normal, Along&& along) const {
+  double margin(Normal&& normal, Along&& along) {
     if (shares_.empty()) return std::numeric_limits<double>::max();
     left_.clear();
     for (const Limit& limit : limits_)
@@ -46,7 +46,7 @@ class SharedForces {
   }
   /// Those whose limits meet at that margin; none where it was not found.
   template <class Normal, class Along>
-  std::vector<GivesWay> giving_way(Normal&& normal, Along&& along) const {
+  std::vector<GivesWay> giving_way(Normal&& normal, Along&& along) {
     std::vector<GivesWay> places;
     if (shares_.empty()) return places;
     if (std::isnan(margin(normal, along))) return places;
@@ -65,8 +65,8 @@ class SharedForces {
 
   std::vector<std::size_t> places_;
   std::vector<Limit> limits_;
-  mutable VertexMinimum shares_;      // of w, with the corner of the last margin
-  mutable std::vector<double> left_;  // a_l of the last margin, kept for its memory
+  VertexMinimum shares_;      // of w, with the corner of the last margin
+  std::vector<double> left_;  // a_l of the last margin, kept for its memory
 };
 
 }  // namespace catena

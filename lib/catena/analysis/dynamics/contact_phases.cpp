@@ -8,14 +8,12 @@
 #include "catena/analysis/motion/initial_velocities.hpp"
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {
-
-// A depth of this part of the length scale (or rad) at the start is an estimate of a closed place, more an error.
-constexpr double allowed_depth = 1e-6;
 
 /// An exact place of friction that does not slide holds by the row of its slide.
 bool sticks(const ContactPoint& point, const ContactState& state) {
@@ -78,7 +76,7 @@ Report ContactPhases::check_depth(std::span<const double> q) {
   for (const ContactPoint& point : contacts_.points) {
     if (point.kind != ContactKind::rigid) continue;
     const double gap = evaluator.measure(point.element, {}, {}).value;
-    if (gap >= -allowed_depth * (point.turns ? 1 : evaluator.length_scale())) continue;
+    if (gap >= -thresholds::given_depth * (point.turns ? 1 : evaluator.length_scale())) continue;
     report.status = Status::inconsistent;
     if (const std::string_view type = contacts_.model->element_type(point.element); type == "rope" || type == "cable") {
       report.message = fmt::format(
@@ -215,7 +213,7 @@ Report ContactPhases::change(int transition, SystemState& state) {
   if (cause.shares) {
     const auto normal = [this](std::size_t k) { return loads_->normal(k); };
     const auto along = [this](std::size_t k) { return loads_->friction(k); };
-    for (const SharedForces& forces : switch_->shared()) {
+    for (SharedForces& forces : switch_->shared()) {
       if (forces.places().front() == watched.place) cause.giving_way = forces.giving_way(normal, along);
     }
   }
@@ -259,10 +257,10 @@ bool ContactPhases::shares(std::size_t k) const {
 void ContactPhases::add_shared_transitions(const Dynamics& dynamics, std::vector<Transition>& transitions,
                                            Needs& needs) {
   for (const SharedForces& forces : switch_->shared()) {
-    const auto margin = [this, forces, &plan = dynamics.plan()](const Snapshot& s) {
+    const auto margin = [this, own = forces, &plan = dynamics.plan()](const Snapshot& s) mutable {
       const auto normal = [&](std::size_t k) { return loads_->normal_from(k, s.qd, s.lambda); };
       const auto along = [&](std::size_t k) { return -s.lambda[at(plan.element_row[at(contacts_.points[k].slide)])]; };
-      return forces.margin(normal, along);
+      return own.margin(normal, along);
     };
     transitions.push_back({margin, 1});
     watched_.push_back({forces.places().front(), PhaseEnd::shares});

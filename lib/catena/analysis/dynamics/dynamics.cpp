@@ -42,12 +42,11 @@ SystemState Dynamics::state() const { return state_of(evaluator_, t_, q_, qd_); 
 
 Report Dynamics::check_options() const {
   Report report;
-  constexpr double least_tolerance = DynamicsOptions::least_tolerance;
-  if (!(options_.tolerance >= least_tolerance) || !(options_.tolerance < 1)) {
+  if (!(options_.tolerance >= DynamicsOptions::least_tolerance) || !(options_.tolerance < 1)) {
     report.status = Status::refused;
     report.message =
         fmt::format("tolerance {:.3g} cannot be met: double precision holds about {:.0e}; give {:.0e} ... 1",
-                    options_.tolerance, least_tolerance, least_tolerance);
+                    options_.tolerance, DynamicsOptions::least_tolerance, DynamicsOptions::least_tolerance);
   } else if (!(options_.step >= 0) || !std::isfinite(options_.step) || options_.max_steps < 1) {
     report.status = Status::refused;
     report.message = fmt::format(

@@ -12,8 +12,6 @@ namespace {
 
 // A branch is the one that given velocities mean if they are nearer to it than by this part of the way to the next.
 constexpr double clearly_nearer = 0.3;
-// How far along the branch the rank is taken, rad or length scales: as far as elsewhere (redundant_rows.hpp).
-constexpr double generic_distance = 0.1;
 // Drivers that begin to move: accelerations of the branch are taken for those of the motion until these have come so
 // far, rad or length scales. They are off by this part, and places by its square; projection mends both from there on.
 constexpr double first_way = 1e-4;
@@ -56,7 +54,7 @@ int Dynamics::branch_of_given_velocities(const SingularPoint& point) {
 // A place a little along the branch, assembled; nothing where functions of time do not go on so far.
 std::optional<RedundantRows::GenericPlace> Dynamics::place_along(const SingularStart& start) {
   const std::vector<double>& tangent = start.point.tangents[static_cast<std::size_t>(start.branch - 1)];
-  const double way = generic_distance / rate_of(evaluator_, tangent);
+  const double way = RedundantRows::probe_distance / rate_of(evaluator_, tangent);
   const bool rests = start.point.kind == SingularPoint::Kind::rest;
   const double later = rests ? time_to_depart(evaluator_, t_, 1, way) : way;
   std::optional<RedundantRows::GenericPlace> place;

@@ -9,8 +9,6 @@
 namespace catena {
 namespace {
 
-// Samples on a bridge: 0.05 rad or length scales apart, as it is 0.4 long at most (kinematics_march.cpp).
-constexpr int samples = 9;
 // A pivot whose least size is below this part of its size at the ends vanishes.
 constexpr double vanishing = 1e-6;
 // Drivers slower than the first part of their speed at the ends of the bridge may rest nearby; they rest if less than

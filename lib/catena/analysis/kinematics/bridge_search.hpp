@@ -14,6 +14,9 @@ namespace catena {
 
 class BridgeSearch {
  public:
+  /// Samples on a bridge: 0.05 rad or length scales apart, as it is 0.4 long at most (kinematics_march.cpp).
+  static constexpr int samples = 9;
+
   /// From one instant of the bridge to a later one. All must outlive this object.
   BridgeSearch(Evaluator& evaluator, DrivenSolver& solver, const MotionBridge& bridge, double from, double to)
       : evaluator_(evaluator),
@@ -23,7 +26,7 @@ class BridgeSearch {
         to_(to),
         q_(static_cast<std::size_t>(evaluator.plan().coordinates())) {}
 
-  /// All that are singular, ascending.
+  /// All that are singular, ascending: looked for between `samples` instants.
   std::vector<double> singular_instants();
   /// Moves t, a singular instant, to the one nearby at which the drivers rest. False: they do not rest, and t stays.
   bool find_rest(double& t);

@@ -16,6 +16,7 @@
 
 #include "catena/analysis/kinematics/driven_reactions.hpp"
 #include "catena/analysis/pose/departure.hpp"
+#include "catena/analysis/run/name_list.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -39,7 +40,6 @@ constexpr double unbounded = 1e-7;
 constexpr double unbalanced = 1e-6;
 // The same for least reactions a little away from t*.
 constexpr double balanced_beside = 1e-9;
-constexpr std::size_t most_joints = 6;
 
 // The first that lies where the motion and the functions of time are known; nullptr: none does.
 const Stencil* choose_stencil(const Evaluator& evaluator, double t, double step, const BridgedStretch& stretch) {
@@ -131,10 +131,7 @@ void DrivenReactions::take_limit(const DrivenInstant& now, const BridgedStretch&
 void DrivenReactions::note_limit(double t, const std::vector<int>& without) {
   if (limit_rows_++ == 0) limit_t_ = t;
   if (!without_limit_.empty()) return;
-  for (std::size_t k = 0; k < without.size() && k < most_joints; ++k) {
-    without_limit_ += fmt::format("{}\"{}\"", k > 0 ? ", " : "", evaluator_.model().element_name(without[k]));
-  }
-  if (without.size() > most_joints) without_limit_ += fmt::format(" and {} more", without.size() - most_joints);
+  without_limit_ = element_names(evaluator_.model(), without);
 }
 
 }  // namespace catena

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "catena/analysis/kinematics/course/step_rules.hpp"
 #include "catena/analysis/pose/mobility.hpp"
 #include "catena/analysis/pose/singular_start.hpp"
 #include "catena/analysis/pose/whole_turns.hpp"
@@ -12,10 +13,6 @@
 namespace catena {
 namespace {
 
-// A given configuration is taken as near to the assembled one if Newton's first correction is at most this large
-// (length scales, rad) and every further one at most this part of the one before.
-constexpr double nearby = 0.1;
-constexpr double nearby_contraction = 0.25;
 // A reciprocal condition number above this leaves no doubt that all rows are independent.
 constexpr double clearly_regular = 1e-9;
 
@@ -88,7 +85,8 @@ bool Kinematics::assemble_nearby() {
   trial_ = now_.q;
   move_whole_turns(evaluator_, trial_);
   newton_ = solver_.solve_position(trial_);
-  if (!newton_.converged || newton_.first_correction > nearby || newton_.contraction > nearby_contraction) {
+  if (!newton_.converged || newton_.first_correction > step_rules::nearby ||
+      newton_.contraction > step_rules::largest_contraction) {
     return false;
   }
   now_.q.swap(trial_);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "catena/analysis/kinematics/course/step_rules.hpp"
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/base/at.hpp"
@@ -17,12 +18,6 @@
 namespace catena {
 namespace {
 
-// A prediction may be off by this angle (the constraints are linear in positions), a correction may be this part of the
-// one before: Newton's iteration then stays where it contracts.
-constexpr double largest_turn = 0.1;
-constexpr double largest_contraction = 0.25;
-// No body may turn further than this in a step: a singular configuration in between could be missed.
-constexpr double longest_step = 0.5;
 // Steps below this part of the span, or of the time itself, are rounding.
 constexpr double smallest_step = 1e-13;
 // Passages are tried over stretches of this much motion (rad, length scales), one after the other.
@@ -50,14 +45,15 @@ Kinematics::StepOutcome Kinematics::try_step(double t, bool ignore_dips) {
   // Positions and rates in one pass over the history.
   predicted_.t = predict(t, trial_, predicted_.qd, predicted_.qdd) ? std::optional(t) : std::nullopt;
   newton_ = solver_.solve_position(trial_);
-  if (!newton_.converged || newton_.first_turn > largest_turn || newton_.contraction > largest_contraction) {
+  if (!newton_.converged || newton_.first_turn > step_rules::largest_turn ||
+      newton_.contraction > step_rules::largest_contraction) {
     return StepOutcome::too_long;
   }
   if (watched_.has_ends() && leaves_curve(t)) return StepOutcome::left_curve;
   if (plan().constant_jacobian) return StepOutcome::made;
   double turn = 0;
   solver_.distance(trial_, now_.q, &turn);
-  if (turn > longest_step) return StepOutcome::too_long;
+  if (turn > step_rules::longest_step) return StepOutcome::too_long;
   // Without a correction the factors are those of the step before.
   if (newton_.iterations == 0) solver_.factor_at(trial_);
   const MarginHistory::Change change = margins_.change_to(solver_.block_margins());
@@ -189,9 +185,10 @@ Report Kinematics::take_step(double next, double target, Pace& pace) {
     predictor_.push(now_.t, now_.q, now_.qd, {});
     double turning = 0;
     if (pace.step * solver_.rate_size(now_.qd, &turning) > reaches.front()) pace.attempt = 0;
-    can_grow = 2 * pace.step * turning < longest_step;
+    can_grow = 2 * pace.step * turning < step_rules::longest_step;
   }
-  if (can_grow && pace.made_since_failure > patience && newton_.first_turn < largest_turn / 8) pace.step *= 2;
+  if (can_grow && pace.made_since_failure > patience && newton_.first_turn < step_rules::largest_turn / 8)
+    pace.step *= 2;
   return {};
 }
 

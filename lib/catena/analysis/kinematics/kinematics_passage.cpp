@@ -15,6 +15,7 @@
 #include "catena/analysis/kinematics/bridge_search.hpp"
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/analysis/pose/departure.hpp"
+#include "catena/analysis/pose/singular_start.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -26,14 +27,11 @@ constexpr double allowance = 0.2;
 // Residual of the polynomial, in length scales or rad, above rounding.
 constexpr double bridge_tolerance = 2e-12;
 constexpr double rounded_place = 16 * std::numeric_limits<double>::epsilon();
-constexpr int bridge_samples = 9;
 // Part of a bridge after which drivers that rest at the singular instant are evaluated again: they have begun to move,
 // while the mechanism has not moved visibly.
 constexpr double moment = 2e-3;
 // Accuracy of instants on a bridge, relative to its length.
 constexpr double same_instant = 1e-9;
-// Length below which equations count as dependent at a singular configuration that was located to rounding.
-constexpr double dependence = 1e-7;
 
 }  // namespace
 
@@ -97,8 +95,8 @@ bool Kinematics::follows_constraints(const MotionBridge& bridge, double from, do
   // Lengths of a mechanism described far from the origin carry the rounding of its places: redundant links agree no
   // better than that.
   const double tolerance = bridge_tolerance + 1e-14 * extent + rounded_place * place / evaluator_.length_scale();
-  for (int k = 0; k < bridge_samples; ++k) {
-    const double t = from + (to - from) * k / (bridge_samples - 1);
+  for (int k = 0; k < BridgeSearch::samples; ++k) {
+    const double t = from + (to - from) * k / (BridgeSearch::samples - 1);
     evaluator_.set_time(t);
     bridge.evaluate(t, q, {}, {});
     if (!(solver_.residual_at(q) <= tolerance)) return false;
@@ -113,13 +111,13 @@ SingularPoint Kinematics::look_at(const Crossing& crossing, double t) {
   std::vector<double> q(now_.q.size()), qd(now_.q.size());
   bridge.evaluate(t, q, qd, {});
   evaluator_.set_time(t);
-  SingularPoint point = find_branches(evaluator_, q, qd, dependence);
+  SingularPoint point = find_branches(evaluator_, q, qd, start_dependence);
   if (!rests || point.nullity == 0) return point;
   // Where the drivers rest the velocity is zero; it is evaluated a moment later.
   const double later = t + std::copysign(moment * (to - from), t - now_.t);
   bridge.evaluate(later, {}, qd, {});
   evaluator_.set_time(later);
-  point = find_branches(evaluator_, q, {}, dependence, Drivers::about_to_move);
+  point = find_branches(evaluator_, q, {}, start_dependence, Drivers::about_to_move);
   point.kind = SingularPoint::Kind::rest;
   point.t = t;
   // The branch that goes on as before comes first.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/kinematics/course/step_rules.hpp"
 #include "catena/analysis/motion/tableau.hpp"
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/pose/dead_point.hpp"
@@ -22,7 +23,6 @@ namespace {
 
 constexpr double tolerance = 1e-13;           // of a step's error, length scales or rad
 constexpr double largest_residual = 1e-11;    // of positions after a step
-constexpr double longest_norm_step = 0.5;     // rad, length scales
 constexpr double smallest_norm_step = 1e-13;  // part of the time, or of the time a motion of 1 takes
 // Step control as usual: E. Hairer, S. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", II.4.
 constexpr double safety = 0.9, largest_growth = 4, largest_cut = 0.1;
@@ -283,7 +283,7 @@ Report MinimumNormMotion::make_step(const Leg& leg, double target) {
   const double smallest = smallest_norm_step * std::max(std::abs(t_), rate > 0 ? 1 / rate : 0.0);
   for (bool rejected = false;;) {
     const double remaining = std::abs(limit - t_);
-    double h = std::min(step_, rate > 0 ? longest_norm_step / rate : step_);
+    double h = std::min(step_, rate > 0 ? step_rules::longest_step / rate : step_);
     const bool lands = h >= remaining * (1 - 1e-9);
     if (lands) h = remaining;
     double end = lands ? limit : t_ + direction * h;

@@ -6,16 +6,12 @@
 #include <cmath>
 
 #include "catena/analysis/pose/jacobian_rank.hpp"
+#include "catena/analysis/run/name_list.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
-namespace {
-
-// Residual of redundant equations, in length scales or rad, above which they contradict the others.
-constexpr double contradiction = 1e-8;
-constexpr std::size_t most_names = 6;  // in a message
-
-}  // namespace
+namespace {}  // namespace
 
 bool RowChoice::choose(std::span<const double> q) {
   const std::vector<double> values = jacobian_values(evaluator_, q);
@@ -43,7 +39,7 @@ const char* RowChoice::unit_of(int row) const { return plan_.row_is_angle[at(row
 
 Report RowChoice::check_places(const DrivenInstant& now) {
   int worst = -1;
-  if (!(solver_.redundant_residual(solver_.phi(), &worst) > contradiction)) return {};
+  if (!(solver_.redundant_residual(solver_.phi(), &worst) > thresholds::contradiction)) return {};
   return contradicts(now, worst,
                      fmt::format("it misses by {:.3g} {}", std::abs(solver_.phi()[at(worst)]), unit_of(worst)));
 }
@@ -97,12 +93,7 @@ std::vector<int> RowChoice::elements_against(int element, std::span<const double
 Report RowChoice::contradicts(const DrivenInstant& now, int row, const std::string& how) {
   const Model& model = evaluator_.model();
   const int element = plan_.row_element[at(row)];
-  const std::vector<int> others = elements_against(element, now.q);
-  std::string names;
-  for (std::size_t k = 0; k < others.size() && k < most_names; ++k) {
-    names += fmt::format("{}\"{}\"", k ? ", " : "", model.element_name(others[k]));
-  }
-  if (others.size() > most_names) names += ", ...";
+  const std::string names = element_names(model, elements_against(element, now.q));
   Report report;
   report.status = Status::inconsistent;
   report.message =

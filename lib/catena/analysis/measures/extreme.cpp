@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "catena/analysis/run/thresholds.hpp"
+
 namespace catena {
 namespace {
 
@@ -16,7 +18,6 @@ constexpr double window = 0.02;
 // Seven values of a smooth column foretell its top to some 1e-8 of their range, those about a kink to a tenth.
 constexpr double smooth = 1e-3;
 constexpr int most_steps = 60;
-constexpr double golden = 0.381966011250105;
 
 /// The top of the parabola through three points, if it bends downwards.
 std::optional<double> top(double t0, double v0, double t1, double v1, double t2, double v2) {
@@ -133,7 +134,9 @@ std::optional<Extreme::Peak> Extreme::locate(Peak a, Peak middle, Peak b, std::o
     const bool useful = top_of_three && *top_of_three > a.t && *top_of_three < b.t && n % 4 != 3;
     const double before = middle.t;
     double t = useful ? *top_of_three : before;
-    if (!useful) t = before - a.t > b.t - before ? before - golden * (before - a.t) : before + golden * (b.t - before);
+    if (!useful)
+      t = before - a.t > b.t - before ? before - thresholds::golden_part * (before - a.t)
+                                      : before + thresholds::golden_part * (b.t - before);
     if (t == before) t += (b.t - before > before - a.t ? 1 : -1) * 0.1 * h;
     const std::optional<double> v = at(t);
     if (!v) return {};

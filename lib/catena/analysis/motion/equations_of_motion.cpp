@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/assembly/systems/seen_mass.hpp"
 #include "catena/base/at.hpp"
 
@@ -171,7 +172,7 @@ double EquationsOfMotion::project_position(std::span<double> q, int max_iteratio
   for (int k = 0;; ++k) {
     const double size = position_residual(q);
     // Stop at rounding, when nothing is gained any more, or when the residual is NaN.
-    if (!(size > position_rounding) || k == max_iterations || size > 0.5 * before) return size;
+    if (!(size > thresholds::position_rounding) || k == max_iterations || size > 0.5 * before) return size;
     before = size;
     system_.least_change(residual_, change_, multipliers_, evaluator_.counters);
     for (std::size_t c = 0; c < change_.size(); ++c) q[c] -= change_[c];
@@ -189,7 +190,7 @@ double EquationsOfMotion::project_velocity(std::span<double> qd, double rate) {
     system_.multiply_add(qd, residual_);
     const double size = scaling_.row_norm(residual_);
     if (k == 0) first = size;
-    if (!(size > position_rounding * rate) || k == 2) break;
+    if (!(size > thresholds::position_rounding * rate) || k == 2) break;
     system_.least_change(residual_, change_, multipliers_, evaluator_.counters);
     for (std::size_t c = 0; c < change_.size(); ++c) qd[c] -= change_[c];
   }

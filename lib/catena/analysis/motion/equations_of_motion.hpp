@@ -97,8 +97,6 @@ class EquationsOfMotion {
   Evaluator& evaluator() { return evaluator_; }
   const Plan& plan() const { return plan_; }
   const MassMatrix& masses() const { return masses_; }
-  /// Positions beyond this cannot be told from rounding; in length scales or rad.
-  static constexpr double position_rounding = 1e-15;
 
  private:
   bool evaluate_jacobian(double t, Side side, std::span<const double> q);

@@ -15,7 +15,6 @@ namespace catena {
 namespace {
 
 constexpr double given_weight = 1e4;
-constexpr int most_rounds = rounds_of_velocities;
 // A massless component counts with its small mass, 1e-4 of the constrained mass; a given one thus weighs more than that
 // mass.
 constexpr double given_massless_weight = 1e8;
@@ -129,7 +128,7 @@ void meet_constraints(EquationsOfMotion& equations, std::span<const double> q, c
     outcome.message = "initial velocities are not determined: the constraints' Jacobian is not finite";
     return;
   }
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < rounds_of_velocities; ++round) {
     rest = nu;
     for (std::size_t c = 0; c < step.size(); ++c) step[c] = -asked[c];
     multiply_add(plan.jacobian, values, step, rest);

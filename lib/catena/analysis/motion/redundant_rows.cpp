@@ -17,9 +17,6 @@ namespace {
 // Where masses are very unequal rounding of pivots is that of the largest diagonal: so many times the ratio of
 // diagonals.
 constexpr double rounding_of_pivots = 1e-14;
-// Length of the probe, rad or length scales: far enough that a rank found there is not that of a singular position
-// nearby (sine 0.1), near enough to be assembled.
-constexpr double probe_distance = 0.1;
 constexpr int most_probes = 4;
 // Pivot ratios grow with the square of the distance from a singular position: usual is that half a radian away.
 constexpr double usual_growth = 25;

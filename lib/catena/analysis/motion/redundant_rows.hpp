@@ -29,6 +29,10 @@ namespace catena {
 
 class RedundantRows {
  public:
+  /// How far away the rank is taken, rad or length scales: far enough that it is not that of a singular position nearby
+  /// (sine 0.1), near enough to be assembled.
+  static constexpr double probe_distance = 0.1;
+
   explicit RedundantRows(EquationsOfMotion& equations);
 
   /// A place of the motion, assembled at t, that is not singular.

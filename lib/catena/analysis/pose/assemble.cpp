@@ -8,6 +8,7 @@
 #include <random>
 
 #include "catena/analysis/pose/whole_turns.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -19,7 +20,6 @@ constexpr int max_iterations = 200;
 constexpr double far_too_long = 4;
 // Residuals above this overflow when they are squared.
 constexpr double largest_residual = 1e120;
-constexpr double smallest_factor = 1e-4;
 /// Start of a repeated search: near the end of the last one, or near the estimate, every coordinate displaced by at
 /// most `displacement` (rad, attachment distances).
 struct Start {
@@ -35,10 +35,6 @@ constexpr double most_work = 4e6;
 // Rounding of the coordinates of a body that has moved by many length scales, relative to their size.
 constexpr double attainable_digits = 8 * std::numeric_limits<double>::epsilon();
 
-// No residual above this is taken for rounding, however far away a mechanism is: redundant equations then contradict
-// each other.
-constexpr double most_rounding = 1e-8;
-
 /// The rounding of lengths between places far from the origin, in length scales: redundant constraints there agree no
 /// better.
 double rounding_of_places(const Evaluator& evaluator) {
@@ -47,7 +43,7 @@ double rounding_of_places(const Evaluator& evaluator) {
     const Vec2<double> origin = evaluator.origin(p);
     place = std::max({place, std::abs(origin.x), std::abs(origin.y)});
   }
-  return std::min(most_rounding, attainable_digits * place / evaluator.length_scale());
+  return std::min(thresholds::contradiction, attainable_digits * place / evaluator.length_scale());
 }
 
 }  // namespace
@@ -134,14 +130,14 @@ bool Assembler::restore(std::span<double> q, double tolerance, int most_iteratio
     double factor = turn > largest_turn_of_a_step ? largest_turn_of_a_step / turn : 1;
     double then = 0;
     evaluator_.curve_places(curve_places_);
-    for (; factor >= smallest_factor; factor /= 2) {
+    for (; factor >= thresholds::smallest_factor; factor /= 2) {
       // A trial that was rejected may have found contacts far from here.
       evaluator_.go_to_curve_places(curve_places_);
       advance(q, factor, trial_);
       then = merit(trial_);
       if (then < (1 - 1e-4 * factor) * now) break;
     }
-    if (factor < smallest_factor) {
+    if (factor < thresholds::smallest_factor) {
       // The direction fails because nearly dependent equations made it long: damping shortens it, or the search ends.
       evaluator_.go_to_curve_places(curve_places_);
       merit(q);

@@ -3,17 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-// Of the right-hand side: rows left with more than this are not met.
-constexpr double contradiction = 1e-8;
 // Of the largest residual: rows with more than this share in it.
 constexpr double comparable = 0.2;
 constexpr int most_corrections = 4;
-constexpr double position_rounding = 1e-15;  // length scales, rad
 
 bool has_masses(const Evaluator& evaluator) {
   const Plan& plan = evaluator.plan();
@@ -72,7 +70,7 @@ bool LeastVelocity::complete(std::span<const double> right_hand_side, std::span<
   subtract_product();
   const double left = scaling_.row_norm(rest_);
   const double scale = std::max(scaling_.row_norm(right_hand_side), scaling_.column_norm(start_));
-  return std::isfinite(scale) && left <= contradiction * scale;
+  return std::isfinite(scale) && left <= thresholds::contradiction * scale;
 }
 
 bool LeastVelocity::velocity(double t, Side side, std::span<const double> q, std::span<double> qd) {
@@ -107,7 +105,7 @@ double LeastVelocity::project(double t, Side side, std::span<double> q) {
     evaluator_.set_configuration(q);
     evaluator_.phi(right_);
     residual = scaling_.row_norm(right_);
-    if (!(residual > position_rounding) || k == most_corrections || (k > 0 && residual > last / 2)) break;
+    if (!(residual > thresholds::position_rounding) || k == most_corrections || (k > 0 && residual > last / 2)) break;
     last = residual;
     projector_.solve(right_, step_, lambda_, evaluator_.counters);
     ++evaluator_.counters.iterations;

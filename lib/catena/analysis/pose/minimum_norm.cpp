@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/run/name_list.hpp"
 #include "catena/base/at.hpp"
 #include "catena/model/attachment.hpp"
 
@@ -15,7 +16,6 @@ namespace {
 constexpr double regularisation = 1e-12;
 // A reaction counts as ambiguous if a random set of multipliers differs from the least equivalent one by this part.
 constexpr double ambiguous_part = 1e-6;
-constexpr std::size_t most_names = 10;  // in a text
 
 /// Inverts the positive definite n x n matrix (n <= 3) in place, by pivots; rows 3 apart.
 void invert(double* a, int n) {
@@ -208,15 +208,7 @@ std::vector<int> MinimumNorm::find_ambiguous() {
   return elements;
 }
 
-std::string MinimumNorm::name_ambiguous() {
-  const std::vector<int> elements = find_ambiguous();
-  std::string names;
-  for (std::size_t k = 0; k < std::min(elements.size(), most_names); ++k) {
-    names += fmt::format("{}\"{}\"", k > 0 ? ", " : "", evaluator_.model().element_name(elements[k]));
-  }
-  if (elements.size() > most_names) names += fmt::format(" and {} more", elements.size() - most_names);
-  return names;
-}
+std::string MinimumNorm::name_ambiguous() { return element_names(evaluator_.model(), find_ambiguous()); }
 
 const std::string& MinimumNorm::ambiguity() {
   if (ambiguity_) return *ambiguity_;

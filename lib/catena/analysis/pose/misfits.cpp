@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "catena/analysis/pose/scaling.hpp"
+#include "catena/analysis/run/name_list.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -23,7 +24,6 @@ constexpr double most_damping = 1e8;
 constexpr double negligible = 1e-3;
 // Of the largest multiplier: above it a constraint takes part in the conflict.
 constexpr double carries = 1e-2;
-constexpr std::size_t most_culprits = 6;  // in a message
 
 class MisfitSearch {
  public:
@@ -195,19 +195,16 @@ std::string describe_misfits(const Model& model, std::span<const Misfit> misfits
 }
 
 std::string describe_held(const Model& model) {
-  std::string names;
-  std::size_t count = 0;
+  NameList names;
   const auto add = [&](bool held, std::size_t body, const char* column) {
-    if (!held || ++count > most_culprits) return;
-    names += fmt::format("{}{}.{}", count > 1 ? ", " : "", model.body_name(static_cast<int>(body)), column);
+    if (held) names.add_text(fmt::format("{}.{}", model.body_name(static_cast<int>(body)), column));
   };
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     add(model.bodies[b].hold_x, b, "x");
     add(model.bodies[b].hold_y, b, "y");
     add(model.bodies[b].hold_angle, b, "angle");
   }
-  if (count > most_culprits) names += ", ...";
-  return count > 0 ? fmt::format("\"hold\" does not let assembly change {}; or ", names) : names;
+  return names.count() > 0 ? fmt::format("\"hold\" does not let assembly change {}; or ", names.text()) : "";
 }
 
 std::string describe_cause(const Model& model, const Conflict& conflict) {
@@ -215,13 +212,7 @@ std::string describe_cause(const Model& model, const Conflict& conflict) {
   for (int element : conflict.elements) {
     (model.elements[at(element)].kind == ElementKind::driver ? drivers : others).push_back(element);
   }
-  const auto list = [&](const std::vector<int>& elements) {
-    std::string names;
-    for (std::size_t k = 0; k < elements.size() && k < most_culprits; ++k) {
-      names += fmt::format("{}\"{}\"", k ? ", " : "", model.element_name(elements[k]));
-    }
-    return elements.size() > most_culprits ? names + ", ..." : names;
-  };
+  const auto list = [&](const std::vector<int>& elements) { return element_names(model, elements); };
   if (drivers.size() > 1) {
     return fmt::format("the drivers {} contradict each other, or an estimate too far off", list(drivers));
   }

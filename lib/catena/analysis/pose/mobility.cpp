@@ -8,6 +8,7 @@
 
 #include "catena/analysis/pose/jacobian_rank.hpp"
 #include "catena/analysis/pose/redundancy.hpp"
+#include "catena/analysis/run/name_list.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -76,13 +77,12 @@ std::vector<std::string> name_free_bodies(const Evaluator& evaluator, const Rank
 }  // namespace
 
 std::string MobilityReport::describe_freedom() const {
-  std::string bodies;
-  for (std::size_t k = 0; k < free_bodies.size() && k < 5; ++k) bodies += (k ? ", \"" : "\"") + free_bodies[k] + "\"";
-  if (free_bodies.size() > 5) bodies += ", ...";
+  NameList bodies;
+  for (const std::string& body : free_bodies) bodies.add(body);
   return fmt::format(
       "{} of {} coordinates are left free by the constraints and drivers; free to move: {}; likely cause: a driver or "
       "joint is missing",
-      dof(), columns, bodies);
+      dof(), columns, bodies.text());
 }
 
 MobilityReport analyse_mobility(Evaluator& evaluator, std::span<const double> q) {

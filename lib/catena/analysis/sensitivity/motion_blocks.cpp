@@ -70,13 +70,13 @@ bool MotionDerivatives::take_block(std::span<const Step> steps) {
 }
 
 bool MotionDerivatives::take_by_tangents() {
-  to_rows(&Track::begin, begin_rows_);
-  tangents_->step(*again_, step_.to - step_.from, begin_rows_, end_rows_);
+  to_rows(&Track::begin, rows_.begin);
+  tangents_->step(*again_, step_.to - step_.from, rows_.begin, rows_.end);
   place().y = step_.end;
-  if (!tangents_->project(place(), step_.to, Side::before, end_rows_)) return false;
+  if (!tangents_->project(place(), step_.to, Side::before, rows_.end)) return false;
   for (Track& track : tracks_) track.end = track.begin;
   take_values(step_.end, &Track::end);
-  from_rows(end_rows_, &Track::end);
+  from_rows(rows_.end, &Track::end);
   return true;
 }
 
@@ -101,21 +101,21 @@ bool MotionDerivatives::find_by_tangents(const Snapshot& snapshot) {
   if (inside) {
     if (!interpolant_ready_) {
       if (!again_->prepare_interpolant(step_)) return false;
-      tangents_->prepare_interpolant(*again_, h, begin_rows_, end_rows_);
+      tangents_->prepare_interpolant(*again_, h, rows_.begin, rows_.end);
       interpolant_ready_ = true;
     }
-    tangents_->interpolate((t - from_) / h, h, begin_rows_, end_rows_, rows_);
+    tangents_->interpolate((t - from_) / h, h, rows_.begin, rows_.end, rows_.now);
   } else {
-    to_rows(jumps ? &Track::after : has_step_ && t == from_ ? &Track::begin : &Track::end, rows_);
+    to_rows(jumps ? &Track::after : has_step_ && t == from_ ? &Track::begin : &Track::end, rows_.now);
   }
   RecomputedSteps::Stage& there = place();
   std::copy(snapshot.q.begin(), snapshot.q.end(), there.y.begin());
   for (std::size_t c = 0; c < n_; ++c) there.y[n_ + c] = jumps ? tracks_.front().after[n_ + c].v : snapshot.qd[c];
-  if (!tangents_->project(there, t, Side::after, rows_)) return false;
+  if (!tangents_->project(there, t, Side::after, rows_.now)) return false;
   const bool accelerates = !snapshot.qdd.empty();
   if (accelerates) {
     if (!RecomputedSteps::evaluate(there, t, Side::after)) return false;
-    tangents_->slope(there, rows_, slope_rows_);
+    tangents_->slope(there, rows_.now, rows_.slope);
   }
   const std::size_t width = tangents_->width();
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
@@ -130,11 +130,11 @@ bool MotionDerivatives::find_by_tangents(const Snapshot& snapshot) {
     for (std::size_t c = 0; c < n_; ++c) group.qd[c] = there.y[n_ + c];
     for (const int coordinate : plan().coordinate) {
       const std::size_t c = at(coordinate);
-      take(rows_, c, group.q[c]);
-      take(rows_, n_ + c, group.qd[c]);
+      take(rows_.now, c, group.q[c]);
+      take(rows_.now, n_ + c, group.qd[c]);
       if (!accelerates) continue;
       group.qdd[c] = there.slope[n_ + c];
-      take(slope_rows_, n_ + c, group.qdd[c]);
+      take(rows_.slope, n_ + c, group.qdd[c]);
     }
     for (std::size_t r = 0; accelerates && r < group.lambda.size(); ++r) {
       group.lambda[r] = there.lambda[r];

@@ -30,7 +30,8 @@ MotionDerivatives::MotionDerivatives(const Evaluator& evaluator, const DesignMod
   std::vector<DesignMechanism*> mechanisms;
   for (Group& group : groups()) mechanisms.push_back(&group.mechanism);
   tangents_ = std::make_unique<MotionTangents>(this->evaluator(), mechanisms);
-  for (auto* rows : {&begin_rows_, &end_rows_, &rows_, &slope_rows_}) rows->assign(2 * n_ * tangents_->width(), 0.0);
+  for (auto* rows : {&rows_.begin, &rows_.end, &rows_.now, &rows_.slope})
+    rows->assign(2 * n_ * tangents_->width(), 0.0);
 }
 
 bool MotionDerivatives::singular(double t) {

@@ -59,6 +59,10 @@ class MotionDerivatives final : public StateDerivatives {
     DesignVector begin, end, before, after;
     std::vector<DesignVector> stage;
   };
+  /// Of all parameters beside each other: y where the step begins and ends, y and its slope at the instant asked for.
+  struct TangentRows {
+    MotionTangents::Rows begin, end, now, slope;
+  };
 
   bool start(double t, std::span<const double> q, std::span<const double> qd);
   /// Positions and velocities of the motion to y of all tracks.
@@ -114,7 +118,7 @@ class MotionDerivatives final : public StateDerivatives {
   int blocks_ = 0;
   bool goes_on_ = false;              // the motion goes on from where the last step ended ...
   RecomputedSteps::Vector last_end_;  // ... here
-  MotionTangents::Rows begin_rows_, end_rows_, rows_, slope_rows_;
+  TangentRows rows_;
 };
 
 }  // namespace catena

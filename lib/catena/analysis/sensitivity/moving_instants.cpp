@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "catena/analysis/run/breakpoints.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 namespace {
@@ -12,8 +13,6 @@ namespace {
 // Differences for f''' take this part of the piece after the instant: their error is its fourth power. Of two that
 // differ by less than the second part of their size neither is told from the other.
 constexpr double part_of_piece = 1e-3, no_kink = 1e-6;
-// Rates of two functions that differ by less than this part are one: they are good to 1e-8 and better.
-constexpr double same_rate = 1e-6;
 
 /// Largest values of f, f', f'' and of their derivatives by the parameters around an instant.
 struct Sizes {
@@ -102,7 +101,7 @@ void MovingInstant::add(const FunctionJump& jump, std::size_t first) {
       if (std::isnan(other)) known = other;
       continue;
     }
-    const bool apart = std::abs(other - known) > same_rate * std::max(std::abs(other), std::abs(known));
+    const bool apart = std::abs(other - known) > thresholds::same_rate * std::max(std::abs(other), std::abs(known));
     if (!alone && apart)
       known = std::numeric_limits<double>::quiet_NaN();
     else if (alone && !std::isnan(known))

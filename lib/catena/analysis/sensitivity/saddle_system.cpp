@@ -155,16 +155,16 @@ void SaddleSystem::find_dependent_entries() {
 // Places of the entries of Phi_q where it is stored in full, row after row.
 void SaddleSystem::find_dense_slots() {
   const int columns = plan_->columns;
-  dense_slot_.assign(at(plan_->jacobian.entries()), -1);
+  full_.slot.assign(at(plan_->jacobian.entries()), -1);
   for (int c = 0; c < columns; ++c) {
     for (int k = plan_->jacobian.column_start[at(c)]; k < plan_->jacobian.column_start[at(c) + 1]; ++k) {
       const int row = place_of_row_[at(plan_->jacobian.row_index[at(k)])];
-      if (row >= 0) dense_slot_[at(k)] = row * columns + c;
+      if (row >= 0) full_.slot[at(k)] = row * columns + c;
     }
   }
-  dense_solution_.resize(at(2 * columns));
-  dense_side_.resize(at(columns));
-  dense_places_.resize(at(columns));
+  full_.solution.resize(at(2 * columns));
+  full_.side.resize(at(columns));
+  full_.places.resize(at(columns));
 }
 
 bool SaddleSystem::begin(std::span<const double> jacobian) {
@@ -175,9 +175,9 @@ bool SaddleSystem::begin(std::span<const double> jacobian) {
   }
   for (DependentEntry& entry : dependent_entries_) entry.value = jacobian[at(entry.entry)];
   if (dense_) {
-    const std::span<double> entries = dense_factors_.begin(plan_->columns);
-    for (std::size_t k = 0; k < dense_slot_.size(); ++k) {
-      if (dense_slot_[k] >= 0) entries[at(dense_slot_[k])] = jacobian[k];
+    const std::span<double> entries = full_.factors.begin(plan_->columns);
+    for (std::size_t k = 0; k < full_.slot.size(); ++k) {
+      if (full_.slot[k] >= 0) entries[at(full_.slot[k])] = jacobian[k];
     }
     return true;
   }
@@ -220,7 +220,7 @@ void SaddleSystem::add_element(int body_i, int body_j, const ElementMatrix& matr
 bool SaddleSystem::factorize() {
   if (dense_) {
     ++counters_.factorizations;
-    return dense_factors_.factorize() && dense_factors_.rcond() > regular;
+    return full_.factors.factorize() && full_.factors.rcond() > regular;
   }
   return factorization_.factorize(values_, counters_).ok() && factorization_.rcond() > regular;
 }
@@ -228,16 +228,16 @@ bool SaddleSystem::factorize() {
 // solution_, [f; b] in, [x; lambda] out: x follows from b, lambda from f.
 void SaddleSystem::solve_dense() {
   const std::size_t columns = at(plan_->columns);
-  const std::span<double> sides(solution_), found(dense_solution_);
-  dense_factors_.solve<double>(sides.subspan(columns), found.first(columns));
-  dense_factors_.solve_transposed<double>(sides.first(columns), found.subspan(columns));
-  std::swap(solution_, dense_solution_);
+  const std::span<double> sides(solution_), found(full_.solution);
+  full_.factors.solve<double>(sides.subspan(columns), found.first(columns));
+  full_.factors.solve_transposed<double>(sides.first(columns), found.subspan(columns));
+  std::swap(solution_, full_.solution);
 }
 
 void SaddleSystem::solve_places(std::span<const Lanes> b, std::span<Lanes> x) {
-  for (std::size_t k = 0; k < rows_.size(); ++k) dense_side_[k] = b[at(rows_[k])];
-  dense_factors_.solve<Lanes>(dense_side_, dense_places_);
-  for (std::size_t c = 0; c < dense_places_.size(); ++c) x[at(plan_->coordinate[c])] = dense_places_[c];
+  for (std::size_t k = 0; k < rows_.size(); ++k) full_.side[k] = b[at(rows_[k])];
+  full_.factors.solve<Lanes>(full_.side, full_.places);
+  for (std::size_t c = 0; c < full_.places.size(); ++c) x[at(plan_->coordinate[c])] = full_.places[c];
 }
 
 bool SaddleSystem::solve(std::span<double> f, std::span<double> b) {

@@ -74,6 +74,14 @@ class SaddleSystem {
     double value;
   };
 
+  /// Phi_q where it is factored in full, and by itself.
+  struct Dense {
+    std::vector<int> slot;  // per entry of Phi_q; -1: the row is not solved with
+    DenseFactors factors;
+    std::vector<double> solution;
+    std::vector<Lanes> side, places;
+  };
+
   void choose_rows(std::span<const double> jacobian);
   bool make_pattern();
   void find_dependent_entries();
@@ -85,7 +93,7 @@ class SaddleSystem {
   SaddleBlock block_;
   std::vector<int> left_out_, rows_, dependent_, place_of_row_;
   bool rows_known_ = false, analyzed_ = false;
-  bool dense_ = false;  // Phi_q is factored in full, and by itself
+  bool dense_ = false;  // full_ is solved with
   SparsePattern pattern_;
   std::vector<double> values_, solution_;
   std::vector<DependentEntry> dependent_entries_;     // of Phi_q
@@ -94,10 +102,7 @@ class SaddleSystem {
   std::vector<int> jacobian_slot_, transposed_slot_;  // per entry of Phi_q; -1: the row is not solved with
   std::vector<std::pair<int, int>> pairs_;            // of bodies i <= j that share an element, sorted
   std::vector<int> pair_slot_;                        // 9 a pair, and 9 for its transpose
-  std::vector<int> dense_slot_;                       // per entry of Phi_q; -1: the row is not solved with
-  DenseFactors dense_factors_;
-  std::vector<double> dense_solution_;
-  std::vector<Lanes> dense_side_, dense_places_;
+  Dense full_;
   Factorization factorization_;
   Counters counters_;
 };

@@ -7,14 +7,12 @@
 #include <limits>
 #include <utility>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-// A gap below this part of the length scale is closed; a push below this part of the largest multiplier is none.
-// Both are what equilibria are found to (1e-11) with two digits to spare.
-constexpr double touching = 1e-9, pushing = 1e-9;
 // Places are rounded to this part of the length scale: what they make of the stiffest spring is no push either.
 constexpr double rounding_of_places = 1e-14;
 
@@ -36,14 +34,16 @@ std::vector<int> StaticDerivatives::gaps_without_force(const Snapshot& snapshot,
       for (const double entry : m) stiffest = std::max(stiffest, std::abs(entry));
     });
   }
-  const double none = std::max(pushing * largest, rounding_of_places * evaluator().length_scale() * stiffest);
+  const double none =
+      std::max(thresholds::no_force * largest, rounding_of_places * evaluator().length_scale() * stiffest);
   std::vector<int> open;
   touches = -1;
   for (const int r : plan().gap_rows) {
     const auto row = static_cast<std::size_t>(r);
     const bool pushes = std::abs(snapshot.lambda[row]) > none;
     if (pushes) continue;
-    if (touches < 0 && phi[row] <= touching * evaluator().length_scale()) touches = plan().row_element[row];
+    if (touches < 0 && phi[row] <= thresholds::closed_gap * evaluator().length_scale())
+      touches = plan().row_element[row];
     open.push_back(r);
   }
   return open;

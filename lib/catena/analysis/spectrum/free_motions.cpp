@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/run/name_list.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/spectrum/modes_dense.hpp"
 #include "catena/analysis/spectrum/static_balance.hpp"
@@ -137,11 +138,9 @@ std::vector<std::string> names_of_moving(StaticSystem& system, std::span<const d
 }
 
 std::string describe_free_motions(int count, const std::vector<std::string>& bodies) {
-  constexpr std::size_t most = 5;
-  std::string names;
-  for (std::size_t k = 0; k < bodies.size() && k < most; ++k) names += (k ? ", \"" : "\"") + bodies[k] + "\"";
-  if (bodies.size() > most) names += fmt::format(" and {} more", bodies.size() - most);
-  return fmt::format("{} motion{} of {}", count, count > 1 ? "s" : "", names);
+  NameList names;
+  for (const std::string& body : bodies) names.add(body);
+  return fmt::format("{} motion{} of {}", count, count > 1 ? "s" : "", names.text());
 }
 
 }  // namespace catena

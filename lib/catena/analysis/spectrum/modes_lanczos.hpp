@@ -9,6 +9,7 @@
 // Parlett, The Symmetric Eigenvalue Problem, chapter 13; T. Ericsson, A. Ruhe, Math. Comp. 35 (1980).
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <span>
 #include <vector>
@@ -31,6 +32,10 @@ class SpectralOperator {
 
 class Lanczos {
  public:
+  /// Vectors that are always allowed, and that `wanted` eigenvalues may take.
+  static constexpr int least_vectors = 300;
+  static int most_vectors(int wanted) { return std::max(least_vectors, 3 * wanted + 60); }
+
   /// Positions of the eigenvalues that are wanted among ascending ones; none while there are too few.
   using Choice = std::function<std::vector<int>(std::span<const double> theta)>;
 

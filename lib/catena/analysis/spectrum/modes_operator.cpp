@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
 constexpr int most_corrections = 30, projections = 3;
-// A correction that is not below this part of the one before is rounding.
-constexpr double least_gain = 0.5;
 // Corrections below this part of the solution are rounding.
 constexpr double rounding = 1e-16;
 
@@ -55,7 +54,7 @@ void solve_to_rounding(StaticSystem& system, std::span<const double> weight, std
     for (std::size_t i = 0; i < x.size(); ++i) correction[i] = given[i] - correction[i];
     matrix.solve_unrefined(correction, counters);
     const double now = size_of(weight, correction);
-    if (!(now < least_gain * before)) return;
+    if (!(now < thresholds::least_gain * before)) return;
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += correction[i];
     // The next correction, extrapolated from the last two.
     if (now * (now / before) <= rounding * size_of(weight, x)) return;

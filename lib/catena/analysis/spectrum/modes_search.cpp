@@ -15,8 +15,6 @@ constexpr double first_shift = 1e-8;
 constexpr double step_aside = 0.618;
 // Largest ratio of sigma to the lowest omega^2 that is not zero.
 constexpr double shift_window = 1e4;
-// Vectors that are always allowed for Lanczos' method.
-constexpr int least_vectors = 300;
 // Where modes are counted: this far below the highest one, relative to it and to the upper end; where the highest is
 // zero, below what rounding of the stiffnesses makes of zeros.
 constexpr double count_margin = 1e-8, count_rounding = 1e-15, zero_rounding = 1e-12;
@@ -108,7 +106,7 @@ Report ModeSearch::cancelled() const { return {Status::cancelled, "stopped while
 
 // Lanczos' method about one shift, then, where that one was far from the lowest omega^2, about a better one.
 Report ModeSearch::find_most(int count, double& sigma, bool& complete, std::vector<Mode>& modes) {
-  const int most = std::min(static_cast<int>(mass_.size()), std::max(least_vectors, 3 * count + 60));
+  const int most = std::min(static_cast<int>(mass_.size()), Lanczos::most_vectors(count));
   for (int attempt = 0; attempt < 2; ++attempt) {
     if (!factorize(sigma, step_aside * std::abs(sigma))) return no_factors();
     const int below = op_.below();
@@ -172,7 +170,7 @@ Report ModeSearch::find_missing(int count, double sigma, std::vector<Mode>& mode
     for (const Mode& mode : modes) locked.push_back(mode.shape);
     Lanczos others(op_, std::move(locked));
     const int more = std::min(missing, count);
-    others.run([&](std::span<const double> theta) { return choose(theta, 0, more); }, least_vectors, go_on_);
+    others.run([&](std::span<const double> theta) { return choose(theta, 0, more); }, Lanczos::least_vectors, go_on_);
     if (is_cancelled()) return cancelled();
     if (others.steps() == 0) continue;
     std::vector<Mode> extra = modes_of(others, sigma, more);

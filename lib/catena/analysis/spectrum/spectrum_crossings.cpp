@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/run/thresholds.hpp"
+
 namespace catena {
 namespace {
 
@@ -13,9 +15,8 @@ constexpr int most_crossing_steps = 90;
 constexpr std::size_t most_crossings = 40;
 // Crossings nearer to each other than this part of the interval are one.
 constexpr double same_crossing = 1e-9;
-// Golden section for a dip: steps, and its part.
+// Of golden section for a dip.
 constexpr int most_dip_steps = 30;
-constexpr double golden_part = 0.381966011250105;
 
 std::vector<double> real_values(const CirculatoryModes& found) {
   std::vector<double> values;
@@ -185,7 +186,8 @@ bool find_hidden_change(const SpectrumAt& at, const SpectrumSample& a, const Spe
     double low = a.s, middle = b.s, high = c.s, least = hb;
     for (int step = 0; step < most_dip_steps; ++step) {
       const bool right = high - middle > middle - low;
-      hidden.s = right ? middle + golden_part * (high - middle) : middle - golden_part * (middle - low);
+      hidden.s = right ? middle + thresholds::golden_part * (high - middle)
+                       : middle - thresholds::golden_part * (middle - low);
       if (!at(hidden.s, hidden.found)) break;
       if (!hidden.is_like(b)) return true;
       const double now = quantity(hidden, number);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "catena/analysis/pose/assemble.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/analysis/spectrum/motion_groups.hpp"
 #include "catena/base/at.hpp"
@@ -11,8 +12,6 @@
 namespace catena {
 namespace {
 
-// Constraints met to this, in length scales or rad, need no assembly.
-constexpr double assembled = 1e-12;
 // Residual forces below this part of the largest force count as none.
 constexpr double negligible_part = 1e-7, balance_rounding = 1e-13;
 
@@ -20,7 +19,7 @@ constexpr double negligible_part = 1e-7, balance_rounding = 1e-13;
 
 Report assemble_for_statics(StaticSystem& system, std::vector<double>& q) {
   system.move_to(q);
-  if (system.phi_norm() <= std::max(assembled, 10 * system.rounding_change())) return {};
+  if (system.phi_norm() <= std::max(thresholds::assembled, 10 * system.rounding_change())) return {};
   Assembler assembler(system.evaluator());
   const Report report = assembler.assemble(q);
   system.move_to(q);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/motion_groups.hpp"
 #include "catena/base/at.hpp"
 
@@ -12,7 +13,7 @@ namespace {
 // Parts of the uncancelled stiffness that rounding may leave. Multipliers come from solutions refined to 1e-15 or so of
 // the largest; a value below a few hundred of these roundings cannot be distinguished from zero. Of coordinates far
 // from the origin the last digits are unknown.
-constexpr double stiffness_rounding = 2e-13, place_rounding = 4 * std::numeric_limits<double>::epsilon();
+constexpr double stiffness_rounding = 2e-13;
 // Levers below this part of the length scale are rounding of places.
 constexpr double rounding_of_arm = 1e-9;
 
@@ -119,7 +120,7 @@ StiffnessFloor::StiffnessFloor(StaticSystem& system, std::span<const double> lam
     const Frame<double> frame = evaluator.ground_frame(b);
     farthest = std::max({farthest, std::abs(frame.x), std::abs(frame.y)});
   }
-  const double part = stiffness_rounding + place_rounding * farthest / system.length();
+  const double part = stiffness_rounding + thresholds::few_roundings * farthest / system.length();
   // Shapes contain rounding too: every travel includes a little turning, and the other way round.
   for (std::size_t b = 0; b < arms.size(); ++b) travel[b] += turning[b] / (arms[b] * arms[b]);
   for (int coordinate : plan.coordinate) {
@@ -132,7 +133,7 @@ StiffnessFloor::StiffnessFloor(StaticSystem& system, std::span<const double> lam
     for (int c : group.columns) stiffest = std::max(stiffest, travel[at(plan.coordinate[at(c)] / 3)]);
     for (int c : group.columns) {
       const double arm = plan.coordinate[at(c)] % 3 == 2 ? arms[at(plan.coordinate[at(c)] / 3)] : 1;
-      floor_[at(c)] += place_rounding * stiffest * arm * arm;
+      floor_[at(c)] += thresholds::few_roundings * stiffest * arm * arm;
     }
   }
 }

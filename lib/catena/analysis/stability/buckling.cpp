@@ -9,6 +9,7 @@
 #include "catena/analysis/balance/static_holding.hpp"
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/analysis/run/watched_elements.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
@@ -23,8 +24,8 @@ namespace {
 // Steps of the parameter that are tried until its effect on K exceeds rounding.
 constexpr double steps[] = {1, 1e6, 1e12};
 constexpr double visible_effect = 1e-6, smallest_effect = 1e-12;
-constexpr int most_vectors = 300, most_refinements = 20;
-constexpr double refined = 1e-12, linear_part = 1e-9;
+constexpr int most_refinements = 20;
+constexpr double linear_part = 1e-9;
 // Constraints met to this, in length scales or rad, do not depend on the parameter.
 constexpr double kept_place = 1e-9;
 constexpr const char* moved_by_load =
@@ -144,7 +145,7 @@ Report Buckling::find_with(double step, int count, std::vector<Load>& loads, dou
   BucklingOperator op(system_, other);
   Lanczos lanczos(op);
   const auto wanted = [&](std::span<const double> theta) { return largest_ones(theta, count); };
-  const int most = std::min(plan_->columns, std::max(most_vectors, 3 * count + 60));
+  const int most = std::min(plan_->columns, Lanczos::most_vectors(count));
   const bool settled = lanczos.run(wanted, most, go_on);
   if (go_on && !go_on()) return {Status::cancelled, "stopped while loads were looked for", {}};
   if (!settled && !lanczos.exhausted()) {
@@ -183,7 +184,7 @@ void Buckling::check_gaps(BucklingReport& report) {
     static_cast<void>(balance_loads(system_, loaded.lambda));
     const std::vector<double> faults = gap_faults(system_, loaded.lambda, set_.closed);
     ActiveSet other{.closed = {}, .weak = std::vector<char>(faults.size())};
-    for (std::size_t k = 0; k < faults.size(); ++k) other.weak[k] = faults[k] > weak_force;
+    for (std::size_t k = 0; k < faults.size(); ++k) other.weak[k] = faults[k] > thresholds::no_force;
     if (const std::string names = names_of_weak(evaluator_, other); !names.empty()) {
       report.warnings.push_back(fmt::format(
           "at the value {:.6g} one-sided elements would not hold, or not be open, as they are at the present one: {}; "
@@ -262,7 +263,7 @@ Report Buckling::find_by_lanczos(std::vector<Load>& loads, const std::function<b
       }
       loads[k] = again[k];
       const double gap = again[k].distance - step;
-      if (std::abs(gap) <= refined * std::abs(step)) break;
+      if (std::abs(gap) <= refined_load * std::abs(step)) break;
       const double next = round == 0 ? again[k].distance : step - gap * (step - step_before) / (gap - gap_before);
       step_before = step;
       gap_before = gap;

@@ -53,6 +53,9 @@ struct BucklingReport : AnalysisReport {
 
 class Buckling {
  public:
+  /// Part of a load's distance that Lanczos' method, repeated where the load is, leaves of it.
+  static constexpr double refined_load = 1e-12;
+
   /// `model`: at options.present.
   Buckling(std::shared_ptr<const Model> model, ModelAt model_at, const BucklingOptions& options);
 

@@ -18,20 +18,15 @@
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/analysis/spectrum/spectrum_crossings.hpp"
 #include "catena/analysis/stability/buckling.hpp"
+#include "catena/analysis/stability/load_search.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-// Change of the spectrum, in parts of itself, at the first step, and below which there is none.
-constexpr double least_shift = 0.02, most_shift = 0.5, no_shift = 1e-11;
-constexpr double coarse_factor = 1e3, fine_factor = 4;
-constexpr int most_first_steps = 100;
-// Samples an octave, and how far, in first steps.
-constexpr int octave_samples = 6;
+// How far loads are looked for, in first steps.
 constexpr double farthest_search = 1e4;
 constexpr int end_bisections = 50;
-constexpr double equally_far = 1e-12;
 
 /// Largest relative change of the values, sorted.
 double shift_of(const CirculatoryModes& from, const CirculatoryModes& to) {
@@ -56,21 +51,18 @@ class Buckling::CirculatorySearch {
     if (Report start = check_present(); !start.ok()) return start;
     if (!find_first_step()) return {};
     for (Front& front : fronts_) front.samples = {{0, present_}};
-    const double growth = std::pow(2.0, 1.0 / octave_samples);
-    for (double reach = step_ / octave_samples; reach <= farthest_search * step_;
-         reach = reach < step_ ? reach + step_ / octave_samples : reach * growth) {
+    Report outcome;
+    for_each_distance(step_, farthest_search, [&](double reach) {
       for (Front& front : fronts_) {
-        if (go_on_ && !go_on_()) return {Status::cancelled, "stopped while loads were looked for", {}};
-        if (Report taken = take_sample(front, reach); !taken.ok()) return taken;
+        outcome = go_on_ && !go_on_() ? Report{Status::cancelled, "stopped while loads were looked for", {}}
+                                      : take_sample(front, reach);
+        if (!outcome.ok()) return false;
       }
       farthest_ = reach;
-      if (loads_.size() >= wanted_ || (!fronts_[0].open && !fronts_[1].open)) break;
-    }
-    std::sort(loads_.begin(), loads_.end(), [](const CriticalLoad& a, const CriticalLoad& b) {
-      const double near = std::abs(std::abs(a.distance) - std::abs(b.distance));
-      if (near <= equally_far * std::abs(a.distance)) return a.distance > b.distance;
-      return std::abs(a.distance) < std::abs(b.distance);
+      return loads_.size() < wanted_ && (fronts_[0].open || fronts_[1].open);
     });
+    if (!outcome.ok()) return outcome;
+    std::sort(loads_.begin(), loads_.end(), comes_first<CriticalLoad>);
     loads_.resize(std::min(loads_.size(), wanted_));
     loads = std::move(loads_);
     return {};
@@ -125,26 +117,22 @@ class Buckling::CirculatorySearch {
 
   /// Where the spectrum has changed by a few percent of itself, to a side that the scene allows. False: it does not.
   bool find_first_step() {
-    const double present = buckling_.options_.present;
-    double too_small = 0, too_large = std::numeric_limits<double>::infinity(), change = 0;
-    step_ = present != 0 ? 0.1 * std::abs(present) : 1;
-    for (int k = 0; k < most_first_steps; ++k) {
-      CirculatoryModes there;
-      const bool allowed = has_spectrum(step_, there) || has_spectrum(-step_, there);
-      change = allowed ? shift_of(present_, there) : most_shift;
-      if (allowed && change >= least_shift && change <= most_shift) return true;
-      (allowed && change < least_shift ? too_small : too_large) = step_;
-      if (too_small > 0 && std::isfinite(too_large)) {
-        if (too_large < 1.001 * too_small) return true;
-        step_ = std::sqrt(too_small * too_large);
-      } else if (std::isfinite(too_large)) {
-        step_ /= fine_factor;
-      } else {
-        step_ *= std::clamp(std::sqrt(least_shift * most_shift) / change, fine_factor, coarse_factor);
-      }
+    FirstLoadStep first(buckling_.options_.present);
+    double change = 0;
+    for (int k = 0; k < FirstLoadStep::most_trials; ++k) {
+      step_ = first.step();
       if (!std::isfinite(step_)) break;
+      CirculatoryModes there;
+      if (has_spectrum(step_, there) || has_spectrum(-step_, there)) {
+        change = shift_of(present_, there);
+        if (first.take(change)) return true;
+      } else {
+        change = 1;
+        first.refuse();
+      }
+      if (!first.move(change)) return true;
     }
-    return change > no_shift;
+    return change > FirstLoadStep::no_change;
   }
 
   Report take_sample(Front& front, double reach) {

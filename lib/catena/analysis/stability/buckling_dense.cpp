@@ -13,33 +13,26 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/stability/buckling.hpp"
+#include "catena/analysis/stability/load_search.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-// Change of the stiffness, in parts of itself, at the first step: far above rounding, well before the first load.
-constexpr double least_change = 0.02, most_change = 0.5;
-// Factors by which the first step is looked for, and how often.
-constexpr double coarse = 1e3, fine = 4;
-constexpr int most_tries = 100;
 // Rounding of a stiffness with its multipliers, in parts of the largest.
 constexpr double stiffness_rounding = 64 * std::numeric_limits<double>::epsilon();
-// Deviation from a straight line that counts as rounding, and the part of the largest rate of change that counts as
-// none.
-constexpr double straight = 1e-10, no_change = 1e-11;
-// The search outwards: samples an octave, and how far, in first steps. A load beyond that would be 1e8 times a value
-// that already changes the stiffness visibly.
-constexpr int samples = 6;
+// Deviation from a straight line that counts as rounding.
+constexpr double straight = 1e-10;
+// How far loads are looked for, in first steps: one beyond would be 1e8 times a value that already changes the
+// stiffness visibly.
 constexpr double farthest = 1e8;
 // Accuracy of a load, relative to its distance.
 constexpr double located = 1e-14;
 // Loads in closed form are accurate to 1e-16 of the steepest rate of change: used up to this multiple of its inverse.
 constexpr double well_known = 1e3;
-// Loads on both sides whose distances differ by this part lie equally far.
-constexpr double same_distance = 1e-12;
 // Half width, in parts of the distance, of the bracket that confirms a load in closed form.
 constexpr double confirming = 1e-5;
 
@@ -153,17 +146,13 @@ class Buckling::Search {
   /// The nearest roots, in the order of their distance; of two at the same one, that above first.
   Report find() {
     if (Report first = find_first_step(); !first.ok()) return first;
-    if (!(change_ > no_change)) return {};
+    if (!(change_ > FirstLoadStep::no_change)) return {};
     if (go_on_ && !go_on_()) return cancelled();
     if (!find_in_closed_form()) {
       roots_.clear();
       if (Report searched = search_outwards(); !searched.ok()) return searched;
     }
-    std::sort(roots_.begin(), roots_.end(), [](const Root& a, const Root& b) {
-      const double near = std::abs(std::abs(a.distance) - std::abs(b.distance));
-      if (near <= same_distance * std::abs(a.distance)) return a.distance > b.distance;
-      return std::abs(a.distance) < std::abs(b.distance);
-    });
+    std::sort(roots_.begin(), roots_.end(), comes_first<Root>);
     roots_.resize(std::min(roots_.size(), wanted_));
     return {};
   }
@@ -183,32 +172,24 @@ class Buckling::Search {
   // The first step: where the stiffness has changed by a few percent of itself, to the side that the scene allows.
   Report find_first_step() {
     const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(freedoms_, freedoms_);
-    double too_small = 0, too_large = std::numeric_limits<double>::infinity();
-    step_ = present_ != 0 ? 0.1 * std::abs(present_) : 1;
-    for (int k = 0; k < most_tries; ++k) {
+    FirstLoadStep first(present_);
+    for (int k = 0; k < FirstLoadStep::most_trials; ++k) {
+      step_ = first.step();
       if (!spectrum_.evaluate(present_ + side_ * step_)) {
         if (!buckling_.outside_) return spectrum_.report();
         if (side_ > 0 && spectrum_.evaluate(present_ - step_)) {
           side_ = -1;
         } else {
-          too_large = std::min(too_large, step_);
+          first.refuse();
         }
       }
-      if (step_ < too_large) {
+      if (!first.is_refused()) {
         change_ = (spectrum_.now() - unit).cwiseAbs().maxCoeff();
-        if (change_ >= least_change && change_ <= most_change) return {};
-        (change_ < least_change ? too_small : too_large) = step_;
+        if (first.take(change_)) return {};
       }
-      if (too_small > 0 && std::isfinite(too_large)) {
-        if (too_large < 1.001 * too_small) return {};  // it jumps there: both sides of the jump are searched
-        step_ = std::sqrt(too_small * too_large);
-      } else if (std::isfinite(too_large)) {
-        step_ /= fine;
-      } else {
-        // No further than the change so far allows: an oscillating dependence must not be stepped over.
-        step_ *= std::clamp(std::sqrt(least_change * most_change) / change_, fine, coarse);
-      }
+      if (!first.move(change_)) return {};
     }
+    step_ = first.step();
     return {};
   }
 
@@ -227,7 +208,7 @@ class Buckling::Search {
     const double steepest = solver.eigenvalues().cwiseAbs().maxCoeff();
     std::vector<double> distances;
     for (double rate : solver.eigenvalues()) {
-      if (std::abs(rate) > no_change * steepest) distances.push_back(-1 / rate);
+      if (std::abs(rate) > FirstLoadStep::no_change * steepest) distances.push_back(-1 / rate);
     }
     std::sort(distances.begin(), distances.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
     distances.resize(std::min(distances.size(), wanted_));
@@ -252,15 +233,17 @@ class Buckling::Search {
 
   // Both sides go outwards together: what is nearest comes first.
   Report search_outwards() {
-    const double growth = std::pow(2.0, 1.0 / samples);
     Front sides[2] = {{1}, {-1}};
     for (Front& s : sides) {
       s.place = {0};
       s.mu = {Eigen::VectorXd::Ones(freedoms_)};
     }
-    for (double reach = step_ / samples; reach <= farthest * step_ && (sides[0].open || sides[1].open);
-         reach = reach < step_ ? reach + step_ / samples : reach * growth) {
-      if (go_on_ && !go_on_()) return cancelled();
+    Report outcome;
+    for_each_distance(step_, farthest, [&](double reach) {
+      if (go_on_ && !go_on_()) {
+        outcome = cancelled();
+        return false;
+      }
       for (Front& s : sides) {
         if (!s.open) continue;
         Eigen::VectorXd mu = spectrum_.values(present_ + s.sign * reach);
@@ -269,12 +252,13 @@ class Buckling::Search {
         } else if (buckling_.outside_) {
           close(s, s.sign * reach);
         } else {
-          return spectrum_.report();
+          outcome = spectrum_.report();
+          return false;
         }
       }
-      if (roots_.size() >= wanted_) break;
-    }
-    return {};
+      return roots_.size() < wanted_ && (sides[0].open || sides[1].open);
+    });
+    return outcome;
   }
 
   void take_sample(Front& s, double x, Eigen::VectorXd mu) {
@@ -322,7 +306,7 @@ class Buckling::Search {
     const int k = static_cast<int>((mu_b.array() < 0).count());
     if (k == mu_b.size() || mu_a[k] < 0 || mu_c[k] < 0 || mu_b[k] >= mu_a[k] || mu_b[k] >= mu_c[k]) return {};
     // Golden section, ended by the first value below zero.
-    constexpr double part = 0.381966011250105;
+    constexpr double part = thresholds::golden_part;
     double middle = mu_b[k];
     for (int step = 0; step < 60 && std::abs(c - a) > 1e-9 * std::abs(b); ++step) {
       const bool right = std::abs(c - b) > std::abs(b - a);

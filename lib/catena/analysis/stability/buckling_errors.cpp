@@ -15,7 +15,7 @@ namespace {
 constexpr double usual_load_part = 0.006;
 // In parts of a load's distance: what the search leaves of it, which ends at a bracket of 1e-14 but mostly hits the
 // root before; and Lanczos' method.
-constexpr double located_load = 2e-15, refined_load = 1e-12;
+constexpr double located_load = 2e-15;
 // Parts of the distance by which the parameter is moved to see how the stiffness changes.
 constexpr double aside = 1e-4;
 

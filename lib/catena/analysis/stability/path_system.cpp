@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "catena/analysis/spectrum/modes_operator.hpp"
+#include "catena/analysis/statics/solvers/static_settling.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -17,8 +18,6 @@ constexpr double nearly_solved = 1e-9;
 // Steps larger than this have left the path: parts of the mechanism's extent, or rad.
 constexpr double astray = 3;
 constexpr double difference = 1e-5;
-// E of the unsymmetric matrix times the largest stiffness.
-constexpr double path_regularisation = 1e-11;
 
 }  // namespace
 
@@ -97,7 +96,7 @@ bool PathSystem::factorize_here(std::span<const double> lambda, double shift) {
   if (!is_circulatory()) return system_.factorize().ok();
   tangent_->fill(lambda, shift, 0);
   const double stiffness = std::max(tangent_->largest_stiffness(), system_.force_size() / system_.length());
-  tangent_->fill(lambda, shift, path_regularisation / stiffness);
+  tangent_->fill(lambda, shift, settling_regularisation / stiffness);
   return tangent_->factorize();
 }
 
@@ -207,34 +206,8 @@ int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t,
     if (!std::isfinite(error)) return -1;
     before = error;
     if (k == most_iterations) break;
-    // One-sided: it affects the convergence only.
-    PathPoint beside = x;
-    beside.p += difference * std::max(scale_, std::abs(x.p));
-    if (move_to(beside)) {
-      residual(beside, derivative_);
-      for (std::size_t i = 0; i < derivative_.size(); ++i)
-        derivative_[i] = (derivative_[i] - given_[i]) / (beside.p - x.p);
-      move_to(x);
-    } else {
-      parameter_derivative(x, derivative_);
-    }
-    // Exactly singular: a matrix slightly away from it serves for a step.
-    if (!factorize_here(x.lambda, 0) && !factorize_here(x.lambda, 1e-10 * largest_stiffness())) return -1;
-    for (double& r : given_) r = -r;
-    solve(given_, newton_);
-    for (double& d : derivative_) d = -d;
-    solve(derivative_, along_);
-    double own = t.p / (scale_ * scale_), rest = place;
-    for (std::size_t c = 0; c < weight_.size(); ++c) {
-      own += weight_[c] * t.q[c] * along_[c];
-      rest += weight_[c] * t.q[c] * newton_[c];
-    }
-    const double dp = -rest / own;
-    for (std::size_t i = 0; i < newton_.size(); ++i) newton_[i] += dp * along_[i];
-    for (int c = 0; c < plan_.columns; ++c) {
-      const double unit = plan_.coordinate[at(c)] % 3 == 2 ? 1 : extent_;
-      if (!(std::abs(newton_[at(c)]) < astray * unit)) return -1;
-    }
+    double dp = 0;
+    if (!find_newton_step(x, t, place, dp)) return -1;
     // A residual that may be rounding of the stiffest spring counts as such only if a step would move nothing. That
     // step is made: a short spring is as stiff as its length is short, and rounding of its force is less than its
     // stiffness allows.
@@ -254,6 +227,40 @@ int PathSystem::correct(PathPoint& x, const PathPoint& from, const PathPoint& t,
     make_newton_step(x, dp);
   }
   return -1;
+}
+
+// Of the residual, given_, that x leaves, and of its place on the path: newton_, and dp of the parameter. False where
+// there is no matrix to solve with, or the step has left the path. The system stays at x.
+bool PathSystem::find_newton_step(const PathPoint& x, const PathPoint& t, double place, double& dp) {
+  // The difference is one-sided: it affects the convergence only.
+  PathPoint beside = x;
+  beside.p += difference * std::max(scale_, std::abs(x.p));
+  if (move_to(beside)) {
+    residual(beside, derivative_);
+    for (std::size_t i = 0; i < derivative_.size(); ++i)
+      derivative_[i] = (derivative_[i] - given_[i]) / (beside.p - x.p);
+    move_to(x);
+  } else {
+    parameter_derivative(x, derivative_);
+  }
+  // Exactly singular: a matrix slightly away from it serves for a step.
+  if (!factorize_here(x.lambda, 0) && !factorize_here(x.lambda, 1e-10 * largest_stiffness())) return false;
+  for (double& r : given_) r = -r;
+  solve(given_, newton_);
+  for (double& d : derivative_) d = -d;
+  solve(derivative_, along_);
+  double own = t.p / (scale_ * scale_), rest = place;
+  for (std::size_t c = 0; c < weight_.size(); ++c) {
+    own += weight_[c] * t.q[c] * along_[c];
+    rest += weight_[c] * t.q[c] * newton_[c];
+  }
+  dp = -rest / own;
+  for (std::size_t i = 0; i < newton_.size(); ++i) newton_[i] += dp * along_[i];
+  for (int c = 0; c < plan_.columns; ++c) {
+    const double unit = plan_.coordinate[at(c)] % 3 == 2 ? 1 : extent_;
+    if (!(std::abs(newton_[at(c)]) < astray * unit)) return false;
+  }
+  return true;
 }
 
 // By newton_, and by dp of the parameter.

@@ -99,6 +99,7 @@ class PathSystem {
   bool factorize_here(std::span<const double> lambda, double shift);
   double largest_stiffness() const;
   void residual(const PathPoint& x, std::vector<double>& out);
+  bool find_newton_step(const PathPoint& x, const PathPoint& t, double place, double& dp);
   void make_newton_step(PathPoint& x, double dp) const;
 
   StaticSystem& system_;

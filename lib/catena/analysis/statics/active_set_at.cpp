@@ -5,7 +5,9 @@
 #include <algorithm>
 
 #include "catena/analysis/pose/assemble.hpp"
+#include "catena/analysis/run/name_list.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/statics/solvers/static_active_set.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
@@ -13,31 +15,24 @@
 namespace catena {
 namespace {
 
-// A depth of this part of the length scale (or rad) is an estimate of a closed place; more contradicts the scene, as in
-// contact_phases.cpp.
-constexpr double allowed_depth = 1e-6;
 // Of the largest pull: gaps that pull as much are opened at once.
 constexpr double with_the_worst = 0.5;
 
 /// The names of the gaps that are marked and meet a condition, the first few.
 template <class F>
 std::string first_names(const Evaluator& evaluator, std::span<const char> marked, F&& meets) {
-  constexpr std::size_t most = 6;
-  std::string names;
-  std::size_t count = 0;
+  NameList names;
   for (std::size_t k = 0; k < marked.size(); ++k) {
     const int element = evaluator.plan().row_element[at(evaluator.plan().gap_rows[k])];
-    if (!marked[k] || !meets(element) || ++count > most) continue;
-    names += fmt::format("{}\"{}\"", count > 1 ? ", " : "", evaluator.model().element_name(element));
+    if (marked[k] && meets(element)) names.add(evaluator.model().element_name(element));
   }
-  if (count > most) names += fmt::format(" and {} more", count - most);
-  return names;
+  return names.text();
 }
 
 /// Assembles with a plan that has no gaps, if the place does not meet the constraints already.
 Report assemble_without_gaps(StaticSystem& system, std::vector<double>& q) {
   system.move_to(q);
-  if (system.phi_norm() <= std::max(1e-12, 10 * system.rounding_change())) return {};
+  if (system.phi_norm() <= std::max(thresholds::assembled, 10 * system.rounding_change())) return {};
   Evaluator& evaluator = system.evaluator();
   PlanOptions options;
   options.released_elements = evaluator.model().gaps();
@@ -63,7 +58,7 @@ Report close_gaps_at(StaticSystem& system, std::vector<double>& q, std::span<dou
   for (std::size_t k = 0; k < gaps; ++k) {
     const double unit = units_of(system, plan.gap_rows[k], {system.length(), 1}).gap;
     const int element = plan.row_element[at(plan.gap_rows[k])];
-    if (gap[k] < -allowed_depth * unit) {
+    if (gap[k] < -thresholds::given_depth * unit) {
       const Model& model = system.evaluator().model();
       return {Status::inconsistent,
               fmt::format("{} \"{}\" is violated at this place by {:.4g} {}: an equilibrium analysis before this one "
@@ -72,7 +67,7 @@ Report close_gaps_at(StaticSystem& system, std::vector<double>& q, std::span<dou
                           plan.row_is_angle[at(plan.gap_rows[k])] ? "rad" : "m"),
               {}};
     }
-    set.closed[k] = gap[k] <= weak_gap * unit;
+    set.closed[k] = gap[k] <= thresholds::closed_gap * unit;
   }
   std::vector<double> force(gaps);
   for (const std::vector<char> touches = set.closed;; ++set.changes) {
@@ -80,7 +75,7 @@ Report close_gaps_at(StaticSystem& system, std::vector<double>& q, std::span<dou
     system.move_to(q);
     left = balance_loads(system, lambda);
     const double scale = std::max(system.force_scale(lambda), typical_force(system));
-    double pull = weak_force;
+    double pull = thresholds::no_force;
     for (std::size_t k = 0; k < gaps; ++k) {
       const int row = plan.gap_rows[k];
       force[k] = set.closed[k] ? -lambda[at(row)] / units_of(system, row, {system.length(), scale}).force : 0;
@@ -89,7 +84,8 @@ Report close_gaps_at(StaticSystem& system, std::vector<double>& q, std::span<dou
     bool opened = false;
     for (std::size_t k = 0; k < gaps; ++k) {
       // Without pulls the weak ones are left.
-      const bool opens = set.closed[k] && (pull > weak_force ? -force[k] >= with_the_worst * pull : force[k] <= pull);
+      const bool opens =
+          set.closed[k] && (pull > thresholds::no_force ? -force[k] >= with_the_worst * pull : force[k] <= pull);
       if (!opens) continue;
       set.closed[k] = 0;
       opened = true;

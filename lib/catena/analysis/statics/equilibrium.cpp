@@ -10,6 +10,7 @@
 #include "catena/analysis/pose/minimum_norm.hpp"
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/analysis/run/watched_elements.hpp"
 #include "catena/analysis/statics/active_set_at.hpp"
@@ -17,9 +18,6 @@
 
 namespace catena {
 namespace {
-
-// Reactions balance the loads if no more than this part of them is left.
-constexpr double balanced = 1e-9;
 
 // What the search says of the stability.
 void tell_stability(const StaticResult& result, EquilibriumReport& report) {
@@ -123,7 +121,7 @@ void Equilibrium::choose_least_reactions(Report& report) {
   std::vector<double> loads(at(plan_->coordinates())), multipliers(lambda_.size());
   evaluator_.applied_forces(std::vector<double>(loads.size(), 0.0), loads);
   // Least reactions that do not balance the loads are rejected.
-  if (!(least.solve(loads, multipliers) <= balanced)) return;
+  if (!(least.solve(loads, multipliers) <= thresholds::no_force)) return;
   // One-sided elements only push: where the least reactions would pull, those found are kept.
   for (int r : plan_->gap_rows) {
     if (multipliers[at(r)] > 0) return;

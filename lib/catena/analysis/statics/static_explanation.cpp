@@ -7,6 +7,7 @@
 
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/run/energyless_forces.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/statics/active_set_at.hpp"
 #include "catena/assembly/rope_ways.hpp"
@@ -15,8 +16,6 @@
 namespace catena {
 namespace {
 
-// A residual above this part of the forces is reported.
-constexpr double unsaid_rounding = 1e-9;
 // The square of this is the largest number.
 constexpr double largest_number = 1e154;
 // Overlaps below this many length scales count as absent.
@@ -153,7 +152,7 @@ Report explain_failure(StaticSystem& system, const StaticOutcome& outcome, const
 }
 
 void warn_of_rounding(const StaticAccuracy& a, Report& report) {
-  if (a.balanced || a.residual <= unsaid_rounding * a.forces) return;
+  if (a.balanced || a.residual <= thresholds::no_force * a.forces) return;
   report.warnings.push_back(
       fmt::format("forces of {1:.3g} N balance to {0:.2g} N only: rounding of places changes the force of the stiffest "
                   "springs by up to {2:.2g} N, whatever the tolerance",

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "catena/analysis/pose/assemble.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/statics/solvers/static_descent.hpp"
 #include "catena/analysis/statics/solvers/static_ipopt.hpp"
 #include "catena/analysis/statics/solvers/static_nlopt.hpp"
@@ -26,8 +27,6 @@ constexpr double finest_barrier = 1e-10;
 constexpr double gap_tolerance = 1e-12;
 // Steps that do not converge soon rarely do: more are allowed only after other methods have failed.
 constexpr int few_first_steps = 40, most_first_steps = 80;
-// Constraints that hold to this part of the length are not assembled first.
-constexpr double assembled = 1e-12;
 // Constraints that are missed by more than this part of the length were left out of a search: what a search meets it
 // meets to its tolerance, 1e-8 unless another is asked for.
 constexpr double missed = 1e-4;
@@ -63,7 +62,7 @@ StaticOutcome StaticTrial::run_smooth(std::vector<double>& q, std::vector<double
   system_.move_to(q);
   if (way == StaticWay::ipopt || way == StaticWay::nlopt) return optimise(q, lambda, warm, way);
   if (way == StaticWay::settling) return solve_by_settling(system_, q, lambda, {.tolerance = options_.tolerance});
-  if (way == StaticWay::valley && (system_.phi_norm() <= assembled || assemble(q)))
+  if (way == StaticWay::valley && (system_.phi_norm() <= thresholds::assembled || assemble(q)))
     return solve_by_descent(system_, q, lambda, {.tolerance = options_.tolerance});
   StaticOutcome outcome = solve_by_newton(
       system_, q, lambda, {.tolerance = options_.tolerance, .warm = warm, .stationary = options_.stationary});
@@ -91,7 +90,7 @@ bool StaticTrial::assemble(std::vector<double>& q) {
 // what is found without them misses them: the search begins once more where the sketch is assembled.
 StaticOutcome StaticTrial::optimise_by_nlopt(std::vector<double>& q, std::vector<double>& lambda) {
   std::vector<double> start = q;
-  const bool holds = system_.has_gaps() || system_.phi_norm() <= assembled;
+  const bool holds = system_.has_gaps() || system_.phi_norm() <= thresholds::assembled;
   StaticOutcome outcome = solve_by_nlopt(system_, q, lambda, {.tolerance = options_.tolerance});
   const bool found = outcome.converged() && system_.phi_norm() <= missed;
   if (holds || found || outcome.end == StaticEnd::cancelled) return outcome;

@@ -18,15 +18,14 @@ constexpr double rounding_of_pivots = 1e-14;    // ... not below this part of th
 constexpr int most_massless_rounds = 52;
 constexpr double massless_rounding = 1e-15;
 constexpr int most_probes = 4;  // random loads: a coordinate that resists all of them is rare, and only costs rounds
-constexpr double unequal_masses = 1e5;     // largest to least; from here on light bodies cost digits
-constexpr double refinement_ratio = 1e-5;  // below this one solutions are refined
+constexpr double unequal_masses = 1e5;  // largest to least; from here on light bodies cost digits
 
 }  // namespace
 
 SchurSystem::SchurSystem(std::shared_ptr<const Plan> plan) : plan_(std::move(plan)) {
   const SparsePattern& a = plan_->jacobian;
   const std::size_t coordinates = at(3 * plan_->moving);
-  inverse_masses_.assign(coordinates, 1.0);
+  masses_.inverse.assign(coordinates, 1.0);
   scratch_.change.resize(coordinates);
   scratch_.right_hand_side.resize(at(plan_->rows));
   scratch_.correction.resize(at(plan_->rows));
@@ -38,24 +37,24 @@ SchurSystem::SchurSystem(std::shared_ptr<const Plan> plan) : plan_(std::move(pla
 }
 
 void SchurSystem::set_masses(std::span<const double> masses, std::span<const double> substitutes) {
-  masses_.assign(masses.begin(), masses.end());
-  massless_.clear();
+  masses_.given.assign(masses.begin(), masses.end());
+  masses_.massless.clear();
   double least[2] = {}, largest[2] = {};  // of masses, of moments of inertia
   for (std::size_t c = 0; c < masses.size(); ++c) {
     const std::size_t kind = c % 3 == 2 ? 1 : 0;
     largest[kind] = std::max(largest[kind], masses[c]);
     if (masses[c] > 0 && (least[kind] == 0 || masses[c] < least[kind])) least[kind] = masses[c];
     const double mass = masses[c] > 0 ? masses[c] : substitutes[c];
-    inverse_masses_[c] = mass > 0 ? 1 / mass : 0;
-    if (!(masses[c] > 0) && mass > 0) massless_.push_back(static_cast<int>(c));
+    masses_.inverse[c] = mass > 0 ? 1 / mass : 0;
+    if (!(masses[c] > 0) && mass > 0) masses_.massless.push_back(static_cast<int>(c));
   }
   regularised_ = false;
   unequal_ = largest[0] > unequal_masses * least[0] || largest[1] > unequal_masses * least[1];
-  if (!massless_.empty() || unequal_) {
-    rest_Q_.resize(masses.size());
-    extra_qdd_.resize(masses.size());
-    rest_gamma_.resize(at(plan_->rows));
-    extra_lambda_.resize(at(plan_->rows));
+  if (!masses_.massless.empty() || unequal_) {
+    rest_.Q.resize(masses.size());
+    rest_.qdd.resize(masses.size());
+    rest_.gamma.resize(at(plan_->rows));
+    rest_.lambda.resize(at(plan_->rows));
   }
   constants_known_ = false;
 }
@@ -102,7 +101,7 @@ std::vector<double> SchurSystem::row_sizes() const {
 void SchurSystem::assemble(std::span<const Column> columns, const int* slot, std::span<double> values) const {
   const double* jacobian = jacobian_.data();
   for (const Column& column : columns) {
-    const double inverse_mass = inverse_masses_[at(column.coordinate)];
+    const double inverse_mass = masses_.inverse[at(column.coordinate)];
     for (int x = column.first; x < column.last; ++x) {
       const double factor = inverse_mass * jacobian[x];
       for (int y = column.first; y <= x; ++y) values[at(*slot++)] += factor * jacobian[y];
@@ -113,7 +112,7 @@ void SchurSystem::assemble(std::span<const Column> columns, const int* slot, std
 void SchurSystem::fill(double regularised_part) {
   const std::span<double> values = factors_.values();
   std::copy(constant_values_.begin(), constant_values_.end(), values.begin());
-  assemble(varying_, varying_slot_.data(), values);
+  assemble(places_.varying, places_.varying_slot.data(), values);
   const int* slot = left_out_slot_.data();
   for (int k = 0; k < left_out_.count(); ++k) {
     const std::span<const double> c = left_out_.values(k);
@@ -121,8 +120,8 @@ void SchurSystem::fill(double regularised_part) {
       for (std::size_t b = 0; b <= a; ++b) values[at(*slot++)] += c[a] * c[b];
     }
   }
-  for (std::size_t k = 0; k < diagonal_.size(); ++k) {
-    double& value = values[at(diagonal_[k])];
+  for (std::size_t k = 0; k < places_.diagonal.size(); ++k) {
+    double& value = values[at(places_.diagonal[k])];
     // An equation between bodies that cannot move must not stop the others.
     if (value == 0) value = 1;
     diagonal_values_[k] = value;
@@ -161,7 +160,7 @@ bool SchurSystem::factorize(std::span<const double> jacobian, Counters& counters
   if (!analyzed_ && !analyze(counters)) return false;
   if (!constants_known_) {
     std::fill(constant_values_.begin(), constant_values_.end(), 0.0);
-    assemble(constant_, constant_slot_.data(), constant_values_);
+    assemble(places_.constant, places_.constant_slot.data(), constant_values_);
     constants_known_ = true;
   }
   // Equations that depended on each other at the last factorization probably still do.
@@ -208,7 +207,7 @@ void SchurSystem::spread(std::span<const V> lambda, std::span<V> x) const {
   for (std::size_t c = 0; c + 1 < column_start_.size(); ++c) {
     V sum{};
     for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) sum += jacobian[k] * lambda[at(row[k])];
-    x[c] = inverse_masses_[c] * sum;
+    x[c] = masses_.inverse[c] * sum;
   }
 }
 
@@ -229,12 +228,12 @@ void SchurSystem::solve_refined(std::span<V> lambda, std::span<const V> b, S& sc
 void SchurSystem::solve_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
                                std::span<double> lambda, Counters& counters) {
   solve_with_masses(Q, gamma, qdd, lambda, scratch_, counters);
-  if (!massless_.empty() || unequal_) refine_motion(Q, gamma, qdd, lambda, counters);
+  if (!masses_.massless.empty() || unequal_) refine_motion(Q, gamma, qdd, lambda, counters);
 }
 
 void SchurSystem::solve_motion(std::span<const Lanes> Q, std::span<const Lanes> gamma, std::span<Lanes> qdd,
                                std::span<Lanes> lambda, SchurLanes& scratch, Counters& counters) {
-  if (massless_.empty() && !unequal_) {
+  if (masses_.massless.empty() && !unequal_) {
     scratch.right_hand_side.resize(scratch_.right_hand_side.size());
     scratch.correction.resize(scratch_.correction.size());
     scratch.change.resize(scratch_.change.size());
@@ -263,8 +262,8 @@ void SchurSystem::solve_motion(std::span<const Lanes> Q, std::span<const Lanes> 
 template <class V, class S>
 void SchurSystem::solve_with_masses(std::span<const V> Q, std::span<const V> gamma, std::span<V> qdd,
                                     std::span<V> lambda, S& scratch, Counters& counters) {
-  const std::size_t coordinates = inverse_masses_.size();
-  for (std::size_t c = 0; c < coordinates; ++c) qdd[c] = inverse_masses_[c] * Q[c];
+  const std::size_t coordinates = masses_.inverse.size();
+  for (std::size_t c = 0; c < coordinates; ++c) qdd[c] = masses_.inverse[c] * Q[c];
   if (plan_->rows == 0) return;
   const std::span<V> right_hand_side = scratch.right_hand_side;
   for (std::size_t k = 0; k < right_hand_side.size(); ++k) right_hand_side[k] = -gamma[k];
@@ -276,24 +275,25 @@ void SchurSystem::solve_with_masses(std::span<const V> Q, std::span<const V> gam
   for (std::size_t c = 0; c < coordinates; ++c) {
     V sum{};
     for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) sum += jacobian[k] * lambda[at(row[k])];
-    qdd[c] -= inverse_masses_[c] * sum;
+    qdd[c] -= masses_.inverse[c] * sum;
   }
 }
 
-// The unbalanced force at massless coordinates, rest_Q_, compared with the largest force of all: those of inertia too,
-// of the small masses as well (accelerations are -extra_qdd_), since nothing else may act in a motion without loads.
+// The unbalanced force at massless coordinates, rest_.Q, compared with the largest force of all: those of
+// inertia too, of the small masses as well (accelerations are -rest_.qdd), since nothing else may act in a
+// motion without loads.
 double SchurSystem::find_massless_residual(std::span<const double> Q, std::span<const double> lambda) {
   double largest = 0, left = 0;
-  for (std::size_t c = 0; c < rest_Q_.size(); ++c) {
+  for (std::size_t c = 0; c < rest_.Q.size(); ++c) {
     double sum = std::abs(Q[c]);
-    if (inverse_masses_[c] > 0) sum += std::abs(extra_qdd_[c]) / inverse_masses_[c];
+    if (masses_.inverse[c] > 0) sum += std::abs(rest_.qdd[c]) / masses_.inverse[c];
     for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) {
       sum += std::abs(jacobian_[at(k)] * lambda[at(plan_->jacobian.row_index[at(k)])]);
     }
-    largest = std::max(largest, sum * std::sqrt(inverse_masses_[c]));
+    largest = std::max(largest, sum * std::sqrt(masses_.inverse[c]));
   }
-  for (int c : massless_) {
-    const double part = std::abs(rest_Q_[at(c)]) * std::sqrt(inverse_masses_[at(c)]);
+  for (int c : masses_.massless) {
+    const double part = std::abs(rest_.Q[at(c)]) * std::sqrt(masses_.inverse[at(c)]);
     if (part > left) {
       left = part;
       worst_massless_ = c;
@@ -309,50 +309,51 @@ void SchurSystem::refine_motion(std::span<const double> Q, std::span<const doubl
   double first_change = 0;
   massless_residual_ = 0;
   for (int round = 0;; ++round) {
-    for (std::size_t c = 0; c < rest_Q_.size(); ++c) {
+    for (std::size_t c = 0; c < rest_.Q.size(); ++c) {
       double rest = 0;
-      if (inverse_masses_[c] > 0) {
-        rest = Q[c] - masses_[c] * qdd[c];
+      if (masses_.inverse[c] > 0) {
+        rest = Q[c] - masses_.given[c] * qdd[c];
         for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) {
           rest -= jacobian_[at(k)] * lambda[at(plan_->jacobian.row_index[at(k)])];
         }
       }
-      rest_Q_[c] = rest;
+      rest_.Q[c] = rest;
     }
-    for (std::size_t c = 0; c < rest_Q_.size(); ++c) extra_qdd_[c] = -qdd[c];
-    if (!massless_.empty()) {
+    for (std::size_t c = 0; c < rest_.Q.size(); ++c) rest_.qdd[c] = -qdd[c];
+    if (!masses_.massless.empty()) {
       const double before = massless_residual_;
       massless_residual_ = find_massless_residual(Q, lambda);
       const bool shrinks = round == 0 || massless_residual_ < 0.5 * before;
       if (!(massless_residual_ > massless_rounding) || !shrinks || round == most_massless_rounds) return;
     }
-    std::copy(gamma.begin(), gamma.end(), rest_gamma_.begin());
-    multiply_add(extra_qdd_, rest_gamma_);
-    add_left_out<double>(lambda, rest_gamma_);
-    solve_with_masses<double>(rest_Q_, rest_gamma_, extra_qdd_, extra_lambda_, scratch_, counters);
+    std::copy(gamma.begin(), gamma.end(), rest_.gamma.begin());
+    multiply_add(rest_.qdd, rest_.gamma);
+    add_left_out<double>(lambda, rest_.gamma);
+    solve_with_masses<double>(rest_.Q, rest_.gamma, rest_.qdd, rest_.lambda, scratch_, counters);
     double change = 0, whole = 0;
-    for (std::size_t c = 0; c < rest_Q_.size(); ++c) {
-      change = std::max(change, std::abs(extra_qdd_[c]));
+    for (std::size_t c = 0; c < rest_.Q.size(); ++c) {
+      change = std::max(change, std::abs(rest_.qdd[c]));
       whole = std::max(whole, std::abs(qdd[c]));
-      qdd[c] += extra_qdd_[c];
+      qdd[c] += rest_.qdd[c];
     }
-    for (std::size_t k = 0; k < extra_lambda_.size(); ++k) lambda[k] += extra_lambda_[k];
+    for (std::size_t k = 0; k < rest_.lambda.size(); ++k) lambda[k] += rest_.lambda[k];
     if (round == 0) first_change = change;
     // Every round reduces its change by the same factor.
-    if (massless_.empty() && (round > 2 || !(change * first_change > 1e-15 * whole * whole))) return;
+    if (masses_.massless.empty() && (round > 2 || !(change * first_change > 1e-15 * whole * whole))) return;
   }
 }
 
 std::vector<double> SchurSystem::massless_shares(Counters& counters) {
-  std::vector<double> shares(massless_.size(), 0.0), loads(inverse_masses_.size()), qdd(loads), lambda(at(plan_->rows));
+  std::vector<double> shares(masses_.massless.size(), 0.0), loads(masses_.inverse.size()), qdd(loads),
+      lambda(at(plan_->rows));
   const std::vector<double> gamma(lambda);
   std::mt19937 random(1);
   for (int probe = 0; probe < most_probes; ++probe) {
-    for (int c : massless_) loads[at(c)] = (random() & 1 ? 1 : -1) / std::sqrt(inverse_masses_[at(c)]);
+    for (int c : masses_.massless) loads[at(c)] = (random() & 1 ? 1 : -1) / std::sqrt(masses_.inverse[at(c)]);
     solve_with_masses<double>(loads, gamma, qdd, lambda, scratch_, counters);
     for (std::size_t k = 0; k < shares.size(); ++k) {
-      const std::size_t c = at(massless_[k]);
-      shares[k] = std::max(shares[k], std::abs(qdd[c]) / std::sqrt(inverse_masses_[c]));
+      const std::size_t c = at(masses_.massless[k]);
+      shares[k] = std::max(shares[k], std::abs(qdd[c]) / std::sqrt(masses_.inverse[c]));
     }
   }
   return shares;

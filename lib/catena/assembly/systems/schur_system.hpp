@@ -56,6 +56,9 @@ struct SchurLanes : SchurScratch<Lanes> {
 
 class SchurSystem {
  public:
+  /// Below this smallest pivot ratio solutions are refined.
+  static constexpr double refinement_ratio = 1e-5;
+
   explicit SchurSystem(std::shared_ptr<const Plan> plan);
 
   /// Masses by coordinate, size 3 plan.moving, and substitutes for those that are zero; where both are zero the
@@ -142,20 +145,33 @@ class SchurSystem {
   void refine_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
                      std::span<double> lambda, Counters& counters);
 
+  /// What coordinates weigh, by coordinate.
+  struct Masses {
+    std::vector<double> given, inverse;  // inverse: of the substitutes where masses are zero; 0: the coordinate is held
+    std::vector<int> massless;           // coordinates that have a substitute
+  };
+  /// Where the products of the columns of Phi_q go in the factored matrix.
+  struct Places {
+    std::vector<Column> varying, constant;
+    std::vector<int> varying_slot, constant_slot;  // of the products of each column
+    std::vector<int> diagonal;                     // by row
+    std::vector<int> pair_start, pair_slot;        // of every row: pairs with the rows of its element up to itself
+  };
+  /// What a solution leaves of both equations with the true masses, and the solution for that.
+  struct Rest {
+    std::vector<double> Q, gamma, qdd, lambda;
+  };
+
   std::shared_ptr<const Plan> plan_;
-  std::vector<double> masses_, inverse_masses_;
-  std::vector<int> massless_;
+  Masses masses_;
   std::span<const double> jacobian_;
   std::vector<int> column_start_;  // of Phi_q, by coordinate
-  std::vector<Column> varying_, constant_;
-  std::vector<int> varying_slot_, constant_slot_;  // of the products of each column
-  std::vector<int> diagonal_;                      // by row
-  std::vector<int> pair_start_, pair_slot_;        // of every row: pairs with the rows of its element up to itself
+  Places places_;
   SparseVectors left_out_;
   std::vector<int> left_out_slot_;  // of the products of each direction
   std::vector<double> constant_values_, diagonal_values_;
   SchurScratch<double> scratch_;
-  std::vector<double> rest_Q_, rest_gamma_, extra_qdd_, extra_lambda_;  // for massless coordinates and unequal masses
+  Rest rest_;  // with massless coordinates and unequal masses
   BlockFactorization factors_;
   bool analyzed_ = false, constants_known_ = false, regularised_ = false, unequal_ = false;
   double smallest_ratio_ = 1;

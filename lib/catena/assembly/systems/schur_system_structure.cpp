@@ -18,15 +18,15 @@ bool SchurSystem::analyze(Counters& counters) {
     const Column column{k, column_start_[at(k)], column_start_[at(k) + 1]};
     if (column.first == column.last) continue;
     const bool any = std::any_of(varies.begin() + column.first, varies.begin() + column.last, [](char v) { return v; });
-    (any ? varying_ : constant_).push_back(column);
+    (any ? places_.varying : places_.constant).push_back(column);
   }
   // The pattern of S in the plan's rows, for the order; then again, permuted, with the slot of every product.
   std::vector<MatrixEntry> entries;
-  pair_start_.assign(1, 0);
+  places_.pair_start.assign(1, 0);
   for (int r = 0, first = 0; r < plan.rows; ++r) {
     if (plan.row_element[at(r)] != plan.row_element[at(first)]) first = r;
     for (int other = first; other <= r; ++other) entries.push_back({r, other});
-    pair_start_.push_back(static_cast<int>(entries.size()));
+    places_.pair_start.push_back(static_cast<int>(entries.size()));
   }
   const std::size_t pairs = entries.size();
   const auto products = [&](const std::vector<Column>& columns) {
@@ -36,9 +36,9 @@ bool SchurSystem::analyze(Counters& counters) {
       }
     }
   };
-  products(varying_);
+  products(places_.varying);
   const std::size_t first_constant = entries.size();
-  products(constant_);
+  products(places_.constant);
   for (MatrixEntry& entry : entries) {
     const auto [first, last] = std::minmax(entry.row, entry.column);
     entry = {last, first};
@@ -50,10 +50,11 @@ bool SchurSystem::analyze(Counters& counters) {
     for (std::size_t k = begin; k < end; ++k) list.push_back(factors_.slots()[at(built.slot[k])]);
     return list;
   };
-  pair_slot_ = slots(0, pairs);
-  for (int r = 0; r < plan.rows; ++r) diagonal_.push_back(pair_slot_[at(pair_start_[at(r) + 1] - 1)]);
-  varying_slot_ = slots(pairs, first_constant);
-  constant_slot_ = slots(first_constant, entries.size());
+  places_.pair_slot = slots(0, pairs);
+  for (int r = 0; r < plan.rows; ++r)
+    places_.diagonal.push_back(places_.pair_slot[at(places_.pair_start[at(r) + 1] - 1)]);
+  places_.varying_slot = slots(pairs, first_constant);
+  places_.constant_slot = slots(first_constant, entries.size());
   constant_values_.resize(factors_.values().size());
   diagonal_values_.resize(at(plan.rows));
   analyzed_ = true;
@@ -69,7 +70,7 @@ void SchurSystem::place_left_out() {
     const std::span<const int> rows = left_out_.indices(k);
     for (std::size_t a = 0; a < rows.size(); ++a) {
       for (std::size_t b = 0; b <= a; ++b) {
-        left_out_slot_.push_back(pair_slot_[at(pair_start_[at(rows[a]) + 1] - 1 - (rows[a] - rows[b]))]);
+        left_out_slot_.push_back(places_.pair_slot[at(places_.pair_start[at(rows[a]) + 1] - 1 - (rows[a] - rows[b]))]);
       }
     }
   }

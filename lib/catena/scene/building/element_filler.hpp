@@ -110,7 +110,7 @@ class Filler {
   }
   template <class M>
   void set(const CurveField<M>& field, std::uint32_t at, int) {
-    const CurveTemplate& curve = builder_.scene().curves[static_cast<std::size_t>(number(at).number())];
+    const CurveTemplate& curve = builder_.scene().indirect.curves[static_cast<std::size_t>(number(at).number())];
     try {
       const int body = field.body == 0 ? entry_.i : entry_.j;
       entry_.element.*field.member = builder_.curve(curve);
@@ -121,7 +121,7 @@ class Filler {
   }
   template <class M>
   void set(const TableField<M>& field, std::uint32_t at, int) {
-    const TableTemplate& table = builder_.scene().tables[static_cast<std::size_t>(number(at).number())];
+    const TableTemplate& table = builder_.scene().indirect.tables[static_cast<std::size_t>(number(at).number())];
     const auto pairs = builder_.table(table);
     for (const auto& pair : pairs) {
       if (std::isnan(value_of(pair.x) + value_of(pair.y))) good_ = false;  // reported where it stands
@@ -148,7 +148,7 @@ class Filler {
         target.constant = builder_.value(number(at));
         return;
       }
-      const auto& function = builder_.scene().functions[static_cast<std::size_t>(number(at).number())];
+      const auto& function = builder_.scene().indirect.functions[static_cast<std::size_t>(number(at).number())];
       if (function.kind == FunctionTemplate::Kind::state) {
         target.law = builder_.state_law(builder_.scene().state_laws[static_cast<std::size_t>(function.state)]);
         good_ = good_ && target.law >= 0;

@@ -24,7 +24,7 @@ void ModelBuilder<S>::append_rope(const ElementTemplate& source, const ElementEn
   const ElementDescription& type = element_descriptions()[static_cast<std::size_t>(source.type)];
   const FieldDescription& field = *type.find("over");
   const auto slot = source.first_number + static_cast<std::uint32_t>(field.slot);
-  const auto& pulleys = scene_.ropes[static_cast<std::size_t>(scene_.numbers[slot].number())];
+  const auto& pulleys = scene_.indirect.ropes[static_cast<std::size_t>(scene_.numbers[slot].number())];
   bool good = !pulleys.empty();
   const auto wrong = [&](std::size_t offset, const std::string& what) {
     good = false;

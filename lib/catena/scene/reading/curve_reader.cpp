@@ -97,8 +97,8 @@ int SceneReading::curve(const JsonValue& value, const FieldName& field) {
   } else if (const auto member = read_only_member(value, curve_keys, field, "curve", diagnostics)) {
     curve_of_kind(*member, field, result);
   }
-  scene.curves.push_back(std::move(result));
-  return static_cast<int>(scene.curves.size()) - 1;
+  scene.indirect.curves.push_back(std::move(result));
+  return static_cast<int>(scene.indirect.curves.size()) - 1;
 }
 
 void SceneReading::curve_of_kind(const JsonMember& member, const FieldName& field, CurveTemplate& result) {
@@ -179,8 +179,8 @@ int SceneReading::table(const JsonValue& value, UnitKind first, UnitKind second,
     pairs = v[0];
   }
   if (pairs) result.numbers = pair_list(pairs, dimension_of(first), dimension_of(second), field, {.beside = keys});
-  scene.tables.push_back(std::move(result));
-  return static_cast<int>(scene.tables.size()) - 1;
+  scene.indirect.tables.push_back(std::move(result));
+  return static_cast<int>(scene.indirect.tables.size()) - 1;
 }
 
 }  // namespace catena

@@ -130,8 +130,8 @@ int SceneReading::function(const JsonValue& value, const ExpectedDimension& unit
     }
     return -1;
   }
-  scene.functions.push_back(function_object(value, unit, field));
-  return static_cast<int>(scene.functions.size()) - 1;
+  scene.indirect.functions.push_back(function_object(value, unit, field));
+  return static_cast<int>(scene.indirect.functions.size()) - 1;
 }
 
 FunctionTemplate SceneReading::function_part(const JsonValue& value, const ExpectedDimension& unit,

@@ -16,8 +16,8 @@ constexpr std::array<std::string_view, 2> ways{"slides", "rolls"};
 int SceneReading::pulleys(const JsonValue& value, const FieldName& field) {
   std::vector<PulleyTemplate> all;
   const auto keep_all = [&] {
-    scene.ropes.push_back(std::move(all));
-    return static_cast<int>(scene.ropes.size()) - 1;
+    scene.indirect.ropes.push_back(std::move(all));
+    return static_cast<int>(scene.indirect.ropes.size()) - 1;
   };
   if (!value.is(JsonKind::array)) {
     error(value, fmt::format("{} must be a list of pulleys {{\"at\", \"radius\", ...}}; this is {}", field.text(),

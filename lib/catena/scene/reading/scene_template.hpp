@@ -175,6 +175,14 @@ struct StateLawTemplate {
   JsonValue place;            ///< the text of the expression
 };
 
+/// What slots of elements hold the number of.
+struct IndirectTemplates {
+  std::vector<FunctionTemplate> functions;
+  std::vector<CurveTemplate> curves;
+  std::vector<TableTemplate> tables;
+  std::vector<std::vector<PulleyTemplate>> ropes;  ///< what each runs over
+};
+
 struct SceneTemplate {
   std::unique_ptr<SourceText> source;
   std::unique_ptr<JsonDocument> document;  ///< names are views into it
@@ -189,10 +197,7 @@ struct SceneTemplate {
   std::vector<NameTemplate> patterns;
   std::vector<PointTemplate> points;
   std::vector<PartTemplate> parts, drawn;
-  std::vector<FunctionTemplate> functions;
-  std::vector<CurveTemplate> curves;
-  std::vector<TableTemplate> tables;
-  std::vector<std::vector<PulleyTemplate>> ropes;  ///< what each runs over
+  IndirectTemplates indirect;
   std::vector<OwnColumnTemplate> own_columns;
   std::vector<StateLawTemplate> state_laws;
   OutputUnits::Wishes units;  ///< in which results are shown

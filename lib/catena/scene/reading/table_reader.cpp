@@ -93,8 +93,8 @@ int SceneReading::state_law(const JsonValue& value, const FieldName& field) {
     }
     this->scene.state_laws.push_back(std::move(law));
   }
-  this->scene.functions.push_back(std::move(function));
-  return static_cast<int>(this->scene.functions.size()) - 1;
+  this->scene.indirect.functions.push_back(std::move(function));
+  return static_cast<int>(this->scene.indirect.functions.size()) - 1;
 }
 
 }  // namespace catena

@@ -127,6 +127,14 @@ struct LaneUnknown {
   int coordinate;  ///< its own place in q
 };
 
+/// What loads are summed from; where none are wanted there are none.
+struct LaneLoadCode {
+  const LaneForce* force;  ///< type after type
+  const LaneForces* of_type;
+  int types;            ///< that have forces
+  int masses, gravity;  ///< places in `field`: of mass and inertia, body after body; of two components
+};
+
 struct LaneCode {
   int moving, frames, rows, slots;  ///< frames: of moving bodies, of those that stand still, of the ground
   const LaneElement* element;       ///< type after type
@@ -143,11 +151,17 @@ struct LaneCode {
   int lengths;
   const int* searched;  ///< rows that are evaluated lane by lane, all of them lengths
   int searched_rows;
-  // Of loads; where none are wanted there are none.
-  const LaneForce* force;  ///< type after type
-  const LaneForces* of_force_type;
-  int force_types;
-  int masses, gravity;  ///< places in `field`: of mass and inertia, body after body; of two components
+  LaneLoadCode loads;
+};
+
+/// What a solve tells of every lane.
+struct LaneFindings {
+  double* converged;    ///< 1 or 0
+  double* first_size;   ///< of the first correction, rad or length scales
+  double* first_turn;   ///< its largest angle, rad
+  double* contraction;  ///< largest ratio of successive corrections above rounding
+  double* residual;     ///< rad or length scales
+  double* margin;       ///< tail after tail: its determinant in rad and length scales
 };
 
 /// One group at one instant. Arrays hold lane_count values a number and are aligned to 64 bytes.
@@ -170,13 +184,7 @@ struct LaneJob {
   int lanes;  ///< in use; packs beyond them are left out
   bool velocity, acceleration;
   double tolerance;  ///< of residuals, relative to the length scale
-  // Of every lane:
-  double* converged;    ///< 1 or 0
-  double* first_size;   ///< of the first correction, rad or length scales
-  double* first_turn;   ///< its largest angle, rad
-  double* contraction;  ///< largest ratio of successive corrections above rounding
-  double* residual;     ///< rad or length scales
-  double* margin;       ///< tail after tail: its determinant in rad and length scales
+  LaneFindings found;
 };
 
 /// Positions foretold from two instants at which positions and rates are known: the quintic of Hermite through both.

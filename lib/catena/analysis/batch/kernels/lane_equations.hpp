@@ -46,8 +46,9 @@ class LaneEquations {
     job_.q += lane, job_.qd += lane, job_.qdd += lane, job_.applied += lane, job_.load += lane, job_.lambda += lane;
     job_.turned += lane;
     job_.matrix += lane, job_.right += lane, job_.tail += lane, job_.exchange += lane;
-    job_.converged += lane, job_.first_size += lane, job_.first_turn += lane, job_.contraction += lane;
-    job_.residual += lane, job_.margin += lane;
+    job_.found.converged += lane, job_.found.first_size += lane, job_.found.first_turn += lane,
+        job_.found.contraction += lane;
+    job_.found.residual += lane, job_.found.margin += lane;
   }
 
   static P at(const double* base, int number) { return P::load(base + lane_count * number); }

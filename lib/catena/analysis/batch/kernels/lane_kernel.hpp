@@ -94,8 +94,8 @@ void LaneKernel<V>::solve() {
     P size, turn;
     correct(active, size, turn);
     if (iteration == 0) {
-      put(job_.first_size, 0, size);
-      put(job_.first_turn, 0, turn);
+      put(job_.found.first_size, 0, size);
+      put(job_.found.first_turn, 0, turn);
     } else {
       const P ratio = select(active && size > P(rounding_floor), size / last, P(0));
       contraction = select(ratio <= contraction, contraction, ratio);
@@ -116,9 +116,9 @@ void LaneKernel<V>::solve() {
     put(job_.turned, 2 * b + 1, at(job_.frame, 5 * b + 4));
   }
   good = good && lengths <= P(std::numeric_limits<double>::max());
-  put(job_.converged, 0, select(good, P(1), P(0)));
-  put(job_.contraction, 0, contraction);
-  put(job_.residual, 0, residual);
+  put(job_.found.converged, 0, select(good, P(1), P(0)));
+  put(job_.found.contraction, 0, contraction);
+  put(job_.found.residual, 0, residual);
   if (!job_.velocity && !job_.acceleration) return;
   this->nu();
   this->solve_right();

@@ -80,9 +80,9 @@ void LaneLoads<V>::pull(const LaneForce& f, const Ends& ends, const Vec2<P>& for
 // Weight, inertia and what is given.
 template <class V>
 void LaneLoads<V>::begin() {
-  const P gx = at(job_.field, code_.gravity), gy = at(job_.field, code_.gravity + 1);
+  const P gx = at(job_.field, code_.loads.gravity), gy = at(job_.field, code_.loads.gravity + 1);
   for (int b = 0; b < code_.moving; ++b) {
-    const P mass = at(job_.field, code_.masses + 2 * b), inertia = at(job_.field, code_.masses + 2 * b + 1);
+    const P mass = at(job_.field, code_.loads.masses + 2 * b), inertia = at(job_.field, code_.loads.masses + 2 * b + 1);
     put(job_.load, 3 * b, at(job_.applied, 3 * b) + mass * (gx - at(job_.qdd, 3 * b)));
     put(job_.load, 3 * b + 1, at(job_.applied, 3 * b + 1) + mass * (gy - at(job_.qdd, 3 * b + 1)));
     put(job_.load, 3 * b + 2, at(job_.applied, 3 * b + 2) - inertia * at(job_.qdd, 3 * b + 2));
@@ -134,8 +134,8 @@ void LaneLoads<V>::exert(const LaneForce& f) {
 template <class V>
 void LaneLoads<V>::find_loads() {
   begin();
-  const LaneForce* f = code_.force;
-  for (const LaneForces *of_type = code_.of_force_type, *last = of_type + code_.force_types; of_type != last;
+  const LaneForce* f = code_.loads.force;
+  for (const LaneForces *of_type = code_.loads.of_type, *last = of_type + code_.loads.types; of_type != last;
        ++of_type) {
     const LaneForce* const end = f + of_type->count;
     switch (of_type->type) {

@@ -151,7 +151,7 @@ void LaneSolution<V>::factor_tail(const LaneTail& tail, int number) {
     if (tail.length_row[r]) determinant = determinant * unit_;
     if (tail.length_column[r]) determinant = determinant / unit_;
   }
-  put(job_.margin, number, determinant);
+  put(job_.found.margin, number, determinant);
 }
 
 template <class V>

@@ -14,11 +14,10 @@ namespace {
 // Errors of the method with steps of one length: order k of the predictor, for a change of f by one.
 constexpr double steady_error[] = {0,      0.5,     0.0833,  0.0417,  0.0264,  0.0188,  0.0143,
                                    0.0114, 0.00936, 0.00789, 0.00679, 0.00592, 0.00524, 0.00468};
-constexpr double first_step = 0.25;      // parts of the time scale, times the root of the tolerance
-constexpr double removed_part = 0.1;     // that counts of an error which the projection removes
-constexpr double forgotten = 0.97;       // of what was usual, at every step
-constexpr double residual_bound = 1e-6;  // of positions after their projection, in length scales or rad
-constexpr std::size_t block = 256;       // entries that stay in the first cache while all differences are added
+constexpr double first_step = 0.25;   // parts of the time scale, times the root of the tolerance
+constexpr double removed_part = 0.1;  // that counts of an error which the projection removes
+constexpr double forgotten = 0.97;    // of what was usual, at every step
+constexpr std::size_t block = 256;    // entries that stay in the first cache while all differences are added
 
 }  // namespace
 
@@ -197,7 +196,7 @@ bool Adams::finish(double h) {
     if (c < n) y_new_[c] += twice * change;
   }
   position_residual_ = equations.project_position(motion_.q(std::span(y_new_)), 4);
-  if (!(position_residual_ < residual_bound)) return false;
+  if (!(position_residual_ < RungeKutta::largest_residual)) return false;
   equations.project_velocity(motion_.qd(std::span(y_new_)), scale_.rate());
   return motion_.derivative(t_new_, Side::before, y_new_, slope_);
 }

@@ -27,6 +27,8 @@
 #include <vector>
 
 #include "catena/analysis/motion/motion_memory.hpp"
+#include "catena/analysis/run/thresholds.hpp"
+#include "catena/assembly/systems/schur_system.hpp"
 
 namespace catena {
 
@@ -105,8 +107,8 @@ class ErrorScale {
     measure(qd, qdd);
     force_ = acceleration_ = 0;
     measure_loads(loads.first(qd.size()), force_, acceleration_);
-    const double condition = 1 / std::max(pivot_ratio, refined_ratio);
-    condition_ = rate_ * rate_ <= condition * rounding_of_accelerations * acceleration_ ? condition : 1;
+    const double condition = 1 / std::max(pivot_ratio, SchurSystem::refinement_ratio);
+    condition_ = rate_ * rate_ <= condition * thresholds::few_roundings * acceleration_ ? condition : 1;
     if (step == 0) {
       double energy = 0;
       for (std::size_t c = 0; c < qd.size(); ++c) energy += mass_[c] * std::abs(qdd[c]) * (c % 3 == 2 ? 1 : length);
@@ -119,7 +121,7 @@ class ErrorScale {
 
  private:
   double rounding(std::size_t c) const {
-    return condition_ * rounding_of_accelerations * std::min(acceleration_, force_ * inverse_[c]);
+    return condition_ * thresholds::few_roundings * std::min(acceleration_, force_ * inverse_[c]);
   }
   void measure_loads(std::span<const double> loads, double& largest, double& acceleration) const {
     for (std::size_t c = 0; c < loads.size(); ++c) {
@@ -131,7 +133,7 @@ class ErrorScale {
   double work_of_nothing(double h, std::span<const double> loads) const {
     double force = force_, acceleration = acceleration_;
     measure_loads(loads.first(mass_.size()), force, acceleration);
-    return force * length * (tolerance_ * tolerance_ + h * h * condition_ * rounding_of_accelerations * acceleration);
+    return force * length * (tolerance_ * tolerance_ + h * h * condition_ * thresholds::few_roundings * acceleration);
   }
   void measure(std::span<const double> qd, std::span<const double> qdd) {
     double fastest = 0, strongest = 0, energy = 0;
@@ -146,8 +148,6 @@ class ErrorScale {
 
   // In tolerances of a step, of which the balance may miss some 5000; steps add up.
   static constexpr double work_part = 100;
-  static constexpr double rounding_of_accelerations = 4 * std::numeric_limits<double>::epsilon();
-  static constexpr double refined_ratio = 1e-5;  // below it solutions are refined (schur_system.cpp)
   static constexpr double brief_run = 200, least_tolerance = 1e-15;
   double rate_ = 0, root_energy_ = 0, radians_ = 0, tolerance_ = 0;
   double condition_ = 1;

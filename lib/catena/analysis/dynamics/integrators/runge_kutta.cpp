@@ -7,8 +7,7 @@
 namespace catena {
 namespace {
 
-constexpr double largest_residual = 1e-6;  // of positions after their projection, in length scales or rad
-constexpr double largest_drift = 1e-2;     // of positions that are not projected
+constexpr double largest_drift = 1e-2;  // of positions that are not projected
 
 // Whether all energy is accounted for: what drivers do follows from multipliers, which a singular position leaves open.
 bool keeps_account(EquationsOfMotion& equations) {

@@ -56,6 +56,9 @@ struct RungeKuttaOptions {
 
 class RungeKutta final : public Integrator {
  public:
+  /// Of positions after their projection, in length scales or rad: more has left the constraints.
+  static constexpr double largest_residual = 1e-6;
+
   RungeKutta(Motion motion, const RungeKuttaOptions& options);
 
   bool start(double t, std::span<const double> y) override;

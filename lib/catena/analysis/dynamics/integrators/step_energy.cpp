@@ -6,12 +6,11 @@
 
 #include "catena/analysis/motion/dependence.hpp"
 #include "catena/analysis/pose/jacobian_rank.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 namespace {
 
-// Rounding of energies, in their largest terms: potentials of weights may cancel.
-constexpr double rounding_of_energy = 4 * std::numeric_limits<double>::epsilon();
 // Times the energy that errors explain: in 60,000 steps the median was 0.1 and the largest 60; steps that lost their
 // way had 1e6.
 constexpr double unexplained = 1000;
@@ -86,7 +85,8 @@ bool StepEnergy::restore(const Motion& motion, const BalancedStep& step) {
   for (const StageTerm& term : step.weights) work += h * term.weight * power_[static_cast<std::size_t>(term.stage)];
   const double missing = before.kinetic + before.potential + work - after.kinetic - after.potential;
   const double largest = std::max({before.kinetic, std::abs(before.potential), std::abs(after.potential), weight_});
-  if (!(std::abs(missing) > rounding_of_energy * largest)) return true;
+  // Potentials of weights may cancel.
+  if (!(std::abs(missing) > thresholds::few_roundings * largest)) return true;
   if (!(std::abs(missing) < unexplained * explained_by_errors(motion, step))) return false;
   find_direction(motion, step);
   const std::vector<double>& mass = motion.equations().masses().mass;

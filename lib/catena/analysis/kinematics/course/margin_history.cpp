@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/kinematics/course/step_rules.hpp"
+
 namespace catena {
 namespace {
 
-// A block whose determinant falls below the first part of its value one step before may pass through a singular matrix:
-// this holds if it vanishes linearly, for any position of steps of equal length about that instant. (Its smallest pivot
-// may be another one than that which vanishes.) Where there is no determinant the pivot is used, and must also fall
-// below the second part of its largest value so far.
-constexpr double sudden_part = 0.6, small_part = 0.3;
-// The same by extrapolation from the step before: at least this part must be left of it.
-constexpr double remaining_part = 0.3;
+// Where a block has no determinant its pivot is used, and must also fall below this part of its largest value so far.
+constexpr double small_part = 0.3;
 
 }  // namespace
 
@@ -44,7 +41,7 @@ bool MarginHistory::heads_for_singularity(double h) const {
   bool heads = false;
   for (std::size_t k = 0; k < last_.size(); ++k) {
     const double determinant = std::abs(last_[k].determinant);
-    heads |= is_small(last_, k) && determinant + h * rates_[k] < remaining_part * determinant;
+    heads |= is_small(last_, k) && determinant + h * rates_[k] < step_rules::remaining_part * determinant;
   }
   return heads;
 }
@@ -54,8 +51,8 @@ MarginHistory::Change MarginHistory::change_to(std::span<const BlockMargin> marg
   if (margins.size() != last_.size()) return change;
   for (std::size_t k = 0; k < margins.size(); ++k) {
     change.crossed |= (margins[k].pivot < 0) != (last_[k].pivot < 0);
-    change.dipped |=
-        is_small(margins, k) && std::abs(margins[k].determinant) < sudden_part * std::abs(last_[k].determinant);
+    change.dipped |= is_small(margins, k) &&
+                     std::abs(margins[k].determinant) < step_rules::sudden_part * std::abs(last_[k].determinant);
   }
   return change;
 }

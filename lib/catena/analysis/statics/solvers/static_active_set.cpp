@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/statics/solvers/static_gaps.hpp"
 #include "catena/base/at.hpp"
 
@@ -83,7 +84,7 @@ StaticOutcome finish_with_gaps(StaticSystem& system, std::span<double> q, std::s
   for (std::size_t k = 0; k < gaps; ++k) {
     const GapUnits u = units_of(system, plan.gap_rows[k], {system.length(), force});
     const double p = -lambda[at(plan.gap_rows[k])];
-    set.weak[k] = set.closed[k] ? p <= weak_force * u.force : gap[k] <= weak_gap * u.gap;
+    set.weak[k] = set.closed[k] ? p <= thresholds::no_force * u.force : gap[k] <= thresholds::closed_gap * u.gap;
   }
   return outcome;
 }

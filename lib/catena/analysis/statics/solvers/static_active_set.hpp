@@ -10,9 +10,6 @@
 
 namespace catena {
 
-/// Forces below this part of the largest one, and gaps below this many length scales, may be rounding.
-inline constexpr double weak_force = 1e-9, weak_gap = 1e-9;
-
 struct GapUnits {
   double gap = 1, force = 1;
 };
@@ -27,8 +24,8 @@ inline GapUnits units_of(const StaticSystem& system, int row, const GapUnits& sc
 /// spring at one thousandth of a length scale; without springs, 1 N.
 double typical_force(StaticSystem& system);
 
-/// Of every gap, how far it is from what it does, in these units at the system's place: the pull of a closed one, the
-/// overlap of an open one; below zero where it does it.
+/// For every gap, in these units at the system's place, by how much it violates its state: the pull of a closed one,
+/// the overlap of an open one; negative where it does not.
 std::vector<double> gap_faults(StaticSystem& system, std::span<const double> lambda, std::span<const char> closed);
 
 }  // namespace catena

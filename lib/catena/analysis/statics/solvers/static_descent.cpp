@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/run/thresholds.hpp"
+#include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/spectrum/motion_groups.hpp"
 #include "catena/base/at.hpp"
 
@@ -11,7 +13,6 @@ namespace catena {
 namespace {
 
 constexpr double largest_turn = 0.7;
-constexpr double smallest_factor = 1e-4;
 // Shifts of K: the first relative to rounding of the largest stiffness or to force / extent, the last relative to the
 // largest stiffness. Between them a soft support of a stiff part must be distinguished from no support.
 constexpr double first_of_rounding = 1e-15, first_of_force = 1e-6, largest_shift = 1e6;
@@ -23,8 +24,6 @@ constexpr double sufficient_decrease = 1e-4;
 constexpr double polishing_change = 1e-6;
 // Constraints are met to this, in length scales or rad, between steps.
 constexpr double restored = 1e-10;
-// Curvature along a step below this part of the sum of its terms' magnitudes is rounding.
-constexpr double neutral_part = 1e-10;
 // A mechanism that has turned this many radians downhill is not held.
 constexpr double lost_turns = 1e4;
 
@@ -241,7 +240,7 @@ bool Descent::search_along(double shift, double slope) {
   // The energy is a sum of large terms: a smaller change is rounding.
   const double noise = 1e-14 * (energy_size_ + system_.force_size() * extent_);
   system_.evaluator().curve_places(curve_places_);
-  for (; factor > smallest_factor; factor /= 2) {
+  for (; factor > thresholds::smallest_factor; factor /= 2) {
     std::copy(q_.begin(), q_.end(), trial_.begin());
     system_.advance(trial_, change_, factor, std::numeric_limits<double>::infinity());
     if (!restore_constraints(system_, trial_)) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -23,8 +24,6 @@ constexpr double still = 1e-3;
 // Stiffness assumed while the first tensions are found, where there is no load to derive it from, relative to the
 // stiffest spring.
 constexpr double softest_part = 1e-9;
-// A step from a balanced point that leaves more than this part of the residual is rounding.
-constexpr double no_gain = 0.5;
 // Below this no further gain is possible.
 constexpr double last_change = 1e-10;
 // Multipliers beyond this many times the largest applied force, and the sum of all, belong to rows that depend on each
@@ -189,7 +188,8 @@ double NewtonSearch::move(const StaticStep& step) {
 
 // Along motions that nothing resists a step from a balanced place consists of rounding: it is taken back.
 bool NewtonSearch::returns_from_rounding(double change, double residual_before) {
-  if (!balanced_ || !(change > polished_change) || outcome_.residual <= no_gain * residual_before) return false;
+  if (!balanced_ || !(change > polished_change) || outcome_.residual <= thresholds::least_gain * residual_before)
+    return false;
   before_.take_back(system_, q_, lambda_);
   outcome_.residual = residual_before;
   return true;

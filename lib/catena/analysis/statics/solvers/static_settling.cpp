@@ -13,8 +13,6 @@ namespace {
 constexpr double settling_turn = 0.5;
 // Of a step, in extents of the scene.
 constexpr double largest_travel = 0.5;
-// E times the stiffness.
-constexpr double regularisation = 1e-11;
 // Growth of the residual allowed in an accepted step, and the change of the damping from step to step.
 constexpr double tolerated_growth = 3, fastest_fading = 0.05, settling_stiffening = 8;
 constexpr double largest_damping = 1e12, least_damping = 1e-14;
@@ -113,7 +111,7 @@ bool Settling::is_balanced() {
 
 // False: the search ends.
 bool Settling::step() {
-  tangent_->fill(lambda_, damping_, regularisation / stiffness_);
+  tangent_->fill(lambda_, damping_, settling_regularisation / stiffness_);
   if (!tangent_->factorize()) return stiffen();
   const bool solved = solve();
   before_.keep(system_, q_, lambda_);

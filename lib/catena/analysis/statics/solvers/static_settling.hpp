@@ -7,9 +7,8 @@
 // s = W / time step, N/m: reduced in proportion to the residual force, raised where a step made it much larger. K is
 // the true tangent and need not be symmetric: forces that follow a body's axes have no energy, and this is the solver
 // for them. Where there is an energy it is the last method tried: it descends in general, but need not end at a
-// minimum. The matrix is that of static_tangent.hpp. Singular case: a direction in
-// which nothing resists and nothing pulls. Source: Kelley and Keyes, SIAM J. Numer. Anal. 35 (1998), pseudo-transient
-// continuation.
+// minimum. The matrix is that of static_tangent.hpp. Singular case: a direction in which nothing resists and nothing
+// pulls. Source: Kelley and Keyes, SIAM J. Numer. Anal. 35 (1998), pseudo-transient continuation.
 #pragma once
 
 #include <span>
@@ -23,6 +22,10 @@ struct StaticSettlingOptions {
   int max_iterations = 1000;
   double tolerance = 1e-12;  ///< of the residual force, relative to the largest force
 };
+
+/// E of the equations times the largest stiffness, of other unsymmetric tangents too: constraints yield by less than
+/// what stiffnesses are rounded to.
+inline constexpr double settling_regularisation = 1e-11;
 
 /// Iterates q (size coordinates()) and lambda (rows) in place.
 StaticOutcome solve_by_settling(StaticSystem& system, std::span<double> q, std::span<double> lambda,

@@ -1,0 +1,25 @@
+// What steps of a driven motion keep to, one motion at a time (kinematics_march.cpp) as many in lanes
+// (batch/lane_motion.hpp). Angles in rad, other lengths in length scales.
+#pragma once
+
+namespace catena::step_rules {
+
+/// A prediction may be off by this angle: the constraints are linear in positions, those of points bend by half its
+/// square.
+inline constexpr double largest_turn = 0.1;
+/// A correction may be this part of the one before: Newton's iteration then stays where it contracts.
+inline constexpr double largest_contraction = 0.25;
+/// No body may turn further in a step: a singular configuration in between could be missed.
+inline constexpr double longest_step = 0.5;
+/// A given configuration is taken as near to the assembled one if Newton's first correction is at most this large, and
+/// every further one at most `largest_contraction` of the one before.
+inline constexpr double nearby = 0.1;
+
+/// A block whose determinant falls below this part of its value one step before may pass through a singular matrix:
+/// this holds if it vanishes linearly, for any position of steps of equal length about that instant. (Its smallest
+/// pivot may be another one than that which vanishes.)
+inline constexpr double sudden_part = 0.6;
+/// The same by extrapolation from the step before: at least this part must be left of it.
+inline constexpr double remaining_part = 0.3;
+
+}  // namespace catena::step_rules

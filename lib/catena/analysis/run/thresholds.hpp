@@ -1,0 +1,47 @@
+// Thresholds that several analyses share: each stands here once, with what it follows from. Those of one mechanism
+// stand beside it; whether equations depend on each other is told by motion/dependence.hpp.
+#pragma once
+
+#include <limits>
+
+namespace catena::thresholds {
+
+/// Rounding of a number that is the sum of up to four products, in parts of the largest of them: a place of a point is
+/// such a sum, a force or an energy of two or three terms; each product and each sum rounds by half of epsilon.
+inline constexpr double few_roundings = 4 * std::numeric_limits<double>::epsilon();
+
+/// Positions, in length scales or rad, that cannot be told from rounding: some four epsilon of coordinates that are of
+/// the size of the length scale.
+inline constexpr double position_rounding = 1e-15;
+
+/// Constraints that miss by less, in length scales or rad, hold: assembly ends with 1e-15 times the condition of the
+/// equations, which is 10^3 and less away from singular positions.
+inline constexpr double assembled = 1e-12;
+
+/// A gap below this many length scales (or rad) is closed, and a force below this part of the largest is none:
+/// equilibria and the instants of impacts are found to 1e-11 and better, two digits are to spare.
+inline constexpr double closed_gap = 1e-9, no_force = 1e-9;
+
+/// A place that the scene gives as closed may be open, or reach into the other body, by this part of the length scale
+/// (or rad): configurations are given to some seven digits. More contradicts the scene.
+inline constexpr double given_depth = 1e-6;
+
+/// A correction that leaves more than this part of the residual, or of the correction before it, is rounding: the
+/// factors are of a neighbouring matrix, and true corrections gain a digit or more.
+inline constexpr double least_gain = 0.5;
+
+/// Redundant equations that are missed by more than this, in length scales or rad, contradict the others; the same of
+/// rates, relative to the largest: what is less may be rounding, however far from the origin a mechanism is.
+inline constexpr double contradiction = 1e-8;
+
+/// Two instants, or functions of time, whose rates differ by less than this part move together: rates are good to 1e-8
+/// and better.
+inline constexpr double same_rate = 1e-6;
+
+/// A step that must be shortened below this part of itself leads nowhere.
+inline constexpr double smallest_factor = 1e-4;
+
+/// Golden section: (3 - sqrt 5) / 2.
+inline constexpr double golden_part = 0.381966011250105;
+
+}  // namespace catena::thresholds
