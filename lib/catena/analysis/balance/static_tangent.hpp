@@ -4,9 +4,10 @@
 //   [ Phi_q       -E    ]        s: damping, N/m;   E: compliance, m/N
 //
 // Forces that turn with a body and laws of state make -dQ/dq unsymmetric, and a law ties its bodies to all that it
-// reads: the pattern is that of the elements as they are visited. E is tiny and admits dependent equations; solutions
-// that are refined are those without it. Functions of time are frozen at the evaluator's time. Singular: a motion
-// without stiffness in the sense of the rows (K^T w = 0) as well as of the columns (K v = 0).
+// reads: the pattern is taken from the elements themselves. E is tiny and makes the matrix regular where equations
+// depend on each other; refined solutions are those of the matrix without E. Functions of time are frozen at the
+// evaluator's time. Singular: a motion without stiffness in the sense of the rows (K^T w = 0) as well as of the columns
+// (K v = 0).
 #pragma once
 
 #include <span>

@@ -7,16 +7,17 @@
 //
 // c = 0: branches cross there, and a motion goes straight on. c != 0: branches pass each other at the distance
 // sqrt(2 |c| / |lambda|), and a motion turns from the direction of one asymptote into that of the other. A step that is
-// longer than that may go straight on and end on the branch beyond, which meets the constraints as well; no error of
-// the step tells it. Where H has one eigenvalue lambda of the sign of -c, the two parts are told apart by the sign of x
-// along its eigenvector e: a step between x of different signs has left its branch.
+// longer than that may go straight on and end on the other branch, which meets the constraints as well: no estimate of
+// the step's error shows it. Where H has one eigenvalue lambda of the sign of -c, the two parts are told apart by the
+// sign of x along its eigenvector e: a step between x of different signs has left its branch.
 //
 // q_s is found by Newton's method from the middle of the passage; lengths in length scales, rows of length one, without
-// those that always depend on others. c that is all rounding counts as zero; where rounding changes it by more than
-// 5e-4 of it no step can follow the turn, and such a step is told apart. Equations of drivers are left out: branches
-// meet where the others lose rank. Not judged, and told: several combinations at once, more than `most_rows` rows.
-// Vectors of coordinates and rows are kept from one passage to the next; small dense matrices are made for each step
-// that passes beside a singular position. Source: apps/manual/numerics.md#singular-passages.
+// those that always depend on others. Where c is no larger than its rounding it counts as zero. Where rounding changes
+// c by more than 5e-4 of itself no step can follow the turn; such a step is reported as `left_within_rounding`.
+// Equations of drivers are left out: branches meet where the others lose rank. Not judged, but reported: several
+// combinations at once, more than `most_rows` rows. Vectors of coordinates and rows are kept from one passage to the
+// next; small dense matrices are made for each step that passes beside a singular position. Source:
+// apps/manual/numerics.md#singular-passages.
 #pragma once
 
 #include <span>
@@ -46,10 +47,10 @@ class BranchKeeping {
   /// evaluator is left elsewhere, the factors of the equations as they are.
   Course course(EquationsOfMotion& equations, std::span<const double> q0, std::span<const double> q1,
                 std::span<const double> middle);
-  /// How far from each other branches pass beside q where that is so near that steps hardly turn there; 0: nowhere. The
-  /// evaluator is left elsewhere.
+  /// The distance between branches that pass each other near q, where it is so small that steps can hardly turn; 0
+  /// where there are none such. The evaluator is left elsewhere.
   double narrow_gap(EquationsOfMotion& equations, std::span<const double> q);
-  /// How far from each other the branches pass that the last step was caught between, rad or length scales.
+  /// The distance between the two branches that the last judged step passed, rad or length scales.
   double gap() const { return gap_; }
 
  private:

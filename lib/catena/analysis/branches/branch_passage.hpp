@@ -21,7 +21,7 @@ enum class BranchMeeting {
   none,
   corner,    ///< they pass each other
   crossing,  ///< they cross, to rounding
-  several,   ///< not told: several combinations are near to losing their gradients at once
+  several,   ///< not known: several combinations are near to losing their gradients at once
 };
 
 /// Newton's method from q, which is left at q_s; `place`: one of the motion beside the passage, whose size rounding

@@ -49,11 +49,11 @@ class Assembler {
                            AssemblyOutcome& outcome);
   void approach_estimate(std::span<double> q, std::span<const double> estimate, double tolerance,
                          AssemblyOutcome& outcome);
-  /// z: W^-1 r less what the constraints do not allow, at the place that was factored; r becomes W z, without what they
-  /// take up, beside which z may be small; multipliers go to lambda_.
+  /// z: the part of W^-1 r that the constraints allow, at the place that was factored. r becomes W z: the part that
+  /// they take up may be much larger and is taken out, as its rounding would hide z. Multipliers go to lambda_.
   void project(std::span<double> r, std::span<double> z);
-  /// Into step_: the step along the constraints to where the distance is least, and how far that slope alone leads (0:
-  /// q is there).
+  /// Fills step_ with the step along the constraints to where the distance from the estimate is least. Returns the
+  /// slope of the distance along it, which is 0 where q is nearest already.
   double find_approach(std::span<const double> q, std::span<const double> estimate);
   /// An element whose residual at q overflows when it is squared, or -1.
   int element_out_of_range(std::span<const double> q);

@@ -8,9 +8,9 @@
 // quadratic equations in a, one for one at a simple branch point: two real roots = two branches, a double root = they
 // touch, none = the configuration is isolated. With more null vectors the real roots are searched for by Newton's
 // method from many starts, up to a nullity of `most_nullity`; above it the nullity and the bodies are all that is said.
-// Where the drivers rest (nu = 0) no velocity tells branches apart, but the ways do along which the mechanism moves
-// once they do: the same equations with the speeds that the drivers have a moment later, and no accelerations of
-// theirs.
+// Where the drivers rest (nu = 0) all velocities are zero. Branches are then told apart by the directions in which the
+// mechanism moves as soon as the drivers do: the same equations with the speeds that the drivers have a moment later,
+// and without their accelerations.
 #pragma once
 
 #include <span>
@@ -24,7 +24,8 @@ inline constexpr int most_nullity = 6;
 
 enum class Drivers {
   moving,         ///< at the evaluator's time as in the motion
-  about_to_move,  ///< they rest, and the evaluator's time is a moment later: tangents for a fastest driver of speed 1
+  about_to_move,  ///< they rest, and the evaluator's time is a moment later: tangents are scaled to a speed of 1 of the
+                  ///< fastest driver
 };
 
 /// The branches at the evaluator's time and the singular configuration q. `along`: the velocity of the motion that came

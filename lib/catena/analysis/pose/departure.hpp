@@ -1,8 +1,9 @@
-// How drivers that rest at an instant leave it.
+// How drivers begin to move after an instant at which they rest, or came to rest before it.
 //
-// Where drivers rest in a singular position no velocity tells the ways on apart, and the mechanism moves along one of
-// them in step with the driver that comes furthest: s(t), m or rad, is how far that one has come at t, positive in the
-// sense in which it leaves, negative where it lies on the other side (before the instant, if it passes through).
+// Where drivers rest in a singular position all velocities are zero and do not tell branches apart. The mechanism moves
+// along a branch in proportion to the driver that has moved furthest: s(t), m or rad, is the displacement of that
+// driver at t, positive in the direction in which it begins to move, negative on the other side (before the instant, if
+// it passes through).
 #pragma once
 
 #include <vector>
@@ -18,11 +19,11 @@ class Departure {
 
   /// s(t). Leaves the evaluator at t.
   double at(double t) const;
-  /// Acceleration at rest of the driver that is furthest at t, of the same sign.
+  /// Acceleration at the instant of rest of the driver that has moved furthest at t; its sign as that of s.
   double acceleration(double t) const;
-  /// s, s' and s'' at t of the driver that is furthest at `later`. Leaves the evaluator at t.
+  /// s, s' and s'' at t of the driver that has moved furthest at `later`. Leaves the evaluator at t.
   Taylor<double> rates(double t, double later) const;
-  /// The element that is furthest at t; -1: there is no driver.
+  /// The driver (element) that has moved furthest at t; -1: there is none.
   int leader(double t) const { return drivers_.empty() ? -1 : drivers_[fastest_at(t).driver]; }
 
  private:
@@ -39,7 +40,8 @@ class Departure {
   std::vector<Taylor<double>> start_;
 };
 
-/// The time after which the drivers have come by `way`; infinite: they do not, or nothing is known of them then.
+/// The time after which the drivers have moved by `way`, m or rad; infinite where they never do, or where their
+/// functions of time are not known so late.
 double time_to_depart(Evaluator& evaluator, double rest, double direction, double way);
 
 /// Whether functions of time may be asked for t: those of the user's own only within the run.

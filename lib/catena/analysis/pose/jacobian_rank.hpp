@@ -2,9 +2,9 @@
 //
 //   Phi_q D y = ...,   D = length scale on the columns of x and y, 1 on those of angles
 //
-// The rank analysis (rank_revealing.hpp) makes rows and columns of length one, but which rows are nearly dependent is
-// judged after a bounded number of such passes: with coordinates in metres a machine of long links would be judged by
-// another measure than the same machine of short ones. With displacements in length scales both are the same matrix.
+// The rank analysis (rank_revealing.hpp) scales rows and columns towards length one in a bounded number of passes, and
+// then judges which rows are nearly dependent. With coordinates in metres the outcome would depend on the size of the
+// machine; with displacements in length scales, machines that differ in size alone have the same matrix.
 #pragma once
 
 #include <span>

@@ -30,8 +30,8 @@ struct Conflict {
   std::vector<int> elements;  ///< these and the constraints they are at odds with, ascending
 };
 
-/// `q` (plan order) is moved to where the sum is least; `projector` has the weights in which steps are short, of
-/// coordinates that may not move zero.
+/// Moves `q` (plan order) to where the sum is least. `projector` holds the weights in which the length of a step is
+/// measured; inverse weights of zero belong to coordinates that may not move.
 Conflict find_conflict(Evaluator& evaluator, ConstraintProjector& projector, std::span<double> q);
 
 /// "revolute "B" misses by 0.12 m, ..." in one line, worst first.

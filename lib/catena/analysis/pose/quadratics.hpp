@@ -4,7 +4,7 @@
 //
 // Found by Levenberg and Marquardt's method from many starts, the same ones every time: all roots with great
 // probability, though not with certainty, for k up to about six. Coefficients should be of size one. Roots closer than
-// a thousandth of their size count as one: double roots are found no sharper.
+// a thousandth of their size count as one: double roots are located no more accurately.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@
 namespace catena {
 
 struct Quadratics {
-  /// Below it F counts as zero, and a coefficient beside the terms that it is made of.
+  /// F below this counts as zero; so does a coefficient below this part of the terms that it is the sum of.
   static constexpr double vanishing = 1e-6;
 
   std::size_t k = 0;

@@ -21,7 +21,8 @@ struct RedundantRow {
   std::map<int, double> combination;  ///< weight of every row in it, 1 of this one; empty: not known
 };
 
-/// As many rows as there are dependent ones, ascending. With very many of them those that the rank analysis left out.
+/// As many rows as there are dependent ones, ascending. Where there are very many: those that the rank analysis left
+/// out, which is not always what an engineer would remove.
 std::vector<RedundantRow> choose_redundant_rows(const Plan& plan, const RankReport& rank);
 
 /// Whether w^T b vanishes but for rounding; b: one value a row.

@@ -1,4 +1,4 @@
-// A configuration at which the constraint Jacobian loses rank: what is known of it, and how it is said.
+// A configuration at which the constraint Jacobian loses rank: what is known of it, and how messages describe it.
 //
 //   w_i^T Phi_q = 0,  Phi_q z_j = 0:   w_i the combinations of rows that vanish, z_j the motions that become possible
 //
@@ -20,7 +20,7 @@ namespace catena {
 struct SingularPoint {
   enum class Kind {
     branch_point,  ///< branches with different velocities meet
-    tangency,      ///< branches touch with the same velocity, or the configuration is regular again to second order
+    tangency,      ///< branches touch with the same velocity, or second derivatives show only one branch
     rest,          ///< the drivers rest there, and the motion goes through or turns back
     isolated,      ///< no velocity continues the motion from here
     lock_up,       ///< the drivers ask for a motion that is not possible
@@ -30,7 +30,7 @@ struct SingularPoint {
   int nullity = 1;                            ///< of the driven Jacobian
   std::vector<double> q;                      ///< the configuration, plan order
   std::vector<std::vector<double>> tangents;  ///< velocities of the branches, plan order; the first one goes on as
-                                              ///< before. At rest: for a fastest driver of speed 1
+                                              ///< before. Drivers at rest: for a speed of 1 of the fastest driver
   std::vector<std::string> branches;          ///< the same in words: which bodies move how
   std::vector<std::string> bodies;            ///< those that take part in the null vectors, the most mobile first
   int driver = -1;                            ///< the one concerned: whose row weighs most, else the first; -1: none
@@ -79,7 +79,7 @@ std::vector<int> most_concerned(std::span<const double> share, std::size_t most)
 /// |w^T b| / (|w| |b|) in length scales and rad. Where equations depend on each other, w^T Phi_q = 0, it tells whether
 /// they agree: b = nu for velocities, gamma for accelerations. 0 where b vanishes.
 double disagreement(const Evaluator& evaluator, std::span<const double> w, std::span<const double> b);
-/// A value above this one is not rounding: configurations, and hence their null vectors, are given to some 1e-7.
+/// A disagreement() above this is not rounding: configurations, and hence their null vectors, are known to some 1e-7.
 inline constexpr double clear_disagreement = 1e-6;
 
 }  // namespace catena

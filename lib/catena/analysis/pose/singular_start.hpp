@@ -3,7 +3,7 @@
 // One rule for every analysis that moves it:
 //
 //   drivers ask for a velocity that cannot be, or none goes on     `lock_up`
-//   drivers rest, and never move                                   `singular`: nothing says where to
+//   drivers rest, and never move                                   `singular`: no branch can be chosen
 //   several branches, none chosen                                  `bifurcation`, with their list
 //   one branch, or the one chosen                                  the motion starts along it
 //
@@ -14,7 +14,8 @@
 
 namespace catena {
 
-/// Rows closer to dependence (sine) than this, where a motion starts: configurations are given no more exactly.
+/// At the start of a motion rows count as dependent below this sine of the angle between one and the span of the
+/// others: configurations are given no more exactly.
 inline constexpr double start_dependence = 1e-7;
 
 struct SingularStart {

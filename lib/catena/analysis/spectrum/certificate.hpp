@@ -28,7 +28,7 @@ struct Certificate {
   std::vector<double> mode;              ///< its shape over columns, v^T W v = 1; empty where nothing can move
   int neutral_modes = 0;                 ///< motions that nothing resists to second order
   std::vector<std::string> free_bodies;  ///< that take part in them
-  double curvature_floor = 0;            ///< what |k| is lost in rounding, N/m
+  double curvature_floor = 0;            ///< a smaller |k| cannot be told from rounding, N/m
 };
 
 /// Certifies the point where the system is, with these multipliers: fills and factors the matrix, exact, unless its

@@ -10,9 +10,9 @@
 //
 // with r of StiffnessFloor. Two equal omega2 that rounding may have made a pair, (b11 - b22)^2 / 4 + b12 b21 no further
 // below zero than rounding of B, count as real; omega2 below r / |y^T x| as zero. 1/s^2; vectors over columns. Without
-// masses the metric is that of lengths: signs of real values are right, pairs mean nothing. Singular: where X has
-// dependent vectors, the matrix is disturbed by its own rounding. Source: G. Golub, C. Van Loan, Matrix Computations,
-// 4th ed., sections 7.1 and 7.2; H. Ziegler, Principles of Structural Stability, 1968.
+// masses the metric is that of lengths: signs of real values are right, pairs mean nothing. Singular: where vectors of
+// X depend on each other, a disturbance of the size of its rounding is added to the matrix. Source: G. Golub, C. Van
+// Loan, Matrix Computations, 4th ed., sections 7.1 and 7.2; H. Ziegler, Principles of Structural Stability, 1968.
 #pragma once
 
 #include <memory>

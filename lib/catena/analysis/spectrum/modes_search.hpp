@@ -51,7 +51,7 @@ class ModeSearch {
   const StiffnessFloor& floor_;
   const std::function<bool()>& go_on_;
   ModeOperator op_;
-  double size_ = 0;  // of omega^2 at the upper end, roughly
+  double size_ = 0;  // estimate of the largest omega^2
   int unstable_ = 0;
 };
 

@@ -54,9 +54,9 @@ void reduce_stiffness(const KktMatrix& matrix, const MotionGroup& group, std::ve
 /// where all act at the origin. It makes turning and travel comparable in any units.
 std::vector<double> body_arms(StaticSystem& system, std::span<const double> lambda);
 
-/// The part of v^T K v that cannot be distinguished from zero, N m (v over columns): rounding of all the stiffnesses
-/// that act on the bodies that move, before any of them cancel, of their places far from the origin, of the stiffest
-/// body that they are tied to, and the force left unbalanced there.
+/// The part of v^T K v that cannot be distinguished from zero, N m (v over columns): the rounding of all stiffnesses
+/// that act on the bodies that move, before they cancel; that of places far from the origin; that of the stiffest body
+/// to which they are tied; and the effect of the force that was left unbalanced.
 class StiffnessFloor {
  public:
   /// `residual`, N: the unbalanced force; without `groups` no body is tied to another.

@@ -1,7 +1,7 @@
 // Where a spectrum of small motions under forces without a potential changes its kind as a quantity s goes on.
 //
 //   divergence   a real omega2 passes zero           located as the zero of that value
-//   flutter      two real omega2 meet and part as a pair, or the other way round
+//   flutter      two real omega2 meet and become a complex pair, or the other way round
 //                                                    located as the zero of ((omega2_a - omega2_b) / 2)^2, -b^2 of a
 //                                                    pair: smooth through the point, unlike the values themselves
 //
@@ -41,8 +41,8 @@ using SpectrumAt = std::function<bool(double s, CirculatoryModes& found)>;
 std::vector<SpectrumCrossing> find_crossings(const SpectrumAt& at, const SpectrumSample& low,
                                              const SpectrumSample& high, bool& complete);
 
-/// Between three samples of one kind: a place at which the kind is another, where the lowest value above zero or the
-/// distance of two neighbours has its least in between and that dips below zero. False: there is none.
+/// Between three samples of one kind: a place of another kind, which there is if the lowest positive value, or the
+/// distance of two neighbouring values, has a minimum in between and that is below zero. False: there is none.
 bool find_hidden_change(const SpectrumAt& at, const SpectrumSample& a, const SpectrumSample& b, const SpectrumSample& c,
                         SpectrumSample& hidden);
 

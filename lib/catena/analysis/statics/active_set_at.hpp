@@ -3,9 +3,9 @@
 //   V_q + Phi_q^T lambda - Psi_q^T p = 0,   p >= 0 where Psi = 0,   p = 0 where Psi > 0
 //
 // The gaps that touch are closed first; those that would pull at the multipliers that balance the loads best
-// (static_balance.hpp) are opened, until none does. Of those that touch, the ones without force are weak: whether they
-// hold is decided by rounding at a place of rest, and by the next load. They do not: what may go either way from them
-// is no small oscillation. The place is kept but for assembly, for which all are open. Units: m, rad, N, N m.
+// (static_balance.hpp) are opened, until none does. Those that touch without a force are called weak: rounding, or the
+// next load, decides whether they hold. Here they count as open, as a motion that they limit on one side only is no
+// small oscillation. The place is changed by assembly alone, for which all are open. Units: m, rad, N, N m.
 #pragma once
 
 #include <cmath>
@@ -42,10 +42,9 @@ struct Compliance {
 };
 Compliance compliance_of(const Model& model, int element);
 
-/// What is said of weak ones that are named.
+/// The remark on weak elements, with these names.
 std::string taken_as_open(const std::string& names);
-/// What is to be said of a set: weak ones that are taken as open, closed ones with a stiffness that counts in motion
-/// alone.
+/// Remarks on a set: weak elements that are taken as open, and closed ones whose stiffness counts in motion only.
 std::vector<std::string> remarks_on(const Evaluator& evaluator, const ActiveSet& set);
 
 /// The names of the weak ones, the first few; empty: there are none.

@@ -88,7 +88,8 @@ class Equilibrium {
   /// Whether the last one was found; the equations at it, with the factors that it was certified by.
   bool is_solved() const { return solved_; }
   StaticSystem& system() { return system_; }
-  /// Whether something moves there that nothing resists; while rows are sent, of the equilibrium of the row.
+  /// Whether there is a motion that nothing resists at the last equilibrium, or, while rows are sent, at that of the
+  /// row.
   bool is_neutral() const { return neutral_; }
   std::span<const double> q() const { return q_; }
   /// Multipliers of the solver's rows: V_q + Phi_q^T lambda = 0; the least ones where constraints are redundant.

@@ -1,4 +1,4 @@
-// What a search for an equilibrium says: why none was found, and what is to be known of the one that was.
+// The messages of a search for an equilibrium: why none was found, and warnings about the one that was.
 #pragma once
 
 #include <optional>
@@ -21,8 +21,8 @@ Report refuse_gaps_without_energy(StaticSystem& system);
 Report explain_failure(StaticSystem& system, const StaticOutcome& outcome, const StaticAccuracy& accuracy,
                        double tolerance, const std::vector<double>& start, const StaticResult& result);
 
-/// Adds warnings of gaps of which rounding decides whether they are closed, of forces that balance only as well as
-/// rounding allows, and of neutral and negative modes.
+/// Adds warnings: of gaps that touch without a force, of forces that balance only as well as rounding allows, and of
+/// neutral and negative modes.
 void add_warnings(StaticSystem& system, const StaticAccuracy& accuracy, StaticResult& result);
 /// Warns where forces balance as well as rounding allows, but not to the tolerance.
 void warn_of_rounding(const StaticAccuracy& accuracy, Report& report);

@@ -1,9 +1,9 @@
 // The one test that accepts a point as an equilibrium: its certificate, and whether forces balance and constraints hold
 // to the tolerance.
 //
-// A residual that may be rounding of the stiffest spring (static_accuracy.hpp) is accepted only if a Newton step with
-// the factors of the certificate would move nothing: it may be the whole force of a soft spring. Along a neutral motion
-// a step carries no information and is not weighed.
+// A residual that may be rounding of the stiffest spring (static_accuracy.hpp) may as well be the whole force of a soft
+// one. It is accepted only if a Newton step with the factors of the certificate would hardly move anything. The part of
+// that step along a neutral motion is left out, as nothing determines it.
 #pragma once
 
 #include <span>

@@ -2,10 +2,10 @@
 //
 //   attempts from the start, in the order of static_attempts.hpp, each by one solver (static_trial.hpp)
 //   a point that is accepted (static_judge.hpp) ends it
-//   stationary but no minimum                 a push along the most negative mode, and on with the same solver
+//   stationary but no minimum                 a push along the most negative mode, then the same solver again
 //   forces that follow their body: no energy  damped settling (static_settling.hpp), judged by its small motions
-//                                             (static_stability.hpp); one that diverges is left to either side for a
-//                                             stable one, and kept where there is none
+//                                             (static_stability.hpp); beside one that diverges a stable one is looked
+//                                             for on both sides, and it is kept where there is none
 //
 // Random numbers are fixed: the same scene gives the same answer.
 #pragma once

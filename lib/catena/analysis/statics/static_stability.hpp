@@ -2,9 +2,10 @@
 //
 //   M x'' + K x = 0 on the null space of Phi_q, K unsymmetric:   stable where every omega2 is real and above zero
 //
-// (circulatory_modes.hpp). Masses decide about flutter, so that bodies need some. Where they lack them, K tells what
-// does not depend on masses: everything where K is symmetric on the null space, as that of laws which read what they
-// act on; else an odd number of negative values, which is one of divergence in any metric. Damping is left out. Not
+// (circulatory_modes.hpp). Whether there is flutter depends on the masses, which all bodies need for it. Without them
+// only that is judged which K decides alone: everything where K is symmetric on the null space, as with laws that read
+// the coordinates on which they act; else divergence if the number of negative values is odd, as it then is with any
+// masses. Damping is left out. Not
 // judged: other equilibria without masses, mechanisms beyond dense algebra; the reason is given.
 #pragma once
 

@@ -26,7 +26,7 @@ namespace catena {
 /// Which gaps are closed, one entry a gap in the order of Plan::gap_rows.
 struct ActiveSet {
   std::vector<char> closed;
-  std::vector<char> weak;  ///< closed without force, or open by nothing: rounding decides which
+  std::vector<char> weak;  ///< touching without a force: rounding decides whether it is closed
   int changes = 0;         ///< sets that were tried beside the first
 };
 

@@ -11,7 +11,7 @@ namespace catena {
 /// How an iteration ended.
 enum class StaticEnd {
   minimum,     ///< converged, the inertia of the last matrix that of a minimum
-  stationary,  ///< converged to a point that is none, or in the way asked for
+  stationary,  ///< converged to a point that is no minimum, or where any stationary point was asked for
   diverged,    ///< multipliers or steps without bound, or not finite
   slow,        ///< iterations exhausted
   singular,    ///< no factorization: a direction in which nothing resists
