@@ -9,7 +9,7 @@
 #
 #   analysis  run <- pose <- motion <- {events, branches} <- {kinematics, contact <- dynamics};  pose <- balance <- spectrum <- statics/solvers <- statics <- stability
 #             run <- measures;  {pose, motion, contact} <- sensitivity, sensitivity/phases, sensitivity/spectrum;  {sensitivity, measures} <- adjoint;  minimiser <- {statics, design};  kinematics, batch/kernels <- batch
-#             {kinematics, statics, dynamics} <- accuracy
+#             {kinematics, stability, dynamics} <- accuracy
 #             run, pose <- kinematics/course <- kinematics
 #   scene     json <- numbers <- describing <- reading <- building <- models <- judging <- running <- writing <- designing <- viewing <- loading
 #             <- explaining
@@ -50,7 +50,7 @@ BEGIN {
   after("analysis", "design", "minimiser")
   after("analysis", "batch/kernels", "")
   after("analysis", "batch", "run pose motion events kinematics/course kinematics batch/kernels")
-  after("analysis", "accuracy", "run pose motion events kinematics/course kinematics balance spectrum statics statics/solvers dynamics dynamics/integrators contact")
+  after("analysis", "accuracy", "run pose motion events kinematics/course kinematics balance spectrum statics statics/solvers stability dynamics dynamics/integrators contact")
   chain("scene", "json numbers describing reading building models judging running writing designing viewing explaining loading")
   chain("drawing", "shapes figures")
   chain("linalg", "patterns kernels")

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "catena/analysis/run/analysis_report.hpp"
@@ -17,6 +18,8 @@ class RowAccuracy {
   virtual void take(const Snapshot& snapshot, std::span<const double> values) = 0;
   /// Digits of every column, NaN where they are not known; nothing where those of no column are.
   virtual std::vector<double> digits(const AnalysisReport& report) = 0;
+  /// After digits(): why it says nothing of the columns, or of some, where that is worth a sentence.
+  virtual std::string why_none() const { return {}; }
 };
 
 }  // namespace catena

@@ -68,6 +68,7 @@ class Path {
        const PlanOptions& plan_options = {});
 
   const Plan& plan() const { return *plan_; }
+  const std::shared_ptr<const Plan>& shared_plan() const { return plan_; }
   Evaluator& evaluator() { return evaluator_; }
 
   void start_from(const SystemState& state);

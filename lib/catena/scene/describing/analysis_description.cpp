@@ -63,7 +63,7 @@ std::vector<AnalysisDescription> describe_all() {
       make("dynamics", "Motion under forces over time.",
            "method, events, impulses (of constraints where velocities jump), estimated_error, singular (dead points), "
            "integrated_apart (how many groups of mechanisms "
-           "had steps of their own)",
+           "had steps of their own), digits_note (why digits are not claimed)",
            true,
            {outputs,
             until,

@@ -181,7 +181,10 @@ bool AnalysisRows::observe(const Snapshot& snapshot) {
 
 void AnalysisRows::finish(AnalysisResult& result) {
   look_at_what_is_left();
-  if (accuracy_) result.digits = accuracy_->digits(result.report);
+  if (accuracy_) {
+    result.digits = accuracy_->digits(result.report);
+    if (std::string why = accuracy_->why_none(); !why.empty()) result.fields.push_back({"digits_note", std::move(why)});
+  }
   take_rows(result, std::move(info_), rows_);
   for (const std::string& note : columns_.notes()) result.report.warnings.push_back(note);
   const ProcessTimer timer;

@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <type_traits>
 
-#include "catena/analysis/accuracy/accuracy_of_islands.hpp"
 #include "catena/analysis/accuracy/compared_rows.hpp"
-#include "catena/analysis/accuracy/motion_accuracy.hpp"
+#include "catena/analysis/accuracy/motion_digits.hpp"
 #include "catena/analysis/contact/rope_grips.hpp"
 #include "catena/analysis/dynamics/dynamics_of_islands.hpp"
 #include "catena/analysis/dynamics/dynamics_with_events.hpp"
@@ -84,14 +82,25 @@ class DynamicsTask {
   /// Nothing, or why the analysis cannot do all that is asked for at once.
   std::string conflict() const;
   /// Runs what was made with used_options_.
-  template <class Analysis>
-  void run_or_estimate(Analysis& analysis, const PlanOptions& plan);
+  /// `make`: another one, with other options.
+  template <class Analysis, class Make>
+  void run_or_estimate(Analysis& analysis, const PlanOptions& plan, Make make);
+  /// Has the rows told how many of their digits are right. Ropes that meet and leave pulleys change the mechanism in
+  /// ways that are not compared.
+  template <class Analysis, class Make>
+  void judge(AnalysisRows& rows, Analysis& analysis, Make make) {
+    if (!context_.digits || context_.design || context_.checkpoint || !routes_.empty()) return;
+    const AskedMotion motion{sources, context_.state, *grid_, options_, changes_itself(), context_.cancel};
+    rows.judge(accuracy_of_motion(analysis, rows.columns(), motion, make));
+  }
   /// Runs what was prepared.
   void run_on();
   void run_with_events_or_pauses();
   void differentiate(AnalysisRows& rows, const Evaluator& evaluator);
   void differentiate(AnalysisRows& rows, Dynamics& analysis) { differentiate(rows, analysis.evaluator()); }
   void differentiate(AnalysisRows& rows, DynamicsWithEvents& analysis);
+  /// Whether the motion has contacts, friction or events that act.
+  bool changes_itself() const;
   /// Whether instants of the motion itself are to be differentiated.
   bool has_phases() const;
   /// Has the motion saved now and then; where it cannot be, `failure` says why.
@@ -152,16 +161,12 @@ std::string DynamicsTask::conflict() const {
   return {};
 }
 
-template <class Analysis>
-void DynamicsTask::run_or_estimate(Analysis& analysis, const PlanOptions& plan) {
+template <class Analysis, class Make>
+void DynamicsTask::run_or_estimate(Analysis& analysis, const PlanOptions& plan, Make make) {
   if (!estimates_) {
     run_over_time(context_, result_, analysis, *grid_, names_, sources, [&](AnalysisRows& rows) {
       differentiate(rows, analysis);
-      // Contacts and ropes change the mechanism, and the error with it, in ways that are not followed; dependent
-      // coordinates of a partition have a rounding of their own.
-      const bool judged = context_.digits && !context_.design && !context_.checkpoint && !touches_ && routes_.empty() &&
-                          analysis.method() != IntegrationMethod::partitioning;
-      if (judged) rows.judge(std::make_unique<MotionAccuracy>(analysis, rows.columns()));
+      judge(rows, analysis, make);
     });
     return;
   }
@@ -187,11 +192,14 @@ void DynamicsTask::differentiate(AnalysisRows& rows, const Evaluator& evaluator)
     rows.differentiate(std::make_unique<MotionDerivatives>(evaluator, designs_of(context_), parameters, start));
 }
 
-bool DynamicsTask::has_phases() const {
+bool DynamicsTask::changes_itself() const {
   const auto& events = context_.task.events;
+  return touches_ || std::any_of(events.begin(), events.end(), acts);
+}
+
+bool DynamicsTask::has_phases() const {
   const auto& measures = context_.task.measures;
-  return touches_ || std::any_of(events.begin(), events.end(), acts) ||
-         std::any_of(measures.begin(), measures.end(), reads_events);
+  return changes_itself() || std::any_of(measures.begin(), measures.end(), reads_events);
 }
 
 void DynamicsTask::differentiate(AnalysisRows& rows, DynamicsWithEvents& analysis) {
@@ -243,7 +251,10 @@ void DynamicsTask::run_with_events_or_pauses() {
     }
   }
   plan_ = plan;
-  run_or_estimate(analysis, plan);
+  run_or_estimate(analysis, plan, [this, plan](const DynamicsOptions& options) {
+    return std::make_unique<DynamicsWithEvents>(model_, plan, options, events_of(context_.task, *model_), sources,
+                                                follows_ropes());
+  });
   add_singular_points(result_, analysis.singular_points(), *model_);
   std::vector<std::string>& warnings = result_.report.warnings;
   if (!failure.empty()) warnings.push_back("a checkpoint was not saved: " + failure);
@@ -258,11 +269,12 @@ void DynamicsTask::run_with_events_or_pauses() {
 
 /// Mechanisms that have nothing to do with each other, and differ in pace.
 void DynamicsTask::run_apart(const std::vector<std::vector<int>>& classes) {
-  DynamicsOfIslands analysis(model_, plan_options(*model_, names_), used_options_, classes);
+  const PlanOptions plan = plan_options(*model_, names_);
+  DynamicsOfIslands analysis(model_, plan, used_options_, classes);
   run_over_time(context_, result_, analysis, *grid_, names_, sources, [&](AnalysisRows& rows) {
-    // Each mechanism with contacts is a class of its own, and there may be thousands.
-    if (context_.digits && !touches_ && options_.method != IntegrationMethod::partitioning)
-      rows.judge(std::make_unique<AccuracyOfIslands>(analysis, rows.columns(), sources));
+    judge(rows, analysis, [model = model_, plan, classes](const DynamicsOptions& options) {
+      return std::make_unique<DynamicsOfIslands>(model, plan, options, classes);
+    });
   });
   add_singular_points(result_, analysis.singular_points(), *model_);
   std::string methods;
@@ -311,7 +323,9 @@ void DynamicsTask::run_on() {
   if (in_common || touches_) return run_with_events_or_pauses();
   const PlanOptions plan = plan_options(*model_, context_.task.column_names());
   Dynamics analysis(model_, plan, used_options_);
-  run_or_estimate(analysis, plan);
+  run_or_estimate(analysis, plan, [model = model_, plan](const DynamicsOptions& options) {
+    return std::make_unique<Dynamics>(model, plan, options);
+  });
   add_singular_points(result_, analysis.singular_points(), *model_);
   result_.fields.push_back({"method", std::string(to_string(analysis.method()))});
   add_jolts(analysis.jolts());

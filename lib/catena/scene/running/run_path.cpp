@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "catena/analysis/accuracy/path_accuracy.hpp"
 #include "catena/analysis/measures/measure_set.hpp"
 #include "catena/analysis/run/energyless_forces.hpp"
 #include "catena/analysis/run/rope_ways_at.hpp"
@@ -122,9 +123,8 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
   SystemState start = context.state;
   start.t = frozen_time(context);
   if (const std::string why = trouble_with_one_sided(context, start); !why.empty()) return refuse(result, why);
-  Path analysis(
-      context.model, [&](double value) { return model_at(context, parameter, value); }, options,
-      plan_options(*context.model, task.column_names()));
+  const ModelAt models = [&](double value) { return model_at(context, parameter, value); };
+  Path analysis(context.model, models, options, plan_options(*context.model, task.column_names()));
   const ColumnSources sources{.analysis = task.type(), .multipliers = true};
   const ColumnSet columns = ColumnSet::resolve(*context.model, analysis.plan(), task.output_names(), sources);
   analysis.start_from(start);
@@ -136,11 +136,14 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
   std::int64_t rows = 0;
   MeasureSet measures(task.measure_requests(), *context.model, analysis.plan(), sources, {start.t, start.t});
   std::vector<PathPlace> places;
+  std::optional<PathAccuracy> accuracy;
+  if (context.digits && !context.design) accuracy.emplace(analysis, context.model, models, options, start.t, columns);
   PathReport report = analysis.run([&](double value, const Snapshot& snapshot) {
     measures.take_row(snapshot, true);
     if (context.design) places.push_back({value, to_vector(snapshot.q), to_vector(snapshot.lambda)});
     row[0] = value;
     columns.evaluate(snapshot, std::span<double>(row).subspan(1));
+    if (accuracy) accuracy->take(value, snapshot, row);
     if (context.poses) context.poses->pose(snapshot);
     ++rows;
     if (context.progress) context.progress(std::clamp((value - options.from) / (options.to - options.from), 0.0, 1.0));
@@ -151,6 +154,7 @@ void run_path(AnalysisContext& context, AnalysisResult& result) {
   if (report.ok() && rows > 0) context.values_at_end = {{parameter, row[0]}};
   result.fields = fields_of(report, *context.model, !analysis.plan().gap_rows.empty());
   result.report = report;
+  if (accuracy) result.digits = accuracy->digits(report);
   for (const std::string& note : columns.notes()) result.report.warnings.push_back(note);
   take_rows(result, std::move(info), rows);
   add_column_measures(context, measures, result);

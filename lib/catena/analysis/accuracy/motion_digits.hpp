@@ -1,0 +1,67 @@
+// Who finds how many digits of a motion's columns are right: the error that is carried along with one run
+// (motion_accuracy.hpp, accuracy_of_islands.hpp), or a second run (second_run.hpp) where contacts and events change the
+// mechanism, with which the carried error is lost, and of methods that do not tell their own.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+#include "catena/analysis/accuracy/accuracy_of_islands.hpp"
+#include "catena/analysis/accuracy/motion_accuracy.hpp"
+#include "catena/analysis/accuracy/second_run.hpp"
+
+namespace catena {
+
+/// A motion as it is asked for.
+struct AskedMotion {
+  const ColumnSources& sources;
+  const SystemState& start;
+  const TimeGrid& grid;
+  const DynamicsOptions& options;
+  bool changes = false;  ///< it has contacts or friction, or events that act
+  const std::atomic<bool>* cancel = nullptr;
+};
+
+/// The method in use; of mechanisms integrated apart that of the first, which differ in what `auto` chooses alone.
+template <class Analysis>
+IntegrationMethod used_method(const Analysis& analysis) {
+  if constexpr (std::is_same_v<Analysis, DynamicsOfIslands>)
+    return analysis.methods().front();
+  else
+    return analysis.method();
+}
+
+/// Whether this motion, by this method, is made twice.
+inline bool wants_second_run(const AskedMotion& motion, IntegrationMethod method) {
+  return motion.changes || method == IntegrationMethod::adams || method == IntegrationMethod::baumgarte ||
+         method == IntegrationMethod::partitioning;
+}
+
+/// Of analysis.run(), which follows; both must outlive the result, and the columns. `make`: another analysis of the
+/// same model, with other options.
+template <class Analysis, class Make>
+std::unique_ptr<RowAccuracy> accuracy_of_motion(Analysis& analysis, const ColumnSet& columns, const AskedMotion& motion,
+                                                Make make) {
+  const IntegrationMethod method = used_method(analysis);
+  if (!wants_second_run(motion, method)) {
+    if constexpr (std::is_same_v<Analysis, DynamicsOfIslands>)
+      return std::make_unique<AccuracyOfIslands>(analysis, columns, motion.sources);
+    else
+      return std::make_unique<MotionAccuracy>(analysis, columns);
+  }
+  const auto second = [start = motion.start, grid = motion.grid, options = coarser_options(motion.options), make](
+                          const Needs& needs, RowObserver& observer) {
+    const auto other = make(options);
+    other->start_from(start);
+    AnalysisReport report = other->run(grid, needs, observer);
+    return SecondRun::Motion{std::move(report), changes_of(*other)};
+  };
+  const auto proceed = [cancel = motion.cancel] { return !(cancel && cancel->load(std::memory_order_relaxed)); };
+  const auto first = [&analysis] { return changes_of(analysis); };
+  return std::make_unique<SecondRun>(columns, SecondRun::Runs{first, second, proceed},
+                                     method == IntegrationMethod::baumgarte);
+}
+
+}  // namespace catena

@@ -1,0 +1,192 @@
+#include "catena/analysis/accuracy/second_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "catena/analysis/accuracy/motion_accuracy.hpp"
+#include "catena/base/at.hpp"
+
+namespace catena {
+namespace {
+
+constexpr double unknown_error = std::numeric_limits<double>::quiet_NaN();
+constexpr double coarser_tolerance = 10, coarser_step = 1.25;
+// Beyond this a coarser run is of no use, and a finer one is made.
+constexpr double largest_coarse = 1e-2;
+constexpr double factor_of_difference = 2;
+constexpr double common_rounding = 64 * std::numeric_limits<double>::epsilon();
+constexpr double factor_of_instants = 2, part_of_time = 1e-9;
+// Evaluations times coordinates of the first run: about a second.
+constexpr double most_work = 2e7;
+constexpr std::size_t most_numbers = 4'000'000;
+
+bool is_place(UnitKind unit) { return unit == UnitKind::length || unit == UnitKind::angle || unit == UnitKind::time; }
+bool is_rate(UnitKind unit) {
+  return unit == UnitKind::velocity || unit == UnitKind::angular_velocity || unit == UnitKind::momentum ||
+         unit == UnitKind::angular_momentum || unit == UnitKind::energy;
+}
+
+}  // namespace
+
+DynamicsOptions coarser_options(const DynamicsOptions& options) {
+  DynamicsOptions other = options;
+  if (options.step > 0) {
+    other.step = coarser_step * options.step;
+  } else {
+    const double coarse = coarser_tolerance * options.tolerance;
+    other.tolerance = coarse <= largest_coarse ? coarse : options.tolerance / coarser_tolerance;
+  }
+  return other;
+}
+
+/// Keeps those rows of the second run whose like was kept of the first.
+class SecondRun::OtherRows final : public RowObserver {
+ public:
+  OtherRows(const ColumnSet& columns, std::int64_t every, const std::function<bool()>& proceed)
+      : columns_(columns), every_(every), proceed_(proceed), row_(columns.size()) {}
+  bool observe(const Snapshot& snapshot) override {
+    if (given++ % every_ != 0) return proceed_();
+    columns_.evaluate(snapshot, row_);
+    t.push_back(snapshot.t);
+    values.insert(values.end(), row_.begin(), row_.end());
+    return proceed_();
+  }
+  bool proceed(double) override { return proceed_(); }
+
+  std::vector<double> t, values;
+  std::int64_t given = 0;
+
+ private:
+  const ColumnSet& columns_;
+  std::int64_t every_;
+  const std::function<bool()>& proceed_;
+  std::vector<double> row_;
+};
+
+void SecondRun::take(const Snapshot& snapshot, std::span<const double> values) {
+  const std::span<const double> own = values.first(columns_.size());
+  errors_.take_row(own);
+  if (rows_.given == 0) {
+    motion_.first = snapshot.t;
+    motion_.length = snapshot.evaluator.length_scale();
+    motion_.coordinates = at(snapshot.evaluator.plan().columns);
+    motion_.timed = !snapshot.evaluator.model().functions.empty();
+  }
+  if (rows_.given++ % rows_.every != 0) return;
+  rows_.t.push_back(snapshot.t);
+  rows_.values.insert(rows_.values.end(), own.begin(), own.end());
+  take_motion(snapshot);
+  if (rows_.values.size() > most_numbers) thin_out();
+}
+
+// The rate of a motion is that by which its velocities change, and that by which its bodies turn.
+void SecondRun::take_motion(const Snapshot& snapshot) {
+  if (leaves_constraints_) motion_.drift = std::max(motion_.drift, snapshot.residual);
+  if (!motion_.timed) return;
+  double speed = 0, change = 0;
+  for (std::size_t c = 0; c < snapshot.qd.size(); ++c) {
+    const double unit = c % 3 == 2 ? 1 : motion_.length;
+    speed = std::max(speed, std::abs(snapshot.qd[c]) / unit);
+    if (c < snapshot.qdd.size()) change = std::max(change, std::abs(snapshot.qdd[c]) / unit);
+  }
+  motion_.rate = std::max({motion_.rate, speed, speed > 0 ? change / speed : 0});
+}
+
+void SecondRun::thin_out() {
+  const std::size_t width = columns_.size(), left = (rows_.t.size() + 1) / 2;
+  for (std::size_t row = 1; row < left; ++row) {
+    rows_.t[row] = rows_.t[2 * row];
+    std::copy_n(rows_.values.begin() + static_cast<std::ptrdiff_t>(2 * row * width), width,
+                rows_.values.begin() + static_cast<std::ptrdiff_t>(row * width));
+  }
+  rows_.t.resize(left);
+  rows_.values.resize(left * width);
+  rows_.every *= 2;
+}
+
+std::vector<double> SecondRun::digits(const AnalysisReport& report) {
+  why_.clear();
+  if (!report.ok() || rows_.t.empty()) return {};
+  const double work = static_cast<double>(report.counters.forces) * static_cast<double>(motion_.coordinates);
+  if (work > most_work) {
+    why_ = fmt::format(
+        "no digits are claimed: they follow from a second run, which is not made where the first one takes {:.2g} "
+        "evaluations times coordinates, more than {:.2g}",
+        work, most_work);
+    return {};
+  }
+  OtherRows other(columns_, rows_.every, runs_.proceed);
+  const Motion second = runs_.second(columns_.needs(), other);
+  if (!second.report.ok()) {
+    why_ = "no digits are claimed: the run beside it ended otherwise: " + second.report.message;
+    return {};
+  }
+  const MotionChanges first = runs_.first();
+  if (const std::string difference = first.difference(second.changes); !difference.empty()) {
+    why_ = "no digits are claimed: two runs pass different events, " + difference;
+    return {};
+  }
+  if (other.given != rows_.given) {
+    why_ = fmt::format("no digits are claimed: the run beside it has {} rows, not {}", other.given, rows_.given);
+    return {};
+  }
+  find_jumps(first, second.changes);
+  compare(other);
+  return MotionAccuracy::claimed(errors_);
+}
+
+// At the start both runs have the same changes, at the same instant.
+void SecondRun::find_jumps(const MotionChanges& first, const MotionChanges& second) {
+  std::vector<std::pair<double, std::size_t>> instants;
+  for (std::size_t row = 0; row < rows_.t.size(); ++row) instants.emplace_back(rows_.t[row], row);
+  std::sort(instants.begin(), instants.end());
+  jumps_.assign(rows_.t.size(), Jump::none);
+  for (std::size_t k = 0; k < first.all().size(); ++k) {
+    const MotionChange& change = first.all()[k];
+    if (change.t == motion_.first) continue;
+    const double reach =
+        factor_of_instants * std::abs(change.t - second.all()[k].t) + part_of_time * std::abs(change.t - motion_.first);
+    for (auto at = std::lower_bound(instants.begin(), instants.end(), std::pair{change.t - reach, std::size_t{0}});
+         at != instants.end() && at->first <= change.t + reach; ++at) {
+      Jump& jump = jumps_[at->second];
+      jump = std::max(jump, change.jolts ? Jump::of_rates : Jump::of_forces);
+    }
+  }
+}
+
+// Whether a column of this kind is continuous where a row lies.
+bool SecondRun::is_judged(UnitKind unit, std::size_t row) const {
+  return is_place(unit) || jumps_[row] == Jump::none || (jumps_[row] == Jump::of_forces && is_rate(unit));
+}
+
+void SecondRun::compare(const OtherRows& other) {
+  const std::size_t width = columns_.size();
+  std::vector<std::string> unjudged;
+  for (std::size_t k = 0; k < width; ++k) {
+    const ColumnInfo& column = columns_.info()[k];
+    bool judged = true;
+    for (std::size_t row = 0; row < rows_.t.size() && judged; ++row) {
+      const double t = rows_.t[row], value = rows_.values[row * width + k], beside = other.values[row * width + k];
+      judged = is_judged(column.unit, row);
+      if (std::isnan(value) && std::isnan(beside)) continue;
+      const double late = motion_.timed ? std::abs(t) * motion_.rate : 0;
+      const double rounding = common_rounding + Disturbance::epsilon * late;
+      // Instants of rows are given.
+      const double own = column.unit == UnitKind::time && value == beside ? 0 : rounding * std::abs(value);
+      errors_.take_error(k, factor_of_difference * std::abs(value - beside) + own);
+    }
+    if (column.unit == UnitKind::length) errors_.take_error(k, motion_.drift);
+    if (column.unit == UnitKind::angle) errors_.take_error(k, motion_.drift / motion_.length);
+    if (judged) continue;
+    errors_.take_error(k, unknown_error);
+    unjudged.push_back(column.name);
+  }
+  if (unjudged.empty()) return;
+  why_ = fmt::format("no digits are claimed of {} column{}: a row lies where they jump, as near as that is known ({})",
+                     unjudged.size(), unjudged.size() == 1 ? "" : "s", unjudged.front());
+}
+
+}  // namespace catena

@@ -1,0 +1,86 @@
+// How many digits of the columns of a motion are right, from a second and coarser run behind it.
+//
+//   e = f |c(asked) - c(coarser)| + 64 eps (1 + |t| rate) |c| + drift       largest of the rows
+//
+// coarser: ten times the tolerance, or steps longer by a quarter (coarser_options). The rows given are those that were
+// asked for; the difference is the error of the coarser run, up to theirs. f: second_run.cpp. eps |t| rate counts where
+// something depends on time, rate that of the fastest motion, rad/s. Drift: how far the mechanism is off its
+// constraints, m, which counts for places alone and is nothing but rounding where they are projected.
+//
+// Both runs must pass the same changes (motion_changes.hpp); where they do not, nothing is said, and why_none() says
+// so. A row that lies as near to a change as the instant of that is uncertain is not judged in the columns that jump
+// there:
+//
+//   |t - t_k| <= w |t_k(asked) - t_k(coarser)| + 1e-9 s_k        s_k: s, of the run up to there
+//
+// velocities and all that depends on them or on forces at impacts, accelerations and forces at the others; places never
+// jump. Such columns claim nothing. Rows at events lie at the instants that each run finds, and are compared there.
+//
+// It is a run more, of about three quarters of the first one's cost; beyond an allowance of most_work nothing is said.
+// Changes that neither run sees, and errors that both have in common, such as a too coarse table of a force, are not
+// in it. Rows are kept until it is over: beyond most_numbers of them every other one, and so on.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "catena/analysis/accuracy/motion_changes.hpp"
+#include "catena/analysis/dynamics/dynamics_options.hpp"
+#include "catena/analysis/run/row_accuracy.hpp"
+#include "catena/analysis/run/row_observer.hpp"
+#include "catena/columns/column_errors.hpp"
+#include "catena/columns/column_set.hpp"
+
+namespace catena {
+
+/// The options of the second run.
+DynamicsOptions coarser_options(const DynamicsOptions& options);
+
+class SecondRun final : public RowAccuracy {
+ public:
+  struct Motion {
+    AnalysisReport report;
+    MotionChanges changes;
+  };
+  struct Runs {
+    std::function<MotionChanges()> first;                            ///< its changes, after it
+    std::function<Motion(const Needs& needs, RowObserver&)> second;  ///< makes it, from the same start
+    std::function<bool()> proceed;                                   ///< false: cancelled
+  };
+  /// `columns` must outlive this object. `leaves_constraints`: the method does not project onto them.
+  SecondRun(const ColumnSet& columns, Runs runs, bool leaves_constraints)
+      : columns_(columns), runs_(std::move(runs)), errors_(columns.size()), leaves_constraints_(leaves_constraints) {}
+
+  void take(const Snapshot& snapshot, std::span<const double> values) override;
+  std::vector<double> digits(const AnalysisReport& report) override;
+  std::string why_none() const override { return why_; }
+
+ private:
+  class OtherRows;
+  /// What of columns may jump where a row lies.
+  enum class Jump : unsigned char { none, of_forces, of_rates };
+  void thin_out();
+  void compare(const OtherRows& other);
+  void find_jumps(const MotionChanges& first, const MotionChanges& second);
+  bool is_judged(UnitKind unit, std::size_t row) const;
+  void take_motion(const Snapshot& snapshot);
+
+  const ColumnSet& columns_;
+  Runs runs_;
+  ColumnErrors errors_;
+  bool leaves_constraints_;
+  std::string why_;
+  struct {
+    std::vector<double> t, values;      // of the rows that are kept
+    std::int64_t given = 0, every = 1;  // of all rows one in so many is kept
+  } rows_;
+  struct {
+    double drift = 0, length = 1, rate = 0, first = 0;  // m, m, 1/s, s
+    std::size_t coordinates = 0;
+    bool timed = false;
+  } motion_;
+  std::vector<Jump> jumps_;  // by the rows that are kept
+};
+
+}  // namespace catena
