@@ -8,7 +8,9 @@
 #include "oracles/oscillators.hpp"
 #include "stress/driven_digits.hpp"
 #include "stress/moving_digits.hpp"
+#include "stress/path_digits.hpp"
 #include "stress/resting_digits.hpp"
+#include "stress/touching_digits.hpp"
 
 namespace catena::testing {
 namespace {
@@ -77,6 +79,12 @@ TEST(ClaimedDigits, HoldInMotionOfOneRun) {
   expect_claims("in motion, one run", 40, 20,
                 [](unsigned seed, ClaimedDigits& claims) { return add_moving_digits(seed, claims, Runs::one); });
 }
+TEST(ClaimedDigits, HoldOfMethodsThatRunTwice) {
+  expect_claims("other methods", 40, 20,
+                [](unsigned seed, ClaimedDigits& claims) { return add_moving_digits(seed, claims, Runs::methods); });
+}
+TEST(ClaimedDigits, HoldWithContacts) { expect_claims("with contacts", 90, 60, add_touching_digits); }
+TEST(ClaimedDigits, HoldOfPaths) { expect_claims("paths", 40, 25, add_path_digits); }
 
 /// Two rods under gravity that hang on each other.
 Json double_pendulum(const Json& analyses) {

@@ -4,7 +4,9 @@
 #include "stress/cases.hpp"
 #include "stress/driven_digits.hpp"
 #include "stress/moving_digits.hpp"
+#include "stress/path_digits.hpp"
 #include "stress/resting_digits.hpp"
+#include "stress/touching_digits.hpp"
 
 namespace catena::testing {
 namespace {
@@ -40,6 +42,31 @@ TEST(Digits, OfOneRunAreThoseClaimed) {
     ++seen[add_moving_digits(seed, claims, Runs::one)];
   print_shares("digits of one run of random mechanisms", seen);
   claims.expect("in motion, one run");
+}
+
+TEST(Digits, OfMethodsThatRunTwiceAreThoseClaimed) {
+  ClaimedDigits claims;
+  std::map<std::string, int> seen;
+  for (unsigned seed = first_case(); seed <= last_case(2000); ++seed)
+    ++seen[add_moving_digits(seed, claims, Runs::methods)];
+  print_shares("digits of adams, baumgarte and partitioning", seen);
+  claims.expect("in motion, other methods");
+}
+
+TEST(Digits, OfMotionsWithContactsAreThoseClaimed) {
+  ClaimedDigits claims;
+  std::map<std::string, int> seen;
+  for (unsigned seed = first_case(); seed <= last_case(10000); ++seed) ++seen[add_touching_digits(seed, claims)];
+  print_shares("digits of motions with contacts", seen);
+  claims.expect("with contacts");
+}
+
+TEST(Digits, OfPathsAreThoseClaimed) {
+  ClaimedDigits claims;
+  std::map<std::string, int> seen;
+  for (unsigned seed = first_case(); seed <= last_case(4000); ++seed) ++seen[add_path_digits(seed, claims)];
+  print_shares("digits of paths", seen);
+  claims.expect("paths");
 }
 
 }  // namespace

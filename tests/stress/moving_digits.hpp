@@ -8,9 +8,10 @@
 
 namespace catena::testing {
 
-enum class Runs { one, two };
+enum class Runs { one, two, methods };
 
-/// Adds the columns of one mechanism; how it went, in words. Of one run methods and fixed steps vary as well.
+/// Adds the columns of one mechanism; how it went, in words. Of one run methods and fixed steps vary as well;
+/// `methods`: those that are judged by a second run.
 inline std::string add_moving_digits(unsigned seed, ClaimedDigits& claims, Runs runs = Runs::two) {
   RandomScene random(seed, RandomScene::Forces::moving);
   random.set_moving();
@@ -22,8 +23,10 @@ inline std::string add_moving_digits(unsigned seed, ClaimedDigits& claims, Runs 
     analysis["tolerance"] = std::pow(10.0, -random.pick(5) - 5);
     analysis["estimate_error"] = true;
   } else {
-    static const char* const methods[] = {"auto", "auto", "auto", "rk8", "rk8", "rk5"};
-    analysis["method"] = methods[random.pick(6)];
+    static const char* const told[] = {"auto", "auto", "auto", "rk8", "rk8", "rk5"};
+    static const char* const others[] = {"adams", "adams", "baumgarte", "baumgarte", "partitioning", "partitioning"};
+    const int method = random.pick(6);
+    analysis["method"] = runs == Runs::methods ? others[method] : told[method];
     const double tolerance = std::pow(10.0, -random.pick(7) - 4), step = random.uniform(0.01, 0.1) / random.pace;
     if (random.pick(6)) {
       analysis["tolerance"] = tolerance;
@@ -39,17 +42,20 @@ inline std::string add_moving_digits(unsigned seed, ClaimedDigits& claims, Runs 
   static const char* const columns[] = {".x", ".y", ".angle", ".vx", ".vy", ".omega", ".ax", ".ay", ".alpha"};
   for (std::size_t b = 0; b < dense.bodies.size(); ++b) {
     // Of two runs accelerations may have the same rounding.
-    for (const char* column : std::span(columns).first(runs == Runs::one ? 9 : 6))
+    for (const char* column : std::span(columns).first(runs != Runs::two ? 9 : 6))
       random.scene["outputs"].push_back("b" + std::to_string(b) + column);
   }
-  keep_scene(runs == Runs::one ? "moving" : "moving_twice", seed, random.scene.dump(1));
+  keep_scene(runs == Runs::one   ? "moving"
+             : runs == Runs::two ? "moving_twice"
+                                 : "moving_methods",
+             seed, random.scene.dump(1));
   const TextRun run = run_text(random.scene.dump());
   if (run.outcome.exit_code > 1) return "not valid: " + run.outcome.error_text;
   if (!run.analysis().report.ok()) return std::string(to_string(run.analysis().report.status));
   if (run.analysis().digits.empty()) return "no claim";
   std::string what = "seed " + std::to_string(seed);
-  if (runs == Runs::one) what += analysis.contains("step") ? " fixed " : " " + analysis["tolerance"].dump() + " ";
-  if (runs == Runs::one) what += analysis["method"].get<std::string>();
+  if (runs != Runs::two) what += analysis.contains("step") ? " fixed " : " " + analysis["tolerance"].dump() + " ";
+  if (runs != Runs::two) what += analysis["method"].get<std::string>();
   const auto kept = dense.independent_rows(0, random.q);
   const auto slope = [&](Real t, const Vector& y) {
     Vector rate(2 * n);
@@ -67,12 +73,12 @@ inline std::string add_moving_digits(unsigned seed, ClaimedDigits& claims, Runs 
   for (const double t : run.column("t")) {
     if (!motion.go_to(t, 400)) return "not compared";
     Vector a;
-    if (runs == Runs::one) a = acceleration(dense, kept, t, motion.y().head(n), motion.y().tail(n));
+    if (runs != Runs::two) a = acceleration(dense, kept, t, motion.y().head(n), motion.y().tail(n));
     for (Eigen::Index k = 0; k < n; ++k) {
       const std::string body = "b" + std::to_string(k / 3);
       exact[body + columns[k % 3]].push_back(motion.y()[k]);
       exact[body + columns[3 + k % 3]].push_back(motion.y()[n + k]);
-      if (runs == Runs::one) exact[body + columns[6 + k % 3]].push_back(a[k]);
+      if (runs != Runs::two) exact[body + columns[6 + k % 3]].push_back(a[k]);
     }
   }
   // Redundant rows that stay met are no mistake of this formulation; others are.

@@ -103,6 +103,29 @@ std::vector<Real> rod_at_rest(const DigitsCase& c, double) {
   return {low, arm * std::cos(low), arm * std::sin(low)};
 }
 
+std::vector<Real> loaded_rod_at(const DigitsCase& c, double load) {
+  const Real arm = c.numbers[0], spring = c.numbers[1], rest = c.numbers[2];
+  // The spring is stiffer than the load anywhere: what is left falls with phi.
+  Real low = rest - 2, high = rest + 2;
+  for (int k = 0; k < 80; ++k) {
+    const Real middle = (low + high) / 2;
+    (spring * (middle - rest) - load * arm * std::cos(middle) > 0 ? high : low) = middle;
+  }
+  return {low, arm * std::cos(low), arm * std::sin(low)};
+}
+
+std::vector<Real> ball_at(const DigitsCase& c, double t) {
+  const Real radius = c.numbers[0], drop = c.numbers[1], e = c.numbers[2], g = gravity;
+  const Real fall = std::sqrt(2 * drop / g);
+  if (t < fall) return {radius + drop - g * t * t / 2, -g * t};
+  Real since = t - fall, speed = e * g * fall;
+  while (since > 2 * speed / g) {
+    since -= 2 * speed / g;
+    speed *= e;
+  }
+  return {radius + speed * since - g * since * since / 2, speed - g * since};
+}
+
 }  // namespace
 
 DigitsCase random_slider_crank(unsigned seed) {
@@ -120,7 +143,7 @@ DigitsCase slider_crank_near_dead_point(double part) {
   return c;
 }
 
-DigitsCase random_pendulum(unsigned seed) {
+DigitsCase random_pendulum(unsigned seed, const char* method) {
   Draw draw(seed);
   const double mass = draw.power(-1, 1), arm = draw.power(-1, 1), inertia = mass * arm * arm * draw.uniform(0.1, 0.5);
   const double start = draw.uniform(-2.8, 2.8) - std::numbers::pi / 2, until = draw.uniform(0.5, 3) * std::sqrt(arm);
@@ -132,8 +155,10 @@ DigitsCase random_pendulum(unsigned seed) {
  "position": [{:.17g}, {:.17g}], "angle": {:.17g}}}}},
  "constraints": [{{"type": "revolute", "i": ["ground", [0, 0]], "j": ["rod", [{:.17g}, 0]]}}],
  "outputs": ["rod.angle", "rod.omega", "rod.alpha"],
- "analyses": [{{"type": "dynamics", "until": {:.17g}, "every": {:.17g}, "tolerance": {:.17g}}}]}})",
-      -gravity, mass, inertia, arm * std::cos(start), arm * std::sin(start), start, -arm, until, until / 8, tolerance);
+ "analyses": [{{"type": "dynamics", "until": {:.17g}, "every": {:.17g}, "tolerance": {:.17g},
+ "method": "{}"}}]}})",
+      -gravity, mass, inertia, arm * std::cos(start), arm * std::sin(start), start, -arm, until, until / 8, tolerance,
+      method);
   return c;
 }
 
@@ -149,6 +174,42 @@ DigitsCase random_rod_on_spring(unsigned seed) {
  "forces": [{{"type": "torsion_spring", "i": "ground", "j": "rod", "k": {:.17g}, "angle": {:.17g}}}],
  "outputs": ["rod.angle", "rod.x", "rod.y"], "analyses": [{{"type": "equilibrium"}}]}})",
       -gravity, mass, arm * std::cos(rest), arm * std::sin(rest), rest, -arm, spring, rest);
+  return c;
+}
+
+DigitsCase random_loaded_rod(unsigned seed) {
+  Draw draw(seed);
+  const double arm = draw.power(-1, 1), rest = draw.uniform(-1, 1), spring = draw.power(-1, 2);
+  const double to = draw.uniform(0.2, 0.8) * spring / arm;
+  DigitsCase c{.columns = {"rod.angle", "rod.x", "rod.y"}, .exact = loaded_rod_at, .numbers = {arm, spring, rest}};
+  c.scene = fmt::format(
+      R"({{"catena": 1, "parameters": {{"load": 0}}, "bodies": {{"rod": {{"mass": 1, "inertia": 1,
+ "position": [{:.17g}, {:.17g}], "angle": {:.17g}}}}},
+ "constraints": [{{"type": "revolute", "i": ["ground", [0, 0]], "j": ["rod", [{:.17g}, 0]]}}],
+ "forces": [{{"type": "torsion_spring", "i": "ground", "j": "rod", "k": {:.17g}, "angle": {:.17g}}},
+ {{"type": "point_force", "i": "rod", "force": [0, "load"]}}],
+ "outputs": ["rod.angle", "rod.x", "rod.y"],
+ "analyses": [{{"type": "path", "parameter": "load", "to": {:.17g}}}]}})",
+      arm * std::cos(rest), arm * std::sin(rest), rest, -arm, spring, rest, to);
+  return c;
+}
+
+DigitsCase random_bouncing_ball(unsigned seed) {
+  Draw draw(seed);
+  const double radius = draw.uniform(0.01, 0.1), drop = draw.uniform(0.1, 1), e = draw.uniform(0.5, 0.9);
+  const double until = draw.uniform(1.2, 3) * std::sqrt(2 * drop / gravity), tolerance = draw.power(-10, -6);
+  DigitsCase c{.columns = {"ball.y", "ball.vy"}, .exact = ball_at, .numbers = {radius, drop, e}};
+  // The height as a double holds it.
+  const double height = radius + drop;
+  c.numbers[1] = height - radius;
+  c.scene = fmt::format(
+      R"({{"catena": 1, "gravity": [0, {}], "bodies": {{"ball": {{"particle": true, "mass": 1,
+ "position": [0, {:.17g}]}}}},
+ "forces": [{{"type": "contact", "i": "ground", "j": "ball", "radius": {:.17g}, "restitution": {:.17g},
+ "curve": {{"line": {{"point": [0, 0], "axis": [1, 0]}}}}}}],
+ "outputs": ["ball.y", "ball.vy"],
+ "analyses": [{{"type": "dynamics", "until": {:.17g}, "every": {:.17g}, "tolerance": {:.17g}}}]}})",
+      -gravity, height, radius, e, until, until / 8, tolerance);
   return c;
 }
 

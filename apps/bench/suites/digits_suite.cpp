@@ -27,8 +27,8 @@ std::vector<Claim> claims_of(const DigitsCase& c, const AnalysisOutcome& run) {
   // A column may be right by chance: not more than to a quarter of the rounding of a double.
   constexpr double least = std::numeric_limits<double>::epsilon() / 4;
   const AnalysisResult& result = run.result();
-  const bool timed = result.columns.front().name == "t";
-  const std::vector<double> instants = timed ? run.column("t") : std::vector<double>{0};
+  const bool has_rows = result.columns.front().name == "t" || result.type == "path";
+  const std::vector<double> instants = has_rows ? run.column(result.columns.front().name) : std::vector<double>{0};
   std::vector<Claim> claims;
   for (std::size_t k = 0; k < c.columns.size(); ++k) {
     const std::vector<double> values = run.column(c.columns[k]);
@@ -86,9 +86,19 @@ struct Family {
   int bodies;
   DigitsCase (*make)(unsigned seed);
 };
+DigitsCase pendulum(unsigned seed) { return random_pendulum(seed); }
+DigitsCase adams_pendulum(unsigned seed) { return random_pendulum(seed, "adams"); }
+DigitsCase stabilised_pendulum(unsigned seed) { return random_pendulum(seed, "baumgarte"); }
+DigitsCase partitioned_pendulum(unsigned seed) { return random_pendulum(seed, "partitioning"); }
+
 constexpr Family families[] = {{"driven slider-cranks", "inverse_dynamics", 3, random_slider_crank},
-                               {"pendulums", "dynamics", 1, random_pendulum},
-                               {"rods on springs", "equilibrium", 1, random_rod_on_spring}};
+                               {"pendulums", "dynamics", 1, pendulum},
+                               {"pendulums", "adams", 1, adams_pendulum},
+                               {"pendulums", "baumgarte", 1, stabilised_pendulum},
+                               {"pendulums", "partitioning", 1, partitioned_pendulum},
+                               {"bouncing balls", "dynamics", 1, random_bouncing_ball},
+                               {"rods on springs", "equilibrium", 1, random_rod_on_spring},
+                               {"loaded rods", "path", 1, random_loaded_rod}};
 
 }  // namespace
 

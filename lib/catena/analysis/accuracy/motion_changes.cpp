@@ -30,6 +30,15 @@ void MotionChanges::sort() {
   std::stable_sort(all_.begin(), all_.end(), [](const MotionChange& a, const MotionChange& b) { return a.of < b.of; });
 }
 
+std::size_t MotionChanges::most_of_one() const {
+  std::size_t most = 0, count = 0;
+  for (std::size_t k = 0; k < all_.size(); ++k) {
+    count = k > 0 && all_[k].of == all_[k - 1].of ? count + 1 : 1;
+    most = std::max(most, count);
+  }
+  return most;
+}
+
 std::string MotionChanges::difference(const MotionChanges& other) const {
   const std::size_t common = std::min(all_.size(), other.all_.size());
   std::size_t k = 0;

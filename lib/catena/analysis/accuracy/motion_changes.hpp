@@ -31,6 +31,8 @@ class MotionChanges {
   const std::vector<MotionChange>& all() const { return all_; }
   /// Puts them into that order.
   void sort();
+  /// Changes of the one that has most of them.
+  std::size_t most_of_one() const;
   /// The first place at which the two differ, in words; nothing: they agree. Both are sorted.
   std::string difference(const MotionChanges& other) const;
 

@@ -51,12 +51,15 @@ std::unique_ptr<RowAccuracy> accuracy_of_motion(Analysis& analysis, const Column
     else
       return std::make_unique<MotionAccuracy>(analysis, columns);
   }
-  const auto second = [start = motion.start, grid = motion.grid, options = coarser_options(motion.options), make](
-                          const Needs& needs, RowObserver& observer) {
+  const auto second = [start = motion.start, grid = motion.grid, coarser = coarser_options(motion.options), make](
+                          const Needs& needs, RowObserver& observer, bool by_other_method) {
+    DynamicsOptions options = coarser;
+    if (by_other_method)
+      options.method = options.method == IntegrationMethod::rk5 ? IntegrationMethod::rk8 : IntegrationMethod::rk5;
     const auto other = make(options);
     other->start_from(start);
     AnalysisReport report = other->run(grid, needs, observer);
-    return SecondRun::Motion{std::move(report), changes_of(*other)};
+    return SecondRun::Motion{std::move(report), changes_of(*other), MotionRounding(other->evaluator())};
   };
   const auto proceed = [cancel = motion.cancel] { return !(cancel && cancel->load(std::memory_order_relaxed)); };
   const auto first = [&analysis] { return changes_of(analysis); };

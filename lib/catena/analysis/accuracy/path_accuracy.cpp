@@ -15,9 +15,9 @@ constexpr double no_multiplier = std::numeric_limits<double>::quiet_NaN();
 constexpr double largest_way = 1e-5;
 // Beyond this many coordinates rows would have to be kept that are a part of the memory that shows.
 constexpr int most_coordinates = 3000;
-// Rows that are looked at beside those at critical points: each costs a factorization and some ten solves, about what a
-// step of the path does.
-constexpr std::size_t looked_at = 20;
+// Rows that are disturbed beside those at critical points: each costs three models more, and some ten solves. What
+// Newton's method left differs from row to row, and is looked for in all.
+constexpr std::size_t disturbed_rows = 20;
 // Of the rounding of a balance, which is a bound; as of an equilibrium (equilibrium_accuracy.cpp).
 constexpr double usual_rounding = 0.5;
 
@@ -58,7 +58,7 @@ void PathAccuracy::take(double value, const Snapshot& snapshot, std::span<const 
 // Evenly spread over the path, its ends and critical points among them.
 std::vector<std::size_t> PathAccuracy::chosen(const PathReport& report) const {
   std::vector<std::size_t> numbers;
-  const std::size_t last = rows_.size() - 1, count = std::min(last, looked_at - 1);
+  const std::size_t last = rows_.size() - 1, count = std::min(last, disturbed_rows - 1);
   for (std::size_t k = 0; k <= count; ++k) numbers.push_back(count > 0 ? k * last / count : 0);
   for (const PathCritical& critical : report.critical) numbers.push_back(at(critical.row));
   std::sort(numbers.begin(), numbers.end());
@@ -71,8 +71,9 @@ std::vector<double> PathAccuracy::digits(const PathReport& report) {
   if (!report.ok() || rows_.empty() || system_.has_gaps()) return {};
   if (std::any_of(report.critical.begin(), report.critical.end(), crosses)) return {};
   if (evaluator_.time() != 0 && !first_->functions.empty()) return {};
-  for (const std::size_t number : chosen(report)) {
-    if (!examine(rows_[number])) return {};
+  const std::vector<std::size_t> numbers = chosen(report);
+  for (std::size_t number = 0; number < rows_.size(); ++number) {
+    if (!examine(rows_[number], std::binary_search(numbers.begin(), numbers.end(), number))) return {};
   }
   errors_.take_places(info_, evaluator_.length_scale());
   return errors_.digits();
@@ -102,7 +103,7 @@ bool PathAccuracy::values_at(const PathPoint& x, std::vector<double>& values) {
   return true;
 }
 
-bool PathAccuracy::examine(const Row& row) {
+bool PathAccuracy::examine(const Row& row, bool disturbed) {
   const std::size_t columns = at(evaluator_.plan().columns);
   if (!path_.factorize(row.point)) return false;
   const PathPoint tangent = path_.tangent(row.point, path_.along_parameter(1));
@@ -116,9 +117,9 @@ bool PathAccuracy::examine(const Row& row) {
   if (!(std::sqrt(path_.product(change_, change_)) <= largest_way)) return false;
   const PathPoint mended = path_.advanced(row.point, change_, 1);
   if (!values_at(mended, mended_values_)) return false;
-  const std::vector<double> rounding = balance_rounding(system_, mended.lambda);
   square_.assign(row.values.size(), 0.0);
-  for (int k = 0; k < Disturbance::disturbed_values; ++k) {
+  const std::vector<double> rounding = disturbed ? balance_rounding(system_, mended.lambda) : std::vector<double>{};
+  for (int k = 0; disturbed && k < Disturbance::disturbed_values; ++k) {
     if (!disturb(mended, tangent, rounding)) return false;
   }
   for (std::size_t k = 0; k < square_.size(); ++k) {

@@ -6,9 +6,9 @@
 //   [ Phi_q  0        Phi_p ] [ dlambda ] = - [ Phi ]
 //   [    <t, .>           ] [ dp      ]     [ 0   ]         t the direction of the path, <,> that of path_system.hpp
 //
-// c(0): after one more Newton step; c(k): with s rounding of the balance and of the constraints put in at random
-// (equilibrium_accuracy.hpp, whose estimate this is with one equation more). Some twenty rows are looked at, the first,
-// the last and those at critical points among them. At branch points the equations are singular along the branch that
+// c(0): after one more Newton step, of every row; c(k): with s rounding of the balance and of the constraints put in at
+// random (equilibrium_accuracy.hpp, whose estimate this is with one equation more), of some twenty rows, the first, the
+// last and those at critical points among them. At branch points the equations are singular along the branch that
 // crosses, and a row there is as far off along it as the search left it: nothing is said of paths that pass one, nor
 // of those with one-sided elements, of functions of late times, and of reactions where equations depend on each other.
 #pragma once
@@ -41,7 +41,7 @@ class PathAccuracy {
     std::vector<double> values;
   };
   std::vector<std::size_t> chosen(const PathReport& report) const;
-  bool examine(const Row& row);
+  bool examine(const Row& row, bool disturbed);
   bool answer(const PathPoint& tangent, std::span<const double> right_side);
   bool disturb(const PathPoint& mended, const PathPoint& tangent, std::span<const double> rounding);
   bool values_at(const PathPoint& x, std::vector<double>& values);

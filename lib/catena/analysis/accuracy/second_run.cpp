@@ -13,11 +13,17 @@ namespace catena {
 namespace {
 
 constexpr double unknown_error = std::numeric_limits<double>::quiet_NaN();
-constexpr double coarser_tolerance = 10, coarser_step = 1.25;
+// 3555 columns of 149 random mechanisms were optimistic by 5.4 at most, of adams, whose order changes with the
+// tolerance, by 1.8 of the methods of one step, and pessimistic by 60 at the median; of partitioning by 250, mostly by
+// rounding. 1122 columns of 480 motions with contacts were optimistic by 5.3 at most, pessimistic by 17 at the median.
+constexpr double coarser_tolerance = 10, coarser_of_one_step = 4, coarser_step = 1.25;
 // Beyond this a coarser run is of no use, and a finer one is made.
 constexpr double largest_coarse = 1e-2;
 constexpr double factor_of_difference = 2;
+// Of the start and of a few hundred steps; and of each change, at which a motion starts anew at an instant of its own
+// rounding: of 1122 columns of motions with up to 22 changes one was off by 15 times the former alone.
 constexpr double common_rounding = 64 * std::numeric_limits<double>::epsilon();
+constexpr double rounding_of_change = 16 * std::numeric_limits<double>::epsilon();
 constexpr double factor_of_instants = 2, part_of_time = 1e-9;
 // Evaluations times coordinates of the first run: about a second.
 constexpr double most_work = 2e7;
@@ -36,8 +42,11 @@ DynamicsOptions coarser_options(const DynamicsOptions& options) {
   if (options.step > 0) {
     other.step = coarser_step * options.step;
   } else {
-    const double coarse = coarser_tolerance * options.tolerance;
-    other.tolerance = coarse <= largest_coarse ? coarse : options.tolerance / coarser_tolerance;
+    const bool one_step =
+        options.method == IntegrationMethod::partitioning || options.method == IntegrationMethod::baumgarte;
+    const double times = one_step ? coarser_of_one_step : coarser_tolerance;
+    other.tolerance =
+        times * options.tolerance <= largest_coarse ? times * options.tolerance : options.tolerance / times;
   }
   return other;
 }
@@ -118,8 +127,12 @@ std::vector<double> SecondRun::digits(const AnalysisReport& report) {
         work, most_work);
     return {};
   }
-  OtherRows other(columns_, rows_.every, runs_.proceed);
-  const Motion second = runs_.second(columns_.needs(), other);
+  auto other = std::make_unique<OtherRows>(columns_, rows_.every, runs_.proceed);
+  Motion second = runs_.second(columns_.needs(), *other, false);
+  if (second.report.counters.steps == report.counters.steps) {
+    other = std::make_unique<OtherRows>(columns_, rows_.every, runs_.proceed);
+    second = runs_.second(columns_.needs(), *other, true);
+  }
   if (!second.report.ok()) {
     why_ = "no digits are claimed: the run beside it ended otherwise: " + second.report.message;
     return {};
@@ -129,12 +142,13 @@ std::vector<double> SecondRun::digits(const AnalysisReport& report) {
     why_ = "no digits are claimed: two runs pass different events, " + difference;
     return {};
   }
-  if (other.given != rows_.given) {
-    why_ = fmt::format("no digits are claimed: the run beside it has {} rows, not {}", other.given, rows_.given);
+  if (other->given != rows_.given) {
+    why_ = fmt::format("no digits are claimed: the run beside it has {} rows, not {}", other->given, rows_.given);
     return {};
   }
   find_jumps(first, second.changes);
-  compare(other);
+  compare(*other, second.rounding, common_rounding + rounding_of_change * static_cast<double>(first.most_of_one()));
+  errors_.take_places(columns_.info(), motion_.length);
   return MotionAccuracy::claimed(errors_);
 }
 
@@ -162,21 +176,22 @@ bool SecondRun::is_judged(UnitKind unit, std::size_t row) const {
   return is_place(unit) || jumps_[row] == Jump::none || (jumps_[row] == Jump::of_forces && is_rate(unit));
 }
 
-void SecondRun::compare(const OtherRows& other) {
+void SecondRun::compare(const OtherRows& other, const MotionRounding& rounding, double common) {
   const std::size_t width = columns_.size();
   std::vector<std::string> unjudged;
   for (std::size_t k = 0; k < width; ++k) {
     const ColumnInfo& column = columns_.info()[k];
+    const double least = rounding.least_error(column.unit);
     bool judged = true;
     for (std::size_t row = 0; row < rows_.t.size() && judged; ++row) {
       const double t = rows_.t[row], value = rows_.values[row * width + k], beside = other.values[row * width + k];
       judged = is_judged(column.unit, row);
       if (std::isnan(value) && std::isnan(beside)) continue;
       const double late = motion_.timed ? std::abs(t) * motion_.rate : 0;
-      const double rounding = common_rounding + Disturbance::epsilon * late;
+      const double relative = common + Disturbance::epsilon * late;
       // Instants of rows are given.
-      const double own = column.unit == UnitKind::time && value == beside ? 0 : rounding * std::abs(value);
-      errors_.take_error(k, factor_of_difference * std::abs(value - beside) + own);
+      const double own = column.unit == UnitKind::time && value == beside ? 0 : relative * std::abs(value);
+      errors_.take_error(k, factor_of_difference * std::abs(value - beside) + own + least);
     }
     if (column.unit == UnitKind::length) errors_.take_error(k, motion_.drift);
     if (column.unit == UnitKind::angle) errors_.take_error(k, motion_.drift / motion_.length);

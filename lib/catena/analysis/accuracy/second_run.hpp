@@ -1,11 +1,14 @@
 // How many digits of the columns of a motion are right, from a second and coarser run behind it.
 //
-//   e = f |c(asked) - c(coarser)| + 64 eps (1 + |t| rate) |c| + drift       largest of the rows
+//   e = f |c(asked) - c(coarser)| + (64 + 16 n + |t| rate) eps |c| + least + drift       largest of the rows
 //
-// coarser: ten times the tolerance, or steps longer by a quarter (coarser_options). The rows given are those that were
+// n: changes of the element that has most. Coarser: ten times the tolerance, four times that of methods of one step, or
+// steps longer by a quarter (coarser_options). Where it takes as many steps, which
+// are then the same, with the same rounding, it is made by another method. The rows given are those that were
 // asked for; the difference is the error of the coarser run, up to theirs. f: second_run.cpp. eps |t| rate counts where
-// something depends on time, rate that of the fastest motion, rad/s. Drift: how far the mechanism is off its
-// constraints, m, which counts for places alone and is nothing but rounding where they are projected.
+// something depends on time, rate that of the fastest motion, rad/s. Least: motion_rounding.hpp. Drift: how far the
+// mechanism is off its constraints, m, which counts for places alone and is nothing but rounding where they are
+// projected.
 //
 // Both runs must pass the same changes (motion_changes.hpp); where they do not, nothing is said, and why_none() says
 // so. A row that lies as near to a change as the instant of that is uncertain is not judged in the columns that jump
@@ -22,10 +25,12 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "catena/analysis/accuracy/motion_changes.hpp"
+#include "catena/analysis/accuracy/motion_rounding.hpp"
 #include "catena/analysis/dynamics/dynamics_options.hpp"
 #include "catena/analysis/run/row_accuracy.hpp"
 #include "catena/analysis/run/row_observer.hpp"
@@ -42,11 +47,13 @@ class SecondRun final : public RowAccuracy {
   struct Motion {
     AnalysisReport report;
     MotionChanges changes;
+    MotionRounding rounding;
   };
   struct Runs {
-    std::function<MotionChanges()> first;                            ///< its changes, after it
-    std::function<Motion(const Needs& needs, RowObserver&)> second;  ///< makes it, from the same start
-    std::function<bool()> proceed;                                   ///< false: cancelled
+    std::function<MotionChanges()> first;  ///< its changes, after it
+    /// Makes it, from the same start; with steps of another method where the coarser ones were the same.
+    std::function<Motion(const Needs& needs, RowObserver&, bool by_other_method)> second;
+    std::function<bool()> proceed;  ///< false: cancelled
   };
   /// `columns` must outlive this object. `leaves_constraints`: the method does not project onto them.
   SecondRun(const ColumnSet& columns, Runs runs, bool leaves_constraints)
@@ -61,7 +68,7 @@ class SecondRun final : public RowAccuracy {
   /// What of columns may jump where a row lies.
   enum class Jump : unsigned char { none, of_forces, of_rates };
   void thin_out();
-  void compare(const OtherRows& other);
+  void compare(const OtherRows& other, const MotionRounding& rounding, double common);
   void find_jumps(const MotionChanges& first, const MotionChanges& second);
   bool is_judged(UnitKind unit, std::size_t row) const;
   void take_motion(const Snapshot& snapshot);

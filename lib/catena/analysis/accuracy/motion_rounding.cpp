@@ -1,0 +1,68 @@
+#include "catena/analysis/accuracy/motion_rounding.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "catena/analysis/balance/force_sizes.hpp"
+#include "catena/base/at.hpp"
+
+namespace catena {
+namespace {
+
+// The sums behind one number are short: see few_roundings in balance/static_accuracy.cpp.
+constexpr double few = 4 * std::numeric_limits<double>::epsilon();
+
+}  // namespace
+
+MotionRounding::MotionRounding(Evaluator& evaluator) : length_(evaluator.length_scale()) {
+  const Plan& plan = evaluator.plan();
+  std::vector<double> sum = force_sizes(evaluator).all;
+  const auto reach = [&](int b) { return b >= 0 ? norm(evaluator.ground_frame(b).origin()) : 0.0; };
+  evaluator.visit_stiffness({}, [&](int i, int j, const ElementMatrix& m) {
+    const double places = length_ + reach(i) + reach(j);
+    for (int row = 0; row < 6; ++row) {
+      const int c = plan.column_of(i, j, row);
+      if (c < 0) continue;
+      for (int k = 0; k < 6; ++k)
+        sum[at(plan.coordinate[at(c)])] += std::abs(m[at(6 * row + k)]) * (k % 3 == 2 ? 1 : places);
+    }
+  });
+  for (int p = 0; p < plan.moving; ++p) {
+    const auto& body = evaluator.model().bodies[at(plan.model_body[at(p)])];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double size = sum[3 * at(p) + c], inertia = c == 2 ? body.inertia : body.mass;
+      force_ = std::max(force_, c == 2 ? size / length_ : size);
+      if (inertia > 0) square_ = std::max(square_, size / (c == 2 ? inertia : inertia * length_));
+    }
+  }
+}
+
+double MotionRounding::least_error(UnitKind unit) const {
+  const double rate = std::sqrt(square_);
+  switch (unit) {
+    case UnitKind::velocity:
+      return few * length_ * rate;
+    case UnitKind::angular_velocity:
+      return few * rate;
+    case UnitKind::acceleration:
+      return few * length_ * square_;
+    case UnitKind::angular_acceleration:
+      return few * square_;
+    case UnitKind::force:
+      return few * force_;
+    case UnitKind::torque:
+    case UnitKind::energy:
+      return few * force_ * length_;
+    case UnitKind::power:
+      return few * force_ * length_ * rate;
+    case UnitKind::momentum:
+      return rate > 0 ? few * force_ / rate : 0;
+    case UnitKind::angular_momentum:
+      return rate > 0 ? few * force_ * length_ / rate : 0;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace catena
