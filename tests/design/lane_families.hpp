@@ -23,6 +23,8 @@ struct Family {
   std::string analysis = "kinematics";
   double size = 1;  // of what is measured, or of what it is made of
   bool some_fail = true;
+  std::string keys = {};       // of an equilibrium, each after a comma
+  double part_in_lanes = 0.8;  // of the good designs, at least
 };
 
 inline const std::string four_bar = R"json( "bodies": {
@@ -50,8 +52,9 @@ inline std::string scene_of(const Family& family, const std::vector<double>& val
 }
 
 inline std::string analysis_of(const Family& family) {
-  std::string text =
-      fmt::format(R"json({{"type": "{}", "until": "=6/w", "every": "=6/w/48", "measures": {{)json", family.analysis);
+  const bool moves = family.analysis != "equilibrium";
+  std::string text = fmt::format(R"json({{"type": "{}"{}, "measures": {{)json", family.analysis,
+                                 moves ? R"json(, "until": "=6/w", "every": "=6/w/48")json" : family.keys);
   for (std::size_t m = 0; m < family.measures.size(); ++m)
     text += fmt::format("{}\"m{}\": {}", m ? ", " : "", m, family.measures[m]);
   return text + "}}";
@@ -102,7 +105,7 @@ inline void expect_same_as_alone(const Family& family) {
   // Those that move stay in their lanes, but for a few that come near to where they lock.
   const auto in_lanes = field<std::int64_t>(sweep, "in_lanes");
   EXPECT_LE(in_lanes, good);
-  EXPECT_GE(in_lanes, 8 * good / 10);
+  EXPECT_GE(static_cast<double>(in_lanes), std::floor(family.part_in_lanes * good));
 }
 
 }  // namespace catena::testing

@@ -8,7 +8,7 @@
 # layer; a folder that is not listed there is an error, and so is one of more than 30 files:
 #
 #   analysis  run <- pose <- motion <- {events, branches} <- {kinematics, contact <- dynamics};  pose <- balance <- spectrum <- statics/solvers <- statics <- stability
-#             run <- measures;  {pose, motion, contact} <- sensitivity, sensitivity/phases, sensitivity/spectrum;  {sensitivity, measures} <- adjoint;  minimiser <- {statics, design};  kinematics, batch/kernels <- batch
+#             run <- measures;  {pose, motion, contact} <- sensitivity, sensitivity/phases, sensitivity/spectrum;  {sensitivity, measures} <- adjoint;  minimiser <- {statics, design};  {kinematics, balance, batch/kernels} <- batch
 #             {kinematics, stability, dynamics} <- accuracy
 #             run, pose <- kinematics/course <- kinematics
 #   scene     json <- numbers <- describing <- reading <- building <- models <- judging <- running <- writing <- designing <- viewing <- loading
@@ -49,7 +49,7 @@ BEGIN {
   after("analysis", "adjoint", "run measures motion sensitivity")
   after("analysis", "design", "minimiser")
   after("analysis", "batch/kernels", "")
-  after("analysis", "batch", "run pose motion events kinematics/course kinematics batch/kernels")
+  after("analysis", "batch", "run pose motion events kinematics/course kinematics balance batch/kernels")
   after("analysis", "accuracy", "run pose motion events kinematics/course kinematics balance spectrum statics statics/solvers stability dynamics dynamics/integrators contact")
   chain("scene", "json numbers describing reading building models judging running writing designing viewing explaining loading")
   chain("drawing", "shapes figures")

@@ -27,12 +27,11 @@ constexpr bool counts_turns =
 
 }  // namespace
 
-void drop_whole_turns(StaticSystem& system, std::span<const double> start, std::span<double> q) {
-  const Plan& plan = system.plan();
+bool drop_whole_turns(const Plan& plan, std::span<const double> start, std::span<double> q) {
   const auto turns = [&](int b) { return std::round((q[at(3 * b + 2)] - start[at(3 * b + 2)]) / turn); };
   bool any = false;
   for (int b = 0; b < plan.moving; ++b) any = any || turns(b) != 0;
-  if (!any) return;
+  if (!any) return false;
   // Groups of bodies; immobile ones and the ground share the last place.
   DisjointSets groups(plan.moving + 1);
   const auto tie = [&](const auto& block, int) {
@@ -56,7 +55,11 @@ void drop_whole_turns(StaticSystem& system, std::span<const double> start, std::
     if (std::isnan(group)) group = turns(b);
     q[at(3 * b + 2)] -= turn * group;
   }
-  system.move_to(q);
+  return true;
+}
+
+void drop_whole_turns(StaticSystem& system, std::span<const double> start, std::span<double> q) {
+  if (drop_whole_turns(system.plan(), start, q)) system.move_to(q);
 }
 
 }  // namespace catena

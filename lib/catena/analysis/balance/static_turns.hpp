@@ -15,5 +15,7 @@ namespace catena {
 
 /// Takes the turns out of q (plan order) and moves the system there; angles that were within half a turn stay.
 void drop_whole_turns(StaticSystem& system, std::span<const double> start, std::span<double> q);
+/// Takes them out alone; whether there were some.
+bool drop_whole_turns(const Plan& plan, std::span<const double> start, std::span<double> q);
 
 }  // namespace catena

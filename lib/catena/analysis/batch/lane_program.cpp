@@ -34,7 +34,52 @@ bool are_in_lanes(const Model& model) {
   return all;
 }
 
+// Dense algebra in lanes pays up to here: a plan of twelve bodies.
+constexpr int most_static_columns = 36;
+
+/// Empty, or what lanes do not do for any purpose.
+std::string obstacle_in(const Plan& plan, const Evaluator& evaluator) {
+  if (!plan.contiguous) return "it has particles, which are not computed in lanes";
+  if (WatchedElements(evaluator).has_ends())
+    return "it has curves or tables that end, which are watched along the motion";
+  return {};
+}
+
+/// The same for equilibria.
+std::string static_obstacle_in(const Plan& plan, const Model& model, const Evaluator& evaluator) {
+  if (!plan.gap_rows.empty()) return "it has one-sided elements, which lanes do not open and close";
+  if (plan.columns != 3 * plan.moving) return "some of its bodies have fewer than three coordinates";
+  if (plan.columns == 0 || plan.columns > most_static_columns)
+    return fmt::format("it has {} coordinates: lanes find equilibria with up to {}", plan.columns, most_static_columns);
+  if (plan.rows > plan.columns)
+    return fmt::format("it has {} equations for {} coordinates, some of them redundant", plan.rows, plan.columns);
+  if (!are_in_lanes(model)) return "it has forces that lanes have no potential of";
+  if (!evaluator.conservative()) return "some of its forces have no potential";
+  if (!rope_routes(model).empty()) return "it has ropes over pulleys, whose ways are found pass by pass";
+  return {};
+}
+
 }  // namespace
+
+std::unique_ptr<const LaneProgram> LaneProgram::make_static(const Model& model, std::shared_ptr<const Plan> plan,
+                                                            std::string& why_not) {
+  std::unique_ptr<LaneProgram> program(new LaneProgram);
+  program->plan_ = std::move(plan);
+  program->has_loads_ = true;
+  const Evaluator evaluator(program->plan_, model);
+  why_not = obstacle_in(*program->plan_, evaluator);
+  if (why_not.empty()) why_not = static_obstacle_in(*program->plan_, model, evaluator);
+  if (!why_not.empty() || !program->list_elements(model, why_not)) return nullptr;
+  if (!program->searched_row_.empty()) {
+    why_not = "it has contacts of curves, whose equilibria are not found in lanes";
+    return nullptr;
+  }
+  program->elimination_.initial = program->constant_entries();
+  program->list_forces(model);
+  program->list_masses();
+  program->close();
+  return program;
+}
 
 std::unique_ptr<const LaneProgram> LaneProgram::make(const Model& model, std::shared_ptr<const Plan> plan, bool loads,
                                                      std::string& why_not) {
@@ -53,15 +98,8 @@ std::unique_ptr<const LaneProgram> LaneProgram::make(const Model& model, std::sh
         p.rows, p.columns);
     return nullptr;
   }
-  if (!p.contiguous) {
-    why_not = "it has particles, which are not computed in lanes";
-    return nullptr;
-  }
-  const Evaluator evaluator(program->plan_, model);
-  if (WatchedElements(evaluator).has_ends()) {
-    why_not = "it has curves or tables that end, which are watched along the motion";
-    return nullptr;
-  }
+  why_not = obstacle_in(p, Evaluator(program->plan_, model));
+  if (!why_not.empty()) return nullptr;
   program->is_watched_ = !rope_routes(model).empty() || !model.laws.empty();
   program->takes_forces_ = loads && !are_in_lanes(model);
   if (!program->list_elements(model, why_not) || !program->list_steps(model, why_not)) return nullptr;
@@ -159,14 +197,19 @@ void LaneProgram::list_masses() {
   fields_ = code_.loads.gravity + 2;
 }
 
-bool LaneProgram::list_steps(const Model& model, std::string& why_not) {
+// Of every slot of the plan.
+std::vector<double> LaneProgram::constant_entries() const {
   std::vector<double> constant(at(plan_->trash_slot()) + 1, 0.0);
   for (std::size_t k = 0; k < constant_.size(); ++k) constant[at(constant_slot_[k])] += constant_[k];
+  return constant;
+}
+
+bool LaneProgram::list_steps(const Model& model, std::string& why_not) {
   std::vector<int> varying = slot_;
   for (const auto& type : searched_.of_type) {
     for (const LaneSearched& code : type) varying.insert(varying.end(), std::begin(code.slot), std::end(code.slot));
   }
-  return elimination_.choose(*plan_, model, varying, std::move(constant), why_not);
+  return elimination_.choose(*plan_, model, varying, constant_entries(), why_not);
 }
 
 void LaneProgram::close() {

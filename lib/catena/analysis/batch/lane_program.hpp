@@ -24,6 +24,11 @@ class LaneProgram {
   static std::unique_ptr<const LaneProgram> make(const Model& model, std::shared_ptr<const Plan> plan, bool loads,
                                                  std::string& why_not);
 
+  /// For equilibria (lane_equilibrium.hpp): drivers need not determine the coordinates, but forces must have a
+  /// potential that kernels know.
+  static std::unique_ptr<const LaneProgram> make_static(const Model& model, std::shared_ptr<const Plan> plan,
+                                                        std::string& why_not);
+
   const Plan& plan() const { return *plan_; }
   const LaneCode& code() const { return code_; }
   /// Whether multipliers are computed.
@@ -67,6 +72,7 @@ class LaneProgram {
   LaneProgram() = default;
   bool list_elements(const Model& model, std::string& why_not);
   void list_searched(const Model& model);
+  std::vector<double> constant_entries() const;
   void list_forces(const Model& model);
   void list_masses();
   bool list_steps(const Model& model, std::string& why_not);

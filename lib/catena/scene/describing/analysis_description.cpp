@@ -187,8 +187,8 @@ std::vector<AnalysisDescription> describe_all() {
           "sweep",
           "An analysis repeated over values of parameters; one row a design, with its measures and its status.",
           "designs, failed (how many, by status), failures (each with its parameters and the reason), in_lanes "
-          "(designs of "
-          "kinematics or inverse_dynamics that were computed in SIMD lanes), scatter (of measures, where parameters "
+          "(designs of kinematics, inverse_dynamics or equilibrium that were computed in SIMD lanes), scatter (of "
+          "measures, where parameters "
           "are distributed)",
           false,
           {{"of", KeyKind::analysis, "the analysis, or a list of them in order", UnitKind::none, Domain::any, {}, true},

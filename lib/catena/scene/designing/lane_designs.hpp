@@ -1,22 +1,18 @@
-// Designs of a sweep in lanes: sixteen kinematic analyses side by side, with the measures that each would have by
-// itself.
+// Designs of a sweep in lanes: sixteen analyses side by side, with the measures that each would have by itself.
 //
-// A sweep can be computed so if it repeats one analysis kinematics or inverse_dynamics without events or work, of a
-// mechanism that lanes know (analysis/batch/lane_program.hpp). The rows of all designs of a group are followed side by
-// side; between its rows the motion of every design is looked at by the measures of analysis/measures/, at several
-// instants at once. A design that leaves its group, or in which anything is missing, is left to the analysis itself:
-// what lanes give is what that gives to rounding, and every failure is its own.
+// A sweep can be computed so if it repeats one analysis that lanes know: kinematics or inverse_dynamics
+// (lane_motion_designs.hpp), or equilibrium (lane_rest_designs.hpp). A design that leaves its group, or in which
+// anything is missing, is left to the analysis itself: what lanes give is what that gives to rounding, and every
+// failure is its own.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "catena/analysis/batch/lane_look.hpp"
-#include "catena/analysis/measures/measure_set.hpp"
+#include "catena/analysis/batch/kernels/lane_code.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 
 namespace catena {
@@ -27,42 +23,18 @@ class LaneDesigns {
   /// thread; `context` must outlive it.
   static std::unique_ptr<LaneDesigns> make(const AnalysisContext& context, std::string& why_not);
 
+  LaneDesigns() = default;
+  virtual ~LaneDesigns() = default;
+  LaneDesigns(const LaneDesigns&) = delete;
+  LaneDesigns& operator=(const LaneDesigns&) = delete;
+
   /// What came of a design: its measures in order; or nothing, with the reason, and it is to be analysed by itself.
   struct Outcome {
     std::optional<std::vector<double>> measures;
     std::string why_not;
   };
   /// Of at most lane_count designs, each with the values of its parameters.
-  void measure(std::span<const ParameterSeeds> designs, std::span<Outcome> outcomes);
-
- private:
-  struct Lane {
-    AnalysisTask task;
-    std::shared_ptr<const Model> model;
-    std::vector<double> instants;
-    double length_scale = 1;
-  };
-  LaneDesigns(const AnalysisContext& context, std::shared_ptr<const Model> model, std::shared_ptr<const Plan> plan,
-              std::unique_ptr<const LaneProgram> program, std::unique_ptr<MeasureSet> measures);
-  /// Model and instants of a design; empty, or why it cannot be in a lane.
-  std::string prepare(Lane& lane, const ParameterSeeds& seeds);
-  void take_model(const Model& model);
-  /// Assembles those whose given configuration is far; takes out those that cannot be.
-  unsigned assemble(unsigned lanes, std::span<Outcome> outcomes);
-  void take_measures(int lane, Outcome& outcome);
-  /// The rows of a design and the motion between them; false where it is lost.
-  bool follow_rows(const std::vector<double>& instants);
-  AnalysisContext context_of(const Lane& lane);
-
-  const AnalysisContext& outer_;
-  std::shared_ptr<const Model> model_;  // of the scene as it is
-  std::unique_ptr<const LaneProgram> program_;
-  std::unique_ptr<MeasureSet> measures_;
-  Evaluator evaluator_;
-  LaneMotion motion_;
-  LaneLook look_;
-  std::array<Lane, static_cast<std::size_t>(lane_count)> lanes_;
-  SystemState start_;
+  virtual void measure(std::span<const ParameterSeeds> designs, std::span<Outcome> outcomes) = 0;
 };
 
 }  // namespace catena

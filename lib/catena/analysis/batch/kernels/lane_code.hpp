@@ -218,6 +218,8 @@ struct LaneWatch {
   double* near;     ///< 1 or 0
 };
 
+struct LaneStaticKernels;
+
 struct LaneKernels {
   const char* name;  ///< of the instruction set
   void (*solve)(LaneJob&);
@@ -227,6 +229,7 @@ struct LaneKernels {
   bool (*foretell)(const LaneForetelling&);
   bool (*judge)(const LaneJudgement&);
   bool (*watch)(const LaneWatch&);
+  const LaneStaticKernels* statics;  ///< of equilibria (lane_static_code.hpp)
 };
 
 }  // namespace catena

@@ -29,6 +29,7 @@
 #include "catena/elements/constraints/slot.hpp"
 #include "catena/elements/constraints/translational.hpp"
 #include "catena/elements/constraints/weld.hpp"
+#include "catena/elements/force_element.hpp"
 #include "catena/elements/list.hpp"
 
 namespace catena {
@@ -80,6 +81,18 @@ class LaneEquations {
     return result;
   }
 
+  /// The rates of a body.
+  Twist<P> twist(int body) const {
+    if (body >= code_.moving) return {};
+    return {at(job_.qd, 3 * body), at(job_.qd, 3 * body + 1), at(job_.qd, 3 * body + 2)};
+  }
+  P scale(const LaneElement& e) const { return e.scale < 0 ? P(1) : at(job_.field, e.scale); }
+  template <class F>
+  void for_each_element(F&& f) const;
+  /// d2Phi of an element's rows along rates of its bodies, c and the bodies' accelerations at zero.
+  template <class E>
+  void second(const LaneElement& e, const Twist<P>& u, const Twist<P>& v, P* rows) const;
+
   LaneJob job_;  // its arrays begin at the lanes of this pack
   LaneCode code_;
   P unit_;
@@ -106,13 +119,10 @@ class LaneEquations {
       }
     }
   }
-  P scale(const LaneElement& e) const { return e.scale < 0 ? P(1) : at(job_.field, e.scale); }
   Taylor<P> value(const LaneElement& e) const {
     if (e.function < 0) return {};
     return {at(job_.function, e.function), at(job_.function, e.function + 1), at(job_.function, e.function + 2)};
   }
-  template <class F>
-  void for_each_element(F&& f) const;
   template <class E>
   void put_residual(const LaneElement& e, P* rows, P& largest) const;
   template <class E>
@@ -134,7 +144,7 @@ class LaneEquations {
   template <class E>
   void roll_jacobian(const LaneElement& e) const;
   template <class E>
-  P roll_gamma(const LaneElement& e) const;
+  P roll_gamma(const LaneElement& e, const Twist<P>& u, const Twist<P>& v) const;
   Vec2<P> turned(const Vec2<P>& v, const P& omega) const { return {-(omega * v.y), omega * v.x}; }
 };
 
@@ -280,11 +290,11 @@ void LaneEquations<V>::roll_jacobian(const LaneElement& e) const {
 
 template <class V>
 template <class E>
-typename LaneEquations<V>::P LaneEquations<V>::roll_gamma(const LaneElement& e) const {
+typename LaneEquations<V>::P LaneEquations<V>::roll_gamma(const LaneElement& e, const Twist<P>& u,
+                                                          const Twist<P>& v) const {
   const Rolling r = rolling(element<E>(e), frame(e.body_i), frame(e.body_j));
-  const auto rate = [&](int body, int k) { return body < code_.moving ? at(job_.qd, 3 * body + k) : P(0); };
-  const P w_i = rate(e.body_i, 2), w_j = rate(e.body_j, 2);
-  const Vec2<P> apart{rate(e.body_j, 0) - rate(e.body_i, 0), rate(e.body_j, 1) - rate(e.body_i, 1)};
+  const P w_i = u.omega, w_j = v.omega;
+  const Vec2<P> apart{v.vx - u.vx, v.vy - u.vy};
   const Vec2<P> hd = (apart + turned(r.arm_j, w_j)) - turned(r.arm_i, w_i);
   const Vec2<P> hdd = (w_i * w_i) * r.arm_i - (w_j * w_j) * r.arm_j;
   const P turning = cross(r.h, hd) / r.square;
@@ -352,7 +362,7 @@ void LaneEquations<V>::gamma() {
       put(job_.right, e.row, g.x);
       put(job_.right, e.row + 1, g.y);
     } else if constexpr (rolls<E>) {
-      put(job_.right, e.row, roll_gamma<E>(e));
+      put(job_.right, e.row, roll_gamma<E>(e, twist(e.body_i), twist(e.body_j)));
     } else {
       const auto i = moved(e.body_i);
       auto j = i;
@@ -363,6 +373,24 @@ void LaneEquations<V>::gamma() {
     }
   });
   search(LaneSearch::gamma);
+}
+
+template <class V>
+template <class E>
+void LaneEquations<V>::second(const LaneElement& e, const Twist<P>& u, const Twist<P>& v, P* rows) const {
+  if constexpr (rolls<E>) {
+    rows[0] = -roll_gamma<E>(e, u, v);
+  } else {
+    const auto moved = [&](int body, const Twist<P>& rate) {
+      return moving(frame(body), rate.vx, rate.vy, rate.omega);
+    };
+    const auto i = moved(e.body_i, u);
+    auto j = i;
+    if constexpr (E::bodies == 2) j = moved(e.body_j, v);
+    Taylor<P> series[E::rows];
+    element<E>(e).phi(Arguments<Taylor<P>>{i, j, Taylor<P>{value(e).f}, {}}, series);
+    for (int r = 0; r < E::rows; ++r) rows[r] = scale(e) * series[r].dd;
+  }
 }
 
 }  // namespace catena

@@ -205,13 +205,14 @@ void for_each_pack(const LaneJob& job, F&& f) {
 
 /// The kernels in packs V: of the instruction set that the including file is compiled for.
 template <class V>
-constexpr LaneKernels make_lane_kernels(const char* name) {
+constexpr LaneKernels make_lane_kernels(const char* name, const LaneStaticKernels& statics) {
   return {name,
           [](LaneJob& job) { for_each_pack<V>(job, [&]<class K>(int lane) { K::solve(job, lane); }); },
           [](LaneJob& job) { for_each_pack<V>(job, [&]<class K>(int lane) { K::find_loads(job, lane); }); },
           LaneKernel<V>::foretell,
           LaneKernel<V>::judge,
-          LaneKernel<V>::watch};
+          LaneKernel<V>::watch,
+          &statics};
 }
 
 }  // namespace catena

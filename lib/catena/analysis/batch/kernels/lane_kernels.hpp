@@ -3,11 +3,12 @@
 
 #include <string_view>
 
-#include "catena/analysis/batch/kernels/lane_code.hpp"
+#include "catena/analysis/batch/kernels/lane_static_code.hpp"
 
 namespace catena {
 
 extern const LaneKernels lane_kernels_baseline, lane_kernels_avx2, lane_kernels_avx512;
+extern const LaneStaticKernels lane_static_kernels_baseline, lane_static_kernels_avx2, lane_static_kernels_avx512;
 
 /// Those in use: of the widest instruction set that this processor has.
 const LaneKernels& lane_kernels();

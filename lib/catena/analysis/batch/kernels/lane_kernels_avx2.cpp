@@ -3,6 +3,7 @@
 
 namespace catena {
 
-const LaneKernels lane_kernels_avx2 = make_lane_kernels<xsimd::batch<double, xsimd::default_arch>>("avx2");
+const LaneKernels lane_kernels_avx2 =
+    make_lane_kernels<xsimd::batch<double, xsimd::default_arch>>("avx2", lane_static_kernels_avx2);
 
 }  // namespace catena

@@ -3,6 +3,7 @@
 
 namespace catena {
 
-const LaneKernels lane_kernels_baseline = make_lane_kernels<xsimd::batch<double, xsimd::default_arch>>("baseline");
+const LaneKernels lane_kernels_baseline =
+    make_lane_kernels<xsimd::batch<double, xsimd::default_arch>>("baseline", lane_static_kernels_baseline);
 
 }  // namespace catena

@@ -27,22 +27,21 @@ class LaneLoads : protected LaneSolution<V> {
   using Base::frame;
   using Base::job_;
   using Base::put;
+  using Base::twist;
   using typename Base::Mask;
   using typename Base::P;
 
   void find_loads();
-
- private:
   /// The ends of a spring or a cable, whose first four numbers are their places.
   struct Ends {
     Vec2<P> arm_i, arm_j, h;
   };
   P number(const LaneForce& f, int k) const { return at(job_.field, f.field + k); }
   Ends ends(const LaneForce& f) const;
-  Twist<P> twist(int body) const {
-    if (body >= code_.moving) return {};
-    return {at(job_.qd, 3 * body), at(job_.qd, 3 * body + 1), at(job_.qd, 3 * body + 2)};
-  }
+  template <class F>
+  void for_each_force(F&& f) const;
+
+ private:
   void add(int body, const Wrench<P>& load);
   void pull(const LaneForce& f, const Ends& ends, const Vec2<P>& force);
   void begin();
@@ -131,17 +130,18 @@ void LaneLoads<V>::exert(const LaneForce& f) {
   }
 }
 
+// Calls f(force type, force) for all forces, type after type.
 template <class V>
-void LaneLoads<V>::find_loads() {
-  begin();
+template <class F>
+void LaneLoads<V>::for_each_force(F&& visit) const {
   const LaneForce* f = code_.loads.force;
   for (const LaneForces *of_type = code_.loads.of_type, *last = of_type + code_.loads.types; of_type != last;
        ++of_type) {
     const LaneForce* const end = f + of_type->count;
     switch (of_type->type) {
-#define CATENA_LANE_VISIT(Type)                       \
-  case Type##_in_lanes:                               \
-    for (; f != end; ++f) exert<catena::Type<P>>(*f); \
+#define CATENA_LANE_VISIT(Type)                                           \
+  case Type##_in_lanes:                                                   \
+    for (; f != end; ++f) visit.template operator()<catena::Type<P>>(*f); \
     break;
       CATENA_LANE_FORCES(CATENA_LANE_VISIT)
 #undef CATENA_LANE_VISIT
@@ -149,6 +149,12 @@ void LaneLoads<V>::find_loads() {
         break;
     }
   }
+}
+
+template <class V>
+void LaneLoads<V>::find_loads() {
+  begin();
+  for_each_force([&]<class E>(const LaneForce& f) { exert<E>(f); });
   for (const LaneUnknown* u = code_.unknown; u != code_.unknown + code_.rows; ++u)
     P::load(job_.load + u->coordinate).store(job_.right + u->place);
   this->solve_transposed();

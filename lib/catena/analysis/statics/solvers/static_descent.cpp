@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/balance/descent_rules.hpp"
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/spectrum/motion_groups.hpp"
@@ -12,18 +13,12 @@
 namespace catena {
 namespace {
 
-constexpr double largest_turn = 0.7;
-// Shifts of K: the first relative to rounding of the largest stiffness or to force / extent, the last relative to the
-// largest stiffness. Between them a soft support of a stiff part must be distinguished from no support.
-constexpr double first_of_rounding = 1e-15, first_of_force = 1e-6, largest_shift = 1e6;
-// Growth of the shift where the inertia is not that of a minimum, and where the energy did not decrease.
-constexpr double stiffening = 32, shortening = 8;
+// Growth of the shift where the energy did not decrease.
+constexpr double shortening = 8;
 // A short step ends the search if it is exact, or leaves no more than this part of the forces.
 constexpr double stationary_part = 1e-7;
-constexpr double sufficient_decrease = 1e-4;
-constexpr double polishing_change = 1e-6;
-// Constraints are met to this, in length scales or rad, between steps.
-constexpr double restored = 1e-10;
+// Curvature along a step below this part of the sum of its terms' magnitudes is rounding.
+constexpr double neutral_part = 1e-10;
 // A mechanism that has turned this many radians downhill is not held.
 constexpr double lost_turns = 1e4;
 
@@ -40,14 +35,14 @@ bool restore_constraints(StaticSystem& system, std::span<double> q) {
   system.move_to(q);
   const std::vector<double> no_force(at(plan.columns), 0.0), predicted(q.begin(), q.end());
   std::vector<double> gap(at(plan.rows));
-  const double enough = std::max(restored, 10 * system.rounding_change());
+  const double enough = std::max(descent::restored, 10 * system.rounding_change());
   // With the present factors as long as they converge; then, as beyond a singular position, with new ones at every
   // step.
   for (const bool anew : {false, true}) {
     // A trial further on may have reached a configuration that cannot be factored (coinciding centres of gears).
     if (!anew && !system.has_factors()) continue;
     double before = system.phi_norm();
-    for (int k = 0; k < 12; ++k) {
+    for (int k = 0; k < descent::most_corrections; ++k) {
       if (before <= enough) return true;
       if (anew) {
         system.fill_weights();
@@ -55,11 +50,11 @@ bool restore_constraints(StaticSystem& system, std::span<double> q) {
       }
       for (std::size_t r = 0; r < gap.size(); ++r) gap[r] = -system.phi()[r];
       const StaticStep step = system.solve(no_force, gap, 1e-3);
-      if (!(system.change_norm(step.change) < 10)) break;
+      if (!(system.change_norm(step.change) < descent::longest_correction)) break;
       system.advance(q, step.change, 1, 1);
       system.move_to(q);
       const double now = system.phi_norm();
-      if (!(now <= 0.7 * before)) break;
+      if (!(now <= descent::remaining_part * before)) break;
       before = now;
     }
     if (system.phi_norm() <= enough) return true;
@@ -94,6 +89,7 @@ class Descent {
   enum class Trial { accepted, rejected, ended };
   bool begin();
   void measure();
+  double energy_on_constraints(std::span<const double> lambda) const;
   void tell() const;
   bool step();
   Trial go(double shift);
@@ -120,12 +116,12 @@ bool Descent::begin() {
   system_.move_to(q_);
   std::fill(lambda_.begin(), lambda_.end(), 0.0);
   // Where constraints have no second derivatives the first step needs no multipliers.
-  const bool prepare = !system_.has_linear_constraints() || system_.phi_norm() > restored;
+  const bool prepare = !system_.has_linear_constraints() || system_.phi_norm() > descent::restored;
   if (prepare && (!first_multipliers(system_, lambda_, true) || !restore_constraints(system_, q_))) return false;
   extent_ = system_.extent();
   load_ = system_.force_norm(system_.gradient());
   measure();
-  energy_ = system_.energy();
+  energy_ = energy_on_constraints(lambda_);
   energy_size_ = std::abs(energy_);
   return true;
 }
@@ -133,6 +129,12 @@ bool Descent::begin() {
 void Descent::measure() {
   system_.residual(lambda_, residual_);
   outcome_.residual = system_.force_norm(residual_);
+}
+
+// Constraints are met to 1e-10, and the energy there misses that of the place on them by -lambda^T Phi to first order,
+// which is more than the last steps lower it by.
+double Descent::energy_on_constraints(std::span<const double> lambda) const {
+  return system_.energy() + dot(lambda, system_.phi());
 }
 
 void Descent::tell() const {
@@ -164,7 +166,7 @@ StaticOutcome Descent::run() {
 bool Descent::step() {
   balanced_ = outcome_.residual <= options_.tolerance * system_.force_scale(lambda_);
   double stiffest = 0, loads = 0;
-  for (double shift = 0; std::isfinite(shift) && shift <= largest_shift * std::max(stiffest, loads);) {
+  for (double shift = 0; std::isfinite(shift) && shift <= descent::largest_shift * std::max(stiffest, loads);) {
     system_.fill(lambda_, Curvature::exact, shift);
     const bool minimum = system_.factorize().ok() && system_.matrix().negative_modes() == 0;
     outcome_.exact = minimum && shift == 0;
@@ -172,9 +174,10 @@ bool Descent::step() {
     if (shift == 0) {
       stiffest = system_.matrix().largest_stiffness();
       loads = system_.force_size() / extent_;
-      shift = std::max({first_of_rounding * stiffest, first_of_force * loads, last_shift_ / 16});
+      shift = std::max({descent::first_of_rounding * stiffest, descent::first_of_force * loads,
+                        descent::part_of_last * last_shift_});
     } else {
-      shift *= minimum ? shortening : stiffening;
+      shift *= minimum ? shortening : descent::stiffening;
     }
     if (!minimum) continue;
     const Trial trial = go(used);
@@ -191,12 +194,12 @@ Descent::Trial Descent::go(double shift) {
   if (!std::isfinite(outcome_.step)) return Trial::rejected;
   std::copy(step.change.begin(), step.change.end(), change_.begin());
   std::copy(step.lambda.begin(), step.lambda.end(), next_lambda_.begin());
-  if (outcome_.step <= polishing_change) {
+  if (outcome_.step <= descent::polishing_change) {
     finish();
     return Trial::ended;
   }
   std::copy(system_.gradient().begin(), system_.gradient().end(), gradient_.begin());
-  const double slope = dot(gradient_, change_);
+  const double slope = dot(gradient_, change_) - dot(next_lambda_, system_.phi());
   if (is_neutral(shift, slope)) {
     if (!balanced_) return Trial::rejected;
     outcome_.end = StaticEnd::stationary;
@@ -235,10 +238,9 @@ bool Descent::is_neutral(double shift, double slope) {
 // Halves the step until the energy decreases; trial_ is where it ends.
 bool Descent::search_along(double shift, double slope) {
   const Travel travel = travel_of(system_.plan(), change_);
-  double factor = std::min({1.0, reach_ * largest_turn / travel.turn, reach_ * extent_ / travel.length});
+  double factor = std::min({1.0, reach_ * descent::largest_turn / travel.turn, reach_ * extent_ / travel.length});
   const bool clipped = factor < 1;
-  // The energy is a sum of large terms: a smaller change is rounding.
-  const double noise = 1e-14 * (energy_size_ + system_.force_size() * extent_);
+  const double noise = descent::noise_part * (energy_size_ + system_.force_size() * extent_);
   system_.evaluator().curve_places(curve_places_);
   for (; factor > thresholds::smallest_factor; factor /= 2) {
     std::copy(q_.begin(), q_.end(), trial_.begin());
@@ -247,8 +249,8 @@ bool Descent::search_along(double shift, double slope) {
       system_.evaluator().go_to_curve_places(curve_places_);
       continue;
     }
-    const double then = system_.energy();
-    if (then <= energy_ + sufficient_decrease * factor * std::min(slope, 0.0) + noise) {
+    const double then = energy_on_constraints(next_lambda_);
+    if (then <= energy_ + descent::sufficient_decrease * factor * std::min(slope, 0.0) + noise) {
       energy_ = then;
       energy_size_ = std::max(energy_size_, std::abs(then));
       last_shift_ = shift;

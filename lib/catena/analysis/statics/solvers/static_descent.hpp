@@ -4,12 +4,13 @@
 // Every step follows Newton's direction on the null space of Phi_q, K shifted where its inertia is not that of a
 // minimum: only the exact K gives the curvature of the energy there for all multipliers, which grow without bound near
 // singular positions. A step turns no angle by more than 0.7 rad, is brought back onto the constraints by corrections,
-// with the same factors where they serve, and is accepted only if the energy decreases by a part of the decrease that
-// its slope predicts; else it is halved. The limit on steps doubles while successive steps reach it, so that an energy
-// without a minimum is recognised after few steps. The energy never rises, configurations are assembled throughout, and
-// the result is the place at which the mechanism comes to rest when released slowly, which matters where there are
-// several equilibria (snap-through, toggles). At a stationary point that is no minimum the search stops with a report.
-// Source: Nocedal and Wright, Numerical Optimization, sections 3.1 and 15.6 (reduced gradients).
+// with the same factors where they serve, and is accepted only if the energy on the constraints, V + lambda^T Phi to
+// first order, decreases by a part of the decrease that its slope predicts; else it is halved. The limit on steps
+// doubles while successive steps reach it, so that an energy without a minimum is recognised after few steps. The
+// energy never rises, configurations are assembled throughout, and the result is the place at which the mechanism comes
+// to rest when released slowly, which matters where there are several equilibria (snap-through, toggles). At a
+// stationary point that is no minimum the search stops with a report. Source: Nocedal and Wright, Numerical
+// Optimization, sections 3.1 and 15.6 (reduced gradients).
 #pragma once
 
 #include "catena/analysis/statics/solvers/static_newton.hpp"
