@@ -17,8 +17,6 @@ namespace {
 constexpr double shortening = 8;
 // A short step ends the search if it is exact, or leaves no more than this part of the forces.
 constexpr double stationary_part = 1e-7;
-// Curvature along a step below this part of the sum of its terms' magnitudes is rounding.
-constexpr double neutral_part = 1e-10;
 // A mechanism that has turned this many radians downhill is not held.
 constexpr double lost_turns = 1e4;
 
