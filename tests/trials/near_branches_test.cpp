@@ -7,65 +7,19 @@
 // And cranks that are parallel but for d of their length. From 1e-10 on they turn where they are flat; closer by
 // rounding decides where the branches pass, and they go straight on: parallel, as a pendulum on two cranks,
 // I w^2 / 2 + G sin z = const.
+#include "trials/near_branches.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
-
-#include "scene/run_text.hpp"
 
 namespace catena::testing {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-constexpr double start = 0.5, rate = 4, until = 0.6, inertia = 0.1;
-
-Json slider_crank(double d, double tolerance, const std::string& method, bool doubled = false) {
-  const double rod = 1 + d, y = std::sin(start), x = std::cos(start), theta = -std::asin(y / rod);
-  const double end = x + rod * std::cos(theta), turning = -rate * x / (rod * std::cos(theta));
-  const auto body = [](double px, double py, double angle, double vx, double vy, double omega) {
-    return Json{{"mass", 1},      {"inertia", inertia},   {"position", {px, py}},
-                {"angle", angle}, {"velocity", {vx, vy}}, {"angular_velocity", omega}};
-  };
-  Json scene = {
-      {"catena", 1},
-      {"gravity", {0, 0}},
-      {"bodies",
-       {{"crank", body(x / 2, y / 2, start, -rate * y / 2, rate * x / 2, rate)},
-        {"rod", body((x + end) / 2, y / 2, theta, -rate * y - rod / 2 * std::sin(theta) * turning,
-                     rate * x + rod / 2 * std::cos(theta) * turning, turning)},
-        {"slider", body(end, 0, 0, -rate * y - rod * std::sin(theta) * turning, 0, 0)}}},
-      {"constraints",
-       {{{"type", "revolute"}, {"name", "a"}, {"i", {"ground", {0, 0}}}, {"j", {"crank", {-0.5, 0}}}},
-        {{"type", "revolute"}, {"name", "b"}, {"i", {"crank", {0.5, 0}}}, {"j", {"rod", {-rod / 2, 0}}}},
-        {{"type", "revolute"}, {"name", "c"}, {"i", {"rod", {rod / 2, 0}}}, {"j", {"slider", {0, 0}}}},
-        {{"type", "translational"},
-         {"name", "guide"},
-         {"i", {"ground", {0, 0}}},
-         {"j", {"slider", {0, 0}}},
-         {"axis_i", {1, 0}}}}},
-      {"analyses",
-       {{{"type", "dynamics"}, {"until", until}, {"every", until}, {"method", method}, {"tolerance", tolerance}}}},
-      {"outputs", {"crank.angle", "rod.angle", "slider.x"}}};
-  for (std::size_t k = 0; doubled && k < 3; k += 2) {
-    Json again = scene["constraints"][k];
-    again["name"] = again["name"].get<std::string>() + " again";
-    scene["constraints"].push_back(again);
-  }
-  return scene;
-}
+using namespace near_branches;
 
 /// The time at which the crank is at z, by the midpoint rule with points that crowd at the corner.
 double time_at(double z, double d) {
-  const auto root_of_mass = [&](double at) {
-    const double rod = 1 + d, sine = -std::sin(at) / rod;
-    const double cosine = std::sqrt((rod - std::sin(at)) * (rod + std::sin(at))) / rod;
-    const double turning = -std::cos(at) / (rod * cosine);
-    const double vx = -std::sin(at) - rod / 2 * sine * turning, vy = std::cos(at) + rod / 2 * cosine * turning;
-    const double slider = -std::sin(at) - rod * sine * turning;
-    return std::sqrt(0.25 + inertia + vx * vx + vy * vy + inertia * turning * turning + slider * slider);
-  };
   constexpr double corner = std::numbers::pi / 2;
   constexpr int points = 40000;
   double sum = 0;
@@ -74,10 +28,10 @@ double time_at(double z, double d) {
     for (int n = 0; n < points; ++n) {
       const double u = (n + 0.5) / points;
       sum += (side == z ? 1 : -1) * (side - corner) * 4 * u * u * u *
-             root_of_mass(corner + (side - corner) * std::pow(u, 4)) / points;
+             std::sqrt(mass_at(corner + (side - corner) * std::pow(u, 4), d)) / points;
     }
   }
-  return sum / root_of_mass(start) / rate;
+  return sum / std::sqrt(mass_at(start, d)) / rate;
 }
 
 using Passage = std::tuple<const char*, double, double>;
@@ -97,12 +51,6 @@ INSTANTIATE_TEST_SUITE_P(
     All, NearBranches,
     ::testing::Combine(::testing::Values("auto", "rk8", "rk5", "adams", "baumgarte", "partitioning"),
                        ::testing::Values(1e-4, 1e-6, 1e-8, 1e-10), ::testing::Values(1e-4, 1e-6, 1e-8)));
-
-bool tells(const TextRun& run, const char* words) {
-  const std::vector<std::string>& warnings = run.analysis().report.warnings;
-  return std::any_of(warnings.begin(), warnings.end(),
-                     [&](const std::string& warning) { return warning.find(words) != std::string::npos; });
-}
 
 // Where the rod is as long as the crank both are flat for an instant, and the motion goes straight on.
 TEST(NearBranches, GoStraightOnWhereTheyCross) {
@@ -152,9 +100,6 @@ TEST(NearBranches, WhatIsNotJudgedIsTold) {
   }
 }
 
-/// Whether it is said that the motion went straight on where its branch turns.
-bool tells_straight_passage(const TextRun& run) { return tells(run, "went straight on where two branches pass"); }
-
 // Nearer than rounding lets steps turn: the motion turns, or ends with words on the branches, or goes straight on and
 // says so, with no digits claimed; joints that are given twice change nothing in that.
 using Narrow = std::tuple<const char*, double, double, bool>;
@@ -178,58 +123,6 @@ INSTANTIATE_TEST_SUITE_P(All, NarrowPassages,
                          ::testing::Combine(::testing::Values("rk8", "rk5", "adams", "baumgarte", "partitioning"),
                                             ::testing::Values(1e-13, 1e-12, 1e-11, 3e-11, 1e-10, 1e-9),
                                             ::testing::Values(1e-4, 1e-8, 1e-10), ::testing::Bool()));
-
-// With the crank driven as well: branches meet where the other constraints lose rank, driven or not.
-using Driven = std::tuple<double, double, bool>;
-class DrivenNarrowPassages : public ::testing::TestWithParam<Driven> {};
-
-TextRun run_driven(double d, double tolerance, bool doubled) {
-  Json scene = slider_crank(d, tolerance, "auto", doubled);
-  Json driver = {{"type", "absolute_angle"}, {"name", "motor"}, {"i", "crank"}};
-  driver["value"]["polynomial"] = {start, rate};
-  scene["drivers"] = Json::array();
-  scene["drivers"].push_back(driver);
-  return run_text(scene.dump());
-}
-
-// Doubled joints with a driver end in part with words on a wrong balance of energy; see below how many do not.
-TEST_P(DrivenNarrowPassages, AreNotMistakenInSilence) {
-  const auto [d, tolerance, doubled] = GetParam();
-  const TextRun run = run_driven(d, tolerance, doubled);
-  if (run.outcome.exit_code != 0) {
-    const Report& report = run.analysis().report;
-    EXPECT_LT(d, doubled ? 1e-5 : 1e-9) << report.message;
-    if (doubled) {
-      EXPECT_EQ(report.status, Status::not_converged) << report.message;
-    } else {
-      EXPECT_NE(report.message.find("two branches"), std::string::npos) << report.message;
-    }
-    return;
-  }
-  const double z = start + rate * until, rod = 1 + d;
-  const double turned = std::cos(z) + std::sqrt((rod - std::sin(z)) * (rod + std::sin(z)));
-  if (tells_straight_passage(run)) {
-    EXPECT_LT(d, 1e-9);
-  } else {
-    EXPECT_NEAR(run.last("slider.x"), turned, 1e-9);
-  }
-}
-INSTANTIATE_TEST_SUITE_P(All, DrivenNarrowPassages,
-                         ::testing::Combine(::testing::Values(1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-6, 1e-4),
-                                            ::testing::Values(1e-4, 1e-6, 1e-8, 1e-10), ::testing::Bool()));
-
-// Today 31 of 32, and 18 where joints are doubled: rounding decides some, which compilers make differently.
-TEST(NearBranches, DrivenOnesEndWellInMostCases) {
-  int well = 0, well_doubled = 0;
-  for (const double d : {1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-6, 1e-4}) {
-    for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
-      well += run_driven(d, tolerance, false).outcome.exit_code == 0;
-      well_doubled += run_driven(d, tolerance, true).outcome.exit_code == 0;
-    }
-  }
-  EXPECT_GE(well, 30);
-  EXPECT_GE(well_doubled, 16);
-}
 
 // Steps of a fixed length cannot be shortened: they turn, end with a status, or say that they went straight on.
 TEST(NearBranches, FixedStepsThatAreTooLongForATurnSaySo) {

@@ -28,7 +28,8 @@ inline constexpr double singular_passage = 1e-2;
 inline constexpr double unusual = 0.3;
 /// From here on Adams methods take over again (compared).
 inline constexpr double behind_passage = 2e-2;
-/// Below: all methods project their steps, and a step may pass a place where branches meet (compared) ...
+/// Below: all methods project their steps, of which the balance says what drivers do, and a step may pass a place where
+/// branches meet (compared) ...
 inline constexpr double near_passage = 0.1;
 /// ... until the ratio is larger than this; steps of Adams methods that fail below it are left to Runge-Kutta.
 inline constexpr double clear_of_passage = 0.2;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <random>
 
+#include "catena/assembly/systems/light_turns.hpp"
 #include "catena/assembly/systems/row_spread.hpp"
 #include "catena/base/at.hpp"
 
@@ -19,6 +21,22 @@ constexpr int most_massless_rounds = 52;
 constexpr double massless_rounding = 1e-15;
 constexpr int most_probes = 4;  // random loads: a coordinate that resists all of them is rare, and only costs rounds
 constexpr double unequal_masses = 1e5;  // largest to least; from here on light bodies cost digits
+
+// Bodies that are so light to turn (light_turns.hpp) cost digits, and below this pivot ratio their solutions are
+// refined with the true equations: where J = 1e-6 ... 1e-3 m a^2, steps of bars on couplers at a tolerance of 1e-12
+// stalled from ratios of 3e-4 on, and nowhere since.
+constexpr double light_turn = 100, light_ratio = 1e-2;
+
+/// For what remains of solutions that are refined, and for their changes; without it none is.
+void make_room(std::size_t coordinates, std::size_t rows, std::initializer_list<std::vector<double>*> of_coordinates,
+               std::initializer_list<std::vector<double>*> of_rows) {
+  for (std::vector<double>* all : of_coordinates) all->resize(coordinates);
+  for (std::vector<double>* all : of_rows) all->resize(rows);
+}
+
+bool refines(const std::vector<double>& room, bool always, double pivot_ratio) {
+  return !room.empty() && (always || pivot_ratio < light_ratio);
+}
 
 }  // namespace
 
@@ -50,12 +68,9 @@ void SchurSystem::set_masses(std::span<const double> masses, std::span<const dou
   }
   regularised_ = false;
   unequal_ = largest[0] > unequal_masses * least[0] || largest[1] > unequal_masses * least[1];
-  if (!masses_.massless.empty() || unequal_) {
-    rest_.Q.resize(masses.size());
-    rest_.qdd.resize(masses.size());
-    rest_.gamma.resize(at(plan_->rows));
-    rest_.lambda.resize(at(plan_->rows));
-  }
+  rest_.Q.clear();
+  if (!masses_.massless.empty() || unequal_)
+    make_room(masses.size(), at(plan_->rows), {&rest_.Q, &rest_.qdd}, {&rest_.gamma, &rest_.lambda});
   constants_known_ = false;
 }
 
@@ -162,6 +177,8 @@ bool SchurSystem::factorize(std::span<const double> jacobian, Counters& counters
     std::fill(constant_values_.begin(), constant_values_.end(), 0.0);
     assemble(places_.constant, places_.constant_slot.data(), constant_values_);
     constants_known_ = true;
+    if (rest_.Q.empty() && largest_turn(*plan_, masses_.given, jacobian) > light_turn)
+      make_room(masses_.given.size(), at(plan_->rows), {&rest_.Q, &rest_.qdd}, {&rest_.gamma, &rest_.lambda});
   }
   // Equations that depended on each other at the last factorization probably still do.
   const bool before = regularised_;
@@ -228,12 +245,13 @@ void SchurSystem::solve_refined(std::span<V> lambda, std::span<const V> b, S& sc
 void SchurSystem::solve_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
                                std::span<double> lambda, Counters& counters) {
   solve_with_masses(Q, gamma, qdd, lambda, scratch_, counters);
-  if (!masses_.massless.empty() || unequal_) refine_motion(Q, gamma, qdd, lambda, counters);
+  if (refines(rest_.Q, !masses_.massless.empty() || unequal_, smallest_ratio_))
+    refine_motion(Q, gamma, qdd, lambda, counters);
 }
 
 void SchurSystem::solve_motion(std::span<const Lanes> Q, std::span<const Lanes> gamma, std::span<Lanes> qdd,
                                std::span<Lanes> lambda, SchurLanes& scratch, Counters& counters) {
-  if (masses_.massless.empty() && !unequal_) {
+  if (!refines(rest_.Q, !masses_.massless.empty() || unequal_, smallest_ratio_)) {
     scratch.right_hand_side.resize(scratch_.right_hand_side.size());
     scratch.correction.resize(scratch_.correction.size());
     scratch.change.resize(scratch_.change.size());
@@ -303,7 +321,8 @@ double SchurSystem::find_massless_residual(std::span<const double> Q, std::span<
 }
 
 // Adds the solution for the residual of the true equations: Q - M qdd - Phi_q^T lambda and gamma - Phi_q qdd. One round
-// where masses are only unequal; with massless coordinates until nothing is gained any more.
+// where masses are only unequal; with massless coordinates until nothing is gained any more, and one at least: where no
+// force acts on them they are in balance at once, but the small masses have cost the accelerations their digits.
 void SchurSystem::refine_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
                                 std::span<double> lambda, Counters& counters) {
   double first_change = 0;
@@ -324,7 +343,8 @@ void SchurSystem::refine_motion(std::span<const double> Q, std::span<const doubl
       const double before = massless_residual_;
       massless_residual_ = find_massless_residual(Q, lambda);
       const bool shrinks = round == 0 || massless_residual_ < 0.5 * before;
-      if (!(massless_residual_ > massless_rounding) || !shrinks || round == most_massless_rounds) return;
+      const bool done = !(massless_residual_ > massless_rounding) || !shrinks || round == most_massless_rounds;
+      if (done && round > 0) return;
     }
     std::copy(gamma.begin(), gamma.end(), rest_.gamma.begin());
     multiply_add(rest_.qdd, rest_.gamma);

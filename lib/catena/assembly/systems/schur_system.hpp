@@ -171,7 +171,7 @@ class SchurSystem {
   std::vector<int> left_out_slot_;  // of the products of each direction
   std::vector<double> constant_values_, diagonal_values_;
   SchurScratch<double> scratch_;
-  Rest rest_;  // with massless coordinates and unequal masses
+  Rest rest_;  // where solutions are refined: massless coordinates, unequal masses, bodies that are light to turn
   BlockFactorization factors_;
   bool analyzed_ = false, constants_known_ = false, regularised_ = false, unequal_ = false;
   double smallest_ratio_ = 1;

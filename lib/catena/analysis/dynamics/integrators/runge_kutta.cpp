@@ -9,13 +9,6 @@ namespace {
 
 constexpr double largest_drift = 1e-2;  // of positions that are not projected
 
-// Whether all energy is accounted for: what drivers do follows from multipliers, which a singular position leaves open.
-bool keeps_account(EquationsOfMotion& equations) {
-  const auto& elements = equations.evaluator().model().elements;
-  const auto drives = [](const auto& element) { return element.kind == ElementKind::driver; };
-  return !equations.state_loads() && std::none_of(elements.begin(), elements.end(), drives);
-}
-
 }  // namespace
 
 RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options)
@@ -27,11 +20,11 @@ RungeKutta::RungeKutta(Motion motion, const RungeKuttaOptions& options)
       ratios_(stage_.size(), options.usual_ratio),
       trials_(options.tolerance),
       energy_(motion_, stage_.size(), motion_.equations().evaluator().length_scale(),
-              !is_fixed() && keeps_account(motion_.equations())) {
+              is_fixed() ? StepEnergy::Tells::nothing : StepEnergy::of(motion_)) {
   for (std::vector<double>* y : {&y_, &y_before_, &y_new_, &y_stage_, &slope_, &slope_new_}) {
     y->assign(motion_.size(), 0.0);
   }
-  error_.resize(2 * motion_.coordinates());
+  error_.resize(motion_.size());
   error_low_.resize(2 * motion_.coordinates());
   scale_.step_tolerance = options.tolerance;
   scale_.horizon = options.horizon;
@@ -186,7 +179,8 @@ bool RungeKutta::finish_step() {
   position_residual_ = equations.project_position(motion_.q(std::span(y_new_)), 4);
   if (!(position_residual_ < largest_residual)) return false;
   equations.project_velocity(motion_.qd(std::span(y_new_)), scale_.rate());
-  if (watches_energy() && !restore_energy(t_new_ - t_)) return false;
+  work_told_ = tells_work();
+  if (!balance(t_new_ - t_)) return false;
   return derivative(t_new_, Side::before, y_new_, slope_new_);
 }
 
@@ -194,16 +188,26 @@ bool RungeKutta::watches_energy() const {
   return projects() && energy_.watches(ratios_.at_start(), trials_.project_stages());
 }
 
-// Balances the step from y_ to y_new_, of size h, which was projected.
-bool RungeKutta::restore_energy(double h) {
-  return energy_.restore(motion_, {.t = t_new_,
-                                   .h = h,
-                                   .y_before = y_,
-                                   .y = y_new_,
-                                   .error = error_,
-                                   .errors = step_error_ + rounding_of_velocity(h),
-                                   .scale = scale_,
-                                   .weights = tableau().b});
+bool RungeKutta::tells_work() const {
+  return projects() && energy_.tells_work(std::min(ratios_.at_start(), ratios_.smallest()));
+}
+
+BalancedStep RungeKutta::balanced_step(double t, double h, std::span<const double> before, std::span<double> y) const {
+  return {.t = t,
+          .h = h,
+          .y_before = before,
+          .y = y,
+          .error = error_,
+          .errors = step_error_ + rounding_of_velocity(h),
+          .scale = scale_,
+          .weights = tableau().b};
+}
+
+// Balances the step from y_ to y_new_, of size h, which was projected. False: it has lost its way.
+bool RungeKutta::balance(double h) {
+  if (watches_energy()) return energy_.restore(motion_, balanced_step(t_new_, h, y_, y_new_));
+  if (work_told_) energy_.restore_work(motion_, balanced_step(t_new_, h, y_, y_new_));
+  return true;
 }
 
 }  // namespace catena

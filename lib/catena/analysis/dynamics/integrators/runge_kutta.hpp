@@ -124,7 +124,9 @@ class RungeKutta final : public Integrator {
   double rounding_of_crossing(double h) const;
   bool finish_step();
   bool watches_energy() const;
-  bool restore_energy(double h);
+  bool tells_work() const;
+  BalancedStep balanced_step(double t, double h, std::span<const double> before, std::span<double> y) const;
+  bool balance(double h);
   bool begin_step();
   Length next_length(double limit) const;
   Trial try_step(double limit, double& usual);
@@ -142,6 +144,7 @@ class RungeKutta final : public Integrator {
   bool integrate_to(double t, std::span<double> y);
   bool finish_cut();
   void get_interpolant_ready();
+  void balance_between(double t, std::span<double> y);
   void evaluate_interpolant(double t, std::span<double> y);
   StepEnds ends() const { return {t_ - t_before_, y_before_, y_, stage_[0], slope_}; }
   void work_by_ends(double s, std::span<double> y);
@@ -155,13 +158,14 @@ class RungeKutta final : public Integrator {
   std::vector<double> y_before_, y_new_, y_stage_, slope_, slope_new_;
   Stages stage_;
   DenseOutput dense_;
-  std::vector<double> error_, error_low_;  // [q, qd]
+  std::vector<double> error_, error_low_;  // [q, qd, work], [q, qd]
   StepOrder order_;
   StageRatios ratios_;
   CrossingTrials trials_;
   BranchTurn turn_;
   StepEnergy energy_;
-  bool crossing_ = false;  // steps are projected that are not elsewhere
+  bool crossing_ = false;   // steps are projected that are not elsewhere
+  bool work_told_ = false;  // work of drivers in the last step is that of its balance
   std::int64_t projected_steps_ = 0;
   double step_error_ = 1;  // of the step that is accepted, in tolerances, at least 1
 };

@@ -46,7 +46,7 @@ bool RungeKutta::finish_cut() {
   if (!equations.factorize(t_new_, Side::after, motion_.q(std::span<const double>(y_new_)))) return false;
   equations.project_position(motion_.q(std::span(y_new_)), 4);
   equations.project_velocity(motion_.qd(std::span(y_new_)), scale_.rate());
-  return !watches_energy() || restore_energy(t_new_ - t_);
+  return balance(t_new_ - t_);
 }
 
 // A step across a singular position, cut at t: from its start or from its end, whichever has stages further from that
@@ -82,13 +82,24 @@ void RungeKutta::interpolate(double t, std::span<double> y) {
   if (trials_.project_stages()) get_interpolant_ready();
   if (trials_.project_stages() && fine && integrate_to(t, y)) return;
   evaluate_interpolant(t, y);
-  if (!trials_.project_stages() || fine) return;
-  EquationsOfMotion& equations = motion_.equations();
-  equations.evaluator().set_time(t);
-  if (!(equations.position_residual(motion_.q(std::span<const double>(y))) <
-        interpolated_residual * scale_.step_tolerance)) {
-    integrate_to(t, y);
+  if (trials_.project_stages() && !fine) {
+    EquationsOfMotion& equations = motion_.equations();
+    equations.evaluator().set_time(t);
+    if (!(equations.position_residual(motion_.q(std::span<const double>(y))) <
+          interpolated_residual * scale_.step_tolerance)) {
+      integrate_to(t, y);
+    }
   }
+  if (work_told_) balance_between(t, y);
+}
+
+// What drivers have done by then, from the energy of the mechanism on its constraints.
+void RungeKutta::balance_between(double t, std::span<double> y) {
+  EquationsOfMotion& equations = motion_.equations();
+  if (!equations.factorize(t, Side::after, motion_.q(std::span<const double>(y)))) return;
+  equations.project_position(motion_.q(y), 4);
+  equations.project_velocity(motion_.qd(y), scale_.rate());
+  energy_.restore_work(motion_, balanced_step(t, t - t_before_, y_before_, y));
 }
 
 void RungeKutta::get_interpolant_ready() {

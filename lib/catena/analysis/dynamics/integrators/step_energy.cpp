@@ -48,18 +48,36 @@ double explained_by_errors(const Motion& motion, const BalancedStep& step) {
 
 }  // namespace
 
-StepEnergy::StepEnergy(const Motion& motion, std::size_t stages, double length, bool may)
+// What drivers do follows from multipliers, which a singular position leaves open; losses of contacts are not seen
+// here.
+StepEnergy::Tells StepEnergy::of(const Motion& motion) {
+  EquationsOfMotion& equations = motion.equations();
+  if (equations.state_loads()) return Tells::nothing;
+  const auto& elements = equations.evaluator().model().elements;
+  const auto drives = [](const auto& element) { return element.kind == ElementKind::driver; };
+  if (std::none_of(elements.begin(), elements.end(), drives)) return Tells::speed;
+  return motion.works() > 0 ? Tells::work : Tells::nothing;
+}
+
+StepEnergy::StepEnergy(const Motion& motion, std::size_t stages, double length, Tells tells)
     : power_(stages, 0.0),
       direction_(motion.moving()),
       acting_rows_(acting_rows(motion.equations().plan())),
-      may_(may) {
+      tells_(tells) {
   for (std::size_t c = 0; c < direction_.size(); c += 3) weight_ += motion.equations().masses().mass[c];
   const Vec2<double> gravity = motion.equations().evaluator().model().gravity;
   weight_ *= std::hypot(gravity.x, gravity.y) * length;
 }
 
 bool StepEnergy::watches(double ratio, bool crossing) const {
-  return may_ && (crossing || ratio < dependence::singular_passage);
+  return tells_ == Tells::speed && (crossing || ratio < dependence::singular_passage);
+}
+
+bool StepEnergy::tells_work(double ratio) const { return tells_ == Tells::work && ratio < dependence::near_passage; }
+
+int StepEnergy::freedoms(const Motion& motion) const {
+  EquationsOfMotion& equations = motion.equations();
+  return equations.plan().columns - acting_rows_ + equations.left_out().count();
 }
 
 void StepEnergy::note_power(const Motion& motion, std::size_t stage, std::span<const double> y) {
@@ -70,7 +88,7 @@ void StepEnergy::note_power(const Motion& motion, std::size_t stage, std::span<c
 // u, with the factors of the new point.
 void StepEnergy::find_direction(const Motion& motion, const BalancedStep& step) {
   EquationsOfMotion& equations = motion.equations();
-  const bool single = equations.plan().columns - acting_rows_ + equations.left_out().count() == 1;
+  const bool single = freedoms(motion) == 1;
   const std::span<const double> from = motion.qd(single ? std::span<const double>(step.y) : step.error);
   std::copy_n(from.begin(), direction_.size(), direction_.begin());
   if (!single) equations.remove_forbidden(direction_);
@@ -101,6 +119,25 @@ bool StepEnergy::restore(const Motion& motion, const BalancedStep& step) {
   if (!(a * a * square < largest_change * largest_change * 2 * after.kinetic)) return true;
   for (std::size_t c = 0; c < direction_.size(); ++c) v[c] += a * direction_[c];
   return true;
+}
+
+void StepEnergy::restore_work(const Motion& motion, const BalancedStep& step) const {
+  if (freedoms(motion) != 0) return;
+  const double h = step.h;
+  const Side from = h > 0 ? Side::after : Side::before, to = h > 0 ? Side::before : Side::after;
+  const StepEndEnergy before = energy_at(motion, step.t - h, from, step.y_before);
+  const StepEndEnergy after = energy_at(motion, step.t, to, step.y);
+  constexpr std::size_t first = ErrorScale::work_of_loads + 1;  // of the drivers' integrals
+  const std::size_t offset = 2 * motion.coordinates();
+  const std::span<const double> old = step.y_before.subspan(offset), errors = step.error.subspan(offset);
+  const std::span<double> work = step.y.subspan(offset);
+  const double dissipated = EnergyAccount::dissipated(work) - EnergyAccount::dissipated(old);
+  const double supplied = EnergyAccount::supplied(work) - EnergyAccount::supplied(old);
+  const double missing = after.kinetic + after.potential + dissipated - before.kinetic - before.potential - supplied;
+  double doubts = 0;
+  for (std::size_t k = first; k < work.size(); ++k) doubts += std::abs(errors[k]);
+  if (!(doubts > 0)) return;
+  for (std::size_t k = first; k < work.size(); ++k) work[k] += missing * std::abs(errors[k]) / doubts;
 }
 
 }  // namespace catena

@@ -12,8 +12,18 @@
 // u: what may be wrong. With one degree of freedom the velocity itself; else the error estimate of the step, which is
 // that of the same stages, without the part across the constraints. Where u says nothing about the energy (v1^T M u
 // near zero), or hardly anything moves, the velocity stays as it is. A step that is wrong by much more energy than its
-// errors explain has lost its way and is not made. Symbols: T kinetic, V potential energy in J, M masses, v velocities,
-// h the step in s, b_s weights of its stages. Source: apps/manual/numerics.md#singular-passages.
+// errors explain has lost its way and is not made.
+//
+// Where drivers move all of the mechanism it is the other way round: velocities follow from the constraints, and what
+// drivers do, -lambda nu, is a sharp pulse where the motion turns at a sine d from the position, of which stages see
+// little, and of which rounding takes eps / d^2 of T. The balance says how much they do together:
+//
+//   sum dW_k = T1 - T0 + V1 - V0 + dissipated - work of loads
+//
+// What the integrals of their powers miss of it goes to the drivers in proportion to the error estimates of these.
+//
+// Symbols: T kinetic, V potential energy in J, M masses, v velocities, h the step in s, b_s weights of its stages, dW_k
+// work of a driver in the step. Source: apps/manual/numerics.md#singular-passages.
 #pragma once
 
 #include <span>
@@ -30,7 +40,7 @@ struct BalancedStep {
   double t = 0, h = 0;
   std::span<const double> y_before;
   std::span<double> y;
-  std::span<const double> error;  ///< the estimate, [q, qd]
+  std::span<const double> error;  ///< the estimate, [q, qd, work]
   double errors = 0;              ///< of the step and of its rounding, in units of `scale`
   const ErrorScale& scale;
   const StageSum& weights;
@@ -38,23 +48,33 @@ struct BalancedStep {
 
 class StepEnergy {
  public:
-  /// `stages`: most that a step has. `may`: the balance says how fast this mechanism moves.
-  StepEnergy(const Motion& motion, std::size_t stages, double length, bool may);
+  /// What the balance says: nothing, how fast the mechanism moves, what its drivers do.
+  enum class Tells { nothing, speed, work };
+  /// Of a mechanism, with all steps adaptive.
+  static Tells of(const Motion& motion);
 
-  /// Whether steps from a place of this pivot ratio are balanced, if they are projected.
+  /// `stages`: most that a step has.
+  StepEnergy(const Motion& motion, std::size_t stages, double length, Tells tells);
+
+  /// Whether steps from a place of this pivot ratio are balanced by their speed, if they are projected.
   bool watches(double ratio, bool crossing) const;
+  /// Whether the balance of steps with stages of this pivot ratio, if they are projected, says what drivers do.
+  bool tells_work(double ratio) const;
   /// Power P at a stage, at the evaluator's place, that of y.
   void note_power(const Motion& motion, std::size_t stage, std::span<const double> y);
   /// Balances a step. False: more energy is missing than the error of the step and its rounding explain.
   bool restore(const Motion& motion, const BalancedStep& step);
+  /// Gives drivers the work that the balance of a step leaves them, in step.y, where they move all of the mechanism.
+  void restore_work(const Motion& motion, const BalancedStep& step) const;
 
  private:
+  int freedoms(const Motion& motion) const;
   void find_direction(const Motion& motion, const BalancedStep& step);
 
   std::vector<double> power_, direction_;  // of the stages, W; u
   double weight_ = 0;                      // of all bodies, times the length scale, J
   int acting_rows_ = 0;                    // see jacobian_rank.hpp
-  bool may_ = false;
+  Tells tells_ = Tells::nothing;
 };
 
 }  // namespace catena
