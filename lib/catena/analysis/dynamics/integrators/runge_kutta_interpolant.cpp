@@ -32,9 +32,13 @@ bool RungeKutta::prepare_interpolant() {
       return (!projected || project_stage(t, Side::after)) && motion_.derivative(t, Side::after, y_stage_, stage_[s]);
     };
     if (!evaluate(trials_.project_stages())) return false;
-    // The step's own stages may have kept clear of a singular position that lies near this one.
+    // The step's own stages may have kept clear of a singular position that lies near this one: what such a stage says
+    // may be wrong by any amount, and rows between are found as in a step across that position.
     ratios_.note_between(motion_.equations().smallest_pivot_ratio());
-    if (!trials_.project_stages() && meets_constraints() && dips() && !evaluate(true)) return false;
+    if (trials_.project_stages() || !dips()) continue;
+    if (!meets_constraints()) return false;
+    trials_.begin_projecting();
+    if (!evaluate(true)) return false;
   }
   dense_.set(ends(), stage_);
   return true;
@@ -78,8 +82,8 @@ bool RungeKutta::integrate_to(double t, std::span<double> y) {
 
 void RungeKutta::interpolate(double t, std::span<double> y) {
   const bool fine = scale_.step_tolerance < fine_tolerance;
-  // Cut steps overwrite the step's own stages.
-  if (trials_.project_stages()) get_interpolant_ready();
+  // Cut steps overwrite the step's own stages, and stages between may tell of a singular position.
+  get_interpolant_ready();
   if (trials_.project_stages() && fine && integrate_to(t, y)) return;
   evaluate_interpolant(t, y);
   if (trials_.project_stages() && !fine) {
