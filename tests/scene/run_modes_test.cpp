@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "catena/base/si_unit.hpp"
 #include "scene/run_text.hpp"
@@ -82,6 +84,29 @@ TEST(RunModes, GoOnFromTheEquilibriumBefore) {
   ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
   EXPECT_NEAR(list(run.analysis(1), "omega2")[0], 10 / 1.5, 1e-11);
   EXPECT_NEAR(list(run.analysis(2), "omega2")[0], 10 / 1.5, 1e-11);
+}
+
+// An arm that rests on the lower or the upper of a stop's two bounds swings on the stop's stiffness k, as on a spring:
+// (k + V'') / J about the pin, V'' = -m g d sin(angle).
+TEST(RunModes, OfAnArmBetweenTwoCompliantBounds) {
+  for (int n = 0; n < 12; ++n) {
+    const bool lower = n % 2 == 0;
+    const double least = -1.2 + 0.17 * n, most = least + 0.2 + 0.05 * n, k = 300 * (n + 1), start = (least + most) / 2;
+    const double g = lower ? 9.81 : -9.81, end = lower ? least : most;
+    const auto number = [](double x) { return std::to_string(x); };
+    const TextRun run = run_text(R"({"catena": 1, "gravity": [0, )" + number(-g) + R"(], "bodies": {"arm": {"mass": 2,
+        "inertia": 0.1, "centroid": [0.5, 0], "angle": )" +
+                                 number(start) + R"(}},
+      "constraints": [{"type": "revolute", "name": "pin", "i": "ground", "j": "arm"}],
+      "forces": [{"type": "stop", "name": "stop", "column": "pin.angle", "min": )" +
+                                 number(least) + R"(, "max": )" + number(most) + R"(, "k": )" + number(k) + R"(}],
+      "outputs": ["arm.angle"], "analyses": [{"type": "equilibrium"}, {"type": "modes"}]})");
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+    const double angle = run.last("arm.angle");
+    ASSERT_NEAR(angle, end, 2e-6) << n;
+    const double wanted = (k - 2 * g * 0.5 * std::sin(angle)) / (0.1 + 2 * 0.25);
+    EXPECT_NEAR(list(run.analysis(1), "omega2")[0], wanted, 1e-9 * wanted) << n;
+  }
 }
 
 }  // namespace

@@ -159,7 +159,7 @@ void Modes::soften(ActiveSet& set, std::span<const double> lambda) {
     const int row = plan_->gap_rows[g];
     const Compliance law = compliance_of(*model_, plan_->row_element[at(row)]);
     if (!set.closed[g] || !law.compliant()) continue;
-    AddedSpring spring{law.stiffness_at(-lambda[at(row)]), std::vector<double>(at(plan_->columns), 0.0)};
+    AddedSpring spring{law.stiffness_beside(-lambda[at(row)]), std::vector<double>(at(plan_->columns), 0.0)};
     for (int c = 0; c < plan_->columns; ++c) {
       for (int k = plan_->jacobian.column_start[at(c)]; k < plan_->jacobian.column_start[at(c) + 1]; ++k) {
         if (plan_->jacobian.row_index[at(k)] == row) spring.g[at(c)] = system_.jacobian()[at(k)];

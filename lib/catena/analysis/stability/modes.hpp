@@ -19,8 +19,9 @@
 // One-sided elements that are closed with a force hold as equations, the others not at all (active_set_at.hpp); those
 // that touch without force are named. A closed one with a stiffness k is a spring instead,
 //
-//   K + k_t Psi_q^T Psi_q - N Psi_qq,   k_t = dN/dd = e k^(1/e) N^(1 - 1/e)   of N = k d^e
+//   K + (k_t + N Psi'') Psi_q^T Psi_q - N Psi_qq,   k_t = dN/dd = e k^(1/e) N^(1 - 1/e)   of N = k d^e
 //
+// Psi'' by the depth: -2 / (max - min) of a stop between two bounds, whose Psi bends as the depth does not; else 0.
 // N the force at this place: an equilibrium before, which takes it as rigid, is off by its depth d = (N/k)^(1/e).
 #pragma once
 

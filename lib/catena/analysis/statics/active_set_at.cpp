@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/run/name_list.hpp"
@@ -104,6 +105,10 @@ Compliance compliance_of(const Model& model, int element) {
     if constexpr (requires { list.front().element.exponent; }) {
       const auto& own = list[at(record.index)].element;
       law = {own.k, own.exponent};
+      if constexpr (requires { own.quantity; }) {  // a stop
+        const double apart = own.max - own.min;
+        if (std::isfinite(apart)) law.bend = -2 / apart;
+      }
     }
   });
   return law;

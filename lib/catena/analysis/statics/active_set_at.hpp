@@ -34,11 +34,16 @@ std::vector<std::string> names_of_closed(const Evaluator& evaluator, const Activ
 /// The law N = k d^exponent of a one-sided element; k = 0: it is rigid.
 struct Compliance {
   double k = 0, exponent = 1;
+  /// Psi'' by the depth where Psi = 0 and |Psi'| = 1: that of a stop between two bounds, 1/m or 1/rad; else Psi is the
+  /// depth itself.
+  double bend = 0;
   bool compliant() const { return k > 0; }
   /// dN/dd where it presses with N.
   double stiffness_at(double force) const {
     return exponent * std::pow(k, 1 / exponent) * std::pow(force, 1 - 1 / exponent);
   }
+  /// The spring beside -N Psi_qq that makes it the second derivative of the law's energy: what Psi bends is no part.
+  double stiffness_beside(double force) const { return stiffness_at(force) + force * bend; }
 };
 Compliance compliance_of(const Model& model, int element);
 
