@@ -68,6 +68,21 @@ TEST(SeveralEquilibria, FindsBothWellsWhereNothingTurns) {
   EXPECT_NEAR(y[1], std::sqrt(0.44), 1e-12);
 }
 
+// A shallow truss whose apex may not turn: the angle that is held sets nothing apart, the height does.
+TEST(SeveralEquilibria, FindsBothWellsWhereAnglesAreHeld) {
+  const TextRun run = run_text(R"({"catena": 1, "bodies": {"a": {"mass": 1, "inertia": 1, "position": [0, 0.28]}},
+    "constraints": [{"type": "absolute_x", "i": "a", "value": 0}, {"type": "absolute_angle", "i": "a", "value": 0}],
+    "forces": [{"type": "spring_damper", "i": ["ground", [-1, 0]], "j": "a", "k": 1000, "length": "=1.09^0.5"},
+               {"type": "spring_damper", "i": ["ground", [1, 0]], "j": "a", "k": 1000, "length": "=1.09^0.5"}],
+    "analyses": [{"type": "equilibrium", "find": 2, "outputs": ["a.y"]}]})");
+  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
+  std::vector<double> y = run.column("a.y");
+  ASSERT_EQ(y.size(), 2u);
+  std::sort(y.begin(), y.end());
+  EXPECT_NEAR(y[0], -0.3, 1e-12);
+  EXPECT_NEAR(y[1], 0.3, 1e-12);
+}
+
 TEST(FollowerForces, BalanceAndAreJudgedByTheirSmallMotions) {
   // A bar on a pin and a torsion spring of 4 N m/rad; 3 N across its end, always across: the moment is 6 N m whatever
   // the angle, so that it turns by 1.5 rad. A dead load would stop earlier.

@@ -14,7 +14,8 @@ namespace {
 
 // Starts: some for every scene, more for every equilibrium wanted.
 constexpr int least_starts = 30, starts_each = 15;
-// Displacement of places as a part of that of angles times the length scale, where nothing turns; else the usual part.
+// Displacement of places as a part of that of angles times the length scale. Where bodies turn angles lead in the first
+// half of the starts; angles may be held, and places what sets equilibria apart.
 constexpr double shaken_places = 0.5, shaken_beside_angles = 0.1;
 // Places closer than this, in extents or rad (whole turns aside), are the same, if their energies are.
 constexpr double same_place = 1e-6, same_energy = 1e-9;
@@ -39,7 +40,6 @@ bool are_same(const Candidate& a, const Candidate& b, double extent, double ener
 EquilibriumReport Equilibrium::find_several(const Needs& needs, RowObserver& observer) {
   const std::vector<double> start = q_;
   const bool turns = std::any_of(plan_->coordinate.begin(), plan_->coordinate.end(), [](int k) { return k % 3 == 2; });
-  const double place = turns ? shaken_beside_angles : shaken_places;
   std::vector<Candidate> found;
   EquilibriumReport first;
   const int starts = least_starts + starts_each * options_.find;
@@ -49,6 +49,7 @@ EquilibriumReport Equilibrium::find_several(const Needs& needs, RowObserver& obs
     solved_ = false;
     // In turn: close to the start, far from it, and in between.
     constexpr double angles[] = {std::numbers::pi, 0.3, 1.0};
+    const double place = turns && 2 * used < starts ? shaken_beside_angles : shaken_places;
     if (used > 0) shake(system_, q_, static_cast<unsigned>(used), angles[at(used % 3)], place);
     Candidate candidate;
     candidate.report = solve();
