@@ -7,7 +7,7 @@
 # umbrella header lib/catena/catena.hpp. `part[folder]` lists what a folder inside of a layer may include of its own
 # layer; a folder that is not listed there is an error, and so is one of more than 30 files:
 #
-#   analysis  run <- pose <- motion <- {events, branches} <- {kinematics, contact <- dynamics};  pose <- balance <- spectrum <- statics/solvers <- statics <- stability
+#   analysis  run <- pose <- motion <- {events, branches} <- {kinematics, contact <- {dynamics, contact/holding}};  pose <- balance <- spectrum <- statics/solvers <- statics <- stability
 #             run <- measures;  {pose, motion, contact} <- sensitivity, sensitivity/phases, sensitivity/spectrum;  {sensitivity, measures} <- adjoint;  minimiser <- {statics, design};  {kinematics, balance, batch/kernels} <- batch
 #             {kinematics, stability, dynamics} <- accuracy
 #             run, pose <- kinematics/course <- kinematics
@@ -35,6 +35,7 @@ BEGIN {
   after("analysis", "branches", "run pose motion")
   after("analysis", "dynamics/integrators", "run pose motion branches")
   after("analysis", "contact", "run pose motion events")
+  after("analysis", "contact/holding", "run pose motion contact")
   after("analysis", "dynamics", "run pose motion branches events contact dynamics/integrators")
   after("analysis", "balance", "run pose")
   after("analysis", "spectrum", "run pose balance")

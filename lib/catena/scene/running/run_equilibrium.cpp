@@ -6,7 +6,7 @@
 #include "catena/analysis/accuracy/equilibrium_accuracy.hpp"
 #include "catena/analysis/adjoint/static_adjoint.hpp"
 #include "catena/analysis/contact/contact_points.hpp"
-#include "catena/analysis/contact/holding.hpp"
+#include "catena/analysis/contact/holding/holding.hpp"
 #include "catena/analysis/run/energyless_forces.hpp"
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/rope_ways_at.hpp"

@@ -5,6 +5,9 @@
 // Of a rope without stiffness that slides over pulleys with friction: e^(-u E) <= T_out / T_in <= e^(u E) at each
 // (rope_grips.hpp), a cone with an edge for every choice of signs.
 //
+// The friction of joints counts likewise, |T| <= u mu_static N(lambda), lambda the joint's own multipliers
+// (held_joints.hpp): exact where statics determines them, else the least u that was found from many slopes of N.
+//
 // For a given u the forces of a place form a cone with two edges, J_n +- u mu_static J_t, so that the question is one
 // of least squares with coefficients that are not negative (Lawson and Hanson); a larger u never makes it harder, so
 // that the least u is found by bisection. Places count as closed within 1e-6 length scales; as in all of equilibrium a
@@ -34,8 +37,7 @@ inline constexpr int most_held_coordinates = 600;
 /// The evaluator's plan has no rows of contacts; its model is the given one with equations of slides.
 class ContactHolding {
  public:
-  /// Throws std::invalid_argument where a joint has friction, whose limits are no cone, or an elastic rope, whose
-  /// tensions are no free forces.
+  /// Throws std::invalid_argument where an elastic rope has friction: its tensions are no free forces.
   explicit ContactHolding(std::shared_ptr<const Model> model);
 
   Evaluator& evaluator() { return *evaluator_; }
