@@ -53,6 +53,7 @@ Groups tie_bodies(const Plan& plan, const Evaluator& evaluator) {
 /// The first group of bodies that nothing holds: their names, and the load on all of them about the ground's origin.
 struct LooseBodies {
   NameList names;
+  bool turns = false;          // a particle alone does not
   double load[3] = {0, 0, 0};  // N, N, N m
   double size = 0;             // the largest part of it
 };
@@ -66,6 +67,7 @@ LooseBodies first_loose(Groups& groups, const StaticSystem& system, const Evalua
     if (first < 0) first = b;
     if (!groups.are_tied(b, first)) continue;
     loose.names.add(evaluator.model().body_name(plan.model_body[at(b)]));
+    loose.turns = loose.turns || b != first || plan.column[at(3 * b + 2)] >= 0;
     double force[3] = {0, 0, 0};
     for (int k = 0; k < 3; ++k) {
       const int c = plan.column[at(3 * b + k)];
@@ -96,9 +98,10 @@ std::optional<Report> find_loose_bodies(const StaticSystem& system, const Evalua
                   {}};
   }
   return Report{Status::refused,
-                fmt::format("{} {} {} free to move along x, along y and to turn: no constraint or spring ties {} to "
-                            "the ground, so every place is an equilibrium",
-                            bodies, loose.names.text(), many ? "are" : "is", them),
+                fmt::format("{} {} {} free to move along x{}: no constraint or spring ties {} to the ground, so every "
+                            "place is an equilibrium",
+                            bodies, loose.names.text(), many ? "are" : "is",
+                            loose.turns ? ", along y and to turn" : " and along y", them),
                 {}};
 }
 

@@ -4,11 +4,11 @@
 
 #include <utility>
 
+#include "catena/analysis/run/thresholds.hpp"
+
 namespace catena {
 namespace {
 
-// A place within this part of the length scale is closed.
-constexpr double closed_place = 1e-6;
 // The edges of a rope double with every pulley.
 constexpr std::size_t most_held_grips = 8;
 
@@ -32,7 +32,7 @@ Report find_cones(const ContactModel& contacts, Evaluator& evaluator, ForceColum
     const ContactPoint& point = contacts.points[k];
     if (point.kind == ContactKind::grip || point.kind == ContactKind::joint) continue;  // with its rope; below
     const Evaluator::ScalarMotion gap = columns.motion(point.element);
-    if (gap.value > closed_place * evaluator.length_scale()) continue;
+    if (gap.value > thresholds::given_depth * evaluator.length_scale()) continue;
     RopeEdges rope{columns.along(gap), {}, {}};
     for (const ContactPoint& grip : contacts.points) {
       if (grip.kind != ContactKind::grip || grip.rope->head != static_cast<int>(k) || !grip.has_friction()) continue;
