@@ -84,6 +84,11 @@ void print_messages(const RunCommand& command, const SceneOutcome& outcome) {
   const bool told = !command.json && !command.csv && !command.quiet && ::isatty(STDOUT_FILENO) == 1;
   if (!told) complain_of_failures(command.scene, outcome);
   for (const AnalysisResult& result : outcome.analyses) {
+    // Tables, reports and JSON have the warnings; rows alone have not.
+    for (const std::string& warning : result.report.warnings) {
+      if (command.csv && !command.quiet)
+        complain(fmt::format("{}: {}: warning: {}\n", command.scene, result.type, warning));
+    }
     if (command.stats) std::fputs(counters_text(result).c_str(), stderr);
   }
 }

@@ -94,6 +94,10 @@ TEST_F(Run, WritesRowsInTheFormatAndUnitsAskedFor) {
 
   const ProgramResult csv = run_catena({"run", path, "--csv", "--units", "length=mm"});
   EXPECT_TRUE(csv.out.starts_with("t,crank.tip.x,crank.tip.y,crank.angle\r\n0,500,0,0\r\n")) << csv.out;
+  // Rows alone have no place for warnings.
+  const ProgramResult noted = run_catena({"run", path, "--csv", "--outputs", "crank.angle,A.fx"});
+  EXPECT_NE(noted.err.find("kinematics: warning: left out A.fx"), std::string::npos) << noted.err;
+  EXPECT_EQ(run_catena({"run", path, "--csv", "-q", "--outputs", "crank.angle,A.fx"}).err, "");
   const ProgramResult table = run_catena({"run", path, "--units", "length=mm,angle=deg"});
   EXPECT_NE(table.out.find("deg"), std::string::npos) << table.out;
 

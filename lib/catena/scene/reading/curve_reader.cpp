@@ -36,9 +36,12 @@ std::vector<NumberValue> SceneReading::pair_list(const JsonValue& value, const E
                                                  const ExpectedDimension& second, const FieldName& field,
                                                  const PairUse& use) {
   std::vector<NumberValue> result;
+  // What was reported counts as known.
+  const auto any_pair = [&] { result.insert(result.end(), 2, NumberValue()); };
   if (is_data_file(value)) {
     const ExpectedDimension dimensions[] = {first, second};
     DataColumns columns = read_data_file(value, dimensions, field, scene, diagnostics, use.beside);
+    if (columns.empty()) any_pair();
     if (columns.smooth > 0 && !columns.empty()) smooth(columns, use, field);
     for (std::size_t row = 0; !columns.empty() && row < columns.values[0].size(); ++row) {
       for (std::size_t c = 0; c < 2; ++c)
@@ -48,12 +51,13 @@ std::vector<NumberValue> SceneReading::pair_list(const JsonValue& value, const E
   }
   if (!value.is(JsonKind::array)) {
     error(value, fmt::format("{} must be a list of pairs; this is {}", field.text(), describe(value.kind())));
+    any_pair();
     return result;
   }
   for (const JsonValue& pair : value.elements()) {
     if (!pair.is(JsonKind::array) || pair.size() != 2) {
       error(pair, fmt::format("{} must be a list of pairs [a, b]", field.text()));
-      result.insert(result.end(), 2, NumberValue());  // what was reported counts as known
+      any_pair();
       continue;
     }
     auto element = pair.elements().begin();
