@@ -56,6 +56,46 @@ TEST(MisspeltKeys, ThatAreNearToNothingHideUnknownNames) {
   EXPECT_NE(outcome.errors[0].message.find("\"things\""), std::string::npos);
 }
 
+/// The only error of a text with a mark must stand there and hold these words.
+void expect_the_error(const std::string& text, const std::string& words) {
+  const MarkedText marked = take_mark(text);
+  const SceneOutcome outcome = run_text(marked.text).outcome;
+  ASSERT_EQ(outcome.errors.size(), 1u) << text << outcome.error_text;
+  EXPECT_NE(outcome.errors[0].message.find(words), std::string::npos) << outcome.error_text;
+  EXPECT_EQ(outcome.errors[0].line, marked.line) << outcome.error_text;
+  EXPECT_EQ(outcome.errors[0].column, marked.column) << outcome.error_text;
+}
+
+// A parameter that is given as a plain number is of the kind that the fields which name it ask for.
+TEST(UnitsOfPlainParameters, AreThoseOfTheFieldsThatNameThem) {
+  const auto scene = [](const std::string& analysis) {
+    return R"({"catena": 1, "parameters": {"d": 0.1, "free": 1}, "bodies": {"a": {"mass": 1, "particle": true,
+      "position": ["d", 0]}}, "analyses": [)" +
+           analysis + "]}";
+  };
+  const std::string sweep = R"({"type": "sweep", "of": {"type": "assemble"}, "over": {"d": )";
+  expect_the_error(scene(R"({"type": "check", "set": {"d": §"3 kg"}})"), "must be a length");
+  expect_the_error(scene(sweep + R"([0.1, §"3 kg"]}})"), "must be a length");
+  expect_the_error(scene(sweep + R"({"from": "1 mm", "to": §"3 deg", "count": 2}}})"), "must be a length");
+  for (const char* fine : {R"({"type": "check", "set": {"d": "3 mm", "free": "3 kg"}})", R"({"type": "check"})"})
+    EXPECT_EQ(run_text(scene(fine)).outcome.exit_code, 0) << fine;
+}
+
+TEST(Measures, NameTheKindThatThereIsNone) {
+  expect_the_error(R"({"catena": 1, "bodies": {"a": {"mass": 1, "particle": true, "fixed": true}}, "analyses": [
+    {"type": "check", "measures": {"x": §{"maximum": "a.x"}}}]})",
+                   "path, field; \"maximum\" is none");
+}
+
+// What has an error already is no shorter curve besides.
+TEST(CurvesOfSprings, ThatCannotBeReadHaveOneError) {
+  const std::string spring = R"({"catena": 1, "bodies": {"a": {"mass": 1, "particle": true, "position": [1, 0]}},
+    "forces": [{"type": "spring_damper", "i": "ground", "j": "a", "curve": )";
+  expect_the_error(spring + R"(§5}], "analyses": [{"type": "check"}]})", "must be a list of pairs");
+  expect_the_error(spring + R"({"file": §"lost.csv"}}], "analyses": [{"type": "check"}]})", "lost.csv");
+  expect_the_error(spring + R"(§[]}], "analyses": [{"type": "check"}]})", "needs at least 2 points");
+}
+
 TEST(Offers, AreWhatIsBuilt) {
   const std::string schema = schema_json();
   EXPECT_EQ(schema.find("for dynamics; equilibrium needs none"), std::string::npos);

@@ -100,6 +100,7 @@ NumberValue NumberReader::read_parameter(const JsonValue& value, const ExpectedD
   }
   dimension_ = parameters_.dimension(parameter);
   if (!check(value, expected, field)) return {};
+  parameters_.note_use(parameter, expected);
   return NumberValue::reference(NumberValue::Kind::parameter, static_cast<std::uint32_t>(parameter), value.offset());
 }
 

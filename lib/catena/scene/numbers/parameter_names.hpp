@@ -22,6 +22,7 @@ class ParameterNames {
     if (added) {
       names_.emplace_back(name);
       dimensions_.emplace_back();
+      asked_.emplace_back();
     }
     return place->second;
   }
@@ -48,10 +49,22 @@ class ParameterNames {
   void set_dimension(int index, const std::optional<Dimension>& dimension) {
     dimensions_[static_cast<std::size_t>(index)] = dimension;
   }
+  /// What a value that takes the place of the given one must be: the parameter's dimension, or what the first field
+  /// that names it asks for. Unknown where only expressions use it.
+  const std::optional<Dimension>& dimension_of_value(int index) const {
+    const auto& own = dimension(index);
+    return own ? own : asked_[static_cast<std::size_t>(index)];
+  }
+  /// A field that names a parameter asks for this; noted while scenes are read.
+  void note_use(int index, const std::optional<Dimension>& dimension) const {
+    auto& asked = asked_[static_cast<std::size_t>(index)];
+    if (!asked) asked = dimension;
+  }
 
  private:
   std::vector<std::string> names_, tables_;
   std::vector<std::optional<Dimension>> dimensions_;
+  mutable std::vector<std::optional<Dimension>> asked_;
   std::map<std::string, int, std::less<>> index_;
 };
 

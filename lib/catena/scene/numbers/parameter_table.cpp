@@ -108,7 +108,7 @@ void ParameterTable::set(const JsonValue& object, ExpressionPool& pool, Diagnost
     // A parameter keeps its unit: fields that refer to it were checked against that.
     Definition& definition = definitions_[static_cast<std::size_t>(index)];
     const std::string owner = "parameter " + in_quotes(member.name());
-    definition.value = reader.read(member.value, names_.dimension(index), {"value", owner});
+    definition.value = reader.read(member.value, names_.dimension_of_value(index), {"value", owner});
     definition.source = &member.value.source();
   }
   find_order(pool, diagnostics);

@@ -98,7 +98,7 @@ void AnalysisReader::read_variable(const JsonMember& member, AnalysisTask& task)
   if (!read_members(member.value, keys, owner, v, diagnostics_)) return;
   DesignVariable variable;
   variable.parameter = index;
-  const std::optional<Dimension>& dimension = parameters_.names().dimension(index);
+  const std::optional<Dimension>& dimension = parameters_.names().dimension_of_value(index);
   const Evaluation<double> evaluation(member.value.source(), scene_.expressions, values_, diagnostics_, tables());
   const auto [least, greatest] = task.table->limits(index, scene_.expressions, values_);
   const auto take = [&](const JsonValue& value, std::string_view key, double otherwise) {

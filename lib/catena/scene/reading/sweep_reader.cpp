@@ -29,7 +29,7 @@ void AnalysisReader::read_range(const JsonMember& member, AnalysisTask& task) {
     return;
   }
   const std::string owner = "sweep over " + in_quotes(member.name());
-  const std::optional<Dimension>& dimension = parameters_.names().dimension(index);
+  const std::optional<Dimension>& dimension = parameters_.names().dimension_of_value(index);
   const Evaluation<double> evaluation(member.value.source(), scene_.expressions, values_, diagnostics_, tables());
   const auto number = [&](const JsonValue& value, std::string_view key) {
     return evaluation(reading_.numbers.read(value, dimension, {key, owner}));
@@ -81,7 +81,7 @@ void AnalysisReader::read_steps(const JsonMember& member, const std::array<JsonV
     error(member.value, fmt::format("{} needs from, to and count", owner));
     return;
   }
-  const std::optional<Dimension>& dimension = parameters_.names().dimension(range.parameter);
+  const std::optional<Dimension>& dimension = parameters_.names().dimension_of_value(range.parameter);
   const Evaluation<double> evaluation(member.value.source(), scene_.expressions, values_, diagnostics_, tables());
   range.kind = SweepRange::Kind::steps;
   range.first = evaluation(reading_.numbers.read(v[0], dimension, {"from", owner}));
