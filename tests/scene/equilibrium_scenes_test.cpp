@@ -245,6 +245,12 @@ TEST(EquilibriumScenes, WhatFloatsIsNamed) {
   EXPECT_EQ(pair.outcome.exit_code, 1);
   EXPECT_EQ(pair.analysis().report.status, Status::refused);
   EXPECT_NE(pair.analysis().report.message.find("\"a\", \"b\""), std::string::npos) << pair.analysis().report.message;
+  EXPECT_NE(pair.analysis().report.message.find("along y and to turn"), std::string::npos);
+  const TextRun speck = settle(R"("bodies": {"speck": {"mass": 1, "particle": true}})", "", "[0, 0]");
+  EXPECT_EQ(speck.analysis().report.status, Status::refused);
+  EXPECT_NE(speck.analysis().report.message.find("\"speck\" is free to move along x and along y: no"),
+            std::string::npos)
+      << speck.analysis().report.message;
   const TextRun falls = settle(R"("bodies": {"stone": {"mass": 1, "inertia": 1}})");
   EXPECT_EQ(falls.analysis().report.status, Status::unbounded);
   EXPECT_NE(falls.analysis().report.message.find("\"stone\""), std::string::npos);

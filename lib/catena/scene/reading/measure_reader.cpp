@@ -129,10 +129,11 @@ std::optional<std::size_t> AnalysisReader::measure_kind(const JsonMember& member
   }
   if (kind) return kind;
   const std::string_view given = object.size() > 0 ? (*object.members().begin()).name() : std::string_view();
-  error(object, fmt::format("measure {} needs one of max, min, range, first, final, mean, rms, integral, at, path, "
-                            "field{}{}",
-                            in_quotes(member.name()), given.empty() ? "" : fmt::format("; {} is none", in_quotes(given)),
-                            NearMiss(given).consider_all(kinds).hint()));
+  error(object,
+        fmt::format("measure {} needs one of max, min, range, first, final, mean, rms, integral, at, path, "
+                    "field{}{}",
+                    in_quotes(member.name()), given.empty() ? "" : fmt::format("; {} is none", in_quotes(given)),
+                    NearMiss(given).consider_all(kinds).hint()));
   return {};
 }
 
