@@ -10,7 +10,8 @@ namespace {
 
 std::string lacks(std::string_view body, bool inertia) {
   if (!inertia) {
-    return fmt::format("body \"{}\" has no mass: dynamics needs the mass and inertia of every body that moves", body);
+    return fmt::format("body \"{}\" has no mass: motions and modes need the mass and inertia of every body that moves",
+                       body);
   }
   return fmt::format(
       "body \"{}\" has a mass but no inertia: give its inertia about the centroid, or make it a particle", body);
