@@ -16,14 +16,14 @@ void MotionChanges::add(const std::vector<ContactEvent>& events) {
 void MotionChanges::add(const std::vector<Jolt>& jolts) {
   for (const Jolt& jolt : jolts) {
     for (const int driver : jolt.drivers) all_.push_back({fmt::format("element {}", driver), "jump", jolt.t, true});
-    if (jolt.drivers.empty()) all_.push_back({"events " + jolt.event, "jump", jolt.t, true});
+    if (jolt.drivers.empty()) all_.push_back({"events " + jolt.event, "jump", jolt.t, true, true});
   }
 }
 
-// What an event does to velocities is not in its record: all of them may.
+// What an event does to velocities is told by its jolt.
 void MotionChanges::add(const std::vector<EventRecord>& records) {
   for (const EventRecord& record : records)
-    all_.push_back({fmt::format("event {}", record.event), "event", record.t, true});
+    all_.push_back({fmt::format("event {}", record.event), "event", record.t, false, true});
 }
 
 void MotionChanges::sort() {

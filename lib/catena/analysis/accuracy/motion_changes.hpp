@@ -19,7 +19,8 @@ struct MotionChange {
   std::string of;  ///< element or event, of this list
   std::string kind;
   double t = 0;
-  bool jolts = false;  ///< velocities jump, not accelerations alone
+  bool jolts = false;    ///< velocities jump, not accelerations alone
+  bool has_row = false;  ///< a row lies at it, with what holds before it
 };
 
 class MotionChanges {

@@ -146,14 +146,14 @@ std::vector<double> SecondRun::digits(const AnalysisReport& report) {
     why_ = fmt::format("no digits are claimed: the run beside it has {} rows, not {}", other->given, rows_.given);
     return {};
   }
-  find_jumps(first, second.changes);
+  find_jumps(first, second.changes, *other);
   compare(*other, second.rounding, common_rounding + rounding_of_change * static_cast<double>(first.most_of_one()));
   errors_.take_places(columns_.info(), motion_.length);
   return MotionAccuracy::claimed(errors_);
 }
 
-// At the start both runs have the same changes, at the same instant.
-void SecondRun::find_jumps(const MotionChanges& first, const MotionChanges& second) {
+// At the start both runs have the same changes, at the same instant; and rows at events lie before what these do.
+void SecondRun::find_jumps(const MotionChanges& first, const MotionChanges& second, const OtherRows& other) {
   std::vector<std::pair<double, std::size_t>> instants;
   for (std::size_t row = 0; row < rows_.t.size(); ++row) instants.emplace_back(rows_.t[row], row);
   std::sort(instants.begin(), instants.end());
@@ -165,6 +165,8 @@ void SecondRun::find_jumps(const MotionChanges& first, const MotionChanges& seco
         factor_of_instants * std::abs(change.t - second.all()[k].t) + part_of_time * std::abs(change.t - motion_.first);
     for (auto at = std::lower_bound(instants.begin(), instants.end(), std::pair{change.t - reach, std::size_t{0}});
          at != instants.end() && at->first <= change.t + reach; ++at) {
+      const bool own_row = change.has_row && at->first == change.t && other.t[at->second] == second.all()[k].t;
+      if (own_row) continue;
       Jump& jump = jumps_[at->second];
       jump = std::max(jump, change.jolts ? Jump::of_rates : Jump::of_forces);
     }

@@ -69,7 +69,7 @@ class SecondRun final : public RowAccuracy {
   enum class Jump : unsigned char { none, of_forces, of_rates };
   void thin_out();
   void compare(const OtherRows& other, const MotionRounding& rounding, double common);
-  void find_jumps(const MotionChanges& first, const MotionChanges& second);
+  void find_jumps(const MotionChanges& first, const MotionChanges& second, const OtherRows& other);
   bool is_judged(UnitKind unit, std::size_t row) const;
   void take_motion(const Snapshot& snapshot);
 
