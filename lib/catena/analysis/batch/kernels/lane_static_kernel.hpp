@@ -3,6 +3,7 @@
 #pragma once
 
 #include "catena/analysis/batch/kernels/lane_energy.hpp"
+#include "catena/analysis/batch/kernels/lane_twin.hpp"
 
 namespace catena {
 
@@ -299,28 +300,32 @@ void LaneStaticKernel<V>::soften() {
   tell(rest_softest, P(1) / larger(trace, P(smallest)));
 }
 
-/// Calls f(kernels) for the packs in use.
+/// Calls f(kernels) for the packs in use, by twos as for_each_pack() does.
 template <class V, class F>
 void for_each_static_pack(const LaneStaticJob& job, F&& f) {
-  for (int lane = 0; lane < job.equations.lanes; lane += static_cast<int>(V::size)) {
-    LaneStaticKernel<V> kernel(job, lane);
+  int lane = 0;
+  for (; job.equations.lanes - lane > static_cast<int>(V::size); lane += static_cast<int>(Twin<V>::size)) {
+    LaneStaticKernel<Twin<V>> kernel(job, lane);
     f(kernel);
   }
+  if (lane >= job.equations.lanes) return;
+  LaneStaticKernel<V> kernel(job, lane);
+  f(kernel);
 }
 
 /// The kernels in packs V: of the instruction set that the including file is compiled for.
 template <class V>
 constexpr LaneStaticKernels make_lane_static_kernels() {
-  using K = LaneStaticKernel<V>;
-  return {[](const LaneStaticJob& job) { for_each_static_pack<V>(job, [](K& k) { k.look(); }); },
-          [](const LaneStaticJob& job) { for_each_static_pack<V>(job, [](K& k) { k.weigh(); }); },
-          [](const LaneStaticJob& job) { for_each_static_pack<V>(job, [](K& k) { k.reflect(); }); },
-          [](const LaneStaticJob& job) { for_each_static_pack<V>(job, [](K& k) { k.balance(); }); },
-          [](const LaneStaticJob& job) { for_each_static_pack<V>(job, [](K& k) { k.curve(); }); },
-          [](const LaneStaticJob& job) { for_each_static_pack<V>(job, [](K& k) { k.stiffen(); }); },
-          [](const LaneStaticJob& job) { for_each_static_pack<V>(job, [](K& k) { k.step(); }); },
-          [](const LaneStaticJob& job) { for_each_static_pack<V>(job, [](K& k) { k.correct(); }); },
-          [](const LaneStaticJob& job) { for_each_static_pack<V>(job, [](K& k) { k.soften(); }); }};
+  using Job = const LaneStaticJob&;
+  return {[](Job job) { for_each_static_pack<V>(job, [](auto& k) { k.look(); }); },
+          [](Job job) { for_each_static_pack<V>(job, [](auto& k) { k.weigh(); }); },
+          [](Job job) { for_each_static_pack<V>(job, [](auto& k) { k.reflect(); }); },
+          [](Job job) { for_each_static_pack<V>(job, [](auto& k) { k.balance(); }); },
+          [](Job job) { for_each_static_pack<V>(job, [](auto& k) { k.curve(); }); },
+          [](Job job) { for_each_static_pack<V>(job, [](auto& k) { k.stiffen(); }); },
+          [](Job job) { for_each_static_pack<V>(job, [](auto& k) { k.step(); }); },
+          [](Job job) { for_each_static_pack<V>(job, [](auto& k) { k.correct(); }); },
+          [](Job job) { for_each_static_pack<V>(job, [](auto& k) { k.soften(); }); }};
 }
 
 }  // namespace catena
