@@ -48,6 +48,24 @@ TEST(ImpulseEvents, StrikeABallAgainstTheFloor) {
   EXPECT_NEAR(run.last("energy.balance"), 0, 1e-9);
 }
 
+// A scene of nothing but bodies: the work of a blow counts in the balance of energy there, too.
+TEST(ImpulseEvents, StrikeAMassThatNothingElseActsOn) {
+  for (const std::string kind : {R"("particle": true)", R"("inertia": 0.3)"}) {
+    const TextRun run = run_text(R"({"catena": 1, "gravity": [0, -10],
+      "bodies": {"ball": {"mass": 2, "velocity": [1, 0], )" +
+                                 kind + R"(}},
+      "outputs": ["ball.y", "ball.vy", "energy.kinetic", "energy.balance", "energy.dissipated"],
+      "analyses": [{"type": "dynamics", "at": [0.05, 0.15], "tolerance": 1e-11, )" +
+                                 event(R"({"i": "ball", "value": [0, 6]})") + "}]}");
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+    EXPECT_NEAR(run.last("ball.vy"), 3 - 1.5, 1e-12);
+    EXPECT_NEAR(run.last("ball.y"), 3 * 0.05 - 5 * 0.15 * 0.15, 1e-12);
+    EXPECT_NEAR(run.last("energy.kinetic"), 1 + 1.5 * 1.5, 1e-11);
+    EXPECT_NEAR(run.last("energy.balance"), 0, 1e-11);
+    EXPECT_NEAR(run.last("energy.dissipated"), 0, 1e-11);
+  }
+}
+
 // Off the centre of a free body; the value follows parameters.
 TEST(ImpulseEvents, StrikeAFreeBodyOffItsCentre) {
   const TextRun run = run_text(R"({"catena": 1, "parameters": {"blow": 3},

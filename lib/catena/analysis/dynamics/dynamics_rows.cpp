@@ -221,7 +221,7 @@ Report Dynamics::find_events(double from, RowObserver& observer) {
 WorkSoFar Dynamics::work_so_far() const {
   if (!work_.account) return {};
   const Snapshot now = snapshot(t_, row_.y, {});
-  return {now.work, now.dissipated, work_.initial_energy, total_energy(now), row_.driver_work};
+  return {now.work, now.dissipated, work_.initial_energy, total_energy(now), row_.driver_work, true};
 }
 
 }  // namespace catena

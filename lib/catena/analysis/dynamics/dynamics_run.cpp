@@ -140,7 +140,7 @@ Report Dynamics::set_out() {
     return {};
   }
   work_.initial_energy = total_energy(snapshot(t_, row_.y, {}));
-  if (!work_.earlier.by_driver.empty()) {
+  if (work_.earlier.summed_up) {
     work_.earlier.dissipated += work_.earlier.energy - work_.initial_energy;
     work_.initial_energy = work_.earlier.initial_energy;
   }

@@ -21,7 +21,8 @@ namespace catena {
 struct WorkSoFar {
   double supplied = 0, dissipated = 0;  ///< by loads and drivers; by damping
   double initial_energy = 0, energy = 0;
-  std::vector<double> by_driver;  ///< by number of the element; empty: nothing was summed up
+  std::vector<double> by_driver;  ///< by number of the element
+  bool summed_up = false;         ///< whether it was
 };
 
 /// Quantities that an integrator has observed along the motion.
