@@ -112,6 +112,7 @@ class Dynamics {
   void look_for_singularity(double t);
   std::string near_branches();
   std::optional<SingularPoint> dead_point_ahead();
+  std::optional<Report> lock_up_ahead();
   double time_to_dead_point(std::span<const double> w, std::vector<double>& q);
   void give_row_at_lock_up(RowObserver& observer);
   bool know_singular_start();
@@ -130,6 +131,7 @@ class Dynamics {
   void take_note_of_start();
   void take_note_of_jump(std::span<const double> before);
   Report check_balance();
+  Report judge_balance(double t);
   Report check_redundant_rows();
   void remember();
   Report give_row(double t, RowObserver& observer);

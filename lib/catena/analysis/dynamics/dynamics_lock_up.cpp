@@ -75,6 +75,13 @@ std::optional<SingularPoint> Dynamics::dead_point_ahead() {
   return point;
 }
 
+std::optional<Report> Dynamics::lock_up_ahead() {
+  std::optional<SingularPoint> point = dead_point_ahead();
+  if (!point) return {};
+  run_.singular_points.push_back(std::move(*point));
+  return run_.singular_points.back().report_lock_up(*model_);
+}
+
 // Moves q, where the integrator is, to the dead point ahead, and returns the time until then; w: the combination of
 // rows that vanishes there.
 double Dynamics::time_to_dead_point(std::span<const double> w, std::vector<double>& q) {

@@ -139,10 +139,7 @@ Report Dynamics::check_pace(double last) {
     pace_.t = t_;
   }
   if (!used_up && !hopeless) return report;
-  if (std::optional<SingularPoint> point = dead_point_ahead()) {
-    run_.singular_points.push_back(std::move(*point));
-    return run_.singular_points.back().report_lock_up(*model_);
-  }
+  if (std::optional<Report> locked = lock_up_ahead()) return *locked;
   // At a hopeless pace the steps are too small; otherwise the bound was reached.
   report.status = hopeless ? Status::step_too_small : Status::not_converged;
   std::string culprit;

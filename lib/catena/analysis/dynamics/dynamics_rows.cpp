@@ -62,7 +62,7 @@ Report Dynamics::give_row(double t, RowObserver& observer) {
   if (!state) return stuck();
   if (work_.balance && t != integrator_->time() && equations_.smallest_pivot_ratio() < dependence::singular_passage) {
     work_.balance->observe(*state);
-    if (Report balance = work_.balance->check(t, equations_.applied_forces()); !balance.ok()) return balance;
+    if (Report balance = judge_balance(t); !balance.ok()) return balance;
   }
   return observer.observe(*state) ? Report{} : cancelled(t);
 }
@@ -145,10 +145,7 @@ Report Dynamics::stuck() {
   Report report;
   // Steps that end beyond the place where a law ceases to have a value fail, however short they are.
   const int lost = evaluator_.law_without_value();
-  if (std::optional<SingularPoint> point = dead_point_ahead()) {
-    run_.singular_points.push_back(std::move(*point));
-    return run_.singular_points.back().report_lock_up(*model_);
-  }
+  if (std::optional<Report> locked = lock_up_ahead()) return *locked;
   // An element that is undefined in kinematics is undefined here as well.
   evaluator_.set_time(integrator_->time());
   evaluator_.set_configuration(integrator_->state().first(q_.size()));
@@ -199,7 +196,7 @@ Report Dynamics::find_events(double from, RowObserver& observer) {
       if (!end) return stuck();
       if (work_.balance) {
         work_.balance->observe(*end);
-        if (Report balance = work_.balance->check(found->t, equations_.applied_forces()); !balance.ok()) return balance;
+        if (Report balance = judge_balance(found->t); !balance.ok()) return balance;
       }
       run_.stopped_by = found->event;
       t_ = found->t;

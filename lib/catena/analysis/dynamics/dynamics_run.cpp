@@ -103,7 +103,15 @@ void Dynamics::look_ahead_at_laws() {
 Report Dynamics::check_balance() {
   if (!work_.balance || (evaluator_.counters.steps % steps_between_checks != 0 && t_ < run_.grid.last())) return {};
   work_.balance->observe(snapshot(t_, integrator_->state(), {}));
-  return work_.balance->check(t_, equations_.applied_forces());
+  return judge_balance(t_);
+}
+
+// Right before a dead point energies grow without bound, and with them what rounding leaves of their balance.
+Report Dynamics::judge_balance(double t) {
+  Report balance = work_.balance->check(t, equations_.applied_forces());
+  if (balance.ok()) return balance;
+  if (std::optional<Report> locked = lock_up_ahead()) return *locked;
+  return balance;
 }
 
 // Puts the integrator where the motion begins, or where it paused.

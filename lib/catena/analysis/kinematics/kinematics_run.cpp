@@ -134,12 +134,14 @@ Report Kinematics::give_row(const Needs& needs, bool check_rates) {
 }
 
 void Kinematics::end_run(const Report& outcome, const Needs& needs, AnalysisReport& report) {
-  if (outcome.status == Status::lock_up) give_row_at_lock_up(needs, *run_.observer);
+  const bool locked = outcome.status == Status::lock_up;
+  if (locked) give_row_at_lock_up(needs, *run_.observer);
   run_ = {.interpolated = run_.interpolated};
   report.status = outcome.status;
   report.message = outcome.message;
   report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
-  if (std::string doubt = work_.doubt(); !doubt.empty()) report.warnings.push_back(std::move(doubt));
+  // At a dead point work is not known, and the row there says so.
+  if (std::string doubt = work_.doubt(); !doubt.empty() && !locked) report.warnings.push_back(std::move(doubt));
   reactions_.add_remarks(report.warnings);
   report.counters = evaluator_.counters;
 }

@@ -55,6 +55,8 @@ Report Kinematics::sum_up_stretch(double t, double& error, std::vector<std::stri
 // To t, from an instant whose rates are known, with the work done on the way.
 Report Kinematics::move_and_sum_up(double t) {
   Report total;
+  const double start = now_.t;
+  const std::vector<double> places = now_.q;
   std::vector<double> ends;
   for (const auto& function : model_->functions) {
     const std::vector<double> breaks = function.breakpoints(std::min(now_.t, t), std::max(now_.t, t));
@@ -70,7 +72,19 @@ Report Kinematics::move_and_sum_up(double t) {
       const double to = count > 1 ? from + (end - from) / count : end;
       if (to == from) break;
       double error = 0;
-      if (Report summed = sum_up_stretch(to, error, total.warnings); !summed.ok()) return summed;
+      if (Report summed = sum_up_stretch(to, error, total.warnings); !summed.ok()) {
+        // Right before a dead point rates cannot be told from rounding: places alone lead on to it, from further away.
+        if (summed.status != Status::singular) return summed;
+        if (stretch_.empty()) {
+          now_.t = start;
+          now_.q = places;
+          now_.has_velocity = now_.has_acceleration = false;
+          predictor_.clear();
+        }
+        if (Report moved = follow_to(t); !moved.ok()) return moved;
+        std::optional<SingularPoint> point = dead_point_here();
+        return point ? lock_up(std::move(*point)) : summed;
+      }
       const double allowed = work_.allowed_error(snapshot());
       // Repeated in shorter stretches; but not across a singular configuration, which is passed only once.
       if (error > allowed && work_.can_be_shorter() && stretch_.empty()) {
