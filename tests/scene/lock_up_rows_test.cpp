@@ -80,6 +80,66 @@ TEST(LockUpRows, StandAtTheInstantOfTheLockUp) {
   }
 }
 
+// Two rods that are pulled straight, whose energies and work grow without bound on the way there: it is the dead point
+// that is told, whatever is looked at, and rows before it have their work.
+TEST(LockUpRows, WhereWorkIsSummedUp) {
+  const std::string bodies = R"({"catena": 1, "bodies": {
+      "c": {"rod": {"from": [0, 0], "to": [0.18, 0.24]}, "mass": 1},
+      "r": {"rod": {"from": [0.18, 0.24], "to": [0.5, 0]}, "mass": 1}},
+    "constraints": [{"type": "revolute", "i": "ground", "j": "c.from"}, {"type": "revolute", "i": "c.to", "j": "r.from"},
+      {"type": "absolute_y", "i": "r.to", "value": 0}],
+    "drivers": [{"type": "absolute_x", "name": "pull", "i": "r.to", "value": {"polynomial": [0.5, )";
+  for (const std::string type : {"inverse_dynamics", "dynamics"}) {
+    for (const double rate : {0.01, 0.1, 0.3, 1.0, 7.0}) {
+      for (const std::string outputs : {R"("pull.work")", R"("energy")", R"("pull.load")"}) {
+        SCOPED_TRACE(type + " " + outputs + " " + std::to_string(rate));
+        const double end = 0.2 / rate;
+        const TextRun run = run_text(bodies + std::to_string(rate) + R"(]}}], "outputs": ["c.angle", "pull.value", )" +
+                                     outputs + R"(], "analyses": [{"type": ")" + type + R"(", "until": )" +
+                                     std::to_string(2 * end) + R"(, "every": )" + std::to_string(end / 4) + "}]}");
+        EXPECT_EQ(run.analysis().report.status, Status::lock_up) << run.analysis().report.message;
+        EXPECT_NEAR(run.last("t"), end, 1e-8 * end);
+        EXPECT_NEAR(run.last("pull.value"), 0.7, 1e-8);
+        EXPECT_NEAR(run.last("c.angle"), 0, 1e-5);
+        EXPECT_EQ(lock_up_of(run).driver, "pull");
+        if (outputs != R"("pull.work")") continue;
+        // All work is kinetic energy: of the first rod, and of the second about its end on the rail.
+        const std::vector<double> work = run.column("pull.work"), x = run.column("pull.value");
+        EXPECT_TRUE(std::isnan(work.back()));
+        const auto kinetic = [&](double reach) {
+          const double first = std::acos((0.09 + reach * reach - 0.16) / (0.6 * reach));
+          const double second = -std::asin(0.3 * std::sin(first) / 0.4);
+          // reach = 0.3 cos first + 0.4 cos second, and 0.3 sin first + 0.4 sin second = 0.
+          const double det = 0.3 * 0.4 * std::sin(second - first);
+          const double turn = rate * 0.4 * std::cos(second) / det, swing = -rate * 0.3 * std::cos(first) / det;
+          const double vx = -0.3 * std::sin(first) * turn - 0.2 * std::sin(second) * swing;
+          const double vy = 0.3 * std::cos(first) * turn + 0.2 * std::cos(second) * swing;
+          return 0.09 / 6 * turn * turn + (vx * vx + vy * vy) / 2 + 0.16 / 24 * swing * swing;
+        };
+        for (std::size_t k = 0; k + 1 < work.size(); ++k)
+          EXPECT_NEAR(work[k], kinetic(x[k]) - kinetic(0.5), 1e-7 * rate * rate) << k;
+      }
+    }
+  }
+}
+
+// A driver that rests where the mechanism is singular: it is told with the value that it has there, not beside it.
+TEST(LockUpRows, WhereTheDriverRests) {
+  for (const double speed : {0.5, 2.0, 30.0}) {
+    const TextRun run =
+        run_text(R"({"catena": 1, "bodies": {)" + ball("a", 1, 0) + R"(}, "constraints": [)" + ring("a", 1) +
+                 fmt::format(R"(], "drivers": [{{"type": "absolute_x", "name": "push",
+      "i": "a", "value": {{"harmonic": {{"amplitude": 1, "omega": {0:.17g}}}}}}}], "outputs": ["a.y"],
+      "analyses": [{{"type": "kinematics", "until": {1:.17g}, "every": {1:.17g}}}]}})",
+                             speed, 2.4 / speed));
+    EXPECT_EQ(run.analysis().report.status, Status::ok) << run.analysis().report.message;
+    EXPECT_NEAR(lock_up_of(run).t, std::acos(0.0) / speed, 1e-7 / speed);
+    EXPECT_EQ(lock_up_of(run).driver, "push");
+    EXPECT_NEAR(lock_up_of(run).value, 1, 1e-12);
+    EXPECT_NEAR(run.last("a.y"), std::cos(2.4), 1e-8);
+  }
+}
+
 // In a phase that an event began, and with an event on the way.
 TEST(LockUpRows, AfterAnEvent) {
   for (const std::string type : {"kinematics", "dynamics"}) {

@@ -120,6 +120,8 @@ SingularPoint Kinematics::look_at(const Crossing& crossing, double t) {
   point = find_branches(evaluator_, q, {}, start_dependence, Drivers::about_to_move);
   point.kind = SingularPoint::Kind::rest;
   point.t = t;
+  evaluator_.set_time(t);
+  if (point.driver >= 0) point.driver_value = evaluator_.element_value(point.driver).f;
   // The branch that goes on as before comes first.
   const double rate = solver_.rate_size(qd);
   std::size_t before = 0;
