@@ -315,6 +315,14 @@ const BadScene analyses[] = {
      two_bodies(R"("outputs": [§"rod.tip.x"], "analyses": [{"type": "assemble"}, {"type": "kinematics"}])"), "rod"},
     {"PathParameter", analysis(R"({"type": "path", "parameter": §"m", "to": 1})"), "unknown parameter"},
     {"PathWithout", analysis(R"(§{"type": "path", "to": 1})"), "needs \"parameter\""},
+    {"PathToUnit", analysis(R"({"type": "path", "parameter": "l", "to": §"3 N"})"), "must be a length"},
+    {"EventValueUnit", analysis(R"({"type": "dynamics", "events": [{"when": "crank.angle", "value": §"3 mm"}]})"),
+     "must be an angle"},
+    {"EventValueUnitOfParameter", analysis(R"({"type": "kinematics", "events": [{"when": "rod.vx", "value": §"l"}]})"),
+     "must be a velocity"},
+    {"EventBlockCountUnit", analysis(R"({"type": "dynamics", "replicate": [
+       {"count": §"3 mm", "events": [{"when": "crank.angle"}]}]})"),
+     "must be a"},
     {"EventWithout", analysis(R"({"type": "dynamics", "events": [§{"name": "a"}]})"), "needs \"when\""},
     {"EventColumn", analysis(R"({"type": "dynamics", "events": [{"when": §"crank.q"}]})"), "unknown column"},
 };

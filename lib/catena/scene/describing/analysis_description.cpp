@@ -117,7 +117,7 @@ std::vector<AnalysisDescription> describe_all() {
            {outputs,
             at_time,
             parameter,
-            {"to", KeyKind::number, "last value of the parameter", UnitKind::none, Domain::any, {}, true},
+            {"to", KeyKind::number, "last value of the parameter, in its unit", UnitKind::own, Domain::any, {}, true},
             {"max_steps", KeyKind::whole, "largest number of steps (default 500)"},
             {"arc", KeyKind::number,
              "longest step: travel of the bodies in parts of the extent and change of the parameter in parts of its "
@@ -224,7 +224,8 @@ std::span<const AnalysisKey> event_keys() {
   static const Keys keys{
       {"name", KeyKind::word, "its name in the results"},
       {"when", KeyKind::columns, "the column, or the expression of columns, that is watched", {}, {}, {}, true},
-      {"value", KeyKind::number, "the value at which the event happens (default 0)", UnitKind::none, Domain::any},
+      {"value", KeyKind::number, "the value at which the event happens, in the unit of the column (default 0)",
+       UnitKind::own, Domain::any},
       {"direction", KeyKind::word, "rising, falling or both", {}, {}, {"any", "up", "down"}},
       {"action", KeyKind::word, "what happens then", {}, {}, {"record", "stop", "release", "engage", "impulse"}},
       {"element", KeyKind::word, "the element that is released or engaged"},

@@ -92,7 +92,7 @@ void SceneChecks::check_measure(const PlacedMeasure& measure) {
 void SceneChecks::check_event(const EventRequest& event) {
   // In a repeated block a place is reported once.
   for (const JsonValue& place :
-       {event.place, event.element_place, event.impulse ? event.impulse->place : JsonValue()}) {
+       {event.place, event.value_place, event.element_place, event.impulse ? event.impulse->place : JsonValue()}) {
     if (place && diagnostics_.reported(place.source(), place.offset())) return;
   }
   check_columns({{event.column, event.place}});
@@ -103,6 +103,7 @@ void SceneChecks::check_event(const EventRequest& event) {
                        in_quotes(event.column), found.size(), in_quotes(found.front().info.name)),
            diagnostics_);
   }
+  if (found.size() == 1) check_event_value(event, found.front().info);
   if (event.impulse) check_impulse(*event.impulse);
   if (event.element.empty()) return;
   const int element = model_.find_element(event.element);
@@ -124,6 +125,17 @@ void SceneChecks::check_event(const EventRequest& event) {
                     in_quotes(event.element)),
         diagnostics_);
   }
+}
+
+// The unit of a formula is not known.
+void SceneChecks::check_event_value(const EventRequest& event, const ColumnInfo& column) {
+  if (!event.value_dimension || column.unit == UnitKind::own) return;
+  const Dimension wanted = dimension_of(column.unit);
+  if (*event.value_dimension == wanted) return;
+  report(event.value_place,
+         fmt::format("\"value\" of an event that watches {} must be {}, for example {}; this is {}",
+                     in_quotes(event.column), describe(wanted), example(wanted), describe(*event.value_dimension)),
+         diagnostics_);
 }
 
 void SceneChecks::check_impulse(const EventRequest::Impulse& impulse) {

@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "catena/base/row_sink.hpp"
 #include "catena/model/model.hpp"
 #include "catena/scene/json/diagnostic.hpp"
 #include "catena/scene/reading/analysis_task.hpp"
@@ -25,6 +26,7 @@ class SceneChecks {
 
  private:
   void check_event(const EventRequest& event);
+  void check_event_value(const EventRequest& event, const ColumnInfo& column);
   void check_impulse(const EventRequest::Impulse& impulse);
   void check_measure(const PlacedMeasure& measure);
 

@@ -72,9 +72,7 @@ double AnalysisReader::evaluated(const NumberValue& read, const JsonValue& value
 
 double AnalysisReader::number(const AnalysisKey& key, const JsonValue& value, const FieldName& field,
                               TaskNumber place) {
-  const ExpectedDimension unit = key.unit == UnitKind::none && key.domain == Domain::any
-                                     ? ExpectedDimension()
-                                     : ExpectedDimension(dimension_of(key.unit));
+  const ExpectedDimension unit = key.unit == UnitKind::own ? dimension_of_parameter_ : dimension_of(key.unit);
   place.key = &key;
   const double result = evaluated(reading_.numbers.read(value, unit, field), value, std::move(place));
   if (std::isnan(result)) return result;
@@ -123,6 +121,12 @@ int AnalysisReader::read_parameter(const JsonValue& value, const FieldName& fiel
   return index;
 }
 
+void AnalysisReader::read_parameter_key(const AnalysisKey& key, const JsonValue& value, AnalysisTask& task) {
+  const int index = read_parameter(value, {key.name, task.type()});
+  task.numbers[key.name] = index;
+  if (index >= 0) dimension_of_parameter_ = parameters_.names().dimension(index);
+}
+
 void AnalysisReader::read_key(const AnalysisKey& key, const JsonValue& value, AnalysisTask& task) {
   const FieldName field{key.name, task.type()};
   switch (key.kind) {
@@ -146,7 +150,7 @@ void AnalysisReader::read_key(const AnalysisKey& key, const JsonValue& value, An
       task.outputs = names(value, field, task.parameters);
       break;
     case KeyKind::parameter:
-      task.numbers[key.name] = read_parameter(value, field);
+      read_parameter_key(key, value, task);
       break;
     case KeyKind::set:
     case KeyKind::impulse:  // of events
@@ -222,6 +226,7 @@ std::optional<AnalysisTask> AnalysisReader::read(const JsonValue& object, const 
   }
   read_parameters(set, task);
   values_ = task.parameters;
+  dimension_of_parameter_.reset();
   bool own_outputs = false;
   const bool has_rows_of_inner = task.type() == "sensitivity";
   for (std::size_t k = 0; k < keys.size(); ++k) {

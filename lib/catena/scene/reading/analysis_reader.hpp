@@ -27,6 +27,7 @@ class AnalysisReader {
   void read_key(const AnalysisKey& key, const JsonValue& value, AnalysisTask& task);
   void read_times(const AnalysisKey& key, const JsonValue& value, AnalysisTask& task);
   int read_parameter(const JsonValue& value, const FieldName& field);
+  void read_parameter_key(const AnalysisKey& key, const JsonValue& value, AnalysisTask& task);
   double number(const AnalysisKey& key, const JsonValue& value, const FieldName& field, TaskNumber place);
   double evaluated(const NumberValue& read, const JsonValue& value, TaskNumber place);
   void read_parameters(const JsonValue& set, AnalysisTask& task);
@@ -80,6 +81,7 @@ class AnalysisReader {
   std::vector<TaskNumber> varying_;      // of that analysis
   std::vector<std::string> loop_names_;  // of the blocks around what is read, outermost first
   std::vector<double> loop_values_;
+  ExpectedDimension dimension_of_parameter_;  // of the one that the analysis changes, where it is known
   JsonValue scene_outputs_;
 };
 

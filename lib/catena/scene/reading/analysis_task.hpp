@@ -18,10 +18,11 @@ namespace catena {
 struct EventRequest {
   std::string name, column;
   double value = 0;
-  int direction = 0;  ///< position among the words of the key: any, up, down
-  int action = 0;     ///< record, stop, release, engage
+  std::optional<Dimension> value_dimension;  ///< of a quantity, or of a parameter that has one
+  int direction = 0;                         ///< position among the words of the key: any, up, down
+  int action = 0;                            ///< record, stop, release, engage
   std::string element;
-  JsonValue place, element_place;  ///< of the column; of the element
+  JsonValue place, value_place, element_place;  ///< of the column; of the value; of the element
   /// An impulse, if the event has one: on a named point of a body, or on one in its own coordinates.
   struct Impulse {
     std::string body, point;

@@ -148,9 +148,12 @@ void AnalysisReader::read_event(const JsonValue& object, AnalysisTask& task) {
   if (v[1]) event.column = column_name(v[1], text(1), {loop_names_, loop_values_}, scene_, diagnostics_);
   if (!v[1]) error(object, "an event needs \"when\", the column that is watched");
   event.place = v[1];
-  if (v[2])
+  if (v[2]) {
     event.value =
         number(words[2], v[2], {keys[2], "an event"}, {.place = TaskNumber::Place::event, .item = task.events.size()});
+    event.value_dimension = reading_.numbers.dimension();
+    event.value_place = v[2];
+  }
   if (v[3]) event.direction = read_word(v[3], words[3].words, {keys[3], "an event"}, diagnostics_);
   if (v[4]) event.action = read_word(v[4], words[4].words, {keys[4], "an event"}, diagnostics_);
   const bool strikes = event.action >= 0 && words[4].words[static_cast<std::size_t>(event.action)] == "impulse";
