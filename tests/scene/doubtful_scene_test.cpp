@@ -35,6 +35,45 @@ TEST(DoubtfulScene, DistancesThatVanish) {
             0);
 }
 
+// A ball on a pin's arm, with a force that is meant otherwise than its keys say.
+TEST(DoubtfulScene, KeysWithoutEffect) {
+  const auto run_with = [](const std::string& force) {
+    return run_text(R"({"catena": 1, "bodies": {"b": {"mass": 1, "inertia": 1, "position": [0, 1]}},
+      "constraints": [{"type": "revolute", "name": "pin", "i": "ground", "j": "b", "at": [0, 0]}],
+      "forces": [{"name": "F", )" +
+                    force + R"(}], "analyses": [{"type": "check"}, {"type": "dynamics", "at": [0, 0.1]}]})");
+  };
+  const std::string floor = R"("type": "contact", "i": "ground", "j": "b",
+                               "curve": {"line": {"point": [0, -5], "axis": [1, 0]}})";
+  const std::string bound = R"("type": "stop", "column": "pin.angle", "max": 1)";
+  const std::string rub = R"("type": "friction", "joint": "pin", "radius": 0.1, "mu": 0.1)";
+  const std::pair<std::string, const char*> doubtful[] = {
+      {floor + R"(, "c": 5)", "\"c\" has no effect without \"k\""},
+      {floor + R"(, "exponent": 1.5)", "\"exponent\" has no effect without \"k\""},
+      {floor + R"(, "k": 1e5, "restitution": 0.5)", "\"restitution\" has no effect beside \"k\""},
+      {floor + R"(, "mu": 0.1, "mu_static": 0.2, "vs": 0.01)", "\"mu_static\" has no effect beside \"vs\""},
+      {bound + R"(, "c": 5)", "\"c\" has no effect without \"k\""},
+      {bound + R"(, "k": 5, "restitution": 0.5)", "\"restitution\" has no effect beside \"k\""},
+      {rub + R"(, "length": 0.2)", "\"length\" has no effect"},
+      {rub + R"(, "mu_static": 0.2, "vs": 0.01)", "\"mu_static\" has no effect beside \"vs\""}};
+  for (const auto& [force, expected] : doubtful) {
+    const TextRun run = run_with(force);
+    ASSERT_EQ(run.outcome.exit_code, 0) << force << run.outcome.error_text;
+    for (std::size_t k : {0u, 1u}) {
+      const std::vector<std::string>& warnings = run.analysis(k).report.warnings;
+      ASSERT_EQ(warnings.size(), 1U) << force;
+      EXPECT_NE(warnings[0].find(expected), std::string::npos) << warnings[0];
+      EXPECT_NE(warnings[0].find("\"F\""), std::string::npos) << warnings[0];
+    }
+  }
+  for (const std::string& meant :
+       {floor + R"(, "k": 1e5, "c": 5, "exponent": 1.5, "mu": 0.1, "mu_static": 0.2)",
+        floor + R"(, "restitution": 0.5)", bound + R"(, "k": 5, "c": 5)", rub + R"(, "vs": 0.01)"}) {
+    const TextRun run = run_with(meant);
+    for (std::size_t k : {0u, 1u}) EXPECT_TRUE(run.analysis(k).report.warnings.empty()) << meant;
+  }
+}
+
 // Two wheels on bearings 0.3 m apart.
 TextRun two_gears(const std::string& radii) {
   return run_text(R"({"catena": 1, "bodies": {"a": {}, "b": {"position": [0.3, 0]}},

@@ -15,6 +15,7 @@
 #include "catena/results/analysis_result.hpp"
 #include "catena/results/pose_sink.hpp"
 #include "catena/scene/judging/gear_check.hpp"
+#include "catena/scene/judging/idle_keys.hpp"
 #include "catena/scene/judging/rope_check.hpp"
 #include "catena/scene/models/scene_models.hpp"
 #include "catena/scene/reading/analysis_task.hpp"
@@ -150,6 +151,7 @@ void run_over_time(AnalysisContext& context, AnalysisResult& result, Analysis& a
   for (std::string& doubt : gears_that_do_not_fit(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
   if (begins_as_given) {
     for (std::string& doubt : ropes_in_loops(model)) report.warnings.push_back(std::move(doubt));
+    for (std::string& doubt : keys_without_effect(model)) report.warnings.push_back(std::move(doubt));
   }
   context.state = analysis.state();
   result.report = std::move(report);

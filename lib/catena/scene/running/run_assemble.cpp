@@ -193,6 +193,7 @@ void run_check(AnalysisContext& context, AnalysisResult& result) {
     check_velocities(analysis, model, report);
     for (std::string& doubt : gears_that_do_not_fit(analysis.evaluator())) report.warnings.push_back(std::move(doubt));
     for (std::string& doubt : ropes_in_loops(*context.model)) report.warnings.push_back(std::move(doubt));
+    for (std::string& doubt : keys_without_effect(*context.model)) report.warnings.push_back(std::move(doubt));
   }
   report.counters = analysis.evaluator().counters;
   report.seconds = timer.seconds();
