@@ -17,6 +17,7 @@ namespace catena {
 /// ContactLoad with derivatives.
 struct DesignContactLoad {
   DesignScalar force, friction, slip;
+  bool glides = false;
 };
 
 /// What contacts do in a motion, by number of the element; empty where there are none.

@@ -14,6 +14,7 @@
 #include <optional>
 #include <vector>
 
+#include "catena/columns/contact_values.hpp"
 #include "catena/columns/energy_of.hpp"
 #include "catena/columns/own_columns.hpp"
 #include "catena/columns/reaction.hpp"
@@ -68,14 +69,12 @@ class RowValues {
       case ColumnKind::multiplier:
         return reactions(column).multiplier[column.detail];
       case ColumnKind::push:
-        if (const auto* load = s_.contact(column.index)) return S(load->force);
-        return S(0.0) - reactions(column).multiplier[0];
+        return push(column);
       case ColumnKind::friction:
         if (const auto* load = s_.contact(column.index)) return S(load->friction);
         return S(0.0);
       case ColumnKind::slip:
-        if (const auto* load = s_.contact(column.index)) return S(load->slip);
-        return S(0.0);
+        return slip_now(s_, column.index);
       case ColumnKind::gap:
         return s_.measured(column.index).f;
       case ColumnKind::way:
@@ -185,7 +184,9 @@ class RowValues {
   }
 
   const BasicElementReactions<S>& reactions(const Column& column) {
-    if (column.index != reactions_of_) reactions_ = s_.reactions(reactions_of_ = column.index);
+    if (column.index == reactions_of_) return reactions_;
+    reactions_ = s_.reactions(reactions_of_ = column.index);
+    take_push(s_, column.index, reactions_);
     return reactions_;
   }
   Vec2<S> force(const Column& column) {
@@ -198,6 +199,14 @@ class RowValues {
   Vec2<S> exerted(const Column& column) const {
     const BasicSpringLoads<S> loads = s_.spring_loads(column.index);
     return column.detail == on_j_in_joint ? loads.force_on_j_in_i : loads.force_on_j;
+  }
+
+  /// What presses.
+  S push(const Column& column) {
+    if (const Friction<S>* idle = idle_friction(s_, column.index))
+      return idle_press(*idle, reactions({.kind = column.kind, .index = idle->joint}).multiplier);
+    if (const auto* load = s_.contact(column.index)) return S(load->force);
+    return S(0.0) - reactions(column).multiplier[0];
   }
 
   /// lambda dPhi/dc: Phi contains -c, or -c^2 where distances are squared.
@@ -242,8 +251,7 @@ class RowValues {
   }
 
   Frame<Taylor<S>> motion(int body) const {
-    const Plan& plan = s_.plan();
-    const int p = body < 0 ? plan.bodies : plan.plan_body[static_cast<std::size_t>(body)];
+    const int p = plan_body(s_.plan(), body);
     const Twist<S> v = s_.twist(p);
     return moving(s_.frame(p), v.vx, v.vy, v.omega);
   }

@@ -16,6 +16,7 @@ namespace catena {
 /// there; and what the tension at the end j exceeds that at i by.
 struct ContactLoad {
   double force = 0, friction = 0, slip = 0;
+  bool glides = false;  ///< a contact that touches without friction: its slip is that of touching.hpp
 };
 
 struct Snapshot {

@@ -333,7 +333,9 @@ void ContactLoads::scatter(std::span<ContactLoad> loads) const {
     // What sticks has no slip but rounding.
     const bool sticks = points_[k].has_friction() && points_[k].is_exact() && states_[k].direction == 0;
     // The grips of a rope come behind it, and have its tension at the end i.
-    if (points_[k].kind != ContactKind::grip) load = {normal_[k], friction_[k], sticks ? 0 : slide_[k].rate};
+    if (points_[k].kind != ContactKind::grip) {
+      load = {normal_[k] / points_[k].radius, friction_[k], sticks ? 0 : slide_[k].rate, !points_[k].has_friction()};
+    }
     if (points_[k].kind == ContactKind::grip) load.friction += friction_[k];
     if (points_[k].is_elastic_grip() && points_[k].rope->grips.front() == k) load.force = normal_[k];
   }

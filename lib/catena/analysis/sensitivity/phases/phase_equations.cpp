@@ -288,7 +288,8 @@ void PhaseEquations::contacts(const Design& design, std::span<const DesignScalar
     const DesignPlace& place = design.places[k];
     if (!states_[k].closed) continue;
     DesignContactLoad& load = out.loads[at(point.element)];
-    load.force = normal(design, k, lambda);
+    load.force = normal(design, k, lambda) / place.radius;
+    load.glides = !point.has_friction();
     if (point.has_friction()) {
       load.friction = -lambda[at(slide_row(k))];
       if (!sticks(k)) load.slip = design.mechanism.measure(point.slide).d;
