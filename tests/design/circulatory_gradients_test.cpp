@@ -1,5 +1,5 @@
-// Derivatives of frequencies, and of the load of divergence, under a force that turns with its body: Ziegler's column
-// of two rods against the roots of its 2 x 2 problem, differenced in long double.
+// Derivatives of frequencies, and of the loads of divergence and of flutter, under a force that turns with its body:
+// Ziegler's column of two rods against the roots of its 2 x 2 problem, differenced in long double.
 //
 //   M = L^2 [m + n, n; n, n]    K = [k + c - P L + g L (m + n), P L - c; -c, c + g L n]    angles of both rods
 #include <gtest/gtest.h>
@@ -34,6 +34,17 @@ std::array<Long, 1> load_of(const ZieglerColumn& column) {
   return {((k + c + g * L * (m + n)) * (c + g * L * n) - c * c) / (L * L * g * n)};
 }
 
+/// The lesser P at which both omega2 are one: where b^2 - 4 a d = 0 in roots_of().
+std::array<Long, 1> flutter_of(const ZieglerColumn& column) {
+  const auto& [L, m, n, k, c, g, P] = column;
+  const Long m11 = L * L * (m + n), m12 = L * L * n, a = m11 * m12 - m12 * m12, k22 = c + g * L * n;
+  // b = b0 + b1 P, d = d0 + d1 P
+  const Long k0 = k + c + g * L * (m + n), b0 = k0 * m12 + k22 * m11 + 2 * c * m12, b1 = -2 * L * m12;
+  const Long d0 = k0 * k22 - c * c, d1 = -L * k22 + L * c;
+  const Long half = b0 * b1 - 2 * a * d1, root = std::sqrt(half * half - b1 * b1 * (b0 * b0 - 4 * a * d0));
+  return {(-half - root) / (b1 * b1)};
+}
+
 template <std::size_t count>
 std::array<Long, count> slope_of(std::array<Long, count> (*values_of)(const ZieglerColumn&),
                                  const ZieglerColumn& column, std::size_t p) {
@@ -54,6 +65,8 @@ constexpr const char* modes = R"("type": "modes", "measures": {
     "low": {"field": "omega2[1]"}, "high": {"field": "omega2[2]"}, "omega": {"field": "omega[1]"}})";
 constexpr const char* buckling = R"("type": "buckling", "parameter": "P", "count": 3, "measures": {
     "load": {"field": "loads[1]"}})";
+constexpr const char* flutter = R"("type": "buckling", "parameter": "P", "count": 2, "measures": {
+    "load": {"field": "flutter[1]"}})";
 
 std::string scene_of(const ZieglerColumn& column, const char* analysis = modes) {
   std::string numbers, names;
@@ -114,6 +127,26 @@ TEST(CirculatoryGradients, OfALoadOfDivergence) {
     EXPECT_NEAR(value(run, "load"), load, 1e-9 * load);
     for (std::size_t p = 0; p < column.size(); ++p) {
       const auto exact = static_cast<double>(slope_of(load_of, column, p)[0]);
+      EXPECT_NEAR(gradient(run, "load", p), exact, 1e-8 * load / static_cast<double>(column[p]))
+          << column_parameters[p];
+    }
+  }
+}
+
+TEST(CirculatoryGradients, OfALoadOfFlutter) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers random(seed);
+    const std::array<std::array<double, 2>, 6> range = {{{0.5, 2}, {0.5, 3}, {0.5, 3}, {5, 30}, {5, 30}, {0, 1}}};
+    ZieglerColumn column{};
+    for (std::size_t p = 0; p < range.size(); ++p) column[p] = random(range[p][0], range[p][1]);
+    column[6] = 0.1L;
+    const TextRun run = run_text(scene_of(column, flutter));
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+    const auto load = static_cast<double>(flutter_of(column)[0]);
+    EXPECT_NEAR(value(run, "load"), load, 1e-9 * load);
+    for (std::size_t p = 0; p < column.size(); ++p) {
+      const auto exact = static_cast<double>(slope_of(flutter_of, column, p)[0]);
       EXPECT_NEAR(gradient(run, "load", p), exact, 1e-8 * load / static_cast<double>(column[p]))
           << column_parameters[p];
     }

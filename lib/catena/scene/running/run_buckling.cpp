@@ -20,69 +20,96 @@ namespace {
 constexpr double apart = 1e-6;
 constexpr const char* singular = "constraints are singular at this place";
 
-/// The shapes of loads: under forces without a potential those of flutter are among them.
-std::vector<std::span<const double>> shapes_of_loads(const BucklingReport& report) {
-  std::vector<std::span<const double>> shapes;
+/// Loads of one kind: the name of their field, their values, and of each the shape and the frequency, 0 of divergence.
+struct CriticalLoads {
+  std::string field;
+  std::vector<double> values, omega{};
+  std::vector<std::span<const double>> shapes{};
+};
+
+/// Under forces without a potential loads of flutter are among all others.
+CriticalLoads loads_of(const BucklingReport& report, bool flutter) {
+  CriticalLoads loads{flutter ? "flutter" : "loads", flutter ? report.flutter : report.loads};
   for (std::size_t k = 0; k < report.shapes.size(); ++k) {
-    if (report.critical.empty() || report.critical[k].omega == 0) shapes.emplace_back(report.shapes[k]);
+    const double omega = report.critical.empty() ? 0 : report.critical[k].omega;
+    if ((omega > 0) != flutter) continue;
+    loads.omega.push_back(omega);
+    loads.shapes.emplace_back(report.shapes[k]);
   }
-  return shapes;
+  return loads;
 }
 
-/// dP/dp = -h_p / h_P, h = v^T K v on the null space, of unsymmetric K with the vector on its left; see
-/// spectrum_derivatives.hpp. The configuration is that of the present equilibrium, which moves with every parameter but
-/// the load.
-void differentiate(const AnalysisContext& context, Buckling& analysis, const BucklingReport& report,
-                   AnalysisResult& result) {
-  const int parameter = context.task.word("parameter");
+/// The present equilibrium, which moves with every parameter but the load.
+struct PresentPlace {
+  const AnalysisContext& context;
+  Buckling& analysis;
+  StaticDerivatives equilibrium;
+  std::string trouble{};
+
+  PresentPlace(const AnalysisContext& of, Buckling& buckling)
+      : context(of),
+        analysis(buckling),
+        equilibrium(buckling.evaluator(), designs_of(of, of.task.word("parameter")),
+                    static_cast<int>(of.design->names.size()) + 1) {
+    Evaluator& present = analysis.evaluator();
+    const auto held = balancing_multipliers(present, analysis.time(), analysis.q());
+    if (!held)
+      trouble = singular;
+    else if (!equilibrium.find({.evaluator = present, .t = analysis.time(), .q = analysis.q(), .lambda = *held}))
+      trouble = equilibrium.why();
+  }
+
+  /// h_p by every parameter and the load; nothing, and why, where it is not known.
+  std::optional<std::vector<double>> slopes(double load, double omega, std::span<const double> shape,
+                                            std::string& why) {
+    const int parameter = context.task.word("parameter");
+    const std::shared_ptr<const Model> model = model_at(context, parameter, load);
+    if (!model) {
+      why = "the scene allows no model at this load";
+      return {};
+    }
+    Evaluator evaluator(analysis.evaluator().shared_plan(), *model);
+    const auto lambda = balancing_multipliers(evaluator, analysis.time(), analysis.q());
+    why = singular;
+    if (!lambda) return {};
+    SpectrumDerivatives derivatives(evaluator, designs_of(context, parameter, ParameterSeed<double>{parameter, load}),
+                                    equilibrium.parameters(), true);
+    std::optional<std::vector<double>> h;
+    if (derivatives.find_held({.evaluator = evaluator, .t = analysis.time(), .q = analysis.q(), .lambda = *lambda},
+                              equilibrium)) {
+      h = omega > 0 ? derivatives.gradient_of_meeting(omega * omega, shape)
+          : evaluator.conservative()
+              ? derivatives.gradient(0, shape)
+              : derivatives.gradient_without_energy(0, shape, SpectrumDerivatives::Metric::lengths);
+    }
+    why = derivatives.why();
+    return h;
+  }
+};
+
+/// dP/dp = -h_p / h_P, h = v^T K v on the null space, of unsymmetric K with the vector on its left, and less omega2 M
+/// where two frequencies meet; see spectrum_derivatives.hpp.
+void differentiate(PresentPlace& place, const CriticalLoads& loads, AnalysisResult& result) {
+  const AnalysisContext& context = place.context;
   const std::size_t count = context.design->names.size();
-  Evaluator& present = analysis.evaluator();
-  const auto held = balancing_multipliers(present, analysis.time(), analysis.q());
-  StaticDerivatives equilibrium(present, designs_of(context, parameter), static_cast<int>(count) + 1);
-  const bool moves =
-      held && equilibrium.find({.evaluator = present, .t = analysis.time(), .q = analysis.q(), .lambda = *held});
-  const std::vector<std::span<const double>> shapes = shapes_of_loads(report);
-  for (std::size_t k = 0; k < report.loads.size(); ++k) {
-    const double load = report.loads[k];
+  for (std::size_t k = 0; k < loads.values.size(); ++k) {
+    const double load = loads.values[k];
     std::vector<double> gradient(count, std::numeric_limits<double>::quiet_NaN());
-    std::string trouble = moves ? "" : held ? equilibrium.why() : singular;
-    for (std::size_t other = 0; other < report.loads.size(); ++other) {
-      if (other != k && std::abs(load - report.loads[other]) <= apart * std::abs(load))
+    std::string trouble = place.trouble;
+    for (std::size_t other = 0; other < loads.values.size(); ++other) {
+      if (other != k && std::abs(load - loads.values[other]) <= apart * std::abs(load))
         trouble = fmt::format("load {} is double: it has no derivative", k + 1);
     }
-    const std::shared_ptr<const Model> model = model_at(context, parameter, load);
-    if (!model) trouble = "the scene allows no model at this load";
-    if (trouble.empty()) {
-      Evaluator evaluator(analysis.evaluator().shared_plan(), *model);
-      const auto lambda = balancing_multipliers(evaluator, analysis.time(), analysis.q());
-      SpectrumDerivatives derivatives(evaluator, designs_of(context, parameter, ParameterSeed<double>{parameter, load}),
-                                      static_cast<int>(count) + 1, true);
-      std::optional<std::vector<double>> h;
-      if (lambda &&
-          derivatives.find_held({.evaluator = evaluator, .t = analysis.time(), .q = analysis.q(), .lambda = *lambda},
-                                equilibrium))
-        h = evaluator.conservative()
-                ? derivatives.gradient(0, shapes[k])
-                : derivatives.gradient_without_energy(0, shapes[k], SpectrumDerivatives::Metric::lengths);
-      if (!h) {
-        trouble = lambda ? derivatives.why() : singular;
-      } else if ((*h)[count] == 0) {
-        trouble = fmt::format("load {} does not change the stiffness along its shape: it has no derivative", k + 1);
-      } else {
-        for (std::size_t p = 0; p < count; ++p)
-          gradient[p] = context.design->parameters[p] == parameter ? 0 : -(*h)[p] / (*h)[count];
-      }
+    std::optional<std::vector<double>> h;
+    if (trouble.empty()) h = place.slopes(load, loads.omega[k], loads.shapes[k], trouble);
+    if (h && (*h)[count] == 0) {
+      trouble = fmt::format("load {} does not change the stiffness along its shape: it has no derivative", k + 1);
+    } else if (h) {
+      for (std::size_t p = 0; p < count; ++p)
+        gradient[p] = context.design->parameters[p] == context.task.word("parameter") ? 0 : -(*h)[p] / (*h)[count];
     }
-    set_field_gradient(context, result, "loads", static_cast<int>(k) + 1, gradient, trouble);
+    set_field_gradient(context, result, loads.field, static_cast<int>(k) + 1, gradient, trouble);
   }
-}
-
-/// Where two frequencies meet they change with the root of the load.
-void leave_out_flutter(const AnalysisContext& context, const BucklingReport& report, AnalysisResult& result) {
-  const std::vector<double> none(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t k = 0; k < report.flutter.size(); ++k)
-    set_field_gradient(context, result, "flutter", static_cast<int>(k) + 1, none,
-                       "derivatives of loads of flutter, where two frequencies meet, are not built");
 }
 
 /// Of the loads; shapes claim nothing.
@@ -167,8 +194,8 @@ void run_buckling(AnalysisContext& context, AnalysisResult& result) {
   take_rows(result, std::move(info), rows);
   add_field_measures(context, result);
   if (!context.design || !report.ok()) return;
-  differentiate(context, analysis, report, result);
-  leave_out_flutter(context, report, result);
+  PresentPlace place(context, analysis);
+  for (const bool flutter : {false, true}) differentiate(place, loads_of(report, flutter), result);
 }
 
 }  // namespace catena

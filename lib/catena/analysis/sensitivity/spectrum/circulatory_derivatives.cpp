@@ -7,7 +7,13 @@
 // At a load of divergence omega2 = 0, M does not count, and dP = -h_p / h_P with h what stands in brackets.
 // w^T K v is the mixed second derivative of V + lambda^T Phi along v and w, and of a force F that turns with its body
 // (w_x F_y - w_y F_x) v_phi: its moment about the body's centroid stays. w^T M v is zero where two frequencies meet,
-// and flutter begins. Source: Seyranian, Mailybaev, Multiparameter Stability Theory (2003), chapter 2.
+// and flutter begins: there v and w are those of one double omega2 with a single vector, and by
+//
+//   h = w^T (K - omega2 M) v + mu^T Phi_q w + nu^T Phi_q v,   dP = -h_p / h_P
+//
+// the two omega2 part as omega2 +- root(h_p dp + h_P dP), so that h keeps its value where they meet. They are known to
+// the root of what P is known to, v and w are therefore found as vectors of the least singular value of the matrix at
+// their mean, which is regular in P. Source: Seyranian, Mailybaev, Multiparameter Stability Theory (2003), chapter 2.
 #include <algorithm>
 #include <cmath>
 
@@ -23,6 +29,8 @@ namespace {
 // part of the largest stiffness.
 constexpr double beside = 1e-7;
 constexpr int most_inverse_rounds = 20;
+// Where two meet: the vectors move by about this part of omega2, and so does what is made of them.
+constexpr double beside_meeting = 1e-11;
 constexpr double settled_vector = 1e-12;
 
 /// The moving plan bodies on which forces that turn with them act; nothing where another force has no energy.
@@ -62,6 +70,19 @@ std::vector<double> SpectrumDerivatives::weights_of(Metric metric) {
   return weights;
 }
 
+// K - shift W, or its transpose, W the weights.
+bool SpectrumDerivatives::factorize_beside(SaddleSystem& system, double shift, std::span<const double> weight,
+                                           bool transpose) {
+  return system.factorize(jacobian(), [&] {
+    const auto add = [&](int i, int j, const ElementMatrix& m) {
+      system.add_element(i, j, transpose ? transposed(m) : m);
+    };
+    evaluator().visit_stiffness(rest_, add);
+    evaluator().visit_constraint_hessians(lambda_, add);
+    for (int c = 0; c < 3 * plan().moving; ++c) system.add_diagonal(c, -shift * weight[at(c)]);
+  });
+}
+
 bool SpectrumDerivatives::find_left(double omega2, Metric metric, std::span<const double> v, std::span<double> w,
                                     std::span<double> nu) {
   SaddleSystem system(evaluator().shared_plan(), SaddleBlock::elements);
@@ -76,14 +97,8 @@ bool SpectrumDerivatives::find_left(double omega2, Metric metric, std::span<cons
       }
     });
   }
-  const double shift = omega2 + beside * size;
-  const bool factored = system.factorize(jacobian(), [&] {
-    const auto add = [&](int i, int j, const ElementMatrix& m) { system.add_element(i, j, transposed(m)); };
-    evaluator().visit_stiffness(rest_, add);
-    evaluator().visit_constraint_hessians(lambda_, add);
-    for (int c = 0; c < 3 * plan().moving; ++c) system.add_diagonal(c, -shift * weight[at(c)]);
-  });
-  if (!factored) return fail("the vector on the left of its stiffness was not found");
+  if (!factorize_beside(system, omega2 + beside * size, weight, true))
+    return fail("the vector on the left of its stiffness was not found");
   std::copy(v.begin(), v.end(), w.begin());
   std::vector<double> next(w.size());
   for (int round = 0; round < most_inverse_rounds; ++round) {
@@ -105,28 +120,81 @@ bool SpectrumDerivatives::find_left(double omega2, Metric metric, std::span<cons
   return fail("the vector on the left of its stiffness did not settle");
 }
 
-std::optional<std::vector<double>> SpectrumDerivatives::gradient_without_energy(double omega2,
-                                                                                std::span<const double> shape,
-                                                                                Metric metric) {
-  const std::optional<std::vector<int>> turning = bodies_with_turning_forces(evaluator().model(), plan());
-  if (!turning) {
+// Each solution with the matrix or its transpose is the other vector, but for a part that is the ratio of the least
+// singular value to the next.
+bool SpectrumDerivatives::find_both(double omega2, std::span<double> v, std::span<double> w, std::span<double> nu) {
+  const std::vector<double> weight = weights_of(Metric::masses);
+  SaddleSystem right(evaluator().shared_plan(), SaddleBlock::elements),
+      left(evaluator().shared_plan(), SaddleBlock::elements);
+  const double shift = omega2 * (1 + beside_meeting);
+  if (!factorize_beside(right, shift, weight, false) || !factorize_beside(left, shift, weight, true))
+    return fail("the vectors of the frequency in which two meet were not found");
+  std::vector<double> next(v.size()), multipliers(nu.size());
+  double changed = 1;
+  for (int round = 0; round < most_inverse_rounds && changed > settled_vector; ++round) {
+    for (const bool of_left : {true, false}) {
+      const std::span<double> from = of_left ? v : w, to = of_left ? w : v;
+      for (std::size_t c = 0; c < next.size(); ++c) next[c] = weight[c] * from[c];
+      std::fill(multipliers.begin(), multipliers.end(), 0.0);
+      if (!(of_left ? left : right).solve(next, multipliers)) return fail("two frequencies meet in a free motion");
+      const double largest =
+          *std::max_element(next.begin(), next.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+      if (!(std::abs(largest) > 0)) return fail("the vectors of the frequency in which two meet have no mass");
+      changed = 0;
+      for (std::size_t c = 0; c < next.size(); ++c) {
+        changed = std::max(changed, std::abs(next[c] / largest - to[c]));
+        to[c] = next[c] / largest;
+      }
+      for (std::size_t r = 0; of_left && r < nu.size(); ++r) nu[r] = multipliers[r] / largest;
+    }
+  }
+  return changed <= settled_vector || fail("the vectors of the frequency in which two meet did not settle");
+}
+
+std::optional<std::vector<int>> SpectrumDerivatives::turning_bodies() {
+  std::optional<std::vector<int>> turning = bodies_with_turning_forces(evaluator().model(), plan());
+  if (!turning)
     fail(
         "derivatives of frequencies and loads under laws of state, or forces of one's own without energy, are not "
         "built");
-    return {};
+  return turning;
+}
+
+std::vector<double> SpectrumDerivatives::slopes_of(std::span<const int> turning, const TwoVectors& of, double omega2,
+                                                   double scale) {
+  std::vector<double> slopes;
+  for (Group& group : groups()) {
+    const DesignScalar sum = left_and_right(group, turning, of, omega2);
+    for (std::size_t p = 0; p < at(group.count); ++p) slopes.push_back(sum.d[p] / scale);
   }
-  std::vector<double> v(at(plan().coordinates()), 0.0), w(v), nu(at(plan().rows), 0.0), gradient;
+  return slopes;
+}
+
+std::optional<std::vector<double>> SpectrumDerivatives::gradient_without_energy(double omega2,
+                                                                                std::span<const double> shape,
+                                                                                Metric metric) {
+  const std::optional<std::vector<int>> turning = turning_bodies();
+  if (!turning) return {};
+  std::vector<double> v(at(plan().coordinates()), 0.0), w(v), nu(at(plan().rows), 0.0);
   for (int c = 0; c < plan().columns; ++c) v[at(plan().coordinate[at(c)])] = shape[at(c)];
   const std::optional<std::vector<double>> mu = holding_multipliers(omega2, v);
   if (!mu || !find_left(omega2, metric, v, w, nu)) return {};
   double scale = metric == Metric::lengths ? 1 : 0;
   for (int c = 0; metric == Metric::masses && c < 3 * plan().moving; ++c)
     scale += w[at(c)] * groups().front().mechanism.mass(c).v * v[at(c)];
-  for (Group& group : groups()) {
-    const DesignScalar sum = left_and_right(group, *turning, {v, *mu, w, nu}, omega2);
-    for (std::size_t p = 0; p < at(group.count); ++p) gradient.push_back(sum.d[p] / scale);
-  }
-  return gradient;
+  return slopes_of(*turning, {v, *mu, w, nu}, omega2, scale);
+}
+
+std::optional<std::vector<double>> SpectrumDerivatives::gradient_of_meeting(double omega2,
+                                                                            std::span<const double> shape) {
+  const std::optional<std::vector<int>> turning = turning_bodies();
+  if (!turning) return {};
+  std::vector<double> v(at(plan().coordinates()), 0.0), w(v), nu(at(plan().rows), 0.0);
+  for (int c = 0; c < plan().columns; ++c) v[at(plan().coordinate[at(c)])] = shape[at(c)];
+  if (!find_both(omega2, v, w, nu)) return {};
+  const std::optional<std::vector<double>> mu = holding_multipliers(omega2, v);
+  if (!mu) return {};
+  return slopes_of(*turning, {v, *mu, w, nu}, omega2, 1);
 }
 
 // w^T (K - omega2 M) v + mu^T Phi_q w + nu^T Phi_q v.

@@ -4,7 +4,8 @@
 //                   d omega2 = v^T (K_p - omega2 M_p) v + 2 mu^T (Phi_q)_p v
 //                   of unsymmetric K, with the vector on its left too, as loads: circulatory_derivatives.cpp
 //   buckling load   K(P) v + Phi_q^T mu = 0:    dP = -(v^T K_p v + 2 mu^T (Phi_q)_p v) / (the same by P)
-//   limit load      F(q, lambda, P) = 0 with the left null vector w of its matrix:   dP = -(w^T F_p) / (w^T F_P)
+//   flutter load    two omega2 of unsymmetric K meet in one: dP of the load of divergence, K less omega2 M in place of
+//   K limit load      F(q, lambda, P) = 0 with the left null vector w of its matrix:   dP = -(w^T F_p) / (w^T F_P)
 //
 // K_p is taken along q_p and lambda_p. v^T K v is the second derivative of V + lambda^T Phi along v: one evaluation as
 // a series in dual numbers has all of it. Refused: double frequencies and loads, whose vectors turn into each other;
@@ -56,6 +57,9 @@ class SpectrumDerivatives final : public StateDerivatives {
   /// divergence: circulatory_derivatives.cpp.
   std::optional<std::vector<double>> gradient_without_energy(double omega2, std::span<const double> shape,
                                                              Metric metric = Metric::masses);
+  /// h_p by every parameter, the last one the load, where two omega2 meet in this one: circulatory_derivatives.cpp.
+  /// `shape`: about that of their vector.
+  std::optional<std::vector<double>> gradient_of_meeting(double omega2, std::span<const double> shape);
 
  private:
   /// Vectors on both sides, over coordinates, with the multipliers that hold them.
@@ -73,6 +77,13 @@ class SpectrumDerivatives final : public StateDerivatives {
   std::optional<std::vector<double>> holding_multipliers(double omega2, std::span<const double> v);
   /// w and nu with K^T w + Phi_q^T nu = omega2 M w.
   bool find_left(double omega2, Metric metric, std::span<const double> v, std::span<double> w, std::span<double> nu);
+  /// v, w and nu of the least singular value of K - omega2 M on the null space of Phi_q.
+  bool find_both(double omega2, std::span<double> v, std::span<double> w, std::span<double> nu);
+  bool factorize_beside(SaddleSystem& system, double shift, std::span<const double> weight, bool transpose);
+  /// The moving bodies whose forces turn with them; nothing, and why() says it, where another force has no energy.
+  std::optional<std::vector<int>> turning_bodies();
+  /// The sum of a group by parameter, over `scale`.
+  std::vector<double> slopes_of(std::span<const int> turning, const TwoVectors& of, double omega2, double scale);
   std::vector<double> weights_of(Metric metric);
   DesignScalar left_and_right(Group& group, std::span<const int> turning, const TwoVectors& of, double omega2);
 
