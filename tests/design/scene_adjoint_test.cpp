@@ -163,18 +163,26 @@ TEST(AdjointInScenes, PassesOtherMethodsAndEndsByEvents) {
 TEST(AdjointInScenes, GoesForwardWhereItMustAndSaysWhy) {
   const std::string scene =
       R"({"catena": 1, "parameters": {"k": 2, "w": 3}, "bodies": {"b": {"mass": 1, "inertia": 1, "angle": 0.3}},
-    "constraints": [{"type": "revolute", "i": "ground", "j": "b"}],
+    "constraints": [{"type": "revolute", "name": "pin", "i": "ground", "j": "b"}],
     "forces": [{"type": "torque", "i": "b", "torque": LAW}],
     "analyses": [{"type": "sensitivity", "mode": "adjoint", "parameters": ["k", "w"], "of": {"type": "dynamics", "until": 1,
-      "outputs": ["b"], "measures": {"end": {"final": "b.angle"}}}}]})";
-  const auto with = [&](const std::string& law) {
+      "outputs": ["b"], MORE"measures": {"end": {"final": "b.angle"}}}}]})";
+  const auto with = [&](const std::string& law, const std::string& more) {
     std::string text = scene;
-    return run_text(text.replace(text.find("LAW"), 3, law));
+    text.replace(text.find("LAW"), 3, law);
+    return run_text(text.replace(text.find("MORE"), 4, more));
   };
-  for (const auto& [law, why] :
-       {std::pair<std::string, std::string>{R"("=-k*b.angle")", "laws of state"},
-        {R"({"step": {"t0": "=w/10", "t1": "=w/5", "from": 0, "to": "k", "order": 3}})", "jumps"}}) {
-    const TextRun run = with(law);
+  const std::array<std::array<std::string, 3>, 3> cases{{
+      {R"("=-k*b.angle")", "", "laws of state"},
+      {R"("=k")",
+       R"("events": [{"name": "off", "when": "b.angle", "value": "=w/5", "action": "release", "element": "pin"}], )",
+       "release"},
+      {R"("=k")", R"("events": [{"name": "then", "when": "b.angle", "value": "=w/5", "impulse": {"i": "b", "value": [0, "k"]}},
+        {"name": "both", "when": "b.angle", "value": "=w/5", "impulse": {"i": "b", "value": ["k", 0]}}], )",
+       "several events"},
+  }};
+  for (const auto& [law, more, why] : cases) {
+    const TextRun run = with(law, more);
     ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text;
     EXPECT_EQ(field<std::string>(run, "mode"), "forward");
     EXPECT_TRUE(std::isfinite(run.analysis().measures.front().gradient[0]));

@@ -8,7 +8,7 @@
 # layer; a folder that is not listed there is an error, and so is one of more than 30 files:
 #
 #   analysis  run <- pose <- motion <- {events, branches} <- {kinematics, contact <- {dynamics, contact/holding}};  pose <- balance <- spectrum <- statics/solvers <- statics <- stability
-#             run <- measures;  {pose, motion, contact} <- sensitivity, sensitivity/phases, sensitivity/spectrum;  {sensitivity, measures} <- adjoint;  minimiser <- {statics, design};  {kinematics, balance, batch/kernels} <- batch
+#             run <- measures;  {pose, motion, contact} <- sensitivity, sensitivity/phases, sensitivity/spectrum;  {sensitivity/phases, measures} <- adjoint;  minimiser <- {statics, design};  {kinematics, balance, batch/kernels} <- batch
 #             {kinematics, stability, dynamics} <- accuracy
 #             run, pose <- kinematics/course <- kinematics
 #   scene     json <- numbers <- describing <- reading <- building <- models <- judging <- running <- writing <- designing <- viewing <- loading
@@ -47,7 +47,7 @@ BEGIN {
   after("analysis", "sensitivity", "run pose motion")
   after("analysis", "sensitivity/spectrum", "run pose motion sensitivity")
   after("analysis", "sensitivity/phases", "run pose motion events contact sensitivity")
-  after("analysis", "adjoint", "run measures motion sensitivity")
+  after("analysis", "adjoint", "run measures motion events contact sensitivity sensitivity/phases")
   after("analysis", "design", "minimiser")
   after("analysis", "batch/kernels", "")
   after("analysis", "batch", "run pose motion events kinematics/course kinematics balance batch/kernels")

@@ -37,6 +37,7 @@ void MeasureSet::Account::add_jump(const MotionSamples& samples, double t, doubl
   const std::vector<double> moving = samples.moving(t);
   // Limits of columns that do not jump differ by rounding: where the rate is not known nothing is lost by them.
   const bool jumps = std::abs(before - after) > no_jump * size_;
+  if (keeps_nodes_ && moving.empty() && jumps) jumps_.push_back({t, before - after, before * before - after * after});
   for (std::size_t p = 0; p < moving.size(); ++p) {
     if (moving[p] == 0 || !jumps) continue;
     sum_gradient_[p] += (before - after) * moving[p];

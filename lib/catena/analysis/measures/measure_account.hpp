@@ -43,6 +43,8 @@ class MeasureSet::Account {
   void give_pulses() { keeps_nodes_ = true; }
   /// What the value is made of; false where an extreme is reached at two instants.
   bool pulses(const MeasureResult& result, std::vector<ColumnPulse>& out) const;
+  /// The gradient that was found of them.
+  void take_given(MeasureResult& result, const std::vector<double>& gradient) const;
   /// Whether it depends on what is between rows, single instants apart.
   bool wants_samples() const { return is_integral() || !extremes_.empty(); }
 
@@ -86,6 +88,8 @@ class MeasureSet::Account {
   }
   void give(MeasureResult& result, const MotionSample& sample) const;
   bool path_pulses(double value, std::vector<ColumnPulse>& out) const;
+  /// What one column of a sample is made of.
+  static void add_pulses(const MotionSample& sample, std::size_t column, double weight, std::vector<ColumnPulse>& out);
   void give_extreme(MeasureResult& result, const Extreme& extreme, double factor) const;
   void give_integral(MeasureResult& result) const;
   void give_path(MeasureResult& result) const;
@@ -108,6 +112,11 @@ class MeasureSet::Account {
   };
   bool keeps_nodes_ = false;
   std::vector<Node> nodes_;  // of the integral, if they are kept
+  /// An instant that may move with the parameters: what an integral of v, and of v^2, gains with it.
+  struct Jump {
+    double t, value, square;
+  };
+  std::vector<Jump> jumps_;  // the same
 };
 
 }  // namespace catena

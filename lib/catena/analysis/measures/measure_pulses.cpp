@@ -3,14 +3,32 @@
 
 namespace catena {
 
+void MeasureSet::Account::add_pulses(const MotionSample& sample, std::size_t column, double weight,
+                                     std::vector<ColumnPulse>& out) {
+  if (sample.step == 0) {
+    out.push_back({sample.t, column, weight});
+    return;
+  }
+  for (std::size_t k = 0; k < limit_weights.size(); ++k)
+    out.push_back({sample.t + static_cast<double>(k + 1) * sample.step, column, weight * limit_weights[k]});
+  if (!sample.rate.empty()) out.push_back({sample.t, ColumnPulse::by_instant, weight * sample.rate[column]});
+}
+
 bool MeasureSet::Account::path_pulses(double value, std::vector<ColumnPulse>& out) const {
   const double scale = 1 / (static_cast<double>(request_.points.size()) * value);
   for (std::size_t k = 0; k < request_.points.size(); ++k) {
     const MotionSample& sample = request_.timed ? *instants_[k].sample : extremes_[k].best();
-    out.push_back({sample.t, column_, scale * (sample.value[column_] - request_.points[k].x)});
-    out.push_back({sample.t, second_, scale * (sample.value[second_] - request_.points[k].y)});
+    add_pulses(sample, column_, scale * (sample.value[column_] - request_.points[k].x), out);
+    add_pulses(sample, second_, scale * (sample.value[second_] - request_.points[k].y), out);
   }
   return true;
+}
+
+// Integrals have had what instants add that are known to move.
+void MeasureSet::Account::take_given(MeasureResult& result, const std::vector<double>& gradient) const {
+  const bool gains = is_integral() && duration_ > 0;
+  for (std::size_t p = 0; p < parameters_; ++p)
+    result.gradient[p] = gains ? result.gradient[p] + gradient[p] : gradient[p];
 }
 
 bool MeasureSet::Account::pulses(const MeasureResult& result, std::vector<ColumnPulse>& out) const {
@@ -22,7 +40,7 @@ bool MeasureSet::Account::pulses(const MeasureResult& result, std::vector<Column
     case MeasureKind::range:
       for (std::size_t k = 0; k < extremes_.size(); ++k) {
         if (!extremes_[k].others().empty()) return false;
-        out.push_back({extremes_[k].best().t, column_, k == 0 ? 1.0 : -1.0});
+        add_pulses(extremes_[k].best(), column_, k == 0 ? 1.0 : -1.0, out);
       }
       return true;
     case MeasureKind::first:
@@ -48,6 +66,12 @@ bool MeasureSet::Account::pulses(const MeasureResult& result, std::vector<Column
                               : request_.kind == MeasureKind::mean   ? 1 / duration_
                                                                      : node.value / (value * duration_);
         out.push_back({node.t, column_, weight * node.weight});
+      }
+      for (const Jump& jump : jumps_) {
+        const double gain = request_.kind == MeasureKind::integral ? jump.value
+                            : request_.kind == MeasureKind::mean   ? jump.value / duration_
+                                                                   : jump.square / (2 * value * duration_);
+        out.push_back({jump.t, ColumnPulse::by_instant, gain});
       }
       return true;
     case MeasureKind::field:

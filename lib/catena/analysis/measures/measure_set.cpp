@@ -158,6 +158,7 @@ void MeasureSet::note_row(const MotionSample& sample, bool only_rows) {
 }
 
 void MeasureSet::give_pulses() {
+  if (samples_) samples_->differentiate_later();
   for (const auto& account : accounts_) account->give_pulses();
 }
 
@@ -184,7 +185,7 @@ std::vector<MeasureResult> MeasureSet::results(const MovingInstants* moving,
     const Account& account = *accounts_[k];
     results.push_back(account.result(info == columns_->info().end() ? ColumnInfo{} : *info, looked_));
     if (parameters_ == 0) continue;
-    if (given && results.back().value) results.back().gradient = (*given)[k];
+    if (given && results.back().value) account.take_given(results.back(), (*given)[k]);
     const End* end = end_ && latest_row_ && end_->t == *latest_row_ ? &*end_ : nullptr;
     results.back().by_last_instant = account.by_last_instant(results.back(), end);
     if (ended_early() && !moving) account.leave_out_early_end(results.back());

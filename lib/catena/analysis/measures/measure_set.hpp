@@ -50,10 +50,12 @@ struct MovingInstants {
   std::string why_unknown;                       ///< where a rate is not a number: why
 };
 
-/// What a measure changes by with one of the set's columns at an instant.
+/// What a measure changes by with one of the set's columns at an instant; or with the instant itself, if the motion
+/// goes on in another way there and the instant moves.
 struct ColumnPulse {
+  static constexpr auto by_instant = static_cast<std::size_t>(-1);
   double t;
-  std::size_t column;
+  std::size_t column;  ///< or by_instant
   double weight;
 };
 
@@ -94,7 +96,7 @@ class MeasureSet {
   /// Whether the run ended before its last instant.
   bool ended_early() const { return latest_row_ && *latest_row_ != run_.last; }
   /// Of the measures passed in, those of the kind `field` left out. Without `moving` gradients are those at fixed
-  /// instants, of a run that ended early none. `given`: gradients at fixed instants, by give_pulses().
+  /// instants, of a run that ended early none. `given`: gradients of pulses() at fixed instants, by give_pulses().
   std::vector<MeasureResult> results(const MovingInstants* moving = nullptr,
                                      const std::vector<std::vector<double>>* given = nullptr) const;
   /// Of every measure, as in results(), what it is made of; nothing, and `why` says it, where an extreme is reached at

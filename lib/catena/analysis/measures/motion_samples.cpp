@@ -79,7 +79,7 @@ std::array<std::array<double, 5>, 4> foretelling_weights() {
 const std::array<double, 7>& MotionSamples::weights() { return half_weights; }
 
 MotionSample MotionSamples::take(const Snapshot& snapshot, bool with_derivative) const {
-  MotionSample sample{snapshot.t, std::vector<double>(columns_.size()), {}, {}};
+  MotionSample sample{snapshot.t, std::vector<double>(columns_.size()), {}, {}, 0, {}};
   columns_.evaluate(snapshot, sample.value);
   if (with_derivative && parameters_ > 0) {
     sample.derivative.assign(columns_.size() * parameters_, std::numeric_limits<double>::quiet_NaN());
@@ -93,7 +93,7 @@ MotionSample MotionSamples::take(const Snapshot& snapshot, bool with_derivative)
 }
 
 std::optional<MotionSample> MotionSamples::take_values(double t) const {
-  std::optional<MotionSample> sample(MotionSample{t, std::vector<double>(columns_.size()), {}, {}});
+  std::optional<MotionSample> sample(MotionSample{t, std::vector<double>(columns_.size()), {}, {}, 0, {}});
   if (!values_(t, sample->value)) sample.reset();
   return sample;
 }
@@ -108,15 +108,14 @@ std::optional<MotionSample> MotionSamples::see(const MotionPiece& piece, double 
 std::optional<MotionSample> MotionSamples::limit(const MotionPiece& piece, double t, bool with_derivative) const {
   const double length = piece.to() - piece.from(), inwards = t == piece.from() ? 1 : -1;
   const double d = std::min(std::max(inside * length, inside_of_instant * std::abs(t)), length / 8);
-  MotionSample sum{t, std::vector<double>(columns_.size(), 0.0), {}, {}};
+  MotionSample sum{t, std::vector<double>(columns_.size(), 0.0), {}, {}, inwards * d, {}};
   if (with_derivative) sum.derivative.assign(columns_.size() * parameters_, 0.0);
   sum.change.assign(columns_.size(), 0.0);
-  constexpr double weights[] = {3, -3, 1};
-  for (int k = 0; k < 3; ++k) {
-    const std::optional<MotionSample> one = see(piece, t + inwards * (k + 1) * d, with_derivative);
+  for (std::size_t k = 0; k < limit_weights.size(); ++k) {
+    const std::optional<MotionSample> one = see(piece, t + static_cast<double>(k + 1) * sum.step, with_derivative);
     if (!one) return {};
-    for (std::size_t c = 0; c < sum.value.size(); ++c) sum.value[c] += weights[k] * one->value[c];
-    for (std::size_t c = 0; c < sum.derivative.size(); ++c) sum.derivative[c] += weights[k] * one->derivative[c];
+    for (std::size_t c = 0; c < sum.value.size(); ++c) sum.value[c] += limit_weights[k] * one->value[c];
+    for (std::size_t c = 0; c < sum.derivative.size(); ++c) sum.derivative[c] += limit_weights[k] * one->derivative[c];
   }
   return sum;
 }
@@ -127,9 +126,13 @@ std::optional<MotionSample> MotionSamples::look(const MotionPiece& piece, double
   std::optional<MotionSample> sample = limit(piece, t, with_derivative);
   if (!sample || !with_derivative || t == run_.last) return sample;
   const std::vector<double> moves = moving(t);
-  if (moves.empty()) return sample;
+  if (moves.empty() && !later_) return sample;
   const std::optional<std::vector<double>> rate = rates(piece, t);
   if (!rate) return {};
+  if (later_) {
+    sample->rate = *rate;
+    return sample;
+  }
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     for (std::size_t p = 0; p < parameters_; ++p) {
       if (moves[p] == 0) continue;

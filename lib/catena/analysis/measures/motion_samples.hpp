@@ -37,7 +37,12 @@ struct MotionSample {
   double t = 0;
   std::vector<double> value, derivative;
   std::vector<double> change;  ///< with derivatives: of each column, by which it jumps here; see DifferentiateColumns
+  /// Of a limit at the end of a piece: it is made of the columns at t + k step, k = 1, 2, 3, in parts limit_weights;
+  /// and how fast they change, where derivatives are wanted and not at hand. 0, empty: it is none.
+  double step = 0;
+  std::vector<double> rate;
 };
+inline constexpr std::array<double, 3> limit_weights{3, -3, 1};
 
 /// How columns are differentiated.
 struct DifferentiateColumns {
@@ -74,6 +79,9 @@ class MotionSamples {
     derivatives_ = std::move(derivatives);
     always_ = always;
   }
+
+  /// Derivatives are found later, of what limits are made of.
+  void differentiate_later() { later_ = true; }
 
   /// Columns at an instant of the run, without a snapshot; false where they cannot be computed so. Where derivatives
   /// are wanted, columns come from snapshots.
@@ -129,7 +137,7 @@ class MotionSamples {
   std::size_t parameters_ = 0;
   DifferentiateColumns derivatives_;
   Values values_;
-  bool always_ = false;
+  bool always_ = false, later_ = false;
 };
 
 }  // namespace catena

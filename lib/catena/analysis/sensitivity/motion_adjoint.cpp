@@ -58,6 +58,24 @@ bool MotionAdjoint::lose(double t, std::string_view what) {
 
 bool MotionAdjoint::find(const Snapshot&) { return false; }
 
+bool MotionAdjoint::crosses_at(double t) const {
+  return std::any_of(crossings_.begin(), crossings_.end(),
+                     [&](const auto& crossing) { return steps_[crossing.first - 1].to == t; });
+}
+
+std::optional<double> MotionAdjoint::covered_to() const {
+  if (steps_.empty()) return {};
+  return steps_.back().to;
+}
+
+void MotionAdjoint::go_on_otherwise(MotionCrossing crossing) {
+  crossings_.insert_or_assign(steps_.size(), std::move(crossing));
+}
+
+MotionAdjoint::EventSlopes MotionAdjoint::slopes_of_event(int, const Snapshot&) {
+  return {{}, std::vector<double>(at(parameters()), 0.0)};
+}
+
 void MotionAdjoint::cover(const MotionStretch& stretch) {
   if (!why().empty()) return;
   double looked_at = 0;
@@ -70,7 +88,7 @@ void MotionAdjoint::cover(const MotionStretch& stretch) {
     lose(stretch.from, "the motion begins at a jump of a function of time that moves");
     return;
   }
-  if (!steps_.empty()) {
+  if (!steps_.empty() && !crossings_.contains(steps_.size())) {
     const Vector& before = steps_.back().end;
     for (std::size_t c = n_; c < 2 * n_; ++c) {
       if (std::abs(step->begin[c] - before[c]) <= same_velocity * std::max(1.0, std::abs(before[c]))) continue;
@@ -79,12 +97,14 @@ void MotionAdjoint::cover(const MotionStretch& stretch) {
     }
   }
   const MovingInstant& instant = instant_at(stretch.to);
-  if (instant.order == 1 || instant.moves()) {
-    lose(stretch.to, "a function of time jumps");
+  if (std::any_of(instant.rate.begin(), instant.rate.end(), [](double rate) { return std::isnan(rate); })) {
+    lose(stretch.to, "functions of time jump together that move apart with the parameters");
     return;
   }
   goes_on_ = instant.order == 0 && stretch.ended_by < 0;
   steps_.push_back(*std::move(step));
+  if (instant.order == 1 || instant.moves())
+    go_on_otherwise({.jumps = instant.order == 1, .strikes = {}, .rate = instant.rate});
 }
 
 }  // namespace catena

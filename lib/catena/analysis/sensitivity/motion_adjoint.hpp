@@ -17,15 +17,25 @@
 // that are transposed are those of MotionDerivatives: both give the same gradient to rounding. Several measures share
 // stages, factors and instants. Stages are recomputed from stored ends of steps: memory 4 x coordinates a step. Steps
 // of another method, shorter than this one needs, are gone back over several at once, as long as what is recomputed
-// misses the motion's own end by no more than its single steps do. No gradient: where functions of time jump with
-// velocities, or at instants that parameters move; equations that depend on each other; laws of state, ropes over
-// pulleys. Source: apps/manual/sensitivity.md; A. Griewank, A. Walther, Evaluating Derivatives, chapter 3.
+// misses the motion's own end by no more than its single steps do.
+//
+// An instant t* at which the motion goes on in another way (motion_crossing.hpp), transposed, r what t* weighs:
+//
+//   r = m_t* - y'+^T y+^        [M, Phi_q^T; Phi_q, 0] [w; nu] = [qd+^; 0]        r += nu^T nu_t + y'-^T y-^
+//   qd-^ = M w,   q-^ = q+^ + w^T F_q - (w^T Phi_q^T mu)_q - nu^T (Phi_q qd+)_q,   p^ likewise with - w^T M_p (qd+ -
+//   qd-) p^ += r t*_p,   or where an event acts   y-^ -= h_y r / h',   p^ -= (h_p - value_p) r / h'
+//
+// No gradient: equations that depend on each other; laws of state, ropes over pulleys; instants at which a motion
+// begins or ends and goes on in another way. Source: apps/manual/sensitivity.md; A. Griewank, A. Walther, Evaluating
+// Derivatives, chapter 3.
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 
+#include "catena/analysis/sensitivity/motion_crossing.hpp"
 #include "catena/analysis/sensitivity/recomputed_steps.hpp"
 #include "catena/analysis/sensitivity/start_derivatives.hpp"
 #include "catena/analysis/sensitivity/state_derivatives.hpp"
@@ -34,11 +44,13 @@
 namespace catena {
 
 /// What a measure changes by with the state at an instant: sizes coordinates(), plan order, of by_lambda the rows of
-/// the plan in the solver's scale; empty: nothing.
+/// the plan in the solver's scale; empty: nothing. by_instant: with the instant, one at which the motion goes on in
+/// another way; the state there is that after it.
 struct MotionPulse {
   double t = 0;
   std::vector<double> by_q, by_qd;
   std::vector<double> by_qdd{}, by_lambda{};
+  double by_instant = 0;
 };
 
 class MotionAdjoint : public StateDerivatives {
@@ -65,8 +77,23 @@ class MotionAdjoint : public StateDerivatives {
   /// Elements that parameters reach, of all groups of parameters together: the only ones differentiated by them.
   int reached_elements() const;
 
+  /// Whether the motion goes on in another way at the end of a step there.
+  bool crosses_at(double t) const;
+
  protected:
   int seen_order() const override { return 3; }
+  /// Until when steps are kept; nothing before the first.
+  std::optional<double> covered_to() const;
+  /// The motion goes on from there in another way.
+  void go_on_otherwise(MotionCrossing crossing);
+  bool lose(double t, std::string_view what);
+  /// Of the column of an event less its value: what it changes by with the state just before the event, and by
+  /// parameter at a fixed state.
+  struct EventSlopes {
+    MotionPulse by_state;
+    std::vector<double> by_parameter;
+  };
+  virtual EventSlopes slopes_of_event(int event, const Snapshot& before);
 
  private:
   using Vector = std::vector<double>;
@@ -79,12 +106,19 @@ class MotionAdjoint : public StateDerivatives {
   };
   /// One measure on its way back.
   struct Way {
-    Vector y1, y0, gradient;     // y^ at the end of the step and at its beginning; what parameters have gathered
-    std::vector<Vector> slopes;  // k_s^ by the interpolant
+    Vector y1{}, y0{}, gradient{};  // y^ at the end of the step and at its beginning; what parameters have gathered
+    std::vector<Vector> slopes{};   // k_s^ by the interpolant
     bool begun = false;
+    double instant = 0;  // what the instant weighs at which the motion goes on in another way
+  };
+  /// The motion across such an instant.
+  struct Passage {
+    double t = 0;
+    Vector before{}, after{}, slope_before{}, slope_after{};  // y, y'
+    Vector lambda_before{}, impulse{}, by_time{};             // by row: just before; of the blow mu; nu_t
+    Vector change{};                                          // qd+ - qd-
   };
 
-  bool lose(double t, std::string_view what);
   /// A stage for projections and pulses.
   Stage& end_stage();
   /// From y1^ at the end of a step, which has been recomputed, to y0^, which is added to.
@@ -95,13 +129,27 @@ class MotionAdjoint : public StateDerivatives {
   void stage_back(int number, const Vector& k, Way& way);
   void add_parameters(double t, Side side, const AdjointWeights& weights, std::span<const double> qdd, Way& way);
   /// What pulses at an instant with this state add to y^ there.
-  bool add_pulses(std::span<const Look> looks, double t, std::span<const double> values,
+  bool add_pulses(std::span<const Look> looks, double t, Side side, std::span<const double> values,
                   const std::function<Vector&(std::size_t)>& target);
+  /// y^ at the end of a way.
+  Vector& end_of(std::size_t measure) {
+    ways_[measure].begun = true;
+    return ways_[measure].y1;
+  }
   /// Pulses at one instant inside of a step, to slopes and ends.
   bool add_inside(const Step& step, std::span<const Look> looks);
   std::optional<std::vector<Look>> looks_at(const std::vector<std::vector<MotionPulse>>& measures);
   static std::span<const Look> take_last(std::span<const Look>& looks);
+  /// The pulses at and after the end of step k - 1, the last one left, and from y^ after that instant to y^ before it.
+  bool go_back_to_end(std::size_t k, std::span<const Look>& looks);
   std::size_t go_back_over_block(std::size_t k, std::span<const Look>& looks, Step& joined);
+  bool cross_back(const MotionCrossing& crossing, const Step& last);
+  bool find_passage(const MotionCrossing& crossing, Passage& passage);
+  bool find_jump(const MotionCrossing& crossing, Passage& passage);
+  /// To qd-^; what the instant weighs by it.
+  double jump_back(const MotionCrossing& crossing, const Passage& passage, Way& way);
+  void strike_back(const std::vector<DesignStrike>& strikes, Way& way);
+  bool event_back(const MotionCrossing& crossing, const Passage& passage);
   bool add_start(const Vector& y0, Vector& gradient);
 
   std::size_t n_;  // coordinates
@@ -112,7 +160,8 @@ class MotionAdjoint : public StateDerivatives {
   std::vector<Vector> back_;    // Y^ by stage
   std::unique_ptr<Stage> end_;  // once it was asked for
   std::vector<Step> steps_;
-  std::vector<Way> ways_;  // by measure
+  std::map<std::size_t, MotionCrossing> crossings_;  // by the number of the step that follows
+  std::vector<Way> ways_;                            // by measure
   int blocks_ = 0;
   bool goes_on_ = false;  // the motion goes on from where the last step ended
   Vector w_, mu_, zero_rows_, zero_loads_, zero_state_, masses_, slope_;

@@ -10,10 +10,6 @@
 namespace catena {
 namespace {
 
-// Most rounds of Newton's method that bring the interpolant onto the constraints: it is as near to them as the
-// tolerance of the motion.
-constexpr int most_rounds_inside = 4;
-
 void add_scaled(std::vector<double>& y, double weight, const std::vector<double>& k) {
   for (std::size_t i = 0; i < y.size(); ++i) y[i] += weight * k[i];
 }
@@ -74,7 +70,7 @@ bool MotionAdjoint::factorize_end(double t, Side side, std::span<const double> v
 void MotionAdjoint::project_back(double t, Side side, std::span<const double> values, Way& way, Vector& y1) {
   if (plan().rows == 0) return;
   const std::span<double> q = std::span(y1).first(n_), qd = std::span(y1).subspan(n_);
-  mechanism_.set_motion(end_->evaluator, values.subspan(n_), {});
+  mechanism_.set_motion(end_->evaluator, values.subspan(n_), {}, side);
   for (const bool velocity : {true, false}) {
     const std::span<double> part = velocity ? qd : q;
     end_->equations.solve_motion(part, zero_rows_, w_, mu_);
@@ -92,7 +88,7 @@ void MotionAdjoint::stage_back(int number, const Vector& k, Way& way) {
   const std::span<const double> k_q = std::span(k).first(n_), k_qd = std::span(k).subspan(n_);
   stage.equations.solve_motion(k_qd, zero_rows_, w_, mu_);
   const std::span<const double> y(stage.y), qdd = std::span<const double>(stage.slope).subspan(n_);
-  mechanism_.set_motion(stage.evaluator, y.subspan(n_), qdd);
+  mechanism_.set_motion(stage.evaluator, y.subspan(n_), qdd, stage.side);
   std::fill(back.begin(), back.end(), 0.0);
   const std::span<double> back_q = std::span(back).first(n_), back_qd = std::span(back).subspan(n_);
   std::copy(k_q.begin(), k_q.end(), back_qd.begin());
@@ -125,63 +121,6 @@ void MotionAdjoint::go_back(const Step& step, Way& way, bool interpolated) {
   add_scaled(way.y0, 1, way.y1);
 }
 
-// Accelerations and multipliers there are functions of the state.
-bool MotionAdjoint::add_pulses(std::span<const Look> looks, double t, std::span<const double> values,
-                               const std::function<Vector&(std::size_t)>& target) {
-  bool evaluated = false;
-  for (const Look& look : looks) {
-    const MotionPulse& pulse = *look.pulse;
-    Vector& y = target(look.measure);
-    for (std::size_t c = 0; c < pulse.by_q.size(); ++c) y[c] += pulse.by_q[c];
-    for (std::size_t c = 0; c < pulse.by_qd.size(); ++c) y[n_ + c] += pulse.by_qd[c];
-    if (pulse.by_qdd.empty() && pulse.by_lambda.empty()) continue;
-    if (!evaluated) {
-      Stage& end = end_stage();
-      std::copy(values.begin(), values.end(), end.y.begin());
-      if (!RecomputedSteps::evaluate(end, t, Side::after)) return lose(t, "constraints depend on each other");
-    }
-    evaluated = true;
-    const std::span<const double> qdd = std::span<const double>(end_->slope).subspan(n_);
-    end_->equations.solve_motion(pulse.by_qdd.empty() ? zero_loads_ : pulse.by_qdd,
-                                 pulse.by_lambda.empty() ? zero_rows_ : pulse.by_lambda, w_, mu_);
-    mechanism_.set_motion(end_->evaluator, values.subspan(n_), qdd);
-    const AdjointWeights weights{.w = w_, .lambda = end_->lambda, .bend = mu_};
-    mechanism_.add_by_state(end_->evaluator, weights, std::span(y).first(n_), std::span(y).subspan(n_));
-    add_parameters(t, Side::after, weights, qdd, ways_[look.measure]);
-  }
-  return true;
-}
-
-bool MotionAdjoint::add_inside(const Step& step, std::span<const Look> looks) {
-  const double t = looks.front().pulse->t, h = step.to - step.from;
-  const InterpolantWeights weights = interpolant_weights((t - step.from) / h);
-  Vector there(2 * n_);
-  for (std::size_t i = 0; i < there.size(); ++i) there[i] = step.begin[i] + weights.end * (step.end[i] - step.begin[i]);
-  for (std::size_t s = 0; s < weights.slope.size(); ++s) {
-    if (weights.slope[s] != 0) add_scaled(there, h * weights.slope[s], again_.stage(static_cast<int>(s)).slope);
-  }
-  if (!factorize_end(t, Side::after, there)) return false;
-  end_->equations.project_position(std::span(there).first(n_), most_rounds_inside);
-  end_->equations.project_velocity(std::span(there).subspan(n_), 1 / h);
-  end_->t = std::numeric_limits<double>::quiet_NaN();  // it was moved away from its factors
-  std::vector<Vector> back(ways_.size());
-  const bool added = add_pulses(looks, t, there, [&](std::size_t measure) -> Vector& {
-    back[measure].resize(2 * n_, 0.0);
-    return back[measure];
-  });
-  if (!added) return false;
-  for (std::size_t m = 0; m < back.size(); ++m) {
-    if (back[m].empty()) continue;
-    Way& way = ways_[m];
-    project_back(t, Side::after, there, way, back[m]);
-    add_scaled(way.y1, weights.end, back[m]);
-    add_scaled(way.y0, 1 - weights.end, back[m]);
-    for (std::size_t s = 0; s < weights.slope.size(); ++s) add_scaled(way.slopes[s], h * weights.slope[s], back[m]);
-    way.begun = true;
-  }
-  return true;
-}
-
 bool MotionAdjoint::add_start(const Vector& y0, Vector& gradient) {
   const Step& first = steps_.front();
   evaluator().set_time(first.from);
@@ -209,31 +148,6 @@ std::optional<std::vector<double>> MotionAdjoint::gradient(std::vector<MotionPul
   return std::move(all->front());
 }
 
-// The pulses of all measures in the order of their instants; nothing where one lies outside of the motion.
-std::optional<std::vector<MotionAdjoint::Look>> MotionAdjoint::looks_at(
-    const std::vector<std::vector<MotionPulse>>& measures) {
-  std::vector<Look> looks;
-  for (std::size_t m = 0; m < measures.size(); ++m) {
-    for (const MotionPulse& pulse : measures[m]) looks.push_back({&pulse, m});
-  }
-  std::stable_sort(looks.begin(), looks.end(), [](const Look& a, const Look& b) { return a.pulse->t < b.pulse->t; });
-  if (looks.empty()) return looks;
-  const double first = looks.front().pulse->t, last = looks.back().pulse->t;
-  if (first >= steps_.front().from && last <= steps_.back().to) return looks;
-  lose(first < steps_.front().from ? first : last, "there is no motion");
-  return {};
-}
-
-// The pulses at the last instant of those left, taken away from them.
-std::span<const MotionAdjoint::Look> MotionAdjoint::take_last(std::span<const Look>& looks) {
-  const double t = looks.back().pulse->t;
-  std::size_t first = looks.size() - 1;
-  while (first > 0 && looks[first - 1].pulse->t == t) --first;
-  const std::span<const Look> last = looks.subspan(first);
-  looks = looks.first(first);
-  return last;
-}
-
 // Goes back over a block of the first k steps, the last ones, to the instant of the next pulse at most. Returns of how
 // many steps it is; 0: that cannot be done.
 std::size_t MotionAdjoint::go_back_over_block(std::size_t k, std::span<const Look>& looks, Step& joined) {
@@ -243,7 +157,9 @@ std::size_t MotionAdjoint::go_back_over_block(std::size_t k, std::span<const Loo
   const bool inside = !looks.empty() && next > last.from;
   const double bound = inside ? last.from : next;
   std::size_t given = 1;
-  while (given < std::min(k, RecomputedSteps::most_at_once) && steps_[k - given - 1].from >= bound) ++given;
+  while (given < std::min(k, RecomputedSteps::most_at_once) && steps_[k - given - 1].from >= bound &&
+         !crossings_.contains(k - given))
+    ++given;
   const auto singular = [&] {
     lose(again_.singular_at(), "constraints depend on each other");
     return std::size_t{0};
@@ -271,6 +187,24 @@ std::size_t MotionAdjoint::go_back_over_block(std::size_t k, std::span<const Loo
   return count;
 }
 
+bool MotionAdjoint::go_back_to_end(std::size_t k, std::span<const Look>& looks) {
+  const Step& last = steps_[k - 1];
+  const auto found = crossings_.find(k);
+  const MotionCrossing* crossing = found == crossings_.end() ? nullptr : &found->second;
+  const bool ends = k == steps_.size(), moves = crossing && crossing->moves();
+  const auto looks_there = [&](const Look& look) { return look.pulse->t >= last.to && !look.pulse->by_q.empty(); };
+  if (crossing && ends && (moves || (!looks.empty() && looks_there(looks.back()))))
+    return lose(last.to, "the motion ends where it goes on in another way");
+  if (moves && std::any_of(looks.begin(), looks.end(), looks_there))
+    return lose(last.to, "a measure looks at an instant at which the motion goes on in another way");
+  const std::span<const double> values = crossing && !ends ? steps_[k].begin : last.end;
+  const auto end_of_way = [this](std::size_t m) -> Vector& { return end_of(m); };
+  while (!looks.empty() && looks.back().pulse->t >= last.to) {
+    if (!add_pulses(take_last(looks), last.to, Side::after, values, end_of_way)) return false;
+  }
+  return !crossing || ends || cross_back(*crossing, last);
+}
+
 std::optional<MotionAdjoint::Gradients> MotionAdjoint::gradients(
     const std::vector<std::vector<MotionPulse>>& measures) {
   if (!why().empty()) return {};
@@ -281,26 +215,21 @@ std::optional<MotionAdjoint::Gradients> MotionAdjoint::gradients(
   const std::optional<std::vector<Look>> all_looks = looks_at(measures);
   if (!all_looks) return {};
   std::span<const Look> looks = *all_looks;
-  const Way still{Vector(2 * n_, 0.0), Vector(2 * n_, 0.0), Vector(at(parameters()), 0.0), {}};
+  const Way still{.y1 = Vector(2 * n_, 0.0), .y0 = Vector(2 * n_, 0.0), .gradient = Vector(at(parameters()), 0.0)};
   ways_.assign(measures.size(), still);
   again_.begin_anew();
   if (end_) end_->t = std::numeric_limits<double>::quiet_NaN();
   blocks_ = 0;
-  const auto end_of_way = [this](std::size_t m) -> Vector& {
-    ways_[m].begun = true;
-    return ways_[m].y1;
-  };
   Step joined;
   for (std::size_t k = steps_.size(); k > 0;) {
-    const Step& last = steps_[k - 1];
-    while (!looks.empty() && looks.back().pulse->t >= last.to) {
-      if (!add_pulses(take_last(looks), last.to, last.end, end_of_way)) return {};
-    }
+    if (!go_back_to_end(k, looks)) return {};
     const std::size_t count = go_back_over_block(k, looks, joined);
     if (count == 0) return {};
     k -= count;
   }
-  if (!looks.empty() && !add_pulses(looks, steps_.front().from, steps_.front().begin, end_of_way)) return {};
+  const Step& first = steps_.front();
+  const auto end_of_way = [this](std::size_t m) -> Vector& { return end_of(m); };
+  if (!looks.empty() && !add_pulses(looks, first.from, Side::after, first.begin, end_of_way)) return {};
   Gradients gradients;
   for (Way& way : ways_) {
     if (any(way.y1) && !add_start(way.y1, way.gradient)) return {};

@@ -10,8 +10,11 @@
 #pragma once
 
 #include <array>
+#include <functional>
+#include <optional>
 #include <vector>
 
+#include "catena/analysis/run/row_observer.hpp"
 #include "catena/base/design_scalar.hpp"
 #include "catena/base/time_function.hpp"
 
@@ -29,6 +32,10 @@ struct FunctionJump {
   std::array<double, parameters_at_once> rate{};
 };
 FunctionJump jump_of(const TimeFunction<DesignScalar>& function, double t);
+
+/// df/dt at the end of a stretch, from its inside, by differences of order 4; nothing where f, or the motion, cannot be
+/// looked at, or the differences do not settle.
+std::optional<double> rate_at_end(const MotionStretch& stretch, const std::function<std::optional<double>(double)>& f);
 
 /// What the functions of a model do together at an instant.
 struct MovingInstant {

@@ -185,7 +185,7 @@ void AdjointMechanism::add_by_state(const Evaluator& evaluator, const AdjointWei
                                     std::span<double> by_qd) {
   if (!weights.bend.empty() || !weights.rate.empty()) add_constraints_by_q(weights, by_q, by_qd);
   if (weights.w.empty()) return;
-  add_forces_by_state(evaluator, weights.w, by_q, by_qd);
+  if (weights.forces) add_forces_by_state(evaluator, weights.w, by_q, by_qd);
   if (weights.lambda.empty()) return;
   add_curvature(weights, by_q);
 }

@@ -22,6 +22,7 @@ namespace catena {
 /// Weights of the equations; empty spans count as zero. w: over coordinates; the others over rows of the plan.
 struct AdjointWeights {
   std::span<const double> w{}, lambda{}, phi{}, rate{}, bend{};
+  bool forces = true;  ///< Q is in R; not in that of a blow, M (qd+ - qd-) + Phi_q^T lambda = 0
 };
 
 class AdjointMechanism {

@@ -300,13 +300,13 @@ std::array<double, parameters_at_once> AdjointMechanism::by_parameters(const Des
   if (!weights.w.empty()) {
     for (const Reached::Mass& mass : reached.masses_) {
       const std::size_t c = at(mass.coordinate);
-      const double force = weights.w[c] * (mass.pull - (qdd.empty() ? 0 : qdd[c]));
+      const double force = weights.w[c] * ((weights.forces ? mass.pull : 0) - (qdd.empty() ? 0 : qdd[c]));
       for (std::size_t p = 0; p < sum.d.size(); ++p) sum.d[p] += force * mass.by[p];
     }
   }
   if (!reached.asks_mechanism()) return sum.d;
   if (reached.any_constraint_) add_constraints(mechanism, reached, weights, sum);
-  if (weights.w.empty()) return sum.d;
+  if (weights.w.empty() || !weights.forces) return sum.d;
   if (reached.any_force_) add_forces(mechanism, reached, weights.w, sum);
   const Vec2<DesignScalar>& gravity = mechanism.model().gravity;
   for (int c = 0; c < 3 * plan_->moving && reached.gravity_; ++c) {

@@ -103,6 +103,7 @@ class DynamicsTask {
   bool changes_itself() const;
   /// Whether instants of the motion itself are to be differentiated.
   bool has_phases() const;
+  std::string obstacle_of_phases() const;
   /// Has the motion saved now and then; where it cannot be, `failure` says why.
   Pauses pauses(std::string& failure) const;
   void run_apart(const std::vector<std::vector<int>>& classes);
@@ -202,6 +203,17 @@ bool DynamicsTask::has_phases() const {
   return changes_itself() || std::any_of(measures.begin(), measures.end(), reads_events);
 }
 
+/// Why a motion with phases of its own is not gone back over; empty: it is, if only blows of events make them.
+std::string DynamicsTask::obstacle_of_phases() const {
+  const auto& events = context_.task.events;
+  const auto& measures = context_.task.measures;
+  if (touches_) return "contacts or friction act";
+  if (std::any_of(events.begin(), events.end(), [](const EventRequest& e) { return acts(e) && !e.impulse; }))
+    return "events release or engage constraints";
+  if (std::any_of(measures.begin(), measures.end(), reads_events)) return "instants of events are measured";
+  return {};
+}
+
 void DynamicsTask::differentiate(AnalysisRows& rows, DynamicsWithEvents& analysis) {
   if (!context_.design) return;
   const GivenByModel given{context_.state.q.empty(), context_.state.qd.empty()};
@@ -209,15 +221,23 @@ void DynamicsTask::differentiate(AnalysisRows& rows, DynamicsWithEvents& analysi
     differentiate(rows, analysis.evaluator());
     return;
   }
-  static_cast<void>(goes_back(context_, "contacts, friction or events act"));
+  const bool back = goes_back(context_, obstacle_of_phases());
   const std::vector<double> values = context_.models->values(*context_.task.table, context_.seeds);
   std::vector<double> sizes;
   for (const int parameter : context_.design->parameters) sizes.push_back(values[static_cast<std::size_t>(parameter)]);
-  auto derivatives = std::make_unique<PhasedDerivatives>(
-      phased_design(designs_of(context_), sizes, context_.task,
+  const DesignModels designs = designs_of(context_);
+  PhasedDesign design =
+      phased_design(designs, sizes, context_.task,
                     context_.models->moving_numbers(context_.task, context_.seeds, context_.design->parameters), model_,
-                    plan_, analysis.plan(), sources),
-      given, instants_);
+                    plan_, analysis.plan(), sources);
+  if (back) {
+    auto measures = std::make_unique<MotionMeasures>(analysis.evaluator(), designs, design.parameters, given);
+    measures->follow(std::move(design.events));
+    analysis.witness(measures.get());
+    rows.differentiate_back(std::move(measures));
+    return;
+  }
+  auto derivatives = std::make_unique<PhasedDerivatives>(std::move(design), given, instants_);
   analysis.witness(derivatives.get());
   rows.differentiate(std::move(derivatives));
 }

@@ -22,17 +22,12 @@
 
 #include "catena/analysis/contact/motion_phase.hpp"
 #include "catena/analysis/sensitivity/design_steps.hpp"
+#include "catena/analysis/sensitivity/motion_crossing.hpp"
 #include "catena/analysis/sensitivity/phases/design_places.hpp"
 #include "catena/analysis/sensitivity/saddle_system.hpp"
 #include "catena/columns/design_state.hpp"
 
 namespace catena {
-
-/// A blow with derivatives; symbols as in Strike.
-struct DesignStrike {
-  int body = -1;
-  Vec2<DesignScalar> point{}, impulse{};
-};
 
 class PhaseEquations {
  public:

@@ -114,7 +114,6 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   double rounding(std::size_t group, std::size_t p) const;
   static void move_along(DesignVector& y, const DesignVector& slope, std::span<const double> rate, double sign);
   DesignScalar end_value(std::size_t group, const WatchedPlace& watched);
-  std::optional<double> rate_along(const MotionStretch& stretch, const std::function<std::optional<double>(double)>& f);
   static void note_instant(InstantRates& instants, double t, const std::vector<double>& rate);
   std::string name(std::size_t place) const;
 

@@ -20,10 +20,6 @@ constexpr double one_rate = 1e-6;
 constexpr double is_at_value = 1e-12;
 // One that changes by less than this part in the stretch stays at its value, and has no event there.
 constexpr double stays_at_value = 1e-9;
-// Differences for rates begin with this part of a stretch, and are halved until they settle to the second part; those
-// that have not settled to the third one tell nothing, as in a stretch that is no longer than rounding.
-constexpr double first_part = 1.0 / 16, settled_rate = 1e-10, unsettled_rate = 1e-5;
-constexpr int most_halved = 12;
 
 bool is_one(double a, double b) { return std::abs(a - b) <= one_rate * std::max(std::abs(a), std::abs(b)); }
 
@@ -35,33 +31,6 @@ void join(std::vector<double>& rate, const std::vector<double>& other) {
 }
 
 }  // namespace
-
-// df/dt at the end of a stretch, from its inside: differences of order 4.
-std::optional<double> PhasedDerivatives::rate_along(const MotionStretch& stretch,
-                                                    const std::function<std::optional<double>(double)>& f) {
-  constexpr double weights[] = {25, -48, 36, -16, 3};
-  const std::optional<double> end = f(stretch.to);
-  if (!end) return {};
-  double best = unknown, last = unknown, change = std::numeric_limits<double>::infinity();
-  for (int n = 0; n < most_halved; ++n) {
-    const double d = std::ldexp(first_part * (stretch.to - stretch.from), -n);
-    double sum = weights[0] * *end;
-    for (int k = 1; k < 5; ++k) {
-      const std::optional<double> value = f(stretch.to - k * d);
-      if (!value) return {};
-      sum += weights[k] * *value;
-    }
-    const double now = sum / (12 * d);
-    if (!(std::abs(now - last) >= change)) {
-      if (n > 0) change = std::abs(now - last);
-      best = now;
-    }
-    last = now;
-    if (change <= settled_rate * std::abs(best)) break;
-  }
-  if (!(change <= unsettled_rate * std::abs(best))) return {};
-  return best;
-}
 
 // What is zero where a place's phase ends, at the group's state; see ContactPhases.
 DesignScalar PhasedDerivatives::end_value(std::size_t k, const WatchedPlace& watched) {
@@ -119,7 +88,7 @@ std::optional<std::vector<double>> PhasedDerivatives::rate_of_place(const Motion
   }
   const bool touches = !by_time && !lost_.empty();
   if (!by_time && !touches && stretch) {
-    by_time = rate_along(*stretch, [&](double t) -> std::optional<double> {
+    by_time = rate_at_end(*stretch, [&](double t) -> std::optional<double> {
       const std::optional<Snapshot> there = stretch->at(t);
       if (!there) return {};
       for (std::size_t c = 0; c < n_; ++c) {
@@ -150,7 +119,7 @@ std::optional<std::vector<double>> PhasedDerivatives::rate_of_event(const Motion
     event.column.evaluate(*there, {&column, 1});
     return column;
   };
-  const std::optional<double> by_time = rate_along(stretch, column_at);
+  const std::optional<double> by_time = rate_at_end(stretch, column_at);
   if (!by_time) return {};
   const double change = std::abs(*by_time) * (to_ - from_);
   if (!is_first && change <= stays_at_value * std::max(std::abs(event.value), 1.0)) return {};
