@@ -83,7 +83,7 @@ TEST(ClaimedDigits, HoldOfMethodsThatRunTwice) {
   expect_claims("other methods", 40, 20,
                 [](unsigned seed, ClaimedDigits& claims) { return add_moving_digits(seed, claims, Runs::methods); });
 }
-TEST(ClaimedDigits, HoldWithContacts) { expect_claims("with contacts", 90, 60, add_touching_digits); }
+TEST(ClaimedDigits, HoldWithContacts) { expect_claims("with contacts", 45, 25, add_touching_digits); }
 TEST(ClaimedDigits, HoldOfPaths) { expect_claims("paths", 40, 25, add_path_digits); }
 
 /// Two rods under gravity that hang on each other.
