@@ -1,6 +1,6 @@
 // The complementarity problem of contacts: every answer keeps the laws that it was asked for, at random places on
 // random bodies; small ones against what can be written down.
-#include "catena/analysis/contact/contact_problem.hpp"
+#include "catena/analysis/contact/problem/contact_problem.hpp"
 
 #include <gtest/gtest.h>
 

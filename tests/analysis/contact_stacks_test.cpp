@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "catena/analysis/contact/contact_problem.hpp"
+#include "catena/analysis/contact/problem/contact_problem.hpp"
 #include "catena/analysis/contact/shared_forces.hpp"
 
 namespace catena {

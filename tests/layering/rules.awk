@@ -10,7 +10,7 @@
 #   analysis  run <- pose <- motion <- {events, branches} <- {kinematics, contact <- {dynamics, contact/holding}};  pose <- balance <- spectrum <- statics/solvers <- statics <- stability
 #             run <- measures;  {pose, motion, contact} <- sensitivity, sensitivity/phases, sensitivity/spectrum;  {sensitivity/phases, measures} <- adjoint;  minimiser <- {statics, design};  {kinematics, balance, batch/kernels} <- batch
 #             {kinematics, stability, dynamics} <- accuracy
-#             run, pose <- kinematics/course <- kinematics
+#             run, pose <- kinematics/course <- kinematics;  contact/problem <- contact
 #   scene     json <- numbers <- describing <- reading <- building <- models <- judging <- running <- writing <- designing <- viewing <- loading
 #             <- explaining
 #   drawing   shapes <- figures
@@ -34,7 +34,8 @@ BEGIN {
   after("analysis", "kinematics", "run pose motion events contact kinematics/course")
   after("analysis", "branches", "run pose motion")
   after("analysis", "dynamics/integrators", "run pose motion branches")
-  after("analysis", "contact", "run pose motion events")
+  after("analysis", "contact/problem", "")
+  after("analysis", "contact", "run pose motion events contact/problem")
   after("analysis", "contact/holding", "run pose motion contact")
   after("analysis", "dynamics", "run pose motion branches events contact dynamics/integrators")
   after("analysis", "balance", "run pose")

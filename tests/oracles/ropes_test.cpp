@@ -1,6 +1,6 @@
 // Ropes over pulleys against closed forms and a scalar Lagrangian integration: Atwood's machine with massless and
 // massive pulleys, movable pulleys, tackles, winches, swinging weights, jerks, elastic ropes. Ropes that meet and leave
-// pulleys: rope_ways_test.cpp.
+// pulleys: rope_ways_test.cpp; in driven motions: driven_ropes_test.cpp.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -343,28 +343,6 @@ TEST(Ropes, SwingsOffItsPulley) {
   EXPECT_NEAR(run.first("b.y"), R, 1e-8);
   EXPECT_NEAR(run.last("b.x"), -2 + (2 + end) * std::cos(turned), 1e-8);
   EXPECT_NEAR(run.last("b.y"), R + (2 + end) * std::sin(turned), 1e-8);
-}
-
-// What is driven regardless of a rope shows how far it would have to stretch; an elastic one pulls.
-TEST(Ropes, InMotionsThatAreDriven) {
-  const auto lifted = [](const std::string& more, const std::string& analysis) {
-    return good_run(R"({"catena": 1, "bodies": {"a": {"particle": true, "mass": 2, "position": [0.1, -1]}},
-      "constraints": [{"type": "absolute_x", "i": "a"}],
-      "drivers": [{"type": "absolute_y", "name": "drive", "i": "a", "value": {"polynomial": [-1, -0.5]}}],
-      "forces": [)" +
-                    rope(on_ground(-0.1, -1), pulley(on_ground(0, 0), 0.1), "\"a\"", more) +
-                    R"(], "outputs": ["rope.gap", "rope.length")" +
-                    (analysis == "kinematics" ? "" : R"(, "rope.force", "drive.load")") +
-                    R"(], "analyses": [{"type": ")" + analysis + R"(", "until": 1, "every": 1}]})");
-  };
-  const TextRun plain = lifted("", "kinematics");
-  EXPECT_NEAR(plain.last("rope.gap"), -0.5, 1e-12);
-  EXPECT_NEAR(plain.last("rope.length"), 2.5 + 0.1 * pi, 1e-12);
-  ASSERT_EQ(plain.analysis().report.warnings.size(), 1u);
-  EXPECT_NE(plain.analysis().report.warnings[0].find("rope \"rope\" is violated"), std::string::npos);
-  const TextRun elastic = lifted(R"(, "k": 100)", "inverse_dynamics");
-  EXPECT_NEAR(elastic.last("rope.force"), 50, 1e-10);
-  EXPECT_NEAR(elastic.last("drive.load"), -50, 1e-10);
 }
 
 }  // namespace

@@ -86,13 +86,17 @@ Report ContactSwitch::choose(double t, std::span<const double> q, std::span<cons
   return {};
 }
 
-// Places whose gaps open already, or that nothing presses any more.
+// Places whose gaps open already, or that nothing presses any more: now, or just before at this instant, where others
+// changed since. Those would close again without a force, and take turns without end.
 void ContactSwitch::let_leave(double t, std::vector<ContactState>& states, const Cause& cause) {
   std::erase_if(active_, [&](std::size_t k) {
     const bool opens = cause.opens && static_cast<int>(k) == cause.place;
-    const bool leaves =
-        points_[k].kind == ContactKind::rigid && !returns(t, k, cause) && gap_[k].rate > part_of_speed(k, no_speed);
-    if (!opens && !leaves) return false;
+    const double speed = part_of_speed(k, no_speed);
+    const bool rigid = points_[k].kind == ContactKind::rigid;
+    const bool leaves = rigid && !returns(t, k, cause) && gap_[k].rate > speed;
+    const bool has_left = rigid && !states[k].closed && static_cast<int>(k) != cause.place && past_.left_at[k] == t &&
+                          gap_[k].rate >= -speed;
+    if (!opens && !leaves && !has_left) return false;
     states[k] = {};
     past_.left_at[k] = t;
     return true;

@@ -23,6 +23,8 @@ namespace {
 constexpr double energy_rounding = 1e-12;
 // Halvings of restitution before it is left out: what is left then is far below any speed of rest.
 constexpr int most_halvings = 40;
+// Of the speed of the motion: rounding that is left of the rates of bodies at rest.
+constexpr double rest_part = 1e-15;
 
 }  // namespace
 
@@ -108,8 +110,10 @@ void ContactSwitch::set_up(ContactProblem& problem, double restitution_part, std
   }
   for (std::size_t a = 0; a < active_.size(); ++a) {
     const ContactProblem::Place& place = problem.place[a];
-    if (place.has_normal) problem.b_terms[2 * a] = size_of_product(gap_[active_[a]], qd);
-    if (place.has_friction) problem.b_terms[2 * a + 1] = size_of_product(slide_[active_[a]], qd);
+    // Bodies that came to rest have rates that are rounding of those of the motion.
+    const double speed = part_of_speed(active_[a], rest_part / ContactProblem::rounding_of_sums);
+    if (place.has_normal) problem.b_terms[2 * a] = std::max(size_of_product(gap_[active_[a]], qd), speed);
+    if (place.has_friction) problem.b_terms[2 * a + 1] = std::max(size_of_product(slide_[active_[a]], qd), speed);
   }
 }
 

@@ -80,6 +80,8 @@ class ContactLoads final : public StateLoads {
   void know_speed(double speed) { speed_ = std::max(speed_, speed); }
   /// Whether rigid places are closed, or exact friction holds or rubs: what a jump of velocities may end.
   bool holds() const { return holds_; }
+  /// Rows of closed places and of slides that stick: what they hold, they hold for the time being.
+  int rows() const { return rows_; }
 
  private:
   double compliant_force(const ContactPoint& point, const Evaluator::ScalarMotion& gap) const;
@@ -94,7 +96,9 @@ class ContactLoads final : public StateLoads {
   bool slides(std::size_t k) const;
   double sigma(std::size_t k) const;
   bool is_guide(const ContactPoint& point) const;
-  void linearise(std::span<const double> lambda);
+  void find_responses(EquationsOfMotion& equations);
+  void find_residual(std::span<const double> lambda);
+  void find_slope();
 
   const Evaluator& evaluator_;
   const std::vector<ContactPoint>& points_;
@@ -109,6 +113,7 @@ class ContactLoads final : public StateLoads {
   std::unique_ptr<Sizes> sizes_;  // of the friction forces of coupled points, and Newton's method for them
   double lost_ = 0, lost_in_springs_ = 0, speed_ = 0;
   bool dissipates_ = false, holds_ = false;
+  int rows_ = 0;
   std::string trouble_;
 };
 

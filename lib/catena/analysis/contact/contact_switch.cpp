@@ -220,6 +220,7 @@ Report ContactSwitch::decide(double t, std::span<const double> q, std::span<doub
   }
   find_touching(states, cause);
   if (Report hit = collide(t, qd, states); !hit.ok()) return hit;
+  settle(qd);
   if (is_told) impulses_ = impulses_of(equations_, q, qd, p_);
   if (Report chosen = choose(t, q, qd, states, cause); !chosen.ok()) return chosen;
   if (cause.tell) tell_changes(t, before, states);

@@ -31,8 +31,8 @@
 #include <vector>
 
 #include "catena/analysis/contact/contact_loads.hpp"
-#include "catena/analysis/contact/contact_problem.hpp"
 #include "catena/analysis/contact/motion_phase.hpp"
+#include "catena/analysis/contact/problem/contact_problem.hpp"
 #include "catena/analysis/contact/shared_forces.hpp"
 #include "catena/analysis/events/strike.hpp"
 #include "catena/analysis/motion/equations_of_motion.hpp"
@@ -180,6 +180,8 @@ class ContactSwitch {
   std::vector<std::size_t> rocking(double t, const std::vector<std::size_t>& hit) const;
   double end_rocking(double t, const std::vector<std::size_t>& hit, std::span<double> qd);
   void note_flights(double t, const std::vector<std::size_t>& hit);
+  void bring_to_rest(const std::vector<std::size_t>& rows, std::span<double> qd);
+  void settle(std::span<double> qd);
   // Drivers that move on against closed places: contact_jam.cpp.
   bool gives_way(std::size_t row, double response) const;
   bool is_jammed(bool accelerates) const;

@@ -13,7 +13,7 @@
 #include <optional>
 #include <vector>
 
-#include "catena/analysis/contact/contact_problem.hpp"
+#include "catena/analysis/contact/problem/contact_problem.hpp"
 
 namespace catena {
 

@@ -16,7 +16,7 @@
 #include <limits>
 #include <vector>
 
-#include "catena/analysis/contact/contact_problem.hpp"
+#include "catena/analysis/contact/problem/contact_problem.hpp"
 #include "catena/linalg/pivoting/vertex_minimum.hpp"
 
 namespace catena {

@@ -18,9 +18,11 @@ constexpr double first_way = 1e-4;
 
 }  // namespace
 
-// Nothing: the mechanism is not driven, or not singular where it starts.
+// Nothing: the mechanism is not driven, or not singular where it starts. What contacts hold has come there with
+// velocities of its own.
 std::optional<SingularStart> Dynamics::singular_start() {
-  if (plan_->rows == 0 || plan_->rows < plan_->columns) return {};
+  const int lasting = plan_->rows - (attached_.contacts ? attached_.contacts->rows() : 0);
+  if (lasting == 0 || lasting < plan_->columns) return {};
   equations_.leave_out({});
   if (!equations_.factorize(t_, Side::after, q_) || equations_.smallest_pivot_ratio() > dependence::independent)
     return {};

@@ -117,6 +117,16 @@ class EventWatch {
   double watched(std::size_t k, double t, const StateAt& state_at);
   std::optional<double> passage(std::size_t k, bool three, const StateAt& state_at);
   double locate(std::size_t k, double before, double after, const StateAt& state_at);
+  double value_at(std::size_t k, double t, const StateAt& state_at);
+  /// Column k passes its value between two instants; `dips`: not for long.
+  struct Enclosed {
+    std::size_t k = 0;
+    double before = 0, after = 0;
+    bool dips = false;
+    double about = 0;  // where, as a straight line has it
+  };
+  std::vector<Enclosed> enclose_passages(bool three, const StateAt& state_at);
+  bool locate_passages(const std::vector<Enclosed>& enclosed, const StateAt& state_at);
   int side(std::size_t k, double g) const;
   bool counts(std::size_t k) const;
   double tiny(std::size_t k) const;
@@ -135,6 +145,7 @@ class EventWatch {
   std::array<double, 3> times_{};
   EventSamples taken_;          // of the stretch that is looked at
   std::vector<double> angles_;  // of moving bodies, where a step begins
+  std::vector<double> then_;    // all columns at the first transition between two samples
   std::vector<FoundEvent> found_,
       simultaneous_;  // between two samples; those that are still to be given, the next last
   std::vector<EventRecord> records_;

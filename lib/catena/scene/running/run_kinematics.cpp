@@ -9,6 +9,7 @@
 #include "catena/analysis/kinematics/minimum_norm_motion.hpp"
 #include "catena/analysis/run/rope_ways_at.hpp"
 #include "catena/analysis/sensitivity/kinematic_derivatives.hpp"
+#include "catena/scene/judging/taut_ropes.hpp"
 #include "catena/scene/running/analysis_run.hpp"
 #include "catena/scene/running/event_entries.hpp"
 #include "catena/scene/running/singular_entries.hpp"
@@ -16,20 +17,22 @@
 namespace catena {
 namespace {
 
-/// One-sided elements do not take part: they are watched.
+/// One-sided elements do not take part, but for ropes that determine the motion (TautRopes): they are watched.
 PlanOptions plan_without_gaps(const Model& model, const std::vector<std::string>& outputs) {
   PlanOptions options = plan_options(model, outputs);
   options.released_elements = model.gaps();
   return options;
 }
 
-/// A driven motion whose ropes meet and leave pulleys: they take no part in it, but their columns do. `obstacle`: what
-/// does not go on where one does, if anything.
+/// A driven motion whose ropes meet and leave pulleys: they take no part in it, but for `taut` ones, but their columns
+/// do. `obstacle`: what does not go on where one does, if anything.
 template <class Analysis>
 class WithRopes {
  public:
-  WithRopes(Analysis& analysis, RopeWaysAt& ways, std::string obstacle = {})
-      : analysis_(analysis), ways_(ways), begun_(ways.routes()), obstacle_(std::move(obstacle)) {}
+  WithRopes(Analysis& analysis, RopeWaysAt& ways, TautRopes& taut, std::string obstacle = {})
+      : analysis_(analysis), ways_(ways), taut_(taut), begun_(ways.routes()), obstacle_(std::move(obstacle)) {
+    if (taut.any()) obstacle_ = "a motion that a rope determines does not go on: end it before, or take dynamics";
+  }
 
   const Plan& plan() const { return analysis_.plan(); }
   Evaluator& evaluator() { return analysis_.evaluator(); }
@@ -40,10 +43,11 @@ class WithRopes {
     return state;
   }
   AnalysisReport run(const TimeGrid& grid, const Needs& needs, RowObserver& rows) {
-    if (!ways_.any()) return analysis_.run(grid, needs, rows);
+    if (!ways_.any() && !taut_.any()) return analysis_.run(grid, needs, rows);
     Rows followed(*this, rows);
     AnalysisReport report = analysis_.run(grid, needs, followed);
     ended_well_ = report.ok();
+    for (std::string& sentence : taut_.warnings()) report.warnings.push_back(std::move(sentence));
     return report;
   }
 
@@ -53,6 +57,7 @@ class WithRopes {
     Rows(WithRopes& owner, RowObserver& target) : owner_(owner), target_(target) {}
     bool observe(const Snapshot& snapshot) override {
       owner_.follow(snapshot.q);
+      owner_.taut_.observe(snapshot);
       return target_.observe(snapshot);
     }
     bool proceed(double t) override { return target_.proceed(t); }
@@ -79,6 +84,7 @@ class WithRopes {
 
   Analysis& analysis_;
   RopeWaysAt& ways_;
+  TautRopes& taut_;
   std::vector<RopeRoute> begun_;  // as they lay at first
   std::string obstacle_;
   bool ended_well_ = false;
@@ -101,18 +107,32 @@ std::string trouble_of_ropes(const AnalysisContext& context, const RopeWaysAt& w
   return {};
 }
 
+/// The first joint with friction; -1: none.
+int first_joint_friction(const Model& model) {
+  const std::vector<ContactPoint> joints = joints_with_friction(model);
+  return joints.empty() ? -1 : joints.front().element;
+}
+
+/// Nothing, or why a motion that ropes determine cannot be had.
+std::string trouble_of_taut(const AnalysisContext& context, const TautRopes& taut, bool inverse_dynamics) {
+  if (!taut.any()) return {};
+  if (context.design)
+    return fmt::format("a motion that the ropes {} determine has no derivatives yet: take dynamics", taut.names());
+  if (inverse_dynamics && first_joint_friction(*context.model) >= 0) {
+    return fmt::format(
+        "the friction of \"{}\" is not found together with the tension of {}, without which the motion is not "
+        "determined: leave the friction out, or take dynamics",
+        context.model->element_name(first_joint_friction(*context.model)), taut.names());
+  }
+  return {};
+}
+
 /// Whether constraints and drivers determine the motion where the analysis starts.
 bool is_driven(const AnalysisContext& context) {
   Kinematics analysis(context.model, plan_without_gaps(*context.model, {}));
   analysis.start_from(context.state);
   RowFunction nothing([](const Snapshot&) { return true; });
   return analysis.run(TimeGrid::instant(context.state.t), {}, nothing).status != Status::under_driven;
-}
-
-/// The first joint with friction; -1: none.
-int first_joint_friction(const Model& model) {
-  const std::vector<ContactPoint> joints = joints_with_friction(model);
-  return joints.empty() ? -1 : joints.front().element;
 }
 
 bool changes_mechanism(const EventRequest& event) {
@@ -153,13 +173,15 @@ void differentiate(AnalysisContext& context, AnalysisRows& rows, const Evaluator
 
 /// The same motion with events; rows, measures and derivatives as without.
 void run_with_events(AnalysisContext& context, AnalysisResult& result, const TimeGrid& grid,
-                     const KinematicsOptions& options, const ColumnSources& sources, RopeWaysAt& ways) {
+                     const KinematicsOptions& options, const ColumnSources& sources, RopeWaysAt& ways,
+                     TautRopes& taut) {
   const AnalysisTask& task = context.task;
   std::vector<std::string> reactions = task.column_names();
   for (const EventRequest& request : task.events) reactions.push_back(request.column);
-  const PlanOptions plan = plan_without_gaps(*context.model, reactions);
+  PlanOptions plan = plan_without_gaps(*context.model, reactions);
+  taut.add_rows(plan);
   KinematicsWithEvents analysis(context.model, plan, options, events_of(task, *context.model), sources);
-  WithRopes watched(analysis, ways, "a motion with events does not go on: end it before, or do without events");
+  WithRopes watched(analysis, ways, taut, "a motion with events does not go on: end it before, or do without events");
   run_over_time(context, result, watched, grid, task.output_names(), sources, [&](AnalysisRows& rows) {
     rows.watch_gaps(*context.model);
     if (!context.design) return;
@@ -187,9 +209,9 @@ std::string trouble_without_drivers(const AnalysisContext& context, bool inverse
 
 /// A motion that constraints and drivers do not determine.
 void run_of_least_velocity(AnalysisContext& context, AnalysisResult& result, const TimeGrid& grid,
-                           const PlanOptions& plan, const ColumnSources& sources, RopeWaysAt& ways) {
+                           const PlanOptions& plan, const ColumnSources& sources, RopeWaysAt& ways, TautRopes& taut) {
   MinimumNormMotion analysis(context.model, plan);
-  WithRopes followed(analysis, ways);
+  WithRopes followed(analysis, ways, taut);
   run_over_time(context, result, followed, grid, context.task.output_names(), sources, [&](AnalysisRows& rows) {
     rows.watch_gaps(*context.model);
     rows.take_rows_alone();
@@ -216,7 +238,11 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
   if (const std::string why = trouble_of_ropes(context, ways); !why.empty()) return refuse(result, why);
   const std::optional<TimeGrid> grid = time_grid(context, result.report);
   if (!grid) return;
-  const PlanOptions plan = plan_without_gaps(*context.model, task.column_names());
+  TautRopes taut(context.model, plan_without_gaps(*context.model, {}), context.state);
+  if (const std::string why = trouble_of_taut(context, taut, inverse_dynamics); !why.empty())
+    return refuse(result, why);
+  PlanOptions plan = plan_without_gaps(*context.model, task.column_names());
+  taut.add_rows(plan);
   KinematicsOptions options;
   options.inverse_dynamics = inverse_dynamics;
   if (task.has("branch")) {
@@ -229,12 +255,12 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
                               .acceleration = true,
                               .multipliers = inverse_dynamics,
                               .work = inverse_dynamics};
-  if (task.word("free") != 0 && !is_driven(context)) {
+  if (task.word("free") != 0 && !taut.any() && !is_driven(context)) {
     if (const std::string why = trouble_without_drivers(context, inverse_dynamics); !why.empty())
       return refuse(result, why);
-    return run_of_least_velocity(context, result, *grid, plan, sources, ways);
+    return run_of_least_velocity(context, result, *grid, plan, sources, ways, taut);
   }
-  if (!task.events.empty()) return run_with_events(context, result, *grid, options, sources, ways);
+  if (!task.events.empty()) return run_with_events(context, result, *grid, options, sources, ways, taut);
   Kinematics analysis(context.model, plan, options);
   std::optional<KinematicLook> look, drawn;
   const auto prepare = [&](AnalysisRows& rows) {
@@ -258,12 +284,12 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
     }
     // Where ropes meet pulleys the model changes on the way.
     const bool rubs = inverse_dynamics && !context.model->frictions().empty();
-    if (context.digits && !context.design && !rubs && rope_routes(*context.model).empty())
+    if (context.digits && !context.design && !rubs && !taut.any() && rope_routes(*context.model).empty())
       rows.judge(std::make_unique<KinematicAccuracy>(analysis, rows.columns()));
     if (!context.design) return;
     differentiate(context, rows, analysis.evaluator());
   };
-  WithRopes followed(analysis, ways, obstacle_for_ropes(context));
+  WithRopes followed(analysis, ways, taut, obstacle_for_ropes(context));
   run_over_time(context, result, followed, *grid, task.output_names(), sources, prepare);
   add_singular_points(result, analysis.singular_points(), *context.model);
 }

@@ -16,7 +16,7 @@
 #include <cmath>
 #include <span>
 
-#include "catena/analysis/contact/contact_problem.hpp"
+#include "catena/analysis/contact/problem/contact_problem.hpp"
 #include "catena/linalg/pivoting/lemke.hpp"
 
 namespace catena {
@@ -187,13 +187,37 @@ bool ContactProblem::pivot(std::vector<Choice> choices) {
       choices[k].slipped = more = true;
     }
   }
+  const auto is_good = [this] { return fits(size()) && keeps_states(); };
   const std::vector<double> pivoted = x;
   // The least of all shares where that is one, else the pivots' own.
   solve_states();
-  if (fits(size()) && keeps_states()) return true;
-  x = pivoted;
+  const bool least = is_good();
+  if (!least) {
+    x = pivoted;
+    refine();
+    if (!is_good()) return false;
+  }
+  // Closed places that nothing presses in the least of all shares, as between boxes that fall together, are open: their
+  // force would be rounding, and end at once. In other shares those that slide are: in motion they would get a share,
+  // and friction with it.
+  const std::vector<State> states = state;
+  const std::vector<int> directions = direction;
+  const std::vector<double> forces = x;
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    const bool rubs = place[k].has_friction && states[k] == State::slides;
+    const bool presses = size_of(2 * k, forces[2 * k]) > rounding_of_sums * size();
+    if (states[k] == State::open || !place[k].has_normal || presses || !(least || rubs)) continue;
+    state[k] = State::open;
+    direction[k] = 0;
+    x[2 * k] = x[2 * k + 1] = 0;
+  }
+  if (state == states) return true;
   refine();
-  return fits(size()) && keeps_states();
+  if (is_good()) return true;
+  state = states;
+  direction = directions;
+  x = forces;
+  return true;
 }
 
 bool ContactProblem::is_ruled_out() const { return state == ruled_out_state_ && direction == ruled_out_direction_; }

@@ -12,7 +12,7 @@
 #include <numeric>
 #include <span>
 
-#include "catena/analysis/contact/contact_problem.hpp"
+#include "catena/analysis/contact/problem/contact_problem.hpp"
 #include "catena/linalg/rank/nonnegative_least_squares.hpp"
 
 namespace catena {

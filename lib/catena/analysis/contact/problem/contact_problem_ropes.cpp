@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/contact/contact_problem.hpp"
+#include "catena/analysis/contact/problem/contact_problem.hpp"
 
 namespace catena {
 namespace {

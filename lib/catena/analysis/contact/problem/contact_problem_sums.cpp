@@ -3,11 +3,12 @@
 #include <cmath>
 #include <limits>
 
-#include "catena/analysis/contact/contact_problem.hpp"
+#include "catena/analysis/contact/problem/contact_problem.hpp"
 
 namespace catena {
 
-// Whether x keeps the inequalities of its states, to a part of its size.
+// Whether x keeps the inequalities of its states, to a part of its size or to the rounding of the sums that it answers:
+// where little is hit beside what moves fast, that is more.
 bool ContactProblem::fits(double size) const {
   for (std::size_t k = 0; k < place.size(); ++k) {
     const std::size_t n = 2 * k, t = n + 1;
@@ -17,7 +18,8 @@ bool ContactProblem::fits(double size) const {
       if (sticks && size_of(t, misfit(k)) > rounding_of_sums * size) return false;
       continue;
     }
-    if (place[k].has_normal && size_of(n, x[n]) < -rounding_of_sums * size) return false;
+    const double rounding = place[k].has_normal ? rounding_of_sums * sum(n).terms * unit(n) : 0;
+    if (place[k].has_normal && size_of(n, x[n]) < -std::max(rounding_of_sums * size, rounding)) return false;
     const double limit = place[k].has_normal ? place[k].mu_static * x[n] : place[k].limit;
     if (sticks && size_of(t, std::abs(x[t]) - limit) > rounding_of_sums * size) return false;
   }

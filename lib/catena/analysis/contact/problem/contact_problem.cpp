@@ -1,4 +1,4 @@
-#include "catena/analysis/contact/contact_problem.hpp"
+#include "catena/analysis/contact/problem/contact_problem.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>

@@ -1,0 +1,163 @@
+// EventWatch between two samples: which columns pass their values there, and where these passages are.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "catena/analysis/events/event_watch.hpp"
+
+namespace catena {
+namespace {
+
+constexpr int most_iterations = 80;
+// Of the time between two samples: nearer to the first one nothing is looked for.
+constexpr double smallest_part = 1e-13;
+
+/// Where the parabola through three points has its vertex, and its value there, if that lies between them.
+struct Vertex {
+  double t = 0, value = 0;
+  bool inside = false;
+};
+Vertex vertex(const double* t, const double* g) {
+  const double d1 = (g[1] - g[0]) / (t[1] - t[0]), d2 = (g[2] - g[1]) / (t[2] - t[1]);
+  const double bend = (d2 - d1) / (t[2] - t[0]);
+  if (bend == 0) return {};
+  const double slope = d1 - bend * (t[1] - t[0]);  // at t[0]
+  const double at = -slope / (2 * bend);
+  return {t[0] + at, g[0] + at * (slope + bend * at), at > 0 && t[0] + at < t[2]};
+}
+
+}  // namespace
+
+// As watched(), which is known at the last samples.
+double EventWatch::value_at(std::size_t k, double t, const StateAt& state_at) {
+  for (std::size_t n = times_.size(); n-- > 0;) {
+    if (times_[n] == t) return g_[n][k];
+  }
+  return watched(k, t, state_at);
+}
+
+// The root between an instant on the old side and one on the new side: the secant through the ends, the older end's
+// value halved when it stays (Illinois), bisection where that is slow.
+double EventWatch::locate(std::size_t k, double before, double after, const StateAt& state_at) {
+  double a = before, b = after, fa = value_at(k, a, state_at), fb = value_at(k, b, state_at);
+  // After an event at the start itself the column may have gone beyond and be on its way back.
+  for (double part = 0.5; !(fa * side_[k] > 0); part /= 2) {
+    if (part < smallest_part) return before;
+    a = before + (after - before) * part;
+    fa = watched(k, a, state_at);
+  }
+  if (!(fb * side_[k] < 0)) return b;
+  double width = b - a;
+  for (int n = 0; n < most_iterations; ++n) {
+    if (b - a <= 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(a), std::abs(b))) break;
+    double t = b - fb * (b - a) / (fb - fa);
+    if (!(t > a && t < b) || (n % 3 == 2 && b - a > width / 4)) t = a + (b - a) / 2;
+    if (n % 3 == 2) width = b - a;
+    const double f = watched(k, t, state_at);
+    if (f == 0) return t;
+    if (f * side_[k] > 0) {
+      a = t;
+      fa = f;
+      fb /= 2;
+    } else {
+      b = t;
+      fb = f;
+      fa /= 2;
+    }
+  }
+  return b;
+}
+
+// An instant up to the last sample at which column k is beyond its value, or nothing. `three`: there are three samples.
+std::optional<double> EventWatch::passage(std::size_t k, bool three, const StateAt& state_at) {
+  if (side(k, g_[2][k]) == -side_[k]) return times_[2];
+  if (!three) return {};
+  // A dip: the parabola through three samples has its vertex among them and reaches the value there, or nearly so. The
+  // vertex may lie in the first or the last part of a step, beyond the nearest sample.
+  double ts[3] = {times_[0], times_[1], times_[2]}, gs[3] = {g_[0][k], g_[1][k], g_[2][k]};
+  for (int n = 0; n < 8; ++n) {
+    const Vertex low = vertex(ts, gs);
+    const double nearest = std::min({std::abs(gs[0]), std::abs(gs[1]), std::abs(gs[2])});
+    if (!low.inside || low.value * side_[k] > 0.1 * nearest || low.t == ts[1]) return {};
+    const double g = watched(k, low.t, state_at);
+    if (side(k, g) == -side_[k]) return low.t;
+    const bool first = low.t < ts[1], nearer = std::abs(g) < std::abs(gs[1]);
+    // The three points nearest to the lowest one.
+    if (nearer) {
+      ts[first ? 2 : 0] = ts[1];
+      gs[first ? 2 : 0] = gs[1];
+      ts[1] = low.t;
+      gs[1] = g;
+    } else {
+      ts[first ? 0 : 2] = low.t;
+      gs[first ? 0 : 2] = g;
+    }
+  }
+  return {};
+}
+
+// Columns that pass their values in a watched direction up to the last sample, those first that straight lines through
+// the samples let pass first. `three`: there are three samples.
+std::vector<EventWatch::Enclosed> EventWatch::enclose_passages(bool three, const StateAt& state_at) {
+  std::vector<Enclosed> enclosed;
+  for (std::size_t k = 0; k < side_.size(); ++k) {
+    if (side_[k] == 0) {
+      side_[k] = side(k, g_[2][k]);
+      continue;
+    }
+    const std::optional<double> beyond = passage(k, three, state_at);
+    if (!beyond) continue;
+    Enclosed passage{k, *beyond > times_[1] ? times_[1] : times_[0], *beyond, *beyond != times_[2]};
+    if (!counts(k)) {
+      // A passage in a direction that is not watched; the return from a dip is watched.
+      side_[k] = -side_[k];
+      if (!passage.dips) continue;
+      passage.before = passage.after;
+      passage.after = times_[2];
+    }
+    const double fall = (g_[2][k] - g_[1][k]) / (times_[2] - times_[1]);
+    passage.about = passage.dips ? passage.before : times_[1] - g_[1][k] / fall;
+    enclosed.push_back(passage);
+  }
+  std::stable_sort(enclosed.begin(), enclosed.end(),
+                   [](const Enclosed& a, const Enclosed& b) { return a.about < b.about; });
+  return enclosed;
+}
+
+// Where they pass, into found_. Of transitions the first one counts alone, as the motion that is watched ends there:
+// those that are on their side still at the first one so far come later, and are not located. Whether any dips.
+bool EventWatch::locate_passages(const std::vector<Enclosed>& enclosed, const StateAt& state_at) {
+  found_.clear();
+  bool dips = false;
+  double first = std::numeric_limits<double>::infinity();  // of transitions
+  bool sampled = false;                                    // then_ is that of `first`
+  for (const Enclosed& passage : enclosed) {
+    const std::size_t k = passage.k;
+    double after = passage.after;
+    if (k >= events_.size() && after > first) {
+      if (passage.before >= first) continue;
+      if (!sampled) {
+        then_.assign(side_.size(), std::numeric_limits<double>::quiet_NaN());
+        if (const std::optional<Snapshot> state = state_at(first)) sample(*state, then_);
+        sampled = true;
+      }
+      const int then = side(k, then_[k]);
+      if (then == side_[k]) continue;
+      if (then == -side_[k]) after = first;
+    }
+    const double t = locate(k, passage.before, after, state_at);
+    if (t <= found_at_[k]) {
+      // The event that was found there already, seen again within rounding.
+      side_[k] = -side_[k];
+      continue;
+    }
+    found_.push_back({static_cast<int>(k), t});
+    dips = dips || passage.dips;
+    if (k < events_.size() || !(t < first)) continue;
+    first = t;
+    sampled = false;
+  }
+  return dips;
+}
+
+}  // namespace catena
