@@ -1,5 +1,5 @@
 // Ropes in motions that drivers determine: they are watched where these do so alone, and hold the load where they do
-// not; how long they are over pulleys that roll. Closed forms.
+// not. Closed forms.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -122,32 +122,6 @@ TEST(DrivenRopes, DriversThatMoveOnRegardless) {
   const TextRun elastic = lifted(R"(, "k": 100)", "inverse_dynamics");
   EXPECT_NEAR(elastic.last("rope.force"), 50, 1e-10);
   EXPECT_NEAR(elastic.last("drive.load"), -50, 1e-10);
-}
-
-// Over a heavy pulley that rolls: both sides together, however much has passed from one to the other.
-TEST(DrivenRopes, LengthOverPulleysThatRoll) {
-  for (const char* stiffness : {"", R"(, "k": 1e4)"}) {
-    const double r = 0.2, y1 = -1.5, y2 = -2.5;
-    const TextRun run = good_run(fmt::format(
-        R"({{"catena": 1, "gravity": [0, -9.81], "bodies": {{
-          "a": {{"particle": true, "mass": 1, "position": [{0}, {1}]}},
-          "b": {{"particle": true, "mass": 3, "position": [{2}, {3}]}}, "wheel": {{"mass": 2, "inertia": 0.03}}}},
-        "constraints": [{{"type": "revolute", "i": "ground", "j": "wheel"}},
-          {{"type": "absolute_x", "i": "a", "value": {0}}}, {{"type": "absolute_x", "i": "b", "value": {2}}}],
-        "forces": [{{"type": "rope", "name": "rope", "i": "a", "over": [{{"at": "wheel", "radius": {2}, "side": -1,
-          "pulley": "rolls"}}], "j": "b"{4}}}],
-        "outputs": ["a.y", "b.y", "wheel.angle", "rope.length", "rope:2.length"],
-        "analyses": [{{"type": "dynamics", "until": 0.3, "every": 0.05}}]}})",
-        -r, y1, r, y2, stiffness));
-    const std::vector<double> a = run.column("a.y"), b = run.column("b.y"), whole = run.column("rope.length");
-    ASSERT_EQ(whole.size(), a.size());
-    for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(whole[k], -a[k] - b[k] + pi * r, 1e-9) << k;
-    EXPECT_GT(std::abs(run.last("wheel.angle")), 0.5);
-    // Nothing of it is lost: it stays as long as it was.
-    if (*stiffness == 0) {
-      EXPECT_NEAR(whole.back(), -y1 - y2 + pi * r, 1e-9);
-    }
-  }
 }
 
 }  // namespace

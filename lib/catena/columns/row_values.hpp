@@ -11,7 +11,6 @@
 // Source files alone include it: this is where templates meet every element.
 #pragma once
 
-#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -79,7 +78,7 @@ class RowValues {
       case ColumnKind::gap:
         return s_.measured(column.index).f;
       case ColumnKind::way:
-        return whole_way(column.index);
+        return way(column.index);
       case ColumnKind::far_pull:
         return far_pull(column);
       case ColumnKind::slack:
@@ -234,18 +233,7 @@ class RowValues {
     return load ? S(load->force + load->friction) : S(0.0) - reactions(column).multiplier[0];
   }
 
-  /// The length of a rope's way: over all pulleys that roll, each of which makes an element of what is behind it; of
-  /// such an element its own.
-  S whole_way(int element) const {
-    const std::vector<RopePath>& paths = s_.model().rope_paths;
-    const auto begins = [&](const RopePath& path) { return path.element == element; };
-    auto path = std::find_if(paths.begin(), paths.end(), begins);
-    S sum = way(element);
-    if (path == paths.end() || (path != paths.begin() && (path - 1)->leads_on)) return sum;
-    for (; path->leads_on; ++path) sum += way((path + 1)->element);
-    return sum;
-  }
-  /// That of one element.
+  /// The length of a rope's way.
   S way(int element) const {
     const ElementRecord& record = s_.model().elements[static_cast<std::size_t>(element)];
     const bool elastic = record.kind == ElementKind::force;

@@ -33,19 +33,6 @@ void with_slide_value(M& model, int slide, F&& f) {
   });
 }
 
-/// Moves the zero of a contact's, cable's or rope's row to where its gap is `gap`.
-template <class M>
-void shift_gap(M& model, int element, double gap) {
-  const ElementRecord& record = model.elements[at(element)];
-  with_list(model.constraints, record.type, [&](auto& list) {
-    using E = ElementOf<decltype(list)>;
-    if constexpr (OneSided<E>) {
-      if constexpr (requires(E e) { e.radius; }) list[at(record.index)].element.radius += gap;
-      if constexpr (requires(E e) { e.length; }) list[at(record.index)].element.length -= gap;
-    }
-  });
-}
-
 }  // namespace
 
 ContactPhases::ContactPhases(std::shared_ptr<const Model> model, bool ropes)
@@ -53,7 +40,6 @@ ContactPhases::ContactPhases(std::shared_ptr<const Model> model, bool ropes)
   if (ropes) ropes_.emplace(*contacts_.model);
   states_.resize(contacts_.points.size());
   anchors_.assign(contacts_.points.size(), 0.0);
-  gaps_.assign(contacts_.points.size(), 0.0);
 }
 
 void ContactPhases::add_rows(PlanOptions& options, const std::vector<ContactState>& states) const {
@@ -76,12 +62,9 @@ void ContactPhases::add_rows(PlanOptions& options, const std::vector<ContactStat
 std::shared_ptr<const Model> ContactPhases::model() const {
   std::shared_ptr<Model> changed;
   for (std::size_t k = 0; k < states_.size(); ++k) {
-    const bool holds = sticks(contacts_.points[k], states_[k]);
-    if (!holds && gaps_[k] == 0) continue;
+    if (!sticks(contacts_.points[k], states_[k])) continue;
     if (!changed) changed = std::make_shared<Model>(*contacts_.model);
-    if (holds)
-      with_slide_value(*changed, contacts_.points[k].slide, [&](double& constant, int) { constant = anchors_[k]; });
-    if (gaps_[k] != 0) shift_gap(*changed, contacts_.points[k].element, gaps_[k]);
+    with_slide_value(*changed, contacts_.points[k].slide, [&](double& constant, int) { constant = anchors_[k]; });
   }
   return changed ? std::shared_ptr<const Model>(changed) : contacts_.model;
 }
@@ -122,7 +105,6 @@ void ContactPhases::make_switch(const PlanOptions& options) {
 
 Report ContactPhases::start(SystemState& state, const PlanOptions& options) {
   states_.assign(contacts_.points.size(), {});
-  gaps_.assign(contacts_.points.size(), 0.0);
   events_.clear();
   make_switch(options);
   std::vector<double> q = configuration_of(switch_->evaluator(), state);
@@ -199,11 +181,9 @@ Report ContactPhases::decide(SystemState& state, const ContactSwitch::Cause& cau
   std::vector<double> qd = velocities_of(evaluator, state);
   qd.resize(q.size(), 0.0);
   if (loads_) switch_->know_speed(loads_->speed());
-  const std::vector<ContactState> before = states_;
   Report report = switch_->decide(state.t, q, qd, states_, cause);
   for (ContactEvent& event : switch_->take_events()) events_.push_back(event);
   if (!report.ok()) return report;
-  if (cause.tell) keep_gaps(before);
   for (std::size_t k = 0; k < states_.size(); ++k) {
     const int slide = contacts_.points[k].slide;
     if (!sticks(contacts_.points[k], states_[k])) continue;
@@ -214,17 +194,6 @@ Report ContactPhases::decide(SystemState& state, const ContactSwitch::Cause& cau
   settle_elastic(evaluator, qd, cause, state.t);
   state = state_of(evaluator, state.t, q, qd);
   return report;
-}
-
-// Places that touch, but for a gap that cannot be told from none, close where they are: what others hold would not let
-// all of them close further. Where the motion starts, gaps are estimates, and bodies are moved.
-void ContactPhases::keep_gaps(const std::vector<ContactState>& before) {
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    const ContactPoint& point = contacts_.points[k];
-    if (point.kind != ContactKind::rigid) continue;
-    if (!states_[k].closed) gaps_[k] = 0;
-    if (states_[k].closed && !before[k].closed) gaps_[k] = switch_->evaluator().measure(point.element, {}, {}).value;
-  }
 }
 
 Report ContactPhases::change(int transition, SystemState& state) {

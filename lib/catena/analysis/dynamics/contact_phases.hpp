@@ -90,7 +90,6 @@ class ContactPhases {
   void make_switch(const PlanOptions& options);
   Report renew_switch(const PlanOptions& options, const SystemState& state);
   Report decide(SystemState& state, const ContactSwitch::Cause& cause);
-  void keep_gaps(const std::vector<ContactState>& before);
   Report check_depth(std::span<const double> q);
   Report change_elastic(const WatchedPlace& watched, SystemState& state);
   Report change_way(std::size_t transition, SystemState& state);
@@ -104,7 +103,6 @@ class ContactPhases {
   std::unique_ptr<ContactLoads> loads_;
   std::vector<ContactState> states_;
   std::vector<double> anchors_;        // by point: the value of the slide's equation while it sticks
-  std::vector<double> gaps_;           // by point: where it closed, m; zero to rounding of places
   std::vector<WatchedPlace> watched_;  // by transition; behind these are those of ropes
   std::vector<ContactEvent> events_;
 };

@@ -29,7 +29,7 @@ class TautRopes {
   /// Their names in quotes.
   std::string names() const;
   void observe(const Snapshot& row);
-  /// What is taken for granted, and who would have to push.
+  /// What is taken for granted, and which of them would have to push.
   std::vector<std::string> warnings() const;
 
  private:
