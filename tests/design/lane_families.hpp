@@ -62,7 +62,8 @@ inline std::string analysis_of(const Family& family) {
 
 /// Statuses and measures of a sweep in lanes are those of single runs; most good designs stay in their lanes.
 inline void expect_same_as_alone(const Family& family) {
-  constexpr int designs = size_of_test(40, 18);  // more than one pack of lanes
+  constexpr int designs = 40;
+  constexpr std::size_t one_in = size_of_test<std::size_t>(1, 3);  // is run alone
   std::mt19937 random(7);
   std::vector<std::vector<double>> values;
   for (int k = 0; k < designs; ++k) {
@@ -84,11 +85,12 @@ inline void expect_same_as_alone(const Family& family) {
   int good = 0;
   for (std::size_t k = 0; k < designs; ++k) {
     SCOPED_TRACE(k);
+    good += sweep.column("status")[k] == static_cast<double>(Status::ok);
+    if (k % one_in != 0) continue;
     const TextRun alone = run_text(scene_of(family, values[k], analysis_of(family)));
     ASSERT_EQ(alone.outcome.analyses.size(), 1u) << alone.outcome.error_text;
     const AnalysisResult& result = alone.analysis();
     EXPECT_EQ(sweep.column("status")[k], static_cast<double>(result.report.status)) << result.report.message;
-    good += result.report.ok();
     for (std::size_t m = 0; m < family.measures.size(); ++m) {
       const double value = sweep.column(fmt::format("m{}", m))[k];
       if (!result.report.ok()) {
