@@ -177,7 +177,8 @@ TEST(AdjointInScenes, GoesForwardWhereItMustAndSaysWhy) {
       {R"("=k")",
        R"("events": [{"name": "off", "when": "b.angle", "value": "=w/5", "action": "release", "element": "pin"}], )",
        "release"},
-      {R"("=k")", R"("events": [{"name": "then", "when": "b.angle", "value": "=w/5", "impulse": {"i": "b", "value": [0, "k"]}},
+      {R"("=k")",
+       R"("events": [{"name": "then", "when": "b.angle", "value": "=w/5", "impulse": {"i": "b", "value": [0, "k"]}},
         {"name": "both", "when": "b.angle", "value": "=w/5", "impulse": {"i": "b", "value": ["k", 0]}}], )",
        "several events"},
   }};

@@ -37,7 +37,8 @@ json object_of(json properties, const std::vector<std::string>& required = {}) {
 json map_of(json values) { return {{"type", "object"}, {"additionalProperties", std::move(values)}}; }
 
 std::string in_unit(std::string_view doc, UnitKind unit) {
-  return unit == UnitKind::none || unit == UnitKind::own ? std::string(doc) : fmt::format("{} [{}]", doc, si_unit(dimension_of(unit)));
+  return unit == UnitKind::none || unit == UnitKind::own ? std::string(doc)
+                                                         : fmt::format("{} [{}]", doc, si_unit(dimension_of(unit)));
 }
 
 json number(std::string_view doc, UnitKind unit, Domain domain = Domain::any) {
