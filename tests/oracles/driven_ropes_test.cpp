@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "oracles/good_run.hpp"
 #include "oracles/scene_text.hpp"
 #include "scene/run_text.hpp"
 
@@ -13,13 +14,6 @@ namespace catena::testing {
 namespace {
 
 constexpr double g = 9.81, pi = std::numbers::pi;
-
-TextRun good_run(const std::string& text) {
-  TextRun run = run_text(text);
-  EXPECT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text
-                                      << (run.outcome.analyses.empty() ? "" : run.analysis().report.message) << text;
-  return run;
-}
 
 bool says(const TextRun& run, const std::string& words) {
   for (const std::string& warning : run.analysis().report.warnings) {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "oracles/good_run.hpp"
 #include "oracles/scene_text.hpp"
 #include "scene/run_text.hpp"
 
@@ -19,13 +20,6 @@ namespace catena::testing {
 namespace {
 
 constexpr double g = 9.81, pi = std::numbers::pi;
-
-TextRun good_run(const std::string& text) {
-  TextRun run = run_text(text);
-  EXPECT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text
-                                      << (run.outcome.analyses.empty() ? "" : run.analysis().report.message) << text;
-  return run;
-}
 
 /// Two weights on an elastic rope over a drum on a pin: a hangs on the left, b on the right, la and lb below it.
 struct Drum {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "oracles/good_run.hpp"
 #include "scene/run_text.hpp"
 
 namespace catena::testing::rope_friction {
@@ -27,12 +28,6 @@ inline std::string scene(const std::string& bodies, const std::string& constrain
 }
 inline std::string dynamics(double t, const std::string& more = "") {
   return fmt::format(R"({{"type": "dynamics", "at": [0, {:.17g}], "tolerance": 1e-11{}}})", t, more);
-}
-inline TextRun good_run(const std::string& text) {
-  TextRun run = run_text(text);
-  EXPECT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text
-                                      << (run.outcome.analyses.empty() ? "" : run.analysis().report.message) << text;
-  return run;
 }
 struct Change {
   std::string kind;

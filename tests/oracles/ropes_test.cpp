@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "oracles/good_run.hpp"
 #include "oracles/scene_text.hpp"
 #include "scene/run_text.hpp"
 
@@ -37,13 +38,6 @@ std::string scene(const std::string& bodies, const std::string& constraints, con
 std::string dynamics(double t) {
   return R"({"type": "dynamics", "at": [0, )" + text_of(t) + R"(], "tolerance": 1e-11})";
 }
-TextRun good_run(const std::string& text) {
-  TextRun run = run_text(text);
-  EXPECT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text
-                                      << (run.outcome.analyses.empty() ? "" : run.analysis().report.message) << text;
-  return run;
-}
-
 TEST(Ropes, AtwoodsMachine) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);

@@ -1,6 +1,6 @@
-// Who finds how many digits of a motion's columns are right: the error that is carried along with one run
-// (motion_accuracy.hpp, accuracy_of_islands.hpp), or a second run (second_run.hpp) where contacts and events change the
-// mechanism, with which the carried error is lost, and of methods that do not tell their own.
+// How many digits of a motion's columns are right is found from the error that is carried along with one run
+// (motion_accuracy.hpp, accuracy_of_islands.hpp), or from a second run (second_run.hpp) where contacts and events
+// change the mechanism, with which the carried error is lost, and for methods that do not tell their own.
 #pragma once
 
 #include <atomic>

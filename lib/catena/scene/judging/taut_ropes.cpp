@@ -6,16 +6,13 @@
 #include <cmath>
 
 #include "catena/analysis/kinematics/kinematics.hpp"
+#include "catena/analysis/run/name_list.hpp"
 #include "catena/analysis/run/row_observer.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-// Of the length scale: a rope with less slack is taut, as contacts with less gap are closed.
-constexpr double no_slack = 1e-9;
-// Of the largest tension: what rounding leaves of none.
-constexpr double no_push = 1e-9;
 
 AnalysisReport look_at_start(Kinematics& analysis, const SystemState& from) {
   analysis.start_from(from);
@@ -39,7 +36,7 @@ void TautRopes::find(const PlanOptions& without, const SystemState& from) {
   if (look_at_start(alone, from).status != Status::under_driven) return pulled_.clear();
   std::erase_if(pulled_, [&](const Pulled& rope) {
     const Evaluator& evaluator = alone.evaluator();
-    return std::abs(evaluator.measure(rope.element, {}, {}).value) > no_slack * evaluator.length_scale();
+    return std::abs(evaluator.measure(rope.element, {}, {}).value) > thresholds::closed_gap * evaluator.length_scale();
   });
   if (!any()) return;
   PlanOptions with = without;
@@ -63,10 +60,9 @@ void TautRopes::add_rows(PlanOptions& options) const {
 }
 
 std::string TautRopes::names() const {
-  std::string names;
-  for (const Pulled& rope : pulled_)
-    names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", model_->element_name(rope.element));
-  return names;
+  NameList names;
+  for (const Pulled& rope : pulled_) names.add(model_->element_name(rope.element));
+  return names.text();
 }
 
 void TautRopes::observe(const Snapshot& row) {
@@ -85,7 +81,7 @@ std::vector<std::string> TautRopes::warnings() const {
       fmt::format("{} {} taken to stay taut: without {} constraints and drivers do not determine the motion", names(),
                   pulled_.size() == 1 ? "is" : "are", pulled_.size() == 1 ? "it" : "them")};
   for (const Pulled& rope : pulled_) {
-    if (!(rope.least < -no_push * largest_)) continue;
+    if (!(rope.least < -thresholds::no_force * largest_)) continue;
     sentences.push_back(fmt::format(
         "{} \"{}\" would have to push, by up to {:.4g} N (at t = {:.6g} s), and becomes slack in truth: take "
         "dynamics there",

@@ -18,8 +18,8 @@ bool ContactProblem::fits(double size) const {
       if (sticks && size_of(t, misfit(k)) > rounding_of_sums * size) return false;
       continue;
     }
-    const double rounding = place[k].has_normal ? rounding_of_sums * sum(n).terms * unit(n) : 0;
-    if (place[k].has_normal && size_of(n, x[n]) < -std::max(rounding_of_sums * size, rounding)) return false;
+    const bool pulls = place[k].has_normal && size_of(n, x[n]) < -rounding_of_sums * size;
+    if (pulls && size_of(n, x[n]) < -rounding_of_sums * sum(n).terms * unit(n)) return false;
     const double limit = place[k].has_normal ? place[k].mu_static * x[n] : place[k].limit;
     if (sticks && size_of(t, std::abs(x[t]) - limit) > rounding_of_sums * size) return false;
   }

@@ -6,8 +6,8 @@
 //   Phi_u du/dt = nu - Phi_v dv/dt
 //
 // Choice of v: rows of a basis of the tangent space (random motions, made tangent and orthonormal, lengths in the
-// scene's length scale), picked by QR with pivoting, so that Phi_u is far from singular. It is made anew when a pivot
-// of Phi_u Phi_u^T has become 100 times as small, compared with the whole row, as it was when the choice was made.
+// scene's length scale), picked by QR with pivoting, so that Phi_u is far from singular. It is made anew when the least
+// pivot of Phi_u Phi_u^T, compared with the whole row, is below 0.3 of what it was when the choice was made.
 // Singular case: where Phi_q loses rank no choice serves. The basis is dense: up to 500 degrees of freedom.
 #pragma once
 
