@@ -4,8 +4,9 @@
 #   apps/setup.sh            what building the library and the command line needs
 #   apps/setup.sh --python   also what the Python package needs
 #   apps/setup.sh --tests    also what the tests and benchmarks need
-#   apps/setup.sh --browser  also the browser that pages are tested in
-#   apps/setup.sh --all      also the second compiler and the formatter
+#   apps/setup.sh --checks   also the second compiler and the formatter
+#   apps/setup.sh --browser  what the tests need, and the browser that pages are tested in
+#   apps/setup.sh --all      all of these
 #
 # Installs only what is missing, as root or through sudo, and says what it does. With nothing missing it ends at once
 # and silently.
@@ -45,7 +46,7 @@ browser_packages=(
   chromium chromium-driver
   nodejs                # speaks with the driver
 )
-all_packages=(
+check_packages=(
   clang clang-format
   libclang-rt-dev       # the sanitizers of clang
 )
@@ -54,10 +55,11 @@ case "${1:-}" in
   "") ;;
   --python) packages+=("${python_packages[@]}") ;;
   --tests) packages+=("${test_packages[@]}") ;;
+  --checks) packages+=("${test_packages[@]}" "${check_packages[@]}") ;;
   --browser) packages+=("${test_packages[@]}" "${browser_packages[@]}") ;;
-  --all) packages+=("${test_packages[@]}" "${browser_packages[@]}" "${all_packages[@]}") ;;
+  --all) packages+=("${test_packages[@]}" "${browser_packages[@]}" "${check_packages[@]}") ;;
   *)
-    echo "usage: apps/setup.sh [--python | --tests | --browser | --all]" >&2
+    echo "usage: apps/setup.sh [--python | --tests | --checks | --browser | --all]" >&2
     exit 2
     ;;
 esac

@@ -12,10 +12,14 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 mode="${1:-}"
+long=OFF
 case "$mode" in
   "") packages=--tests ;;
-  --long) packages=--all ;;
-  --all) packages=--all ;;
+  --long)
+    packages=--all
+    long=ON
+    ;;
+  --all) packages=--checks ;;
   *)
     echo "usage: tests/run.sh [--all | --long]" >&2
     exit 2
@@ -54,10 +58,8 @@ run_ctest() {
   ctest --test-dir "build/$preset" --parallel "$jobs" --timeout 600 --no-tests=error "$@"
 }
 
-# The library and the programs file by file, as users build them: every header and every warning counts.
 release_build() {
-  build release -DCATENA_BATCH=OFF -DCATENA_BATCH_TESTS=ON -DCATENA_BUILD_TESTS=ON -DCATENA_BUILD_BENCH=ON \
-    -DCATENA_WITH_PYTHON=ON
+  build release -DCATENA_LONG_TESTS="$long" -DCATENA_BUILD_TESTS=ON -DCATENA_BUILD_BENCH=ON -DCATENA_WITH_PYTHON=ON
 }
 release_tests() { run_ctest release --label-exclude '^(stress|fuzz|bench|browser)$'; }
 long_tests() { run_ctest release --label-regex '^(stress|fuzz|bench|browser)$'; }

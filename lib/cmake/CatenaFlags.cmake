@@ -38,7 +38,7 @@ function(catena_set_flags target)
   endif()
 endfunction()
 
-# With CATENA_BATCH: up to six files of a folder at once; their headers and what these hold are compiled once. Names that a
+# With CATENA_BATCH: up to ten files of a folder at once; their headers and what these hold are compiled once. Names that a
 # file hides in its unnamed namespace must differ from those of its folder, or be the same thing in a header.
 function(catena_batch target)
   if(NOT CATENA_BATCH)
@@ -53,7 +53,7 @@ function(catena_batch target)
       set(folder "${here}")
       set(place 0)
     endif()
-    math(EXPR group "${place} / 6")
+    math(EXPR group "${place} / 10")
     math(EXPR place "${place} + 1")
     string(MAKE_C_IDENTIFIER "${here}_${group}" group)
     set_source_files_properties("${source}" PROPERTIES UNITY_GROUP ${group})

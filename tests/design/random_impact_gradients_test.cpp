@@ -213,9 +213,9 @@ void expect_gradients(unsigned first, unsigned last, Make&& make) {
   EXPECT_GT(compared, static_cast<int>(last - first + 1));
 }
 
-TEST(RandomImpactGradients, OfChainsThatHitStops) { expect_gradients(1, size_of_test(8u, 4u), chain_with_stops); }
-TEST(RandomImpactGradients, OfDiscsThatAreThrown) { expect_gradients(1, size_of_test(4u, 2u), thrown_disc); }
-TEST(RandomImpactGradients, OfSlidersThatRub) { expect_gradients(1, size_of_test(4u, 2u), slider_with_catch); }
+TEST(RandomImpactGradients, OfChainsThatHitStops) { expect_gradients(1, size_of_test(8u, 2u), chain_with_stops); }
+TEST(RandomImpactGradients, OfDiscsThatAreThrown) { expect_gradients(1, size_of_test(4u, 1u), thrown_disc); }
+TEST(RandomImpactGradients, OfSlidersThatRub) { expect_gradients(1, size_of_test(4u, 1u), slider_with_catch); }
 
 }  // namespace
 }  // namespace catena::testing

@@ -76,11 +76,11 @@ void expect_claims(const char* title, unsigned seeds, int least, Add&& add) {
 
 TEST(ClaimedDigits, HoldInDrivenMotion) { expect_claims("driven", 40, 20, add_driven_digits); }
 TEST(ClaimedDigits, HoldInMotionOfOneRun) {
-  expect_claims("in motion, one run", 40, 20,
+  expect_claims("in motion, one run", size_of_test(40u, 12u), size_of_test(20, 5),
                 [](unsigned seed, ClaimedDigits& claims) { return add_moving_digits(seed, claims, Runs::one); });
 }
 TEST(ClaimedDigits, HoldOfMethodsThatRunTwice) {
-  expect_claims("other methods", 40, 20,
+  expect_claims("other methods", size_of_test(40u, 12u), size_of_test(20, 5),
                 [](unsigned seed, ClaimedDigits& claims) { return add_moving_digits(seed, claims, Runs::methods); });
 }
 TEST(ClaimedDigits, HoldWithContacts) { expect_claims("with contacts", 45, 25, add_touching_digits); }

@@ -57,7 +57,7 @@ struct Load {
 
 // The reaction of a body that is held under a force, by a function of time or a law; a body beside it turns evenly.
 TEST(EventsAtRest, LoadsOfAHeldBody) {
-  expect_no_fault(1, size_of_test(60u, 20u), [](unsigned seed) {
+  expect_no_fault(1, size_of_test(60u, 8u), [](unsigned seed) {
     const Load load(seed);
     const std::string by_time =
         fmt::format(R"({{"harmonic": {{"amplitude": {:.17g}, "omega": {:.17g}, "phase": {:.17g}}}}})", load.amplitude,
@@ -97,7 +97,7 @@ TEST(EventsAtRest, SinesOfAPlaceThatMovesEvenly) {
 // A block that sticks on a rough floor slips as soon as the force exceeds what friction can hold, to either side.
 TEST(EventsAtRest, BlocksThatStick) {
   int judged = 0;
-  expect_no_fault(1, 40, [&](unsigned seed) -> std::string {
+  expect_no_fault(1, size_of_test(40u, 12u), [&](unsigned seed) -> std::string {
     const Load load(seed);
     const double held = std::abs(load.value);
     const std::vector<double> up = passages(load.amplitude, load.omega, load.phase, held, load.end),
@@ -121,7 +121,7 @@ TEST(EventsAtRest, BlocksThatStick) {
                ? std::string()
                : fmt::format("slips at {:.15g}, not at {:.15g}", found.front().t, first);
   });
-  EXPECT_GT(judged, 5);
+  EXPECT_GT(judged, size_of_test(5, 1));
 }
 
 // A body at rest under a law that is a pulse in time, six widths and more from both ends: it moves on with its impulse.

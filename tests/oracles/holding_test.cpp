@@ -261,7 +261,7 @@ double slider_crank_share(double r, double l, double angle, double moment, doubl
 }
 
 TEST(Holding, SliderCranksWithOneForceOpen) {
-  const unsigned last = size_of_test(12u, 4u);
+  const unsigned last = size_of_test(12u, 2u);
   for (unsigned seed = 1; seed <= last; ++seed) {
     SCOPED_TRACE(seed);
     RandomNumbers random(seed);

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <vector>
 
+#include "analysis/sanitized.hpp"
 #include "oracles/random_seeds.hpp"
 #include "oracles/scene_text.hpp"
 #include "scene/run_text.hpp"
@@ -133,10 +134,11 @@ std::string stack_fault(unsigned seed, Seen& seen) {
 
 TEST(StatesOfFriction, OfStacksAreToldWhereSeveralFit) {
   Seen seen;
-  expect_no_fault(first_case(), last_case(400), [&](unsigned seed) { return stack_fault(seed, seen); });
+  const int usual = size_of_test(400, 100);
+  expect_no_fault(first_case(), last_case(usual), [&](unsigned seed) { return stack_fault(seed, seen); });
   std::printf("%d judged, of %d several states fit\n", seen.judged, seen.several);
-  EXPECT_GT(seen.judged, stress_cases(400) / 2);
-  EXPECT_GT(seen.several, stress_cases(400) / 100);
+  EXPECT_GT(seen.judged, stress_cases(usual) / 2);
+  EXPECT_GT(seen.several, stress_cases(usual) / 100);
 }
 
 // The names in the note on shared friction are those of the scene.

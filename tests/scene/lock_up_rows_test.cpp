@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "analysis/sanitized.hpp"
 #include "scene/event_entries.hpp"
 
 namespace catena::testing {
@@ -90,7 +91,7 @@ TEST(LockUpRows, WhereWorkIsSummedUp) {
       {"type": "absolute_y", "i": "r.to", "value": 0}],
     "drivers": [{"type": "absolute_x", "name": "pull", "i": "r.to", "value": {"polynomial": [0.5, )";
   for (const std::string type : {"inverse_dynamics", "dynamics"}) {
-    for (const double rate : {0.01, 0.1, 0.3, 1.0, 7.0}) {
+    for (const double rate : is_sanitized ? std::vector{0.1, 7.0} : std::vector{0.01, 0.1, 0.3, 1.0, 7.0}) {
       for (const std::string outputs : {R"("pull.work")", R"("energy")", R"("pull.load")"}) {
         SCOPED_TRACE(type + " " + outputs + " " + std::to_string(rate));
         const double end = 0.2 / rate;
