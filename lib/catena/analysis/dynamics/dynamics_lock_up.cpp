@@ -12,15 +12,13 @@
 #include <utility>
 
 #include "catena/analysis/dynamics/dynamics.hpp"
-#include "catena/analysis/motion/dependence.hpp"
 #include "catena/analysis/pose/dead_point.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {
 
-// Rows nearer to dependence than this (sine) count as dependent: steps end where velocities have grown a thousandfold.
-constexpr double nearly_dependent = 1e-3;
-// The part of |w| |nu| from which w^T nu counts as something, w known to nearly_dependent.
+// The part of |w| |nu| from which w^T nu counts as something, w known to a tenth of that.
 constexpr double not_nothing = 1e-2;
 // How much longer than by its accelerations the way to the dead point may be.
 constexpr double longest_way = 10;
@@ -67,7 +65,7 @@ std::optional<SingularPoint> Dynamics::dead_point_ahead() {
   if (w.empty()) return {};
   const double rest = time_to_dead_point(w, q);
   evaluator_.set_time(t + rest);
-  std::optional<SingularPoint> point = find_dead_point(evaluator_, q, nearly_dependent);
+  std::optional<SingularPoint> point = find_dead_point(evaluator_, q, dependence::follows_at_end);
   if (!point) return {};
   // Of all motions that are possible there those count that grow without bound.
   const std::vector<double> motion(qd.begin(), qd.end());

@@ -4,11 +4,11 @@
 #include <algorithm>
 
 #include "catena/analysis/dynamics/dynamics.hpp"
-#include "catena/analysis/motion/dependence.hpp"
 #include "catena/analysis/pose/mobility.hpp"
 #include "catena/base/at.hpp"
 #include "catena/columns/energy.hpp"
 #include "catena/columns/state_laws.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "catena/analysis/branches/branch_keeping.hpp"
 #include "catena/analysis/dynamics/dynamics.hpp"
-#include "catena/analysis/motion/dependence.hpp"
 #include "catena/analysis/pose/scaling.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "catena/analysis/dynamics/dynamics.hpp"
-#include "catena/analysis/motion/dependence.hpp"
 #include "catena/analysis/motion/initial_velocities.hpp"
 #include "catena/analysis/pose/departure.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {
@@ -26,7 +26,7 @@ std::optional<SingularStart> Dynamics::singular_start() {
   equations_.leave_out({});
   if (!equations_.factorize(t_, Side::after, q_) || equations_.smallest_pivot_ratio() > dependence::independent)
     return {};
-  SingularPoint point = find_branches(evaluator_, q_, {}, start_dependence);
+  SingularPoint point = find_branches(evaluator_, q_, {}, dependence::follows_at_start);
   if (point.nullity == 0 || !point.held_to_second_order) return {};
   const int branch = branch_of_given_velocities(point);
   return decide_start(evaluator_, std::move(point), branch, 1, "give bodies the velocities of one of them");

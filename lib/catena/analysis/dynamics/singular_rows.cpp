@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "catena/analysis/motion/dependence.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "catena/base/at.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {
@@ -29,8 +30,6 @@ constexpr double part_of_extent = 0.01;
 constexpr double keep_distance = 1e-4;
 // Refinement that leaves more than this of an error takes longer than new factors.
 constexpr double keep_rate = 1e-2;
-// Old factors hide a change of the determinant's sign: they are kept only where no pivot is near zero.
-constexpr double keep_rcond = 1e-2;
 // A ratio of successive corrections above this asks for new factors.
 constexpr double poor_contraction = 0.1;
 
@@ -158,7 +157,7 @@ double DrivenSolver::residual_at(std::span<const double> q) {
 bool DrivenSolver::factors_serve() const {
   if (!factored_.valid) return false;
   const bool exact = plan_.constant_jacobian || (factored_.gap == 0 && factored_.t == evaluator_.time());
-  return exact || (factored_.gap <= keep_distance && factored_.rcond >= keep_rcond);
+  return exact || (factored_.gap <= keep_distance && factored_.rcond >= dependence::far_from_singular);
 }
 
 // The part of an error that one refinement leaves with factors made at a distance.

@@ -9,14 +9,9 @@
 #include "catena/analysis/pose/whole_turns.hpp"
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/base/at.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
-namespace {
-
-// A reciprocal condition number above this leaves no doubt that all rows are independent.
-constexpr double clearly_regular = 1e-9;
-
-}  // namespace
 
 Kinematics::Kinematics(std::shared_ptr<const Model> model, const PlanOptions& plan_options,
                        const KinematicsOptions& options)
@@ -149,13 +144,13 @@ Report Kinematics::prepare(double direction) {
     return report;
   }
   // In the usual case, a factorization without a small pivot, no rank analysis is needed.
-  if (plan().rows == plan().columns && solver_.factor_at(now_.q) > clearly_regular) {
+  if (plan().rows == plan().columns && solver_.factor_at(now_.q) > dependence::clearly_regular) {
     prepared_ = true;
     return report;
   }
   const MobilityReport mobility = analyse_mobility(evaluator_, now_.q);
   if (mobility.rank < plan().columns) {
-    SingularPoint point = find_branches(evaluator_, now_.q, {}, start_dependence);
+    SingularPoint point = find_branches(evaluator_, now_.q, {}, dependence::follows_at_start);
     if (plan().rows >= plan().columns && point.held_to_second_order) {
       return start_singular(std::move(point), direction);
     }

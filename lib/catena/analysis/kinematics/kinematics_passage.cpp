@@ -17,6 +17,7 @@
 #include "catena/analysis/pose/departure.hpp"
 #include "catena/analysis/pose/singular_start.hpp"
 #include "catena/base/at.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {
@@ -111,13 +112,13 @@ SingularPoint Kinematics::look_at(const Crossing& crossing, double t) {
   std::vector<double> q(now_.q.size()), qd(now_.q.size());
   bridge.evaluate(t, q, qd, {});
   evaluator_.set_time(t);
-  SingularPoint point = find_branches(evaluator_, q, qd, start_dependence);
+  SingularPoint point = find_branches(evaluator_, q, qd, dependence::follows_at_start);
   if (!rests || point.nullity == 0) return point;
   // Where the drivers rest the velocity is zero; it is evaluated a moment later.
   const double later = t + std::copysign(moment * (to - from), t - now_.t);
   bridge.evaluate(later, {}, qd, {});
   evaluator_.set_time(later);
-  point = find_branches(evaluator_, q, {}, start_dependence, Drivers::about_to_move);
+  point = find_branches(evaluator_, q, {}, dependence::follows_at_start, Drivers::about_to_move);
   point.kind = SingularPoint::Kind::rest;
   point.t = t;
   evaluator_.set_time(t);

@@ -8,6 +8,7 @@
 #include "catena/analysis/run/process_time.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/columns/energy.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {
@@ -15,8 +16,6 @@ namespace {
 // Redundant rows that velocities and accelerations miss by more than the first part of them are a reason to look for
 // better rows, by more than the second a contradiction.
 constexpr double doubtful_rates = 1e-11, contradictory_rates = 1e-6;
-// The present factors may be those of an earlier iterate: below this condition the pivots are checked.
-constexpr double suspicious_part = 1e-4;
 // Rates of redundant equations, if not needed for output, are checked at one in so many rows: they cost as much as the
 // positions, whose residual is checked at every step.
 constexpr std::int64_t rows_between_checks = 16;
@@ -111,7 +110,7 @@ Report Kinematics::give_row(const Needs& needs, bool check_rates) {
   if (has_rates(needs)) {
     if (Report laws = watched_.check_laws(now_.qd); !laws.ok()) return laws;
   }
-  if (!now_.on_bridge && solver_.rcond() < suspicious_part) {
+  if (!now_.on_bridge && solver_.rcond() < dependence::suspicious) {
     if (std::optional<SingularPoint> point = dead_point_here()) return lock_up(std::move(*point));
   }
   if (redundant) {

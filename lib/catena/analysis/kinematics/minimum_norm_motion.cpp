@@ -17,6 +17,7 @@
 #include "catena/analysis/run/state_conversion.hpp"
 #include "catena/analysis/run/time_coverage.hpp"
 #include "catena/base/at.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {
@@ -118,7 +119,7 @@ Report MinimumNormMotion::cancelled() const {
 // The start lies where no motion goes on, or where several do and nothing chooses; ok: neither.
 Report MinimumNormMotion::stuck_at_start(double target) {
   evaluator_.set_time(t_);
-  SingularPoint point = find_branches(evaluator_, q_, {}, start_dependence);
+  SingularPoint point = find_branches(evaluator_, q_, {}, dependence::follows_at_start);
   if (point.nullity <= plan_->columns - plan_->rows) return {};
   SingularStart start = decide_start(evaluator_, std::move(point), 0, target < t_ ? -1 : 1, "drive what is free");
   if (!start.report.ok()) singular_points_.push_back(std::move(start.point));

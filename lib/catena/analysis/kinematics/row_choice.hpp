@@ -13,6 +13,7 @@
 #include "catena/analysis/kinematics/driven_solver.hpp"
 #include "catena/analysis/pose/mobility.hpp"
 #include "catena/base/status.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 
@@ -31,7 +32,7 @@ class RowChoice {
   /// Factors the matrix at q: its condition is what later ones are compared with.
   void note_condition(std::span<const double> q) { chosen_rcond_ = solver_.factor_at(q); }
   /// Whether the condition of the equations in use has become much worse than where they were chosen.
-  bool has_drifted() const { return chosen_rcond_ > 0 && solver_.rcond() < drifted * chosen_rcond_; }
+  bool has_drifted() const { return chosen_rcond_ > 0 && solver_.rcond() < dependence::fallen * chosen_rcond_; }
   /// The elements with redundant equations, for the report, and how many freedoms the drivers take away.
   void name_redundant(const MobilityReport& mobility);
   void forget_names() { names_.clear(), mobility_ = plan_.driver_rows; }
@@ -48,9 +49,6 @@ class RowChoice {
   Report check_rates(const DrivenInstant& now, double allowed, bool in_words);
 
  private:
-  // Equations are chosen again where their reciprocal condition number has fallen to this part of its value.
-  static constexpr double drifted = 0.01;
-
   Report contradicts(const DrivenInstant& now, int row, const std::string& how);
   const char* unit_of(int row) const;
   std::vector<int> elements_against(int element, std::span<const double> q);

@@ -5,18 +5,15 @@
 #include <random>
 #include <utility>
 
-#include "catena/analysis/motion/dependence.hpp"
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/pose/jacobian_rank.hpp"
 #include "catena/assembly/systems/row_spread.hpp"
 #include "catena/base/at.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {
 
-// Where masses are very unequal rounding of pivots is that of the largest diagonal: so many times the ratio of
-// diagonals.
-constexpr double rounding_of_pivots = 1e-14;
 constexpr int most_probes = 4;
 // Pivot ratios grow with the square of the distance from a singular position: usual is that half a radian away.
 constexpr double usual_growth = 25;
@@ -158,7 +155,8 @@ class Exchange {
 // Whether the pivots of the factors leave no doubt that rows are independent.
 bool are_independent(const EquationsOfMotion& equations) {
   const double spread = row_spread(equations.row_sizes(), equations.plan().row_is_angle);
-  return equations.smallest_pivot_ratio() > std::max(dependence::independent, rounding_of_pivots * spread * spread);
+  return equations.smallest_pivot_ratio() >
+         std::max(dependence::independent, dependence::rounding_of_pivots * spread * spread);
 }
 
 }  // namespace

@@ -7,13 +7,11 @@
 
 #include "catena/analysis/pose/jacobian_rank.hpp"
 #include "catena/base/at.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {
 
-// Equations this near to dependence (sine) count as dependent; the resulting error of accelerations is of the same
-// size.
-constexpr double dependent = 3e-4;
 // Part of the terms of w^T gamma above which the sum does not vanish.
 constexpr double vanishing = 1e-2;
 // Equations of the completed system that are this near to dependence are dropped.
@@ -148,7 +146,7 @@ SingularInstant::Outcome SingularInstant::solve(double t, std::span<const double
   const JacobianAlong along = differentiate_along(evaluator, t, q, qd, moment_);
 
   RankOptions options;
-  options.tolerance = dependent;
+  options.tolerance = dependence::follows_nearby;
   options.most_null_vectors = 0;
   const RankReport rank = jacobian_rank(evaluator, plan.jacobian,
                                         std::span<const double>(along.values).first(at(plan.trash_slot())), options);

@@ -17,6 +17,7 @@
 #include <optional>
 
 #include "catena/analysis/pose/singular_point.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 
@@ -26,6 +27,7 @@ inline constexpr int most_dependences = 400;
 /// The dead point that the mechanism is in at the assembled place q and the evaluator's time, with the driver
 /// concerned; nothing where velocities exist, or where rows contradict each other for good. `threshold`: length (sine)
 /// below which rows count as dependent: how exactly the place is known. The evaluator is left at q.
-std::optional<SingularPoint> find_dead_point(Evaluator& evaluator, std::span<const double> q, double threshold = 1e-7);
+std::optional<SingularPoint> find_dead_point(Evaluator& evaluator, std::span<const double> q,
+                                             double threshold = dependence::follows_at_start);
 
 }  // namespace catena

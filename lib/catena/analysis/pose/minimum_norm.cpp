@@ -8,12 +8,12 @@
 
 #include "catena/analysis/run/name_list.hpp"
 #include "catena/base/at.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 #include "catena/model/attachment.hpp"
 
 namespace catena {
 namespace {
 
-constexpr double regularisation = 1e-12;
 // A reaction counts as ambiguous if a random set of multipliers differs from the least equivalent one by this part.
 constexpr double ambiguous_part = 1e-6;
 
@@ -135,7 +135,8 @@ bool MinimumNorm::factorize() {
   for (std::size_t c = 0; c < diagonal_.size(); ++c) {
     const double of_its_kind = largest[plan.coordinate[c] % 3 == 2];
     double& value = values_[at(diagonal_[c])];
-    value += of_its_kind > 0 ? regularisation * value + std::numeric_limits<double>::epsilon() * of_its_kind : 1;
+    value +=
+        of_its_kind > 0 ? dependence::regularisation * value + std::numeric_limits<double>::epsilon() * of_its_kind : 1;
   }
   return factorization_.factorize(values_, 0, counters).ok();
 }

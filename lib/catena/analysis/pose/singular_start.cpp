@@ -8,6 +8,7 @@
 
 #include "catena/analysis/pose/dead_point.hpp"
 #include "catena/analysis/pose/departure.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {
@@ -25,7 +26,7 @@ void find_ways(Evaluator& evaluator, SingularPoint& point, double direction) {
     evaluator.nu(nu);
     if (std::all_of(nu.begin(), nu.end(), [](double rate) { return rate == 0; })) continue;
     const std::vector<double> q = point.q;
-    point = find_branches(evaluator, q, {}, start_dependence, Drivers::about_to_move);
+    point = find_branches(evaluator, q, {}, dependence::follows_at_start, Drivers::about_to_move);
     point.t = t;
     point.kind = SingularPoint::Kind::rest;
     break;
@@ -45,7 +46,7 @@ SingularStart decide_start(Evaluator& evaluator, SingularPoint point, int branch
     start.report = point.report_lock_up(model);
     const Plan& plan = evaluator.plan();
     const bool tellable = point.nullity <= most_nullity && plan.rows - plan.columns + point.nullity <= most_dependences;
-    if (tellable && !find_dead_point(evaluator, point.q, start_dependence)) {
+    if (tellable && !find_dead_point(evaluator, point.q, dependence::follows_at_start)) {
       start.report.status = Status::inconsistent;
       start.report.message = fmt::format(
           "no velocities meet all constraints and drivers at t = {:.12g} s, here or elsewhere; most concerned: driver "

@@ -14,19 +14,15 @@
 
 namespace catena {
 
-/// At the start of a motion rows count as dependent below this sine of the angle between one and the span of the
-/// others: configurations are given no more exactly.
-inline constexpr double start_dependence = 1e-7;
-
 struct SingularStart {
   Report report;
   SingularPoint point;
   int branch = 0;  ///< from 1: the tangent along which the motion starts
 };
 
-/// `point`: of find_branches at the evaluator's time, with start_dependence; `branch`: the one asked for, 0 if none
-/// was; `direction`: 1 or -1, of time; `choose`: what the author can do to choose a branch. The evaluator is left at
-/// point.t.
+/// `point`: of find_branches at the evaluator's time, with dependence::follows_at_start; `branch`: the one asked for, 0
+/// if none was; `direction`: 1 or -1, of time; `choose`: what the author can do to choose a branch. The evaluator is
+/// left at point.t.
 SingularStart decide_start(Evaluator& evaluator, SingularPoint point, int branch, double direction,
                            std::string_view choose = "choose one with \"branch\"");
 

@@ -1,5 +1,5 @@
 // Thresholds that several analyses share: each stands here once, with what it follows from. Those of one mechanism
-// stand beside it; whether equations depend on each other is told by motion/dependence.hpp.
+// stand beside it; whether equations depend on each other is told by linalg/rank/dependence.hpp.
 #pragma once
 
 #include <limits>

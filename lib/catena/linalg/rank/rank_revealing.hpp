@@ -23,13 +23,13 @@
 #include "catena/linalg/kernels/kernel_info.hpp"
 #include "catena/linalg/patterns/sparse_pattern.hpp"
 #include "catena/linalg/rank/column_dependencies.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 
 struct RankOptions {
-  /// Length (sine of an angle) below which a scaled row counts as a combination of others. The default lies between the
-  /// rounding of assembled configurations (1e-12) and the smallest angles that still determine a motion.
-  double tolerance = 1e-10;
+  /// Length (sine of an angle) below which a scaled row counts as a combination of others.
+  double tolerance = dependence::follows;
   int most_dependencies = 100'000;    ///< left null vectors are left out when there are more dependent rows
   int most_null_vectors = 64;         ///< right null vectors are left out when the nullity is larger
   Kernel kernel = Kernel::automatic;  ///< spqr, cholmod (pivots of A A^T), or automatic: spqr where compiled in

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "catena/analysis/motion/dependence.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {

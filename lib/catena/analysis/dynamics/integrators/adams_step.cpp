@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "catena/analysis/dynamics/integrators/adams.hpp"
-#include "catena/analysis/motion/dependence.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <limits>
 
-#include "catena/analysis/motion/dependence.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {

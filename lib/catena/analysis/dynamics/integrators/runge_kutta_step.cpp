@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "catena/analysis/dynamics/integrators/runge_kutta.hpp"
-#include "catena/analysis/motion/dependence.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {

@@ -11,8 +11,8 @@
 #include <limits>
 #include <vector>
 
-#include "catena/analysis/motion/dependence.hpp"
 #include "catena/analysis/motion/tableau.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 

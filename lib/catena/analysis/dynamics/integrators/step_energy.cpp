@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "catena/analysis/motion/dependence.hpp"
 #include "catena/analysis/pose/jacobian_rank.hpp"
 #include "catena/analysis/run/thresholds.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {
