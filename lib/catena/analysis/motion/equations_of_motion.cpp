@@ -58,7 +58,7 @@ EquationsOfMotion::EquationsOfMotion(Evaluator& evaluator, const EquationsOfMoti
 
 Report EquationsOfMotion::use_masses() {
   const Report report = masses_.load(evaluator_);
-  if (report.ok()) system_.set_masses(masses_.mass, masses_.substitute);
+  if (report.ok()) system_.set_metric(masses_.mass, masses_.substitute);
   factored_ = weighed_ = false;
   return report;
 }
@@ -75,7 +75,7 @@ void EquationsOfMotion::weigh_massless(std::span<const double> q) {
     if (seen[at(c)] > 0) masses_.substitute[at(c)] = small_part * seen[at(c)];
   }
   for (int round = 0;; ++round) {
-    system_.set_masses(masses_.mass, masses_.substitute);
+    system_.set_metric(masses_.mass, masses_.substitute);
     factored_ = false;
     if (round == most_weighings || plan_.rows == 0 || !factorize(t, Side::after, q)) return;
     const std::vector<double> shares = system_.massless_shares(evaluator_.counters);

@@ -18,7 +18,7 @@
 #include "catena/analysis/motion/state_loads.hpp"
 #include "catena/analysis/pose/scaling.hpp"
 #include "catena/assembly/evaluate.hpp"
-#include "catena/assembly/systems/schur_system.hpp"
+#include "catena/assembly/systems/constraint_solver.hpp"
 #include "catena/base/status.hpp"
 
 namespace catena {
@@ -75,8 +75,8 @@ class EquationsOfMotion {
   /// the residual is rounding compared with the velocities `rate` (1/s), at most twice. Returns the residual of qd as
   /// it was.
   double project_velocity(std::span<double> qd, double rate);
-  /// Directions among the equations that are not solved for, see SchurSystem and RedundantRows. The next use factors
-  /// again.
+  /// Directions among the equations that are not solved for, see ConstraintSolver and RedundantRows. The next use
+  /// factors again.
   void leave_out(SparseVectors directions) {
     system_.leave_out(std::move(directions));
     factored_ = false;
@@ -86,7 +86,7 @@ class EquationsOfMotion {
   void solve_rows(std::span<double> x) { system_.solve_rows(x, evaluator_.counters); }
   /// Removes from x approximately the part that the constraints do not allow, for estimates of errors.
   void remove_forbidden(std::span<double> x);
-  /// See SchurSystem: near zero where constraints depend on each other.
+  /// See ConstraintSolver: near zero where constraints depend on each other.
   double smallest_pivot_ratio() const { return plan_.rows > 0 ? system_.smallest_pivot_ratio() : 1; }
   int weakest_row() const { return system_.weakest_row(); }
   /// Whether constraints that are solved for depend on each other, in a singular position.
@@ -106,7 +106,7 @@ class EquationsOfMotion {
   const Plan& plan_;
   MassMatrix masses_;
   Scaling scaling_;
-  SchurSystem system_;
+  ConstraintSolver system_;
   StateLoads* state_loads_ = nullptr;
   bool factored_ = false, weighed_ = false;
   std::vector<double> jacobian_, gamma_, lambda_, loads_, residual_, multipliers_, change_;

@@ -8,7 +8,8 @@
 
 #include "catena/analysis/pose/dead_point.hpp"
 #include "catena/analysis/pose/scaling.hpp"
-#include "catena/assembly/systems/constraint_projector.hpp"
+#include "catena/analysis/run/thresholds.hpp"
+#include "catena/assembly/systems/constraint_solver.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -31,17 +32,18 @@ constexpr double met = 1e-14;
 WantedVelocities wanted_velocities(const Evaluator& evaluator, const MassMatrix& masses,
                                    std::span<const double> given) {
   const Plan& plan = evaluator.plan();
-  WantedVelocities wanted{std::vector<double>(at(plan.columns), 0.0), std::vector<double>(at(plan.columns), 1.0),
-                          std::vector<char>(at(plan.columns), 0), std::vector<char>(at(plan.columns), 0)};
-  for (int c = 0; c < plan.columns; ++c) {
-    const int coordinate = plan.coordinate[at(c)], k = coordinate % 3;
-    const auto& body = evaluator.model().bodies[at(plan.model_body[at(coordinate / 3)])];
-    const double mass = masses.mass[at(coordinate)];
+  const std::size_t coordinates = at(3 * plan.moving);
+  WantedVelocities wanted{std::vector<double>(coordinates, 0.0), std::vector<double>(coordinates, 0.0),
+                          std::vector<char>(coordinates, 0), std::vector<char>(coordinates, 0)};
+  for (const int c : plan.coordinate) {
+    const int k = c % 3;
+    const auto& body = evaluator.model().bodies[at(plan.model_body[at(c / 3)])];
+    const double mass = masses.mass[at(c)];
     const bool massless = !(mass > 0);
-    wanted.weight[at(c)] = massless ? masses.substitute[at(coordinate)] : mass;
+    wanted.weight[at(c)] = massless ? masses.substitute[at(c)] : mass;
     if (!given.empty()) {
       wanted.given[at(c)] = !massless;
-      wanted.velocity[at(c)] = given[at(coordinate)];
+      wanted.velocity[at(c)] = given[at(c)];
     } else if (k == 2) {
       wanted.given[at(c)] = body.angular_velocity_given;
       wanted.velocity[at(c)] = body.angular_velocity_given ? body.angular_velocity : 0;
@@ -49,7 +51,7 @@ WantedVelocities wanted_velocities(const Evaluator& evaluator, const MassMatrix&
       wanted.given[at(c)] = 1;
       // From the author's origin to the centroid.
       const double omega = body.angular_velocity_given ? body.angular_velocity : 0;
-      const Vec2<double> arm = evaluator.frames()[at(coordinate / 3)].axis(body.origin);
+      const Vec2<double> arm = evaluator.frames()[at(c / 3)].axis(body.origin);
       const Vec2<double> v = body.velocity - omega * perpendicular(arm);
       wanted.velocity[at(c)] = k == 0 ? v.x : v.y;
     }
@@ -78,61 +80,57 @@ void report_contradiction(Evaluator& evaluator, std::span<const double> q, int w
       evaluator.time(), evaluator.model().element_type(element), evaluator.model().element_name(element), left);
 }
 
+/// The equations of velocities at the evaluator's configuration.
+struct VelocityRows {
+  const Plan& plan;
+  Scaling scaling;
+  std::vector<double> jacobian, nu;
+
+  explicit VelocityRows(Evaluator& evaluator)
+      : plan(evaluator.plan()),
+        scaling(plan, evaluator.length_scale()),
+        jacobian(at(plan.trash_slot()) + 1),
+        nu(at(plan.rows)) {
+    evaluator.start_jacobian(jacobian);
+    evaluator.jacobian(jacobian);
+    evaluator.nu(nu);
+  }
+  /// rest = nu - Phi_q v; its size.
+  double find_rest(std::span<const double> v, std::vector<double>& rest) const {
+    rest = nu;
+    for (int c = 0; c < plan.columns; ++c) {
+      const double rate = v[at(plan.coordinate[at(c)])];
+      for (int k = plan.jacobian.column_start[at(c)]; k < plan.jacobian.column_start[at(c) + 1]; ++k)
+        rest[at(plan.jacobian.row_index[at(k)])] -= jacobian[at(k)] * rate;
+    }
+    return scaling.row_norm(rest);
+  }
+  double size(std::span<const double> v) const { return scaling.coordinate_norm(plan, v); }
+};
+
 // Whether velocities, all of which are known, meet the equations to rounding: as they are, or with the change that the
 // factors of the motion give, which have the same metric.
-bool meets_constraints(EquationsOfMotion& equations, std::span<const double> q, std::span<const double> values,
-                       const std::vector<double>& nu, std::vector<double>& velocity) {
-  Evaluator& evaluator = equations.evaluator();
-  const Plan& plan = evaluator.plan();
-  const double length = evaluator.length_scale();
-  std::vector<double> rest(nu.size()), back(velocity.size());
-  const auto meets = [&](const std::vector<double>& v) {
-    for (std::size_t c = 0; c < v.size(); ++c) back[c] = -v[c];
-    rest = nu;
-    multiply_add(plan.jacobian, values, back, rest);
-    return row_norm(plan, rest, length) <= met * column_norm(plan, v, length);
-  };
+bool meets_constraints(EquationsOfMotion& equations, std::span<const double> q, const VelocityRows& rows,
+                       std::vector<double>& velocity) {
+  std::vector<double> rest, qd(q.size(), 0.0);
+  const auto meets = [&](std::span<const double> v) { return rows.find_rest(v, rest) <= met * rows.size(v); };
   if (meets(velocity)) return true;
-  if (!equations.factorize(evaluator.time(), Side::after, q)) return false;
-  std::vector<double> qd(q.size(), 0.0), changed(velocity.size());
-  for (int c = 0; c < plan.columns; ++c) qd[at(plan.coordinate[at(c)])] = velocity[at(c)];
+  if (!equations.factorize(equations.evaluator().time(), Side::after, q)) return false;
+  std::copy(velocity.begin(), velocity.end(), qd.begin());
   equations.project_velocity(qd, 0);
-  for (int c = 0; c < plan.columns; ++c) changed[at(c)] = qd[at(plan.coordinate[at(c)])];
-  if (!meets(changed)) return false;
-  velocity = changed;
+  if (!meets(qd)) return false;
+  velocity.assign(qd.begin(), qd.begin() + static_cast<std::ptrdiff_t>(velocity.size()));
   return true;
 }
 
-// Changes velocities to those that meet the constraints; `known`: all components were given.
-void meet_constraints(EquationsOfMotion& equations, std::span<const double> q, const WantedVelocities& wanted,
-                      bool known, std::vector<double>& velocity, VelocityOutcome& outcome) {
-  Evaluator& evaluator = equations.evaluator();
-  const Plan& plan = evaluator.plan();
-  std::vector<double> jacobian(at(plan.trash_slot()) + 1), nu(at(plan.rows)), rest(nu), lambda(nu);
-  std::vector<double> asked = wanted.velocity, step(velocity.size()), inverse(velocity.size());
-  for (std::size_t c = 0; c < inverse.size(); ++c) inverse[c] = 1 / wanted.weight[c];
-  evaluator.start_jacobian(jacobian);
-  evaluator.jacobian(jacobian);
-  evaluator.nu(nu);
-  const auto values = std::span<const double>(jacobian).first(at(plan.trash_slot()));
-  const double length = evaluator.length_scale();
-  for (std::size_t c = 0; c < step.size(); ++c) step[c] = -asked[c];
-  rest = nu;
-  multiply_add(plan.jacobian, values, step, rest);
-  outcome.missed = row_norm(plan, rest, length);
-  if (known && meets_constraints(equations, q, values, nu, velocity)) return;
-  ConstraintProjector projector(evaluator.shared_plan());
-  projector.set_inverse_weights(inverse);
-  if (!projector.factorize(values, evaluator.counters).ok()) {
-    outcome.status = Status::singular;
-    outcome.message = "initial velocities are not determined: the constraints' Jacobian is not finite";
-    return;
-  }
+// The least changes that keep what is given, round after round; then corrections of what they leave of the equations.
+// Returns the size of that.
+double change_least(ConstraintSolver& solver, const VelocityRows& rows, const WantedVelocities& wanted,
+                    std::vector<double>& velocity, std::vector<double>& rest, Counters& counters) {
+  std::vector<double> asked = wanted.velocity, step(velocity.size()), lambda(rest.size());
   for (int round = 0; round < rounds_of_velocities; ++round) {
-    rest = nu;
-    for (std::size_t c = 0; c < step.size(); ++c) step[c] = -asked[c];
-    multiply_add(plan.jacobian, values, step, rest);
-    projector.solve(rest, step, lambda, evaluator.counters);
+    rows.find_rest(asked, rest);
+    solver.solve(rest, step, lambda, counters);
     double change = 0, size = 0;
     for (std::size_t c = 0; c < step.size(); ++c) {
       const double next = asked[c] + step[c];
@@ -145,24 +143,40 @@ void meet_constraints(EquationsOfMotion& equations, std::span<const double> q, c
     }
     if (round > 0 && change <= 1e-15 * size) break;
   }
-  int worst = -1;
   double left = std::numeric_limits<double>::infinity();
-  for (int k = 0; k <= most_corrections; ++k) {
-    rest = nu;
-    for (std::size_t c = 0; c < step.size(); ++c) step[c] = -velocity[c];
-    multiply_add(plan.jacobian, values, step, rest);
-    const double now = row_norm(plan, rest, length, &worst);
-    const bool shrinks = now < 0.5 * left;
+  for (int k = 0;; ++k) {
+    const double now = rows.find_rest(velocity, rest);
+    const bool shrinks = now < thresholds::least_gain * left;
     left = now;
-    if (!shrinks || k == most_corrections || now == 0) break;
-    projector.solve(rest, step, lambda, evaluator.counters);
+    if (!shrinks || k == most_corrections || now == 0) return left;
+    solver.solve(rest, step, lambda, counters);
     for (std::size_t c = 0; c < step.size(); ++c) velocity[c] += step[c];
   }
-  const double asked_size = column_norm(plan, wanted.velocity, length), driven = row_norm(plan, nu, length);
-  if (driven == 0 && column_norm(plan, velocity, length) <= nothing_left * asked_size)
-    std::fill(velocity.begin(), velocity.end(), 0.0);
-  const double scale = std::max({column_norm(plan, velocity, length), asked_size, driven});
-  if (!(left <= 1e-9 * scale)) report_contradiction(evaluator, q, worst, left, outcome);
+}
+
+// Changes velocities to those that meet the constraints; `known`: all components were given.
+void meet_constraints(EquationsOfMotion& equations, std::span<const double> q, const WantedVelocities& wanted,
+                      bool known, std::vector<double>& velocity, VelocityOutcome& outcome) {
+  Evaluator& evaluator = equations.evaluator();
+  const VelocityRows rows(evaluator);
+  std::vector<double> rest;
+  outcome.missed = rows.find_rest(wanted.velocity, rest);
+  if (known && meets_constraints(equations, q, rows, velocity)) return;
+  ConstraintSolver solver(evaluator.shared_plan());
+  solver.set_metric(wanted.weight);
+  if (!solver.factorize(rows.jacobian, evaluator.counters)) {
+    outcome.status = Status::singular;
+    outcome.message = "initial velocities are not determined: the constraints' Jacobian is not finite";
+    return;
+  }
+  const double left = change_least(solver, rows, wanted, velocity, rest, evaluator.counters);
+  const double asked_size = rows.size(wanted.velocity), driven = rows.scaling.row_norm(rows.nu);
+  if (driven == 0 && rows.size(velocity) <= nothing_left * asked_size) std::fill(velocity.begin(), velocity.end(), 0.0);
+  const double scale = std::max({rows.size(velocity), asked_size, driven});
+  if (left <= 1e-9 * scale) return;
+  int worst = -1;
+  row_norm(rows.plan, rest, evaluator.length_scale(), &worst);
+  report_contradiction(evaluator, q, worst, left, outcome);
 }
 
 }  // namespace
@@ -179,14 +193,13 @@ VelocityOutcome find_initial_velocities(EquationsOfMotion& equations, std::span<
   if (plan.rows > 0) meet_constraints(equations, q, wanted, known, velocity, outcome);
   if (!outcome.ok()) return outcome;
   std::fill(qd.begin(), qd.end(), 0.0);
-  for (int c = 0; c < plan.columns; ++c) {
-    const int coordinate = plan.coordinate[at(c)];
-    qd[at(coordinate)] = velocity[at(c)];
+  std::copy(velocity.begin(), velocity.end(), qd.begin());
+  for (const int c : plan.coordinate) {
     const double change = std::abs(velocity[at(c)] - wanted.velocity[at(c)]);
     if (wanted.given[at(c)] && change > outcome.changed) {
       outcome.changed = change;
-      outcome.changed_turn = plan.coordinate[at(c)] % 3 == 2;
-      outcome.changed_body = plan.model_body[at(coordinate / 3)];
+      outcome.changed_turn = c % 3 == 2;
+      outcome.changed_body = plan.model_body[at(c / 3)];
     }
   }
   return outcome;

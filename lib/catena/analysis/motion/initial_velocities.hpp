@@ -30,8 +30,8 @@ struct VelocityOutcome : Report {
   std::optional<SingularPoint> dead_point;  ///< where the status is lock_up
 };
 
-/// What is asked of initial velocities, by column of the plan: given ones are to be kept, and weigh so much; what
-/// follows has no mass and is not given.
+/// What is asked of initial velocities, by coordinate of moving bodies: given ones are to be kept, and weigh so much;
+/// what follows has no mass and is not given. Zero where there is no column.
 struct WantedVelocities {
   std::vector<double> velocity, weight;
   std::vector<char> given, follows;

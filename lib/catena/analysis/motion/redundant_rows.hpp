@@ -1,9 +1,9 @@
 // The choice of equations that are left out of a motion, where constraints always depend on each other (redundant
 // constraints).
 //
-// Phi_q loses p ranks along the motion: w^T Phi_q = 0 for p independent w. SchurSystem leaves out p directions c among
-// its equations, and its solution is exact as long as no combination of them is orthogonal to all w. The choice here
-// keeps them as far from that case as a choice within single elements can: with the dual basis
+// Phi_q loses p ranks along the motion: w^T Phi_q = 0 for p independent w. ConstraintSolver leaves out p directions c
+// among its equations, and its solution is exact as long as no combination of them is orthogonal to all w. The choice
+// here keeps them as far from that case as a choice within single elements can: with the dual basis
 //
 //   W = (S + C)^-1 [c_1 ... c_p],   c_j^T w_k = (j = k),   rows counted by sqrt(S_rr)
 //

@@ -51,22 +51,20 @@ double rounding_of_places(const Evaluator& evaluator) {
 Assembler::Assembler(Evaluator& evaluator)
     : evaluator_(evaluator), plan_(evaluator.plan()), scaling_(evaluator.plan(), evaluator.length_scale()) {
   const std::vector<double> radius = evaluator.attachment_radii();
-  inverse_weights_.resize(at(plan_.columns));
-  weights_.resize(at(plan_.columns));
-  reach_.resize(at(plan_.columns));
-  for (int c = 0; c < plan_.columns; ++c) {
-    const int body = plan_.coordinate[at(c)] / 3, k = plan_.coordinate[at(c)] % 3;
-    weights_[at(c)] = k == 2 ? radius[at(body)] * radius[at(body)] : 1;
+  weights_.resize(at(3 * plan_.moving));
+  reach_.resize(weights_.size());
+  for (const int c : plan_.coordinate) {
+    const int body = c / 3, k = c % 3;
     const auto& values = evaluator.model().bodies[at(plan_.model_body[at(body)])];
-    const bool held = k == 0 ? values.hold_x : k == 1 ? values.hold_y : values.hold_angle;
-    inverse_weights_[at(c)] = held ? 0 : 1 / weights_[at(c)];
-    reach_[at(c)] = held ? 0 : k == 2 ? 1 : radius[at(body)];
+    if (k == 0 ? values.hold_x : k == 1 ? values.hold_y : values.hold_angle) continue;
+    weights_[at(c)] = k == 2 ? radius[at(body)] * radius[at(body)] : 1;
+    reach_[at(c)] = k == 2 ? 1 : radius[at(body)];
   }
   values_.resize(at(plan_.trash_slot()) + 1);
   evaluator_.start_jacobian(values_);
   phi_.resize(at(plan_.rows));
   lambda_.resize(at(plan_.rows));
-  step_.resize(at(plan_.columns));
+  step_.resize(weights_.size());
   trial_.resize(at(plan_.coordinates()));
 }
 
@@ -84,23 +82,16 @@ double Assembler::merit(std::span<const double> q) {
 
 void Assembler::advance(std::span<const double> from, double factor, std::span<double> to) const {
   std::copy(from.begin(), from.end(), to.begin());
-  for (int c = 0; c < plan_.columns; ++c) to[at(plan_.coordinate[at(c)])] += factor * step_[at(c)];
+  for (std::size_t c = 0; c < step_.size(); ++c) to[c] += factor * step_[c];
 }
 
 double Assembler::weighted_distance(std::span<const double> a, std::span<const double> b) const {
   double sum = 0;
-  for (int c = 0; c < plan_.columns; ++c) {
-    const double d = a[at(plan_.coordinate[at(c)])] - b[at(plan_.coordinate[at(c)])];
-    sum += weights_[at(c)] * d * d;
-  }
+  for (std::size_t c = 0; c < weights_.size(); ++c) sum += weights_[c] * (a[c] - b[c]) * (a[c] - b[c]);
   return std::sqrt(sum);
 }
 
-double Assembler::extent(std::span<const double> q) const {
-  return scaling_
-      .scan_columns<1>(step_.size(), [&](std::size_t c) { return std::array{q[at(plan_.coordinate[c])]}; })[0]
-      .all;
-}
+double Assembler::extent(std::span<const double> q) const { return scaling_.coordinate_norm(plan_, q); }
 
 bool Assembler::restore(std::span<double> q, double tolerance, int most_iterations, AssemblyOutcome& outcome) {
   double now = merit(q);
@@ -110,19 +101,18 @@ bool Assembler::restore(std::span<double> q, double tolerance, int most_iteratio
     outcome.residual = residual;
     if (!(residual > std::max(tolerance, attainable_digits * extent(q)))) return std::isfinite(residual);
     evaluator_.jacobian(values_);
-    if (!projector_->factorize(values_, evaluator_.counters, damping).ok()) {
+    if (!(damping > 0 ? solver_->factorize_damped(values_, damping, evaluator_.counters)
+                      : solver_->factorize(values_, evaluator_.counters))) {
       damping = std::max(10 * damping, 1e-8);
       if (damping > 1) break;
       continue;
     }
-    projector_->solve(phi_, step_, lambda_, evaluator_.counters);
+    solver_->solve(phi_, step_, lambda_, evaluator_.counters);
     ++outcome.iterations;
     ++evaluator_.counters.iterations;
     double turn = 0;
-    for (int c = 0; c < plan_.columns; ++c) {
-      step_[at(c)] = -step_[at(c)];
-      if (plan_.coordinate[at(c)] % 3 == 2) turn = std::max(turn, std::abs(step_[at(c)]));
-    }
+    for (double& move : step_) move = -move;
+    for (std::size_t c = 2; c < step_.size(); c += 3) turn = std::max(turn, std::abs(step_[c]));
     if (turn > far_too_long * largest_turn_of_a_step && damping < 1) {
       damping = std::max(10 * damping, 1e-8);
       continue;
@@ -149,8 +139,7 @@ bool Assembler::restore(std::span<double> q, double tolerance, int most_iteratio
     std::copy(trial_.begin(), trial_.end(), q.begin());
     now = then;
     if (evaluator_.trace)
-      (*evaluator_.trace)("assembly", outcome.iterations, scaling_.row_norm(phi_),
-                          factor * scaling_.column_norm(step_));
+      (*evaluator_.trace)("assembly", outcome.iterations, scaling_.row_norm(phi_), factor * extent(step_));
   }
   return outcome.residual <= rounding_of_places(evaluator_);
 }
@@ -164,9 +153,9 @@ bool Assembler::restore_from_beside(std::span<double> q, std::span<const double>
   std::mt19937_64 random(1);
   for (const Start& start : starts) {
     std::copy_n(start.from_estimate ? estimate.begin() : std::span<const double>(saddle).begin(), q.size(), q.begin());
-    for (int c = 0; c < plan_.columns; ++c) {
+    for (const int c : plan_.coordinate) {
       const double number = 2 * std::ldexp(static_cast<double>(random() >> 11), -53) - 1;
-      q[at(plan_.coordinate[at(c)])] += start.displacement * number * reach_[at(c)];
+      q[at(c)] += start.displacement * number * reach_[at(c)];
     }
     if (restore(q, tolerance, max_iterations, outcome)) return true;
     if (static_cast<double>(outcome.iterations) * plan_.rows > most_work) return false;
@@ -189,9 +178,9 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
   move_whole_turns(evaluator_, q);
   const std::vector<double> estimate(q.begin(), q.end());
   merit(q);
-  if (!projector_ && !(scaling_.row_norm(phi_) <= tolerance)) {
-    projector_.emplace(evaluator_.shared_plan());
-    projector_->set_inverse_weights(inverse_weights_);
+  if (!solver_ && !(scaling_.row_norm(phi_) <= tolerance)) {
+    solver_.emplace(evaluator_.shared_plan());
+    solver_->set_metric(weights_);
   }
   bool met = restore(q, tolerance, max_iterations, outcome);
   if (!met) {
@@ -216,7 +205,7 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
       return outcome;
     }
     // The best configuration found may differ a lot from the given one without being of use: keep the given one.
-    const Conflict conflict = find_conflict(evaluator_, *projector_, q);
+    const Conflict conflict = find_conflict(evaluator_, *solver_, q);
     outcome.misfits = conflict.unmet;
     outcome.status = Status::not_assembled;
     outcome.message =
@@ -232,8 +221,7 @@ AssemblyOutcome Assembler::assemble(std::span<double> q, double tolerance) {
   }
   merit(q);
   outcome.residual = scaling_.row_norm(phi_);
-  for (int c = 0; c < plan_.columns; ++c) {
-    const int i = plan_.coordinate[at(c)];
+  for (const int i : plan_.coordinate) {
     double& largest = i % 3 == 2 ? outcome.turned : outcome.shifted;
     largest = std::max(largest, std::abs(q[at(i)] - estimate[at(i)]));
   }

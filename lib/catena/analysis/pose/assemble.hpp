@@ -18,7 +18,7 @@
 #include "catena/analysis/pose/misfits.hpp"
 #include "catena/analysis/pose/scaling.hpp"
 #include "catena/assembly/evaluate.hpp"
-#include "catena/assembly/systems/constraint_projector.hpp"
+#include "catena/assembly/systems/constraint_solver.hpp"
 #include "catena/base/status.hpp"
 
 namespace catena {
@@ -66,11 +66,10 @@ class Assembler {
   Evaluator& evaluator_;
   const Plan& plan_;
   Scaling scaling_;
-  std::vector<double> inverse_weights_;           // per column
-  std::optional<ConstraintProjector> projector_;  // made where there is something to assemble
-  std::vector<double> weights_;                   // per column
-  std::vector<double> reach_;             // per column: what a displacement of 1 is, m or rad; 0 of what is held
-  std::vector<CurvePlace> curve_places_;  // of contacts, where a trial begins
+  std::optional<ConstraintSolver> solver_;  // made where there is something to assemble
+  std::vector<double> weights_;             // per coordinate of a moving body; 0 of what is held
+  std::vector<double> reach_;               // the same: what a displacement of 1 is, m or rad
+  std::vector<CurvePlace> curve_places_;    // of contacts, where a trial begins
   std::vector<double> values_, phi_, lambda_, step_, trial_;
 };
 

@@ -48,18 +48,21 @@ class ConstraintCurvature {
     });
   }
 
-  /// y += sum mu Phi_qq x over the plan's columns.
+  /// y += sum mu Phi_qq x over the coordinates of moving bodies.
   void multiply_add(std::span<const double> x, std::span<double> y) const {
     for (const Part& part : parts_) {
-      int column[6];
-      for (int k = 0; k < 6; ++k) column[k] = plan_.column_of(part.i, part.j, k);
+      int place[6];
+      for (int k = 0; k < 6; ++k) {
+        const int column = plan_.column_of(part.i, part.j, k);
+        place[k] = column < 0 ? -1 : plan_.coordinate[at(column)];
+      }
       for (int row = 0; row < 6; ++row) {
-        if (column[row] < 0) continue;
+        if (place[row] < 0) continue;
         double sum = 0;
         for (int c = 0; c < 6; ++c) {
-          if (column[c] >= 0) sum += part.matrix[at(6 * row + c)] * x[at(column[c])];
+          if (place[c] >= 0) sum += part.matrix[at(6 * row + c)] * x[at(place[c])];
         }
-        y[at(column[row])] += sum;
+        y[at(place[row])] += sum;
       }
     }
   }
@@ -77,9 +80,9 @@ class ConstraintCurvature {
 
 void Assembler::project(std::span<double> r, std::span<double> z) {
   std::vector<double> allowed(r.size()), out(phi_.size(), 0.0);
-  for (std::size_t c = 0; c < r.size(); ++c) allowed[c] = inverse_weights_[c] * r[c];
-  multiply_add(plan_.jacobian, std::span<const double>(values_).first(at(plan_.trash_slot())), allowed, out);
-  projector_->solve(out, z, lambda_, evaluator_.counters);
+  for (std::size_t c = 0; c < r.size(); ++c) allowed[c] = weights_[c] > 0 ? r[c] / weights_[c] : 0;
+  solver_->multiply_add(allowed, out);
+  solver_->solve(out, z, lambda_, evaluator_.counters);
   for (std::size_t c = 0; c < r.size(); ++c) {
     z[c] = allowed[c] - z[c];
     r[c] = weights_[c] * z[c];
@@ -87,12 +90,9 @@ void Assembler::project(std::span<double> r, std::span<double> z) {
 }
 
 double Assembler::find_approach(std::span<const double> q, std::span<const double> estimate) {
-  const std::size_t columns = step_.size();
-  std::vector<double> r(columns), z(columns), along(columns), curved(columns);
-  for (std::size_t c = 0; c < columns; ++c) {
-    const std::size_t i = at(plan_.coordinate[c]);
-    r[c] = weights_[c] * (estimate[i] - q[i]);
-  }
+  const std::size_t coordinates = step_.size();
+  std::vector<double> r(coordinates), z(coordinates), along(coordinates), curved(coordinates);
+  for (std::size_t c = 0; c < coordinates; ++c) r[c] = weights_[c] * (estimate[c] - q[c]);
   project(r, z);
   const double first = dot(r, z);
   std::copy(z.begin(), z.end(), step_.begin());
@@ -106,18 +106,18 @@ double Assembler::find_approach(std::span<const double> q, std::span<const doubl
   along = z;
   double now = first;
   for (int k = 0; k < max_directions && now > enough; ++k) {
-    for (std::size_t c = 0; c < columns; ++c) curved[c] = weights_[c] * along[c];
+    for (std::size_t c = 0; c < coordinates; ++c) curved[c] = weights_[c] * along[c];
     curvature.multiply_add(along, curved);
     const double bend = dot(along, curved);
     if (!(bend > 0)) break;
     if (k == 0) std::fill(step_.begin(), step_.end(), 0.0);
-    for (std::size_t c = 0; c < columns; ++c) {
+    for (std::size_t c = 0; c < coordinates; ++c) {
       step_[c] += now / bend * along[c];
       r[c] -= now / bend * curved[c];
     }
     project(r, z);
     const double then = dot(r, z);
-    for (std::size_t c = 0; c < columns; ++c) along[c] = z[c] + then / now * along[c];
+    for (std::size_t c = 0; c < coordinates; ++c) along[c] = z[c] + then / now * along[c];
     now = then;
   }
   return std::sqrt(first);
@@ -130,7 +130,7 @@ void Assembler::approach_estimate(std::span<double> q, std::span<const double> e
   for (int k = 0; k < max_approach_iterations && distance > 0; ++k) {
     evaluator_.set_configuration(q);
     evaluator_.jacobian(values_);
-    if (!projector_->factorize(values_, evaluator_.counters).ok()) return;
+    if (!solver_->factorize(values_, evaluator_.counters)) return;
     const double slope = find_approach(q, estimate);
     if (slope == 0) return;
     const bool unseen = slope <= unseen_slope * distance;
@@ -138,9 +138,7 @@ void Assembler::approach_estimate(std::span<double> q, std::span<const double> e
     if (unseen && k > 0 && slope > last_slope / 2) return;
     last_slope = slope;
     double turn = 0;
-    for (int c = 0; c < plan_.columns; ++c) {
-      if (plan_.coordinate[at(c)] % 3 == 2) turn = std::max(turn, std::abs(step_[at(c)]));
-    }
+    for (std::size_t c = 2; c < step_.size(); c += 3) turn = std::max(turn, std::abs(step_[c]));
     const std::vector<double> direction = step_;
     const double closer = distance * (1 + (unseen ? seen_in_distance : -seen_in_distance));
     bool found = false;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "catena/analysis/pose/quadratics.hpp"
-#include "catena/assembly/systems/constraint_projector.hpp"
+#include "catena/assembly/systems/constraint_solver.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -187,15 +187,13 @@ bool is_held(Evaluator& evaluator, const NullSpaces& spaces, std::span<const dou
 /// The least velocity that nu allows.
 std::vector<double> least_velocity_for(Evaluator& evaluator, const NullSpaces& spaces, std::span<const double> nu) {
   const Plan& plan = evaluator.plan();
-  std::vector<double> qd(at(plan.coordinates()), 0.0);
+  std::vector<double> qd(at(plan.coordinates()), 0.0), weights(at(3 * plan.moving), 1.0), lambda(at(plan.rows));
   if (plan.rows == 0) return qd;
-  ConstraintProjector projector(evaluator.shared_plan());
-  std::vector<double> inverse(at(plan.columns)), x(at(plan.columns)), lambda(at(plan.rows));
-  const double square = evaluator.length_scale() * evaluator.length_scale();
-  for (int c = 0; c < plan.columns; ++c) inverse[at(c)] = plan.coordinate[at(c)] % 3 == 2 ? 1 / square : 1;
-  projector.set_inverse_weights(inverse);
-  if (projector.factorize(spaces.values, evaluator.counters).ok()) projector.solve(nu, x, lambda, evaluator.counters);
-  for (int c = 0; c < plan.columns; ++c) qd[at(plan.coordinate[at(c)])] = x[at(c)];
+  ConstraintSolver solver(evaluator.shared_plan());
+  for (std::size_t c = 2; c < weights.size(); c += 3) weights[c] = evaluator.length_scale() * evaluator.length_scale();
+  solver.set_metric(weights);
+  if (solver.factorize(spaces.values, evaluator.counters))
+    solver.solve(nu, std::span(qd).first(weights.size()), lambda, evaluator.counters);
   return qd;
 }
 

@@ -27,19 +27,17 @@ LeastVelocity::LeastVelocity(Evaluator& evaluator)
     : evaluator_(evaluator),
       plan_(evaluator.plan()),
       scaling_(evaluator.plan(), evaluator.length_scale()),
-      projector_(evaluator.shared_plan()),
+      solver_(evaluator.shared_plan()),
       in_mass_metric_(has_masses(evaluator)) {
   const std::vector<double> radius = evaluator.attachment_radii();
-  weight_.resize(at(plan_.columns));
-  std::vector<double> inverse(weight_.size());
-  for (std::size_t c = 0; c < weight_.size(); ++c) {
-    const int coordinate = plan_.coordinate[c], b = coordinate / 3;
-    const bool angle = coordinate % 3 == 2;
-    const auto& body = evaluator.model().bodies[at(plan_.model_body[at(b)])];
-    weight_[c] = in_mass_metric_ ? (angle ? body.inertia : body.mass) : angle ? radius[at(b)] * radius[at(b)] : 1;
-    inverse[c] = 1 / weight_[c];
+  weight_.resize(at(3 * plan_.moving));
+  for (const int c : plan_.coordinate) {
+    const bool angle = c % 3 == 2;
+    const std::size_t b = at(c / 3);
+    const auto& body = evaluator.model().bodies[at(plan_.model_body[b])];
+    weight_[at(c)] = in_mass_metric_ ? (angle ? body.inertia : body.mass) : angle ? radius[b] * radius[b] : 1;
   }
-  projector_.set_inverse_weights(inverse);
+  solver_.set_metric(weight_);
   jacobian_.resize(at(plan_.trash_slot()) + 1);
   evaluator_.start_jacobian(jacobian_);
   for (std::vector<double>* rows : {&right_, &rest_, &mu_, &lambda_}) rows->resize(at(plan_.rows));
@@ -52,24 +50,23 @@ bool LeastVelocity::factorize(double t, Side side, std::span<const double> q) {
   evaluator_.set_time(t, side);
   evaluator_.set_configuration(q);
   evaluator_.jacobian(jacobian_);
-  return plan_.rows == 0 || projector_.factorize(jacobian_, evaluator_.counters).ok();
+  return plan_.rows == 0 || solver_.factorize(jacobian_, evaluator_.counters);
 }
 
 bool LeastVelocity::complete(std::span<const double> right_hand_side, std::span<double> out) {
-  const auto values = std::span<const double>(jacobian_).first(at(plan_.trash_slot()));
   const auto subtract_product = [&] {
     std::copy(right_hand_side.begin(), right_hand_side.end(), rest_.begin());
     for (std::size_t c = 0; c < start_.size(); ++c) step_[c] = -start_[c];
-    multiply_add(plan_.jacobian, values, step_, rest_);
+    solver_.multiply_add(step_, rest_);
   };
   subtract_product();
-  projector_.solve(rest_, step_, lambda_, evaluator_.counters);
+  solver_.solve(rest_, step_, lambda_, evaluator_.counters);
   for (std::size_t c = 0; c < start_.size(); ++c) start_[c] += step_[c];
   std::fill(out.begin(), out.end(), 0.0);
-  for (int c = 0; c < plan_.columns; ++c) out[at(plan_.coordinate[at(c)])] = start_[at(c)];
+  std::copy(start_.begin(), start_.end(), out.begin());
   subtract_product();
   const double left = scaling_.row_norm(rest_);
-  const double scale = std::max(scaling_.row_norm(right_hand_side), scaling_.column_norm(start_));
+  const double scale = std::max(scaling_.row_norm(right_hand_side), size(start_));
   return std::isfinite(scale) && left <= thresholds::contradiction * scale;
 }
 
@@ -92,7 +89,7 @@ bool LeastVelocity::acceleration(std::span<const double> qd, std::span<double> q
       }
     }
   });
-  for (std::size_t c = 0; c < start_.size(); ++c) start_[c] = turning_[at(plan_.coordinate[c])] / weight_[c];
+  for (const int c : plan_.coordinate) start_[at(c)] = turning_[at(c)] / weight_[at(c)];
   evaluator_.gamma(qd, right_);
   return complete(right_, qdd);
 }
@@ -107,9 +104,9 @@ double LeastVelocity::project(double t, Side side, std::span<double> q) {
     residual = scaling_.row_norm(right_);
     if (!(residual > thresholds::position_rounding) || k == most_corrections || (k > 0 && residual > last / 2)) break;
     last = residual;
-    projector_.solve(right_, step_, lambda_, evaluator_.counters);
+    solver_.solve(right_, step_, lambda_, evaluator_.counters);
     ++evaluator_.counters.iterations;
-    for (int c = 0; c < plan_.columns; ++c) q[at(plan_.coordinate[at(c)])] -= step_[at(c)];
+    for (std::size_t c = 0; c < step_.size(); ++c) q[c] -= step_[c];
   }
   return residual;
 }
@@ -117,18 +114,13 @@ double LeastVelocity::project(double t, Side side, std::span<double> q) {
 double LeastVelocity::growth(std::span<const double> qd, std::span<const double> x) const {
   double product = 0, square = 0;
   for (std::size_t c = 0; c < weight_.size(); ++c) {
-    const std::size_t k = at(plan_.coordinate[c]);
-    product += weight_[c] * qd[k] * x[k];
-    square += weight_[c] * qd[k] * qd[k];
+    product += weight_[c] * qd[c] * x[c];
+    square += weight_[c] * qd[c] * qd[c];
   }
   return square > 0 ? product / square : 0;
 }
 
-double LeastVelocity::size(std::span<const double> rate) const {
-  return scaling_
-      .scan_columns<1>(weight_.size(), [&](std::size_t c) { return std::array{rate[at(plan_.coordinate[c])]}; })[0]
-      .all;
-}
+double LeastVelocity::size(std::span<const double> rate) const { return scaling_.coordinate_norm(plan_, rate); }
 
 std::vector<int> LeastVelocity::worst_elements() const {
   const double worst = scaling_.row_norm(rest_);

@@ -18,7 +18,7 @@
 
 #include "catena/analysis/pose/scaling.hpp"
 #include "catena/assembly/evaluate.hpp"
-#include "catena/assembly/systems/constraint_projector.hpp"
+#include "catena/assembly/systems/constraint_solver.hpp"
 
 namespace catena {
 
@@ -56,12 +56,12 @@ class LeastVelocity {
   Evaluator& evaluator_;
   const Plan& plan_;
   Scaling scaling_;
-  ConstraintProjector projector_;
+  ConstraintSolver solver_;
   bool in_mass_metric_ = false;
-  std::vector<double> weight_;                      // per column
+  std::vector<double> weight_;                      // per coordinate of a moving body
   std::vector<double> jacobian_;                    // values of Phi_q, and the scratch slot
   std::vector<double> right_, rest_, mu_, lambda_;  // per row
-  std::vector<double> start_, step_;                // per column
+  std::vector<double> start_, step_;                // per coordinate of a moving body
   std::vector<double> turning_;                     // per coordinate
 };
 

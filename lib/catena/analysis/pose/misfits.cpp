@@ -27,18 +27,18 @@ constexpr double carries = 1e-2;
 
 class MisfitSearch {
  public:
-  MisfitSearch(Evaluator& evaluator, ConstraintProjector& projector, std::span<double> q)
+  MisfitSearch(Evaluator& evaluator, ConstraintSolver& solver, std::span<double> q)
       : evaluator_(evaluator),
         plan_(evaluator.plan()),
         scaling_(plan_, evaluator.length_scale()),
-        projector_(projector),
+        solver_(solver),
         q_(q),
         trial_(q.begin(), q.end()),
         values_(at(plan_.trash_slot()) + 1),
         phi_(at(plan_.rows)),
         compliance_(phi_),
         lambda_(phi_),
-        step_(at(plan_.columns)),
+        step_(at(3 * plan_.moving)),
         steps_left_(std::clamp(steps_times_rows / std::max(plan_.rows, 1), least_steps, most_steps)) {
     evaluator_.start_jacobian(values_);
   }
@@ -147,15 +147,13 @@ class MisfitSearch {
     for (; damping <= most_damping && steps_left_ > 0; damping *= 10) {
       --steps_left_;
       for (std::size_t r = 0; r < softness.size(); ++r) compliance_[r] = damping * softness[r];
-      if (!projector_.factorize_compliant(values_, compliance_, evaluator_.counters).ok()) continue;
-      projector_.solve(phi, step_, lambda_, evaluator_.counters);
+      if (!solver_.factorize_compliant(values_, compliance_, evaluator_.counters)) continue;
+      solver_.solve(phi, step_, lambda_, evaluator_.counters);
       double turn = 0;
-      for (int c = 0; c < plan_.columns; ++c) {
-        if (plan_.coordinate[at(c)] % 3 == 2) turn = std::max(turn, std::abs(step_[at(c)]));
-      }
+      for (std::size_t c = 2; c < step_.size(); c += 3) turn = std::max(turn, std::abs(step_[c]));
       const double factor = turn > turn_in_a_step ? turn_in_a_step / turn : 1;
       std::copy(q_.begin(), q_.end(), trial_.begin());
-      for (int c = 0; c < plan_.columns; ++c) trial_[at(plan_.coordinate[at(c)])] -= factor * step_[at(c)];
+      for (std::size_t c = 0; c < step_.size(); ++c) trial_[c] -= factor * step_[c];
       const double then = cost(trial_, eps);
       if (!(then < now)) continue;
       std::copy(trial_.begin(), trial_.end(), q_.begin());
@@ -169,7 +167,7 @@ class MisfitSearch {
   Evaluator& evaluator_;
   const Plan& plan_;
   Scaling scaling_;
-  ConstraintProjector& projector_;
+  ConstraintSolver& solver_;
   std::span<double> q_;
   std::vector<double> trial_, values_, phi_, compliance_, lambda_, step_;
   int steps_left_;
@@ -177,8 +175,8 @@ class MisfitSearch {
 
 }  // namespace
 
-Conflict find_conflict(Evaluator& evaluator, ConstraintProjector& projector, std::span<double> q) {
-  MisfitSearch search(evaluator, projector, q);
+Conflict find_conflict(Evaluator& evaluator, ConstraintSolver& solver, std::span<double> q) {
+  MisfitSearch search(evaluator, solver, q);
   search.minimise();
   return {search.rank(), search.carriers()};
 }

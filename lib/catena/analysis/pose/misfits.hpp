@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "catena/assembly/evaluate.hpp"
-#include "catena/assembly/systems/constraint_projector.hpp"
+#include "catena/assembly/systems/constraint_solver.hpp"
 
 namespace catena {
 
@@ -30,9 +30,9 @@ struct Conflict {
   std::vector<int> elements;  ///< these and the constraints they are at odds with, ascending
 };
 
-/// Moves `q` (plan order) to where the sum is least. `projector` holds the weights in which the length of a step is
+/// Moves `q` (plan order) to where the sum is least. `solver` holds the weights in which the length of a step is
 /// measured; inverse weights of zero belong to coordinates that may not move.
-Conflict find_conflict(Evaluator& evaluator, ConstraintProjector& projector, std::span<double> q);
+Conflict find_conflict(Evaluator& evaluator, ConstraintSolver& solver, std::span<double> q);
 
 /// "revolute "B" misses by 0.12 m, ..." in one line, worst first.
 std::string describe_misfits(const Model& model, std::span<const Misfit> misfits);

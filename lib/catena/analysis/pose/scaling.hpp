@@ -55,6 +55,13 @@ class Scaling {
   Size column_size(std::span<const double> x) const {
     return scan_columns<1>(x.size(), [&](std::size_t k) { return std::array{x[k]}; })[0];
   }
+  /// Largest entry of a vector over the coordinates, where these have columns.
+  double coordinate_norm(const Plan& plan, std::span<const double> x) const {
+    const std::vector<int>& place = plan.coordinate;
+    return scan_columns<1>(place.size(),
+                           [&](std::size_t k) { return std::array{x[static_cast<std::size_t>(place[k])]}; })[0]
+        .all;
+  }
   /// Largest residual.
   double row_norm(std::span<const double> r) const {
     return scan_rows(r.size(), [&](std::size_t k) { return r[k]; });
@@ -137,11 +144,7 @@ class Scaling {
   Units columns_, rows_;
 };
 
-/// The same norms for a single use.
-inline double column_norm(const Plan& plan, std::span<const double> x, double length) {
-  return Scaling(plan, length).column_norm(x);
-}
-/// `worst`: the row of the largest residual.
+/// The norm of rows for a single use; `worst`: the row of the largest residual.
 inline double row_norm(const Plan& plan, std::span<const double> r, double length, int* worst = nullptr) {
   const Scaling scaling(plan, length);
   if (worst) {

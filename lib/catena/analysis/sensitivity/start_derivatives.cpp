@@ -178,13 +178,10 @@ bool StartDerivatives::weigh(std::span<const double> q, std::span<const double> 
   evaluator_.set_configuration(q);
   const std::span<const double> none;
   const WantedVelocities wanted = wanted_velocities(evaluator_, equations.masses(), by_model_.velocities ? none : qd);
-  for (int c = 0; c < plan_.columns; ++c) {
-    const std::size_t coordinate = at(plan_.coordinate[at(c)]);
-    weight_[coordinate] = wanted.weight[at(c)];
-    wanted_[coordinate] = wanted.velocity[at(c)];
-    given_[coordinate] = wanted.given[at(c)];
-    follows_[coordinate] = wanted.follows[at(c)];
-  }
+  std::copy(wanted.weight.begin(), wanted.weight.end(), weight_.begin());
+  std::copy(wanted.velocity.begin(), wanted.velocity.end(), wanted_.begin());
+  std::copy(wanted.given.begin(), wanted.given.end(), given_.begin());
+  std::copy(wanted.follows.begin(), wanted.follows.end(), follows_.begin());
   return true;
 }
 

@@ -29,7 +29,6 @@ CoordinatePartition::CoordinatePartition(EquationsOfMotion& equations)
       system_(evaluator_.shared_plan()) {
   const double length = evaluator_.length_scale();
   all_free_.assign(at(3 * plan_.moving), 0.0);
-  none_ = all_free_;
   for (int c : plan_.coordinate) all_free_[at(c)] = c % 3 == 2 ? 1 : 1 / (length * length);
   weight_ = all_free_;
   jacobian_.resize(at(plan_.trash_slot()) + 1);
@@ -70,7 +69,7 @@ bool CoordinatePartition::choose(std::span<const double> q) {
   ++choices_;
   evaluator_.set_configuration(q);
   std::fill(row_square_.begin(), row_square_.end(), 1.0);
-  system_.set_masses(all_free_, none_);
+  system_.set_metric(all_free_);
   if (!factorize()) return false;
   if (equations_.left_out().count() > 0) {
     leave_out();
@@ -80,7 +79,7 @@ bool CoordinatePartition::choose(std::span<const double> q) {
   weight_ = all_free_;
   find_tangents(freedoms_);
   pick_independent(freedoms_);
-  system_.set_masses(weight_, none_);
+  system_.set_metric(weight_);
   if (!factorize()) return false;
   ratio_of_choice_ = ratio_;
   return true;

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "catena/analysis/motion/equations_of_motion.hpp"
-#include "catena/assembly/systems/schur_system.hpp"
+#include "catena/assembly/systems/constraint_solver.hpp"
 
 namespace catena {
 
@@ -51,9 +51,8 @@ class CoordinatePartition {
   Evaluator& evaluator_;
   const Plan& plan_;
   Scaling scaling_;
-  SchurSystem system_;                     // with lengths in length scales in place of masses
+  ConstraintSolver system_;                // with lengths in length scales in place of masses
   std::vector<double> weight_, all_free_;  // by coordinate; zero holds a coordinate
-  std::vector<double> none_;               // substitutes of weights
   std::vector<double> row_square_;         // of a whole row, scaled
   std::vector<double> jacobian_, residual_, multipliers_, change_;
   std::vector<std::vector<double>> tangents_;  // by degree of freedom; scaled, by coordinate

@@ -28,7 +28,7 @@
 
 #include "catena/analysis/motion/motion_memory.hpp"
 #include "catena/analysis/run/thresholds.hpp"
-#include "catena/assembly/systems/schur_system.hpp"
+#include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 
@@ -107,7 +107,7 @@ class ErrorScale {
     measure(qd, qdd);
     force_ = acceleration_ = 0;
     measure_loads(loads.first(qd.size()), force_, acceleration_);
-    const double condition = 1 / std::max(pivot_ratio, SchurSystem::refinement_ratio);
+    const double condition = 1 / std::max(pivot_ratio, dependence::refined);
     condition_ = rate_ * rate_ <= condition * thresholds::few_roundings * acceleration_ ? condition : 1;
     if (step == 0) {
       double energy = 0;

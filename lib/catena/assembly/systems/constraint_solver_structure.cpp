@@ -1,13 +1,13 @@
-// SchurSystem: the pattern of S, its order of elimination, and the place of every product.
+// ConstraintSolver: the pattern of S, its order of elimination, and the place of every product.
 #include <algorithm>
 
-#include "catena/assembly/systems/schur_system.hpp"
+#include "catena/assembly/systems/constraint_solver.hpp"
 #include "catena/base/at.hpp"
 #include "catena/linalg/kernels/cholmod_kernel.hpp"
 
 namespace catena {
 
-bool SchurSystem::analyze(Counters& counters) {
+bool ConstraintSolver::analyze(Counters& counters) {
   const Plan& plan = *plan_;
   const SparsePattern& a = plan.jacobian;
   std::vector<char> varies(at(a.entries()) + 1, 0);
@@ -63,7 +63,7 @@ bool SchurSystem::analyze(Counters& counters) {
 }
 
 // Rows of one element follow each other, so that a row and one before it are a pair.
-void SchurSystem::place_left_out() {
+void ConstraintSolver::place_left_out() {
   left_out_slot_.clear();
   if (!analyzed_) return;
   for (int k = 0; k < left_out_.count(); ++k) {
@@ -77,7 +77,7 @@ void SchurSystem::place_left_out() {
 }
 
 // Rows of an element go together: they touch the same bodies. Elements by minimum degree.
-bool SchurSystem::analyze_factors(const SparsePattern& lower, Counters& counters) {
+bool ConstraintSolver::analyze_factors(const SparsePattern& lower, Counters& counters) {
   const Plan& plan = *plan_;
   std::vector<int> node(at(plan.rows)), node_first;
   for (int r = 0; r < plan.rows; ++r) {

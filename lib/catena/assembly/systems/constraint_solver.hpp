@@ -1,9 +1,11 @@
-// The equations of motion by the Schur complement of the constraints, for bodies that all have mass:
+// The one solver of constrained least changes and motions: metric W, compliance C.
 //
-//   [M, Phi_q^T; Phi_q, 0] [qdd; lambda] = [Q; gamma]
-//   S lambda = Phi_q M^-1 Q - gamma        qdd = M^-1 (Q - Phi_q^T lambda)        S = Phi_q M^-1 Phi_q^T
+//   [W, Phi_q^T; Phi_q, -C] [x; lambda] = [f; g]
+//   S lambda = Phi_q W^-1 f - g        x = W^-1 (f - Phi_q^T lambda)        S = Phi_q W^-1 Phi_q^T + C
 //
-// and the least change, in the mass metric, that meets the constraints: x = M^-1 Phi_q^T S^-1 b. M is diagonal, so that
+// In motion W is the mass matrix, x the accelerations, f forces, g = gamma. Without f the least change, in the metric
+// W, that meets the constraints: x = W^-1 Phi_q^T S^-1 b; with C > 0 on the diagonal that of least x^T W x + (Phi_q x -
+// b)^T C^-1 (Phi_q x - b), in which rows need not be met. W is diagonal, a weight of zero holds its coordinate, so that
 // S is assembled column by column of Phi_q straight into the place where it is factored; products of constant columns
 // are formed once. Vectors are in coordinates: three a moving body.
 //
@@ -19,18 +21,17 @@
 //
 // Equations that always depend on others (redundant constraints) make S singular along the motion. For each dependence
 // one direction c among the equations of one element is left out: no multiplier acts along it, and its equation is not
-// solved,
+// solved: C = sum c c^T. With as many directions as dependences, none of them orthogonal to the null space of S, the
+// matrix is regular, and on the constraints C lambda = 0 holds by itself: the solution is the exact one, with
+// multipliers that have no part along c. Off the constraints by d, where integrators evaluate their stages, the
+// solution changes by O(d) and smoothly. (Regularising S instead gives multipliers of O(1/d) there, and accelerations
+// that are wrong by O(1).)
 //
-//   [M, Phi_q^T; Phi_q, -C] [qdd; lambda] = [Q; gamma]        C = sum c c^T,   S + C in place of S
-//
-// With as many directions as dependences, none of them orthogonal to the null space of S, the matrix is regular, and
-// on the constraints C lambda = 0 holds by itself: the solution is the exact one, with multipliers that have no part
-// along c. Off the constraints by d, where integrators evaluate their stages, the solution changes by O(d) and
-// smoothly. (Regularising S instead gives multipliers of O(1/d) there, and accelerations that are wrong by O(1).)
-//
-// Singular case: equations that depend on each other for an instant. As soon as a pivot keeps less than 1e-10 of its
-// diagonal, 1e-12 of the diagonal is added and solutions are refined with the true S: accelerations are then exact on
-// the constraints, multipliers one of many. Nothing allocates after the first factorization.
+// Singular case: equations that depend on each other for an instant, or in a pose that is looked for. As soon as a
+// pivot keeps less than 1e-10 of its diagonal, 1e-12 of the diagonal is added and solutions are refined with the true
+// S: changes and accelerations are then exact on the constraints, multipliers one of many; of a contradictory b the
+// part that can be met is met. Limits of dependence: linalg/rank/dependence.hpp. Nothing allocates after the first
+// factorization. Source: apps/manual/numerics.md#regularisation.
 #pragma once
 
 #include <memory>
@@ -54,29 +55,31 @@ struct SchurLanes : SchurScratch<Lanes> {
   std::vector<double> own_Q, own_gamma, own_qdd, own_lambda;  // of one lane, where each is solved for by itself
 };
 
-class SchurSystem {
+class ConstraintSolver {
  public:
-  /// Below this smallest pivot ratio solutions are refined.
-  static constexpr double refinement_ratio = 1e-5;
+  explicit ConstraintSolver(std::shared_ptr<const Plan> plan);
 
-  explicit SchurSystem(std::shared_ptr<const Plan> plan);
+  /// W: masses or other weights by coordinate, size 3 plan.moving, and substitutes for those that are zero; where both
+  /// are zero, or there are no substitutes, the coordinate is held. Coordinates without a column do not matter.
+  void set_metric(std::span<const double> masses, std::span<const double> substitutes = {});
 
-  /// Masses by coordinate, size 3 plan.moving, and substitutes for those that are zero; where both are zero the
-  /// coordinate is held.
-  void set_masses(std::span<const double> masses, std::span<const double> substitutes);
-
-  /// Directions c to leave out, each within the rows of one element and of the size of sqrt(S) there; none: all rows
-  /// are solved for. Takes effect with the next factorize().
+  /// Directions c to leave out, each within the rows of one element and of the size of row_sizes() there; none: all
+  /// rows are solved for. Takes effect with the next factorize().
   void leave_out(SparseVectors directions);
   const SparseVectors& left_out() const { return left_out_; }
-  /// x = (S + C)^-1 x. On the constraints the solutions for all c span the left null space of Phi_q.
+  /// x = S^-1 x. On the constraints the solutions for all c span the left null space of Phi_q.
   void solve_rows(std::span<double> x, Counters& counters);
-  /// sqrt(S_rr) of the last factorize(), by row: the size of a unit multiplier in the metric of the masses.
+  /// sqrt((S - C)_rr) of the last factorize(), by row: the size of a unit multiplier in the metric.
   std::vector<double> row_sizes() const;
 
-  /// Factors S at the given values of Phi_q (size entries + 1); they must stay where they are for the solves.
-  /// False if that is impossible: a value that is not finite.
+  /// Factors S at the given values of Phi_q (as many as it has entries, or more); they must stay where they are for the
+  /// solves. False if that is impossible: a value that is not finite.
   bool factorize(std::span<const double> jacobian, Counters& counters);
+  /// The same with a part `damping` > 0 of the diagonal on top, for steps that must stay short: refinement takes the
+  /// most of it back where rows are independent.
+  bool factorize_damped(std::span<const double> jacobian, double damping, Counters& counters);
+  /// The same with `compliance` > 0, by row, on the diagonal of C; it must stay where it is for the solves.
+  bool factorize_compliant(std::span<const double> jacobian, std::span<const double> compliance, Counters& counters);
 
   /// qdd and lambda from Q and gamma. Sizes: coordinates (Q, qdd), rows (gamma, lambda). `lambda` may be `gamma`.
   void solve_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
@@ -93,7 +96,11 @@ class SchurSystem {
   /// The coordinate where it was largest.
   int worst_massless() const { return worst_massless_; }
 
-  /// The least x, in the mass metric, with Phi_q x = b. Sizes: rows (b, lambda), coordinates (x).
+  /// The least x with Phi_q x + C lambda = b, refined until the residual is rounding, at most five times. Sizes: rows
+  /// (b, lambda), coordinates (x).
+  void solve(std::span<const double> b, std::span<double> x, std::span<double> lambda, Counters& counters);
+
+  /// The same for steps that are repeated: refined once, and only where pivots are small.
   void least_change(std::span<const double> b, std::span<double> x, std::span<double> lambda, Counters& counters);
 
   /// The same without refinement: good to the last digits where rows are independent, to 1e-12 / sin^2 elsewhere.
@@ -105,9 +112,9 @@ class SchurSystem {
   /// Smallest part of a diagonal entry of S that elimination left: sin^2 of the angle between a row and those before.
   double smallest_pivot_ratio() const { return smallest_ratio_; }
   int weakest_row() const { return weakest_row_; }
-  /// Diagonal entry of S + C that belongs to the row; 1 where none of its bodies can move.
+  /// Diagonal entry of S that belongs to the row; 1 where none of its bodies can move.
   double diagonal(int row) const { return diagonal_values_[static_cast<std::size_t>(row)]; }
-  /// The part of the row's diagonal entry of S + C that elimination left.
+  /// The part of the row's diagonal entry of S that elimination left.
   double pivot(int row) const { return factors_.pivot(row); }
   bool is_regularised() const { return regularised_; }
 
@@ -116,13 +123,17 @@ class SchurSystem {
     int coordinate;
     int first, last;  // entries of Phi_q
   };
+  /// Takes over the values and prepares what is done once.
+  bool begin(std::span<const double> jacobian, std::span<const double> compliance, Counters& counters);
   bool analyze(Counters& counters);
   bool analyze_factors(const SparsePattern& lower, Counters& counters);
   void assemble(std::span<const Column> columns, const int* slot, std::span<double> values) const;
   void place_left_out();
-  /// S + C, its diagonal increased by a part of itself, to where it is factored.
+  /// S, its diagonal increased by a part of itself, to where it is factored.
   void fill(double regularised_part);
   bool factor_values(Counters& counters);
+  /// Factors with this part of the diagonal added. False: a pivot vanishes.
+  bool factor_once(double part, Counters& counters);
   // V: numbers, or several in lanes.
   void eliminate(std::span<double> x, SchurScratch<double>&, Counters& counters) { factors_.solve(x, counters); }
   void eliminate(std::span<Lanes> x, SchurLanes& scratch, Counters& counters) {
@@ -132,10 +143,13 @@ class SchurSystem {
   void add_product(std::span<const V> x, std::span<V> out) const;
   /// out += C lambda.
   template <class V>
-  void add_left_out(std::span<const V> lambda, std::span<V> out) const;
-  /// x = M^-1 Phi_q^T lambda.
+  void add_compliance(std::span<const V> lambda, std::span<V> out) const;
+  /// x = W^-1 Phi_q^T lambda.
   template <class V>
   void spread(std::span<const V> lambda, std::span<V> x) const;
+  /// r = b - S lambda with x = W^-1 Phi_q^T lambda.
+  template <class V>
+  void find_residual(std::span<const V> b, std::span<const V> lambda, std::span<V> x, std::span<V> r) const;
   template <class V, class S>
   void solve_refined(std::span<V> lambda, std::span<const V> b, S& scratch, Counters& counters);
   template <class V, class S>
@@ -164,8 +178,9 @@ class SchurSystem {
 
   std::shared_ptr<const Plan> plan_;
   Masses masses_;
-  std::span<const double> jacobian_;
-  std::vector<int> column_start_;  // of Phi_q, by coordinate
+  const double* jacobian_ = nullptr;    // of the last factorize()
+  const double* compliance_ = nullptr;  // the same, by row; nullptr: none
+  std::vector<int> column_start_;       // of Phi_q, by coordinate
   Places places_;
   SparseVectors left_out_;
   std::vector<int> left_out_slot_;  // of the products of each direction

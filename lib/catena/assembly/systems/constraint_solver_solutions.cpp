@@ -1,0 +1,178 @@
+// ConstraintSolver: solutions with the factors at hand.
+#include <algorithm>
+#include <cmath>
+
+#include "catena/assembly/systems/constraint_solver.hpp"
+#include "catena/base/at.hpp"
+#include "catena/linalg/factorization/refinement.hpp"
+#include "catena/linalg/rank/dependence.hpp"
+
+namespace catena {
+namespace {
+
+// Five rounds gain what is regularised at the least pivots that are not.
+constexpr RefinementLimits rounding_of_change{.tolerance = 1e-14, .max_steps = 5};
+
+double largest(std::span<const double> numbers) {
+  double most = 0;
+  for (double number : numbers) most = std::max(most, std::abs(number));
+  return most;
+}
+
+bool refines(const std::vector<double>& room, bool always, double pivot_ratio) {
+  return !room.empty() && (always || pivot_ratio < dependence::refined_if_light);
+}
+
+}  // namespace
+
+template <class V>
+void ConstraintSolver::add_compliance(std::span<const V> lambda, std::span<V> out) const {
+  for (int k = 0; k < left_out_.count(); ++k) {
+    const std::span<const int> rows = left_out_.indices(k);
+    const std::span<const double> c = left_out_.values(k);
+    V sum{};
+    for (std::size_t a = 0; a < c.size(); ++a) sum += c[a] * lambda[at(rows[a])];
+    for (std::size_t a = 0; a < c.size(); ++a) out[at(rows[a])] += c[a] * sum;
+  }
+  for (std::size_t k = 0; compliance_ && k < out.size(); ++k) out[k] += compliance_[k] * lambda[k];
+}
+
+template <class V>
+void ConstraintSolver::add_product(std::span<const V> x, std::span<V> out) const {
+  const double* jacobian = jacobian_;
+  const int* row = plan_->jacobian.row_index.data();
+  for (std::size_t c = 0; c + 1 < column_start_.size(); ++c) {
+    const V factor = x[c];
+    for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) out[at(row[k])] += jacobian[k] * factor;
+  }
+}
+
+void ConstraintSolver::multiply_add(std::span<const double> x, std::span<double> out) const { add_product(x, out); }
+
+template <class V>
+void ConstraintSolver::spread(std::span<const V> lambda, std::span<V> x) const {
+  const double* jacobian = jacobian_;
+  const int* row = plan_->jacobian.row_index.data();
+  for (std::size_t c = 0; c + 1 < column_start_.size(); ++c) {
+    V sum{};
+    for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) sum += jacobian[k] * lambda[at(row[k])];
+    x[c] = masses_.inverse[c] * sum;
+  }
+}
+
+template <class V>
+void ConstraintSolver::find_residual(std::span<const V> b, std::span<const V> lambda, std::span<V> x,
+                                     std::span<V> r) const {
+  spread<V>(lambda, x);
+  std::fill(r.begin(), r.end(), V{});
+  add_product<V>(x, r);
+  add_compliance<V>(lambda, r);
+  for (std::size_t k = 0; k < r.size(); ++k) r[k] = b[k] - r[k];
+}
+
+template <class V, class S>
+void ConstraintSolver::solve_refined(std::span<V> lambda, std::span<const V> b, S& scratch, Counters& counters) {
+  eliminate(lambda, scratch, counters);
+  if (smallest_ratio_ >= dependence::refined) return;
+  const std::span<V> correction = scratch.correction;
+  find_residual<V>(b, lambda, scratch.change, correction);
+  eliminate(correction, scratch, counters);
+  for (std::size_t k = 0; k < correction.size(); ++k) lambda[k] += correction[k];
+}
+
+void ConstraintSolver::solve(std::span<const double> b, std::span<double> x, std::span<double> lambda,
+                             Counters& counters) {
+  const double size = largest(b);
+  const auto eliminate_in = [&](std::span<double> r) { factors_.solve(r, counters); };
+  const auto residual = [&](std::span<const double> multipliers, std::span<double> r) {
+    find_residual<double>(b, multipliers, x, r);
+    return size > 0 ? largest(r) / size : largest(r);
+  };
+  std::copy(b.begin(), b.end(), lambda.begin());
+  if (plan_->rows > 0) eliminate_in(lambda);
+  refine(eliminate_in, residual, lambda, scratch_.right_hand_side, scratch_.correction, rounding_of_change);
+  spread<double>(lambda, x);
+}
+
+void ConstraintSolver::least_change(std::span<const double> b, std::span<double> x, std::span<double> lambda,
+                                    Counters& counters) {
+  std::copy(b.begin(), b.end(), lambda.begin());
+  std::copy(b.begin(), b.end(), scratch_.right_hand_side.begin());
+  solve_refined<double>(lambda, scratch_.right_hand_side, scratch_, counters);
+  spread<double>(lambda, x);
+}
+
+void ConstraintSolver::least_change_rough(std::span<const double> b, std::span<double> x, std::span<double> lambda,
+                                          Counters& counters) {
+  std::copy(b.begin(), b.end(), lambda.begin());
+  factors_.solve(lambda, counters);
+  spread<double>(lambda, x);
+}
+
+void ConstraintSolver::solve_rows(std::span<double> x, Counters& counters) {
+  std::copy(x.begin(), x.end(), scratch_.right_hand_side.begin());
+  solve_refined<double>(x, scratch_.right_hand_side, scratch_, counters);
+}
+
+template <class V, class S>
+void ConstraintSolver::solve_with_masses(std::span<const V> Q, std::span<const V> gamma, std::span<V> qdd,
+                                         std::span<V> lambda, S& scratch, Counters& counters) {
+  const std::size_t coordinates = masses_.inverse.size();
+  for (std::size_t c = 0; c < coordinates; ++c) qdd[c] = masses_.inverse[c] * Q[c];
+  if (plan_->rows == 0) return;
+  const std::span<V> right_hand_side = scratch.right_hand_side;
+  for (std::size_t k = 0; k < right_hand_side.size(); ++k) right_hand_side[k] = -gamma[k];
+  add_product<V>(qdd, right_hand_side);
+  std::copy(right_hand_side.begin(), right_hand_side.end(), lambda.begin());
+  solve_refined<V>(lambda, right_hand_side, scratch, counters);
+  const double* jacobian = jacobian_;
+  const int* row = plan_->jacobian.row_index.data();
+  for (std::size_t c = 0; c < coordinates; ++c) {
+    V sum{};
+    for (int k = column_start_[c]; k < column_start_[c + 1]; ++k) sum += jacobian[k] * lambda[at(row[k])];
+    qdd[c] -= masses_.inverse[c] * sum;
+  }
+}
+
+template void ConstraintSolver::add_compliance<double>(std::span<const double>, std::span<double>) const;
+template void ConstraintSolver::solve_with_masses<double, SchurScratch<double>>(std::span<const double>,
+                                                                                std::span<const double>,
+                                                                                std::span<double>, std::span<double>,
+                                                                                SchurScratch<double>&, Counters&);
+
+void ConstraintSolver::solve_motion(std::span<const double> Q, std::span<const double> gamma, std::span<double> qdd,
+                                    std::span<double> lambda, Counters& counters) {
+  solve_with_masses(Q, gamma, qdd, lambda, scratch_, counters);
+  if (refines(rest_.Q, !masses_.massless.empty() || unequal_, smallest_ratio_))
+    refine_motion(Q, gamma, qdd, lambda, counters);
+}
+
+void ConstraintSolver::solve_motion(std::span<const Lanes> Q, std::span<const Lanes> gamma, std::span<Lanes> qdd,
+                                    std::span<Lanes> lambda, SchurLanes& scratch, Counters& counters) {
+  if (!refines(rest_.Q, !masses_.massless.empty() || unequal_, smallest_ratio_)) {
+    scratch.right_hand_side.resize(scratch_.right_hand_side.size());
+    scratch.correction.resize(scratch_.correction.size());
+    scratch.change.resize(scratch_.change.size());
+    return solve_with_masses(Q, gamma, qdd, lambda, scratch, counters);
+  }
+  // How often a solution is refined depends on it: one after the other.
+  scratch.own_Q.resize(Q.size());
+  scratch.own_gamma.resize(gamma.size());
+  scratch.own_qdd.resize(qdd.size());
+  scratch.own_lambda.resize(lambda.size());
+  const auto take = [](std::span<const Lanes> all, int lane, std::vector<double>& own) {
+    for (std::size_t k = 0; k < own.size(); ++k) own[k] = all[k][lane];
+  };
+  const auto give = [](const std::vector<double>& own, int lane, std::span<Lanes> all) {
+    for (std::size_t k = 0; k < own.size(); ++k) all[k].set(lane, own[k]);
+  };
+  for (int lane = 0; lane < Lanes::count; ++lane) {
+    take(Q, lane, scratch.own_Q);
+    take(gamma, lane, scratch.own_gamma);
+    solve_motion(scratch.own_Q, scratch.own_gamma, scratch.own_qdd, scratch.own_lambda, counters);
+    give(scratch.own_qdd, lane, qdd);
+    give(scratch.own_lambda, lane, lambda);
+  }
+}
+
+}  // namespace catena
