@@ -114,7 +114,8 @@ void ConstraintSolver::fill(double regularised_part) {
   }
 }
 
-bool ConstraintSolver::factor_values(Counters& counters) {
+bool ConstraintSolver::factor_values(double regularised_part, Counters& counters) {
+  fill(regularised_part);
   const FactorResult result = factors_.factorize(counters);
   smallest_ratio_ = 1;
   weakest_row_ = -1;
@@ -154,9 +155,7 @@ bool ConstraintSolver::begin(std::span<const double> jacobian, std::span<const d
 }
 
 bool ConstraintSolver::factor_once(double part, Counters& counters) {
-  if (plan_->rows == 0) return true;
-  fill(part);
-  return factor_values(counters) && factors_.is_factorized();
+  return plan_->rows == 0 || (factor_values(part, counters) && factors_.is_factorized());
 }
 
 bool ConstraintSolver::factorize_damped(std::span<const double> jacobian, double damping, Counters& counters) {
@@ -173,27 +172,22 @@ bool ConstraintSolver::factorize(std::span<const double> jacobian, Counters& cou
   if (plan_->rows == 0) return true;
   // Equations that depended on each other at the last factorization probably still do.
   const bool before = regularised_;
-  fill(before ? dependence::regularisation : 0);
-  if (!factor_values(counters)) return false;
+  if (!factor_values(before ? dependence::regularisation : 0, counters)) return false;
   if (before && !(smallest_ratio_ < dependence::clearly_more * dependence::formal)) {
     // What is added to a large diagonal shows in the pivots of small ones: whether the equations are regular is seen
     // without it, as far as rounding of the large ones allows.
-    fill(0);
-    if (!factor_values(counters)) return false;
+    if (!factor_values(0, counters)) return false;
     const double spread = row_spread(diagonal_values_, plan_->row_is_angle);
     regularised_ = smallest_ratio_ < std::max(dependence::formal, dependence::rounding_of_pivots * spread);
-    if (regularised_) {
-      fill(dependence::regularisation);
-      if (!factor_values(counters)) return false;
-    }
+    if (regularised_ && !factor_values(dependence::regularisation, counters)) return false;
   }
   if (smallest_ratio_ < dependence::formal && !regularised_) {
-    fill(dependence::regularisation);
     regularised_ = true;
-    if (!factor_values(counters) || !(smallest_ratio_ > 0)) return false;
+    if (!factor_values(dependence::regularisation, counters)) return false;
   }
+  // A pivot that is negative even so is rounding beside very unequal weights: refinement has to do with it.
   if (regularised_) smallest_ratio_ = std::min(smallest_ratio_, dependence::formal);
-  return true;
+  return factors_.is_factorized();
 }
 
 }  // namespace catena

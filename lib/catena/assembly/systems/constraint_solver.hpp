@@ -131,8 +131,8 @@ class ConstraintSolver {
   void place_left_out();
   /// S, its diagonal increased by a part of itself, to where it is factored.
   void fill(double regularised_part);
-  bool factor_values(Counters& counters);
-  /// Factors with this part of the diagonal added. False: a pivot vanishes.
+  bool factor_values(double regularised_part, Counters& counters);
+  /// The same; false if a pivot vanishes.
   bool factor_once(double part, Counters& counters);
   // V: numbers, or several in lanes.
   void eliminate(std::span<double> x, SchurScratch<double>&, Counters& counters) { factors_.solve(x, counters); }
