@@ -140,18 +140,21 @@ bool ConstraintSolver::factor_values(double regularised_part, Counters& counters
   return true;
 }
 
-bool ConstraintSolver::begin(std::span<const double> jacobian, std::span<const double> compliance, Counters& counters) {
-  jacobian_ = jacobian.data();
-  compliance_ = compliance.empty() ? nullptr : compliance.data();
-  if (plan_->rows == 0) return true;
+bool ConstraintSolver::prepare(Counters& counters) {
   if (!analyzed_ && !analyze(counters)) return false;
-  if (constants_known_) return true;
   std::fill(constant_values_.begin(), constant_values_.end(), 0.0);
   assemble(places_.constant, places_.constant_slot.data(), constant_values_);
   constants_known_ = true;
+  const std::span<const double> jacobian(jacobian_, at(plan_->jacobian.entries()));
   if (rest_.Q.empty() && largest_turn(*plan_, masses_.given, jacobian) > light_turn)
     make_room(masses_.given.size(), at(plan_->rows), {&rest_.Q, &rest_.qdd}, {&rest_.gamma, &rest_.lambda});
   return true;
+}
+
+inline bool ConstraintSolver::begin(const double* jacobian, const double* compliance, Counters& counters) {
+  jacobian_ = jacobian;
+  compliance_ = compliance;
+  return constants_known_ || plan_->rows == 0 || prepare(counters);
 }
 
 bool ConstraintSolver::factor_once(double part, Counters& counters) {
@@ -159,16 +162,16 @@ bool ConstraintSolver::factor_once(double part, Counters& counters) {
 }
 
 bool ConstraintSolver::factorize_damped(std::span<const double> jacobian, double damping, Counters& counters) {
-  return begin(jacobian, {}, counters) && factor_once(damping, counters);
+  return begin(jacobian.data(), nullptr, counters) && factor_once(damping, counters);
 }
 
 bool ConstraintSolver::factorize_compliant(std::span<const double> jacobian, std::span<const double> compliance,
                                            Counters& counters) {
-  return begin(jacobian, compliance, counters) && factor_once(0, counters);
+  return begin(jacobian.data(), compliance.data(), counters) && factor_once(0, counters);
 }
 
 bool ConstraintSolver::factorize(std::span<const double> jacobian, Counters& counters) {
-  if (!begin(jacobian, {}, counters)) return false;
+  if (!begin(jacobian.data(), nullptr, counters)) return false;
   if (plan_->rows == 0) return true;
   // Equations that depended on each other at the last factorization probably still do.
   const bool before = regularised_;

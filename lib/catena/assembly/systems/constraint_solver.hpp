@@ -123,8 +123,9 @@ class ConstraintSolver {
     int coordinate;
     int first, last;  // entries of Phi_q
   };
-  /// Takes over the values and prepares what is done once.
-  bool begin(std::span<const double> jacobian, std::span<const double> compliance, Counters& counters);
+  bool begin(const double* jacobian, const double* compliance, Counters& counters);
+  /// What is done once for a metric, and for all.
+  bool prepare(Counters& counters);
   bool analyze(Counters& counters);
   bool analyze_factors(const SparsePattern& lower, Counters& counters);
   void assemble(std::span<const Column> columns, const int* slot, std::span<double> values) const;
