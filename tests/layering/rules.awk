@@ -8,9 +8,9 @@
 # layer; a folder that is not listed there is an error, and so is one of more than 30 files:
 #
 #   analysis  run <- pose <- motion <- {events, branches} <- {kinematics, contact <- {dynamics, contact/holding}};  pose <- balance <- spectrum <- statics/solvers <- statics <- stability
-#             run <- measures;  {pose, motion, contact} <- sensitivity, sensitivity/phases, sensitivity/spectrum;  {sensitivity/phases, measures} <- adjoint;  minimiser <- {statics, design};  {kinematics, balance, batch/kernels} <- batch
+#             run <- measures;  {pose, motion, contact} <- sensitivity, sensitivity/phases, sensitivity/spectrum;  {sensitivity/phases, measures} <- adjoint;  run <- minimiser <- {statics, design};  {kinematics, balance, batch/kernels} <- batch
 #             {kinematics, stability, dynamics} <- accuracy
-#             run, pose <- kinematics/course <- kinematics;  contact/problem <- contact
+#             run, pose <- kinematics/course <- kinematics;  run <- contact/problem <- contact
 #   scene     json <- numbers <- describing <- reading <- building <- models <- judging <- running <- writing <- designing <- viewing <- loading
 #             <- explaining
 #   drawing   shapes <- figures
@@ -34,13 +34,13 @@ BEGIN {
   after("analysis", "kinematics", "run pose motion events contact kinematics/course")
   after("analysis", "branches", "run pose motion")
   after("analysis", "dynamics/integrators", "run pose motion branches")
-  after("analysis", "contact/problem", "")
+  after("analysis", "contact/problem", "run")
   after("analysis", "contact", "run pose motion events contact/problem")
   after("analysis", "contact/holding", "run pose motion contact")
   after("analysis", "dynamics", "run pose motion branches events contact dynamics/integrators")
   after("analysis", "balance", "run pose")
   after("analysis", "spectrum", "run pose balance")
-  after("analysis", "minimiser", "")
+  after("analysis", "minimiser", "run")
   after("analysis", "statics/solvers", "run pose balance spectrum minimiser")
   after("analysis", "statics", "run pose balance spectrum minimiser statics/solvers")
   after("analysis", "stability", "run pose motion balance spectrum statics statics/solvers")
@@ -49,7 +49,7 @@ BEGIN {
   after("analysis", "sensitivity/spectrum", "run pose motion sensitivity")
   after("analysis", "sensitivity/phases", "run pose motion events contact sensitivity")
   after("analysis", "adjoint", "run measures motion events contact sensitivity sensitivity/phases")
-  after("analysis", "design", "minimiser")
+  after("analysis", "design", "run minimiser")
   after("analysis", "batch/kernels", "")
   after("analysis", "batch", "run pose motion events kinematics/course kinematics balance batch/kernels")
   after("analysis", "accuracy", "run pose motion events kinematics/course kinematics balance spectrum statics statics/solvers stability dynamics dynamics/integrators contact")

@@ -11,12 +11,12 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
 #include "catena/analysis/run/row_accuracy.hpp"
 #include "catena/analysis/run/row_observer.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/columns/column_errors.hpp"
 #include "catena/columns/column_set.hpp"
 
@@ -50,7 +50,8 @@ class ComparedRows final : public RowAccuracy, public RowObserver {
   }
 
  private:
-  static constexpr double factor = 3, common = 64 * std::numeric_limits<double>::epsilon();
+  // See the head of this file.
+  static constexpr double factor = 3, common = thresholds::sum_rounding;
   const ColumnSet& columns_;
   ColumnErrors errors_;
   std::vector<double> asked_;

@@ -80,6 +80,7 @@ class MotionAccuracy final : public RowAccuracy {
   bool curves_;                  // of rows before the last it is not known where they touched
   bool timed_;                   // something depends on time, and rows before the last are looked at
   bool finds_instants_ = false;  // some rows lie at instants that the motion decides on
+  // The last rows, whose errors are largest as errors grow, are kept beside the one of the largest accelerations.
   static constexpr int late_rows = 4;
   struct {
     std::array<Row, late_rows + 1> rows;  // late ones, and the one of the largest accelerations

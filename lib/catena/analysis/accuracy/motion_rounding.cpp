@@ -2,19 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "catena/analysis/balance/force_sizes.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
-namespace {
-
-// The sums behind one number are short: see few_roundings in balance/static_accuracy.cpp.
-constexpr double few = 4 * std::numeric_limits<double>::epsilon();
-
-}  // namespace
-
 MotionRounding::MotionRounding(Evaluator& evaluator) : length_(evaluator.length_scale()) {
   const Plan& plan = evaluator.plan();
   std::vector<double> sum = force_sizes(evaluator).all;
@@ -42,24 +35,24 @@ double MotionRounding::least_error(UnitKind unit) const {
   const double rate = std::sqrt(square_);
   switch (unit) {
     case UnitKind::velocity:
-      return few * length_ * rate;
+      return thresholds::few_roundings * length_ * rate;
     case UnitKind::angular_velocity:
-      return few * rate;
+      return thresholds::few_roundings * rate;
     case UnitKind::acceleration:
-      return few * length_ * square_;
+      return thresholds::few_roundings * length_ * square_;
     case UnitKind::angular_acceleration:
-      return few * square_;
+      return thresholds::few_roundings * square_;
     case UnitKind::force:
-      return few * force_;
+      return thresholds::few_roundings * force_;
     case UnitKind::torque:
     case UnitKind::energy:
-      return few * force_ * length_;
+      return thresholds::few_roundings * force_ * length_;
     case UnitKind::power:
-      return few * force_ * length_ * rate;
+      return thresholds::few_roundings * force_ * length_ * rate;
     case UnitKind::momentum:
-      return rate > 0 ? few * force_ / rate : 0;
+      return rate > 0 ? thresholds::few_roundings * force_ / rate : 0;
     case UnitKind::angular_momentum:
-      return rate > 0 ? few * force_ * length_ / rate : 0;
+      return rate > 0 ? thresholds::few_roundings * force_ * length_ / rate : 0;
     default:
       return 0;
   }

@@ -54,6 +54,7 @@ class BranchKeeping {
   double gap() const { return gap_; }
 
  private:
+  // The eigenvalues of so many rows take some milliseconds, once a step beside a singular position.
   static constexpr int most_rows = 120;
   double gap_ = 0;
   std::vector<double> q_, phi_, values_;  // of the search: its place, rows, entries of Phi_q

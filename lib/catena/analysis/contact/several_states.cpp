@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "catena/analysis/contact/contact_switch.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 namespace {
@@ -14,8 +15,6 @@ using State = ContactProblem::State;
 
 // Three states each of five places: some milliseconds.
 constexpr std::size_t most_states = 243;
-// Of the terms of a sum: motions that differ by less are the same.
-constexpr double same_motion = 1e-6;
 
 /// Forces of given states, as the equations have them, and the accelerations that go with them.
 class Trial {
@@ -63,7 +62,8 @@ bool Trial::fits() const {
     if (place.has_normal && !open && (!is_none(across) || p_.x[2 * k] < 0)) return false;
     if (!place.has_friction || open) continue;
     if (p_.state[k] == State::sticks && (!is_none(along) || std::abs(p_.x[2 * k + 1]) > limit(k))) return false;
-    if (p_.state[k] == State::slides && place.slip == 0 && !(p_.direction[k] * along.value > same_motion * along.terms))
+    if (p_.state[k] == State::slides && place.slip == 0 &&
+        !(p_.direction[k] * along.value > thresholds::same_value * along.terms))
       return false;
   }
   return true;
@@ -144,7 +144,8 @@ std::optional<StatesOfFriction> other_states(const ContactProblem& problem) {
     if (take_states(rest, number, other) < rest.sticking) continue;
     const Trial trial(problem, other);
     const auto differs = [&](std::size_t k) {
-      return std::abs(trial.along(k) - found.along(k)) > same_motion * std::max(trial.terms(k), found.terms(k));
+      return std::abs(trial.along(k) - found.along(k)) >
+             thresholds::same_value * std::max(trial.terms(k), found.terms(k));
     };
     if (std::any_of(rest.places.begin(), rest.places.end(), differs) && trial.fits()) return other;
   }

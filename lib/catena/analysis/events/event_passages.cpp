@@ -4,13 +4,10 @@
 #include <limits>
 
 #include "catena/analysis/events/event_watch.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 
 namespace catena {
 namespace {
-
-constexpr int most_iterations = 80;
-// Of the time between two samples: nearer to the first one nothing is looked for.
-constexpr double smallest_part = 1e-13;
 
 /// Where the parabola through three points has its vertex, and its value there, if that lies between them.
 struct Vertex {
@@ -42,13 +39,14 @@ double EventWatch::locate(std::size_t k, double before, double after, const Stat
   double a = before, b = after, fa = value_at(k, a, state_at), fb = value_at(k, b, state_at);
   // After an event at the start itself the column may have gone beyond and be on its way back.
   for (double part = 0.5; !(fa * side_[k] > 0); part /= 2) {
-    if (part < smallest_part) return before;
+    // Nearer to the first sample, in parts of the time between two, nothing is looked for.
+    if (part < thresholds::carried_rounding) return before;
     a = before + (after - before) * part;
     fa = watched(k, a, state_at);
   }
   if (!(fb * side_[k] < 0)) return b;
   double width = b - a;
-  for (int n = 0; n < most_iterations; ++n) {
+  for (int n = 0; n < thresholds::most_bisections; ++n) {
     if (b - a <= 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(a), std::abs(b))) break;
     double t = b - fb * (b - a) / (fb - fa);
     if (!(t > a && t < b) || (n % 3 == 2 && b - a > width / 4)) t = a + (b - a) / 2;

@@ -15,10 +15,13 @@
 #include <span>
 #include <vector>
 
+#include "catena/analysis/run/margins.hpp"
+
 namespace catena {
 
 class EventSamples {
  public:
+  /// The polynomial goes through every other sample and is tested by those between.
   static constexpr int parts = 8;
 
   /// Begins a step.
@@ -63,11 +66,12 @@ class EventSamples {
 
  private:
   static constexpr std::array<double, parts + 1> places{0, 0.113, 0.271, 0.383, 0.497, 0.641, 0.743, 0.887, 1};
+  // Of the range of all samples: see the head of this file.
   static constexpr double foreseen = 0.01;
   // A column stays on its side where the polynomial is missed by less than this part of its distance from zero: between
   // samples it is missed by not much more than at them.
-  static constexpr double out_of_reach = 0.3;
-  static constexpr double above_rounding = 1e3;
+  static constexpr double out_of_reach = thresholds::clearly_less;
+  static constexpr double above_rounding = 1 / thresholds::slight;
   // Each takes some two hundred samples to be found.
   static constexpr int most_kinks = 8;
 

@@ -4,18 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/run/margins.hpp"
+#include "catena/analysis/run/thresholds.hpp"
+
 namespace catena {
-namespace {
-
-// A distance from the value below this part of the column's size, or below this number, counts as zero.
-constexpr double rounding = 1e-13;
-constexpr double smallest = 1e-14;
-// Of the time between two samples: columns that reach their values within rounding at one instant do so this near to
-// it.
-constexpr double one_instant = 1e-3;
-
-}  // namespace
-
 EventWatch::EventWatch(std::vector<Event> events, const Model& model, const Plan& plan, const ColumnSources& sources)
     : events_(std::move(events)) {
   ColumnSources untimed = sources;
@@ -42,7 +34,8 @@ EventWatch::EventWatch(std::vector<Event> events, const Model& model, const Plan
 }
 
 double EventWatch::tiny(std::size_t k) const {
-  return std::max(smallest, rounding * std::max(largest_[k], std::abs(target(k))));
+  // A distance from the value below this part of the column's size, or below this number, counts as zero.
+  return std::max(thresholds::sum_rounding, thresholds::carried_rounding * std::max(largest_[k], std::abs(target(k))));
 }
 
 int EventWatch::side(std::size_t k, double g) const {
@@ -97,7 +90,9 @@ FoundEvent EventWatch::first_found(const StateAt& state_at) {
   FoundEvent first = found_.back();
   found_.pop_back();
   const auto is_listed = [&](const FoundEvent& found) { return found.event < static_cast<int>(events_.size()); };
-  const double near = first.t + one_instant * (times_[2] - times_[1]);
+  // Columns that reach their values within rounding at one instant do so this near to it, in parts of the time
+  // between two samples.
+  const double near = first.t + thresholds::slight * (times_[2] - times_[1]);
   std::vector<FoundEvent> later;
   const bool alone = found_.empty() || found_.back().t > near;
   const std::optional<Snapshot> state = alone ? std::nullopt : state_at(first.t);

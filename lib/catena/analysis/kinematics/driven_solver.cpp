@@ -6,24 +6,17 @@
 #include <limits>
 #include <numeric>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 #include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {
 
-// Newton's method that contracts by 1/4, the least that steps are accepted with (kinematics_march.cpp), brings an error
-// of one length scale to 1e-12 in 20 iterations. Refinement by keep_rate a step, below, brings an error to 1e-14 in 7.
-constexpr int max_iterations = 25;
-constexpr int max_refinements = 10;
-// All in length scales or rad. A residual of `rounding` is zero; corrections below `rounding_floor` need not shrink any
-// more; a correction predicted to be below `negligible` is not computed.
+// In length scales or rad: a residual below this is zero. Corrections that are solved to rounding need not shrink any
+// more; one predicted to be below rounding of sums is not computed.
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double rounding = 1e-16;
-constexpr double rounding_floor = 1e-12;
-constexpr double negligible = 1e-14;
-// Residual of a linear system that is rounding, as part of the terms of its row.
-constexpr double backward_rounding = 64 * epsilon;
 // Shifts are compared with the length scale, or with this part of the extent of a long structure.
 constexpr double part_of_extent = 0.01;
 // Factors from further away than this are replaced: a new factorization costs two or three solves.
@@ -185,14 +178,14 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
     // Corrections are the residual times a condition number: they need not become small, but then the residual stays
     // constant.
     const bool small = outcome.residual <= attainable;
-    const bool settled =
-        rate * size <= std::max(negligible, epsilon * extent_) || outcome.residual > poor_contraction * last_residual;
+    const bool settled = rate * size <= std::max(thresholds::sum_rounding, epsilon * extent_) ||
+                         outcome.residual > poor_contraction * last_residual;
     if (outcome.residual <= rounding || (outcome.iterations > 0 && small && settled)) {
       outcome.converged = true;
       return outcome;
     }
     last_residual = outcome.residual;
-    if (outcome.iterations == max_iterations) return outcome;
+    if (outcome.iterations == thresholds::most_newton_iterations) return outcome;
     if (!factors_serve() && !factorize()) {
       outcome.factor = factored_.result;
       return outcome;
@@ -208,12 +201,12 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
     if (outcome.iterations == 0) {
       outcome.first_correction = size;
       outcome.first_turn = correction.angle;
-    } else if (!small && size > std::max(rounding_floor, 64 * epsilon * extent_)) {
+    } else if (!small && size > std::max(thresholds::solved, thresholds::sum_rounding * extent_)) {
       const double ratio = size / last_size;
       outcome.contraction = std::max(outcome.contraction, ratio);
       rate = std::max(rate, ratio);
       if (ratio > poor_contraction) factored_.valid = false;
-    } else if (small && size <= std::max(rounding_floor, 64 * epsilon * extent_)) {
+    } else if (small && size <= std::max(thresholds::solved, thresholds::sum_rounding * extent_)) {
       rate = 0;  // what is left is rounding
     }
     if (plan_.contiguous) continue;
@@ -254,7 +247,7 @@ bool DrivenSolver::solve_refined(std::span<double> x, bool has_start) {
   if (!has_start) std::fill(x.begin(), x.end(), 0.0);
   const std::span<double> rest = all_rows_ ? std::span<double>(step_) : std::span<double>(residual_all_);
   double size = 0, all = 0, rate = refinement_rate();
-  for (int k = 0; k < max_refinements; ++k) {
+  for (int k = 0; k < thresholds::most_refinements; ++k) {
     std::copy(rhs_.begin(), rhs_.end(), rest.begin());
     if (has_start || k > 0) subtract_product(values, x, rest);
     if (!all_rows_) gather_rows(rest, step_);
@@ -268,12 +261,12 @@ bool DrivenSolver::solve_refined(std::span<double> x, bool has_start) {
     all = sizes[1].all;
     if (!std::isfinite(size)) return false;
     if (k > 0) rate = std::max(rate, size / last_size);
-    if (rate * size <= negligible * all || size <= rounding * all) {
+    if (rate * size <= thresholds::sum_rounding * all || size <= rounding * all) {
       left_.of_rates = std::max(left_.of_rates, rate * size / all);
       return true;
     }
     if (k > 0 && size > poor_contraction * last_size) {
-      if (size > rounding_floor * all && !factored_here) {
+      if (size > thresholds::solved * all && !factored_here) {
         if (!factorize()) return false;
         factored_here = true;
         rate = 0;
@@ -299,8 +292,9 @@ bool DrivenSolver::is_solved_to_rounding(std::span<const double> values, std::sp
       terms_[at(plan_.jacobian.row_index[at(k)])] += std::abs(values[at(k)] * x[at(c)]);
     }
   }
-  return std::all_of(rows_.begin(), rows_.end(),
-                     [&](int row) { return std::abs(residual_all_[at(row)]) <= backward_rounding * terms_[at(row)]; });
+  return std::all_of(rows_.begin(), rows_.end(), [&](int row) {
+    return std::abs(residual_all_[at(row)]) <= thresholds::sum_rounding * terms_[at(row)];
+  });
 }
 
 // Solves for the columns of a vector over all coordinates, in place where they are the same.
@@ -339,7 +333,7 @@ bool DrivenSolver::solve_multipliers(std::span<const double> rhs, std::span<doub
   if (!factors_refine() && !factorize()) return false;
   std::fill(lambda.begin(), lambda.end(), 0.0);
   double size = 0;
-  for (int k = 0; k < max_refinements; ++k) {
+  for (int k = 0; k < thresholds::most_refinements; ++k) {
     std::copy(rhs.begin(), rhs.end(), step_.begin());
     if (k > 0) {
       for (double& x : lambda) x = -x;
@@ -359,7 +353,7 @@ bool DrivenSolver::solve_multipliers(std::span<const double> rhs, std::span<doub
     if (!std::isfinite(all)) return false;
     // The ratio of corrections alone may be that of forces while what is left is moments.
     const double ratio = k > 0 ? size / last_size : 0, rate = std::max(refinement_rate(), ratio);
-    if (rate * size <= negligible * all || size <= rounding * all) {
+    if (rate * size <= thresholds::sum_rounding * all || size <= rounding * all) {
       if (all > 0) left_.of_multipliers = std::max(left_.of_multipliers, rate * size / all);
       return true;
     }

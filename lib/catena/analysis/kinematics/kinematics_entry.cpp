@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 
+#include "catena/analysis/kinematics/course/step_rules.hpp"
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/analysis/pose/departure.hpp"
 #include "catena/analysis/pose/singular_start.hpp"
@@ -22,7 +23,6 @@ namespace {
 // The branch is entered over this much motion (rad, length scales); it must be found this near to its tangent, as part
 // of its distance from the nearest other branch. Further nodes may be off by this part of the motion.
 constexpr double entries[] = {0.02, 0.01, 0.005, 0.002, 0.001, 3e-4};
-constexpr double entry_allowance = 0.2;
 // How far along a branch (rad, length scales) rows are chosen where it starts.
 constexpr double start_distance = 0.02;
 
@@ -97,7 +97,7 @@ bool Kinematics::add_along_tangent(const Entry& entry, MotionBridge& bridge, dou
   // Tangents are velocities: backwards in time the motion leaves against them.
   const double s = entry.rests() ? entry.direction * entry.departure.at(t) : t - entry.point.t;
   for (std::size_t k = 0; k < trial_.size(); ++k) trial_[k] = entry.point.q[k] + s * entry.tangent[k];
-  return add_node(bridge, t, entry_allowance * std::abs(s) * entry.apart);
+  return add_node(bridge, t, step_rules::node_allowance * std::abs(s) * entry.apart);
 }
 
 // Nodes h (s) apart around the instant; or, where nothing moves before it or tables or the run begin with it, from
@@ -120,7 +120,7 @@ bool Kinematics::build_entry(const Entry& entry, bool around, double h, double r
       if (!functions_exist_at(evaluator_, t) || !add_along_tangent(entry, bridge, t)) return false;
     } else {
       bridge.evaluate(t, trial_, {}, {});
-      if (!add_node(bridge, t, entry_allowance * reach)) return false;
+      if (!add_node(bridge, t, step_rules::node_allowance * reach)) return false;
     }
   }
   if (!rests && !around) {

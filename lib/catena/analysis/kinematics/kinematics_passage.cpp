@@ -13,26 +13,22 @@
 #include <numeric>
 
 #include "catena/analysis/kinematics/bridge_search.hpp"
+#include "catena/analysis/kinematics/course/step_rules.hpp"
 #include "catena/analysis/kinematics/kinematics.hpp"
 #include "catena/analysis/pose/departure.hpp"
 #include "catena/analysis/pose/singular_start.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 #include "catena/linalg/rank/dependence.hpp"
 
 namespace catena {
 namespace {
 
-// The prediction of a node may be off by this part of the bridge's motion. Whether the nodes lie on one branch is
-// tested by the constraints along the polynomial.
-constexpr double allowance = 0.2;
 // Residual of the polynomial, in length scales or rad, above rounding.
 constexpr double bridge_tolerance = 2e-12;
-constexpr double rounded_place = 16 * std::numeric_limits<double>::epsilon();
 // Part of a bridge after which drivers that rest at the singular instant are evaluated again: they have begun to move,
 // while the mechanism has not moved visibly.
 constexpr double moment = 2e-3;
-// Accuracy of instants on a bridge, relative to its length.
-constexpr double same_instant = 1e-9;
 
 }  // namespace
 
@@ -71,7 +67,7 @@ bool Kinematics::build_bridge(MotionBridge& bridge, double centre, double h, dou
     } else {
       before.evaluate(t, trial_, {}, {});
     }
-    if (!add_node(before, t, allowance * reach)) break;
+    if (!add_node(before, t, step_rules::node_allowance * reach)) break;
   }
   if (before.size() < 2) return false;
   bridge = before;
@@ -79,7 +75,7 @@ bool Kinematics::build_bridge(MotionBridge& bridge, double centre, double h, dou
   bridge.keep_first(2);
   for (int k = 1; k <= 2; ++k) {
     (k == 1 ? before : bridge).evaluate(centre + k * h, trial_, {}, {});
-    if (!add_node(bridge, centre + k * h, allowance * reach)) return false;
+    if (!add_node(bridge, centre + k * h, step_rules::node_allowance * reach)) return false;
   }
   return true;
 }
@@ -95,7 +91,7 @@ bool Kinematics::follows_constraints(const MotionBridge& bridge, double from, do
   }
   // Lengths of a mechanism described far from the origin carry the rounding of its places: redundant links agree no
   // better than that.
-  const double tolerance = bridge_tolerance + 1e-14 * extent + rounded_place * place / evaluator_.length_scale();
+  const double tolerance = bridge_tolerance + thresholds::sum_rounding * (extent + place / evaluator_.length_scale());
   for (int k = 0; k < BridgeSearch::samples; ++k) {
     const double t = from + (to - from) * k / (BridgeSearch::samples - 1);
     evaluator_.set_time(t);
@@ -213,7 +209,7 @@ void Kinematics::centre_crossing(Crossing& crossing, double instant, double targ
   MotionBridge centred;
   for (int k : {-1, -2, 1, 2}) {
     crossing.bridge.evaluate(instant + k * h, trial_, {}, {});
-    if (!add_node(centred, instant + k * h, allowance * reach)) return;
+    if (!add_node(centred, instant + k * h, step_rules::node_allowance * reach)) return;
   }
   if (!((target - (instant - h)) * h >= 0)) return;
   if (!follows_constraints(centred, instant - length, instant + length)) return;
@@ -236,10 +232,12 @@ Kinematics::Passage Kinematics::pass_singular(double next, double target, double
   const double first = h > 0 ? instants.front() : instants.back();
   centre_crossing(crossing, first, target, reach);
   for (double instant : instants) {
-    if (instant > run_.latest + same_instant * length || instant < run_.earliest - same_instant * length) continue;
+    if (instant > run_.latest + thresholds::negligible * length ||
+        instant < run_.earliest - thresholds::negligible * length)
+      continue;
     // Instants closer than their accuracy count as one.
     if (!singular_points_.empty() && instant != first &&
-        std::abs(instant - singular_points_.back().t) < same_instant * (crossing.to - crossing.from)) {
+        std::abs(instant - singular_points_.back().t) < thresholds::negligible * (crossing.to - crossing.from)) {
       continue;
     }
     SingularPoint point = look_at(crossing, instant);

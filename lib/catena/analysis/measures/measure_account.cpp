@@ -2,16 +2,14 @@
 
 #include <fmt/format.h>
 
+#include "catena/analysis/run/thresholds.hpp"
+
 namespace catena {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-// Gradients of two instants of a tie that differ by less than this part of their size are the same.
-constexpr double same_gradient = 1e-6;
 // Gradients of this part of the column's size are rounding, by a parameter of any size up to 1e9.
 constexpr double no_gradient = 1e-11;
-// Limits from both sides of an instant that differ by less than this part of the column's size are the same.
-constexpr double no_jump = 1e-10;
 
 std::string not_a_number_at(double t) { return fmt::format("its column is not a number at t = {:.9g} s", t); }
 
@@ -36,7 +34,7 @@ void MeasureSet::Account::prepare_path() {
 void MeasureSet::Account::add_jump(const MotionSamples& samples, double t, double before, double after) {
   const std::vector<double> moving = samples.moving(t);
   // Limits of columns that do not jump differ by rounding: where the rate is not known nothing is lost by them.
-  const bool jumps = std::abs(before - after) > no_jump * size_;
+  const bool jumps = std::abs(before - after) > thresholds::poorly_solved * size_;
   if (keeps_nodes_ && moving.empty() && jumps) jumps_.push_back({t, before - after, before * before - after * after});
   for (std::size_t p = 0; p < moving.size(); ++p) {
     if (moving[p] == 0 || !jumps) continue;
@@ -140,7 +138,8 @@ void MeasureSet::Account::check_ties(MeasureResult& result, const Extreme& extre
   for (const MotionSample& other : extreme.others()) {
     for (std::size_t p = 0; p < parameters_; ++p) {
       const double here = gradient_of(extreme.best(), column_, p), there = gradient_of(other, column_, p);
-      const double allowed = same_gradient * std::max(std::abs(here), std::abs(there)) + no_gradient * size_;
+      // Gradients of two instants of a tie that differ by less than this part of their size are the same.
+      const double allowed = thresholds::same_value * std::max(std::abs(here), std::abs(there)) + no_gradient * size_;
       if (std::abs(here - there) <= allowed) continue;
       result.gradient[p] = none;
       result.trouble = fmt::format(

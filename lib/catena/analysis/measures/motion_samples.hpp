@@ -65,6 +65,7 @@ struct MotionPiece {
 
 class MotionSamples {
  public:
+  /// Of Kronrod's extension of the rule of Gauss with three nodes.
   static constexpr int nodes = 7;
   /// One part of a stretch: the ends and the nodes between them in order, and the weights for its length.
   using Part = std::array<MotionSample, nodes + 2>;

@@ -15,6 +15,7 @@
 namespace catena {
 namespace {
 
+// Of components with mass that are given, times their mass: a ratio that a few rounds take to rounding.
 constexpr double given_weight = 1e4;
 // A massless component counts with its small mass, 1e-4 of the constrained mass; a given one thus weighs more than that
 // mass.

@@ -24,6 +24,7 @@ namespace catena {
 
 class SingularInstant {
  public:
+  /// The decomposition of so many rows takes some seconds.
   static constexpr int most_rows = 1200;
 
   explicit SingularInstant(EquationsOfMotion& equations) : equations_(equations) {}

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "catena/analysis/pose/whole_turns.hpp"
@@ -14,6 +13,7 @@
 namespace catena {
 namespace {
 
+// Steps turn bodies by half a radian at most: a hundred radians of way.
 constexpr int max_iterations = 200;
 // Steps that turn bodies by more than this multiple are long along nearly dependent combinations of equations. Scaling
 // the whole step would leave the other equations unmet, so damping shortens only these parts.
@@ -32,8 +32,6 @@ constexpr Start starts[] = {{false, 1e-3}, {false, 0.03}, {false, 0.3}, {false, 
                             {true, 1.0},   {true, 2.0},   {true, 2.0},  {true, 3.0},  {true, 3.0}, {true, 3.0}};
 // No further start is tried after so many iterations times equations: a factorization costs a microsecond a row.
 constexpr double most_work = 4e6;
-// Rounding of the coordinates of a body that has moved by many length scales, relative to their size.
-constexpr double attainable_digits = 8 * std::numeric_limits<double>::epsilon();
 
 /// The rounding of lengths between places far from the origin, in length scales: redundant constraints there agree no
 /// better.
@@ -43,7 +41,7 @@ double rounding_of_places(const Evaluator& evaluator) {
     const Vec2<double> origin = evaluator.origin(p);
     place = std::max({place, std::abs(origin.x), std::abs(origin.y)});
   }
-  return std::min(thresholds::contradiction, attainable_digits * place / evaluator.length_scale());
+  return std::min(thresholds::contradiction, 2 * thresholds::few_roundings * place / evaluator.length_scale());
 }
 
 }  // namespace
@@ -99,7 +97,7 @@ bool Assembler::restore(std::span<double> q, double tolerance, int most_iteratio
   for (int k = 0; k < most_iterations; ++k) {
     const double residual = scaling_.row_norm(phi_);
     outcome.residual = residual;
-    if (!(residual > std::max(tolerance, attainable_digits * extent(q)))) return std::isfinite(residual);
+    if (!(residual > std::max(tolerance, 2 * thresholds::few_roundings * extent(q)))) return std::isfinite(residual);
     evaluator_.jacobian(values_);
     if (!(damping > 0 ? solver_->factorize_damped(values_, damping, evaluator_.counters)
                       : solver_->factorize(values_, evaluator_.counters))) {

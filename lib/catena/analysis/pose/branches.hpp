@@ -20,6 +20,7 @@
 
 namespace catena {
 
+/// The starts of a search double with every unknown (quadratics.cpp): 2560 at six.
 inline constexpr int most_nullity = 6;
 
 enum class Drivers {

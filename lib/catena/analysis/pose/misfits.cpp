@@ -12,6 +12,7 @@
 namespace catena {
 namespace {
 
+// In a message.
 constexpr std::size_t most_misfits = 10;
 // A large scene gets fewer steps: each costs a factorization.
 constexpr int most_steps = 600, least_steps = 60, steps_times_rows = 4000000;

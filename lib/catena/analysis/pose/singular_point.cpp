@@ -126,6 +126,7 @@ std::string_view SingularPoint::kind_name() const {
 }
 
 std::string SingularPoint::describe_branches() const {
+  // In a message.
   constexpr std::size_t most = 8;
   std::string text;
   for (std::size_t k = 0; k < branches.size() && k < most; ++k) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "catena/analysis/pose/jacobian_rank.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/status.hpp"
 
 namespace catena {
@@ -80,6 +81,6 @@ std::vector<int> most_concerned(std::span<const double> share, std::size_t most)
 /// they agree: b = nu for velocities, gamma for accelerations. 0 where b vanishes.
 double disagreement(const Evaluator& evaluator, std::span<const double> w, std::span<const double> b);
 /// A disagreement() above this is not rounding: configurations, and hence their null vectors, are known to some 1e-7.
-inline constexpr double clear_disagreement = 1e-6;
+inline constexpr double clear_disagreement = thresholds::same_value;
 
 }  // namespace catena

@@ -26,6 +26,7 @@ struct Tie {
 /// pose least, and of these the smallest.
 double least_turn(const Tie& tie, double by) {
   constexpr double turn = 2 * std::numbers::pi;
+  // Periods of a pair whose radii are in a ratio of whole numbers up to some fifty come back to where they were.
   constexpr int most_periods = 24;
   const double period = turn * (tie.a + tie.b) / tie.b, first = -tie.a / tie.b * by;
   if (period == 0) return first;

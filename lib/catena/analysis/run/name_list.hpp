@@ -11,6 +11,7 @@ namespace catena {
 
 class NameList {
  public:
+  /// Names before the rest is counted.
   static constexpr std::size_t most = 6;
 
   void add(std::string_view name) { add_text("\"" + std::string(name) + "\""); }

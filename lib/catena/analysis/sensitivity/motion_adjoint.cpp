@@ -5,16 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
-namespace {
-
-// Velocities before and after an instant that differ by less are one.
-constexpr double same_velocity = 1e-6;
-
-}  // namespace
-
 MotionAdjoint::~MotionAdjoint() = default;
 
 MotionAdjoint::MotionAdjoint(const Evaluator& of, const DesignModels& models, int parameters, GivenByModel start)
@@ -91,7 +85,8 @@ void MotionAdjoint::cover(const MotionStretch& stretch) {
   if (!steps_.empty() && !crossings_.contains(steps_.size())) {
     const Vector& before = steps_.back().end;
     for (std::size_t c = n_; c < 2 * n_; ++c) {
-      if (std::abs(step->begin[c] - before[c]) <= same_velocity * std::max(1.0, std::abs(before[c]))) continue;
+      // Velocities before and after an instant that differ by less are one.
+      if (std::abs(step->begin[c] - before[c]) <= thresholds::same_value * std::max(1.0, std::abs(before[c]))) continue;
       lose(stretch.from, "velocities jump");
       return;
     }

@@ -47,6 +47,7 @@ class RecomputedSteps {
     Side side = Side::after;
     Vector y, slope, lambda;
   };
+  /// Steps of the motion that are joined to one, at most.
   static constexpr std::size_t most_at_once = 16;
 
   explicit RecomputedSteps(const Evaluator& evaluator);

@@ -9,17 +9,13 @@
 
 #include "catena/analysis/motion/initial_velocities.hpp"
 #include "catena/analysis/pose/whole_turns.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 
 namespace catena {
 namespace {
 
-// Velocities whose last round changed them by more than this part are not settled: derivatives are good to it.
-constexpr double settled = 1e-9;
-// Given velocities that are missed by more than this part of the largest one: what derivatives lack is of that size,
-// below which "verify" does not see it.
-constexpr double missed = 1e-6;
 // Coordinates that assembly may not change: in weights of the others, so many that what is left of a change is
 // rounding.
 constexpr double held_weight = 1e16;
@@ -228,7 +224,8 @@ bool StartDerivatives::solve_keeping(std::span<const double> goal, std::span<con
     }
     if (!keeps || (round > 0 && change <= 1e-15 * size)) return true;
   }
-  if (change <= settled * size) return true;
+  // Velocities whose last round changed them by more than this part are not settled: derivatives are good to it.
+  if (change <= thresholds::negligible * size) return true;
   return fail(
       fmt::format("velocities that keep what is given do not settle: after {} rounds they change by {:.2g} of their "
                   "size; likely cause: masses that differ by more than ten orders of magnitude",
@@ -258,7 +255,9 @@ bool StartDerivatives::prepare_velocities(DesignMechanism& mechanism, std::span<
     largest = std::max({largest, std::abs(v[c]), given_[c] ? std::abs(wanted_[c]) : 0.0});
     if (given_[c]) off = std::max(off, std::abs(v[c] - wanted_[c]));
   }
-  if (off > missed * largest) {
+  // Given velocities that are missed by more than this part of the largest one: what derivatives lack is of that
+  // size, below which "verify" does not see it.
+  if (off > thresholds::same_value * largest) {
     return fail(fmt::format(
         "the given velocities do not meet the constraints, which change them by {:.3g}: give such as meet them", off));
   }

@@ -11,6 +11,7 @@
 #include <complex>
 #include <limits>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/mass_basis.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/base/at.hpp"
@@ -19,11 +20,6 @@ namespace catena {
 namespace {
 
 using Dense = Eigen::MatrixXd;
-
-// Left and right subspaces that are closer to perpendicular than this tell nothing about the value: it stays as it is.
-constexpr double lost_angle = 1e-12;
-// Rounding of the products that make a reduced stiffness, in parts of its largest entry.
-constexpr double symmetry_rounding = 1e-13;
 
 }  // namespace
 
@@ -70,7 +66,9 @@ class CirculatoryMotions::Refinement {
       for (Eigen::Index j = 0; j < x.cols(); ++j)
         rounding = std::max(rounding, floor_.between(span(zy, j), span(zx, k)));
     }
-    const bool known = angle > lost_angle;
+    // Left and right subspaces that are closer to perpendicular than this tell nothing about the value: it stays as
+    // it is.
+    const bool known = angle > thresholds::solved;
     if (known) {
       b = (overlap.inverse() * b).eval();
       rounding /= angle;
@@ -172,7 +170,7 @@ bool CirculatoryMotions::find(std::span<const double> lambda, double residual, C
   Dense reduced = refinement.reduced();
   if (!reduced.allFinite()) return false;
   const double size = reduced.cwiseAbs().maxCoeff();
-  modes.symmetric = (reduced - reduced.transpose()).cwiseAbs().maxCoeff() <= symmetry_rounding * size;
+  modes.symmetric = (reduced - reduced.transpose()).cwiseAbs().maxCoeff() <= thresholds::carried_rounding * size;
   Eigen::EigenSolver<Dense> solver(reduced);
   Dense right = solver.pseudoEigenvectors(), left = right.inverse();
   if (solver.info() == Eigen::Success && !left.allFinite()) {

@@ -4,18 +4,18 @@
 #include <cmath>
 #include <utility>
 
+#include "catena/analysis/run/margins.hpp"
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/tridiagonal.hpp"
 
 namespace catena {
 namespace {
 
-// Parts of theta, and of the largest theta, that a settled mode's residual may have.
-constexpr double settled_part = 1e-11, rounding_part = 1e-14;
+// Part of theta that a settled mode's residual may have, unless that is rounding of the largest theta.
+constexpr double settled_part = 1e-11;
 // A vector that lost all but this of its length to orthogonality is rounding; one that lost much is put back into the
 // null space, where its own rounding may have left it.
-constexpr double lost_part = 1e-13, polluted_part = 1e-3;
-// A start vector with no more than this outside the space found so far: the space is complete.
-constexpr double nothing_new = 1e-7;
+constexpr double lost_part = thresholds::carried_rounding, polluted_part = thresholds::slight;
 constexpr int steps_between_looks = 4;
 
 double dot(std::span<const double> a, std::span<const double> b) {
@@ -69,10 +69,11 @@ bool Lanczos::add_new_vector() {
   const double raw = length(v);
   op_.project(v);
   const double inside = length(v);
-  if (!(inside > nothing_new * raw)) return false;
+  // A start vector with no more outside the space found so far: the space is complete.
+  if (!(inside > thresholds::half_the_digits * raw)) return false;
   orthogonalise(v, nullptr);
   const double left = length(v);
-  if (!(left > nothing_new * inside) || !std::isfinite(left)) return false;
+  if (!(left > thresholds::half_the_digits * inside) || !std::isfinite(left)) return false;
   for (double& x : v) x /= left;
   if (!clean(v)) return false;
   basis_.push_back(std::move(v));
@@ -98,7 +99,8 @@ bool Lanczos::update_spectrum(const Choice& choose) {
   for (int k : chosen) {
     const double residual =
         std::abs(beta_.back() * coefficients_[(static_cast<std::size_t>(k) + 1) * theta_.size() - 1]);
-    if (residual > std::max(settled_part * std::abs(theta_[static_cast<std::size_t>(k)]), rounding_part * largest))
+    if (residual >
+        std::max(settled_part * std::abs(theta_[static_cast<std::size_t>(k)]), thresholds::sum_rounding * largest))
       return false;
   }
   return !chosen.empty();

@@ -40,6 +40,7 @@ class MotionGroups {
   std::vector<MotionGroup>& groups() { return groups_; }
   const std::vector<MotionGroup>& groups() const { return groups_; }
 
+  /// See are_small().
   static constexpr int usual_freedoms = 500;
 
  private:

@@ -1,7 +1,6 @@
 // StiffnessFloor: what rounding leaves of stiffnesses, and the arms at which bodies are held.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/motion_groups.hpp"
@@ -14,8 +13,6 @@ namespace {
 // the largest; a value below a few hundred of these roundings cannot be distinguished from zero. Of coordinates far
 // from the origin the last digits are unknown.
 constexpr double stiffness_rounding = 2e-13;
-// Levers below this part of the length scale are rounding of places.
-constexpr double rounding_of_arm = 1e-9;
 
 // Calls f(a, b, K_ab) for every pair of moving coordinates in the stiffness of every element, forces and constraints.
 template <class F>
@@ -89,7 +86,8 @@ std::vector<double> body_arms(StaticSystem& system, std::span<const double> lamb
     most = std::max(most, std::abs(value));
   });
   for (std::size_t b = 0; b < arms.size(); ++b) {
-    if (arms[b] < rounding_of_arm * system.length()) arms[b] = 0;
+    // Shorter levers are rounding of places.
+    if (arms[b] < thresholds::negligible * system.length()) arms[b] = 0;
     if (!(arms[b] > 0) && pushing[b] > 0) arms[b] = std::sqrt(turning[b] / pushing[b]);
     if (!(arms[b] > 0)) arms[b] = system.length();
   }

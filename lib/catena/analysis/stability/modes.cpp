@@ -23,6 +23,7 @@
 namespace catena {
 namespace {
 
+// The option of a scene that does not say how many.
 constexpr int default_count = 10;
 // Degrees of freedom up to which all modes are computed at once where a third of them or more are wanted: some ten
 // seconds.

@@ -140,7 +140,7 @@ bool changes_mechanism(const EventRequest& event) {
   return action == EventAction::release || action == EventAction::engage;
 }
 
-/// Nothing, or why a driven motion cannot have these events.
+/// Nothing, or why a driven motion cannot have these events, loads or such a branch.
 std::string conflict(const AnalysisContext& context, bool inverse_dynamics) {
   for (const EventRequest& event : context.task.events) {
     if (event.impulse) {
@@ -160,7 +160,8 @@ std::string conflict(const AnalysisContext& context, bool inverse_dynamics) {
     return fmt::format("loads with the friction of \"{}\" have no derivatives yet: leave it out, or take dynamics",
                        context.model->element_name(first_joint_friction(*context.model)));
   }
-  return {};
+  const AnalysisTask& task = context.task;
+  return task.has("branch") && task.number("branch", 0) < 1 ? "branches are numbered from 1" : "";
 }
 
 void differentiate(AnalysisContext& context, AnalysisRows& rows, const Evaluator& evaluator) {
@@ -245,10 +246,7 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
   taut.add_rows(plan);
   KinematicsOptions options;
   options.inverse_dynamics = inverse_dynamics;
-  if (task.has("branch")) {
-    options.branch = static_cast<int>(task.number("branch", 0));
-    if (options.branch < 1) return refuse(result, "branches are numbered from 1");
-  }
+  if (task.has("branch")) options.branch = static_cast<int>(task.number("branch", 0));
   const ColumnSources sources{.analysis = task.type(),
                               .timed = true,
                               .velocity = true,
@@ -286,8 +284,7 @@ void run(AnalysisContext& context, AnalysisResult& result, bool inverse_dynamics
     const bool rubs = inverse_dynamics && !context.model->frictions().empty();
     if (context.digits && !context.design && !rubs && !taut.any() && rope_routes(*context.model).empty())
       rows.judge(std::make_unique<KinematicAccuracy>(analysis, rows.columns()));
-    if (!context.design) return;
-    differentiate(context, rows, analysis.evaluator());
+    if (context.design) differentiate(context, rows, analysis.evaluator());
   };
   WithRopes followed(analysis, ways, taut, obstacle_for_ropes(context));
   run_over_time(context, result, followed, *grid, task.output_names(), sources, prepare);

@@ -37,6 +37,7 @@ inline ForceColumn sum_of(double a, const ForceColumn& x, double b, const ForceC
 
 class HeldJoint {
  public:
+  /// Of the cone of its forces: along the slope with friction to either side, and across it both ways.
   static constexpr std::size_t edges = 4;
   /// Slopes from which a search begins.
   static constexpr int slopes = 8;

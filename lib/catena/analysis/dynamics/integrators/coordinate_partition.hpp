@@ -22,6 +22,7 @@ namespace catena {
 
 class CoordinatePartition {
  public:
+  /// Its tangents are a dense matrix, coordinates by freedoms: 8 MB with two thousand coordinates.
   static constexpr int most_freedoms = 500;
 
   explicit CoordinatePartition(EquationsOfMotion& equations);

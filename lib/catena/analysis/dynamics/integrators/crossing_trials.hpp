@@ -11,6 +11,8 @@
 #include <cmath>
 #include <optional>
 
+#include "catena/analysis/run/margins.hpp"
+
 namespace catena {
 
 /// Ratios of pivots of a step: at its start, the smallest of its stages, at its end.
@@ -21,7 +23,7 @@ struct StepRatios {
   bool pass() const { return smallest < passed * end; }
 
  private:
-  static constexpr double passed = 0.3;
+  static constexpr double passed = thresholds::clearly_less;
 };
 
 class CrossingTrials {
@@ -52,6 +54,7 @@ class CrossingTrials {
   bool is_ending_near() const { return ending_near_; }
 
  private:
+  // The two sizes that avoid the position and the six others (crossing_trials.cpp).
   static constexpr std::size_t most_detours = 8;
   std::array<double, most_detours> sizes_{};  // s, in place of that of the step
   std::size_t count_ = 0, detours_ = 0;

@@ -9,8 +9,6 @@
 namespace catena {
 namespace {
 
-constexpr double safety = 0.9;
-constexpr double largest_growth = 2.5, largest_cut = 0.2;
 // A passage may lie within a step of which a pivot ratio is this small, compared with those at both ends, or of which
 // one end is, compared with the other.
 constexpr double dip_inside = 0.35, dip_at_end = 0.02;
@@ -176,8 +174,7 @@ RungeKutta::Judgement RungeKutta::judge(double h) {
   if (!is_fixed() && motion_.works() > 0) error = std::max(error, error_of_work(h));
   if (!std::isfinite(error)) error = error_of_failure;
   judged.error = error;
-  judged.growth =
-      std::clamp(safety * std::pow(std::max(error, 1e-10), -1.0 / tableau().order), largest_cut, largest_growth);
+  judged.growth = order_.growth(error);
   if (trials_.project_stages() && !is_fixed() && dips()) judged.rounding = rounding_of_crossing(h);
   judged.accurate = std::max(error, trials_.takes_best() ? 0 : judged.rounding) <= trials_.accepted_error();
   return judged;

@@ -14,6 +14,7 @@ namespace catena {
 
 class MotionBridge {
  public:
+  /// Two instants on either side.
   static constexpr int capacity = 4;
 
   void clear() { nodes_.clear(); }

@@ -4,15 +4,9 @@
 #include <cmath>
 
 #include "catena/analysis/kinematics/course/step_rules.hpp"
+#include "catena/analysis/run/margins.hpp"
 
 namespace catena {
-namespace {
-
-// Where a block has no determinant its pivot is used, and must also fall below this part of its largest value so far.
-constexpr double small_part = 0.3;
-
-}  // namespace
-
 void MarginHistory::forget() {
   last_.clear();
   largest_.clear();
@@ -34,7 +28,8 @@ void MarginHistory::take(std::span<const BlockMargin> margins, double t) {
 // A determinant of its own counts at any size; a pivot in its place may be small elsewhere too.
 bool MarginHistory::is_small(std::span<const BlockMargin> margins, std::size_t block) const {
   const BlockMargin& margin = margins[block];
-  return margin.pivot != margin.determinant || std::abs(margin.pivot) < small_part * largest_[block];
+  // Where a block has no determinant its pivot is used, and must also fall clearly below its largest value so far.
+  return margin.pivot != margin.determinant || std::abs(margin.pivot) < thresholds::clearly_less * largest_[block];
 }
 
 bool MarginHistory::heads_for_singularity(double h) const {

@@ -3,19 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/sensitivity/phases/phased_derivatives.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
-namespace {
-
-// Accelerations that differ by less than this part of their size are the same on both sides of an instant.
-constexpr double no_jump_of_slopes = 1e-9;
-
-}  // namespace
-
 std::vector<int> PhasedDerivatives::released_in(const VelocityJump& jump) const {
   std::vector<int> released = jump.released;
   for (const ContactPoint& point : contacts_.points) {
@@ -126,7 +119,8 @@ void PhasedDerivatives::end_crossing(std::size_t k, const std::vector<double>& r
   }
   const std::span<const double> own = rates_of_group(rate, k);
   for (std::size_t p = 0; p < own.size(); ++p) {
-    const bool unseen = std::isnan(own[p]) && (jumps || change > no_jump_of_slopes * size);
+    // Accelerations that differ by less than this part of their size are the same on both sides of an instant.
+    const bool unseen = std::isnan(own[p]) && (jumps || change > thresholds::negligible * size);
     if (unseen && lost_.empty())
       lost_ =
           fmt::format("the instant t = {:.9g} s, at which the motion goes on in another way, has no derivative", to_);

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/sensitivity/spectrum/spectrum_derivatives.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
@@ -31,7 +32,6 @@ constexpr double beside = 1e-7;
 constexpr int most_inverse_rounds = 20;
 // Where two meet: the vectors move by about this part of omega2, and so does what is made of them.
 constexpr double beside_meeting = 1e-11;
-constexpr double settled_vector = 1e-12;
 
 /// The moving plan bodies on which forces that turn with them act; nothing where another force has no energy.
 std::optional<std::vector<int>> bodies_with_turning_forces(const Model& model, const Plan& plan) {
@@ -115,7 +115,7 @@ bool SpectrumDerivatives::find_left(double omega2, Metric metric, std::span<cons
       change = std::max(change, std::abs(next[c] / largest - w[c]));
       w[c] = next[c] / largest;
     }
-    if (change <= settled_vector) return true;
+    if (change <= thresholds::solved) return true;
   }
   return fail("the vector on the left of its stiffness did not settle");
 }
@@ -131,7 +131,7 @@ bool SpectrumDerivatives::find_both(double omega2, std::span<double> v, std::spa
     return fail("the vectors of the frequency in which two meet were not found");
   std::vector<double> next(v.size()), multipliers(nu.size());
   double changed = 1;
-  for (int round = 0; round < most_inverse_rounds && changed > settled_vector; ++round) {
+  for (int round = 0; round < most_inverse_rounds && changed > thresholds::solved; ++round) {
     for (const bool of_left : {true, false}) {
       const std::span<double> from = of_left ? v : w, to = of_left ? w : v;
       for (std::size_t c = 0; c < next.size(); ++c) next[c] = weight[c] * from[c];
@@ -148,7 +148,7 @@ bool SpectrumDerivatives::find_both(double omega2, std::span<double> v, std::spa
       for (std::size_t r = 0; of_left && r < nu.size(); ++r) nu[r] = multipliers[r] / largest;
     }
   }
-  return changed <= settled_vector || fail("the vectors of the frequency in which two meet did not settle");
+  return changed <= thresholds::solved || fail("the vectors of the frequency in which two meet did not settle");
 }
 
 std::optional<std::vector<int>> SpectrumDerivatives::turning_bodies() {

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/sensitivity/start_derivatives.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
-
-// Forces are in balance if what is left of them is at most this part: what modes take for balance, see modes.cpp.
-constexpr double balanced = 1e-6;
 
 /// Fills the metric (1, 1, radius^2) and Phi_q, and factors.
 bool factor_metric(Evaluator& evaluator, SaddleSystem& system, std::span<double> jacobian) {
@@ -65,7 +63,8 @@ bool SpectrumDerivatives::is_in_balance() {
     size = std::max(size, std::abs(load));
     left = std::max(left, std::abs(load - held[at(c)]));
   }
-  return left <= balanced * size;
+  // Forces are in balance if what is left of them is at most this part: what modes take for balance, see modes.cpp.
+  return left <= thresholds::same_value * size;
 }
 
 // The place is an equilibrium, which moves with the parameters.

@@ -11,6 +11,7 @@
 namespace catena {
 namespace {
 
+// Gaps change all at once while that leads to new sets, up to the second number; then one by one, up to the first.
 constexpr int most_sets = 200, most_sets_at_once = 15;
 
 }  // namespace

@@ -4,21 +4,16 @@
 #include <cmath>
 #include <optional>
 
+#include "catena/analysis/run/margins.hpp"
 #include "catena/analysis/statics/solvers/static_active_set.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-constexpr double gap_turn = 1;
-// Changes below this, length scales or rad, are followed by the exact K.
-constexpr double followed_change = 0.3;
-// No step is longer than this many sizes of the mechanism.
-constexpr double largest_stride = 1;
 // The smoothing begins with one of these, L being the size of the mechanism: where many gaps share a load a large t
 // makes them act from a distance, with a small t their state alternates. It ends when the active set is certain.
 constexpr double first_smoothings[] = {0.1, 0.03, 0.3};
-constexpr double last_smoothing = 1e-8;
 // Steps of t: the first factor, and the one that ends the search.
 constexpr double first_cooling = 0.2, least_cooling = 0.97;
 // A point is solved for a t when the change is below this, length scales or rad, and the residual below this part of t.
@@ -165,19 +160,18 @@ bool SmoothingSearch::linearise() {
 double SmoothingSearch::step() {
   const StaticStep step = system_.solve(force_, gap_, near_ ? 1e-13 : 1e-9);
   const double change = system_.change_norm(step.change);
-  // Where almost nothing resists only the direction of a step is useful.
-  const double factor =
-      std::isfinite(change) ? std::min(1.0, largest_stride * size_ / (system_.length() * change)) : 0.0;
+  // Where almost nothing resists only the direction of a step is useful: none is longer than the mechanism.
+  const double factor = std::isfinite(change) ? std::min(1.0, size_ / (system_.length() * change)) : 0.0;
   if (factor > 0) {
-    system_.foresee(step.change, factor, gap_turn);
-    system_.advance(q_, step.change, factor, gap_turn);
+    system_.foresee(step.change, factor, newton_turn);
+    system_.advance(q_, step.change, factor, newton_turn);
     for (std::size_t r = 0; r < lambda_.size(); ++r) lambda_[r] += factor * (step.lambda[r] - lambda_[r]);
     system_.move_to(q_);
   }
   outcome_.step = change;
   if (const IterationTrace* trace = system_.evaluator().trace)
     (*trace)("gaps", outcome_.iterations, gaps_->left_over(lambda_, t_), change);
-  near_ = change <= followed_change;
+  near_ = change <= exact_change;
   ++steps_;
   return factor;
 }
@@ -201,7 +195,7 @@ bool SmoothingSearch::next_smoothing(Point point) {
     before_.take_back(system_, q_, lambda_);
     system_.forget_lengths();
   }
-  t_ = std::max(t_before_ * cooling_, 0.5 * last_smoothing);
+  t_ = std::max(t_before_ * cooling_, 0.5 * thresholds::half_the_digits);
   steps_ = 0;
   return true;
 }
@@ -217,7 +211,7 @@ bool SmoothingSearch::make_step(const std::vector<double>& start) {
   if (travel_between(start, q_).is_lost(size_)) return ended(StaticEnd::unbounded);
   const Point point = judge(factor);
   if (point == Point::sought) return true;
-  if (point == Point::too_far || t_ > last_smoothing) return next_smoothing(point);
+  if (point == Point::too_far || t_ > thresholds::half_the_digits) return next_smoothing(point);
   const int smoothed = outcome_.iterations;
   system_.forget_lengths();
   outcome_ = finish_with_gaps(system_, q_, lambda_, set_, options_);

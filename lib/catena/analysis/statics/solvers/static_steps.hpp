@@ -44,6 +44,11 @@ void iterate(StaticSystem& system, int most, StaticOutcome& outcome, Step&& step
   }
 }
 
+/// Rad: Newton's steps turn no body further, as elements are not linear.
+inline constexpr double newton_turn = 1;
+/// Changes below this, length scales or rad, are followed by the exact K: it is worth trying there.
+inline constexpr double exact_change = 0.3;
+
 /// A place that a search may have to return to: its coordinates and multipliers, and where curves touch there, as they
 /// are searched from where they touched last.
 struct KeptPlace {
