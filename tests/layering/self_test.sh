@@ -131,5 +131,38 @@ if command -v git >/dev/null; then
   violates "top level" notes.txt
 fi
 
+# The counting of constants: their classes, and that too many, or too many without a reason, fail.
+constants="$(dirname "$check")/constants.sh"
+rm -rf "$tree/lib"
+put lib/catena/analysis/x/a.cpp '// Of the largest.' 'constexpr double small = 1e-3, smaller = 1e-6;' 'constexpr int most = 80;' '' \
+  'constexpr double alone = 4 * std::numeric_limits<double>::epsilon();' \
+  'constexpr double none = std::numeric_limits<double>::quiet_NaN();' '// An alias.' \
+  'constexpr double other = thresholds::small;' 'constexpr double ratio =' '    0.5;  // behind'
+cases=$((cases + 1))
+listed="$(bash "$constants" "$tree" --list | cut -f1,4,5 | tr '\t\n' ' ;')"
+expected="threshold small = 1e-3 reason;threshold smaller = 1e-6 reason;bound most = 80 reason;"
+expected+="threshold alone = 4 * std::numeric_limits<double>::epsilon() -;"
+expected+="exact none = std::numeric_limits<double>::quiet_NaN() -;other other = thresholds::small reason;"
+expected+="threshold ratio = 0.5 reason;"
+if [[ "$listed" != "$expected" ]]; then
+  printf 'constants are listed as\n%s\nand not as\n%s\n' "$listed" "$expected"
+  failures=$((failures + 1))
+fi
+# few CLASS LINE COUNT: with so many such lines the count must fail.
+few() {
+  cases=$((cases + 1))
+  bash "$constants" "$tree" >/dev/null || { echo "a few constants should pass"; failures=$((failures + 1)); }
+  for k in $(seq "$3"); do printf '// A reason.\n%s;\n\n' "${2/NAME/n$k}"; done >"$tree/lib/catena/analysis/x/b.cpp"
+  [[ "$1" == reason ]] && sed -i '/reason/d' "$tree/lib/catena/analysis/x/b.cpp"
+  if bash "$constants" "$tree" >/dev/null; then
+    echo "too many are not reported: $1"
+    failures=$((failures + 1))
+  fi
+  rm "$tree/lib/catena/analysis/x/b.cpp"
+}
+few threshold 'constexpr double NAME = 0.1' 1000
+few bound 'constexpr int NAME = 10' 1000
+few reason 'constexpr double NAME = 1e-3' 100
+
 echo "$cases cases, $failures failures"
 [[ $failures -eq 0 ]]
