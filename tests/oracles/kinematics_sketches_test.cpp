@@ -6,6 +6,7 @@ namespace {
 
 TEST(KinematicSketches, FlatAndStraightOnesAssembleInEveryAnalysis) {
   for (unsigned seed = 0; seed < 60; ++seed) expect_assembled(seed);
+  expect_assembled(505603);  // needs fourteen starts
 }
 
 TEST(KinematicSketches, DeadCentresLockOrLeaveBothWays) {

@@ -107,6 +107,15 @@ inline std::string fault_in_other_units(unsigned seed, std::map<std::string, int
   return compare(seed, c, TransformedScene(c.random.scene, t).scene(), t, 0, "units", seen);
 }
 
+/// A million sizes away a place is known to 1e-10 of the size, and so are the lengths that the scene means.
+inline std::string fault_far_away(unsigned seed, std::map<std::string, int>& seen) {
+  InvarianceCase c(seed);
+  Transformation t;
+  const double away = c.random.uniform(-3, 3);
+  t.shift = turned({1e6 * c.random.size, 0}, away);
+  return compare(seed, c, TransformedScene(c.random.scene, t).scene(), t, 1e-7, "far", seen);
+}
+
 /// With bodies, constraints and forces in another order. Which of equal ways is taken may depend on it; places may not.
 inline std::string fault_in_other_order(unsigned seed, std::map<std::string, int>& seen) {
   InvarianceCase c(seed);

@@ -1,10 +1,10 @@
 // Random mechanisms in other units, turned, shifted, mirrored, in another order, and with a joint given twice: what the
 // mechanism does must be the same. Units that are powers of four change no digit of any number, nor of a square root.
-#include "stress/random_invariance.hpp"
-
+// Dynamics and equilibrium are compared in all of these, every other analysis in other units.
 #include <gtest/gtest.h>
 
 #include "oracles/random_seeds.hpp"
+#include "stress/random_analyses.hpp"
 
 namespace catena::testing {
 namespace {
@@ -16,6 +16,19 @@ TEST(RandomInvariance, UnitsDoNotMatter) {
   std::map<std::string, int> seen;
   expect_no_fault(first_case(), last_case(1000), [&](unsigned seed) { return fault_in_other_units(seed, seen); });
   print_shares("random mechanisms in other units", seen);
+}
+
+TEST(RandomInvariance, UnitsDoNotMatterToAnyAnalysis) {
+  std::map<std::string, int> seen;
+  expect_no_fault(first_case(), last_case(1500), [&](unsigned seed) { return fault_of_units(seed, seen); });
+  print_shares("analyses of random mechanisms in other units", seen);
+}
+
+TEST(RandomInvariance, AFarOriginDoesNotMatter) {
+  std::map<std::string, int> seen;
+  expect_no_fault(first_case(), last_case(1000), [&](unsigned seed) { return fault_far_away(seed, seen); });
+  print_shares("random mechanisms a million times their size from the origin", seen);
+  EXPECT_LE(part_not_compared(seen), most_not_compared);
 }
 
 TEST(RandomInvariance, PlaceDirectionAndMirrorDoNotMatter) {

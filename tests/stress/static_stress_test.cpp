@@ -1,6 +1,6 @@
-// Static equilibrium by the thousand: random spring networks and linkages, random starts of chains. Every answer is
-// checked without the solver: forces by the residual of the equilibrium equations, stability by the energies of
-// configurations nearby.
+// Static equilibrium by the thousand: random spring networks and linkages, random starts of chains, mechanisms that
+// balance wherever they stand. Every answer is checked without the solver: forces by the residual of the equilibrium
+// equations, stability by the energies of configurations nearby, or against a closed form.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +9,7 @@
 
 #include "catena/analysis/pose/assemble.hpp"
 #include "catena/analysis/statics/equilibrium.hpp"
+#include "oracles/balanced_mechanisms.hpp"
 #include "oracles/random_statics.hpp"
 #include "oracles/static_reference.hpp"
 #include "stress/cases.hpp"
@@ -106,6 +107,18 @@ TEST(RandomStatics, AThousandChainsFromRandomAngles) {
     EXPECT_TRUE(report.stable) << seed;
     EXPECT_NEAR(chain.lambda()[0], tension, 1e-12 * tension) << seed;
   }
+}
+
+TEST(BalancedMechanisms, StayWhereTheyStand) {
+  testing::expect_to_stay(testing::first_case(1001), testing::stress_cases(4000));
+}
+
+TEST(BalancedMechanisms, AreUnstableAMillionthShort) {
+  testing::expect_unstable_when_short(testing::first_case(1001), testing::stress_cases(3000));
+}
+
+TEST(BalancedMechanisms, LetAPendulumBesideThemFall) {
+  testing::expect_a_pendulum_to_fall(testing::first_case(1001), testing::stress_cases(3000));
 }
 
 }  // namespace

@@ -53,6 +53,7 @@ class TransformedScene {
     }
     for (Json& c : scene_["constraints"]) constraint(c);
     for (Json& f : scene_["forces"]) force(f);
+    for (Json& d : scene_["drivers"]) driver(d);
     for (Json& a : scene_["analyses"]) {
       for (const char* key : {"until", "every"}) {
         if (a.contains(key)) scale(a[key], t.time);
@@ -125,6 +126,19 @@ class TransformedScene {
       scale(f["torque"]["harmonic"]["amplitude"], t_.sign() * torque);
       scale(f["torque"]["harmonic"]["omega"], 1 / t_.time);
     }
+  }
+
+  /// Of an angle or a coordinate of the ground, which a turn does not leave one.
+  void driver(Json& d) const {
+    const std::string type = d["type"];
+    const bool angle = type == "absolute_angle", x = type == "absolute_x";
+    double factor = angle ? t_.sign() : x ? t_.length : t_.sign() * t_.length;
+    Json& terms = d["value"]["polynomial"];
+    for (Json& term : terms) {
+      scale(term, factor);
+      factor /= t_.time;
+    }
+    terms[0] = terms[0].get<double>() + (angle ? t_.turn : t_.length * (x ? t_.shift.x : t_.shift.y));
   }
 
   Transformation t_;

@@ -53,10 +53,17 @@ std::span<const BlockMargin> DrivenSolver::block_margins() {
   return factorization_.block_margins();
 }
 
+// By inverse iteration with the matrix in length scales and rad, R A C: of metres beside radians the smallest singular
+// value would be one of units, in a mechanism of nanometres that of every angle.
 bool DrivenSolver::null_vectors(std::span<double> w, std::span<double> z) {
   if (!is_square() || !factored_.valid) return false;
   // A start without symmetry: a null vector orthogonal to it would be missed.
   for (std::size_t k = 0; k < step_.size(); ++k) step_[k] = 1 + 0.37 * std::sin(1.0 + static_cast<double>(k));
+  const auto row_unit = [&](std::size_t k) { return scaling_.row_unit(rows_[k]); };
+  const auto column_unit = [&](std::size_t k) { return plan_.coordinate[k] % 3 == 2 ? 1 : evaluator_.length_scale(); };
+  const auto divide = [&](auto&& unit) {
+    for (std::size_t k = 0; k < step_.size(); ++k) step_[k] /= unit(k);
+  };
   const auto normalise = [&] {
     double square = 0;
     for (double x : step_) square += x * x;
@@ -64,15 +71,20 @@ bool DrivenSolver::null_vectors(std::span<double> w, std::span<double> z) {
     return square > 0 && std::isfinite(square);
   };
   for (int iteration = 0; iteration < 4; ++iteration) {
+    divide(column_unit);
     factorization_.solve_transposed(step_, evaluator_.counters);
+    divide(row_unit);
     if (!normalise()) return false;
     if (iteration == 3) {
       std::fill(w.begin(), w.end(), 0.0);
-      for (std::size_t k = 0; k < rows_.size(); ++k) w[at(rows_[k])] = step_[k];
+      for (std::size_t k = 0; k < rows_.size(); ++k) w[at(rows_[k])] = row_unit(k) * step_[k];
     }
+    divide(row_unit);
     factorization_.solve(step_, evaluator_.counters);
+    divide(column_unit);
     if (!normalise()) return false;
   }
+  for (std::size_t k = 0; k < step_.size(); ++k) step_[k] *= column_unit(k);
   std::fill(z.begin(), z.end(), 0.0);
   to_coordinates(step_, z);
   return true;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "catena/analysis/run/thresholds.hpp"
+#include "catena/analysis/run/far_places.hpp"
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/base/at.hpp"
 
@@ -52,7 +53,8 @@ const StaticAccuracy& StaticJudge::weigh(std::span<const double> lambda) {
 
 bool StaticJudge::is_accurate(std::span<const double> lambda, const Certificate& certificate) {
   weigh(lambda);
-  if (!(system_.phi_norm() <= std::max(tolerance_, 10 * system_.rounding_change()))) return false;
+  const double rounding = std::max(10 * system_.rounding_change(), rounding_of_far_places(system_.evaluator()));
+  if (!(system_.phi_norm() <= std::max(tolerance_, rounding))) return false;
   if (accuracy_.balanced || !accuracy_.rounded) return accuracy_.balanced;
   std::vector<double> force(at(system_.plan().columns)), gap(at(system_.plan().rows), 0.0);
   system_.residual(lambda, force);

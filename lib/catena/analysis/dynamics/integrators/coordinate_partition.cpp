@@ -147,12 +147,16 @@ void CoordinatePartition::pick_independent(int freedoms) {
   }
 }
 
-// Whether residual_, that of q, is rounding of sum |Phi_q| |q| in each equation.
+// Whether residual_, that of q, is rounding of sum |Phi_q| |q| in each equation, q counted from the ground's origin:
+// places of curves on the ground are.
 bool CoordinatePartition::residual_is_rounding(std::span<const double> q) {
   std::fill(multipliers_.begin(), multipliers_.end(), 0.0);
   for (int c = 0; c < plan_.columns; ++c) {
     const int coordinate = plan_.coordinate[at(c)];
-    const double size = std::max(std::abs(q[at(coordinate)]), coordinate % 3 == 2 ? 1 : evaluator_.length_scale());
+    const bool angle = coordinate % 3 == 2;
+    const Vec2<double> origin = evaluator_.origin(coordinate / 3);
+    const double from_ground = angle ? 0 : coordinate % 3 == 0 ? origin.x : origin.y;
+    const double size = std::max(std::abs(q[at(coordinate)] + from_ground), angle ? 1 : evaluator_.length_scale());
     for (int k = plan_.jacobian.column_start[at(c)]; k < plan_.jacobian.column_start[at(c) + 1]; ++k)
       multipliers_[at(plan_.jacobian.row_index[at(k)])] += std::abs(jacobian_[at(k)]) * size;
   }
