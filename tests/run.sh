@@ -4,7 +4,8 @@
 #   tests/run.sh           Release build, every test but the long ones (stress, fuzz, bench, browser)
 #   tests/run.sh --all     also: a build by clang with AddressSanitizer and UndefinedBehaviorSanitizer in which the tests
 #                          labelled quick run, and the format of the sources
-#   tests/run.sh --long    only the long tests, and the fuzzers of the readers: CATENA_FUZZ_SECONDS each, 30 by default
+#   tests/run.sh --long    only the long tests, and the fuzzers of the readers: CATENA_FUZZ_SECONDS each, 30 by default.
+#                          The long ones make some 140,000 random scenes, or CATENA_STRESS_CASES of each kind
 #
 # Installs what is missing (apps/setup.sh). A stage that fails does not keep the later ones from running; the exit code
 # is 0 only when all of them passed. Builds go to build/<preset>.
@@ -55,14 +56,14 @@ build() {
 run_ctest() {
   local preset="$1"
   shift
-  ctest --test-dir "build/$preset" --parallel "$jobs" --timeout 600 --no-tests=error "$@"
+  ctest --test-dir "build/$preset" --parallel "$jobs" --timeout "${most_seconds:-600}" --no-tests=error "$@"
 }
 
 release_build() {
   build release -DCATENA_LONG_TESTS="$long" -DCATENA_BUILD_TESTS=ON -DCATENA_BUILD_BENCH=ON -DCATENA_WITH_PYTHON=ON
 }
 release_tests() { run_ctest release --label-exclude '^(stress|fuzz|bench|browser)$'; }
-long_tests() { run_ctest release --label-regex '^(stress|fuzz|bench|browser)$'; }
+long_tests() { most_seconds=3600 run_ctest release --label-regex '^(stress|fuzz|bench|browser)$'; }
 sanitized_build() { build sanitize; }
 sanitized_tests() {
   ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1 run_ctest sanitize --label-regex '^quick$'
