@@ -35,8 +35,9 @@ INSTANTIATE_TEST_SUITE_P(Kinds, MasslessMotion, ::testing::Range(0, all_massless
 // What was wrong or refused once: rows within steps across flat positions, dependent equations beside very unequal
 // masses that were taken for independent, steps whose stages lay beside a flat position, speeds behind it, steps that
 // came nearer and nearer without passing it, directions left out that became dependent between two choices, massless
-// bodies on which nothing acts, small masses in their place that cost digits all the way to a flat position, and a
-// stage of the interpolant alone that lay in one.
+// bodies on which nothing acts, small masses in their place that cost digits all the way to a flat position, a stage of
+// the interpolant alone that lay in one, rows in the last step beside one, cut by a choice of coordinates made
+// elsewhere, and such choices made in a flat position, beside which all later ones seemed good.
 TEST(RedundantMotions, OfCasesThatWereWrong) {
   struct Case {
     bool massless;
@@ -72,7 +73,9 @@ TEST(RedundantMotions, OfCasesThatWereWrong) {
                         Case{true, 5, 450, partitioning, 1e-12},
                         Case{true, 5, 68, rk8, 1e-12},
                         Case{true, 5, 301, adams, 1e-12},
-                        Case{false, 0, 20011, automatic, 1e-5}}) {
+                        Case{false, 0, 20011, automatic, 1e-5},
+                        Case{false, 1, 40052, partitioning, 1e-11},
+                        Case{false, 1, 40066, partitioning, 1e-12}}) {
     const std::optional<KnownMotion> motion =
         c.massless ? draw_massless(c.kind, c.seed) : draw_redundant(c.kind, c.seed);
     ASSERT_TRUE(motion);

@@ -81,7 +81,7 @@ bool CoordinatePartition::choose(std::span<const double> q) {
   pick_independent(freedoms_);
   system_.set_metric(weight_);
   if (!factorize()) return false;
-  ratio_of_choice_ = ratio_;
+  largest_ratio_ = ratio_;
   return true;
 }
 
@@ -176,7 +176,7 @@ bool CoordinatePartition::solve(double t, Side side, std::span<double> q, std::s
     evaluator_.phi(residual_);
     position_residual_ = scaling_.row_norm(residual_);
     if (!std::isfinite(position_residual_)) return false;
-    if (k == 0 && (!factorize() || ratio_ < unusable * ratio_of_choice_)) return false;
+    if (k == 0 && (!factorize() || ratio_ < unusable * largest_ratio_)) return false;
     if (position_residual_ <= thresholds::position_rounding) break;
     if (k > 0 && position_residual_ > 0.5 * before &&
         ((before < good_enough && position_residual_ < 10 * good_enough) || residual_is_rounding(q)))

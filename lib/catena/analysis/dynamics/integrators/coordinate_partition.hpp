@@ -7,10 +7,12 @@
 //
 // Choice of v: rows of a basis of the tangent space (random motions, made tangent and orthonormal, lengths in the
 // scene's length scale), picked by QR with pivoting, so that Phi_u is far from singular. It is made anew when the least
-// pivot of Phi_u Phi_u^T, compared with the whole row, is below 0.3 of what it was when the choice was made.
+// pivot of Phi_u Phi_u^T, compared with the whole row, is below 0.3 of the largest since the choice was made: beside a
+// flat position, where a motion may start, all choices have small ones.
 // Singular case: where Phi_q loses rank no choice serves. The basis is dense: up to 500 degrees of freedom.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -33,8 +35,11 @@ class CoordinatePartition {
   /// Solves for the dependent positions and velocities; false where Newton's method does not converge or the choice is
   /// unusable.
   bool solve(double t, Side side, std::span<double> q, std::span<double> qd);
-  /// Whether the last solve() found the choice poor.
-  bool has_worsened() const { return ratio_ < worse * ratio_of_choice_; }
+  /// Whether the choice serves on from the place of the last solve(), which the motion has reached.
+  bool serves() {
+    largest_ratio_ = std::max(largest_ratio_, ratio_);
+    return choices_ > 0 && ratio_ >= worse * largest_ratio_;
+  }
   /// The mechanism moved without solve(): the choice must be made again.
   void forget() { ratio_ = 0; }
   int choices() const { return choices_; }
@@ -59,7 +64,7 @@ class CoordinatePartition {
   std::vector<std::vector<double>> tangents_;  // by degree of freedom; scaled, by coordinate
   std::vector<double> mirror_;
   int freedoms_ = -1, choices_ = 0;
-  double ratio_ = 1, ratio_of_choice_ = 1, position_residual_ = 0;
+  double ratio_ = 1, largest_ratio_ = 1, position_residual_ = 0;  // the largest since the last choice
 };
 
 }  // namespace catena

@@ -55,8 +55,7 @@ bool RungeKutta::start(double t, std::span<const double> y) {
 bool RungeKutta::follow_motion() {
   if (partitions()) {
     motion_.equations().evaluator().set_time(t_);
-    return (partition_->choices() > 0 && !partition_->has_worsened()) ||
-           partition_->choose(motion_.q(std::span<const double>(y_)));
+    return partition_->serves() || partition_->choose(motion_.q(std::span<const double>(y_)));
   }
   if (projects()) return true;
   double wanted = scale_.rate();

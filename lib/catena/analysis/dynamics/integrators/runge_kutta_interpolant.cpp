@@ -54,9 +54,11 @@ bool RungeKutta::finish_cut() {
 }
 
 // A step across a singular position, cut at t: from its start or from its end, whichever has stages further from that
-// position. False: neither can be made, or both end too near to it.
+// position. False: neither can be made, or both end too near to it. Both are projected, as the step was, behind which
+// other methods have gone back to their own ways.
 bool RungeKutta::integrate_to(double t, std::span<double> y) {
   bool found = false;
+  const bool crossing = std::exchange(crossing_, true);
   double least = std::numeric_limits<double>::infinity();
   const auto try_from_present_end = [&] {
     t_new_ = t;
@@ -77,6 +79,7 @@ bool RungeKutta::integrate_to(double t, std::span<double> y) {
   stage_[0].swap(slope_);
   try_from_present_end();
   stage_[0].swap(slope_);
+  crossing_ = crossing;
   return found;
 }
 
