@@ -137,6 +137,8 @@ void add_common_options(CLI::App& command, Parsed& parsed) {
                   "threads that sweeps and starts of optimisations use; results are the same for any number")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
+  command.add_flag("!--no-digits", run.options.digits,
+                   "do not tell how many digits of each column are right, which costs a second run of some motions");
   command.add_flag("--stats", run.stats, "print what was computed how often");
   command.add_flag("-q,--quiet", run.quiet, "print no table, report or progress");
   command.add_flag("-v,--verbose", run.verbose,

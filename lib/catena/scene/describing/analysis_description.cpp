@@ -36,6 +36,9 @@ const AnalysisKey replicated{"replicate", KeyKind::event_blocks,
                              "blocks of events that are repeated, as those of the scene: {\"count\", \"first\", "
                              "\"variable\", \"events\", \"replicate\"}"};
 const AnalysisKey measures{"measures", KeyKind::measures, "names and what is measured: {\"peak\": {\"max\": column}}"};
+const AnalysisKey digits{"digits", KeyKind::flag,
+                         "whether to tell how many digits of each column are right (default true), which costs a "
+                         "second run of some motions"};
 const AnalysisKey parameter{
     "parameter", KeyKind::parameter, "the parameter that changes", UnitKind::none, Domain::any, {}, true};
 
@@ -56,10 +59,10 @@ std::vector<AnalysisDescription> describe_all() {
            "residual, moved, iterations, misfits (equations that are not met)", false, {outputs, at_time, measures}),
       make("kinematics", "Positions, velocities and accelerations of a driven mechanism over time.",
            "dof, mobility, singular, events", true,
-           {outputs, until, every, at_times, free_motions, branch, events, replicated, measures}),
+           {outputs, until, every, at_times, free_motions, branch, events, replicated, digits, measures}),
       make("inverse_dynamics", "Loads of drivers and reactions in a driven mechanism over time.",
            "dof, mobility, singular, events", true,
-           {outputs, until, every, at_times, free_motions, branch, events, replicated, measures}),
+           {outputs, until, every, at_times, free_motions, branch, events, replicated, digits, measures}),
       make("dynamics", "Motion under forces over time.",
            "method, events, impulses (of constraints where velocities jump), estimated_error, singular (dead points), "
            "integrated_apart (how many groups of mechanisms "
@@ -88,6 +91,7 @@ std::vector<AnalysisDescription> describe_all() {
              "largest difference of the two at its rows, which are those of the finer run"},
             events,
             replicated,
+            digits,
             measures}),
       make("equilibrium", "A configuration at rest, and whether it is stable.",
            "energy, stable, neutral, negative_modes, flutter (pairs of complex omega2, of forces without a potential), "
@@ -108,6 +112,7 @@ std::vector<AnalysisDescription> describe_all() {
              {},
              {},
              {"leave_out", "hold"}},
+            digits,
             measures}),
       make("path", "Equilibria as a parameter changes, one row a step and one a critical point.",
            "critical (limit and branch points, of forces without a potential flutter too), negative_modes, steps; "
@@ -126,12 +131,14 @@ std::vector<AnalysisDescription> describe_all() {
              UnitKind::none, Domain::positive},
             {"branch", KeyKind::whole,
              "at the first branch point: 1 goes straight on (default), 2 and 3 leave to either side"},
+            digits,
             measures}),
       make("buckling",
            "Values of a load parameter at which the current equilibrium, kept in place, loses its stability.",
            "loads; flutter and flutter_omega (of forces without a potential: where two frequencies meet and one motion "
            "begins to grow; loads are those of divergence then); active (one-sided elements that hold)",
-           false, {outputs, at_time, parameter, {"count", KeyKind::whole, "how many loads (default 1)"}, measures}),
+           false,
+           {outputs, at_time, parameter, {"count", KeyKind::whole, "how many loads (default 1)"}, digits, measures}),
       make("modes", "Small undamped oscillations about the current configuration at rest: omega^2 ascending.",
            "omega2, omega, unstable, free_motions and moving_freely (those with omega2 = 0), active (one-sided "
            "elements that hold); of forces without a potential flutter (pairs of complex omega2), omega2_imaginary and "
@@ -142,6 +149,7 @@ std::vector<AnalysisDescription> describe_all() {
             {"count", KeyKind::whole, "how many modes (default: all, at most ten)"},
             {"shapes", KeyKind::flag,
              "whether to add columns with the shapes: what each output moves by, for a modal mass of 1 kg m^2"},
+            digits,
             measures}),
       make("sensitivity", "Total derivatives of rows and measures of an analysis with respect to parameters.",
            "what the analysis has; gradients; mode; deviation", false,

@@ -37,6 +37,7 @@ class SceneRun {
   SceneSetup& setup_;
   const RunOptions& options_;
   SceneOutcome& outcome_;
+  bool asks_for_digits(const AnalysisTask& task) const;
   bool claims_digits(const AnalysisTask& task) const;
   void note_origin_of_state(const AnalysisTask& task);
 
@@ -52,13 +53,25 @@ bool makes_own_state(const AnalysisTask& task) {
   return driven && task.word("free") == 0;  // "refuse"; else they depend on where they start
 }
 
+/// Whether digits of analyses of this type can be told.
+bool has_digits(const AnalysisTask& task) {
+  return std::any_of(task.description->keys.begin(), task.description->keys.end(),
+                     [](const AnalysisKey& key) { return key.name == "digits"; });
+}
+
 /// Whether the analysis leaves a state that has errors of a motion.
 bool integrates(const AnalysisTask& task) {
   return task.type() == "dynamics" || std::any_of(task.of.begin(), task.of.end(), integrates);
 }
 
+bool SceneRun::asks_for_digits(const AnalysisTask& task) const {
+  return options_.digits && task.number("digits", 1) != 0;
+}
+
 // Digits are claimed of what an analysis does itself: where it goes on from a motion with errors, it claims none.
-bool SceneRun::claims_digits(const AnalysisTask& task) const { return !inexact_ || makes_own_state(task); }
+bool SceneRun::claims_digits(const AnalysisTask& task) const {
+  return asks_for_digits(task) && (!inexact_ || makes_own_state(task));
+}
 
 void SceneRun::note_origin_of_state(const AnalysisTask& task) {
   if (integrates(task))
@@ -153,6 +166,8 @@ AnalysisResult SceneRun::run_task(const AnalysisTask& read, int number, SystemSt
     };
   }
   run_in(context, result);
+  if (result.report.ok() && has_digits(task) && !asks_for_digits(task))
+    result.fields.push_back({"digits_note", std::string("no digits are claimed: they were not asked for")});
   note_origin_of_state(task);
   return result;
 }

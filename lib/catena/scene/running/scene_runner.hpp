@@ -63,6 +63,7 @@ struct RunOptions {
   std::function<void(const Progress&)> progress;  ///< called often; may be empty
   bool verbose = false;         ///< iterations for a configuration, and solvers' own logs, to standard error
   bool estimate_error = false;  ///< of every dynamics analysis; an error if there is none
+  bool digits = true;           ///< whether analyses tell how many digits are right, unless their key says no
   /// File to which dynamics analyses save where they are, every so many seconds of their time, s; empty: none. 0 s: a
   /// twentieth of the analysis.
   std::string checkpoint;
