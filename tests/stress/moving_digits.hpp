@@ -8,10 +8,10 @@
 
 namespace catena::testing {
 
-enum class Runs { one, two, methods };
+/// How digits are found: of one run, of two with an estimate of the error, or by a second run of these methods.
+enum class Runs { one, two, adams, baumgarte, partitioning };
 
-/// Adds the columns of one mechanism; how it went, in words. Of one run methods and fixed steps vary as well;
-/// `methods`: those that are judged by a second run.
+/// Adds the columns of one mechanism; how it went, in words. But for two, fixed steps vary as well, of one methods too.
 inline std::string add_moving_digits(unsigned seed, ClaimedDigits& claims, Runs runs = Runs::two) {
   RandomScene random(seed, RandomScene::Forces::moving);
   random.set_moving();
@@ -24,9 +24,11 @@ inline std::string add_moving_digits(unsigned seed, ClaimedDigits& claims, Runs 
     analysis["estimate_error"] = true;
   } else {
     static const char* const told[] = {"auto", "auto", "auto", "rk8", "rk8", "rk5"};
-    static const char* const others[] = {"adams", "adams", "baumgarte", "baumgarte", "partitioning", "partitioning"};
     const int method = random.pick(6);
-    analysis["method"] = runs == Runs::methods ? others[method] : told[method];
+    analysis["method"] = runs == Runs::adams          ? "adams"
+                         : runs == Runs::baumgarte    ? "baumgarte"
+                         : runs == Runs::partitioning ? "partitioning"
+                                                      : told[method];
     const double tolerance = std::pow(10.0, -random.pick(7) - 4), step = random.uniform(0.01, 0.1) / random.pace;
     if (random.pick(6)) {
       analysis["tolerance"] = tolerance;

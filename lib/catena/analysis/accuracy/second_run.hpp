@@ -1,13 +1,15 @@
 // How many digits of the columns of a motion are right, from a second and coarser run behind it.
 //
-//   e = f |c(asked) - c(coarser)| + (64 + 16 n + |t| rate) eps |c| + least + drift       largest of the rows
+//   e = f d + (r + |t| rate) eps max(|c|, u) + least + drift,   d = |c(asked) - c(coarser)|    largest of the rows
 //
-// n: changes of the element that has most. Coarser: ten times the tolerance, four times that of methods of one step, or
-// steps longer by a quarter (coarser_options). Where it takes as many steps, which
-// are then the same, with the same rounding, it is made by another method. The rows given are those that were
-// asked for; the difference is the error of the coarser run, up to theirs. f: second_run.cpp. eps |t| rate counts where
-// something depends on time, rate that of the fastest motion, rad/s. Least: motion_rounding.hpp. Drift: how far the
-// mechanism is off its constraints, m, which counts for places alone and is nothing but rounding where they are
+// and at least a twentieth of the largest f d of its unit, if the column differs at all. u: of places the length scale
+// or 1 rad. r = 8 + 2 sqrt(steps), or with changes 64 + 16 n, n those of the element that has most. Coarser: ten times
+// the tolerance, four times that of methods of one step, or steps longer by a quarter, of adams by half
+// (coarser_options). Where it takes as many steps, which are then the same, with the same rounding, it is made by
+// another method. The rows given are those that were asked for; the difference is the error of the coarser run, up to
+// theirs. f: second_run.cpp. eps |t| rate counts where something depends on time, rate that of the fastest motion,
+// rad/s. Least: motion_rounding.hpp. Drift: how far the mechanism is off its constraints, m: four times that for
+// places, that times the rate for velocities, times its square for accelerations; nothing but rounding where they are
 // projected.
 //
 // Both runs must pass the same changes (motion_changes.hpp); where they do not, nothing is said, and why_none() says
@@ -72,6 +74,9 @@ class SecondRun final : public RowAccuracy {
   void find_jumps(const MotionChanges& first, const MotionChanges& second, const OtherRows& other);
   bool is_judged(UnitKind unit, std::size_t row) const;
   void take_motion(const Snapshot& snapshot);
+  double error_of_drift(UnitKind unit) const;
+  double largest_difference(const OtherRows& other, std::size_t column) const;
+  double rounded_size(UnitKind unit, double value) const;
 
   const ColumnSet& columns_;
   Runs runs_;
