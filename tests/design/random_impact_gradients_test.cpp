@@ -1,5 +1,5 @@
-// Gradients of random motions with impacts, compliant contacts, friction and events, against differences of whole runs
-// extrapolated to fourth order.
+// Gradients of random motions with impacts, compliant contacts, friction and events, carried forward and by the
+// adjoint, against differences of whole runs extrapolated to fourth order.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -127,7 +127,8 @@ RandomScene slider_with_catch(RandomNumbers& random) {
   return scene;
 }
 
-std::string text_of_scene(const RandomScene& scene, const std::vector<Parameter>& parameters, bool differentiated) {
+/// `mode`: of the derivatives; empty: none.
+std::string text_of_scene(const RandomScene& scene, const std::vector<Parameter>& parameters, const std::string& mode) {
   std::string list, names;
   for (const Parameter& p : parameters) {
     list += (list.empty() ? "\"" : ", \"") + p.name + "\": " + text_of(p.value);
@@ -144,8 +145,9 @@ std::string text_of_scene(const RandomScene& scene, const std::vector<Parameter>
                           body + R"(.omega"}, "way": {"integral": "=)" + body + R"(.vx^2"},
       "mean": {"mean": ")" +
                           body + R"(.omega"}}})";
-  const std::string analysis =
-      differentiated ? R"({"type": "sensitivity", "parameters": [)" + names + R"(], "of": )" + run + "}" : run;
+  const std::string analysis = mode.empty() ? run
+                                            : R"({"type": "sensitivity", "mode": ")" + mode + R"(", "parameters": [)" +
+                                                  names + R"(], "of": )" + run + "}";
   return R"({"catena": 1, "parameters": {)" + list + "}, " + scene.body + R"(, "outputs": [], "analyses": [)" +
          analysis + "]}";
 }
@@ -163,13 +165,23 @@ std::vector<std::string> story(const TextRun& run) {
   return kinds;
 }
 
-/// How many derivatives were compared.
-int compared = 0;
+/// How many derivatives were compared, and how many scenes were gone back over.
+int compared = 0, gone_back = 0;
+
+bool went_back(const TextRun& run) {
+  for (const NamedField& field : run.analysis().fields) {
+    if (field.name == "mode") return std::get<std::string>(field.value) == "adjoint";
+  }
+  return false;
+}
 
 std::string fault_of(const RandomScene& scene) {
-  const TextRun run = run_text(text_of_scene(scene, scene.parameters, true));
+  const TextRun run = run_text(text_of_scene(scene, scene.parameters, "forward"));
   if (!run.outcome.error_text.empty()) return run.outcome.error_text;
   if (!run.analysis().report.ok()) return {};  // a Painleve state, or the like: a motion that ends is none of ours
+  const TextRun back = run_text(text_of_scene(scene, scene.parameters, "adjoint"));
+  if (!back.outcome.error_text.empty()) return back.outcome.error_text;
+  gone_back += went_back(back);
   const std::vector<std::string> events = story(run);
   for (std::size_t p = 0; p < scene.parameters.size(); ++p) {
     const double size = std::max(std::abs(scene.parameters[p].value), 0.1);
@@ -181,7 +193,7 @@ std::string fault_of(const RandomScene& scene) {
       for (std::size_t side = 0; side < 2 && same; ++side) {
         std::vector<Parameter> moved = scene.parameters;
         moved[p].value += side == 0 ? -h : h;
-        const TextRun beside = run_text(text_of_scene(scene, moved, false));
+        const TextRun beside = run_text(text_of_scene(scene, moved, ""));
         same = beside.outcome.exit_code == 0 && story(beside) == events;
         for (std::size_t m = 0; m < 5 && same; ++m) values[side][m] = *beside.analysis().measures[m].value;
       }
@@ -189,15 +201,18 @@ std::string fault_of(const RandomScene& scene) {
     }
     if (!same) continue;  // another number of impacts beside: the differences span a kink
     for (std::size_t m = 0; m < 5; ++m) {
-      const MeasureResult& measure = run.analysis().measures[m];
       const double best = (4 * difference[1][m] - difference[0][m]) / 3, own = std::abs(best - difference[1][m]);
-      const double unit = std::max({std::abs(best), std::abs(*measure.value) / size, 1e-3});
-      // Differences of values that are good to 1e-11.
-      const double allowed = 2 * own + 1e-6 * unit + 1e-6;
-      ++compared;
-      if (std::abs(measure.gradient[p] - best) <= allowed) continue;
-      return "d " + measure.name + "/d " + scene.parameters[p].name + " = " + text_of(measure.gradient[p]) +
-             ", differences " + text_of(best) + " +- " + text_of(own) + " " + measure.trouble;
+      for (const TextRun* one : {&run, &back}) {
+        const MeasureResult& measure = one->analysis().measures[m];
+        const double unit = std::max({std::abs(best), std::abs(*measure.value) / size, 1e-3});
+        // Differences of values that are good to 1e-11.
+        const double allowed = 2 * own + 1e-6 * unit + 1e-6;
+        ++compared;
+        if (std::abs(measure.gradient[p] - best) <= allowed) continue;
+        return std::string(one == &run ? "forward" : "adjoint") + " d " + measure.name + "/d " +
+               scene.parameters[p].name + " = " + text_of(measure.gradient[p]) + ", differences " + text_of(best) +
+               " +- " + text_of(own) + " " + measure.trouble;
+      }
     }
   }
   return {};
@@ -205,12 +220,13 @@ std::string fault_of(const RandomScene& scene) {
 
 template <class Make>
 void expect_gradients(unsigned first, unsigned last, Make&& make) {
-  compared = 0;
+  compared = gone_back = 0;
   expect_no_fault(first, last, [&](unsigned seed) {
     RandomNumbers random(seed);
     return fault_of(make(random));
   });
-  EXPECT_GT(compared, static_cast<int>(last - first + 1));
+  EXPECT_GT(compared, 2 * static_cast<int>(last - first + 1));
+  EXPECT_GT(2 * gone_back, static_cast<int>(last - first + 1));
 }
 
 TEST(RandomImpactGradients, OfChainsThatHitStops) { expect_gradients(1, size_of_test(8u, 2u), chain_with_stops); }

@@ -5,7 +5,6 @@
 
 #include "catena/base/at.hpp"
 #include "catena/columns/column_names.hpp"
-#include "catena/columns/design_state.hpp"
 #include "catena/columns/own_columns.hpp"
 #include "catena/model/model_part.hpp"
 
@@ -22,8 +21,8 @@ void lift(std::span<const double> values, std::vector<DesignScalar>& out) {
 }  // namespace
 
 ColumnSlopes::ColumnSlopes(const Model& model, const ColumnSet& columns, std::vector<DesignMechanism*> groups,
-                           int parameters)
-    : columns_(columns), groups_(std::move(groups)), parameters_(at(parameters)) {
+                           int parameters, ContactSlopes contacts)
+    : columns_(columns), groups_(std::move(groups)), parameters_(at(parameters)), contacts_(std::move(contacts)) {
   const Plan& plan = groups_.front()->plan();
   for (auto* values : {&q_, &qd_, &qdd_}) values->resize(at(plan.coordinates()));
   lambda_.resize(at(plan.rows));
@@ -65,23 +64,27 @@ void ColumnSlopes::collect(const Model& model) {
       if (needs.acceleration) variables_.push_back({Level::qdd, c});
     }
   }
+  std::set<int> rows;
   for (const int element : elements) {
     const int first = plan.element_row[at(element)];
-    for (int r = first; first >= 0 && r < plan.rows && plan.row_element[at(r)] == element; ++r)
-      variables_.push_back({Level::lambda, r});
+    for (int r = first; first >= 0 && r < plan.rows && plan.row_element[at(r)] == element; ++r) rows.insert(r);
   }
+  if (needs.multipliers) rows.insert(contacts_.rows.begin(), contacts_.rows.end());
+  for (const int row : rows) variables_.push_back({Level::lambda, row});
 }
 
 std::vector<DesignScalar>& ColumnSlopes::values(Level level) {
   return level == Level::q ? q_ : level == Level::qd ? qd_ : level == Level::qdd ? qdd_ : lambda_;
 }
 
-void ColumnSlopes::evaluate(DesignMechanism& mechanism, const Snapshot& snapshot, std::vector<DesignScalar>& out) {
+void ColumnSlopes::evaluate(std::size_t group, const Snapshot& snapshot, std::vector<DesignScalar>& out) {
+  DesignMechanism& mechanism = *groups_[group];
   if (snapshot.qd.empty())
     mechanism.set_state(q_);
   else
     mechanism.set_state(q_, qd_);
-  columns_.differentiate(DesignState(mechanism, snapshot, qdd_, lambda_), out);
+  const DesignContacts* const contacts = contacts_.at ? contacts_.at(group, lambda_) : nullptr;
+  columns_.differentiate(DesignState(mechanism, snapshot, qdd_, lambda_, contacts), out);
 }
 
 void ColumnSlopes::look(const Snapshot& snapshot) {
@@ -90,7 +93,7 @@ void ColumnSlopes::look(const Snapshot& snapshot) {
   lift(snapshot.lambda, lambda_);
   for (std::size_t g = groups_.size(); g-- > 0;) {
     groups_[g]->lift_configuration(snapshot.q, q_);
-    evaluate(*groups_[g], snapshot, still_);
+    evaluate(g, snapshot, still_);
     for (std::size_t k = 0; k < still_.size(); ++k) {
       for (std::size_t p = g * parameters_at_once; p < std::min(parameters_, (g + 1) * parameters_at_once); ++p)
         explicit_[k * parameters_ + p] = still_[k].d[p - g * parameters_at_once];
@@ -103,7 +106,7 @@ void ColumnSlopes::look(const Snapshot& snapshot) {
       const Variable& variable = variables_[first + s];
       values(variable.level)[at(variable.index)].d[s] = 1;
     }
-    evaluate(*groups_.front(), snapshot, moved_);
+    evaluate(0, snapshot, moved_);
     for (std::size_t s = 0; s < count; ++s) {
       const Variable& variable = variables_[first + s];
       values(variable.level)[at(variable.index)].d[s] = 0;

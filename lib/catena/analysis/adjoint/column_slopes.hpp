@@ -7,11 +7,13 @@
 // dissipated energy have no derivative: c_p is not a number. Units of the columns over those of what is varied.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "catena/assembly/design/design_mechanism.hpp"
 #include "catena/columns/column_set.hpp"
+#include "catena/columns/design_state.hpp"
 
 namespace catena {
 
@@ -20,10 +22,17 @@ struct StateSlopes {
   std::vector<double> by_q, by_qd, by_qdd, by_lambda, by_p;
 };
 
+/// What contacts do at the state of a group's mechanism, and the rows whose multipliers that follows from.
+struct ContactSlopes {
+  std::function<const DesignContacts*(std::size_t group, std::span<const DesignScalar> lambda)> at{};
+  std::vector<int> rows{};
+};
+
 class ColumnSlopes {
  public:
   /// `groups`: mechanisms with derivatives by four parameters each, `parameters` in all; they must outlive this object.
-  ColumnSlopes(const Model& model, const ColumnSet& columns, std::vector<DesignMechanism*> groups, int parameters);
+  ColumnSlopes(const Model& model, const ColumnSet& columns, std::vector<DesignMechanism*> groups, int parameters,
+               ContactSlopes contacts = {});
 
   /// Takes the columns at a snapshot, to whose time all groups are set.
   void look(const Snapshot& snapshot);
@@ -41,11 +50,12 @@ class ColumnSlopes {
   };
   void collect(const Model& model);
   std::vector<DesignScalar>& values(Level level);
-  void evaluate(DesignMechanism& mechanism, const Snapshot& snapshot, std::vector<DesignScalar>& out);
+  void evaluate(std::size_t group, const Snapshot& snapshot, std::vector<DesignScalar>& out);
 
   const ColumnSet& columns_;
   std::vector<DesignMechanism*> groups_;
   std::size_t parameters_;
+  ContactSlopes contacts_;
   std::vector<Variable> variables_;
   std::vector<DesignScalar> q_, qd_, qdd_, lambda_, still_, moved_;
   std::vector<double> slope_;     // by column, then variable

@@ -5,19 +5,19 @@
 //
 // States at which measures look are kept while the motion runs; what columns change by with them is found at the end.
 // Events of the list that strike are passed; where one releases or engages a constraint, where contacts change, or
-// several events act at once, there is no gradient. Not for columns of work and dissipated energy. Source:
-// apps/manual/sensitivity.md.
+// several events act at once, there is no gradient (phased_measures.hpp has those). Not for columns of work and
+// dissipated energy. Source: apps/manual/sensitivity.md.
 #pragma once
 
 #include <map>
 
-#include "catena/analysis/measures/measure_set.hpp"
+#include "catena/analysis/adjoint/measure_adjoint.hpp"
 #include "catena/analysis/sensitivity/motion_adjoint.hpp"
 #include "catena/analysis/sensitivity/phases/phased_derivatives.hpp"
 
 namespace catena {
 
-class MotionMeasures final : public MotionAdjoint, public PhaseWitness {
+class MotionMeasures final : public MotionAdjoint, public PhaseWitness, public MeasureAdjoint {
  public:
   MotionMeasures(const Evaluator& evaluator, const DesignModels& models, int parameters, GivenByModel start)
       : MotionAdjoint(evaluator, models, parameters, start) {}
@@ -27,10 +27,10 @@ class MotionMeasures final : public MotionAdjoint, public PhaseWitness {
   void begin(const MotionPhase& phase) override;
   void cover(const MotionStretch& stretch) override;
   /// Keeps the state at an instant at which measures look.
-  void keep(const Snapshot& snapshot);
+  void keep(const Snapshot& snapshot) override;
   /// By measure, then parameter; nothing, and why() says it, where there are none.
   std::optional<Gradients> find_gradients(const ColumnSet& columns,
-                                          const std::vector<std::vector<ColumnPulse>>& pulses);
+                                          const std::vector<std::vector<ColumnPulse>>& pulses) override;
 
  private:
   struct State {

@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 
+#include "catena/base/design_scalar.hpp"
 #include "catena/elements/curve_search.hpp"
 
 namespace catena {
@@ -32,8 +33,9 @@ class SlideOnCurve {
     T s(foot_);
     if constexpr (!std::is_same_v<T, double>) {
       const double bend = descent(curve_.plain(foot_), plain(x)).bend;
-      // Each step is exact to one order more: two in time, and one by design parameters.
-      constexpr int steps = std::is_same_v<S, double> ? 2 : 3;
+      // Each step is exact to one order more: two in time, and one by design parameters or what is moved like them.
+      constexpr bool by_design = !std::is_same_v<S, double> || std::is_same_v<T, Taylor<DesignScalar>>;
+      constexpr int steps = by_design ? 3 : 2;
       for (int step = 0; step < steps; ++step) {
         const CurvePoint<T> c = curve_.evaluate(s);
         s = s - dot(c.p - x, c.d1) / T(bend);

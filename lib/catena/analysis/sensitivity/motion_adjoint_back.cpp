@@ -1,6 +1,5 @@
 // MotionAdjoint: the way back.
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include "catena/analysis/motion/stage_sums.hpp"
@@ -12,22 +11,6 @@ namespace {
 
 void add_scaled(std::vector<double>& y, double weight, const std::vector<double>& k) {
   for (std::size_t i = 0; i < y.size(); ++i) y[i] += weight * k[i];
-}
-
-/// In place of a stage: the end of the step.
-constexpr int step_end = 16;
-
-/// What the slopes of every stage weigh in stages after it and in the end, h taken out; the interpolant's stages are
-/// among them or not. The slope at the end itself is reached through the projection there.
-std::array<std::vector<StageTerm>, 16> terms_back(bool interpolated) {
-  const Tableau& table = dormand_prince_8();
-  std::array<std::vector<StageTerm>, 16> back;
-  for (const StageTerm& term : table.b) back[at(term.stage)].push_back({step_end, term.weight});
-  for (int j = 0; j < (interpolated ? step_end : table.stages); ++j) {
-    if (j == table.stages) continue;
-    for (const StageTerm& term : table.a[at(j)]) back[at(term.stage)].push_back({j, term.weight});
-  }
-  return back;
 }
 
 bool any(const std::vector<double>& y) {
@@ -104,7 +87,7 @@ void MotionAdjoint::stage_back(int number, const Vector& k, Way& way) {
 void MotionAdjoint::go_back(const Step& step, Way& way, bool interpolated) {
   const Tableau& table = dormand_prince_8();
   const double h = step.to - step.from;
-  static const auto of_step = terms_back(false), of_interpolant = terms_back(true);
+  static const auto of_step = stage_weights_back(false), of_interpolant = stage_weights_back(true);
   const auto& terms = interpolated ? of_interpolant : of_step;
   const int stages = interpolated ? static_cast<int>(table.c.size()) : table.stages;
   for (int s = stages; s-- > 0;) {

@@ -74,12 +74,9 @@ void MotionAdjoint::strike_back(const std::vector<DesignStrike>& strikes, Way& w
     const Vec2<double> impulse{strike.impulse.x.v, strike.impulse.y.v};
     const Vec2<double> arm = frame.axis(Vec2<double>{strike.point.x.v, strike.point.y.v});
     if (g == 0) way.y1[c + 2] -= turn * dot(arm, impulse);
-    for (std::size_t p = 0; p < at(groups()[g].count); ++p) {
-      const Vec2<double> more{strike.impulse.x.d[p], strike.impulse.y.d[p]};
-      const Vec2<double> moved = frame.axis(Vec2<double>{strike.point.x.d[p], strike.point.y.d[p]});
-      way.gradient[first + p] +=
-          w_[c] * more.x + w_[c + 1] * more.y + turn * (cross(arm, more) + cross(moved, impulse));
-    }
+    const double along[] = {w_[c], w_[c + 1], turn};
+    const DesignScalar work = work_of_blow(strike, frame, along);
+    for (std::size_t p = 0; p < at(groups()[g].count); ++p) way.gradient[first + p] += work.d[p];
     first += at(groups()[g].count);
   }
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "catena/base/design_scalar.hpp"
+#include "catena/base/frame.hpp"
 #include "catena/base/vec2.hpp"
 
 namespace catena {
@@ -22,6 +23,14 @@ struct DesignStrike {
   Vec2<DesignScalar> point{};    ///< in the frame of its centroid
   Vec2<DesignScalar> impulse{};  ///< in ground axes
 };
+
+/// w^T F of a blow on a body whose frame this is; `w`: of its three coordinates.
+inline DesignScalar work_of_blow(const DesignStrike& strike, const Frame<double>& f, const double* w) {
+  const DesignScalar c(f.c), s(f.s);
+  const Vec2<DesignScalar> arm{c * strike.point.x - s * strike.point.y, s * strike.point.x + c * strike.point.y};
+  return DesignScalar(w[0]) * strike.impulse.x + DesignScalar(w[1]) * strike.impulse.y +
+         DesignScalar(w[2]) * cross(arm, strike.impulse);
+}
 
 struct MotionCrossing {
   bool jumps = false;                   ///< velocities may: they are moved onto the constraints, after the blow

@@ -43,6 +43,17 @@ InterpolantWeights interpolant_weights(double part) {
   return weights;
 }
 
+std::array<std::vector<StageTerm>, 16> stage_weights_back(bool interpolated) {
+  const Tableau& table = dormand_prince_8();
+  std::array<std::vector<StageTerm>, 16> back;
+  for (const StageTerm& term : table.b) back[at(term.stage)].push_back({step_end, term.weight});
+  for (int j = 0; j < (interpolated ? step_end : table.stages); ++j) {
+    if (j == table.stages) continue;
+    for (const StageTerm& term : table.a[at(j)]) back[at(term.stage)].push_back({j, term.weight});
+  }
+  return back;
+}
+
 RecomputedSteps::Stage::Stage(const Evaluator& of, std::size_t size) : evaluator(of), equations(evaluator) {
   y.assign(size, 0.0);
   slope.assign(size, 0.0);

@@ -29,6 +29,12 @@ struct InterpolantWeights {
 };
 InterpolantWeights interpolant_weights(double part);
 
+/// In place of a stage: the end of the step.
+inline constexpr int step_end = 16;
+/// What the slope of every stage weighs in stages after it and in the end, h taken out; the interpolant's stages are
+/// among them or not. The slope at the end itself is reached through the projection there.
+std::array<std::vector<StageTerm>, 16> stage_weights_back(bool interpolated);
+
 class RecomputedSteps {
  public:
   using Vector = std::vector<double>;

@@ -25,14 +25,15 @@ Vec2<double> arm_of(const Block& block, const Revolute<double>& pin, int e, int 
 
 }  // namespace
 
-std::string AdjointMechanism::why_not(const Model& model) {
+std::string AdjointMechanism::why_not(const Model& model, bool own_curves) {
   if (!model.laws.empty()) return "laws of state act";
   std::string why;
   const auto look = [&](const auto& list, int) {
     using E = ElementOf<decltype(list)>;
     if (list.empty()) return;
-    if constexpr (is_custom<E>) why = "elements made in C++ act";
-    if constexpr (SearchesCurve<E>) why = "contacts run on curves";
+    if constexpr (std::is_same_v<E, CustomForce<double>>) why = "elements made in C++ act";
+    if constexpr (std::is_same_v<E, CustomConstraint<double>>) why = own_curves ? why : "elements made in C++ act";
+    if constexpr (SearchesCurve<E>) why = own_curves ? why : "contacts run on curves";
     if constexpr (Joining<E>) why = "a rope runs over several pulleys";
   };
   for_each_list(model.constraints, look);
@@ -72,6 +73,13 @@ void AdjointMechanism::set_motion(const Evaluator& evaluator, std::span<const do
                                      : model_->functions[k].continue_from(there, side, there);
   }
   for (std::size_t c = 0; c < rates_.size(); ++c) rates_[c] = qd.empty() ? 0 : qd[c];
+  evaluator.curve_places(places_);
+  for (const CurvePlace& place : places_) {
+    const ElementRecord& record = model_->elements[at(place.element)];
+    with_list(model_->constraints, record.type, [&](const auto& list) {
+      if constexpr (SearchesCurve<ElementOf<decltype(list)>>) list[at(record.index)].element.go_to(place);
+    });
+  }
   for (int p = 0; p <= plan_->bodies; ++p) {
     const Frame<double>& f = evaluator.frames()[at(p)];
     Frame<Series>& m = motion_[at(p)];
@@ -183,11 +191,15 @@ void AdjointMechanism::add_forces_by_state(const Evaluator& evaluator, std::span
 
 void AdjointMechanism::add_by_state(const Evaluator& evaluator, const AdjointWeights& weights, std::span<double> by_q,
                                     std::span<double> by_qd) {
-  if (!weights.bend.empty() || !weights.rate.empty()) add_constraints_by_q(weights, by_q, by_qd);
+  if (!weights.bend.empty() || !weights.rate.empty()) {
+    add_constraints_by_q(weights, by_q, by_qd);
+    add_slides_by_q(weights, by_q, by_qd);
+  }
   if (weights.w.empty()) return;
   if (weights.forces) add_forces_by_state(evaluator, weights.w, by_q, by_qd);
   if (weights.lambda.empty()) return;
   add_curvature(weights, by_q);
+  add_slides_curvature(weights, by_q);
 }
 
 // sum lambda Phi_qq w: the change of Phi_q^T lambda along w.

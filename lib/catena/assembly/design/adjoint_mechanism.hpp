@@ -8,8 +8,9 @@
 //
 // Derivatives by q of all elements come from dual numbers over series in time, one element after the other, those of
 // pins from closed forms: what they cost does not depend on the number of parameters. Those by parameters are taken of
-// elements, bodies and functions that a parameter reaches alone. Not for laws of state, ropes and elements that only
-// C++ can make (supported()). Units as in evaluate.hpp. Source: apps/manual/sensitivity.md.
+// elements, bodies and functions that a parameter reaches alone. Slides of contacts, whose equations show a few scalars
+// alone, are moved by four coordinates at a time. Not for laws of state, ropes and elements that only C++ can make
+// (why_not()). Units as in evaluate.hpp. Source: apps/manual/sensitivity.md.
 #pragma once
 
 #include <array>
@@ -27,14 +28,15 @@ struct AdjointWeights {
 
 class AdjointMechanism {
  public:
-  /// Empty, or why the model cannot be asked, as a phrase.
-  static std::string why_not(const Model& model);
+  /// Empty, or why the model cannot be asked, as a phrase. `own_curves`: the model belongs to who asks, with the slides
+  /// of its contacts, so that searches along its curves may be moved (set_motion()).
+  static std::string why_not(const Model& model, bool own_curves = false);
 
   /// Of the model in plain numbers of an evaluator, whose configuration and time are read where asked.
   explicit AdjointMechanism(const Evaluator& evaluator);
 
   /// The motion at the evaluator's configuration: sizes coordinates(); may be empty: at rest, without acceleration.
-  /// `side` where functions of time jump.
+  /// `side` where functions of time jump. Contacts on curves are where the evaluator's are.
   void set_motion(const Evaluator& evaluator, std::span<const double> qd, std::span<const double> qdd,
                   Side side = Side::after);
 
@@ -91,6 +93,7 @@ class AdjointMechanism {
   std::vector<Frame<Series>> motion_;   // per plan body, relative
   std::vector<Taylor<double>> values_;  // of functions, at the present time
   std::vector<double> rates_;           // qd
+  std::vector<CurvePlace> places_;      // where contacts on curves are
 
   bool is_immobile(int body) const { return body >= plan_->moving && body < plan_->bodies; }
   /// A body's motion with derivatives by parameters: immobile bodies move with them, and so do the angles of particles,
@@ -110,6 +113,9 @@ class AdjointMechanism {
                   DesignScalar& sum) const;
   void add_constraints_by_q(const AdjointWeights& weights, std::span<double> by_q, std::span<double> by_qd) const;
   void add_curvature(const AdjointWeights& weights, std::span<double> by_q) const;
+  // Of slides: adjoint_slides.cpp.
+  void add_slides_by_q(const AdjointWeights& weights, std::span<double> by_q, std::span<double> by_qd) const;
+  void add_slides_curvature(const AdjointWeights& weights, std::span<double> by_q) const;
   void add_forces_by_state(const Evaluator& evaluator, std::span<const double> w, std::span<double> by_q,
                            std::span<double> by_qd) const;
 };

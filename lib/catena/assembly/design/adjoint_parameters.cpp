@@ -175,8 +175,11 @@ AdjointMechanism::Reached::Reached(const AdjointMechanism& adjoint, const Design
   };
   for_each_list(plan.blocks, model.constraints, [&](const auto& block, const auto& list, int) {
     using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
+    // Of slides, which search along curves from where they are, nothing is tried: a parameter may be in them.
     if constexpr (detail::is_differentiated<Plain>)
       collect(block, list, constraints_, [](const auto& element) { return phi_moves(element); });
+    else if constexpr (detail::is_slide<Plain>)
+      collect(block, list, constraints_, [](const auto&) { return true; });
     else
       constraints_.emplace_back();
   });
@@ -231,7 +234,7 @@ void AdjointMechanism::add_constraints(const DesignMechanism& mechanism, const R
     using Plain = typename std::remove_cvref_t<decltype(block)>::Element;
     const std::vector<int>& places = reached.constraints_[type_number++];
     if (places.empty()) return;
-    if constexpr (detail::is_differentiated<Plain>) {
+    if constexpr (detail::is_differentiated<Plain> || detail::is_slide<Plain>) {
       for (const int e : places) {
         const auto& entry = list[at(block.entry[at(e)])];
         DesignSeries c;

@@ -18,6 +18,10 @@ template <class E>
 constexpr bool is_differentiated = !std::is_same_v<E, CustomConstraint<double>> &&
                                    !std::is_same_v<E, CustomForce<double>> && !Joining<E> && !Sharing<E>;
 
+/// Equations that show a few scalars alone: slides of contacts, and what only C++ can make.
+template <class E>
+constexpr bool is_slide = std::is_same_v<E, CustomConstraint<double>>;
+
 /// Without derivatives by parameters.
 inline DesignSeries lifted(const Taylor<double>& x) {
   return {DesignScalar(x.f), DesignScalar(x.d), DesignScalar(x.dd)};

@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "catena/analysis/adjoint/motion_measures.hpp"
+#include "catena/analysis/adjoint/measure_adjoint.hpp"
 #include "catena/analysis/measures/measure_set.hpp"
 #include "catena/analysis/run/row_accuracy.hpp"
 #include "catena/analysis/run/row_observer.hpp"
@@ -28,7 +28,12 @@ class AnalysisRows final : public RowObserver {
   /// Derivatives of rows and measures are wanted, and this is how they are found; before begin().
   void differentiate(std::unique_ptr<StateDerivatives> derivatives);
   /// Gradients of measures are wanted alone, and found by the way back of the motion; before begin().
-  void differentiate_back(std::unique_ptr<MotionMeasures> derivatives);
+  template <class Back>
+  void differentiate_back(std::unique_ptr<Back> derivatives) {
+    back_ = derivatives.get();
+    differentiate(std::move(derivatives));
+    measures_.give_pulses();
+  }
   /// How the mechanism is looked at between rows, where the analysis does not show it by itself; before begin(). It is
   /// made at the first row, from its snapshot.
   using Look = std::function<std::optional<Snapshot>(double)>;
@@ -81,13 +86,13 @@ class AnalysisRows final : public RowObserver {
   std::vector<double> end_by_event(const std::vector<MeasureResult>& results, std::string& why) const;
   std::vector<MeasureResult> measured() const;
   /// Gradients of all that is measured by the way back; nothing where there are none, and the context is told why.
-  std::optional<MotionAdjoint::Gradients> gradients_back() const;
+  std::optional<MeasureAdjoint::MeasureGradients> gradients_back() const;
 
   const ColumnSet& columns_;
   AnalysisContext& context_;
   MeasureSet measures_;
   std::unique_ptr<StateDerivatives> derivatives_;
-  MotionMeasures* back_ = nullptr;  // the same, where they go back
+  MeasureAdjoint* back_ = nullptr;  // the same, where they go back
   std::function<Look(const Snapshot&)> make_look_;
   Look look_;
   Drawn drawn_;

@@ -81,12 +81,6 @@ void AnalysisRows::differentiate(std::unique_ptr<StateDerivatives> derivatives) 
   measures_.differentiate(derivatives_->parameters(), std::move(columns), end_moves, instants_move);
 }
 
-void AnalysisRows::differentiate_back(std::unique_ptr<MotionMeasures> derivatives) {
-  back_ = derivatives.get();
-  differentiate(std::move(derivatives));
-  measures_.give_pulses();
-}
-
 // The run ends where h(t, p) = value: dT/dp = -(h_p - value_p) / h'.
 std::vector<double> AnalysisRows::end_by_event(const std::vector<MeasureResult>& results, std::string& why) const {
   std::vector<double> rate(static_cast<std::size_t>(derivatives_->parameters()),
@@ -152,19 +146,19 @@ MovingInstants AnalysisRows::moving_instants(const std::vector<MeasureResult>& r
   return instants;
 }
 
-std::optional<MotionAdjoint::Gradients> AnalysisRows::gradients_back() const {
-  std::optional<MotionAdjoint::Gradients> gradients;
+std::optional<MeasureAdjoint::MeasureGradients> AnalysisRows::gradients_back() const {
+  std::optional<MeasureAdjoint::MeasureGradients> gradients;
   std::string why;
   const auto pulses = measures_.pulses(why);
   if (pulses) gradients = back_->find_gradients(measures_.columns(), *pulses);
-  if (!gradients) context_.no_adjoint = pulses ? back_->why() : why;
+  if (!gradients) context_.no_adjoint = pulses ? derivatives_->why() : why;
   return gradients;
 }
 
 std::vector<MeasureResult> AnalysisRows::measured() const {
   const bool back = back_ && !measures_.empty();
-  const std::optional<MotionAdjoint::Gradients> found = back ? gradients_back() : std::nullopt;
-  const MotionAdjoint::Gradients* given = found ? &*found : nullptr;
+  const std::optional<MeasureAdjoint::MeasureGradients> found = back ? gradients_back() : std::nullopt;
+  const MeasureAdjoint::MeasureGradients* given = found ? &*found : nullptr;
   std::vector<MeasureResult> results = measures_.results(nullptr, given);
   if (!derivatives_ || !timed_ || rows_alone_ || results.empty()) {
     results.resize(results.size() - stops_.size());

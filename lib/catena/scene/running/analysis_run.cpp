@@ -13,9 +13,9 @@
 namespace catena {
 namespace {
 
-// In parameters that could be carried forward at the same cost: the way back by itself, and what an integral adds,
-// which has pulses inside of every step.
-constexpr double dynamics_base = 2, dynamics_integral = 3;
+// In parameters that could be carried forward at the same cost: the way back by itself, over phases of contacts too,
+// where both go in dual numbers; and what an integral adds, which has pulses inside of every step.
+constexpr double dynamics_base = 2, phases_base = 5, dynamics_integral = 3;
 
 struct Runner {
   std::string_view type;
@@ -30,7 +30,7 @@ constexpr Runner entries[] = {{"check", run_check},           {"assemble", run_a
                               {"optimise", run_optimise},     {"sweep", run_sweep}};
 
 /// Whether one way back for the measures costs less than to carry all parameters forward.
-bool adjoint_is_cheaper(const AnalysisContext& context) {
+bool adjoint_is_cheaper(const AnalysisContext& context, bool has_phases) {
   const std::vector<PlacedMeasure>& measures = context.task.measures;
   const auto count = static_cast<double>(measures.size()),
              parameters = static_cast<double>(context.design->names.size());
@@ -40,7 +40,7 @@ bool adjoint_is_cheaper(const AnalysisContext& context) {
   };
   const auto integrals = static_cast<double>(std::count_if(measures.begin(), measures.end(), is_integral));
   if (context.task.type() != "dynamics") return parameters > parameters_at_once * count;
-  return parameters > dynamics_base + count + dynamics_integral * integrals;
+  return parameters > (has_phases ? phases_base : dynamics_base) + count + dynamics_integral * integrals;
 }
 
 Report refuse(std::string message) {
@@ -73,15 +73,15 @@ DesignModels designs_of(const AnalysisContext& context, int last, std::optional<
   return context.models->designs(*context.task.table, seeds, parameters);
 }
 
-bool goes_back(AnalysisContext& context, std::string_view obstacle) {
+bool goes_back(AnalysisContext& context, std::string_view obstacle, bool own_curves) {
   if (!context.design || context.design->rows || context.design->mode == GradientMode::forward) return false;
   std::string why(obstacle);
-  if (why.empty()) why = AdjointMechanism::why_not(*context.model);
+  if (why.empty()) why = AdjointMechanism::why_not(*context.model, own_curves);
   if (!why.empty()) {
     context.forward_because = why;
     return false;
   }
-  context.goes_back = context.design->mode == GradientMode::adjoint || adjoint_is_cheaper(context);
+  context.goes_back = context.design->mode == GradientMode::adjoint || adjoint_is_cheaper(context, own_curves);
   return context.goes_back;
 }
 

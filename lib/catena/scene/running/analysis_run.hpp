@@ -84,8 +84,9 @@ std::shared_ptr<const Model> model_at(const AnalysisContext& context, int parame
 DesignModels designs_of(const AnalysisContext& context, int last = -1, std::optional<ParameterSeed<double>> at = {});
 
 /// Whether the gradients that the context's design request asks for are found by adjoints: where they can be and,
-/// unless they are asked for, where they are the cheaper way. `obstacle`: why this analysis has none, if so.
-bool goes_back(AnalysisContext& context, std::string_view obstacle = {});
+/// unless they are asked for, where they are the cheaper way. `obstacle`: why this analysis has none, if so;
+/// `own_curves`: as AdjointMechanism::why_not().
+bool goes_back(AnalysisContext& context, std::string_view obstacle = {}, bool own_curves = false);
 
 using AnalysisFunction = void (*)(AnalysisContext& context, AnalysisResult& result);
 

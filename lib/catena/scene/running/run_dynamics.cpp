@@ -6,6 +6,8 @@
 
 #include "catena/analysis/accuracy/compared_rows.hpp"
 #include "catena/analysis/accuracy/motion_digits.hpp"
+#include "catena/analysis/adjoint/motion_measures.hpp"
+#include "catena/analysis/adjoint/phased_measures.hpp"
 #include "catena/analysis/contact/rope_grips.hpp"
 #include "catena/analysis/dynamics/dynamics_of_islands.hpp"
 #include "catena/analysis/dynamics/dynamics_with_events.hpp"
@@ -103,7 +105,7 @@ class DynamicsTask {
   bool changes_itself() const;
   /// Whether instants of the motion itself are to be differentiated.
   bool has_phases() const;
-  std::string obstacle_of_phases() const;
+  bool only_strikes() const;
   /// Has the motion saved now and then; where it cannot be, `failure` says why.
   Pauses pauses(std::string& failure) const;
   void run_apart(const std::vector<std::vector<int>>& classes);
@@ -203,15 +205,11 @@ bool DynamicsTask::has_phases() const {
   return changes_itself() || std::any_of(measures.begin(), measures.end(), reads_events);
 }
 
-/// Why a motion with phases of its own is not gone back over; empty: it is, if only blows of events make them.
-std::string DynamicsTask::obstacle_of_phases() const {
+/// Whether blows of events alone make the phases of a motion.
+bool DynamicsTask::only_strikes() const {
   const auto& events = context_.task.events;
-  const auto& measures = context_.task.measures;
-  if (touches_) return "contacts or friction act";
-  if (std::any_of(events.begin(), events.end(), [](const EventRequest& e) { return acts(e) && !e.impulse; }))
-    return "events release or engage constraints";
-  if (std::any_of(measures.begin(), measures.end(), reads_events)) return "instants of events are measured";
-  return {};
+  return !touches_ &&
+         std::none_of(events.begin(), events.end(), [](const EventRequest& e) { return acts(e) && !e.impulse; });
 }
 
 void DynamicsTask::differentiate(AnalysisRows& rows, DynamicsWithEvents& analysis) {
@@ -221,7 +219,9 @@ void DynamicsTask::differentiate(AnalysisRows& rows, DynamicsWithEvents& analysi
     differentiate(rows, analysis.evaluator());
     return;
   }
-  const bool back = goes_back(context_, obstacle_of_phases());
+  const auto& measures = context_.task.measures;
+  const bool instants = std::any_of(measures.begin(), measures.end(), reads_events);
+  const bool back = goes_back(context_, instants ? "instants of events are measured" : "", !only_strikes());
   const std::vector<double> values = context_.models->values(*context_.task.table, context_.seeds);
   std::vector<double> sizes;
   for (const int parameter : context_.design->parameters) sizes.push_back(values[static_cast<std::size_t>(parameter)]);
@@ -230,11 +230,17 @@ void DynamicsTask::differentiate(AnalysisRows& rows, DynamicsWithEvents& analysi
       phased_design(designs, sizes, context_.task,
                     context_.models->moving_numbers(context_.task, context_.seeds, context_.design->parameters), model_,
                     plan_, analysis.plan(), sources);
+  if (back && only_strikes()) {
+    auto backwards = std::make_unique<MotionMeasures>(analysis.evaluator(), designs, design.parameters, given);
+    backwards->follow(std::move(design.events));
+    analysis.witness(backwards.get());
+    rows.differentiate_back(std::move(backwards));
+    return;
+  }
   if (back) {
-    auto measures = std::make_unique<MotionMeasures>(analysis.evaluator(), designs, design.parameters, given);
-    measures->follow(std::move(design.events));
-    analysis.witness(measures.get());
-    rows.differentiate_back(std::move(measures));
+    auto backwards = std::make_unique<PhasedMeasures>(std::move(design), given);
+    analysis.witness(backwards.get());
+    rows.differentiate_back(std::move(backwards));
     return;
   }
   auto derivatives = std::make_unique<PhasedDerivatives>(std::move(design), given, instants_);

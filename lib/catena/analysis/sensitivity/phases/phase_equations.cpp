@@ -1,9 +1,12 @@
 #include "catena/analysis/sensitivity/phases/phase_equations.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "catena/analysis/contact/contact_loads.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -12,10 +15,6 @@ namespace {
 // As in contact_loads.cpp: one step without joints, quadratic with them.
 constexpr int most_sizes_iterations = 30;
 constexpr double settled_size = 1e-15;
-
-void set_values(std::span<const double> values, std::span<DesignScalar> out) {
-  for (std::size_t k = 0; k < out.size(); ++k) out[k] = DesignScalar(values[k]);
-}
 
 }  // namespace
 
@@ -31,6 +30,7 @@ PhaseEquations::PhaseEquations(Evaluator& evaluator, const ContactModel& contact
   loads_.resize(n);
   forces_.resize(n);
   unit_.resize(rows);
+  impulse_.resize(rows);
   hold({}, states_);
 }
 
@@ -50,16 +50,7 @@ void PhaseEquations::hold(const std::vector<int>& released, std::vector<ContactS
   system_->leave_out(std::move(left_out));
 }
 
-bool PhaseEquations::sticks(std::size_t k) const {
-  const ContactPoint& point = contacts_.points[k];
-  return point.has_friction() && point.is_exact() && states_[k].closed && states_[k].direction == 0;
-}
-
-bool PhaseEquations::slides(std::size_t k) const {
-  const ContactPoint& point = contacts_.points[k];
-  if (!point.has_friction() || !states_[k].closed || point.mu == 0) return false;
-  return !point.is_exact() || states_[k].direction != 0;
-}
+bool PhaseEquations::sticks(std::size_t k) const { return law({}, k).sticks(); }
 
 int PhaseEquations::gap_row(std::size_t k) const {
   const ContactPoint& point = contacts_.points[k];
@@ -82,42 +73,53 @@ bool PhaseEquations::factorize(double t, Side side, std::span<const DesignScalar
   });
 }
 
-// k d^n + c d'.
-DesignScalar PhaseEquations::compliant_force(const Design& design, std::size_t k) const {
-  const DesignPlace& place = design.places[k];
-  const Taylor<DesignScalar> gap = design.mechanism.measure(contacts_.points[k].element);
-  const DesignScalar d = -gap.f;
-  DesignScalar spring = place.k * d;
-  if (contacts_.points[k].exponent != 1 && d.v != 0)
-    spring = d.v > 0 ? place.k * pow(d, place.exponent) : -(place.k * pow(-d, place.exponent));
-  return spring - place.c * gap.d;
-}
-
-// Psi' / g': the row of a stop with two bounds has another slope than its gap, away from them.
-DesignScalar PhaseEquations::row_factor(const Design& design, std::size_t k) const {
-  const DesignPlace& place = design.places[k];
-  if (!place.has_range) return DesignScalar(1.0);
-  const DesignScalar gap = design.mechanism.measure(contacts_.points[k].element).f;
-  return DesignScalar(1.0) - DesignScalar(2.0) * gap / place.range;
-}
-
-DesignScalar PhaseEquations::slip_sign(const Design& design, std::size_t k) const {
+PlaceLaw PhaseEquations::law(const DesignPlace& place, std::size_t k) const {
   const ContactPoint& point = contacts_.points[k];
-  if (point.is_exact()) return DesignScalar(states_[k].direction);
-  return tanh(design.mechanism.measure(point.slide).d / design.places[k].smoothing);
+  PlaceLaw law{point, states_[k], place, gap_row(k), slide_row(k)};
+  if (point.kind != ContactKind::joint) return law;
+  law.joint_row = plan().element_row[at(point.joint)];
+  law.has_moment = plan().row_is_angle[at(law.joint_row) + 1] != 0;
+  return law;
+}
+
+PlaceMotion PhaseEquations::motion(const DesignMechanism& mechanism, std::size_t k) const {
+  const ContactPoint& point = contacts_.points[k];
+  PlaceMotion motion;
+  if (point.kind != ContactKind::joint) {
+    const Taylor<DesignScalar> gap = mechanism.measure(point.element);
+    motion.gap = gap.f;
+    motion.gap_rate = gap.d;
+  }
+  if (point.has_friction()) motion.slip = mechanism.measure(point.slide).d;
+  return motion;
+}
+
+PhaseEquations::EndRate PhaseEquations::rate_of_end(const DesignMechanism& mechanism, const DesignPlace& place,
+                                                    const WatchedPlace& watched, double speed) const {
+  const ContactPoint& point = contacts_.points[watched.place];
+  const auto name = [&] { return contacts_.model->element_name(point.element); };
+  if (watched.ends == PhaseEnd::shares)
+    return {
+        {},
+        fmt::format("at t = {:.9g} s places that hold each other, \"{}\" among them, give way: when has no derivative",
+                    mechanism.time(), name())};
+  if (watched.ends == PhaseEnd::slide) {
+    if (states_[watched.place].direction == 0) return {};
+    return {mechanism.measure(point.slide).dd.v, {}};
+  }
+  const PlaceMotion now = motion(mechanism, watched.place);
+  if (!law(place, watched.place).ends_by_gap(now, watched.ends)) return {};
+  const double part = point.turns ? 1 / evaluator_.length_scale() : 1;
+  if (std::abs(now.gap_rate.v) > no_speed * part * speed) return {now.gap_rate.v, {}};
+  return {{},
+          fmt::format("at t = {:.9g} s \"{}\" touches with a speed of {:.3g} that cannot be told from rounding: a "
+                      "little more or less is another motion",
+                      mechanism.time(), name(), now.gap_rate.v)};
 }
 
 DesignScalar PhaseEquations::normal(const Design& design, std::size_t k, std::span<const DesignScalar> lambda) const {
-  const ContactPoint& point = contacts_.points[k];
-  const DesignPlace& place = design.places[k];
-  if (point.kind == ContactKind::compliant) return compliant_force(design, k);
-  if (point.kind == ContactKind::rigid) return -lambda[at(gap_row(k))];
-  const std::size_t row = at(plan().element_row[at(point.joint)]);
-  const DesignScalar &a = lambda[row], &b = lambda[row + 1];
-  if (plan().row_is_angle[row + 1])
-    return place.radius * (place.has_length ? abs(a) + abs(b) / place.half_length : abs(a));
-  const DesignScalar squares = a * a + b * b;
-  return squares.v > 0 ? place.radius * sqrt(squares) : DesignScalar(0.0);
+  const bool compliant = contacts_.points[k].kind == ContactKind::compliant;
+  return law(design.places[k], k).normal(compliant ? motion(design.mechanism, k) : PlaceMotion{}, lambda);
 }
 
 // The same in plain numbers, and its slope along a change of the multipliers.
@@ -242,15 +244,17 @@ bool PhaseEquations::accelerate(const Design& design, std::span<const DesignScal
   std::vector<Coupled> coupled;
   for (std::size_t k = 0; k < states_.size(); ++k) {
     if (!states_[k].closed) continue;
-    const bool compliant = contacts_.points[k].kind == ContactKind::compliant;
-    const DesignScalar pressing = compliant ? compliant_force(design, k) : DesignScalar();
-    if (compliant) lambda[at(gap_row(k))] = -pressing / row_factor(design, k);
-    if (!slides(k)) continue;
-    const DesignScalar factor = design.places[k].mu * slip_sign(design, k);
+    const PlaceLaw law = this->law(design.places[k], k);
+    const bool compliant = law.point.kind == ContactKind::compliant, slides = law.slides();
+    const PlaceMotion now = compliant || slides ? motion(mechanism, k) : PlaceMotion{};
+    const DesignScalar pressing = compliant ? law.compliant_force(now) : DesignScalar();
+    if (compliant) lambda[at(law.gap_row)] = -pressing / law.row_factor(now.gap);
+    if (!slides) continue;
+    const DesignScalar factor = law.place.mu * law.slip_sign(now.slip);
     if (compliant)
-      lambda[at(slide_row(k))] = factor * pressing;
+      lambda[at(law.slide_row)] = factor * pressing;
     else
-      coupled.push_back({k, slide_row(k), factor});
+      coupled.push_back({k, law.slide_row, factor});
   }
   std::fill(forces_.begin(), forces_.end(), DesignScalar());
   mechanism.add_constraint_loads(lambda, forces_);
@@ -298,86 +302,6 @@ void PhaseEquations::contacts(const Design& design, std::span<const DesignScalar
     const DesignScalar d = -design.mechanism.measure(point.element).f, order = place.exponent + DesignScalar(1.0);
     if (d.v > 0) out.energy += place.k * pow(d, order) / order;
   }
-}
-
-bool PhaseEquations::project(const Design& design, std::span<const DesignScalar> anchor, std::span<DesignScalar> q,
-                             std::span<DesignScalar> qd) {
-  DesignMechanism& mechanism = design.mechanism;
-  DesignVector bare(q.size());
-  for (const bool velocity : {false, true}) {
-    const std::span<DesignScalar> part = velocity ? qd : q;
-    for (std::size_t c = 0; c < bare.size(); ++c) {
-      const bool unknown = c < plan().column.size() && plan().column[c] >= 0;
-      bare[c] = velocity || unknown ? DesignScalar(part[c].v) : q[c];
-    }
-    if (velocity)
-      mechanism.set_state(q, bare);
-    else
-      mechanism.set_state(bare);
-    mechanism.rows(rows_);
-    for (std::size_t p = 0; p < design.count; ++p) {
-      for (std::size_t c = 0; c < f_.size(); ++c)
-        f_[c] = c < at(3 * plan().moving) ? mechanism.mass(static_cast<int>(c)).v * part[c].d[p] : 0;
-      for (std::size_t r = 0; r < b_.size(); ++r)
-        b_[r] = velocity ? -rows_[r].d.d[p] : anchor[r].d[p] - rows_[r].f.d[p];
-      if (!system_->solve(f_, b_)) return false;
-      for (const int c : plan().coordinate) part[at(c)].d[p] = f_[at(c)];
-    }
-  }
-  return true;
-}
-
-bool PhaseEquations::jump(const Design& design, const VelocityJump& jump, const DesignStrike* strike,
-                          std::span<const DesignScalar> target, std::span<const double> instant,
-                          std::span<const DesignScalar> q, std::span<DesignScalar> qd) {
-  DesignMechanism& mechanism = design.mechanism;
-  std::vector<Coupled> coupled;
-  for (const ImpactPlace& place : jump.places) {
-    if (place.direction != 0)
-      coupled.push_back(
-          {place.place, slide_row(place.place), design.places[place.place].mu * DesignScalar(place.direction)});
-  }
-  DesignVector blow(f_.size());
-  mechanism.set_state(q);
-  const int struck = strike ? plan().plan_body[at(strike->body)] : -1;
-  if (struck >= 0 && struck < plan().moving) {
-    const Vec2<DesignScalar> arm = mechanism.ground_frame(struck).axis(strike->point);
-    blow[at(3 * struck)] = strike->impulse.x;
-    blow[at(3 * struck + 1)] = strike->impulse.y;
-    blow[at(3 * struck + 2)] = cross(arm, strike->impulse);
-  }
-  mechanism.rows(rows_);
-  std::vector<double> by_time(b_.size());  // nu_t, with the other sign
-  for (std::size_t r = 0; r < b_.size(); ++r) {
-    by_time[r] = rows_[r].dd.v;
-    b_[r] = target[r].v - rows_[r].d.v;
-  }
-  for (std::size_t c = 0; c < f_.size(); ++c)
-    f_[c] = c < at(3 * plan().moving) ? mechanism.mass(static_cast<int>(c)).v * qd[c].v + blow[c].v : 0;
-  if (!solve_values(design, coupled)) return false;
-  DesignVector after(qd.size()), impulse(b_.size());
-  for (const int c : plan().coordinate) after[at(c)] = DesignScalar(f_[at(c)]);
-  set_values(b_, impulse);
-  for (std::size_t l = 0; l < coupled.size(); ++l) impulse[at(coupled[l].slide_row)] = DesignScalar(-sizes_[l]);
-  mechanism.set_state(q, after);
-  mechanism.rows(rows_);
-  for (std::size_t c = 0; c < loads_.size(); ++c) {
-    loads_[c] = -blow[c];
-    if (c < at(3 * plan().moving)) loads_[c] += mechanism.mass(static_cast<int>(c)) * (after[c] - qd[c]);
-  }
-  mechanism.add_constraint_loads(impulse, loads_);
-  for (std::size_t p = 0; p < design.count; ++p) {
-    for (std::size_t c = 0; c < f_.size(); ++c) f_[c] = -loads_[c].d[p];
-    for (std::size_t r = 0; r < b_.size(); ++r) b_[r] = target[r].d[p] - rows_[r].d.d[p] - by_time[r] * instant[p];
-    if (!system_->solve(f_, b_)) return false;
-    for (const int c : plan().coordinate) after[at(c)].d[p] = f_[at(c)];
-    for (std::size_t r = 0; r < b_.size(); ++r) {
-      if (held_[r]) impulse[r].d[p] = b_[r];
-    }
-  }
-  add_slopes(design, coupled, after, impulse);
-  for (const int c : plan().coordinate) qd[at(c)] = after[at(c)];
-  return true;
 }
 
 }  // namespace catena

@@ -17,17 +17,25 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
-#include "catena/analysis/contact/motion_phase.hpp"
 #include "catena/analysis/sensitivity/design_steps.hpp"
 #include "catena/analysis/sensitivity/motion_crossing.hpp"
-#include "catena/analysis/sensitivity/phases/design_places.hpp"
+#include "catena/analysis/sensitivity/phases/place_law.hpp"
 #include "catena/analysis/sensitivity/saddle_system.hpp"
 #include "catena/columns/design_state.hpp"
 
 namespace catena {
+
+// A row that holds from now on is met along the parameters to this part of what places move by, and places that close
+// at once do so to this part: of bounces that accumulate those below rest_speed, 1e-4 of the speed, are left out, and
+// what comes to rest together does so to that part. What meets by chance misses by all of it.
+inline constexpr double same_place = 1e-4;
+// Of the length scale, for a parameter that is changed by its own size: derivatives that cancel out leave 1e-15.
+inline constexpr double rounding_of_derivatives = 1e-12;
 
 class PhaseEquations {
  public:
@@ -44,6 +52,17 @@ class PhaseEquations {
   /// These elements have no equations from now on, and places do this.
   void hold(const std::vector<int>& released, std::vector<ContactState> states);
   const std::vector<ContactState>& states() const { return states_; }
+  /// What place k does now, by these numbers of it, and what its forces follow from, at the mechanism's state.
+  PlaceLaw law(const DesignPlace& place, std::size_t k) const;
+  PlaceMotion motion(const DesignMechanism& mechanism, std::size_t k) const;
+  /// How fast what ends a phase changes, where the state shows it; nothing where it follows from forces. `speed`: the
+  /// fastest of the motion (contact_loads.hpp).
+  struct EndRate {
+    std::optional<double> rate;
+    std::string trouble;  ///< why the instant has no derivative, as a sentence without full stop; empty: it may have
+  };
+  EndRate rate_of_end(const DesignMechanism& mechanism, const DesignPlace& place, const WatchedPlace& watched,
+                      double speed) const;
   /// Whether exact friction sticks at a place.
   bool sticks(std::size_t place) const;
   /// The row of a place's gap, of its slide; -1: none.
@@ -64,13 +83,26 @@ class PhaseEquations {
   /// of each row, how what it keeps moves with the parameters.
   bool project(const Design& design, std::span<const DesignScalar> anchor, std::span<DesignScalar> q,
                std::span<DesignScalar> qd);
+  /// A row that holds, but not whatever parameter p is, by rows at q and qd with derivatives; -1: all do. `anchor`: as
+  /// project(); `none`: what a derivative of a place may be though it is none; `except`: rows that are met in any case.
+  int row_not_met(std::span<const Taylor<DesignScalar>> rows, std::span<const DesignScalar> anchor,
+                  std::span<const DesignScalar> q, std::span<const DesignScalar> qd, std::size_t p, double none,
+                  const std::vector<char>& except) const;
   /// qd- to qd+ by one step of a jump, whose equations are held and factored. `target`: what rates of rows become.
   /// `instant`: dt/dp.
   bool jump(const Design& design, const VelocityJump& jump, const DesignStrike* strike,
             std::span<const DesignScalar> target, std::span<const double> instant, std::span<const DesignScalar> q,
             std::span<DesignScalar> qd);
+  /// Impulses of the last jump(), by row.
+  const DesignVector& impulse() const { return impulse_; }
+  /// With the factors, in place: f over coordinates, b over the rows that hold; of the others b is zero then.
+  bool solve(std::span<double> f, std::span<double> b) { return system_->solve(f, b); }
+  /// Phi_q of the factors, size entries of its pattern.
+  std::span<const double> jacobian() const { return std::span(jacobian_).first(jacobian_.size() - 1); }
   const std::vector<int>& dependent_rows() const { return system_->dependent_rows(); }
   const Plan& plan() const { return evaluator_.plan(); }
+  const ContactModel& contacts() const { return contacts_; }
+  Evaluator& evaluator() { return evaluator_; }
 
  private:
   /// A friction force that depends on multipliers: f = -factor N.
@@ -82,10 +114,6 @@ class PhaseEquations {
   struct Response {
     std::vector<double> x, lambda;
   };
-  DesignScalar compliant_force(const Design& design, std::size_t k) const;
-  DesignScalar row_factor(const Design& design, std::size_t k) const;
-  DesignScalar slip_sign(const Design& design, std::size_t k) const;
-  bool slides(std::size_t k) const;
   double normal_value(const Design& design, std::size_t k, std::span<const double> lambda,
                       std::span<const double> along, double& slope) const;
   bool respond(const Design& design, std::span<const Coupled> coupled);
@@ -104,7 +132,7 @@ class PhaseEquations {
   std::vector<double> sizes_, slope_;  // of friction forces; d(f + mu sigma N)/df, row by row
   std::vector<Response> response_;
   std::vector<Taylor<DesignScalar>> rows_;
-  DesignVector loads_, forces_, unit_;
+  DesignVector loads_, forces_, unit_, impulse_;
 };
 
 }  // namespace catena

@@ -9,13 +9,6 @@
 #include "catena/base/at.hpp"
 
 namespace catena {
-namespace {
-
-// Of the length scale, for a parameter that is changed by its own size: derivatives that cancel out leave 1e-15.
-constexpr double rounding_of_derivatives = 1e-12;
-
-}  // namespace
-
 PhasedDerivatives::~PhasedDerivatives() = default;
 
 PhasedDerivatives::PhasedDerivatives(PhasedDesign design, GivenByModel start, std::shared_ptr<InstantRates> rates)
@@ -33,6 +26,7 @@ PhasedDerivatives::PhasedDerivatives(PhasedDesign design, GivenByModel start, st
       y_(2 * n_) {
   equations_ = std::make_unique<PhaseEquations>(evaluator(), contacts_);
   length_scale_ = std::max(evaluator().length_scale(), 1.0);
+  for (const int element : plan().row_element) always_.push_back(open_plan_->element_row[at(element)] >= 0);
   for (const Group& group : groups()) {
     Track& track = tracks_.emplace_back();
     for (DesignVector* y : {&track.begin, &track.end, &track.before}) y->resize(2 * n_);
@@ -147,31 +141,17 @@ void PhasedDerivatives::check_rows(std::size_t k, double t, bool starts) {
   Track& track = tracks_[k];
   group.mechanism.set_state(q(track.end), qd(track.end));
   group.mechanism.rows(group.rows);
-  // Of rates: the fastest turn or travel, in 1/s, at least 1.
-  double pace = 1;
-  for (std::size_t c = n_; c < 2 * n_; ++c) pace = std::max(pace, std::abs(track.end[c].v));
+  const std::vector<char> met = starts ? always_ : std::vector<char>{};
   for (std::size_t p = 0; p < at(group.count); ++p) {
-    double moves = 0, moves_rate = 0;
-    for (std::size_t c = 0; c < n_; ++c) {
-      moves = std::max(moves, std::abs(track.end[c].d[p]));
-      moves_rate = std::max(moves_rate, std::abs(track.end[n_ + c].d[p]));
-    }
-    for (std::size_t r = 0; r < group.rows.size(); ++r) {
-      if (!equations_->holds_row(static_cast<int>(r))) continue;
-      const double miss = std::abs(group.rows[r].f.d[p] - track.anchor[r].d[p]);
-      const double slip = std::abs(group.rows[r].d.d[p]);
-      const bool holds_from_start = starts && open_plan_->element_row[at(plan().row_element[r])] >= 0;
-      const double none = rounding(k, p);
-      const bool is_met = miss <= same_place * moves + none && slip <= same_place * (moves_rate + moves) + none * pace;
-      if (holds_from_start || is_met) continue;
-      if (lost_.empty())
-        lost_ = fmt::format(
-            "at t = {:.9g} s \"{}\" begins to hold, but a parameter opens it there or breaks it: one way and the other "
-            "are different motions",
-            t, contacts_.model->element_name(plan().row_element[r]));
-      lose(k, p, track);
-      break;
-    }
+    const int row =
+        equations_->row_not_met(group.rows, track.anchor, q(track.end), qd(track.end), p, rounding(k, p), met);
+    if (row < 0) continue;
+    if (lost_.empty())
+      lost_ = fmt::format(
+          "at t = {:.9g} s \"{}\" begins to hold, but a parameter opens it there or breaks it: one way and the other "
+          "are different motions",
+          t, contacts_.model->element_name(plan().row_element[at(row)]));
+    lose(k, p, track);
   }
 }
 

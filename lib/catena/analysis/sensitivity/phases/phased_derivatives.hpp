@@ -28,11 +28,6 @@
 
 namespace catena {
 
-// A row that holds from now on is met along the parameters to this part of what places move by, and places that close
-// at once do so to this part: of bounces that accumulate those below rest_speed, 1e-4 of the speed, are left out, and
-// what comes to rest together does so to that part. What meets by chance misses by all of it.
-inline constexpr double same_place = 1e-4;
-
 /// An event of the list as derivatives see it.
 struct DesignEvent {
   ColumnSet column;
@@ -122,6 +117,7 @@ class PhasedDerivatives final : public StateDerivatives, public PhaseWitness {
   ContactModel contacts_;
   std::vector<std::vector<DesignPlace>> places_;  // by group
   std::shared_ptr<const Plan> open_plan_;
+  std::vector<char> always_;  // by row: in that plan
   std::vector<DesignEvent> events_;
   std::vector<double> sizes_;
   GivenByModel given_start_;

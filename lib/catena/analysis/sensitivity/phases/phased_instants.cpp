@@ -30,61 +30,28 @@ void join(std::vector<double>& rate, const std::vector<double>& other) {
 
 // What is zero where a place's phase ends, at the group's state; see ContactPhases.
 DesignScalar PhasedDerivatives::end_value(std::size_t k, const WatchedPlace& watched) {
-  const PhaseEquations::Design of = design(k);
-  const ContactPoint& point = contacts_.points[watched.place];
-  const ContactState& state = equations_->states()[watched.place];
-  const auto pressing = [&] { return equations_->normal(of, watched.place, groups()[k].lambda); };
-  if (watched.ends == PhaseEnd::slide) {
-    if (state.direction != 0) return of.mechanism.measure(point.slide).d;
-    return of.places[watched.place].mu_static * pressing() -
-           abs(groups()[k].lambda[at(equations_->slide_row(watched.place))]);
-  }
-  if (state.closed) return pressing();
-  const DesignScalar gap = of.mechanism.measure(point.element).f;
-  if (watched.ends == PhaseEnd::contact || point.c == 0) return gap;
-  return -gap.v < pressing().v ? gap : pressing();
+  const PlaceLaw law = equations_->law(places_[k][watched.place], watched.place);
+  return law.end_value(equations_->motion(groups()[k].mechanism, watched.place), groups()[k].lambda, watched.ends);
 }
 
 // t*_p of a place that changes at the end of the step.
 std::optional<std::vector<double>> PhasedDerivatives::rate_of_place(const MotionStretch* stretch,
                                                                     const WatchedPlace& watched) {
-  const ContactPoint& point = contacts_.points[watched.place];
-  const ContactState state = equations_->states()[watched.place];
   std::vector<double> by_parameter;
-  if (watched.ends == PhaseEnd::shares) {
-    lost_ =
-        fmt::format("at t = {:.9g} s places that hold each other, \"{}\" among them, give way: when has no derivative",
-                    to_, name(watched.place));
-    for (const Group& group : groups()) by_parameter.insert(by_parameter.end(), at(group.count), unknown);
-    return by_parameter;
-  }
-  std::optional<double> by_time;
+  PhaseEquations::EndRate end;
   if (!factorize(to_, Side::before, tracks_.front().end)) return {};
   for (std::size_t k = 0; k < tracks_.size(); ++k) {
     if (!slope(k, to_, Side::before, tracks_[k].end, stage_)) return {};
     const DesignScalar value = end_value(k, watched);
     for (std::size_t p = 0; p < at(groups()[k].count); ++p) by_parameter.push_back(value.d[p]);
     if (k > 0) continue;
-    const Taylor<DesignScalar> gap = groups()[0].mechanism.measure(point.element);
-    if (watched.ends == PhaseEnd::slide && state.direction != 0) {
-      by_time = groups()[0].mechanism.measure(point.slide).dd.v;
-    } else if (watched.ends != PhaseEnd::slide && !state.closed && value.v == gap.f.v) {
-      by_time = gap.d.v;
-      const double part = point.turns ? 1 / evaluator().length_scale() : 1;
-      std::vector<double> qd(n_);
-      for (std::size_t c = 0; c < n_; ++c) qd[c] = tracks_[0].end[n_ + c].v;
-      if (std::abs(*by_time) <= no_speed * part * fastest(evaluator(), qd)) {
-        lost_ = fmt::format(
-            "at t = {:.9g} s \"{}\" touches with a speed of {:.3g} that cannot be told from rounding: a little more or "
-            "less is another motion",
-            to_, name(watched.place), *by_time);
-        by_time.reset();
-      }
-    }
+    std::vector<double> qd(n_);
+    for (std::size_t c = 0; c < n_; ++c) qd[c] = tracks_[0].end[n_ + c].v;
+    end = equations_->rate_of_end(groups()[0].mechanism, places_[0][watched.place], watched, fastest(evaluator(), qd));
+    if (!end.trouble.empty()) lost_ = end.trouble;
   }
-  const bool touches = !by_time && !lost_.empty();
-  if (!by_time && !touches && stretch) {
-    by_time = rate_at_end(*stretch, [&](double t) -> std::optional<double> {
+  if (!end.rate && end.trouble.empty() && stretch) {
+    end.rate = rate_at_end(*stretch, [&](double t) -> std::optional<double> {
       const std::optional<Snapshot> there = stretch->at(t);
       if (!there) return {};
       for (std::size_t c = 0; c < n_; ++c) {
@@ -95,7 +62,8 @@ std::optional<std::vector<double>> PhasedDerivatives::rate_of_place(const Motion
       return end_value(0, watched).v;
     });
   }
-  for (double& rate : by_parameter) rate = rate == 0 ? 0 : by_time && *by_time != 0 ? -rate / *by_time : unknown;
+  if (watched.ends == PhaseEnd::shares) std::fill(by_parameter.begin(), by_parameter.end(), unknown);
+  for (double& rate : by_parameter) rate = rate == 0 ? 0 : end.rate && *end.rate != 0 ? -rate / *end.rate : unknown;
   return by_parameter;
 }
 

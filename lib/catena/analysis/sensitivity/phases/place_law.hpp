@@ -1,0 +1,52 @@
+// What a place of contact presses and rubs with, as functions of its gap, its slip and multipliers of constraints.
+//
+//   compliant      N = k d^n + c d',  d = -g            lambda_gap = -N / (Psi' / g')
+//   rigid, joint   N = -lambda_gap,  radius |(lambda_1, lambda_2)| or of a guide radius (|lambda_1| + |lambda_2| /
+//   half) slides         lambda_slide = mu sigma N            sigma: sign of the slip, or tanh(w' / vs)
+//
+// Forward derivatives take these with derivatives along the parameters (phase_equations.hpp), adjoints by gap, slip and
+// multipliers one by one. Psi' / g' = 1 - 2 g / range for a stop with two bounds, else 1. Units: m or rad, N or N m.
+// Source: contact_loads.hpp.
+#pragma once
+
+#include <span>
+
+#include "catena/analysis/contact/motion_phase.hpp"
+#include "catena/analysis/sensitivity/phases/design_places.hpp"
+
+namespace catena {
+
+/// What forces of a place follow from: its gap g, g', and its slip w'.
+struct PlaceMotion {
+  DesignScalar gap, gap_rate, slip;
+};
+
+struct PlaceLaw {
+  const ContactPoint& point;
+  const ContactState& state;
+  const DesignPlace& place;
+  int gap_row = -1, slide_row = -1;  ///< of the plan; -1: none
+  int joint_row = -1;                ///< the first one of the joint whose reaction presses
+  bool has_moment = false;           ///< the second one is a moment
+
+  /// Whether exact friction sticks; whether friction acts that is not that of sticking.
+  bool sticks() const { return point.has_friction() && point.is_exact() && state.closed && state.direction == 0; }
+  bool slides() const {
+    return point.has_friction() && state.closed && point.mu != 0 && (!point.is_exact() || state.direction != 0);
+  }
+
+  DesignScalar compliant_force(const PlaceMotion& motion) const;
+  /// Psi' / g'.
+  DesignScalar row_factor(const DesignScalar& gap) const;
+  /// Its derivative by the gap.
+  double row_bend() const { return place.has_range ? -2 / place.range.v : 0; }
+  DesignScalar slip_sign(const DesignScalar& slip) const;
+  /// N; `lambda` by rows of the plan. The motion counts for compliant places alone.
+  DesignScalar normal(const PlaceMotion& motion, std::span<const DesignScalar> lambda) const;
+  /// What is zero where a phase of the place ends; see ContactPhases.
+  DesignScalar end_value(const PlaceMotion& motion, std::span<const DesignScalar> lambda, PhaseEnd ends) const;
+  /// Whether the gap alone is zero there.
+  bool ends_by_gap(const PlaceMotion& motion, PhaseEnd ends) const;
+};
+
+}  // namespace catena
