@@ -153,11 +153,53 @@ TEST(CirculatoryGradients, OfALoadOfFlutter) {
   }
 }
 
-TEST(CirculatoryGradients, OfAPairThatFluttersAreNullAndSaidSo) {
-  const TextRun run = run_text(scene_of({1, 1, 1, 10, 10, 0.1L, 25}));
-  ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
-  EXPECT_TRUE(std::isnan(gradient(run, "low", 0)));
-  EXPECT_TRUE(warns(run, "mode 1 is one of a pair that flutters"));
+/// Of the pair omega2 +- i b: omega2, b, and growth + i omega, whose square is -(omega2 - i b); zeros where both are
+/// real.
+std::array<Long, 4> pair_of(const ZieglerColumn& column) {
+  const auto& [L, m, n, k, c, g, P] = column;
+  const Long m11 = L * L * (m + n), m12 = L * L * n, a = m11 * m12 - m12 * m12, k22 = c + g * L * n;
+  const Long k11 = k + c - P * L + g * L * (m + n), k12 = P * L - c;
+  const Long b = k11 * m12 + k22 * m11 - (k12 - c) * m12, d = k11 * k22 + k12 * c;
+  if (b * b >= 4 * a * d) return {};
+  const Long omega2 = b / (2 * a), imaginary = std::sqrt(4 * a * d - b * b) / (2 * a);
+  const Long size = std::hypot(omega2, imaginary);
+  return {omega2, imaginary, std::sqrt((size - omega2) / 2), std::sqrt((size + omega2) / 2)};
+}
+
+constexpr const char* pairs = R"("type": "modes", "measures": {"omega2": {"field": "omega2[1]"},
+    "b": {"field": "omega2_imaginary[1]"}, "growth": {"field": "growth[1]"}, "omega": {"field": "omega[1]"},
+    "omega2 of the other": {"field": "omega2[2]"}, "b of the other": {"field": "omega2_imaginary[2]"}})";
+
+TEST(CirculatoryGradients, OfPairsThatFlutter) {
+  int compared = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers random(seed);
+    const std::array<std::array<double, 2>, 6> range = {{{0.5, 2}, {0.5, 3}, {0.5, 3}, {5, 30}, {5, 30}, {0, 1}}};
+    ZieglerColumn column{};
+    for (std::size_t p = 0; p < range.size(); ++p) column[p] = random(range[p][0], range[p][1]);
+    // As the scene has it, in double precision.
+    column[6] = static_cast<double>(flutter_of(column)[0] * random(1.1, 1.5));
+    const std::array<Long, 4> exact = pair_of(column);
+    if (!(exact[1] > 0.1L * std::abs(exact[0]))) continue;
+    const TextRun run = run_text(scene_of(column, pairs));
+    ASSERT_EQ(run.outcome.exit_code, 0) << run.outcome.error_text << run.analysis().report.message;
+    const std::array<const char*, 4> names = {"omega2", "b", "growth", "omega"};
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const auto size = static_cast<double>(i < 2 ? std::hypot(exact[0], exact[1]) : std::hypot(exact[2], exact[3]));
+      EXPECT_NEAR(value(run, names[i]), static_cast<double>(exact[i]), 1e-11 * size) << names[i];
+      for (std::size_t p = 0; p < column.size(); ++p) {
+        const auto slope = static_cast<double>(slope_of(pair_of, column, p)[i]);
+        const double unit = std::max(std::abs(slope), size / static_cast<double>(column[p]));
+        EXPECT_NEAR(gradient(run, names[i], p), slope, 1e-10 * unit) << names[i] << " " << column_parameters[p];
+        ++compared;
+        if (i > 1) continue;
+        const double other = gradient(run, std::string(names[i]) + " of the other", p);
+        EXPECT_NEAR(other, i == 0 ? slope : -slope, 1e-10 * unit);
+      }
+    }
+  }
+  EXPECT_GT(compared, 100);
 }
 
 }  // namespace

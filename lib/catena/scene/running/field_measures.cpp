@@ -74,10 +74,11 @@ void add_field_measures(const AnalysisContext& context, AnalysisResult& result) 
                                     request.part.empty() ? "" : "." + request.part, fmt::join(has, ", "));
       result.report.warnings.push_back(fmt::format("measure \"{}\": {}", request.name, measure.trouble));
     }
-    measure.unit = request.field == "energy"   ? "J"
-                   : request.field == "omega"  ? "rad/s"
-                   : request.field == "omega2" ? "rad^2/s^2"
-                                               : "";
+    measure.unit = request.field == "energy"                                          ? "J"
+                   : request.field == "omega"                                         ? "rad/s"
+                   : request.field == "growth"                                        ? "1/s"
+                   : request.field == "omega2" || request.field == "omega2_imaginary" ? "rad^2/s^2"
+                                                                                      : "";
     result.measures.push_back(std::move(measure));
   }
 }

@@ -1,7 +1,9 @@
 // modes: small oscillations about the current configuration; one row a mode.
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <complex>
 #include <limits>
 
 #include "catena/analysis/run/rope_ways_at.hpp"
@@ -18,12 +20,55 @@ namespace {
 // Frequencies nearer to each other than this part count as double: their vectors, known to 1e-8, turn into each other.
 constexpr double frequencies_apart = 1e-6;
 
-bool is_double(const std::vector<double>& omega2, std::size_t k) {
-  for (std::size_t other = 0; other < omega2.size(); ++other) {
-    const double size = std::max(std::abs(omega2[k]), std::abs(omega2[other]));
-    if (other != k && std::abs(omega2[k] - omega2[other]) <= frequencies_apart * size) return true;
+bool is_double(const ModesReport& report, std::size_t k) {
+  const auto complex = [&](std::size_t n) {
+    return std::complex<double>(report.omega2[n], n < report.imaginary.size() ? report.imaginary[n] : 0);
+  };
+  for (std::size_t other = 0; other < report.omega2.size(); ++other) {
+    const double size = std::max(std::abs(complex(k)), std::abs(complex(other)));
+    if (other != k && std::abs(complex(k) - complex(other)) <= frequencies_apart * size) return true;
   }
   return false;
+}
+
+using Gradient = std::optional<std::vector<double>>;
+
+/// omega = sqrt |omega2|.
+void give_real(const AnalysisContext& context, const ModesReport& report, std::size_t k, Gradient gradient,
+               std::string trouble, AnalysisResult& result) {
+  const int number = static_cast<int>(k) + 1;
+  const std::vector<double> none(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
+  set_field_gradient(context, result, "omega2", number, gradient.value_or(none), trouble);
+  if (gradient && !(report.omega[k] > 0)) {
+    gradient.reset();
+    trouble = fmt::format("omega of mode {} is zero, where it has a kink; omega2 has a derivative", number);
+  }
+  if (gradient) {
+    const double factor = (report.omega2[k] < 0 ? -0.5 : 0.5) / report.omega[k];
+    for (double& derivative : *gradient) derivative *= factor;
+  }
+  set_field_gradient(context, result, "omega", number, gradient.value_or(none), trouble);
+}
+
+/// Of one of a pair, (growth + i omega)^2 = -z with z = omega2 - i imaginary: d(growth + i omega) = -dz / (2 (growth +
+/// i omega)).
+void give_pair(const AnalysisContext& context, const ModesReport& report, std::size_t k,
+               const std::optional<std::vector<std::complex<double>>>& gradient, const std::string& trouble,
+               AnalysisResult& result) {
+  const std::size_t parameters = context.design->names.size();
+  std::array<std::vector<double>, 4> parts;
+  for (std::vector<double>& part : parts) part.assign(parameters, std::numeric_limits<double>::quiet_NaN());
+  const std::complex<double> rate(report.growth[k], report.omega[k]);
+  for (std::size_t p = 0; gradient && p < parameters; ++p) {
+    const std::complex<double> z = (*gradient)[p], turned = -z / (2.0 * rate);
+    parts[0][p] = z.real();
+    parts[1][p] = -z.imag();
+    parts[2][p] = turned.imag();
+    parts[3][p] = turned.real();
+  }
+  const std::array<const char*, 4> names = {"omega2", "omega2_imaginary", "omega", "growth"};
+  for (std::size_t n = 0; n < names.size(); ++n)
+    set_field_gradient(context, result, names[n], static_cast<int>(k) + 1, parts[n], trouble);
 }
 
 /// `from_model`: the modes are those of the place that the model gives.
@@ -35,32 +80,29 @@ void differentiate(const AnalysisContext& context, Modes& analysis, const ModesR
                                   from_model);
   const bool found =
       lambda && derivatives.find({.evaluator = evaluator, .t = analysis.time(), .q = analysis.q(), .lambda = *lambda});
-  const std::vector<double> none(context.design->names.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t k = 0; k < report.omega2.size(); ++k) {
-    const int number = static_cast<int>(k) + 1;
-    std::optional<std::vector<double>> gradient;
+    const bool flutters = k < report.imaginary.size() && report.imaginary[k] != 0;
+    const bool several = found && is_double(report, k);
     std::string trouble;
-    if (k < report.imaginary.size() && report.imaginary[k] != 0)
-      trouble =
-          fmt::format("mode {} is one of a pair that flutters: derivatives of complex omega2 are not built", number);
-    else if (found && is_double(report.omega2, k))
-      trouble = fmt::format("mode {} is one of two or more with the same frequency, which has no derivative", number);
-    else if (found && evaluator.conservative())
-      gradient = derivatives.gradient(report.omega2[k], report.shapes[k]);
-    else if (found)
-      gradient = derivatives.gradient_without_energy(report.omega2[k], report.shapes[k]);
-    if (!gradient && trouble.empty()) trouble = lambda ? derivatives.why() : "constraints are singular at this place";
-    set_field_gradient(context, result, "omega2", number, gradient.value_or(none), trouble);
-    // omega = sqrt |omega2|
-    if (gradient && !(report.omega[k] > 0)) {
-      gradient.reset();
-      trouble = fmt::format("omega of mode {} is zero, where it has a kink; omega2 has a derivative", number);
+    if (several)
+      trouble = fmt::format("mode {} is one of two or more with the same frequency, which has no derivative", k + 1);
+    const auto why = [&](bool has_gradient) {
+      if (has_gradient || !trouble.empty()) return trouble;
+      return lambda ? derivatives.why() : std::string("constraints are singular at this place");
+    };
+    if (flutters) {
+      std::optional<std::vector<std::complex<double>>> gradient;
+      if (found && !several)
+        gradient = derivatives.gradient_of_pair({report.omega2[k], -report.imaginary[k]}, report.shapes[k]);
+      give_pair(context, report, k, gradient, why(gradient.has_value()), result);
+      continue;
     }
-    if (gradient) {
-      const double factor = (report.omega2[k] < 0 ? -0.5 : 0.5) / report.omega[k];
-      for (double& derivative : *gradient) derivative *= factor;
-    }
-    set_field_gradient(context, result, "omega", number, gradient.value_or(none), trouble);
+    Gradient gradient;
+    if (found && !several)
+      gradient = evaluator.conservative() ? derivatives.gradient(report.omega2[k], report.shapes[k])
+                                          : derivatives.gradient_without_energy(report.omega2[k], report.shapes[k]);
+    std::string trouble_there = why(gradient.has_value());
+    give_real(context, report, k, std::move(gradient), std::move(trouble_there), result);
   }
 }
 

@@ -2,7 +2,8 @@
 //
 //   frequency       K v + Phi_q^T mu = omega2 M v, Phi_q v = 0, v^T M v = 1
 //                   d omega2 = v^T (K_p - omega2 M_p) v + 2 mu^T (Phi_q)_p v
-//                   of unsymmetric K, with the vector on its left too, as loads: circulatory_derivatives.cpp
+//                   of unsymmetric K, with the vector on its left too, as loads: circulatory_derivatives.cpp; of
+//                   pairs that flutter, complex: flutter_derivatives.cpp
 //   buckling load   K(P) v + Phi_q^T mu = 0:    dP = -(v^T K_p v + 2 mu^T (Phi_q)_p v) / (the same by P)
 //   flutter load    two omega2 of unsymmetric K meet in one: dP of the load of divergence, K less omega2 M in place of
 //   K limit load      F(q, lambda, P) = 0 with the left null vector w of its matrix:   dP = -(w^T F_p) / (w^T F_P)
@@ -13,6 +14,7 @@
 // vectors.
 #pragma once
 
+#include <complex>
 #include <optional>
 #include <span>
 #include <string>
@@ -57,6 +59,9 @@ class SpectrumDerivatives final : public StateDerivatives {
   /// divergence: circulatory_derivatives.cpp.
   std::optional<std::vector<double>> gradient_without_energy(double omega2, std::span<const double> shape,
                                                              Metric metric = Metric::masses);
+  /// The same of one complex omega2 of a pair that flutters, omega2 - i imaginary: flutter_derivatives.cpp.
+  std::optional<std::vector<std::complex<double>>> gradient_of_pair(std::complex<double> omega2,
+                                                                    std::span<const double> shape);
   /// h_p by every parameter, the last one the load, where two omega2 meet in this one: circulatory_derivatives.cpp.
   /// `shape`: about that of their vector.
   std::optional<std::vector<double>> gradient_of_meeting(double omega2, std::span<const double> shape);
