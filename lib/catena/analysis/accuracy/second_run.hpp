@@ -7,10 +7,10 @@
 // the tolerance, four times that of methods of one step, or steps longer by a quarter, of adams by half
 // (coarser_options). Where it takes as many steps, which are then the same, with the same rounding, it is made by
 // another method. The rows given are those that were asked for; the difference is the error of the coarser run, up to
-// theirs. f: second_run.cpp. eps |t| rate counts where something depends on time, rate that of the fastest motion,
-// rad/s. Least: motion_rounding.hpp. Drift: how far the mechanism is off its constraints, m: four times that for
-// places, that times the rate for velocities, times its square for accelerations; nothing but rounding where they are
-// projected.
+// theirs. f: second_run_compared.cpp. eps |t| rate counts where something depends on time, rate that of the fastest
+// motion, rad/s. Least: motion_rounding.hpp. Drift: how far the mechanism is off its constraints, m: four times that
+// for places, that times the rate for velocities, times its square for accelerations; nothing but rounding where they
+// are projected.
 //
 // Both runs must pass the same changes (motion_changes.hpp); where they do not, nothing is said, and why_none() says
 // so. A row that lies as near to a change as the instant of that is uncertain is not judged in the columns that jump
