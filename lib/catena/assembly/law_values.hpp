@@ -26,7 +26,8 @@ class LawValues {
   T value(int law) const {
     const CompiledLaw<S>& compiled = laws_[static_cast<std::size_t>(law)];
     const T plain = compiled.formula.evaluate_beyond([&](std::uint32_t k) { return input(compiled.inputs[k]); });
-    if constexpr (requires { plain.d; }) {
+    // Over numbers with derivatives of their own there is no such second look: it is not a number then.
+    if constexpr (requires { std::isfinite(plain.d[0]); }) {
       const auto is_number = [](double derivative) { return std::isfinite(derivative); };
       if (std::isfinite(plain.v) && !std::all_of(plain.d.begin(), plain.d.end(), is_number)) return carefully(compiled);
     }

@@ -1,13 +1,13 @@
-// SpectrumDerivatives: frequencies, and loads of divergence, under forces that turn with their bodies, which have no
-// energy. K is unsymmetric, and has vectors on its left, w, beside those on its right:
+// SpectrumDerivatives: frequencies, and loads of divergence, under forces that have no energy: that turn with their
+// bodies, or follow laws of state. K is unsymmetric, and has vectors on its left, w, beside those on its right:
 //
 //   K v + Phi_q^T mu = omega2 M v,   K^T w + Phi_q^T nu = omega2 M w,   Phi_q v = Phi_q w = 0
 //   d omega2 = [ w^T (K_p - omega2 M_p) v + mu^T (Phi_q)_p w + nu^T (Phi_q)_p v ] / (w^T M v)
 //
 // At a load of divergence omega2 = 0, M does not count, and dP = -h_p / h_P with h what stands in brackets.
-// w^T K v is the mixed second derivative of V + lambda^T Phi along v and w, and of a force F that turns with its body
-// (w_x F_y - w_y F_x) v_phi: its moment about the body's centroid stays. w^T M v is zero where two frequencies meet,
-// and flutter begins: there v and w are those of one double omega2 with a single vector, and by
+// w^T K v = -w^T Q_q v + (lambda^T Phi)_qq, mixed along v and w; Q_q v from force_slopes.hpp, with q_p in it. Rates
+// that laws read count at rest, as in K. w^T M v is zero where two frequencies meet, and flutter begins: there v and w
+// are those of one double omega2 with a single vector, and by
 //
 //   h = w^T (K - omega2 M) v + mu^T Phi_q w + nu^T Phi_q v,   dP = -h_p / h_P
 //
@@ -19,6 +19,7 @@
 
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/sensitivity/spectrum/spectrum_derivatives.hpp"
+#include "catena/assembly/design/force_slopes.hpp"
 #include "catena/base/at.hpp"
 #include "catena/elements/all.hpp"
 
@@ -32,26 +33,6 @@ constexpr double beside = 1e-7;
 constexpr int most_inverse_rounds = 20;
 // Where two meet: the vectors move by about this part of omega2, and so does what is made of them.
 constexpr double beside_meeting = 1e-11;
-
-/// The moving plan bodies on which forces that turn with them act; nothing where another force has no energy.
-std::optional<std::vector<int>> bodies_with_turning_forces(const Model& model, const Plan& plan) {
-  std::vector<int> bodies;
-  bool known = model.laws.empty();
-  for_each_list(model.forces, [&](const auto& list, int) {
-    for (const auto& entry : list) {
-      if (is_conservative(entry.element)) continue;
-      if constexpr (requires { entry.element.in_body_axes; }) {
-        const int body = entry.i < 0 ? plan.moving : plan.plan_body[at(entry.i)];
-        if (body < plan.moving) bodies.push_back(body);
-      } else {
-        known = false;
-      }
-    }
-  });
-  std::sort(bodies.begin(), bodies.end());
-  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-  return known ? std::optional(bodies) : std::nullopt;
-}
 
 ElementMatrix transposed(const ElementMatrix& m) {
   ElementMatrix t{};
@@ -151,20 +132,16 @@ bool SpectrumDerivatives::find_both(double omega2, std::span<double> v, std::spa
   return changed <= thresholds::solved || fail("the vectors of the frequency in which two meet did not settle");
 }
 
-std::optional<std::vector<int>> SpectrumDerivatives::turning_bodies() {
-  std::optional<std::vector<int>> turning = bodies_with_turning_forces(evaluator().model(), plan());
-  if (!turning)
-    fail(
-        "derivatives of frequencies and loads under laws of state, or forces of one's own without energy, are not "
-        "built");
-  return turning;
+// Forces that only C++ can make show their slopes in no numbers that move with the parameters.
+bool SpectrumDerivatives::knows_slopes() {
+  const auto& own = std::get<std::vector<ElementEntry<CustomForce<double>, double>>>(evaluator().model().forces);
+  return own.empty() || fail("derivatives of frequencies and loads under forces made in C++ are not built");
 }
 
-std::vector<double> SpectrumDerivatives::slopes_of(std::span<const int> turning, const TwoVectors& of, double omega2,
-                                                   double scale) {
+std::vector<double> SpectrumDerivatives::slopes_of(const TwoVectors& of, double omega2, double scale) {
   std::vector<double> slopes;
   for (Group& group : groups()) {
-    const DesignScalar sum = left_and_right(group, turning, of, omega2);
+    const DesignScalar sum = left_and_right(group, of, omega2);
     for (std::size_t p = 0; p < at(group.count); ++p) slopes.push_back(sum.d[p] / scale);
   }
   return slopes;
@@ -173,8 +150,7 @@ std::vector<double> SpectrumDerivatives::slopes_of(std::span<const int> turning,
 std::optional<std::vector<double>> SpectrumDerivatives::gradient_without_energy(double omega2,
                                                                                 std::span<const double> shape,
                                                                                 Metric metric) {
-  const std::optional<std::vector<int>> turning = turning_bodies();
-  if (!turning) return {};
+  if (!knows_slopes()) return {};
   std::vector<double> v(at(plan().coordinates()), 0.0), w(v), nu(at(plan().rows), 0.0);
   for (int c = 0; c < plan().columns; ++c) v[at(plan().coordinate[at(c)])] = shape[at(c)];
   const std::optional<std::vector<double>> mu = holding_multipliers(omega2, v);
@@ -182,24 +158,22 @@ std::optional<std::vector<double>> SpectrumDerivatives::gradient_without_energy(
   double scale = metric == Metric::lengths ? 1 : 0;
   for (int c = 0; metric == Metric::masses && c < 3 * plan().moving; ++c)
     scale += w[at(c)] * groups().front().mechanism.mass(c).v * v[at(c)];
-  return slopes_of(*turning, {v, *mu, w, nu}, omega2, scale);
+  return slopes_of({v, *mu, w, nu}, omega2, scale);
 }
 
 std::optional<std::vector<double>> SpectrumDerivatives::gradient_of_meeting(double omega2,
                                                                             std::span<const double> shape) {
-  const std::optional<std::vector<int>> turning = turning_bodies();
-  if (!turning) return {};
+  if (!knows_slopes()) return {};
   std::vector<double> v(at(plan().coordinates()), 0.0), w(v), nu(at(plan().rows), 0.0);
   for (int c = 0; c < plan().columns; ++c) v[at(plan().coordinate[at(c)])] = shape[at(c)];
   if (!find_both(omega2, v, w, nu)) return {};
   const std::optional<std::vector<double>> mu = holding_multipliers(omega2, v);
   if (!mu) return {};
-  return slopes_of(*turning, {v, *mu, w, nu}, omega2, 1);
+  return slopes_of({v, *mu, w, nu}, omega2, 1);
 }
 
 // w^T (K - omega2 M) v + mu^T Phi_q w + nu^T Phi_q v.
-DesignScalar SpectrumDerivatives::left_and_right(Group& group, std::span<const int> turning, const TwoVectors& of,
-                                                 double omega2) {
+DesignScalar SpectrumDerivatives::left_and_right(Group& group, const TwoVectors& of, double omega2) {
   DesignMechanism& mechanism = group.mechanism;
   std::vector<DesignScalar> along(of.v.size());
   const auto look_along = [&](double by_v, double by_w) {
@@ -210,29 +184,16 @@ DesignScalar SpectrumDerivatives::left_and_right(Group& group, std::span<const i
   DesignScalar sum;
   for (const double sign : {1.0, -1.0}) {
     look_along(1, sign);
-    DesignScalar second = mechanism.potential().dd;
-    for (std::size_t r = 0; r < of.mu.size(); ++r) second += group.lambda[r] * group.rows[r].dd;
-    sum += DesignScalar(sign / 4) * second;
+    for (std::size_t r = 0; r < of.mu.size(); ++r) sum += DesignScalar(sign / 4) * group.lambda[r] * group.rows[r].dd;
   }
   look_along(0, 1);
   for (std::size_t r = 0; r < of.mu.size(); ++r) sum += DesignScalar(of.mu[r]) * group.rows[r].d;
   look_along(1, 0);
   for (std::size_t r = 0; r < of.mu.size(); ++r) sum += DesignScalar(of.nu[r]) * group.rows[r].d;
-  for (int c = 0; c < 3 * plan().moving; ++c)
+  ForceSlopes(evaluator(), mechanism).along(group.loads);
+  for (int c = 0; c < 3 * plan().moving; ++c) {
+    sum -= DesignScalar(of.w[at(c)]) * group.loads[at(c)];
     sum -= DesignScalar(omega2 * of.v[at(c)] * of.w[at(c)]) * mechanism.mass(c);
-  // Of all forces on a body what is not the slope of V turns with it.
-  mechanism.set_state(group.q);
-  mechanism.applied_forces(group.loads);
-  for (const int body : turning) {
-    const std::size_t x = at(3 * body);
-    DesignScalar force[2];
-    for (std::size_t k = 0; k < 2; ++k) {
-      std::fill(along.begin(), along.end(), DesignScalar());
-      along[x + k] = DesignScalar(1.0);
-      mechanism.set_state(group.q, along);
-      force[k] = group.loads[x + k] + mechanism.potential().d;
-    }
-    sum += DesignScalar(of.v[x + 2]) * (DesignScalar(of.w[x]) * force[1] - DesignScalar(of.w[x + 1]) * force[0]);
   }
   return sum;
 }

@@ -1,4 +1,4 @@
-// SpectrumDerivatives: complex omega2, of pairs that flutter under forces that turn with their bodies. As in
+// SpectrumDerivatives: complex omega2, of pairs that flutter under forces that have no energy. As in
 // circulatory_derivatives.cpp, with complex vectors on both sides:
 //
 //   K v + Phi_q^T mu = z M v,   K^T w + Phi_q^T nu = z M w,   Phi_q v = Phi_q w = 0,   z = omega2 - i b
@@ -87,8 +87,7 @@ struct Part {
 }  // namespace
 
 std::optional<std::vector<Complex>> SpectrumDerivatives::gradient_of_pair(Complex z, std::span<const double> shape) {
-  const std::optional<std::vector<int>> turning = turning_bodies();
-  if (!turning) return {};
+  if (!knows_slopes()) return {};
   const int columns = plan().columns, size = columns + plan().rows;
   Eigen::VectorXd mass = Eigen::VectorXd::Zero(size);
   for (int c = 0; c < columns; ++c) mass(c) = groups().front().mechanism.mass(plan().coordinate[at(c)]).v;
@@ -112,7 +111,7 @@ std::optional<std::vector<Complex>> SpectrumDerivatives::gradient_of_pair(Comple
   std::vector<Complex> gradient(at(parameters()));
   const auto add = [&](int left, int right, Complex weight) {
     const std::vector<double> part =
-        slopes_of(*turning, {v[right].x, v[right].multipliers, w[left].x, w[left].multipliers}, 0, 1);
+        slopes_of({v[right].x, v[right].multipliers, w[left].x, w[left].multipliers}, 0, 1);
     for (std::size_t p = 0; p < part.size(); ++p) gradient[p] += weight * part[p];
   };
   add(0, 0, 1);

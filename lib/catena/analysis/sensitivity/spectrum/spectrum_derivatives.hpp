@@ -55,7 +55,7 @@ class SpectrumDerivatives final : public StateDerivatives {
   std::optional<std::vector<double>> gradient(double omega2, std::span<const double> shape);
   /// What vectors on the left are found with: the masses of a frequency, the metric (1, 1, radius^2) of a load.
   enum class Metric { masses, lengths };
-  /// The same of a real omega2 where forces turn with their bodies, and by `lengths`, with omega2 = 0, of a load of
+  /// The same of a real omega2 where forces have no energy, and by `lengths`, with omega2 = 0, of a load of
   /// divergence: circulatory_derivatives.cpp.
   std::optional<std::vector<double>> gradient_without_energy(double omega2, std::span<const double> shape,
                                                              Metric metric = Metric::masses);
@@ -85,12 +85,12 @@ class SpectrumDerivatives final : public StateDerivatives {
   /// v, w and nu of the least singular value of K - omega2 M on the null space of Phi_q.
   bool find_both(double omega2, std::span<double> v, std::span<double> w, std::span<double> nu);
   bool factorize_beside(SaddleSystem& system, double shift, std::span<const double> weight, bool transpose);
-  /// The moving bodies whose forces turn with them; nothing, and why() says it, where another force has no energy.
-  std::optional<std::vector<int>> turning_bodies();
+  /// False, and why() says it, where a force shows no slopes.
+  bool knows_slopes();
   /// The sum of a group by parameter, over `scale`.
-  std::vector<double> slopes_of(std::span<const int> turning, const TwoVectors& of, double omega2, double scale);
+  std::vector<double> slopes_of(const TwoVectors& of, double omega2, double scale);
   std::vector<double> weights_of(Metric metric);
-  DesignScalar left_and_right(Group& group, std::span<const int> turning, const TwoVectors& of, double omega2);
+  DesignScalar left_and_right(Group& group, const TwoVectors& of, double omega2);
 
   bool from_model_;
   SaddleSystem metric_;
