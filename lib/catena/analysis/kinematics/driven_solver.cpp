@@ -13,10 +13,11 @@
 namespace catena {
 namespace {
 
-// In length scales or rad: a residual below this is zero. Corrections that are solved to rounding need not shrink any
-// more; one predicted to be below rounding of sums is not computed.
+// In length scales or rad: a residual below `rounding` is zero, a correction predicted to be below `negligible` is not
+// computed; one that is solved need not shrink any more.
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double rounding = 1e-16;
+constexpr double negligible = 1e-14;
 // Shifts are compared with the length scale, or with this part of the extent of a long structure.
 constexpr double part_of_extent = 0.01;
 // Factors from further away than this are replaced: a new factorization costs two or three solves.
@@ -178,8 +179,8 @@ NewtonOutcome DrivenSolver::solve_position(std::span<double> q) {
     // Corrections are the residual times a condition number: they need not become small, but then the residual stays
     // constant.
     const bool small = outcome.residual <= attainable;
-    const bool settled = rate * size <= std::max(thresholds::sum_rounding, epsilon * extent_) ||
-                         outcome.residual > poor_contraction * last_residual;
+    const bool settled =
+        rate * size <= std::max(negligible, epsilon * extent_) || outcome.residual > poor_contraction * last_residual;
     if (outcome.residual <= rounding || (outcome.iterations > 0 && small && settled)) {
       outcome.converged = true;
       return outcome;
@@ -261,7 +262,7 @@ bool DrivenSolver::solve_refined(std::span<double> x, bool has_start) {
     all = sizes[1].all;
     if (!std::isfinite(size)) return false;
     if (k > 0) rate = std::max(rate, size / last_size);
-    if (rate * size <= thresholds::sum_rounding * all || size <= rounding * all) {
+    if (rate * size <= negligible * all || size <= rounding * all) {
       left_.of_rates = std::max(left_.of_rates, rate * size / all);
       return true;
     }
@@ -353,7 +354,7 @@ bool DrivenSolver::solve_multipliers(std::span<const double> rhs, std::span<doub
     if (!std::isfinite(all)) return false;
     // The ratio of corrections alone may be that of forces while what is left is moments.
     const double ratio = k > 0 ? size / last_size : 0, rate = std::max(refinement_rate(), ratio);
-    if (rate * size <= thresholds::sum_rounding * all || size <= rounding * all) {
+    if (rate * size <= negligible * all || size <= rounding * all) {
       if (all > 0) left_.of_multipliers = std::max(left_.of_multipliers, rate * size / all);
       return true;
     }
