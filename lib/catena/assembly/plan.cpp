@@ -196,9 +196,11 @@ std::shared_ptr<const Plan> Plan::make(const Model& model, const PlanOptions& op
   }
   make_slots(*plan);
   for (const CompiledLaw<double>& law : compile_laws<double>(model, model.laws, *plan)) {
-    for (const int acted : {law.i, law.j}) {
-      if (acted < 0 || acted >= plan->moving) continue;
-      for (const int read : law.bodies) plan->law_pairs.emplace_back(acted, read);
+    // In the order in which Evaluator::visit_stiffness gives their matrices.
+    for (const int read : law.bodies) {
+      for (const int acted : {law.i, law.j}) {
+        if (acted >= 0 && acted < plan->moving) plan->law_pairs.emplace_back(acted, read);
+      }
     }
   }
   return plan;

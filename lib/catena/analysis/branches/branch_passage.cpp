@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "catena/assembly/systems/tangent.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -132,14 +133,9 @@ bool Passage::approach(bool& arrived) {
   if (rest > 0) basis.applyOnTheLeft(factors.householderQ());
   const Eigen::VectorXd lambda = scale.cwiseProduct(kept_ * w);
   Eigen::MatrixXd bend = Eigen::MatrixXd::Zero(plan.columns, plan.columns);
-  evaluator.visit_constraint_hessians(std::span(lambda.data(), at(plan.rows)), [&](int i, int j, const auto& matrix) {
-    for (int r = 0; r < 6; ++r) {
-      const int row = plan.column_of(i, j, r);
-      for (int c = 0; c < 6; ++c) {
-        const int column = plan.column_of(i, j, c);
-        if (row >= 0 && column >= 0) bend(row, column) += matrix[at(6 * r + c)] * unit[row] * unit[column];
-      }
-    }
+  visit_curvature(evaluator, std::span(lambda.data(), at(plan.rows)), [&](int i, int j, double entry) {
+    const int row = plan.column[at(i)], column = plan.column[at(j)];
+    if (row >= 0 && column >= 0) bend(row, column) += entry * unit[row] * unit[column];
   });
   hessian = basis.transpose() * bend * basis;
   offset = w.dot(phi);

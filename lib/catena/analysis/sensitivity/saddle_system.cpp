@@ -22,30 +22,10 @@ constexpr int most_dense = 24;
 // the size of its terms.
 constexpr double contradicting = 1e-6;
 
-/// Pairs of moving bodies that an element of the plan ties, each once, the lower number first.
-std::vector<std::pair<int, int>> tied_pairs(const Plan& plan) {
-  std::vector<std::pair<int, int>> pairs;
-  const auto take = [&](const auto& block) {
-    for (int e = 0; e < block.size(); ++e) {
-      const int i = block.body_i[at(e)], j = block.body_j[at(e)];
-      if (i < plan.moving && j < plan.moving && i != j) pairs.emplace_back(std::min(i, j), std::max(i, j));
-    }
-  };
-  for_each_list(plan.blocks, [&](const auto& block, int) { take(block); });
-  for_each_list(plan.forces, [&](const auto& block, int) { take(block); });
-  for (const auto& [i, j] : plan.law_pairs) pairs.emplace_back(std::min(i, j), std::max(i, j));
-  for (int b = 0; b < plan.moving; ++b) pairs.emplace_back(b, b);
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  return pairs;
-}
-
 }  // namespace
 
 SaddleSystem::SaddleSystem(std::shared_ptr<const Plan> plan, SaddleBlock block)
-    : plan_(std::move(plan)), block_(block) {
-  if (block_ == SaddleBlock::elements) pairs_ = tied_pairs(*plan_);
-}
+    : plan_(std::move(plan)), block_(block), tangent_(plan_, block) {}
 
 void SaddleSystem::leave_out(std::vector<int> rows) {
   if (rows == left_out_ && rows_known_) return;
@@ -83,57 +63,15 @@ void SaddleSystem::choose_rows(std::span<const double> jacobian) {
   analyzed_ = false;
 }
 
-int SaddleSystem::block_of(int body_i, int body_j) const {
-  return static_cast<int>(std::lower_bound(pairs_.begin(), pairs_.end(), std::pair(body_i, body_j)) - pairs_.begin());
-}
-
 bool SaddleSystem::make_pattern() {
   const int columns = plan_->columns, size = columns + static_cast<int>(rows_.size());
   dense_ = block_ == SaddleBlock::none && 2 * columns == size && columns > 0 && columns <= most_dense;
-  std::vector<MatrixEntry> entries;
-  if (block_ == SaddleBlock::diagonal) {
-    for (int c = 0; c < columns; ++c) entries.push_back({c, c});
-  }
-  const auto column = [&](int body, int k) { return plan_->column[at(3 * body + k)]; };
-  std::vector<int> entry_of_pair;  // -1 where a coordinate is no unknown
-  for (const auto& [i, j] : pairs_) {
-    for (int direction = 0; direction < 2; ++direction) {
-      for (int k = 0; k < 9; ++k) {
-        const int row = column(direction == 0 ? i : j, k / 3), col = column(direction == 0 ? j : i, k % 3);
-        const bool there = row >= 0 && col >= 0;
-        entry_of_pair.push_back(there ? static_cast<int>(entries.size()) : -1);
-        if (there) entries.push_back({row, col});
-      }
-    }
-  }
   place_of_row_.assign(at(plan_->rows), -1);
   for (std::size_t k = 0; k < rows_.size(); ++k) place_of_row_[at(rows_[k])] = static_cast<int>(k);
-  const std::size_t first = entries.size();
-  std::vector<int> used;
-  for (int c = 0; c < columns; ++c) {
-    for (int k = plan_->jacobian.column_start[at(c)]; k < plan_->jacobian.column_start[at(c) + 1]; ++k) {
-      const int row = place_of_row_[at(plan_->jacobian.row_index[at(k)])];
-      if (row < 0) continue;
-      used.push_back(k);
-      entries.push_back({columns + row, c});
-      entries.push_back({c, columns + row});
-    }
-  }
-  const SlottedPattern slotted = build_pattern(size, size, entries);
-  pattern_ = slotted.pattern;
-  diagonal_slot_.clear();
-  for (int c = 0; block_ == SaddleBlock::diagonal && c < columns; ++c) diagonal_slot_.push_back(slotted.slot[at(c)]);
-  pair_slot_.clear();
-  for (const int entry : entry_of_pair) pair_slot_.push_back(entry < 0 ? -1 : slotted.slot[at(entry)]);
-  jacobian_slot_.assign(at(plan_->jacobian.entries()), -1);
-  transposed_slot_ = jacobian_slot_;
-  for (std::size_t k = 0; k < used.size(); ++k) {
-    jacobian_slot_[at(used[k])] = slotted.slot[first + 2 * k];
-    transposed_slot_[at(used[k])] = slotted.slot[first + 2 * k + 1];
-  }
+  if (!dense_) tangent_.arrange(rows_);
   find_dependent_entries();
   solution_.resize(at(size));
-  if (!dense_) return factorization_.analyze(pattern_, Kernel::automatic, counters_).ok();
+  if (!dense_) return factorization_.analyze(tangent_.pattern(), Kernel::automatic, counters_).ok();
   find_dense_slots();
   return true;
 }
@@ -181,40 +119,13 @@ bool SaddleSystem::begin(std::span<const double> jacobian) {
     }
     return true;
   }
-  values_.assign(pattern_.row_index.size(), 0.0);
-  for (std::size_t k = 0; k < jacobian_slot_.size(); ++k) {
-    if (jacobian_slot_[k] < 0) continue;
-    values_[at(jacobian_slot_[k])] = jacobian[k];
-    values_[at(transposed_slot_[k])] = jacobian[k];
-  }
+  tangent_.begin(jacobian);
   return true;
 }
 
 void SaddleSystem::add_diagonal(int coordinate, double value) {
   const int column = plan_->column[at(coordinate)];
-  if (column < 0) return;
-  if (block_ == SaddleBlock::diagonal) {
-    values_[at(diagonal_slot_[at(column)])] += value;
-  } else {
-    const int body = coordinate / 3, k = coordinate % 3;
-    values_[at(pair_slot_[at(18 * block_of(body, body) + 4 * k)])] += value;
-  }
-}
-
-void SaddleSystem::add_element(int body_i, int body_j, const ElementMatrix& matrix) {
-  const int body[2] = {body_i, body_j};
-  for (int a = 0; a < 2; ++a) {
-    for (int b = 0; b < 2; ++b) {
-      if (body[a] >= plan_->moving || body[b] >= plan_->moving) continue;
-      // A body's own block stands once: its transposed copy stays zero.
-      const bool forwards = body[a] <= body[b];
-      const int first = 18 * block_of(std::min(body[a], body[b]), std::max(body[a], body[b])) + (forwards ? 0 : 9);
-      for (int k = 0; k < 9; ++k) {
-        const int slot = pair_slot_[at(first + k)];
-        if (slot >= 0) values_[at(slot)] += matrix[at(6 * (3 * a + k / 3) + 3 * b + k % 3)];
-      }
-    }
-  }
+  if (column >= 0) tangent_.add_diagonal(column, value);
 }
 
 bool SaddleSystem::factorize() {
@@ -222,7 +133,7 @@ bool SaddleSystem::factorize() {
     ++counters_.factorizations;
     return full_.factors.factorize() && full_.factors.rcond() > regular;
   }
-  return factorization_.factorize(values_, counters_).ok() && factorization_.rcond() > regular;
+  return factorization_.factorize(tangent_.values(), counters_).ok() && factorization_.rcond() > regular;
 }
 
 // solution_, [f; b] in, [x; lambda] out: x follows from b, lambda from f.
@@ -251,7 +162,7 @@ bool SaddleSystem::solve(std::span<double> f, std::span<double> b) {
     std::fill(solution_.begin(), solution_.end(), std::numeric_limits<double>::quiet_NaN());
   else if (dense_)
     solve_dense();
-  else if (!factorization_.solve_checked(values_, solution_, counters_).ok())
+  else if (!factorization_.solve_checked(tangent_.values(), solution_, counters_).ok())
     return false;
   for (std::size_t c = 0; c < columns; ++c) f[at(plan_->coordinate[c])] = solution_[c];
   std::fill(b.begin(), b.end(), 0.0);

@@ -18,14 +18,12 @@
 #include <vector>
 
 #include "catena/assembly/evaluate.hpp"
+#include "catena/assembly/systems/tangent.hpp"
 #include "catena/linalg/factorization/factorization.hpp"
 #include "catena/linalg/kernels/dense_factors.hpp"
 #include "catena/linalg/kernels/lanes.hpp"
 
 namespace catena {
-
-/// What of A may differ from zero.
-enum class SaddleBlock { none, diagonal, elements };
 
 class SaddleSystem {
  public:
@@ -37,8 +35,8 @@ class SaddleSystem {
   bool begin(std::span<const double> jacobian);
   /// Adds `value` to the diagonal at a coordinate.
   void add_diagonal(int coordinate, double value);
-  /// Adds an element's 6 x 6 matrix over [x_i y_i phi_i x_j y_j phi_j]; bodies are plan bodies.
-  void add_element(int body_i, int body_j, const ElementMatrix& matrix);
+  /// The matrix between begin() and factorize(): K of the elements is added to it.
+  Tangent& tangent() { return tangent_; }
   /// Factors what was filled in; false where the matrix is singular or not finite.
   bool factorize();
   /// begin(), what `fill` adds, and factorize(): where that fails once more, with independent rows chosen anew.
@@ -87,21 +85,16 @@ class SaddleSystem {
   void find_dependent_entries();
   void find_dense_slots();
   void solve_dense();
-  int block_of(int body_i, int body_j) const;
 
   std::shared_ptr<const Plan> plan_;
   SaddleBlock block_;
+  Tangent tangent_;
   std::vector<int> left_out_, rows_, dependent_, place_of_row_;
   bool rows_known_ = false, analyzed_ = false;
   bool dense_ = false;  // full_ is solved with
-  SparsePattern pattern_;
-  std::vector<double> values_, solution_;
-  std::vector<DependentEntry> dependent_entries_;     // of Phi_q
-  std::vector<double> asked_;                         // b of dependent rows at the last solve()
-  std::vector<int> diagonal_slot_;                    // per column
-  std::vector<int> jacobian_slot_, transposed_slot_;  // per entry of Phi_q; -1: the row is not solved with
-  std::vector<std::pair<int, int>> pairs_;            // of bodies i <= j that share an element, sorted
-  std::vector<int> pair_slot_;                        // 9 a pair, and 9 for its transpose
+  std::vector<double> solution_;
+  std::vector<DependentEntry> dependent_entries_;  // of Phi_q
+  std::vector<double> asked_;                      // b of dependent rows at the last solve()
   Dense full_;
   Factorization factorization_;
   Counters counters_;

@@ -127,8 +127,7 @@ bool StartDerivatives::prepare_places(std::span<const double> q) {
   if (!assembly_.factorize() || !assembly_.solve(f, place_multipliers_)) return false;
   assembly_.begin(phi_q);
   weigh();
-  evaluator_.visit_constraint_hessians(
-      place_multipliers_, [&](int i, int j, const ElementMatrix& matrix) { assembly_.add_element(i, j, matrix); });
+  assembly_.tangent().add_curvature(evaluator_, place_multipliers_);
   if (!assembly_.factorize()) return false;
   prepared_q_.assign(q.begin(), q.end());
   return true;

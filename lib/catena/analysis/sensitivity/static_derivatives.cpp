@@ -12,9 +12,7 @@
 
 namespace catena {
 StaticDerivatives::StaticDerivatives(const Evaluator& evaluator, const DesignModels& models, int parameters)
-    : StateDerivatives(evaluator, models, parameters),
-      system_(evaluator.shared_plan(), SaddleBlock::elements),
-      rest_(static_cast<std::size_t>(plan().coordinates()), 0.0) {}
+    : StateDerivatives(evaluator, models, parameters), system_(evaluator.shared_plan(), SaddleBlock::elements) {}
 
 std::vector<int> StaticDerivatives::gaps_without_force(const Snapshot& snapshot, int& touches) {
   std::vector<double> phi(static_cast<std::size_t>(plan().rows));
@@ -23,7 +21,7 @@ std::vector<int> StaticDerivatives::gaps_without_force(const Snapshot& snapshot,
   for (const double multiplier : snapshot.lambda) largest = std::max(largest, std::abs(multiplier));
   double stiffest = 0;
   if (!plan().gap_rows.empty()) {
-    evaluator().visit_stiffness(rest_, [&](int, int, const ElementMatrix& m) {
+    evaluator().visit_stiffness({}, [&](int, int, const ElementMatrix& m) {
       for (const double entry : m) stiffest = std::max(stiffest, std::abs(entry));
     });
   }
@@ -65,16 +63,8 @@ bool StaticDerivatives::factorize(const Snapshot& snapshot, bool transposed) {
   evaluator().set_configuration(snapshot.q);
   if (!leave_open_gaps_out(snapshot)) return false;
   if (is_neutral_ && is_neutral_()) return neutral();
-  const bool factored = system_.factorize(jacobian(), [&] {
-    evaluator().visit_stiffness(rest_, [&](int i, int j, ElementMatrix m) {
-      for (std::size_t r = 0; transposed && r < 6; ++r) {
-        for (std::size_t c = 0; c < r; ++c) std::swap(m[6 * r + c], m[6 * c + r]);
-      }
-      system_.add_element(i, j, m);
-    });
-    evaluator().visit_constraint_hessians(snapshot.lambda,
-                                          [&](int i, int j, const ElementMatrix& m) { system_.add_element(i, j, m); });
-  });
+  const bool factored =
+      system_.factorize(jacobian(), [&] { system_.tangent().add_stiffness(evaluator(), snapshot.lambda, transposed); });
   return factored || neutral();
 }
 

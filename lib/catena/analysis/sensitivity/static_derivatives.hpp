@@ -47,7 +47,6 @@ class StaticDerivatives : public StateDerivatives {
   void leave_out_contradicting(const Snapshot& snapshot, std::vector<double>& gradient, std::string& why);
 
   SaddleSystem system_;
-  std::vector<double> rest_;
   std::function<bool()> is_neutral_;
 };
 

@@ -164,7 +164,7 @@ bool CirculatoryMotions::find(std::span<const double> lambda, double residual, C
   modes = {};
   modes.symmetric = freedoms() == 0;
   if (modes.symmetric) return true;
-  tangent_.fill(lambda, 0, 0);
+  tangent_.fill(lambda, 0);
   const StiffnessFloor floor(system_, lambda, residual, &groups_);
   const Refinement refinement(*this, floor);
   Dense reduced = refinement.reduced();

@@ -4,6 +4,7 @@
 
 #include "catena/analysis/run/thresholds.hpp"
 #include "catena/analysis/spectrum/motion_groups.hpp"
+#include "catena/assembly/systems/tangent.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -13,23 +14,6 @@ namespace {
 // the largest; a value below a few hundred of these roundings cannot be distinguished from zero. Of coordinates far
 // from the origin the last digits are unknown.
 constexpr double stiffness_rounding = 2e-13;
-
-// Calls f(a, b, K_ab) for every pair of moving coordinates in the stiffness of every element, forces and constraints.
-template <class F>
-void visit_entries(Evaluator& evaluator, std::span<const double> lambda, F&& f) {
-  const int coordinates = 3 * evaluator.plan().moving;
-  const auto element = [&](int body_i, int body_j, const auto& matrix) {
-    const int body[2] = {body_i, body_j};
-    for (int r = 0; r < 6; ++r) {
-      for (int c = 0; c < 6; ++c) {
-        const int row = 3 * body[r / 3] + r % 3, column = 3 * body[c / 3] + c % 3;
-        if (std::min(row, column) >= 0 && std::max(row, column) < coordinates) f(row, column, matrix[at(6 * r + c)]);
-      }
-    }
-  };
-  evaluator.visit_stiffness({}, element);
-  evaluator.visit_constraint_hessians(lambda, element);
-}
 
 /// What the equations hold every body with: the sum of the sizes of their forces, N.
 std::vector<double> forces_of_equations(const StaticSystem& system, std::span<const double> lambda) {
@@ -47,13 +31,10 @@ std::vector<double> forces_of_equations(const StaticSystem& system, std::span<co
 // A body that hangs from one equation, its centroid below the point held, has no lever there but for rounding: the
 // force passes the centroid. The stiffness against turning is that force times the distance.
 void lengthen_by_loads(StaticSystem& system, std::span<const double> lambda, std::vector<double>& arms) {
-  const Plan& plan = system.plan();
   const std::vector<double> force = forces_of_equations(system, lambda);
   std::vector<double> turning(arms.size(), 0.0);
-  system.evaluator().visit_constraint_hessians(lambda, [&](int body_i, int body_j, const auto& matrix) {
-    constexpr int turning_of_i = 6 * 2 + 2, turning_of_j = 6 * 5 + 5;
-    if (body_i >= 0 && body_i < plan.moving) turning[at(body_i)] += std::abs(matrix[at(turning_of_i)]);
-    if (body_j >= 0 && body_j < plan.moving) turning[at(body_j)] += std::abs(matrix[at(turning_of_j)]);
+  visit_curvature(system.evaluator(), lambda, [&](int row, int column, double value) {
+    if (row == column && row % 3 == 2) turning[at(row / 3)] += std::abs(value);
   });
   for (std::size_t b = 0; b < arms.size(); ++b) {
     if (force[b] > 0) arms[b] = std::max(arms[b], turning[b] / force[b]);
@@ -80,7 +61,7 @@ std::vector<double> body_arms(StaticSystem& system, std::span<const double> lamb
   }
   lengthen_by_loads(system, lambda, arms);
   // Forces: the same, from the stiffness against both.
-  visit_entries(system.evaluator(), lambda, [&](int row, int column, double value) {
+  visit_tangent(system.evaluator(), lambda, [&](int row, int column, double value) {
     if (row != column) return;
     double& most = (row % 3 == 2 ? turning : pushing)[at(row / 3)];
     most = std::max(most, std::abs(value));
@@ -101,7 +82,7 @@ StiffnessFloor::StiffnessFloor(StaticSystem& system, std::span<const double> lam
   const std::vector<double> arms = body_arms(system, lambda);
   // Per body, without cancellation: stiffness against travel, N/m, and against turning, N m.
   std::vector<double> travel(arms.size(), 0.0), turning(arms.size(), 0.0);
-  visit_entries(evaluator, lambda, [&](int row, int column, double value) {
+  visit_tangent(evaluator, lambda, [&](int row, int column, double value) {
     const std::size_t b = at(row / 3), d = at(column / 3);
     const double size = std::abs(value);
     if (row % 3 == 2) {

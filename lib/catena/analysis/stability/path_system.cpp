@@ -96,9 +96,9 @@ bool PathSystem::factorize(const PathPoint& x) {
 bool PathSystem::factorize_here(std::span<const double> lambda, double shift) {
   system_.fill(lambda, Curvature::exact, shift);
   if (!is_circulatory()) return system_.factorize().ok();
-  tangent_->fill(lambda, shift, 0);
+  tangent_->fill(lambda, shift);
   const double stiffness = std::max(tangent_->largest_stiffness(), system_.force_size() / system_.length());
-  tangent_->fill(lambda, shift, settling_regularisation / stiffness);
+  tangent_->set_compliance(settling_regularisation / stiffness);
   return tangent_->factorize();
 }
 

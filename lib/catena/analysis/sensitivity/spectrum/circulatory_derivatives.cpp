@@ -34,14 +34,6 @@ constexpr int most_inverse_rounds = 20;
 // Where two meet: the vectors move by about this part of omega2, and so does what is made of them.
 constexpr double beside_meeting = 1e-11;
 
-ElementMatrix transposed(const ElementMatrix& m) {
-  ElementMatrix t{};
-  for (std::size_t r = 0; r < 6; ++r) {
-    for (std::size_t c = 0; c < 6; ++c) t[6 * r + c] = m[6 * c + r];
-  }
-  return t;
-}
-
 }  // namespace
 
 std::vector<double> SpectrumDerivatives::weights_of(Metric metric) {
@@ -55,11 +47,7 @@ std::vector<double> SpectrumDerivatives::weights_of(Metric metric) {
 bool SpectrumDerivatives::factorize_beside(SaddleSystem& system, double shift, std::span<const double> weight,
                                            bool transpose) {
   return system.factorize(jacobian(), [&] {
-    const auto add = [&](int i, int j, const ElementMatrix& m) {
-      system.add_element(i, j, transpose ? transposed(m) : m);
-    };
-    evaluator().visit_stiffness(rest_, add);
-    evaluator().visit_constraint_hessians(lambda_, add);
+    system.tangent().add_stiffness(evaluator(), lambda_, transpose);
     for (int c = 0; c < 3 * plan().moving; ++c) system.add_diagonal(c, -shift * weight[at(c)]);
   });
 }
@@ -70,12 +58,10 @@ bool SpectrumDerivatives::find_left(double omega2, Metric metric, std::span<cons
   const std::vector<double> weight = weights_of(metric);
   double size = std::max(std::abs(omega2), 1e-300);
   if (metric == Metric::lengths) {
-    evaluator().visit_stiffness(rest_, [&](int i, int j, const ElementMatrix& m) {
-      const int body[2] = {i, j};
-      for (std::size_t r = 0; r < 6; ++r) {
-        const int of = body[r / 3];
-        if (of < plan().moving) size = std::max(size, std::abs(m[7 * r]) / weight[at(3 * of) + r % 3]);
-      }
+    evaluator().visit_stiffness({}, [&](int i, int j, const ElementMatrix& m) {
+      visit_entries(plan(), i, j, m, [&](int row, int column, double value) {
+        if (row == column) size = std::max(size, std::abs(value) / weight[at(row)]);
+      });
     });
   }
   if (!factorize_beside(system, omega2 + beside * size, weight, true))

@@ -61,21 +61,16 @@ std::optional<std::vector<double>> limit_load_gradient(const Evaluator& evaluato
   const Plan& plan = here.plan();
   here.set_time(place.t);
   here.set_configuration(place.q);
-  std::vector<double> jacobian(at(plan.trash_slot()) + 1), rest(at(plan.coordinates()), 0.0);
+  std::vector<double> jacobian(at(plan.trash_slot()) + 1);
   here.start_jacobian(jacobian);
   here.jacobian(jacobian);
   SaddleSystem system(here.shared_plan(), SaddleBlock::elements);
-  double largest = 0;
-  const auto add = [&](int i, int j, const ElementMatrix& m) {
-    for (const double entry : m) largest = std::max(largest, std::abs(entry));
-    system.add_element(i, j, m);
-  };
   if (!system.begin(std::span<const double>(jacobian).first(at(plan.trash_slot())))) {
     why = "the equations of the equilibrium cannot be solved";
     return {};
   }
-  here.visit_stiffness(rest, add);
-  here.visit_constraint_hessians(place.lambda, add);
+  system.tangent().add_stiffness(here, place.lambda);
+  const double largest = system.tangent().largest_stiffness();
   // At the fold itself nothing could be solved; the shift turns the vector by as little.
   for (int c = 0; c < 3 * plan.moving; ++c) system.add_diagonal(c, thresholds::carried_rounding * largest);
   if (!system.factorize()) {

@@ -70,12 +70,7 @@ bool SpectrumDerivatives::is_in_balance() {
 // The place is an equilibrium, which moves with the parameters.
 bool SpectrumDerivatives::find_as_equilibrium(const Snapshot& snapshot) {
   SaddleSystem system(evaluator().shared_plan(), SaddleBlock::elements);
-  const bool factored = system.factorize(jacobian(), [&] {
-    const auto add = [&](int i, int j, const ElementMatrix& m) { system.add_element(i, j, m); };
-    evaluator().visit_stiffness(rest_, add);
-    evaluator().visit_constraint_hessians(lambda_, add);
-  });
-  if (!factored) return false;
+  if (!system.factorize(jacobian(), [&] { system.tangent().add_stiffness(evaluator(), lambda_); })) return false;
   std::vector<double> f(rest_.size()), b(lambda_.size());
   for (Group& group : groups()) {
     lift_state(group, snapshot);
@@ -162,18 +157,7 @@ bool SpectrumDerivatives::find_held(const Snapshot& snapshot, const StateDerivat
 
 std::optional<std::vector<double>> SpectrumDerivatives::holding_multipliers(double omega2, std::span<const double> v) {
   std::vector<double> f(v.size(), 0.0), b(at(plan().rows), 0.0);
-  const auto subtract = [&](int i, int j, const ElementMatrix& m) {
-    const int body[2] = {i, j};
-    for (std::size_t r = 0; r < 6; ++r) {
-      for (std::size_t c = 0; c < 6; ++c) {
-        const int row = body[r / 3], column = body[c / 3];
-        if (row < plan().moving && column < plan().moving)
-          f[at(3 * row) + r % 3] -= m[6 * r + c] * v[at(3 * column) + c % 3];
-      }
-    }
-  };
-  evaluator().visit_stiffness(rest_, subtract);
-  evaluator().visit_constraint_hessians(lambda_, subtract);
+  visit_tangent(evaluator(), lambda_, [&](int row, int column, double value) { f[at(row)] -= value * v[at(column)]; });
   for (int c = 0; c < 3 * plan().moving; ++c) f[at(c)] += omega2 * groups().front().mechanism.mass(c).v * v[at(c)];
   if (!factor_metric(evaluator(), metric_, values_) || !metric_.solve(f, b)) {
     fail("constraints are singular");

@@ -109,7 +109,8 @@ bool Settling::is_balanced() {
 
 // False: the search ends.
 bool Settling::step() {
-  tangent_->fill(lambda_, damping_, settling_regularisation / stiffness_);
+  tangent_->fill(lambda_, damping_);
+  tangent_->set_compliance(settling_regularisation / stiffness_);
   if (!tangent_->factorize()) return stiffen();
   const bool solved = solve();
   before_.keep(system_, q_, lambda_);

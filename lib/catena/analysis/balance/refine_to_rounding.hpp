@@ -1,0 +1,44 @@
+// A x = b by factors of a neighbour of A, refined with A itself until rounding ends the gain.
+//
+//   x := F^-1 b, then x += F^-1 (b - A x) while corrections become shorter, in the metric diag(weight) of the places
+//
+// Only places are measured: multipliers follow from them, and those of rows that depend on each other may go on moving.
+// Ends too where the next correction, extrapolated from the last two, is rounding.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "catena/analysis/run/thresholds.hpp"
+
+namespace catena {
+
+/// Solves for the right-hand side `given`. solve(v): v := F^-1 v. multiply(x, y): y := A x. `correction`: work.
+template <class Solve, class Multiply>
+void refine_to_rounding(std::span<const double> weight, std::span<const double> given, std::span<double> x,
+                        std::span<double> correction, Solve&& solve, Multiply&& multiply) {
+  constexpr int most_corrections = 30;
+  // Corrections below this part of the solution are rounding.
+  constexpr double rounding = 1e-16;
+  const auto size_of = [&](std::span<const double> v) {
+    double sum = 0;
+    for (std::size_t c = 0; c < weight.size(); ++c) sum += weight[c] * v[c] * v[c];
+    return std::sqrt(sum);
+  };
+  std::copy(given.begin(), given.end(), x.begin());
+  solve(x);
+  double before = size_of(x);
+  for (int k = 0; k < most_corrections; ++k) {
+    multiply(std::span<const double>(x), correction);
+    for (std::size_t i = 0; i < x.size(); ++i) correction[i] = given[i] - correction[i];
+    solve(correction);
+    const double now = size_of(correction);
+    if (!(now < thresholds::least_gain * before)) return;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += correction[i];
+    if (now * (now / before) <= rounding * size_of(x)) return;
+    before = now;
+  }
+}
+
+}  // namespace catena
