@@ -9,7 +9,6 @@
 #include "catena/analysis/spectrum/free_motions.hpp"
 #include "catena/analysis/spectrum/modes_operator.hpp"
 #include "catena/analysis/spectrum/motion_groups.hpp"
-#include "catena/analysis/spectrum/tridiagonal.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -26,112 +25,38 @@ constexpr double rigid_part = 1e6;
 constexpr double most_bias = 500;
 constexpr int usual_steps = 8, most_steps = 40;
 
-// Lanczos with the inverse on the null space of Phi_q, in the metric W, all vectors kept orthogonal.
-class InverseLanczos {
- public:
-  InverseLanczos(StaticSystem& system, const std::vector<double>& weights) : system_(system), weights_(weights) {}
+std::size_t largest_in_size(std::span<const double> theta) {
+  const auto smaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  return static_cast<std::size_t>(std::max_element(theta.begin(), theta.end(), smaller) - theta.begin());
+}
 
-  // Lowest k found after at most `steps` steps, and its vector; stops when it has converged. `negative`: searches for k
-  // < 0.
-  double lowest(int steps, bool negative, std::vector<double>& mode) {
-    const std::size_t n = weights_.size();
-    std::vector<double> v(n);
-    // A fixed start without structure.
-    unsigned seed = 12345;
-    for (double& x : v) {
-      seed = seed * 1664525u + 1013904223u;
-      x = static_cast<double>(seed >> 8) / (1 << 24) - 0.5;
-    }
-    for (std::size_t k = 0; k < n; ++k) v[k] /= std::sqrt(weights_[k]);
-    apply(v);
-    if (!normalise(v)) return 0;
-    basis_.push_back(v);
-    double best = 0, before = 0;
-    std::vector<double> ritz;
-    for (int step = 0; step < steps; ++step) {
-      std::vector<double> w = basis_.back();
-      apply(w);
-      for (int pass = 0; pass < 2; ++pass) {
-        for (std::size_t b = 0; b < basis_.size(); ++b) {
-          const double h = product(basis_[b], w);
-          if (pass == 0 && b + 1 == basis_.size()) alpha_.push_back(h);
-          for (std::size_t k = 0; k < n; ++k) w[k] -= h * basis_[b][k];
-        }
-      }
-      const double length = std::sqrt(product(w, w));
-      ritz = lowest_ritz(best);
-      const bool settled = step > 1 && std::abs(best - before) <= 1e-3 * std::abs(best) && (!negative || best < 0);
-      before = best;
-      if (settled || !(length > 1e-12 * std::abs(alpha_.front()))) break;
-      beta_.push_back(length);
-      for (double& x : w) x /= length;
-      if (step + 1 < steps) basis_.push_back(w);
-    }
-    combine(ritz, mode);
-    return best;
+// The most negative k = 1 / theta, else the smallest positive one: of negative ones the smallest in size is the lowest
+// of the spectrum that is resolved.
+std::size_t lowest_of(std::span<const double> theta) {
+  const double largest = std::abs(theta[largest_in_size(theta)]);
+  for (std::size_t k = theta.size(); k-- > 0;) {
+    if (theta[k] < -1e-6 * largest) return k;
   }
+  return theta.size() - 1;
+}
 
-  // The smallest |k| found, with its sign, and its vector.
-  double softest(std::vector<double>& mode) const {
-    const TridiagonalSpectrum spectrum = tridiagonal_spectrum(alpha_, beta_);
-    const std::size_t largest = largest_in_size(spectrum.theta);
-    combine(spectrum.vector(largest), mode);
-    return 1 / spectrum.theta[largest];
+// The lowest k after at most `steps` steps, and its vector; ends when it has settled. `negative`: k < 0 is searched
+// for. Zero where nothing was found.
+double find_lowest(Lanczos& lanczos, int steps, bool negative, std::vector<double>& mode) {
+  if (!lanczos.begin_inverted()) return 0;
+  std::size_t chosen = 0;
+  double best = 0, before = 0;
+  for (int step = 0; step < steps && lanczos.advance(step + 1 == steps); ++step) {
+    lanczos.find_spectrum();
+    chosen = lowest_of(lanczos.theta());
+    best = 1 / lanczos.theta()[chosen];
+    const bool settled = step > 1 && std::abs(best - before) <= 1e-3 * std::abs(best) && (!negative || best < 0);
+    if (settled || lanczos.is_complete()) break;
+    before = best;
   }
-
- private:
-  static std::size_t largest_in_size(const std::vector<double>& theta) {
-    const auto smaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
-    return static_cast<std::size_t>(std::max_element(theta.begin(), theta.end(), smaller) - theta.begin());
-  }
-  void combine(std::span<const double> ritz, std::vector<double>& mode) const {
-    mode.assign(weights_.size(), 0.0);
-    for (std::size_t b = 0; b < basis_.size() && b < ritz.size(); ++b) {
-      for (std::size_t k = 0; k < mode.size(); ++k) mode[k] += ritz[b] * basis_[b][k];
-    }
-    normalise(mode);
-  }
-  // v := top part of the inverse times [W v; 0].
-  void apply(std::vector<double>& v) {
-    work_.assign(v.size() + at(system_.plan().rows), 0.0);
-    for (std::size_t k = 0; k < v.size(); ++k) work_[k] = weights_[k] * v[k];
-    system_.matrix().solve_unrefined(work_, system_.evaluator().counters);
-    std::copy_n(work_.begin(), v.size(), v.begin());
-  }
-  double product(const std::vector<double>& a, const std::vector<double>& b) const {
-    double sum = 0;
-    for (std::size_t k = 0; k < a.size(); ++k) sum += weights_[k] * a[k] * b[k];
-    return sum;
-  }
-  bool normalise(std::vector<double>& v) const {
-    const double length = std::sqrt(product(v, v));
-    if (!(length > 0) || !std::isfinite(length)) return false;
-    for (double& x : v) x /= length;
-    return true;
-  }
-  // Eigenvector of the tridiagonal matrix for the most negative k, else the smallest positive.
-  std::vector<double> lowest_ritz(double& k) const {
-    const TridiagonalSpectrum spectrum = tridiagonal_spectrum(alpha_, beta_);
-    // k = 1 / theta: of negative ones the smallest in size is the lowest of the spectrum that is resolved.
-    const std::vector<double>& theta = spectrum.theta;
-    const double largest = std::abs(theta[largest_in_size(theta)]);
-    std::size_t chosen = theta.size() - 1;
-    for (std::size_t i = theta.size(); i-- > 0;) {
-      if (theta[i] < -1e-6 * largest) {
-        chosen = i;
-        break;
-      }
-    }
-    k = 1 / theta[chosen];
-    const std::span<const double> vector = spectrum.vector(chosen);
-    return {vector.begin(), vector.end()};
-  }
-
-  StaticSystem& system_;
-  const std::vector<double>& weights_;
-  std::vector<std::vector<double>> basis_;
-  std::vector<double> alpha_, beta_, work_;
-};
+  if (best != 0) mode = lanczos.vector(static_cast<int>(chosen));
+  return best;
+}
 
 double stiffness_of(const KktMatrix& matrix, std::span<const double> v) {
   std::vector<double> product(v.size());
@@ -162,31 +87,20 @@ void keep_to_constraints(StaticSystem& system, std::span<const double> lambda, d
   if (shift != 0) system.fill(lambda, Curvature::exact, 0);
 }
 
-/// Squares of the arms that turn angles into lengths, m^2; 1 for places: the metric of modes.
-std::vector<double> metric_of(const StaticSystem& system) {
-  const Plan& plan = system.plan();
-  std::vector<double> weights(at(plan.columns));
-  for (int c = 0; c < plan.columns; ++c) {
-    const int coordinate = plan.coordinate[at(c)];
-    const double r = coordinate % 3 == 2 ? system.radius()[at(coordinate / 3)] : 1;
-    weights[at(c)] = r * r;
-  }
-  return weights;
-}
-
 /// The making of one certificate.
 class Certifier {
  public:
   Certifier(StaticSystem& system, std::span<const double> lambda)
-      : system_(system), lambda_(lambda), weights_(metric_of(system)) {}
+      : system_(system), lambda_(lambda), weights_(length_weights(system)) {}
 
   Certificate certify() {
     if (!factorize()) return result_;
     result_.valid = true;
     result_.negative_modes = system_.matrix().negative_modes();
     const bool unstable = result_.negative_modes > 0;
-    InverseLanczos lanczos(system_, weights_);
-    const double lowest = lanczos.lowest(unstable ? most_steps : usual_steps, unstable, result_.mode);
+    ModeOperator inverse(system_, weights_, false);
+    Lanczos lanczos(inverse);
+    const double lowest = find_lowest(lanczos, unstable ? most_steps : usual_steps, unstable, result_.mode);
     // Where the constraints leave no freedom the inverse contains only eps: far stiffer than K.
     if (lowest == 0 || std::abs(lowest) > rigid_part * (nothing_ ? floor_ : stiffest_)) {
       result_.mode.clear();
@@ -195,8 +109,9 @@ class Certifier {
     }
     // Whether the softest mode, negative ones included, is larger than the effect of regularised equations and
     // rounding.
-    std::vector<double> softest;
-    biased_ = std::abs(lanczos.softest(softest) - shift());
+    const std::size_t largest = largest_in_size(lanczos.theta());
+    std::vector<double> softest = lanczos.vector(static_cast<int>(largest));
+    biased_ = std::abs(1 / lanczos.theta()[largest] - shift());
     if (biased_ <= suspicious_part * stiffest_) rounding_.emplace(system_, lambda_, 0);
     const bool doubtful =
         rounding_ && !nothing_ && system_.plan().rows > 0 && biased_ <= most_bias * (*rounding_)(softest);

@@ -59,13 +59,29 @@ void Lanczos::orthogonalise(std::vector<double>& w, double* last) {
   }
 }
 
-bool Lanczos::add_new_vector() {
+// A start without structure.
+std::vector<double> Lanczos::random_vector() {
   const std::span<const double> typical = op_.typical();
   std::vector<double> v(size_);
   for (std::size_t k = 0; k < size_; ++k) {
     seed_ = seed_ * 1664525u + 1013904223u;
     v[k] = typical[k] * (static_cast<double>(seed_ >> 8) / (1 << 23) - 1);
   }
+  return v;
+}
+
+bool Lanczos::begin_inverted() {
+  std::vector<double> v = random_vector();
+  op_.invert(v);
+  const double one = length(v);
+  if (!(one > 0) || !std::isfinite(one)) return false;
+  for (double& x : v) x /= one;
+  basis_.push_back(std::move(v));
+  return true;
+}
+
+bool Lanczos::add_new_vector() {
+  std::vector<double> v = random_vector();
   const double raw = length(v);
   op_.project(v);
   const double inside = length(v);
@@ -90,10 +106,14 @@ bool Lanczos::clean(std::vector<double>& v) {
   return true;
 }
 
-bool Lanczos::update_spectrum(const Choice& choose) {
+void Lanczos::find_spectrum() {
   TridiagonalSpectrum spectrum = tridiagonal_spectrum(alpha_, beta_);
   theta_ = std::move(spectrum.theta);
   coefficients_ = std::move(spectrum.vectors);
+}
+
+bool Lanczos::update_spectrum(const Choice& choose) {
+  find_spectrum();
   const double largest = std::max(std::abs(theta_.front()), std::abs(theta_.back()));
   const std::vector<int> chosen = choose(theta_);
   for (int k : chosen) {
@@ -106,38 +126,41 @@ bool Lanczos::update_spectrum(const Choice& choose) {
   return !chosen.empty();
 }
 
+bool Lanczos::advance(bool last) {
+  std::vector<double> w = basis_.back();
+  op_.invert(w);
+  double along = 0;
+  orthogonalise(w, &along);
+  alpha_.push_back(along);
+  double beta = length(w);
+  scale_ = std::max({scale_, std::abs(along), beta});
+  if (!std::isfinite(beta)) return false;
+  if (beta <= lost_part * scale_) {
+    beta = 0;
+  } else if (!last) {
+    for (double& x : w) x /= beta;
+    if (beta <= polluted_part * scale_ && !clean(w)) {
+      beta = 0;
+    } else {
+      basis_.push_back(std::move(w));
+    }
+  }
+  beta_.push_back(beta);
+  return true;
+}
+
 bool Lanczos::run(const Choice& choose, int most, const std::function<bool()>& go_on) {
-  double scale = 0;
-  int next_look = 0;
-  while (true) {
+  for (int next_look = 0; true;) {
     if (basis_.size() == alpha_.size() && !add_new_vector()) {
       exhausted_ = true;
       break;
     }
-    std::vector<double> w = basis_.back();
-    op_.invert(w);
-    double along = 0;
-    orthogonalise(w, &along);
-    alpha_.push_back(along);
-    double beta = length(w);
-    scale = std::max({scale, std::abs(along), beta});
-    const bool last = static_cast<int>(alpha_.size()) >= most;
-    if (!std::isfinite(beta)) return false;
-    if (beta <= lost_part * scale) {
-      beta = 0;
-    } else if (!last) {
-      for (double& x : w) x /= beta;
-      if (beta <= polluted_part * scale && !clean(w)) {
-        beta = 0;
-      } else {
-        basis_.push_back(std::move(w));
-      }
-    }
-    beta_.push_back(beta);
+    const bool last = steps() + 1 >= most;
+    if (!advance(last)) return false;
     if (last) break;
-    if (static_cast<int>(alpha_.size()) >= next_look) {
+    if (steps() >= next_look) {
       if (update_spectrum(choose)) return true;
-      next_look = static_cast<int>(alpha_.size()) + steps_between_looks;
+      next_look = steps() + steps_between_looks;
     }
     if (go_on && !go_on()) return false;
   }

@@ -46,6 +46,15 @@ class Lanczos {
   /// True if the chosen eigenvalues have settled. False from `go_on` stops.
   bool run(const Choice& choose, int most, const std::function<bool()>& go_on = {});
 
+  /// In parts, for who judges alone when to stop. Begins with A^-1 B of the start vector in place of its projection.
+  bool begin_inverted();
+  /// One step; `last`: without a vector for the next one. False where numbers are no longer finite.
+  bool advance(bool last);
+  /// theta() and vector() after the steps made so far.
+  void find_spectrum();
+  /// Whether the last step left nothing of the space that the start spans.
+  bool is_complete() const { return !beta_.empty() && beta_.back() == 0; }
+
   /// Whether every direction of the null space was found: then the spectrum is complete.
   bool exhausted() const { return exhausted_; }
   int steps() const { return static_cast<int>(alpha_.size()); }
@@ -55,6 +64,7 @@ class Lanczos {
   std::vector<double> vector(int k) const;
 
  private:
+  std::vector<double> random_vector();
   bool add_new_vector();
   bool clean(std::vector<double>& v);
   void orthogonalise(std::vector<double>& w, double* last);
@@ -67,6 +77,7 @@ class Lanczos {
   std::vector<std::vector<double>> locked_, basis_;
   std::vector<double> alpha_, beta_, work_;
   std::vector<double> theta_, coefficients_;  // eigenvectors of the tridiagonal matrix, one after the other
+  double scale_ = 0;                          // largest entry of the tridiagonal matrix
   bool exhausted_ = false;
   unsigned seed_ = 12345;
 };

@@ -3,21 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "catena/analysis/run/thresholds.hpp"
+#include "catena/analysis/balance/refine_to_rounding.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
 namespace {
 
-constexpr int most_corrections = 30, projections = 3;
-// Corrections below this part of the solution are rounding.
-constexpr double rounding = 1e-16;
-
-double size_of(std::span<const double> weight, std::span<const double> x) {
-  double sum = 0;
-  for (std::size_t c = 0; c < weight.size(); ++c) sum += weight[c] * x[c] * x[c];
-  return std::sqrt(sum);
-}
+constexpr int projections = 3;
 
 }  // namespace
 
@@ -44,22 +36,11 @@ double decisive_component(const Plan& plan, std::span<const double> shape) {
 
 void solve_to_rounding(StaticSystem& system, std::span<const double> weight, std::span<const double> given,
                        std::span<double> x, std::span<double> correction) {
-  KktMatrix& matrix = system.matrix();
-  Counters& counters = system.evaluator().counters;
-  std::copy(given.begin(), given.end(), x.begin());
-  matrix.solve_unrefined(x, counters);
-  double before = size_of(weight, x);
-  for (int k = 0; k < most_corrections; ++k) {
-    matrix.multiply(x, correction);
-    for (std::size_t i = 0; i < x.size(); ++i) correction[i] = given[i] - correction[i];
-    matrix.solve_unrefined(correction, counters);
-    const double now = size_of(weight, correction);
-    if (!(now < thresholds::least_gain * before)) return;
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] += correction[i];
-    // The next correction, extrapolated from the last two.
-    if (now * (now / before) <= rounding * size_of(weight, x)) return;
-    before = now;
-  }
+  const KktMatrix& matrix = system.matrix();
+  refine_to_rounding(
+      weight, given, x, correction,
+      [&](std::span<double> v) { system.matrix().solve_unrefined(v, system.evaluator().counters); },
+      [&](std::span<const double> v, std::span<double> y) { matrix.multiply(v, y); });
 }
 
 void project_to_null_space(StaticSystem& system, std::span<double> v, std::span<double> x) {
@@ -74,8 +55,12 @@ void project_to_null_space(StaticSystem& system, std::span<double> v, std::span<
   }
 }
 
-ModeOperator::ModeOperator(StaticSystem& system, std::vector<double> mass)
-    : system_(system), mass_(std::move(mass)), typical_(mass_.size(), 0.0), weight_(length_weights(system)) {
+ModeOperator::ModeOperator(StaticSystem& system, std::vector<double> mass, bool refined)
+    : system_(system),
+      refined_(refined),
+      mass_(std::move(mass)),
+      typical_(mass_.size(), 0.0),
+      weight_(length_weights(system)) {
   double sum = 0, count = 0;
   for (std::size_t c = 0; c < mass_.size(); ++c) {
     sum += mass_[c] / weight_[c];
@@ -104,10 +89,18 @@ void ModeOperator::metric(std::span<const double> v, std::span<double> Gv) {
 void ModeOperator::invert(std::span<double> v) {
   std::fill(given_.begin(), given_.end(), 0.0);
   metric(v, {given_.data(), v.size()});
-  solve_to_rounding(system_, weight_, given_, solution_, correction_);
+  if (refined_) {
+    solve_to_rounding(system_, weight_, given_, solution_, correction_);
+  } else {
+    solution_ = given_;
+    system_.matrix().solve_unrefined(solution_, system_.evaluator().counters);
+  }
   std::copy_n(solution_.begin(), v.size(), v.begin());
 }
 
-void ModeOperator::project(std::span<double> v) { project_to_null_space(system_, v, solution_); }
+void ModeOperator::project(std::span<double> v) {
+  // Without refinement the factors that would project v are those that it comes from: nothing would be gained.
+  if (refined_) project_to_null_space(system_, v, solution_);
+}
 
 }  // namespace catena

@@ -16,8 +16,8 @@ namespace catena {
 
 class ModeOperator final : public SpectralOperator {
  public:
-  /// `mass`: per column. The system must be at the configuration.
-  ModeOperator(StaticSystem& system, std::vector<double> mass);
+  /// `mass`: per column. The system must be at the configuration. Not `refined`: with the regularised factors alone.
+  ModeOperator(StaticSystem& system, std::vector<double> mass, bool refined = true);
 
   /// Factors K - sigma M, K with these multipliers. False: a pivot vanished, sigma is an eigenvalue.
   bool factorize(std::span<const double> lambda, double sigma);
@@ -32,6 +32,7 @@ class ModeOperator final : public SpectralOperator {
 
  private:
   StaticSystem& system_;
+  bool refined_;
   std::vector<double> mass_, typical_, weight_, given_, solution_, correction_;
 };
 
