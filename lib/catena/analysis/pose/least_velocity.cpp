@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "catena/analysis/run/thresholds.hpp"
+#include "catena/assembly/systems/tangent.hpp"
 #include "catena/base/at.hpp"
 
 namespace catena {
@@ -80,14 +81,8 @@ bool LeastVelocity::velocity(double t, Side side, std::span<const double> q, std
 
 bool LeastVelocity::acceleration(std::span<const double> qd, std::span<double> qdd) {
   std::fill(turning_.begin(), turning_.end(), 0.0);
-  evaluator_.visit_constraint_hessians(mu_, [&](int i, int j, const auto& matrix) {
-    const std::size_t place[2] = {3 * at(i), 3 * at(j)};
-    for (std::size_t r = 0; r < 6; ++r) {
-      for (std::size_t c = 0; c < 6; ++c) {
-        turning_[place[r / 3] + r % 3] += matrix[6 * r + c] * qd[place[c / 3] + c % 3];
-      }
-    }
-  });
+  visit_curvature(evaluator_, mu_,
+                  [&](int row, int column, double value) { turning_[at(row)] += value * qd[at(column)]; });
   for (const int c : plan_.coordinate) start_[at(c)] = turning_[at(c)] / weight_[at(c)];
   evaluator_.gamma(qd, right_);
   return complete(right_, qdd);
